@@ -1,0 +1,117 @@
+"""Bring the docs up to date:  python docs/update.py
+
+With --check it changes nothing, and fails where something but seconds would change.
+
+Every number on a page is printed by a command beside it. This runs the marked blocks of all pages (the marks stand in
+`machinery/snippets.py`), puts in what they print now, and writes the generated pages. A generator is a file
+`docs/generate_*.py` with a function `pages() -> dict[str, str]`: the text of each page by its path from the top of the
+repository. With `LONG = True` at its top it only runs with --long.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+
+from machinery.comparison import difference, texts_agree
+from machinery.snippets import ROOT, SnippetError, pages, rewritten, run_page
+
+DOCS = Path(__file__).resolve().parent
+
+
+def generators(folder: Path = DOCS) -> list[Path]:
+    """Return the generator files."""
+    return sorted(folder.glob("generate_*.py"))
+
+
+def load_generator(file: Path) -> ModuleType:
+    """Return a generator file as a module.
+
+    Raises:
+        SnippetError: if it has no function `pages`.
+    """
+    spec = importlib.util.spec_from_file_location(file.stem, file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[file.stem] = module  # dataclasses look their module up there
+    spec.loader.exec_module(module)
+    if not callable(getattr(module, "pages", None)):
+        raise SnippetError(f"{file.name}: a generator needs a function pages() -> dict[str, str]")
+    return module
+
+
+def is_long(file: Path) -> bool:
+    """Whether a generator takes so long that it only runs when asked for."""
+    return bool(getattr(load_generator(file), "LONG", False))
+
+
+def generated_changes(file: Path) -> Iterator[tuple[Path, str, str]]:
+    """Yield (page, old text, new text) for each page of a generator that isn't what it makes now, seconds apart."""
+    for name, text in load_generator(file).pages().items():
+        page = ROOT / name
+        old = page.read_text(encoding="utf-8") if page.exists() else ""
+        if not texts_agree(old, text):
+            yield page, old, text
+
+
+def snippet_changes(page: Path) -> Iterator[tuple[Path, str, str]]:
+    """Yield (page, old text, new text) if what the blocks of a page print is not what it shows, seconds apart."""
+    with tempfile.TemporaryDirectory() as directory:
+        outcomes = list(run_page(page, Path(directory)))
+    old, new = page.read_text(encoding="utf-8"), rewritten(page, outcomes)
+    if new != old:
+        yield page, old, new
+
+
+def write(page: Path, text: str) -> None:
+    """Write a page beside its place and move it there."""
+    page.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = page.with_suffix(".new")
+    unfinished.write_text(text, encoding="utf-8", newline="\n")
+    os.replace(unfinished, page)
+
+
+def update(check: bool, long: bool) -> tuple[int, int]:
+    """Update, or check, all pages; return how many pages changed (or would), and how many could not be done."""
+    changed = failed = 0
+    jobs: list[tuple[Callable[[Path], Iterator[tuple[Path, str, str]]], Path]]
+    jobs = [(generated_changes, file) for file in generators() if long or not is_long(file)]
+    jobs += [(snippet_changes, page) for page in pages()]
+    for changes, source in jobs:
+        try:
+            for page, old, new in changes(source):
+                changed += 1
+                print(f"{page.relative_to(ROOT)}: {'out of date' if check else 'updated'}")
+                if check:
+                    print(difference(old, new))
+                else:
+                    write(page, new)
+        except SnippetError as error:
+            failed += 1
+            print(error, file=sys.stderr)
+    return changed, failed
+
+
+def main() -> int:
+    """Read the command line and update."""
+    parser = argparse.ArgumentParser(
+        description="Run the blocks of the docs, put in what they print, write the generated pages."
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="change nothing; fail where something but seconds would change"
+    )
+    parser.add_argument("--long", action="store_true", help="run the generators that take minutes, too")
+    options = parser.parse_args()
+    changed, failed = update(options.check, options.long)
+    return 1 if failed or (changed and options.check) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

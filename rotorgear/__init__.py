@@ -1,0 +1,80 @@
+"""rotorgear: finite-element rotor-gear analysis.
+
+    import rotorgear as rg
+    model = rg.load("models/split_torque.toml")
+    result = rg.modal(model, fmax=5000.0)
+
+Names are loaded when they are first used, so that importing the package costs nothing.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "rotorgear.model.load": ("load", "loads", "json_schema"),
+    "rotorgear.model.model": ("Model",),
+    "rotorgear.model.shaft": ("Shaft", "Section", "Material"),
+    "rotorgear.model.bodies": ("Disk", "PointMass"),
+    "rotorgear.model.gear": ("Gear", "GearBody"),
+    "rotorgear.model.mesh": ("Mesh",),
+    "rotorgear.model.supports": (
+        "Bearing", "TableRow", "Pedestal", "Support", "Coupling", "StiffnessMatrix", "DampingMatrix",
+    ),
+    "rotorgear.model.operation": ("Operation", "Load", "ModelDamping", "Point"),
+    "rotorgear.system.system": ("System",),
+    "rotorgear.analysis.modal": ("modal",),
+    "rotorgear.analysis.accuracy": ("accuracy_ladder",),
+    "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
+    "rotorgear.analysis.describe_model": ("describe_model",),
+    "rotorgear.results.modal": ("ModalResult",),
+    "rotorgear.results.accuracy": ("AccuracyLadder",),
+    "rotorgear.results.comparison": ("Comparison", "RigLine"),
+    "rotorgear.export.vtk": ("write_vtk",),
+    "rotorgear.export.hdf5": ("save", "read"),
+    "rotorgear.errors": ("RotorgearError", "ModelError", "AnalysisError", "ConvergenceError"),
+}  # fmt: skip
+_HOME = {name: module for module, names in _HOMES.items() for name in names}
+__all__ = ["__version__", *_HOME]
+
+if TYPE_CHECKING:
+    from rotorgear.analysis.accuracy import accuracy_ladder
+    from rotorgear.analysis.compare import compare, read_rig_lines
+    from rotorgear.analysis.describe_model import describe_model
+    from rotorgear.analysis.modal import modal
+    from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
+    from rotorgear.export.hdf5 import read, save
+    from rotorgear.export.vtk import write_vtk
+    from rotorgear.model.bodies import Disk, PointMass
+    from rotorgear.model.gear import Gear, GearBody
+    from rotorgear.model.load import json_schema, load, loads
+    from rotorgear.model.mesh import Mesh
+    from rotorgear.model.model import Model
+    from rotorgear.model.operation import Load, ModelDamping, Operation, Point
+    from rotorgear.model.shaft import Material, Section, Shaft
+    from rotorgear.model.supports import (
+        Bearing,
+        Coupling,
+        DampingMatrix,
+        Pedestal,
+        StiffnessMatrix,
+        Support,
+        TableRow,
+    )
+    from rotorgear.results.accuracy import AccuracyLadder
+    from rotorgear.results.comparison import Comparison, RigLine
+    from rotorgear.results.modal import ModalResult
+    from rotorgear.system.system import System
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        return getattr(import_module(_HOME[name]), name)
+    raise AttributeError(f"module 'rotorgear' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

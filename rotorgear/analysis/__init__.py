@@ -1,0 +1,1 @@
+"""Analyses: verbs that take a model and return a frozen result."""

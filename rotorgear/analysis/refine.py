@@ -1,0 +1,85 @@
+"""Refines the pieces of shafts until every requested frequency is estimated to be within the wanted accuracy.
+
+Order first (the error falls exponentially), then twice the elements. Only pieces that bring a share of the error are refined:
+a piece that no requested mode bends stays as it is.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.system.bubble_errors import bubble_errors
+from rotorgear.system.plan import PieceKey, Plan
+from rotorgear.system.system import System
+
+DEFAULT_ACCURACY = 1e-3
+# One element of this order a piece to start from: the basic element hardly ever does.
+START = Plan(elements=1, order=2)
+HIGHEST_ORDER = 10
+_SPLIT_ORDER = 6
+# The estimate is aimed at this share of the wanted accuracy, for its own uncertainty.
+_AIM = 0.5
+
+
+def total_error(parts: dict[PieceKey, np.ndarray], modes: int) -> np.ndarray:
+    """Estimated relative error of each mode, (m,)."""
+    return np.asarray(sum(parts.values(), np.zeros(modes)))
+
+
+def errors_of(
+    system: System, speed: float | None, s: np.ndarray, q: np.ndarray, rigid: np.ndarray
+) -> dict[PieceKey, np.ndarray]:
+    """Estimated relative error by piece, (m,) each, zero for rigid modes, from shapes (a, m)."""
+    elastic = ~rigid & (np.abs(s) > 0.0)
+    found = bubble_errors(system, speed, s[elastic], q[:, elastic]) if elastic.any() else {}
+    spread = {}
+    for piece, part in found.items():
+        spread[piece] = np.zeros(len(s))
+        spread[piece][elastic] = part
+    return spread
+
+
+def refined(system: System, parts: dict[PieceKey, np.ndarray], accuracy: float) -> Plan | None:
+    """Return a finer plan where some mode's error is above the accuracy; None where all are within."""
+    if not parts:
+        return None
+    names = list(parts)
+    table = np.array([parts[name] for name in names])  # (pieces, m)
+    aim = _AIM * accuracy
+    if np.all(table.sum(axis=0) <= aim):
+        return None
+    chosen: set[int] = set()
+    for mode in np.flatnonzero(~(table.sum(axis=0) <= aim)):
+        # The largest contributions go until the rest is well inside the aim.
+        ranked = np.argsort(-table[:, mode])
+        left = np.cumsum(table[ranked, mode][::-1])[::-1]
+        chosen |= {int(piece) for piece, rest in zip(ranked, left, strict=True) if rest > 0.5 * aim}
+    cut = dict(system.plan.cut)
+    for k in chosen:
+        worst = float(np.max(table[k]))
+        cut[names[k]] = _finer(system, names[k], worst / (aim / len(names)))
+    return Plan(system.plan.elements, system.plan.order, cut)
+
+
+def all_finer(system: System) -> Plan:
+    """Return a plan with two orders more in every piece, for a mesh that has too few modes."""
+    cut = dict(system.plan.cut)
+    for shaft, elements in system.nodes.elements.items():
+        for number in {element.piece for element in elements}:
+            cut[shaft, number] = _finer(system, (shaft, number), np.inf)
+    return Plan(system.plan.elements, system.plan.order, cut)
+
+
+def _finer(system: System, piece: PieceKey, excess: float) -> tuple[int, int]:
+    """Elements and order of a piece whose error is `excess` times its share."""
+    shaft, number = piece
+    own = [element for element in system.nodes.elements[shaft] if element.piece == number]
+    count, order = len(own), own[0].order
+    if system.model.shafts[shaft].mass_matrix == "lumped":
+        return 2 * count, order
+    if not np.isfinite(excess):  # a mode is finer than the mesh: nothing to extrapolate from yet
+        return (count, order + 2) if order < _SPLIT_ORDER - 2 else (2 * count, order)
+    step = 1 if excess < 100.0 else (2 if excess < 1e5 else 3)
+    if order + step <= HIGHEST_ORDER:
+        return count, order + step
+    return 2 * count, _SPLIT_ORDER

@@ -1,0 +1,65 @@
+"""rotorgear accuracy: error against run time of a model over a ladder of discretisations."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rotorgear.cli.common import JsonOption, ModelFile, SpeedOption, console, parse_speed, progress_bar, write_json
+from rotorgear.errors import AnalysisError
+
+if TYPE_CHECKING:
+    from rotorgear.results.accuracy import AccuracyLadder
+
+
+def accuracy(
+    model: ModelFile,
+    analysis: Annotated[str, typer.Option("--analysis", help="What is run; so far: modal.")] = "modal",
+    speed: SpeedOption = None,
+    modes: Annotated[int, typer.Option("--modes", min=1, help="Number of modes that are compared.")] = 24,
+    reference: Annotated[
+        Path | None,
+        typer.Option(
+            "--reference",
+            help="CSV of frequencies (default: the model's own finest).",
+            show_default=False,
+        ),
+    ] = None,
+    plot: Annotated[Path | None, typer.Option("--plot", help="Draw it to this PNG or SVG.", show_default=False)] = None,
+    json: JsonOption = None,
+) -> None:
+    """Error against run time and dofs over a ladder of discretisations, with the measured order."""
+    import rotorgear as rg
+
+    if analysis != "modal":
+        raise AnalysisError(f"--analysis: got '{analysis}', expected modal")
+    given = [line.frequency_hz for line in rg.read_rig_lines(reference)] if reference else None
+    with progress_bar("accuracy") as progress:
+        ladder = rg.accuracy_ladder(
+            rg.load(model), speed=parse_speed(speed), modes=modes, reference=given, progress=progress
+        )
+    for part in table(ladder):
+        console().print(part)
+    write_json(ladder.to_dict(), json)
+    if plot:
+        from rotorgear.plots.accuracy import draw_accuracy
+
+        typer.echo(f"wrote {draw_accuracy(ladder, plot)}")
+
+
+def table(ladder: AccuracyLadder) -> list[Any]:
+    """The ladder as rich renderables that fit 80 columns."""
+    from rich.table import Table
+
+    rows = Table(box=None, pad_edge=False, header_style="bold")
+    for name in ("discretisation", "dofs", "seconds", "error", "estimate", "order"):
+        rows.add_column(name, justify="left" if name == "discretisation" else "right")
+    for rung in ladder.rungs:
+        order = "" if rung.order is None else f"{rung.order:.2f}"
+        rows.add_row(
+            rung.method, str(rung.dofs), f"{rung.seconds:.3f} s", f"{rung.error:.1e}", f"{rung.estimate:.1e}", order
+        )
+    head = f"[bold]{ladder.title}[/bold]: largest relative error of {ladder.modes} frequencies"
+    return [head, f"against {ladder.reference}", "", rows, ""]

@@ -1,0 +1,117 @@
+"""rotorgear check: what a model file describes, before anything is solved."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from rotorgear.cli.common import ElementsOption, JsonOption, ModelFile, console, write_json
+
+if TYPE_CHECKING:
+    from rotorgear.results.description import MeshRow, ModelDescription
+
+
+_MESH_LEGEND = (
+    "[dim]at: direction from pinion to gear from +x; a_wt: working transverse pressure angle; beta_b: base helix angle in deg; "
+    "eps: contact ratios, transverse and overlap (of one helix)[/dim]"
+)
+_FORCE_LEGEND = (
+    "[dim]forces on one helix: normal to the flank, tangential and radial at the working circle, axial; "
+    "L and R: helix at the smaller and the larger z[/dim]"
+)
+
+
+def check(model: ModelFile, elements: ElementsOption = None, json: JsonOption = None) -> None:
+    """Say what a model file describes: speeds, mesh frequencies, torques, contact ratios, masses, dofs, warnings."""
+    import rotorgear as rg
+
+    description = rg.describe_model(rg.load(model), elements=elements)
+    out = console()
+    for part in _parts(description):
+        out.print(part)
+    write_json(description.to_dict(), json)
+
+
+def _parts(d: ModelDescription) -> list[Any]:
+    speed = "no speed given" if d.speed_rpm is None else f"input shaft '{d.reference_shaft}' at {d.speed_rpm:.6g} rpm"
+    mass = f"total mass {d.total_mass_kg:.6g} kg; " if d.total_mass_kg else ""
+    counts = ", ".join(_counted(number, name) for name, number in d.counts.items())
+    parts: list[Any] = [f"[bold]{d.title or 'Model'}[/bold]", f"{speed}; {counts}", ""]
+    parts.append(_shafts(d))
+    if d.meshes:
+        parts += ["", _meshes(d), _MESH_LEGEND, "", _forces(d), _FORCE_LEGEND]
+    if d.torques:
+        parts += ["", _torques(d)]
+    parts += [
+        "",
+        f"{mass}{d.nodes} nodes, {d.dofs} dofs with {d.mesh}",
+    ]
+    parts += [f"left out: {note}" for note in d.left_out]
+    parts += [f"Warning: {note}" for note in d.warnings]
+    return [*parts, ""]
+
+
+def _counted(number: int, table: str) -> str:
+    words = table.replace("_", " ")
+    return f"{number} {words if number != 1 else words.removesuffix('es' if words.endswith(('meshes', 'masses')) else 's')}"
+
+
+def _table(*columns: tuple[str, str]) -> Any:
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for name, justify in columns:
+        table.add_column(name, justify=justify, overflow="fold")  # type: ignore[arg-type]
+    return table
+
+
+def _shafts(d: ModelDescription) -> Any:
+    table = _table(("shaft", "left"), ("ratio", "right"), ("rpm", "right"), ("length mm", "right"), ("shaft kg", "right"),
+                   ("bodies kg", "right"), ("Ip kg m2", "right"))  # fmt: skip
+    for row in d.shafts:
+        rpm = "-" if row.speed_rpm is None else f"{row.speed_rpm:.2f}"
+        table.add_row(row.name, f"{row.speed_ratio:+.6f}", rpm, f"{1e3 * row.length_m:.2f}", f"{row.shaft_mass_kg:.3f}",
+                      f"{row.body_mass_kg:.3f}", f"{row.polar_inertia_kg_m2:.5g}")  # fmt: skip
+    return table
+
+
+def _meshes(d: ModelDescription) -> Any:
+    table = _table(("mesh", "left"), ("ratio", "right"), ("axes mm", "right"), ("at deg", "right"), ("a_wt deg", "right"),
+                   ("beta_b", "right"), ("eps_a", "right"), ("eps_b", "right"), ("mesh Hz", "right"))  # fmt: skip
+    for row in d.meshes:
+        table.add_row(
+            row.name, f"{row.ratio:.4f}", _number(row.centre_distance_m, 1e3, 3), f"{row.centre_line_deg:.2f}",
+            f"{row.pressure_angle_deg:.3f}", f"{row.base_helix_angle_deg:.3f}", _number(row.transverse_contact_ratio, 1.0, 3),
+            _number(row.overlap_ratio, 1.0, 3), _number(row.mesh_frequency_hz, 1.0, 2),
+        )  # fmt: skip
+    return table
+
+
+def _number(value: float | None, factor: float, digits: int) -> str:
+    return "-" if value is None else f"{factor * value:.{digits}f}"
+
+
+def _forces(d: ModelDescription) -> Any:
+    table = _table(("mesh", "left"), ("driver", "left"), ("F_n N", "right"), ("F_t N", "right"), ("F_r N", "right"),
+                   ("F_a N", "right"), ("k N/m", "right"), ("c N s/m", "right"))  # fmt: skip
+    for row in d.meshes:
+        helices = len(row.normal_force_n)
+        for number, force in enumerate(row.normal_force_n):
+            name = row.name if helices == 1 else f"{row.name} {'L' if number == 0 else 'R'}"
+            a, b = math.radians(row.pressure_angle_deg), math.radians(row.base_helix_angle_deg)
+            parts = (force, force * math.cos(b) * math.cos(a), force * math.cos(b) * math.sin(a), force * math.sin(b))
+            table.add_row(name, _driver(row), *(f"{part:.1f}" for part in parts),
+                          f"{row.stiffness_n_per_m / helices:.4g}", f"{row.damping_n_s_per_m / helices:.4g}")  # fmt: skip
+    return table
+
+
+def _driver(row: MeshRow) -> str:
+    return f"{row.driver} (assumed)" if row.flank_assumed else row.driver
+
+
+def _torques(d: ModelDescription) -> Any:
+    table = _table(("load", "left"), ("shaft", "left"), ("torque N m about z", "right"), ("power in kW", "right"))
+    for row in d.torques:
+        power = "-" if row.power_w is None else f"{1e-3 * row.power_w:.3f}"
+        table.add_row(row.name, row.shaft, f"{row.torque_n_m:.2f}", power)
+    return table

@@ -1,0 +1,93 @@
+"""What the commands share: options, the console, the progress bar, JSON output."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rotorgear.errors import AnalysisError
+from rotorgear.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+ModelFile = Annotated[Path, typer.Argument(help="Model file (TOML).", show_default=False)]
+JsonOption = Annotated[
+    Path | None, typer.Option("--json", help="Write the result as JSON to this file.", show_default=False)
+]
+ElementsOption = Annotated[
+    int | None,
+    typer.Option(
+        "--elements", help="So many basic elements in each piece of shaft, instead of an accuracy.", show_default=False
+    ),
+]
+AccuracyOption = Annotated[
+    float | None,
+    typer.Option(
+        "--accuracy", help="Refine to this relative error of every frequency (default 1e-3).", show_default=False
+    ),
+]
+SpeedOption = Annotated[
+    str | None,
+    typer.Option(
+        "--speed", help="Speed of the input shaft, such as '16350 rpm': damped and gyroscopic.", show_default=False
+    ),
+]
+
+
+def console() -> Console:
+    """Return a console for tables; 80 columns where the output is no terminal."""
+    from rich.console import Console
+
+    return Console(highlight=False, width=None if sys.stdout.isatty() else 80)
+
+
+def parse_speed(text: str | None) -> float | None:
+    """Speed in rad/s from the command line.
+
+    Raises:
+        AnalysisError: not a rotational speed.
+    """
+    from rotorgear.quantity import QuantityError, parse_quantity
+
+    if text is None:
+        return None
+    if text.strip() == "0":
+        return 0.0
+    try:
+        return parse_quantity(text, "speed")
+    except QuantityError as error:
+        raise AnalysisError(f"--speed: got '{text}', expected {error}") from None
+
+
+def write_json(data: dict[str, Any], path: Path | None) -> None:
+    """Write a result's plain values where a file was asked for."""
+    if path is not None:
+        from rotorgear.export.json_file import write_json as write
+
+        write(data, path)
+
+
+@contextmanager
+def progress_bar(text: str) -> Iterator[Progress]:
+    """Show a bar on stderr while work goes on; silent where stderr is no terminal."""
+    if not sys.stderr.isatty():
+        yield silent
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bar
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(text, total=1.0)
+
+        def report(fraction: float, step: str) -> None:
+            bar.update(task, completed=fraction, description=f"{text}: {step}")
+
+        yield report

@@ -1,0 +1,58 @@
+"""The entry point `rotorgear`: gathers the commands and turns errors into one clear text and exit code 2."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from rotorgear.cli import accuracy, check, compare, modal, schema, validate, view
+from rotorgear.errors import RotorgearError
+
+app = typer.Typer(
+    name="rotorgear",
+    help="Finite-element rotor-gear analysis: shafts, gears, meshes and bearings from one readable file.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+app.command()(modal.modal)
+app.command()(compare.compare)
+app.command()(check.check)
+app.command()(accuracy.accuracy)
+app.command()(view.view)
+app.command()(schema.schema)
+app.command()(validate.validate)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from rotorgear import __version__
+
+        typer.echo(f"rotorgear {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and stop.")
+    ] = False,
+) -> None:
+    """Finite-element rotor-gear analysis: shafts, gears, meshes and bearings from one readable file."""
+
+
+def main() -> None:
+    """Run the command line."""
+    try:
+        app()
+    except RotorgearError as error:
+        sys.stderr.write(f"{error}\n")
+        raise SystemExit(2) from None
+    except BrokenPipeError:  # the reader of our output went away: nothing to report to
+        sys.stderr.close()
+        raise SystemExit(1) from None
+    except KeyboardInterrupt:
+        sys.stderr.write("interrupted; nothing half-written is left behind\n")
+        raise SystemExit(130) from None

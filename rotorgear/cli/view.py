@@ -1,0 +1,39 @@
+"""rotorgear view: an interactive window with the gearbox and its mode shapes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rotorgear.cli.common import AccuracyOption, ElementsOption, SpeedOption, parse_speed, progress_bar
+
+
+def view(
+    source: Annotated[
+        Path, typer.Argument(help="Model file (TOML), or a result saved by modal --save (HDF5).", show_default=False)
+    ],
+    mode: Annotated[int, typer.Option("--mode", min=1, help="Mode to begin with.")] = 1,
+    modes: Annotated[int, typer.Option("--modes", min=1, help="Number of modes to find in a model.")] = 24,
+    speed: SpeedOption = None,
+    accuracy: AccuracyOption = None,
+    elements: ElementsOption = None,
+) -> None:
+    """Open a window that shows the gearbox and animates its modes."""
+    import rotorgear as rg
+    from rotorgear.plots.view import view as show
+
+    if source.suffix.lower() in (".h5", ".hdf5"):
+        result = rg.read(source)
+    else:
+        with progress_bar("modal") as progress:
+            result = rg.modal(
+                rg.load(source),
+                speed=parse_speed(speed),
+                modes=modes,
+                accuracy=accuracy,
+                elements=elements,
+                progress=progress,
+            )
+    show(result, mode=mode - 1)

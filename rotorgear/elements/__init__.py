@@ -1,0 +1,1 @@
+"""Elements: mass, damping, gyroscopic and stiffness matrices of one kind of part each."""

@@ -1,0 +1,102 @@
+"""A mesh of one helix as a spring along the flank normal. The only place where hand, helix and torque sense become a sign.
+
+    e = (cos psi, sin psi, 0)      t = (-sin psi, cos psi, 0)      n_t = s cos a t + sin a e
+    n = cos b n_t - s h sin b k                                     (direction of the force on the gear)
+    v_p = [ n ; ( r_w1 e + xi n_t + z_cp k) x n ]      v_g = [ -n ; -(-r_w2 e + xi n_t + z_cg k) x n ]
+    K = k v v^T
+
+One contact point serves both bodies: that makes all six rigid motions of the pair free of strain. (The widespread form with
+each gear's arm to its own base tangent point fails a rigid tilt by up to a_w sin a sin b per rad.) Conventions:
+docs/conventions.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, sin
+
+import numpy as np
+
+from rotorgear.elements.matrices import ElementMatrices
+
+
+@dataclass(frozen=True)
+class ContactGeometry:
+    """Geometry of one contact line (m, rad).
+
+    Attributes:
+        psi: direction from pinion to gear from +x.
+        pressure_angle: working transverse pressure angle a.
+        base_helix_angle: b.
+        hand: h, +1/-1 for a right/left hand of the pinion's helix, 0 for spur.
+        torque_sense: s, sense about +z of the torque that the pinion's shaft puts into the pinion.
+        pinion_offset, gear_offset: z of the contact's plane minus z of the node.
+        contact_position: xi, from the pitch point along the line of action.
+    """
+
+    psi: float
+    pressure_angle: float
+    base_helix_angle: float
+    hand: int
+    torque_sense: int
+    pinion_base_radius: float
+    gear_base_radius: float
+    pinion_offset: float = 0.0
+    gear_offset: float = 0.0
+    contact_position: float = 0.0
+
+
+def flank_normal(geometry: ContactGeometry) -> np.ndarray:
+    """Direction of the force on the gear, a unit vector (3,)."""
+    g = geometry
+    e, t = _frame(g.psi)
+    transverse = g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e
+    axial = np.array([0.0, 0.0, -g.torque_sense * g.hand * sin(g.base_helix_angle)])
+    return cos(g.base_helix_angle) * transverse + axial
+
+
+def contact_vector(geometry: ContactGeometry) -> np.ndarray:
+    """The 12 entries (v_p, v_g) that give the approach of the flanks from the dofs of pinion and gear, shape (12,)."""
+    g = geometry
+    e, t = _frame(g.psi)
+    n = flank_normal(g)
+    transverse = g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e
+    k = np.array([0.0, 0.0, 1.0])
+    along = g.contact_position * transverse
+    pinion = g.pinion_base_radius / cos(g.pressure_angle) * e + along + g.pinion_offset * k
+    gear = -g.gear_base_radius / cos(g.pressure_angle) * e + along + g.gear_offset * k
+    return np.concatenate([n, np.cross(pinion, n), -n, -np.cross(gear, n)])
+
+
+def gear_mesh(geometry: ContactGeometry, stiffness: float, damping: float = 0.0) -> ElementMatrices:
+    """Spring (N/m) and damper (N s/m) along the flank normal between pinion and gear, 12 dofs, one strain."""
+    v = contact_vector(geometry)
+    return ElementMatrices(
+        strain=v[None, None],
+        modulus=np.array([[[stiffness]]]),
+        viscosity=np.array([[[damping]]]) if damping else None,
+    )
+
+
+def equivalent_mass_torsion(
+    first_inertia: float, second_inertia: float, first_radius: float, second_radius: float
+) -> float:
+    """m_e = J1 J2/(J1 r2^2 + J2 r1^2) in kg of two bodies on base radii; 0 where one of them has no inertia."""
+    product = first_inertia * second_inertia
+    return product / (first_inertia * second_radius**2 + second_inertia * first_radius**2) if product else 0.0
+
+
+def equivalent_mass_general(geometry: ContactGeometry, first: np.ndarray, second: np.ndarray) -> float:
+    """m_e in kg with 1/m_e = v^T M^-1 v over the gears' own inertia; `first`, `second` are (6,) diagonals of M.
+
+    A direction without inertia gives way freely: m_e is then 0.
+    """
+    v, inertia = contact_vector(geometry), np.concatenate([first, second])
+    moved = v != 0.0
+    if np.any(inertia[moved] <= 0.0):
+        return 0.0
+    return float(1.0 / np.sum(v[moved] ** 2 / inertia[moved]))
+
+
+def _frame(psi: float) -> tuple[np.ndarray, np.ndarray]:
+    return np.array([cos(psi), sin(psi), 0.0]), np.array([-sin(psi), cos(psi), 0.0])

@@ -1,0 +1,225 @@
+"""Timoshenko shaft element with two nodes, cylindrical or conical: bending in two planes, axial, torsion.
+
+The shape functions are the exact static ones of the element (Przemieniecki, Theory of Matrix Structural Analysis, 1968, for the
+uniform element; here from the flexibility of the variable section, so a cone is exact as well). In one plane, with the slope
+theta, the mid moment m and the shear force V, M(s) = m + V (L/2 - s):
+
+    [ theta_2 - theta_1                         ]       [ int 1/EI          int (L/2-s)/EI                  ] [ m ]
+    [ w_2 - w_1 - L (theta_1 + theta_2)/2       ]   =   [ int (L/2-s)/EI    int (L/2-s)^2/EI + 1/(kappa G A) ] [ V ]
+
+The inverse of that flexibility is the modulus D of the two bending strains on the left. Inertia is consistent: rho A for
+displacements, rho I for tilts, 2 rho I for spin and gyroscopic terms (Nelson and McVaugh, ASME J. Eng. Ind. 98, 1976).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.elements.matrices import ElementMatrices
+from rotorgear.elements.shaft_bubbles import bubble_motions, shaft_bubbles
+from rotorgear.elements.shaft_section import (
+    ShaftElements,
+    cowper,
+    gauss,
+    is_uniform,
+    point_count,
+    section,
+    torsional_flexibility,
+)
+
+__all__ = [
+    "ShaftElements",
+    "cowper",
+    "inner_fields",
+    "quarter_turn",
+    "shaft_elements",
+    "strain_motions",
+    "torsional_flexibility",
+]
+
+_NODAL_STRAINS = ("axial", "torsion", "bending", "bending", "bending", "bending")
+
+
+def shaft_elements(
+    data: ShaftElements, *, order: int = 1, lumped: bool = False, internal_damping: float = 0.0
+) -> ElementMatrices:
+    """Return the matrices of all elements in the order x1 y1 z1 tx1 ty1 tz1 x2 ... tz2, then the bubbles.
+
+    Args:
+        data: sizes and material of e elements.
+        order: 1 for the basic element; p >= 2 adds the bubbles of `shaft_bubbles`.
+        lumped: half of the mass and inertia at each node instead of consistent inertia; of order 1 only.
+        internal_damping: eta in s of the rotating damping C = eta K.
+    """
+    kinds, which = data.unique()
+    one = distinct_elements(kinds, order=order, lumped=lumped, internal_damping=internal_damping)
+    terms = {name: getattr(one, name) for name in one.__dataclass_fields__}
+    return ElementMatrices(**{name: None if term is None else term[which] for name, term in terms.items()})
+
+
+def distinct_elements(
+    kinds: ShaftElements, *, order: int = 1, lumped: bool = False, internal_damping: float = 0.0
+) -> ElementMatrices:
+    """The same as `shaft_elements`, computed for every element as if no two were equal."""
+    points = point_count(kinds, order)
+    strain, modulus, fields, weights = _statics(kinds, points)
+    turn = _strain_turn()
+    if order > 1 and not lumped:
+        bubbles = shaft_bubbles(kinds, order, points)
+        fields = np.concatenate([fields, bubbles.fields], axis=3)
+        strain, modulus = _block(strain, bubbles.strain), _block(modulus, np.eye(bubbles.strain.shape[1])[None])
+        turn = _block(turn[None], bubbles.turn[None])[0]
+    mass, gyroscopic = _lumped(kinds, points) if lumped else _consistent(kinds, fields, weights)
+    viscosity = circulation = None
+    if internal_damping > 0.0:
+        viscosity, circulation = internal_damping * modulus, -internal_damping * modulus @ turn
+    return ElementMatrices(strain, modulus, mass, viscosity, gyroscopic, None, circulation)
+
+
+def inner_fields(data: ShaftElements, order: int) -> tuple[np.ndarray, np.ndarray]:
+    """Places between the nodes (g,) from 0 to 1, and the displacements x y z tx ty tz there from the dofs, (6, e, g, d)."""
+    points = point_count(data, order)
+    fields = _statics(data, points)[2]
+    if order > 1:
+        fields = np.concatenate([fields, shaft_bubbles(data, order, points).fields], axis=3)
+    return gauss(points)[0], fields
+
+
+def strain_motions(order: int, shear: bool = True) -> tuple[str, ...]:
+    """Motion that each strain of an element belongs to."""
+    return _NODAL_STRAINS + bubble_motions(order, shear)
+
+
+def _block(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Block diagonal of (e, a, b) and (e or 1, c, d)."""
+    e, a, b = first.shape
+    _, c, d = second.shape
+    whole = np.zeros((e, a + c, b + d))
+    whole[:, :a, :b], whole[:, a:, b:] = first, second
+    return whole
+
+
+def quarter_turn() -> np.ndarray:
+    """Turn lateral displacements and tilts of two nodes by +90 degrees about z; axial and torsion map to 0. Shape (12, 12)."""
+    R = np.zeros((12, 12))
+    for k in (0, 3, 6, 9):
+        R[k, k + 1], R[k + 1, k] = -1.0, 1.0
+    return R
+
+
+def _strain_turn() -> np.ndarray:
+    """What `quarter_turn` does to the strains, B R = P B: those of the two planes change places. Shape (6, 6)."""
+    P = np.zeros((6, 6))
+    P[2:4, 4:6], P[4:6, 2:4] = -np.eye(2), np.eye(2)
+    return P
+
+
+def _statics(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Strains B (e, 6, 12), modulus D (e, 6, 6), fields (6, e, g, 12) of x y z tx ty tz at the points, weights (e, g)."""
+    points, weights, cumulative = gauss(count)
+    L = data.length[:, None]
+    area, inertia, ratio = section(data.stiffness_diameters, points)
+    given = data.shear_coefficient[:, None]
+    kappa = np.where(np.isnan(given), cowper(data.poisson_ratio[:, None], ratio), given)
+    E, G = data.youngs_modulus[:, None], data.shear_modulus[:, None]
+    bend, shear = 1.0 / (E * inertia), 1.0 / (kappa * G * area)
+    stretch, twist = 1.0 / (E * area), 1.0 / (2.0 * G * inertia)
+    arm = L * (0.5 - points)  # lever of the shear force about the mid-point
+    W = L * weights
+    D = np.zeros((len(data.length), 6, 6))
+    D[:, 0, 0], D[:, 1, 1] = 1.0 / np.sum(W * stretch, 1), 1.0 / np.sum(W * twist, 1)
+    a0, a1 = np.sum(W * bend, 1), np.sum(W * bend * arm, 1)
+    a2 = np.sum(W * (bend * arm**2 + shear), 1)
+    if is_uniform(data):
+        a1 = np.zeros_like(a1)  # odd integrand: rounding must not couple moment and shear
+    determinant = a0 * a2 - a1**2
+    plane = np.stack([np.stack([a2, -a1], -1), np.stack([-a1, a0], -1)], -2) / determinant[:, None, None]
+    D[:, 2:4, 2:4] = D[:, 4:6, 4:6] = plane
+    B = _strains(data.length)
+    shape = _bending_shapes(data.length, points, plane, (L * (bend @ cumulative.T), L * ((bend * arm) @ cumulative.T)),
+                            L * (shear @ cumulative.T), cumulative)  # fmt: skip
+    return (
+        B,
+        D,
+        _fields(shape, L * (stretch @ cumulative.T) * D[:, :1, 0], L * (twist @ cumulative.T) * D[:, 1:2, 1]),
+        W,
+    )
+
+
+def _strains(L: np.ndarray) -> np.ndarray:
+    """B: stretch, twist, then change of slope and mean shear in the xz plane and in the yz plane."""
+    B = np.zeros((len(L), 6, 12))
+    B[:, 0, [2, 8]], B[:, 1, [5, 11]] = (-1.0, 1.0), (-1.0, 1.0)
+    # plane xz: w = x, slope = ty; plane yz: w = y, slope = -tx
+    for row, (w, t, sign) in {2: (0, 4, 1.0), 4: (1, 3, -1.0)}.items():
+        B[:, row, t], B[:, row, t + 6] = -sign, sign
+        B[:, row + 1, w], B[:, row + 1, w + 6] = -1.0, 1.0
+        B[:, row + 1, t] = B[:, row + 1, t + 6] = -sign * 0.5 * L
+    return B
+
+
+def _bending_shapes(
+    length: np.ndarray,
+    points: np.ndarray,
+    plane: np.ndarray,
+    slopes: tuple[np.ndarray, np.ndarray],
+    shear: np.ndarray,
+    cumulative: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Deflection and slope at the points, each (e, g, 4), from (w1, theta1, w2, theta2)."""
+    e, g = len(length), len(points)
+    L = length[:, None, None]
+    strain = np.zeros((e, 2, 4))  # change of slope and mean shear from the four dofs
+    strain[:, 0, 1], strain[:, 0, 3] = -1.0, 1.0
+    strain[:, 1, 0], strain[:, 1, 2] = -1.0, 1.0
+    strain[:, 1, 1] = strain[:, 1, 3] = -0.5 * length
+    force = plane @ strain  # mid moment and shear force
+    slope = np.stack(slopes, -1) @ force
+    deflection = L * (cumulative @ slope) + shear[:, :, None] * force[:, 1:2]
+    rigid = np.zeros((e, g, 4))
+    rigid[:, :, 0] = 1.0
+    rigid[:, :, 1] = length[:, None] * points
+    deflection += rigid
+    slope[:, :, 1] += 1.0
+    return deflection, slope
+
+
+def _fields(shape: tuple[np.ndarray, np.ndarray], axial: np.ndarray, torsion: np.ndarray) -> np.ndarray:
+    """Fields x y z tx ty tz at the points from the 12 dofs, shape (6, e, g, 12)."""
+    deflection, slope = shape
+    e, g, _ = deflection.shape
+    fields = np.zeros((6, e, g, 12))
+    xz, yz = [0, 4, 6, 10], [1, 3, 7, 9]
+    sign = np.array([1.0, -1.0, 1.0, -1.0])
+    fields[0][:, :, xz], fields[4][:, :, xz] = deflection, slope
+    fields[1][:, :, yz], fields[3][:, :, yz] = deflection * sign, -slope * sign
+    fields[2][:, :, 2], fields[2][:, :, 8] = 1.0 - axial, axial
+    fields[5][:, :, 5], fields[5][:, :, 11] = 1.0 - torsion, torsion
+    return fields
+
+
+def _consistent(data: ShaftElements, fields: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Consistent mass and gyroscopic matrices, each (e, d, d)."""
+    points, _, _ = gauss(fields.shape[2])
+    area, inertia, _ = section(data.mass_diameters, points)
+    translation, tilt = weights * data.density[:, None] * area, weights * data.density[:, None] * inertia
+    M = np.zeros((len(data.length), fields.shape[3], fields.shape[3]))
+    for number, weight in enumerate([translation, translation, translation, tilt, tilt, 2.0 * tilt]):
+        N = fields[number]
+        M += np.swapaxes(N, 1, 2) @ (weight[:, :, None] * N)
+    half = np.swapaxes(fields[3], 1, 2) @ (2.0 * tilt[:, :, None] * fields[4])
+    return 0.5 * (M + np.swapaxes(M, 1, 2)), half - np.swapaxes(half, 1, 2)
+
+
+def _lumped(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Half of the element's mass and inertia at each node."""
+    points, weights, _ = gauss(count)
+    area, inertia, _ = section(data.mass_diameters, points)
+    rho = (data.length * data.density)[:, None] * weights
+    m, tilt = 0.5 * np.sum(rho * area, 1), 0.5 * np.sum(rho * inertia, 1)
+    diagonal = np.stack([m, m, m, tilt, tilt, 2.0 * tilt] * 2, -1)
+    M = diagonal[:, :, None] * np.eye(12)
+    G = np.zeros_like(M)
+    for k in (3, 9):
+        G[:, k, k + 1], G[:, k + 1, k] = 2.0 * tilt, -2.0 * tilt
+    return M, G

@@ -1,0 +1,144 @@
+"""Internal shape functions of a shaft element of order p: polynomials that vanish at both nodes ("bubbles").
+
+With the Legendre polynomials P_k on -1..1 and phi_k(x) = sqrt((2k-1)/2) int_{-1}^x P_{k-1}, k >= 2 (Szabo and Babuska, Finite
+Element
+Analysis, 1991): deflection k = 2..p+1, slope, stretch and twist k = 2..p. The nodal functions are exact static ones, so their
+strain energy with any bubble is zero: the stiffness of the bubbles stands beside that of the nodes, and only inertia joins
+them. Without shear deformation the slope is the derivative of the deflection, whose bubbles are int int P_k, k = 2..p.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from rotorgear.elements.shaft_section import ShaftElements, cowper, gauss, section
+
+
+@dataclass(frozen=True)
+class Bubbles:
+    """Bubbles of e elements.
+
+    Attributes:
+        fields: x y z tx ty tz at g points, (6, e, g, b).
+        strain: R (e, b, b) with stiffness K = R^T R.
+        motions: motion of each.
+        turn: (b, b), turns displacements and slopes, and just so the strains, by +90 degrees about z.
+    """
+
+    fields: np.ndarray
+    strain: np.ndarray
+    motions: tuple[str, ...]
+    turn: np.ndarray
+
+
+def bubble_motions(order: int, shear: bool) -> tuple[str, ...]:
+    """Motion of each bubble of an element of an order, in their order: two planes of bending, axial, torsion."""
+    plane = max(2 * order - 1, 0) if shear else max(order - 1, 0)
+    plane = 0 if order < 2 else plane
+    return ("bending",) * (2 * plane) + ("axial",) * (order - 1) + ("torsion",) * (order - 1)
+
+
+def bubble_places(order: int, richer: int, shear: bool) -> np.ndarray:
+    """Places of the bubbles of an order among those of a richer element."""
+
+    def names(p: int) -> list[tuple[str, int]]:
+        if p < 2:
+            return []
+        plane = (
+            [("w", k) for k in range(2, p + 2)] + [("t", k) for k in range(2, p + 1)]
+            if shear
+            else [("w", k) for k in range(2, p + 1)]
+        )
+        both = [(axis + kind, k) for axis in "xy" for kind, k in plane]
+        return both + [("z", k) for k in range(2, p + 1)] + [("r", k) for k in range(2, p + 1)]
+
+    rich = {name: place for place, name in enumerate(names(richer))}
+    return np.array([rich[name] for name in names(order)], dtype=int)
+
+
+def shaft_bubbles(data: ShaftElements, order: int, points: int) -> Bubbles:
+    """Return the bubbles of elements of one order >= 2 at a number of Gauss points."""
+    shear = bool(np.all(np.isfinite(data.shear_coefficient) | np.isnan(data.shear_coefficient)))
+    at, weights, _ = gauss(points)
+    L = data.length[:, None]
+    area, inertia, ratio = section(data.stiffness_diameters, at)
+    E, G = data.youngs_modulus[:, None], data.shear_modulus[:, None]
+    W = L * weights
+    value, slope = _lobatto(2.0 * at - 1.0, order + 1)
+    derivative = (2.0 / data.length)[:, None, None] * slope  # (e, g, k)
+    deflection, tilt, bent, sheared = _plane(data, order, at, value, derivative, shear)
+    kappa = np.where(np.isnan(data.shear_coefficient)[:, None], cowper(data.poisson_ratio[:, None], ratio),
+                     data.shear_coefficient[:, None])  # fmt: skip
+    rows = [np.sqrt(W * E * inertia)[:, :, None] * bent]
+    if shear:
+        rows.append(np.sqrt(W * kappa * G * area)[:, :, None] * sheared)
+    plane_root = _triangle(np.concatenate(rows, axis=1))
+    along, spin = value[:, : order - 1], derivative[:, :, : order - 1]
+    axial_root = _triangle(np.sqrt(W * E * area)[:, :, None] * spin)
+    twist_root = _triangle(np.sqrt(W * 2.0 * G * inertia)[:, :, None] * spin)
+    return _gathered(order, shear, (deflection, tilt), along, (plane_root, axial_root, twist_root))
+
+
+def _plane(
+    data: ShaftElements, order: int, at: np.ndarray, value: np.ndarray, derivative: np.ndarray, shear: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Deflection, slope, curvature and shear strain of one plane's bubbles at the points, each (e, g, b)."""
+    e, g = len(data.length), len(at)
+    if not shear:
+        f, df, ddf = _hermite(2.0 * at - 1.0, order)
+        half = (2.0 / data.length)[:, None, None]
+        w = np.broadcast_to(f, (e, g, f.shape[1]))
+        return w, half * df, half**2 * ddf, np.zeros(w.shape)
+    k = order - 1
+    w = np.concatenate([np.broadcast_to(value, (e, *value.shape)), np.zeros((e, g, k))], axis=2)
+    t = np.concatenate([np.zeros((e, g, order)), np.broadcast_to(value[:, :k], (e, g, k))], axis=2)
+    bent = np.concatenate([np.zeros((e, g, order)), derivative[:, :, :k]], axis=2)
+    rising = np.concatenate([derivative, np.zeros((e, g, k))], axis=2)
+    return w, t, bent, rising - t
+
+
+def _lobatto(x: np.ndarray, highest: int) -> tuple[np.ndarray, np.ndarray]:
+    """phi_k and its derivative at x for k = 2..highest, each (g, highest - 1)."""
+    P = legendre.legvander(x, highest)
+    k = np.arange(2, highest + 1)
+    return (P[:, k] - P[:, k - 2]) / np.sqrt(2.0 * (2 * k - 1)), np.sqrt((2 * k - 1) / 2.0) * P[:, k - 1]
+
+
+def _hermite(x: np.ndarray, highest: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """int int P_k, int P_k and P_k at x for k = 2..highest, scaled to unit curvature energy, each (g, highest - 1)."""
+    P = legendre.legvander(x, highest + 2)
+    k = np.arange(2, highest + 1)
+    once = (P[:, k + 1] - P[:, k - 1]) / (2 * k + 1)
+    twice = (P[:, k + 2] - P[:, k]) / ((2 * k + 3) * (2 * k + 1)) - (P[:, k] - P[:, k - 2]) / (
+        (2 * k + 1) * (2 * k - 1)
+    )
+    scale = np.sqrt((2 * k + 1) / 2.0)
+    return scale * twice, scale * once, scale * P[:, k]
+
+
+def _triangle(rows: np.ndarray) -> np.ndarray:
+    """Upper triangle R (e, b, b) with R^T R = rows^T rows; QR keeps the small strains exact."""
+    return np.asarray(np.linalg.qr(rows, mode="r"))
+
+
+def _gathered(
+    order: int, shear: bool, plane: tuple[np.ndarray, np.ndarray], along: np.ndarray, roots: tuple[np.ndarray, ...]
+) -> Bubbles:
+    deflection, tilt = plane
+    e, g, b = deflection.shape
+    k = order - 1
+    count = 2 * b + 2 * k
+    xz, yz, z, tz = slice(0, b), slice(b, 2 * b), slice(2 * b, 2 * b + k), slice(2 * b + k, count)
+    fields = np.zeros((6, e, g, count))
+    fields[0][:, :, xz], fields[4][:, :, xz] = deflection, tilt
+    fields[1][:, :, yz], fields[3][:, :, yz] = deflection, -tilt
+    fields[2][:, :, z] = fields[5][:, :, tz] = along
+    strain = np.zeros((e, count, count))
+    for own, root in ((xz, roots[0]), (yz, roots[0]), (z, roots[1]), (tz, roots[2])):
+        strain[:, own, own] = root
+    turn = np.zeros((count, count))
+    turn[xz, yz], turn[yz, xz] = -np.eye(b), np.eye(b)
+    return Bubbles(fields, strain, bubble_motions(order, shear), turn)

@@ -1,0 +1,154 @@
+"""How points of the parts' surfaces follow the nodes: the cross-section at s carries a point r away from its centre rigidly,
+
+    u(point) = u(s) + theta(s) x r.
+
+Between two nodes at a distance L, with xi = s/L, the deflection w is cubic and the slope theta quadratic: the exact static shapes
+of a uniform Timoshenko element (Przemieniecki, Theory of Matrix Structural Analysis, 1968), in xz with w = x, theta = ty,
+
+    d = ((w2 - w1)/L - (theta1 + theta2)/2) / (1 + Phi)            Phi = 12 E I / (kappa G A L^2)
+    theta(xi) = (1 - xi) theta1 + xi theta2 + 6 (xi - xi^2) d
+    w(xi) = w1 + L [ (xi - xi^2/2) theta1 + xi^2/2 theta2 + (3 xi^2 - 2 xi^3) d + Phi xi d ]
+
+and with w = y, theta = -tx in the other plane; z and tz are linear. Cones are interpolated with their mean section.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.elements.shaft import cowper
+from rotorgear.model.model import Model
+from rotorgear.model.shaft import Section
+from rotorgear.results.modal import NodeTable
+
+
+@dataclass(frozen=True)
+class Attachment:
+    """What carries each of P points.
+
+    Attributes:
+        left, right: (P,) numbers of the nodes on both sides; -1 for a point that stands on the ground.
+        share: (P,) xi from 0 at the left to 1 at the right node.
+        length: (P,) distance of the nodes in m.
+        shear: (P,) Phi.
+        arm: (P, 3) from the centre of the carrying cross-section to the point, in m.
+    """
+
+    left: np.ndarray
+    right: np.ndarray
+    share: np.ndarray
+    length: np.ndarray
+    shear: np.ndarray
+    arm: np.ndarray
+
+    def displacement(self, shape: np.ndarray) -> np.ndarray:
+        """Displacements (P, 3) of the points from those of the nodes (p, 6), real or complex; x y z tx ty tz in m and rad."""
+        standing = (self.left < 0)[:, None]
+        first = np.where(standing, 0.0, shape[self.left])
+        second = np.where(standing, 0.0, shape[self.right])
+        xi = self.share[:, None]
+        both = (1.0 - xi) * first + xi * second
+        centre, turn = both[:, :3].copy(), both[:, 3:].copy()
+        for w, t, sign in ((0, 4, 1.0), (1, 3, -1.0)):
+            slopes = sign * first[:, t], sign * second[:, t]
+            centre[:, w], slope = self._bend(first[:, w], second[:, w], *slopes)
+            turn[:, t - 3] = sign * slope
+        return centre + np.cross(turn, self.arm)
+
+    def _bend(self, w1: np.ndarray, w2: np.ndarray, t1: np.ndarray, t2: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Deflection and slope at the points."""
+        xi, L, phi = self.share, self.length, self.shear
+        chord = (w2 - w1) / np.where(L > 0.0, L, 1.0)
+        d = (chord - 0.5 * (t1 + t2)) / (1.0 + phi)
+        slope = (1.0 - xi) * t1 + xi * t2 + 6.0 * (xi - xi**2) * d
+        rise = (xi - 0.5 * xi**2) * t1 + 0.5 * xi**2 * t2 + (3.0 * xi**2 - 2.0 * xi**3 + phi * xi) * d
+        return w1 + L * rise, slope
+
+
+def join_attachments(parts: Sequence[Attachment]) -> Attachment:
+    """Several attachments as one, in their order."""
+    names = Attachment.__dataclass_fields__
+    return Attachment(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+
+
+def nodes_in_order(nodes: NodeTable, shaft: str) -> np.ndarray:
+    """Numbers of a shaft's nodes from left to right, one for each place."""
+    numbers = nodes.on_shaft(shaft)
+    _, first = np.unique(nodes.position[numbers, 2], return_index=True)
+    return numbers[first]
+
+
+class Skeleton:
+    """The nodes of a model, each shaft on the axis where it is shown.
+
+    Args:
+        model: the model.
+        nodes: its nodes; only their z counts.
+        axes: shaft -> (x, y) in m.
+    """
+
+    def __init__(self, model: Model, nodes: NodeTable, axes: dict[str, tuple[float, float]]) -> None:
+        self.model = model
+        self.nodes = nodes
+        self.axes = axes
+        self._numbers = {name: nodes_in_order(nodes, name) for name in model.shafts}
+        self._shear = {name: self._shear_numbers(name) for name in model.shafts}
+
+    def positions(self) -> np.ndarray:
+        """Where the nodes are shown, (p, 3) in m."""
+        return np.array([[*self.axes[s], z] for s, z in zip(self.nodes.shaft, self.nodes.position[:, 2], strict=True)])
+
+    def along(self, shaft: str, points: np.ndarray) -> Attachment:
+        """Each point rides on the cross-section at its own z; beyond the ends on that of the end."""
+        return self._ride(shaft, points[:, 2], points)
+
+    def rigid(self, shaft: str, z: float, points: np.ndarray) -> Attachment:
+        """All points ride on the cross-section at z."""
+        return self._ride(shaft, np.full(len(points), z), points)
+
+    def on_pedestal(self, bearing: str, points: np.ndarray) -> Attachment:
+        """All points move with the node of a bearing's pedestal."""
+        node = self.nodes.pedestal.index(bearing)
+        return self._fixed_to(np.full(len(points), node), points - self.positions()[node])
+
+    def on_ground(self, points: np.ndarray) -> Attachment:
+        """All points stand still."""
+        return self._fixed_to(np.full(len(points), -1), np.zeros_like(points))
+
+    def _ride(self, shaft: str, z: np.ndarray, points: np.ndarray) -> Attachment:
+        numbers = self._numbers[shaft]
+        places = self.nodes.position[numbers, 2]
+        z = np.clip(z, places[0], places[-1])
+        arm = points - np.column_stack([np.tile(self.axes[shaft], (len(z), 1)), z])
+        if len(numbers) == 1:
+            return self._fixed_to(np.full(len(z), numbers[0]), arm)
+        k = np.clip(np.searchsorted(places, z, side="right") - 1, 0, len(places) - 2)
+        length = places[k + 1] - places[k]
+        return Attachment(numbers[k], numbers[k + 1], (z - places[k]) / length, length, self._shear[shaft][k], arm)
+
+    def _fixed_to(self, nodes: np.ndarray, arm: np.ndarray) -> Attachment:
+        zeros = np.zeros(len(nodes))
+        return Attachment(nodes, nodes, zeros, zeros, zeros, arm)
+
+    def _shear_numbers(self, shaft: str) -> np.ndarray:
+        """Phi between each two neighbouring nodes of a shaft."""
+        own = self.model.shafts[shaft]
+        places = self.nodes.position[self._numbers[shaft], 2]
+        if not own.sections or not own.shear_deformation:
+            return np.zeros(max(len(places) - 1, 0))
+        ends = own.start + np.cumsum([section.length for section in own.sections])
+        which = np.minimum(np.searchsorted(ends, 0.5 * (places[:-1] + places[1:])), len(own.sections) - 1)
+        return np.array(
+            [self._phi(shaft, own.sections[k], length) for k, length in zip(which, np.diff(places), strict=True)]
+        )
+
+    def _phi(self, shaft: str, section: Section, length: float) -> float:
+        outer, bore, outer_end, bore_end = section.stiffness_diameters()
+        outer, bore = 0.5 * (outer + outer_end), 0.5 * (bore + bore_end)
+        material = self.model.material_of(shaft, section)
+        kappa = section.shear_coefficient or float(cowper(material.nu, bore / outer))
+        # I/A = (d_o^2 + d_i^2)/16
+        return 12.0 * material.youngs_modulus * (outer**2 + bore**2) / (16.0 * kappa * material.g * length**2)

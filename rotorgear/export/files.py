@@ -1,0 +1,86 @@
+"""Files come into being whole: they are written under a temporary name beside their place and then moved there."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rotorgear.errors import RotorgearError
+
+
+class WriteError(RotorgearError):
+    """A file or folder can't be written; the text names it and says why."""
+
+    def __init__(self, path: Path, reason: str) -> None:
+        super().__init__(f"{path} can't be written: {reason}")
+
+
+@contextmanager
+def replacing(path: str | Path) -> Iterator[Path]:
+    """Give a temporary path to write to; it takes the place of `path` when all went well, and is removed when not.
+
+    What is no regular file, such as /dev/stdout, is given as it is.
+
+    Raises:
+        WriteError: there is no such folder, a folder stands in the way, no permission, no space.
+    """
+    target = Path(path)
+    if target.is_dir():
+        raise WriteError(target, "it is a folder; give the name of a file")
+    if target.exists() and not target.is_file():
+        yield target
+        return
+    target = target.resolve()
+    if not target.parent.is_dir():
+        raise WriteError(target, f"there is no folder {target.parent}; make it first, or choose another")
+    scratch = target.with_name(f".{target.name}.{uuid.uuid4().hex}")
+    try:
+        yield scratch
+        os.replace(scratch, target)
+    except OSError as error:
+        raise WriteError(target, reason_of(error)) from None
+    finally:
+        scratch.unlink(missing_ok=True)
+
+
+@contextmanager
+def filling(directory: str | Path) -> Iterator[Path]:
+    """Give a temporary folder inside `directory`, made if need be, and remove it afterwards; move what is ready with `publish`.
+
+    Raises:
+        WriteError: a file stands in the way, no permission, no space.
+    """
+    target = Path(directory)
+    scratch = target / f".{uuid.uuid4().hex}"
+    try:
+        scratch.mkdir(parents=True)
+        yield scratch
+    except (FileExistsError, NotADirectoryError):
+        raise WriteError(target, "a file stands in the way; choose another folder") from None
+    except OSError as error:
+        raise WriteError(target, reason_of(error)) from None
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+
+
+def publish(scratch: Path, directory: Path, names: list[str]) -> list[Path]:
+    """Move files from a temporary folder to their places in `directory`, in this order; return where they are."""
+    found = []
+    for name in names:
+        target = directory / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if target.is_dir():
+            raise WriteError(target, "a folder of that name stands in the way")
+        os.replace(scratch / name, target)
+        found.append(target)
+    return found
+
+
+def reason_of(error: OSError) -> str:
+    """What the system says, in lower case and without numbers."""
+    text = error.strerror or str(error)
+    return text[:1].lower() + text[1:]

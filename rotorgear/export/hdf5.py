@@ -1,0 +1,98 @@
+"""A result in one HDF5 file, with its model, so that `read(save(result))` is the same result to the last bit.
+
+Layout: the root's attributes say what it is; every field of the result is a dataset or a group of that name (hdf5_values.py).
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rotorgear.errors import MissingExtraError, ModelError, RotorgearError
+from rotorgear.export.files import replacing
+from rotorgear.export.hdf5_values import get_value, put_value
+from rotorgear.results.modal import ModalResult
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+FORMAT, FORMAT_VERSION = "rotorgear result", 1
+_KINDS = {"modal": ModalResult}
+# The package is loaded before its modules; importing it from here would turn the house upside down.
+_VERSION: str = sys.modules[__name__.partition(".")[0]].__version__
+
+
+class ReadError(RotorgearError):
+    """A file is no result that this rotorgear can read; the text says why."""
+
+    def __init__(self, path: Path, reason: str) -> None:
+        super().__init__(f"{path} can't be read: {reason}")
+
+
+def save(result: ModalResult, path: str | Path) -> Path:
+    """Write a result to an HDF5 file and return its path.
+
+    Raises:
+        WriteError: the file can't be written; what was there before stays.
+    """
+    h5 = _import_h5py()
+    kind = next(name for name, cls in _KINDS.items() if isinstance(result, cls))
+    with replacing(path) as scratch, h5.File(scratch, "w") as file:
+        file.attrs.update(
+            {"format": FORMAT, "format_version": FORMAT_VERSION, "kind": kind, "rotorgear_version": _VERSION}
+        )
+        for item in fields(result):
+            put_value(h5, file, item.name, getattr(result, item.name))
+    return Path(path)
+
+
+def read(path: str | Path) -> ModalResult:
+    """Read a result from an HDF5 file.
+
+    Raises:
+        ReadError: no such file, no HDF5, not written by rotorgear, written by a newer one, or damaged.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise ReadError(path, "it is a folder" if path.is_dir() else "there is no such file")
+    h5 = _import_h5py()
+    try:
+        path.open("rb").close()
+        file = h5.File(path, "r")
+    except PermissionError:
+        raise ReadError(path, "no permission to read it") from None
+    except OSError:
+        raise ReadError(path, "it is no HDF5 file, or damaged") from None
+    with file:
+        cls = _kind(path, file)
+        try:
+            return cls(**{item.name: get_value(file[item.name]) for item in fields(cls) if item.name in file})
+        except ModelError as error:
+            raise ReadError(path, f"its model does not pass the checks of rotorgear {_VERSION}\n{error}") from None
+        except (KeyError, ValueError, TypeError, AttributeError, OSError, RuntimeError) as error:
+            raise ReadError(path, f"it is damaged ({error})") from None
+
+
+def _import_h5py() -> ModuleType:
+    try:
+        import h5py
+    except ImportError:
+        raise MissingExtraError("Saving and reading results", "h5py", "all") from None
+    return h5py
+
+
+def _kind(path: Path, file: Any) -> type[ModalResult]:
+    """Class of the result in a file; ReadError for a foreign or newer file."""
+    if file.attrs.get("format") != FORMAT:
+        raise ReadError(path, "it is no result of rotorgear")
+    version, kind = file.attrs.get("format_version"), file.attrs.get("kind")
+    if version != FORMAT_VERSION or kind not in _KINDS:
+        by = file.attrs.get("rotorgear_version", "another version")
+        raise ReadError(
+            path,
+            f"it was written by rotorgear {by} in format {version} ({kind}), and this is rotorgear {_VERSION}, which reads "
+            f"format {FORMAT_VERSION}; use the newer one, or run the analysis again",
+        )
+    return _KINDS[kind]

@@ -1,0 +1,136 @@
+"""Values of a result in HDF5: arrays, numbers, texts (UTF-8), dictionaries, the model, and records such as the table of nodes.
+
+A dictionary of arrays is a group with `names` and `values`: a part's name may hold a slash, and the order counts. A record is a
+group of its fields, a tuple of records a group of columns. The model is JSON in SI units, which keeps every digit of a float.
+The attribute `type` of each item says how to read it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import fields, is_dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from rotorgear.model.model import Model
+from rotorgear.results.modal import NodeTable, Piece
+
+_RECORDS: dict[str, type] = {cls.__name__: cls for cls in (NodeTable, Piece)}
+
+
+def put_value(h5: ModuleType, parent: Any, name: str, value: Any) -> None:
+    """Write one value under a name; TypeError for a kind of value that has no place in a file."""
+    for kind, fits, write in _WRITERS:
+        if fits(value):
+            write(h5, parent, name, value)
+            parent[name].attrs["type"] = kind
+            return
+    raise TypeError(f"{name} of type {type(value).__name__} has no form in HDF5")
+
+
+def get_value(item: Any) -> Any:
+    """Read what `put_value` wrote; KeyError, TypeError or ValueError for anything else."""
+    return _READERS[item.attrs["type"]](item)
+
+
+def _put_array(h5: ModuleType, parent: Any, name: str, value: Any) -> None:
+    parent[name] = np.asarray(value)
+
+
+def _put_text(h5: ModuleType, parent: Any, name: str, value: str) -> None:
+    parent.create_dataset(name, data=value, dtype=h5.string_dtype())
+
+
+def _put_texts(h5: ModuleType, parent: Any, name: str, value: tuple[str, ...]) -> None:
+    data = np.array(list(value), dtype=object)
+    parent.create_dataset(name, data=data, shape=(len(value),), dtype=h5.string_dtype())
+
+
+def _put_table(h5: ModuleType, parent: Any, name: str, value: dict[str, Any]) -> None:
+    group = parent.create_group(name)
+    _put_texts(h5, group, "names", tuple(value))
+    group["values"] = np.array(list(value.values()))
+
+
+def _put_model(h5: ModuleType, parent: Any, name: str, value: Model) -> None:
+    _put_text(h5, parent, name, value.model_dump_json(exclude_none=True))
+
+
+def _put_nothing(h5: ModuleType, parent: Any, name: str, value: None) -> None:
+    parent[name] = h5.Empty("f8")
+
+
+def _put_record(h5: ModuleType, parent: Any, name: str, value: Any) -> None:
+    group = parent.create_group(name)
+    group.attrs["record"] = type(value).__name__
+    for item in fields(value):
+        put_value(h5, group, item.name, getattr(value, item.name))
+
+
+def _put_records(h5: ModuleType, parent: Any, name: str, value: tuple[Any, ...]) -> None:
+    group = parent.create_group(name)
+    group.attrs["record"] = type(value[0]).__name__
+    for item in fields(value[0]):
+        column = tuple(getattr(record, item.name) for record in value)
+        put_value(h5, group, item.name, column if isinstance(column[0], str) else np.array(column))
+
+
+def _get_texts(item: Any) -> tuple[str, ...]:
+    return tuple(item.asstr()[()]) if item.shape[0] else ()
+
+
+def _get_record(item: Any) -> Any:
+    cls = _RECORDS[item.attrs["record"]]
+    return cls(**{field.name: get_value(item[field.name]) for field in fields(cls)})
+
+
+def _get_records(item: Any) -> tuple[Any, ...]:
+    cls = _RECORDS[item.attrs["record"]]
+    names = [field.name for field in fields(cls)]
+    columns = [get_value(item[name]) for name in names]
+    plain = [column if isinstance(column, tuple) else column.tolist() for column in columns]
+    return tuple(cls(**dict(zip(names, row, strict=True))) for row in zip(*plain, strict=True))
+
+
+def _table_of(kind: Callable[[Any], Any]) -> Callable[[Any], dict[str, Any]]:
+    return lambda item: dict(zip(_get_texts(item["names"]), map(kind, item["values"][()]), strict=True))
+
+
+def _is_record(value: Any) -> bool:
+    return is_dataclass(value) and type(value).__name__ in _RECORDS
+
+
+def _is_table(value: Any, kind: type | tuple[type, ...]) -> bool:
+    return isinstance(value, dict) and all(isinstance(entry, kind) for entry in value.values())
+
+
+_Writer = tuple[str, Callable[[Any], bool], Callable[..., None]]
+_WRITERS: tuple[_Writer, ...] = (
+    ("nothing", lambda v: v is None, _put_nothing),
+    ("model", lambda v: isinstance(v, Model), _put_model),
+    ("record", _is_record, _put_record),
+    ("records", lambda v: isinstance(v, tuple) and bool(v) and all(map(_is_record, v)), _put_records),
+    ("text", lambda v: isinstance(v, str), _put_text),
+    ("texts", lambda v: isinstance(v, tuple) and all(isinstance(x, str) for x in v), _put_texts),
+    ("array", lambda v: isinstance(v, np.ndarray), _put_array),
+    ("numbers", lambda v: _is_table(v, (float, int)), _put_table),
+    ("arrays", lambda v: _is_table(v, np.ndarray), _put_table),
+    ("integer", lambda v: isinstance(v, int | np.integer), _put_array),
+    ("number", lambda v: isinstance(v, float | np.floating), _put_array),
+)
+_READERS: dict[str, Callable[[Any], Any]] = {
+    "nothing": lambda item: None,
+    "model": lambda item: Model(**json.loads(item.asstr()[()])),
+    "record": _get_record,
+    "records": _get_records,
+    "text": lambda item: item.asstr()[()],
+    "texts": _get_texts,
+    "array": lambda item: item[()],
+    "numbers": _table_of(float),
+    "arrays": _table_of(np.asarray),
+    "integer": lambda item: int(item[()]),
+    "number": lambda item: float(item[()]),
+}

@@ -1,0 +1,174 @@
+"""Surfaces of shafts, gears, disks and point masses, and what carries their points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.export.attachment import Attachment, Skeleton
+from rotorgear.export.sizes import ball_radius, disk_size, helix_width, hidden_hole, pitch_radius
+from rotorgear.export.surface import Surface, ball, hollow_cylinder, join, make_surface, revolve, twisted_prism
+from rotorgear.export.teeth import DISK_GROOVES, contour_of, grooved_contour, tooth_phases, twist_rates
+from rotorgear.model.gear import Gear
+from rotorgear.model.mesh_geometry import gear_geometry, helix_planes, node_positions
+from rotorgear.model.model import Model
+from rotorgear.model.shaft import Shaft
+
+# Stripes along a shaft, by which its twist is seen: how many, half their width in rad, and their height relative to the radius.
+_STRIPES, _STRIPE_HALF, _STRIPE_HEIGHT = 4, math.radians(3.0), 0.015
+# A hole leaves at least a tenth of a body's least radius.
+_LARGEST_HOLE = 0.9
+
+
+@dataclass(frozen=True)
+class Detail:
+    """How fine the surfaces are.
+
+    Attributes:
+        segments: straight pieces around a shaft.
+        slices: least number of pieces along a shaft.
+        flank_points: points on a tooth flank from root to tip.
+        arc_points: points between two grooves of a plain cylinder.
+        twist_step: largest twist in rad between two points along a tooth.
+    """
+
+    segments: int
+    slices: int
+    flank_points: int
+    arc_points: int
+    twist_step: float
+
+
+# For files that are to be small, and for pictures.
+LIGHT = Detail(segments=24, slices=16, flank_points=2, arc_points=4, twist_step=math.radians(13.0))
+FINE = Detail(segments=64, slices=32, flank_points=3, arc_points=8, twist_step=math.radians(5.0))
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One surface of a part: the part's address, what kind it is, the name of its shaft."""
+
+    part: str
+    kind: str
+    shaft: str
+    surface: Surface
+    attachment: Attachment
+
+
+def shaft_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+    """Yield each shaft as a body of revolution with its steps, cones and bores, and stripes along it."""
+    for name, shaft in model.shafts.items():
+        if not shaft.sections:
+            continue
+        x, y = skeleton.axes[name]
+        outer = _outline(shaft, shaft.length / detail.slices, bore=False)
+        contour = np.vstack([outer, _outline(shaft, shaft.length / detail.slices, bore=True)[::-1]])
+        for kind, surface in (
+            ("shaft", revolve(contour, detail.segments, closed=True)),
+            ("stripe", join([_stripe(outer, 2.0 * math.pi * k / _STRIPES) for k in range(_STRIPES)])),
+        ):
+            placed = surface.moved((x, y, 0.0))
+            yield Piece(f"shafts.{name}", kind, name, placed, skeleton.along(name, placed.points))
+
+
+def _outline(shaft: Shaft, step: float, bore: bool) -> np.ndarray:
+    """Outer surface or bore of a shaft as (k, 2) radius and z from left to right, no two points the same."""
+    points: list[tuple[float, float]] = []
+    z = shaft.start
+    for section in shaft.sections:
+        outer, inner, outer_end, inner_end = section.stiffness_diameters()
+        left, right = (inner, inner_end) if bore else (outer, outer_end)
+        pieces = 1 if left == right == 0.0 else max(math.ceil(section.length / step - 1e-9), 1)
+        share = np.linspace(0.0, 1.0, pieces + 1)
+        radii = 0.5 * (left + (right - left) * share)
+        points += zip(radii.tolist(), (z + section.length * share).tolist(), strict=True)
+        z += section.length
+    kept = [a for a, b in zip(points, [*points[1:], None], strict=True) if a != b]
+    return np.array(kept)
+
+
+def _stripe(outer: np.ndarray, angle: float) -> Surface:
+    """A strip on the shaft's surface at an angle."""
+    radius, z = outer[:, 0] * (1.0 + _STRIPE_HEIGHT), outer[:, 1]
+    edges = [
+        np.column_stack([radius * np.cos(a), radius * np.sin(a), z])
+        for a in (angle - _STRIPE_HALF, angle + _STRIPE_HALF)
+    ]
+    low, high = np.arange(len(z)), len(z) + np.arange(len(z))
+    return make_surface(np.vstack(edges), [np.column_stack([low[:-1], high[:-1], high[1:], low[1:]])])
+
+
+def gear_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+    """Yield the helices of each gear with their teeth, and the web and hub of one that has them."""
+    phases = tooth_phases(model, skeleton.axes)
+    for name, gear in model.gears.items():
+        planes, nodes, rates = helix_planes(model, name), node_positions(model, name), twist_rates(model, name)
+        for number, (plane, rate) in enumerate(zip(planes, rates, strict=True)):
+            surface = _helix(model, name, plane, rate, phases[name], detail)
+            placed = surface.moved((*skeleton.axes[gear.shaft], 0.0))
+            node = nodes[number if len(nodes) == 2 else 0]
+            attachment = skeleton.rigid(gear.shaft, node, placed.points)
+            yield Piece(f"gears.{name}", "gear", gear.shaft, placed, attachment)
+
+
+def _helix(model: Model, name: str, plane: float, rate: float, phase: float, detail: Detail) -> Surface:
+    gear = model.gears[name]
+    half = 0.5 * helix_width(model, name)
+    angles, radii = contour_of(model, name, pitch_radius(model, name), detail.flank_points, detail.arc_points)
+    steps = max(math.ceil(abs(rate) * 2.0 * half / detail.twist_step), 1)
+    z = plane + np.linspace(-half, half, steps + 1)
+    hole = _hole(model, gear.shaft, plane - half, plane + half, gear.body.bore, float(radii.min()))
+    rim = _rim_radius(gear)
+    inner = hole if rim is None else max(rim, hole)
+    toothed = twisted_prism(angles + phase, radii, z, rate * (z - plane), inner)
+    return join([toothed, *_web(gear, plane, hole, inner, half, detail)]) if rim else toothed
+
+
+def _hole(model: Model, shaft: str, low: float, high: float, bore: float | None, outer: float) -> float:
+    """Radius of the hole of a body: its bore where that is to be seen, else one inside the wall of its shaft."""
+    surface, inside = hidden_hole(model, shaft, low, high)
+    radius = 0.5 * bore if bore is not None and 0.5 * bore > surface else inside
+    return min(radius, _LARGEST_HOLE * outer)
+
+
+def _rim_radius(gear: Gear) -> float | None:
+    """Inner radius of the rim; None for a solid gear."""
+    geometry = gear_geometry(gear)
+    if geometry is None or gear.body.rim_thickness is None:
+        return None
+    return 0.5 * geometry.root_diameter - gear.body.rim_thickness
+
+
+def _web(gear: Gear, plane: float, hole: float, rim: float, half: float, detail: Detail) -> Iterator[Surface]:
+    """Yield web and hub of a gear with a rim."""
+    body = gear.body
+    web = 0.5 * (body.web_thickness or 2.0 * half)
+    yield hollow_cylinder(rim, hole, plane - web, plane + web, detail.segments)
+    if body.hub_diameter is not None:
+        hub = 0.5 * (body.hub_width or 2.0 * half)
+        yield hollow_cylinder(0.5 * body.hub_diameter, hole, plane - hub, plane + hub, detail.segments)
+
+
+def disk_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+    """Yield each disk as a cylinder with four grooves, by which its rotation is seen."""
+    for name, disk in model.disks.items():
+        size = disk_size(model, name)
+        shaft = model.shafts[disk.shaft]
+        angles, radii = grooved_contour(0.5 * size.diameter, DISK_GROOVES, 3 * detail.arc_points)
+        hole = _hole(model, disk.shaft, size.low, size.high, disk.bore, float(radii.min()))
+        surface = twisted_prism(angles, radii, np.array([size.low, size.high]), np.zeros(2), hole)
+        placed = surface.moved((*skeleton.axes[disk.shaft], 0.0))
+        attachment = skeleton.rigid(disk.shaft, shaft.station(disk.at), placed.points)
+        yield Piece(f"disks.{name}", "disk", disk.shaft, placed, attachment)
+
+
+def point_mass_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+    """Yield each point mass as a ball."""
+    for name, point in model.point_masses.items():
+        z = model.shafts[point.shaft].station(point.at)
+        placed = ball(ball_radius(model, name), detail.segments).moved((*skeleton.axes[point.shaft], z))
+        attachment = skeleton.rigid(point.shaft, z, placed.points)
+        yield Piece(f"point_masses.{name}", "point mass", point.shaft, placed, attachment)

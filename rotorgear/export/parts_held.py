@@ -1,0 +1,106 @@
+"""Surfaces of bearings, supports and couplings: rings and signs that stretch between what they join, as springs do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rotorgear.export.attachment import Attachment, Skeleton
+from rotorgear.export.parts import Detail, Piece
+from rotorgear.export.sizes import shaft_diameter
+from rotorgear.export.surface import Surface, beam, hollow_cylinder, join, wedge
+from rotorgear.model.model import Model
+from rotorgear.model.supports import Coupling
+
+# Sizes relative to the shaft's radius there: outer radius and half width of a bearing's ring, height and half width of its foot.
+_RING, _RING_HALF = 1.55, 0.28
+_FOOT_HEIGHT, _FOOT_HALF = 0.8, 0.6
+# The same for a support's sign, and its half thickness.
+_SIGN_HEIGHT, _SIGN_HALF, _SIGN_THICKNESS = 1.1, 0.7, 0.12
+# A coupling: flange's radius and thickness, and the sleeve between two flanges.
+_FLANGE, _FLANGE_WIDTH, _SLEEVE = 1.35, 0.35, 1.15
+
+
+def bearing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+    """Yield each bearing as a ring between shaft and housing, and a foot between housing and ground."""
+    for name, bearing in model.bearings.items():
+        z = model.shafts[bearing.shaft].station(bearing.at)
+        radius = 0.5 * shaft_diameter(model, bearing.shaft, bearing.at)
+        half, housing = _RING_HALF * radius, _RING * radius
+        axis = (*skeleton.axes[bearing.shaft], 0.0)
+        ring = hollow_cylinder(housing, radius, z - half, z + half, detail.segments).moved(axis)
+        foot = wedge(-housing, -housing - _FOOT_HEIGHT * radius, _FOOT_HALF * radius, z - half, z + half).moved(axis)
+        on_shaft = np.hypot(*(ring.points - np.array(axis))[:, :2].T) < 0.5 * (radius + housing)
+        on_ground = np.array([False, True, True] * 2)
+        surface = join([ring, foot])
+        held = _standing(skeleton, name if bearing.pedestal else None, surface.points)
+        ground = skeleton.on_ground(surface.points)
+        carried = skeleton.rigid(bearing.shaft, z, surface.points)
+        attachment = _select([held, carried, ground], np.concatenate([on_shaft.astype(int), 2 * on_ground]))
+        yield Piece(f"bearings.{name}", "bearing", bearing.shaft, surface, attachment)
+
+
+def _standing(skeleton: Skeleton, pedestal: str | None, points: np.ndarray) -> Attachment:
+    return skeleton.on_ground(points) if pedestal is None else skeleton.on_pedestal(pedestal, points)
+
+
+def support_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+    """Yield each support as the sign for the ground below the shaft."""
+    for name, support in model.supports.items():
+        z = model.shafts[support.shaft].station(support.at)
+        radius = 0.5 * shaft_diameter(model, support.shaft, support.at)
+        bottom, thickness = -(1.0 + _SIGN_HEIGHT) * radius, _SIGN_THICKNESS * radius
+        surface = wedge(-radius, bottom, _SIGN_HALF * radius, z - thickness, z + thickness)
+        surface = surface.moved((*skeleton.axes[support.shaft], 0.0))
+        carried = skeleton.rigid(support.shaft, z, surface.points)
+        attachment = _select([carried, skeleton.on_ground(surface.points)], np.array([0, 1, 1] * 2))
+        yield Piece(f"supports.{name}", "support", support.shaft, surface, attachment)
+
+
+def coupling_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+    """Yield the two flanges of each coupling and what joins them."""
+    for name, coupling in model.couplings.items():
+        ends = ((coupling.from_shaft, coupling.from_at), (coupling.to_shaft, coupling.to_at))
+        middles = [0.5 * (model.shafts[shaft].start + model.shafts[shaft].end) for shaft, _ in ends]
+        first_side = -1.0 if middles[0] <= middles[1] else 1.0
+        radius = 0.5 * max(shaft_diameter(model, *end) for end in ends)
+        for (shaft, at), side in zip(ends, (first_side, -first_side), strict=True):
+            z = model.shafts[shaft].station(at)
+            low, high = sorted((z, z + side * _FLANGE_WIDTH * radius))
+            hole = 0.45 * model.shafts[shaft].diameter_at(z)
+            flange = hollow_cylinder(_FLANGE * radius, hole, low, high, detail.segments)
+            flange = flange.moved((*skeleton.axes[shaft], 0.0))
+            carried = skeleton.rigid(shaft, z, flange.points)
+            yield Piece(f"couplings.{name}", "coupling", shaft, flange, carried)
+        yield from _link(model, skeleton, name, coupling, radius, detail)
+
+
+def _link(
+    model: Model, skeleton: Skeleton, name: str, coupling: Coupling, radius: float, detail: Detail
+) -> Iterator[Piece]:
+    """Yield a sleeve between flanges that face each other, or a bar to a shaft that is shown beside the first."""
+    shafts = coupling.from_shaft, coupling.to_shaft
+    z = [model.shafts[s].station(at) for s, at in zip(shafts, (coupling.from_at, coupling.to_at), strict=True)]
+    start, end = (np.array([*skeleton.axes[s], place]) for s, place in zip(shafts, z, strict=True))
+    if np.allclose(start, end, rtol=0.0, atol=1e-6 * radius):
+        return
+    if np.allclose(start[:2], end[:2], rtol=0.0, atol=1e-6 * radius):
+        surface = _sleeve(min(z), max(z), radius, detail).moved((*start[:2], 0.0))
+        to_second = np.abs(surface.points[:, 2] - z[1]) < np.abs(surface.points[:, 2] - z[0])
+    else:
+        surface = beam(start, end, 0.3 * radius)
+        to_second = np.arange(8) >= 4
+    carried = [skeleton.rigid(s, place, surface.points) for s, place in zip(shafts, z, strict=True)]
+    yield Piece(f"couplings.{name}", "coupling", shafts[0], surface, _select(carried, to_second.astype(int)))
+
+
+def _sleeve(low: float, high: float, radius: float, detail: Detail) -> Surface:
+    return hollow_cylinder(_SLEEVE * radius, 0.9 * _SLEEVE * radius, low, high, detail.segments)
+
+
+def _select(choices: list[Attachment], which: np.ndarray) -> Attachment:
+    """For each point one of several attachments."""
+    rows = np.arange(len(which))
+    names = Attachment.__dataclass_fields__
+    return Attachment(**{name: np.stack([getattr(c, name) for c in choices])[which, rows] for name in names})

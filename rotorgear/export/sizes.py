@@ -1,0 +1,118 @@
+"""How large the parts are shown: sizes that the model gives, and plausible ones where it gives only masses and inertias.
+
+A disk with mass m and polar inertia J is shown as a solid cylinder, D = sqrt(8 J/m), w = 4 m/(pi rho D^2); one without mass as a
+cylinder of width D/5, D^5 = 160 J/(pi rho). A lumped gear is shown with its pitch cylinder r = r_b/cos a.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from rotorgear.model.bodies import Disk
+from rotorgear.model.mesh_geometry import base_radius, gear_geometry, helix_planes, pressure_angle
+from rotorgear.model.model import Model
+
+# A shaft without sections has no diameter: parts that need one take this share of its largest body, or this many m.
+NOMINAL_SHARE, NOMINAL_DIAMETER = 0.2, 0.02
+# A lumped gear without a width is shown this wide, relative to its pitch radius.
+LUMPED_WIDTH = 0.3
+
+
+@dataclass(frozen=True)
+class BodySize:
+    """A cylinder about a shaft: outer diameter and the range of z it covers, in m."""
+
+    diameter: float
+    low: float
+    high: float
+
+
+def pitch_radius(model: Model, name: str) -> float:
+    """Working pitch radius in m of a gear in its first mesh; without a mesh that of its own pressure angle."""
+    gear = model.gears[name]
+    for mesh_name, mesh in model.meshes.items():
+        if name in (mesh.pinion, mesh.gear):
+            return base_radius(gear) / math.cos(pressure_angle(model, mesh_name))
+    geometry = gear_geometry(gear)
+    angle = geometry.transverse_pressure_angle if geometry else gear.transverse_pressure_angle or 0.0
+    return base_radius(gear) / math.cos(angle)
+
+
+def helix_width(model: Model, name: str) -> float:
+    """Width in m of one helix as it is shown."""
+    return model.gears[name].width or LUMPED_WIDTH * pitch_radius(model, name)
+
+
+def gear_size(model: Model, name: str) -> BodySize:
+    """Tip cylinder of a gear over all its helices."""
+    geometry = gear_geometry(model.gears[name])
+    diameter = geometry.effective_tip_diameter if geometry else 2.0 * pitch_radius(model, name)
+    planes, half = helix_planes(model, name), 0.5 * helix_width(model, name)
+    return BodySize(diameter, planes[0] - half, planes[-1] + half)
+
+
+def disk_size(model: Model, name: str) -> BodySize:
+    """Cylinder of a disk, never thinner than the shaft it sits on."""
+    disk = model.disks[name]
+    shaft = model.shafts[disk.shaft]
+    z = shaft.station(disk.at)
+    diameter, width = _cylinder(disk, model.material_of(disk.shaft, name=disk.material).density)
+    diameter = max(diameter, 1.3 * shaft.diameter_at(z)) or NOMINAL_DIAMETER
+    width = width or 0.2 * diameter
+    return BodySize(diameter, z - 0.5 * width, z + 0.5 * width)
+
+
+def _cylinder(disk: Disk, density: float) -> tuple[float, float]:
+    """Diameter and width of a disk as given or as its inertia suggests; 0 where nothing does."""
+    if disk.outer_diameter is not None and disk.width is not None:
+        return disk.outer_diameter, disk.width
+    mass, inertia = disk.mass or 0.0, disk.polar_inertia or 2.0 * (disk.diametral_inertia or 0.0)
+    if mass > 0.0 and inertia > 0.0:
+        diameter = math.sqrt(8.0 * inertia / mass)
+        return diameter, 4.0 * mass / (math.pi * density * diameter**2)
+    if inertia > 0.0:
+        diameter = (160.0 * inertia / (math.pi * density)) ** 0.2
+        return diameter, diameter / 5.0
+    diameter = (20.0 * mass / (math.pi * density)) ** (1.0 / 3.0)
+    return diameter, diameter / 5.0
+
+
+def ball_radius(model: Model, name: str) -> float:
+    """Radius in m of a point mass as a ball of the shaft's material, at least a little above the shaft's surface."""
+    point = model.point_masses[name]
+    volume = point.mass / model.material_of(point.shaft).density
+    return max((0.75 * volume / math.pi) ** (1.0 / 3.0), 0.55 * shaft_diameter(model, point.shaft, point.at))
+
+
+def shaft_diameter(model: Model, shaft: str, at: float | str) -> float:
+    """Diameter in m of a shaft at a place, or a nominal one for a shaft without sections; never 0."""
+    own = model.shafts[shaft]
+    found = own.diameter_at(own.station(at))
+    if found:
+        return found
+    bodies = [body.diameter for body in bodies_on(model, shaft)]
+    return NOMINAL_SHARE * max(bodies) if bodies else NOMINAL_DIAMETER
+
+
+def hidden_hole(model: Model, shaft: str, low: float, high: float) -> tuple[float, float]:
+    """Smallest outer radius in m of a shaft between two values of z, and a radius inside its wall there; 0, 0 without sections.
+
+    The second is 0 for a solid shaft: a body may close its hole where nobody looks.
+    """
+    own = model.shafts[shaft]
+    left, outer, bore = own.start, [0.0], [0.0]
+    for section in own.sections:
+        if left < high and left + section.length > low:
+            diameters = section.stiffness_diameters()
+            outer.append(0.5 * min(diameters[0::2]))
+            bore.append(0.5 * max(diameters[1::2]))
+        left += section.length
+    least = min(outer[1:], default=0.0)
+    return least, 0.5 * (least + max(bore)) if max(bore) > 0.0 else 0.0
+
+
+def bodies_on(model: Model, shaft: str) -> list[BodySize]:
+    """Sizes of all gears and disks on a shaft."""
+    gears = [gear_size(model, name) for name, gear in model.gears.items() if gear.shaft == shaft]
+    return gears + [disk_size(model, name) for name, disk in model.disks.items() if disk.shaft == shaft]

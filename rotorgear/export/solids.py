@@ -1,0 +1,118 @@
+"""The gearbox as solids: every part's surface as plain arrays, and how its points follow the nodes (see attachment.py)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.export.attachment import Attachment, Skeleton, join_attachments
+from rotorgear.export.layout import display_axes
+from rotorgear.export.parts import (
+    FINE,
+    LIGHT,
+    Detail,
+    Piece,
+    disk_pieces,
+    gear_pieces,
+    point_mass_pieces,
+    shaft_pieces,
+)
+from rotorgear.export.parts_held import bearing_pieces, coupling_pieces, support_pieces
+from rotorgear.export.surface import join
+from rotorgear.model.model import Model
+from rotorgear.results.modal import NodeTable
+
+KINDS = ("shaft", "stripe", "gear", "disk", "point mass", "bearing", "support", "coupling")
+# Largest displacement shown, as a share of the size of the model, and largest rotation in rad.
+DEFAULT_AMPLITUDE, LARGEST_TURN = 0.05, 0.3
+
+
+@dataclass(frozen=True)
+class Solids:
+    """Surfaces of all parts of a model; P points, C cells: first the quadrangles, then the triangles.
+
+    Attributes:
+        points: (P, 3) in m, where they are shown undeformed.
+        quads, triangles: (Q, 4) and (T, 3) numbers of the corners, counter-clockwise from outside.
+        part, kind, shaft: (C,) numbers of each cell's part, kind and shaft among the names.
+        part_names: addresses such as "gears.pinion"; kind_names; shaft_names.
+        attachment: what carries each point.
+        node_positions: (p, 3) where the nodes are shown.
+    """
+
+    points: np.ndarray
+    quads: np.ndarray
+    triangles: np.ndarray
+    part: np.ndarray
+    kind: np.ndarray
+    shaft: np.ndarray
+    part_names: tuple[str, ...]
+    kind_names: tuple[str, ...]
+    shaft_names: tuple[str, ...]
+    attachment: Attachment
+    node_positions: np.ndarray
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the box around everything in m."""
+        return float(np.linalg.norm(np.ptp(self.points, axis=0)))
+
+    def displacement(self, shape: np.ndarray) -> np.ndarray:
+        """Displacements (P, 3) of all points from those of the nodes (p, 6), real or complex, in m and rad."""
+        return self.attachment.displacement(shape)
+
+    def scaled(self, shape: np.ndarray, amplitude: float | None = None) -> tuple[np.ndarray, float]:
+        """Displacements (P, 3) large enough to be seen, and the factor on those of the nodes (p, 6); 1 if nothing moves.
+
+        The largest becomes `amplitude` times the size of the model; for None 0.05, or less where a rotation would exceed 0.3 rad:
+        u + theta x r swells a body by sqrt(1 + theta^2).
+        """
+        raw = self.displacement(shape)
+        largest = _largest(raw)
+        if largest == 0.0:
+            return raw, 1.0
+        scale = (amplitude or DEFAULT_AMPLITUDE) * self.size / largest
+        turn = _largest(shape[:, 3:])
+        if amplitude is None and turn * scale > LARGEST_TURN:
+            scale = LARGEST_TURN / turn
+        return scale * raw, scale
+
+
+def _largest(vectors: np.ndarray) -> float:
+    """Largest length of real or complex vectors (k, 3)."""
+    return float(np.sqrt(np.max(np.sum(np.abs(vectors) ** 2, axis=1), initial=0.0)))
+
+
+def build_solids(model: Model, nodes: NodeTable, detail: Detail = LIGHT) -> Solids:
+    """Return the surfaces of all parts of a model with the nodes of one of its results."""
+    skeleton = Skeleton(model, nodes, display_axes(model))
+    makers = (
+        shaft_pieces, gear_pieces, disk_pieces, point_mass_pieces, bearing_pieces, support_pieces, coupling_pieces,
+    )  # fmt: skip
+    pieces = [piece for maker in makers for piece in maker(model, skeleton, detail)]
+    surface = join([piece.surface for piece in pieces])
+    part_names = tuple(dict.fromkeys(piece.part for piece in pieces))
+    shaft_names = tuple(model.shafts)
+    return Solids(
+        points=surface.points,
+        quads=surface.quads,
+        triangles=surface.triangles,
+        part=_by_cell(pieces, [part_names.index(piece.part) for piece in pieces]),
+        kind=_by_cell(pieces, [KINDS.index(piece.kind) for piece in pieces]),
+        shaft=_by_cell(pieces, [shaft_names.index(piece.shaft) for piece in pieces]),
+        part_names=part_names,
+        kind_names=KINDS,
+        shaft_names=shaft_names,
+        attachment=join_attachments([piece.attachment for piece in pieces]),
+        node_positions=skeleton.positions(),
+    )
+
+
+def _by_cell(pieces: list[Piece], numbers: list[int]) -> np.ndarray:
+    """A number of each piece repeated for its quads, then for its triangles."""
+    counts = [len(piece.surface.quads) for piece in pieces] + [len(piece.surface.triangles) for piece in pieces]
+    return np.repeat(np.array(numbers * 2, dtype=np.int16), counts)
+
+
+__all__ = ["DEFAULT_AMPLITUDE", "FINE", "KINDS", "LARGEST_TURN", "LIGHT", "Detail", "Solids", "build_solids"]

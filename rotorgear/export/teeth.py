@@ -1,0 +1,98 @@
+"""Teeth to look at: contours of toothed and plain gears, the twist of the helix, and phases by which teeth stand in gaps.
+
+A right-hand helix turns counter-clockwise towards +z, like the thread of a screw: d angle/dz = +tan(beta)/r at the reference
+circle, the same as tan(beta_b)/r_b at the base circle. Reference: ISO 21771-1, Cylindrical involute gears and gear pairs.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from rotorgear.gears.geometry import GearGeometry
+from rotorgear.model.mesh_geometry import Contact, base_helix_angle, base_radius, contacts, gear_geometry, helix_planes
+from rotorgear.model.model import Model
+
+# Grooves of a plain cylinder, and their width in rad and depth relative to the radius, by which its rotation is seen.
+GEAR_GROOVES, DISK_GROOVES = 12, 4
+_GROOVE_WIDTH, _GROOVE_DEPTH = math.radians(8.0), 0.05
+# Least share of the pitch that a drawn tip or gap keeps, also where the given sizes leave none.
+_LEAST_LAND = 0.03
+
+
+def toothed_contour(geometry: GearGeometry, flank_points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Contour of a gear in the transverse plane, the middle of tooth 0 at angle 0.
+
+    Returns:
+        angles and radii, each (teeth, 2 flank_points), counter-clockwise; flanks are involutes down to the base circle, and
+        radial from there to the root circle.
+    """
+    tip, root = 0.5 * geometry.effective_tip_diameter, 0.5 * geometry.root_diameter
+    pitch = 2.0 * math.pi / geometry.teeth
+    radius = np.linspace(root, tip, flank_points)
+    involute = np.maximum(radius, geometry.base_radius)
+    half = np.array([geometry.transverse_thickness(2.0 * r) / (2.0 * r) for r in involute])
+    half = np.clip(half, _LEAST_LAND * pitch, (0.5 - _LEAST_LAND) * pitch)
+    angles = np.concatenate([-half, half[::-1]]) + pitch * np.arange(geometry.teeth)[:, None]
+    return angles, np.tile(np.concatenate([radius, radius[::-1]]), (geometry.teeth, 1))
+
+
+def grooved_contour(radius: float, grooves: int, arc_points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Contour of a plain cylinder with grooves, the first at angle 0; angles and radii, each (k, 1)."""
+    pitch = 2.0 * math.pi / grooves
+    width = min(_GROOVE_WIDTH, 0.4 * pitch)
+    groove = np.array([-0.5, -0.35, 0.35, 0.5]) * width
+    arc = np.linspace(0.5 * width, pitch - 0.5 * width, arc_points + 2)[1:-1]
+    depth = np.concatenate([[0.0, _GROOVE_DEPTH, _GROOVE_DEPTH, 0.0], np.zeros(arc_points)])
+    angles = np.concatenate([groove, arc]) + pitch * np.arange(grooves)[:, None]
+    return angles.reshape(-1, 1), np.tile(radius * (1.0 - depth), grooves).reshape(-1, 1)
+
+
+def twist_rates(model: Model, name: str) -> tuple[float, ...]:
+    """d angle/dz in rad/m of each helix of a gear from left to right, positive for a right-hand one."""
+    gear = model.gears[name]
+    if gear.kind == "spur":
+        return (0.0,)
+    rate = math.tan(base_helix_angle(gear)) / base_radius(gear)
+    hand = -1.0 if gear.hand == "left" else 1.0
+    return (hand * rate,) if gear.kind == "helical" else (hand * rate, -hand * rate)
+
+
+def tooth_phases(model: Model, axes: dict[str, tuple[float, float]]) -> dict[str, float]:
+    """Angle in rad of the middle of a tooth in the middle plane of each gear's first helix, so that teeth stand in gaps.
+
+    `axes` says where the shafts are shown, shaft -> (x, y). Where meshes close a loop of gears, its last mesh is left as it is.
+    """
+    phases: dict[str, float] = {}
+    first = [contacts(model, name)[0] for name, mesh in model.meshes.items() if model.gears[mesh.pinion].teeth]
+    for start in model.gears:
+        phases.setdefault(start, 0.0)
+        while contact := next((c for c in first if (c.pinion in phases) != (c.gear in phases)), None):
+            _place_mate(model, contact, axes, phases)
+    return phases
+
+
+def _place_mate(model: Model, contact: Contact, axes: dict[str, tuple[float, float]], phases: dict[str, float]) -> None:
+    """Set the phase of the mate of a gear that has one."""
+    known, new = (contact.pinion, contact.gear) if contact.pinion in phases else (contact.gear, contact.pinion)
+    here, there = axes[model.gears[known].shaft], axes[model.gears[new].shaft]
+    out = math.atan2(there[1] - here[1], there[0] - here[0])
+    pitch, mate_pitch = (2.0 * math.pi / (model.gears[name].teeth or 1) for name in (known, new))
+    ahead = (out - phases[known] - _turn(model, known, contact.contact_z)) / pitch
+    # The mate turns the other way: what lies a share of the pitch back here lies the same share ahead there.
+    gap = out + math.pi + ahead * mate_pitch
+    phases[new] = gap + 0.5 * mate_pitch - _turn(model, new, contact.contact_z)
+
+
+def _turn(model: Model, name: str, z: float) -> float:
+    """How far the first helix of a gear has turned from its middle plane to z."""
+    return twist_rates(model, name)[0] * (z - helix_planes(model, name)[0])
+
+
+def contour_of(
+    model: Model, name: str, radius: float, flank_points: int, arc_points: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Contour of a gear: its teeth, or the grooved pitch cylinder of a lumped one."""
+    geometry = gear_geometry(model.gears[name])
+    return toothed_contour(geometry, flank_points) if geometry else grooved_contour(radius, GEAR_GROOVES, arc_points)

@@ -1,0 +1,142 @@
+"""Mass and moments of inertia of gear blanks made of concentric hollow cylinders.
+
+m = rho pi (D^2 - d^2) w / 4,   I_p = m (D^2 + d^2) / 8,   I_d = I_p / 2 + m w^2 / 12 about the centre of mass;
+off-centre parts by the parallel-axis theorem. The teeth count as a solid ring up to the reference diameter.
+Reference: any text on rigid-body mechanics. SI units. An impossible shape raises ValueError with a sentence; the caller
+knows the address.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class RigidBody:
+    """A body of revolution: mass (kg), polar and diametral moment of inertia (kg m^2) about its centre of mass."""
+
+    mass: float
+    polar_inertia: float
+    diametral_inertia: float
+
+
+def _require_positive(**lengths: float) -> None:
+    """ValueError unless every named value is positive and finite."""
+    for name, value in lengths.items():
+        if not 0.0 < value < math.inf:
+            raise ValueError(f"the {name.replace('_', ' ')} must be positive and finite, not {value:g}")
+
+
+def _millimetres(length: float) -> str:
+    return f"{1e3 * length:.6g} mm"
+
+
+def hollow_cylinder(outer_diameter: float, bore: float, width: float, density: float) -> RigidBody:
+    """A cylinder (m, m, m, kg/m^3), solid for bore = 0; ValueError unless 0 <= bore < outer diameter."""
+    _require_positive(outer_diameter=outer_diameter, width=width, density=density)
+    if not 0.0 <= bore < outer_diameter:
+        raise ValueError(
+            f"the bore of {_millimetres(bore)} must be 0 or more and below "
+            f"the outer diameter of {_millimetres(outer_diameter)}"
+        )
+    mass = density * math.pi / 4 * (outer_diameter - bore) * (outer_diameter + bore) * width
+    polar = mass * (outer_diameter**2 + bore**2) / 8
+    return RigidBody(mass, polar, polar / 2 + mass * width**2 / 12)
+
+
+def mass_centre(bodies: Sequence[RigidBody], offsets: Sequence[float]) -> float:
+    """Axial position (m) of the common centre of mass of coaxial bodies whose own centres lie at `offsets` (m)."""
+    if not bodies or len(bodies) != len(offsets):
+        raise ValueError(f"give one offset for each body and at least one body, not {len(offsets)} for {len(bodies)}")
+    return sum(body.mass * z for body, z in zip(bodies, offsets, strict=True)) / sum(body.mass for body in bodies)
+
+
+def stack(bodies: Sequence[RigidBody], offsets: Sequence[float]) -> RigidBody:
+    """Coaxial bodies with centres at axial `offsets` (m) as one body about their common `mass_centre`."""
+    centre = mass_centre(bodies, offsets)
+    shifted = (body.mass * (z - centre) ** 2 for body, z in zip(bodies, offsets, strict=True))
+    return RigidBody(
+        mass=sum(body.mass for body in bodies),
+        polar_inertia=sum(body.polar_inertia for body in bodies),
+        diametral_inertia=sum(body.diametral_inertia for body in bodies) + sum(shifted),
+    )
+
+
+def gear_blank(
+    reference_diameter: float,
+    bore: float,
+    width: float,
+    density: float,
+    *,
+    root_diameter: float | None = None,
+    rim_thickness: float | None = None,
+    web_thickness: float | None = None,
+    hub_diameter: float | None = None,
+    hub_width: float | None = None,
+) -> RigidBody:
+    """A gear body, one helix, all parts concentric and centred (m, kg/m^3).
+
+    Without rim_thickness: a solid ring from the bore to the reference diameter. With it: a rim from
+    root_diameter - 2 rim_thickness to the reference diameter, a web of web_thickness, and a hub (hub_width, or as wide
+    as the gear) around the bore; without hub_diameter the web reaches the bore. ValueError for parts that don't fit.
+    """
+    if rim_thickness is None:
+        if any(part is not None for part in (web_thickness, hub_diameter, hub_width)):
+            raise ValueError(
+                "a web or a hub needs a rim: give the rim thickness as well, or leave them out for a solid blank"
+            )
+        return hollow_cylinder(reference_diameter, bore, width, density)
+    if root_diameter is None or web_thickness is None:
+        raise ValueError("a gear with a rim needs its root diameter and its web thickness as well")
+    if hub_diameter is None and hub_width is not None:
+        raise ValueError("a hub width needs a hub diameter: give it as well, or leave the hub width out")
+    _require_positive(face_width=width, rim_thickness=rim_thickness, web_thickness=web_thickness)
+    inner = _rim_inner_diameter(root_diameter, rim_thickness)
+    core = bore if hub_diameter is None else hub_diameter
+    _require_web_fits(inner, core, width, web_thickness)
+    parts = [
+        hollow_cylinder(reference_diameter, inner, width, density),
+        hollow_cylinder(inner, core, web_thickness, density),
+    ]
+    if hub_diameter is not None:
+        parts.append(_hub(hub_diameter, bore, width if hub_width is None else hub_width, web_thickness, density))
+    return stack(parts, [0.0] * len(parts))
+
+
+def _rim_inner_diameter(root_diameter: float, rim_thickness: float) -> float:
+    """Root diameter less twice the rim; ValueError when nothing is left."""
+    inner = root_diameter - 2.0 * rim_thickness
+    if inner <= 0.0:
+        raise ValueError(
+            f"a rim {_millimetres(rim_thickness)} thick leaves no room inside "
+            f"the root diameter of {_millimetres(root_diameter)}"
+        )
+    return inner
+
+
+def _require_web_fits(inner: float, core: float, width: float, web_thickness: float) -> None:
+    """ValueError unless the web has a radial extent and is no thicker than the face width."""
+    if inner <= core:
+        raise ValueError(
+            f"the rim's inner diameter of {_millimetres(inner)} must be above the diameter of {_millimetres(core)} "
+            "of the hub or bore inside it: make the rim thinner, or leave it out for a solid blank"
+        )
+    if web_thickness > width:
+        raise ValueError(
+            f"a web {_millimetres(web_thickness)} thick is wider than the face width of {_millimetres(width)}"
+        )
+
+
+def _hub(hub_diameter: float, bore: float, hub_width: float, web_thickness: float, density: float) -> RigidBody:
+    """The hub as a hollow cylinder; ValueError when it is no larger than the bore or narrower than its web."""
+    if hub_diameter <= bore:
+        raise ValueError(
+            f"the hub diameter of {_millimetres(hub_diameter)} must be above the bore of {_millimetres(bore)}"
+        )
+    if hub_width < web_thickness:
+        raise ValueError(
+            f"a hub {_millimetres(hub_width)} wide is narrower than its web of {_millimetres(web_thickness)}"
+        )
+    return hollow_cylinder(hub_diameter, bore, hub_width, density)

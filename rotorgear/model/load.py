@@ -1,0 +1,85 @@
+"""Reads a model file (TOML) and writes its JSON Schema for editors."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from rotorgear.errors import ModelError, Problem
+from rotorgear.model.model import SCHEMA_VERSION, Model
+from rotorgear.model.problems import shown
+from rotorgear.quantity import nearest
+
+
+def load(path: str | Path) -> Model:
+    """Read a model from a TOML file.
+
+    Raises:
+        ModelError: the file can't be read, is no TOML, or holds mistakes; all of them at once.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8-sig")  # some editors put a byte order mark in front
+    except FileNotFoundError:
+        raise _refused(path, "there is no such file", _neighbours(path)) from None
+    except UnicodeDecodeError as error:
+        place = f"byte {error.object[error.start]:#04x} at position {error.start}"
+        raise _refused(path, f"not a text in UTF-8: {place}", "a model file is plain text") from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise _refused(path, f"can't be read: {reason}") from None
+    return loads(text, path.name)
+
+
+def loads(text: str, source: str = "model") -> Model:
+    """Read a model from the text of a file; `source` names it in errors.
+
+    Raises:
+        ModelError: the text is no TOML, or holds mistakes; all of them at once.
+    """
+    try:
+        data: dict[str, Any] = tomllib.loads(text)
+    except RecursionError:
+        raise ModelError([Problem(source, "", "not valid TOML: brackets within brackets too deep")], source) from None
+    except ValueError as error:  # a TOMLDecodeError, or a number of thousands of digits
+        raise ModelError([_syntax_problem(source, str(error), text)], source) from None
+    try:
+        return Model(**data)
+    except ModelError as error:
+        raise ModelError(error.problems, source) from None
+
+
+def _refused(path: Path, text: str, hint: str = "") -> ModelError:
+    return ModelError([Problem(str(path), "", text, hint)], path.name)
+
+
+def _syntax_problem(source: str, message: str, text: str) -> Problem:
+    """What the TOML reader says, with the line that it stumbled over and the likeliest remedy."""
+    found = re.search(r"\(at line ([0-9]+), column [0-9]+\)", message)
+    line = text.splitlines()[int(found[1]) - 1].strip() if found else ""
+    quoted = f": {shown(line)}" if line else ""
+    if re.search("overwrite|twice|mutate|redefine|immutable|extend", message):
+        hint = "a table or a key stands once only"
+    elif re.search(r"[=\[,]\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\s*[A-Za-z°]", line):
+        hint = 'a number with its unit stands in quotes: "20 mm"'
+    else:
+        hint = "[tables], and key = value with texts in quotes"
+    return Problem(source, "", f"not valid TOML: {message}{quoted}", hint)
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema of the model file, for editors with completion and checking."""
+    schema = Model.model_json_schema()
+    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    schema["$id"] = f"model-{SCHEMA_VERSION}.schema.json"
+    schema["title"] = "rotorgear model"
+    return schema
+
+
+def _neighbours(path: Path) -> str:
+    folder = path.parent
+    names = sorted(item.name for item in folder.glob("*.toml")) if folder.is_dir() else []
+    guess = nearest(path.name, names)
+    return f"did you mean '{folder / guess}'?" if guess else ""

@@ -1,0 +1,35 @@
+"""A mesh between two gears."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from rotorgear.model.fields import Angle, Damping, Length, Part, PositiveStiffness, Ratio
+
+
+class Mesh(Part):
+    """Two gears in mesh. Everything that follows from the gears and the axes is computed, not asked for."""
+
+    pinion: str = Field(description="name of the gear that is called the pinion")
+    gear: str = Field(description="name of its mate")
+    stiffness: PositiveStiffness = Field(
+        description="mean mesh stiffness along the flank normal, both helices together"
+    )
+    damping_ratio: Ratio = Field(0.0, description="damping ratio zeta: c = 2 zeta sqrt(k m_e)")
+    damping: Damping | None = Field(
+        None, description="damping coefficient along the flank normal, in place of the ratio"
+    )
+    equivalent_mass: Literal["torsion", "general"] = Field(
+        "torsion", description="m_e of the damping ratio: from the rotations only, or from all motions of the two gears"
+    )
+    contact_position: Length = Field(
+        0.0, description="place of the contact along the line of action from the pitch point, positive towards recess"
+    )
+    centre_line_angle: Angle | None = Field(
+        None, description="direction from pinion to gear from +x, only where the shafts have no positions"
+    )
+    pressure_angle: Angle | None = Field(
+        None, description="working transverse pressure angle, only where the shafts have no positions"
+    )

@@ -1,0 +1,54 @@
+"""Draws an accuracy ladder: error against seconds and against degrees of freedom."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from rotorgear.errors import MissingExtraError
+from rotorgear.results.accuracy import AccuracyLadder
+
+_STYLE = {"elements": ("s", "#777777", "basic elements"), "accuracy": ("o", "#1f5fa8", "refined to an accuracy")}
+
+
+def draw_accuracy(ladder: AccuracyLadder, path: str | Path) -> Path:
+    """Write the ladder as a picture (PNG or SVG by the name's ending) and return its path.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingExtraError("A plot", "matplotlib", "plots") from None
+    figure = Figure(figsize=(9.0, 4.0), layout="constrained")
+    axes = figure.subplots(1, 2, sharey=True)
+    _curve(axes[0], ladder, "seconds", "seconds, whole analysis")
+    _curve(axes[1], ladder, "dofs", "degrees of freedom")
+    axes[0].set_ylabel(f"largest relative error of {ladder.modes} frequencies")
+    axes[0].legend(frameon=False)
+    figure.suptitle(ladder.title, fontsize=11)
+    target = Path(path)
+    temporary = target.with_name(f".{target.stem}.part{target.suffix}")
+    figure.savefig(temporary, dpi=120, metadata={"Date": None} if target.suffix == ".svg" else None)
+    os.replace(temporary, target)
+    return target
+
+
+def _curve(axis: Any, ladder: AccuracyLadder, key: str, label: str) -> None:
+    for family, (marker, colour, name) in _STYLE.items():
+        own = [rung for rung in ladder.rungs if rung.family == family and rung.error < float("inf")]
+        if own:
+            # An error of exactly zero has no place on a logarithmic axis.
+            x, y = [getattr(rung, key) for rung in own], [max(rung.error, 1e-16) for rung in own]
+            axis.loglog(x, y, marker=marker, color=colour, lw=1.2, ms=5, label=name)
+            axis.loglog(x, [max(rung.estimate, 1e-16) for rung in own], "x", color=colour, ms=5, alpha=0.6)
+    axis.loglog([], [], "x", color="#444444", alpha=0.6, label="its own estimate")
+    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
+
+    axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.xaxis.set_major_formatter(FormatStrFormatter("%g"))
+    axis.xaxis.set_minor_formatter(NullFormatter())
+    axis.set_xlabel(label)
+    axis.grid(True, which="major", alpha=0.25)

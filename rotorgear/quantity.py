@@ -1,0 +1,177 @@
+"""Quantities with units at the border: "2.75 mm" -> 0.00275. Inside, everything is SI and radians.
+
+Units are looked up by `pint`; a text is a number and a unit, never an expression, and the radian counts as a unit of its own.
+Rotational speed and frequency are kept apart by hand, because dimensional analysis can't tell them apart: 50 Hz is no
+rotational speed until one says whether it means turns or radians, so a speed takes rpm, deg/s or rad/s, and a frequency
+takes Hz or cycles (or turns) per minute.
+"""
+
+from __future__ import annotations
+
+import math
+import numbers
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, SupportsFloat
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A physical dimension of the model file: its SI unit, how an error names it, and an example."""
+
+    name: str
+    unit: str
+    phrase: str
+    example: str
+
+
+_TABLE = [
+    ("length", "m", "a length", "20 mm"),
+    ("angle", "rad", "an angle", "20 deg"),
+    ("speed", "rad/s", "a rotational speed", "1500 rpm"),
+    ("frequency", "Hz", "a frequency", "361 Hz"),
+    ("time", "s", "a time", "2e-5 s"),
+    ("rate", "1/s", "a rate", "12 1/s"),
+    ("mass", "kg", "a mass", "3.2 kg"),
+    ("inertia", "kg*m^2", "a moment of inertia", "0.02 kg m^2"),
+    ("density", "kg/m^3", "a density", "7850 kg/m^3"),
+    ("modulus", "Pa", "an elastic modulus", "206 GPa"),
+    ("torque", "N*m", "a torque", "120 N m"),
+    ("power", "W", "a power", "2.5 MW"),
+    ("stiffness", "N/m", "a stiffness", "2e8 N/m"),
+    ("rotational_stiffness", "N*m/rad", "a rotational stiffness", "1e5 N m/rad"),
+    ("damping", "N*s/m", "a damping coefficient", "500 N s/m"),
+    ("rotational_damping", "N*m*s/rad", "a rotational damping coefficient", "2 N m s/rad"),
+    ("ratio", "", "a ratio", "0.05"),
+]
+DIMENSIONS = {row[0]: Dimension(*row) for row in _TABLE}
+
+_NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*\Z", re.DOTALL)
+_UNIT_TEXT = re.compile(r"[A-Za-z0-9µμ°·²³*/^()\s%-]*\Z")
+_EXPONENT_OR_RECIPROCAL = re.compile(r"\^\s*-?[0-9](?![0-9])|^1(?=\s*/)")
+# No length, mass, stiffness ... of a machine comes near this bound, and powers and products within it stay finite.
+LARGEST = 1e30
+_TURN = 2.0 * math.pi
+# Factors to SI where a frequency and a rotational speed would be mixed up by dimensional analysis alone.
+_RPM = _TURN / 60
+_SPEED_UNITS = {
+    "rpm": _RPM, "1/min": _RPM, "rev/min": _RPM, "rev/s": _TURN, "rad/s": 1.0, "deg/s": _TURN / 360, "krpm": 1000 * _RPM,
+    "RPM": _RPM, "min^-1": _RPM, "r/min": _RPM,
+}  # fmt: skip
+_FREQUENCY_UNITS = {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6, "mHz": 1e-3, "cpm": 1 / 60, "rpm": 1 / 60, "rad/s": 1 / _TURN}
+
+
+class QuantityError(ValueError):
+    """The text is no quantity of the wanted dimension; the message says what was expected."""
+
+
+def parse_quantity(value: Any, dimension: str) -> float:
+    """Return `value` in SI as a finite float.
+
+    Args:
+        value: a plain number (taken as SI) or a text of number and unit, such as "2.75 mm".
+        dimension: a key of `DIMENSIONS`.
+
+    Raises:
+        QuantityError: not a quantity of that dimension; the text is what was expected, with an example.
+    """
+    wanted = DIMENSIONS[dimension]
+    if isinstance(value, bool) or not isinstance(value, numbers.Real | str):
+        raise QuantityError(_expected(wanted))
+    if not isinstance(value, str):
+        return _sensible(value, wanted)
+    match = _NUMBER_AND_UNIT.match(value)
+    if match is None or not _UNIT_TEXT.match(match[2]):
+        raise QuantityError(_expected(wanted) + ("; decimals take a point" if "," in value else ""))
+    unit = " ".join(match[2].split())
+    return _sensible(_sensible(float(match[1]), wanted) * _factor(unit, dimension), wanted)
+
+
+def _expected(wanted: Dimension) -> str:
+    return f"{wanted.phrase} such as '{wanted.example}'"
+
+
+def _sensible(value: SupportsFloat, wanted: Dimension) -> float:
+    """Return a finite number of a size that calculations can bear."""
+    try:
+        number = float(value)
+    except (OverflowError, ValueError):  # a whole number of hundreds of digits
+        number = math.inf
+    if not math.isfinite(number):
+        raise QuantityError(f"a finite number: {_expected(wanted)}")
+    if abs(number) > LARGEST:
+        raise QuantityError(f"a number of sensible size: {_expected(wanted)}")
+    return number
+
+
+@lru_cache(maxsize=512)
+def _factor(unit: str, dimension: str) -> float:
+    """Return the factor from `unit` to the SI unit of `dimension`."""
+    wanted = DIMENSIONS[dimension]
+    if dimension in ("speed", "frequency"):
+        return _cycle_factor(unit, wanted)
+    if dimension == "ratio":
+        if unit in ("", "%"):
+            return 0.01 if unit == "%" else 1.0
+        raise QuantityError(_expected(wanted))
+    if not unit:
+        raise QuantityError(f"{_expected(wanted)}; a number in SI stands without quotes")
+    try:
+        factor, given = _base_units(_expression(unit))
+        _, needed = _base_units(wanted.unit)
+    except Exception as error:  # pint raises many kinds: undefined unit, offset unit, bad syntax, too deep
+        raise QuantityError(_expected(wanted)) from error
+    # "N m" for a rotational stiffness or damping is customary: its radian may be left out.
+    if given != needed and not (given == {key: power for key, power in needed.items() if key != "radian"} and given):
+        raise QuantityError(_expected(wanted))
+    return factor
+
+
+def _expression(unit: str) -> str:
+    """Write a unit as pint reads it; ValueError for numbers other than exponents and a leading 1/."""
+    text = unit.replace("·", "*").replace("²", "^2").replace("³", "^3").replace("**", "^")
+    text = re.sub(r"(?<=[A-Za-z])([2-4])(?![0-9])", r"^\1", text)  # mm2
+    if re.search("[0-9%]", _EXPONENT_OR_RECIPROCAL.sub("", text)):
+        raise ValueError(unit)
+    return text.replace("^", "**")
+
+
+def _base_units(unit: str) -> tuple[float, dict[str, float]]:
+    """Return the factor to SI and the exponents of kilogram, meter, second, radian ..."""
+    registry = _registry()
+    factor, base = registry.get_base_units(registry.parse_units(unit.replace("^", "**")))
+    return float(factor), {key: float(power) for key, power in base._units.items()}
+
+
+def _cycle_factor(unit: str, wanted: Dimension) -> float:
+    table = _SPEED_UNITS if wanted.name == "speed" else _FREQUENCY_UNITS
+    key = unit.replace(" ", "")
+    if key in table:
+        return table[key]
+    note = "; units: " + ", ".join(list(table)[:7])
+    raise QuantityError(_expected(wanted) + note)
+
+
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    import pint
+
+    registry: Any = pint.UnitRegistry(on_redefinition="ignore")
+    registry.define("newton_meter = newton * meter = Nm")  # written without a blank by every engineer
+    registry.define("newton_millimeter = newton * millimeter = Nmm")
+    return registry
+
+
+def millimetres(length: float) -> str:
+    """Write a length in m as an engineer reads it: 0.0275 -> "27.5 mm"."""
+    return f"{1e3 * length + 0.0:.6g} mm"
+
+
+def nearest(name: str, valid: list[str]) -> str:
+    """Return the valid name that is closest to `name`, or "" where none is close."""
+    import difflib
+
+    lower = {candidate.lower(): candidate for candidate in reversed(valid)}
+    found = difflib.get_close_matches(name.lower(), list(lower), n=1, cutoff=0.55)
+    return lower[found[0]] if found else ""

@@ -1,0 +1,1 @@
+"""Results: one frozen class per analysis. No files, no figures."""

@@ -1,0 +1,1 @@
+"""Numerics floor: arrays in, arrays out. Factors, eigenvalues, statics, time and frequency solvers."""

@@ -1,0 +1,124 @@
+"""Sparse factorisations with their guards: A = L D L^T (symmetric, counts negative pivots) and A = L U (general).
+
+By Sylvester's law of inertia the signs of D count the eigenvalues of K x = lambda M x below s when A = K - s M:
+Parlett, The Symmetric Eigenvalue Problem, section 3.3 (SIAM 1998).
+"""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+from functools import cache
+from typing import Any, Literal
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import SuperLU, splu
+from threadpoolctl import ThreadpoolController
+
+from rotorgear.errors import ConvergenceError
+
+_THREADS_PAY_FROM = 2000
+
+
+@cache
+def _controller() -> ThreadpoolController:
+    return ThreadpoolController()  # scans the loaded libraries: a millisecond, so once only
+
+
+def single_thread(n: int) -> AbstractContextManager[object]:
+    """Limit BLAS to one thread while n < 2000 unknowns are solved: more threads only wait for each other."""
+    if n >= _THREADS_PAY_FROM:
+        return nullcontext()
+    context: AbstractContextManager[object] = _controller().limit(limits=1)
+    return context
+
+
+class Factor:
+    """Sparse LU of a square matrix; `solve(b)` for b (n,) or (n, p), real or complex like the matrix."""
+
+    def __init__(self, lu: SuperLU) -> None:
+        self._lu: Any = lu  # the stubs of scipy know fewer types of right-hand sides than SuperLU takes
+
+    @property
+    def n(self) -> int:
+        """Number of unknowns."""
+        return int(self._lu.shape[0])
+
+    def solve(self, b: np.ndarray, *, transposed: bool = False) -> np.ndarray:
+        """Solve A x = b, or A^T x = b when `transposed`. A real factor accepts a complex b."""
+        trans: Literal["T", "N"] = "T" if transposed else "N"
+        if np.iscomplexobj(b) and self._lu.U.dtype.kind != "c":
+            return self._solve(b.real, trans) + 1j * self._solve(b.imag, trans)
+        return self._solve(b, trans)
+
+    def _solve(self, b: np.ndarray, trans: Literal["T", "N"]) -> np.ndarray:
+        x: np.ndarray = self._lu.solve(np.ascontiguousarray(b) if b.ndim == 1 else np.asfortranarray(b), trans)
+        return x
+
+
+class SymmetricFactor(Factor):
+    """A = L D L^T of a symmetric matrix without pivoting, in a fill-reducing order."""
+
+    def __init__(self, lu: SuperLU) -> None:
+        super().__init__(lu)
+        self.pivots: np.ndarray = lu.U.diagonal()
+        self._row_order = lu.perm_r
+
+    def negative_count(self) -> int:
+        """Number of negative eigenvalues of A (Sylvester's law of inertia)."""
+        return int(np.count_nonzero(self.pivots < 0.0))
+
+    def pivots_by_row(self) -> np.ndarray:
+        """The pivot each row of A met (n,): a tiny one marks a row that depends on rows eliminated before."""
+        by_row: np.ndarray = self.pivots[self._row_order]
+        return by_row
+
+
+def factor_symmetric(A: sp.csc_array) -> SymmetricFactor:
+    """Factor a symmetric sparse matrix without row exchanges, so that the pivot signs are the inertia.
+
+    Without pivoting an indefinite matrix may lose accuracy: check with `solve_error` where that matters.
+
+    Raises
+    ------
+    ConvergenceError
+        The matrix is singular, holds NaN, or needs row exchanges.
+    """
+    lu = _superlu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    if not np.array_equal(lu.perm_r, lu.perm_c):
+        raise ConvergenceError(
+            f"The symmetric {A.shape[0]} x {A.shape[0]} matrix met a zero pivot; shift it away from its eigenvalues."
+        )
+    return SymmetricFactor(lu)
+
+
+def factor_general(A: sp.csc_array) -> Factor:
+    """Factor a general sparse matrix (real or complex) with partial pivoting that prefers the diagonal.
+
+    Raises
+    ------
+    ConvergenceError
+        The matrix is singular or holds NaN.
+    """
+    return Factor(_superlu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1, options={"SymmetricMode": True}))
+
+
+def solve_error(A: sp.csc_array, factor: Factor) -> float:
+    """Backward error ||A x - b|| / (||A||_1 ||x|| + ||b||) of one solve with a fixed b: 1e-16 for a healthy factor."""
+    b = np.random.default_rng(7).standard_normal(factor.n)
+    x = factor.solve(b)
+    scale = abs(A).sum(axis=0).max() * np.linalg.norm(x) + np.linalg.norm(b)
+    return float(np.linalg.norm(A @ x - b) / scale)
+
+
+def _superlu(A: sp.csc_array, **how: Any) -> SuperLU:
+    A = sp.csc_array(A)
+    if not np.all(np.isfinite(A.data)):
+        raise ConvergenceError("The matrix to factor holds entries that are not finite; check the input for NaN.")
+    try:
+        lu = splu(A, **how)
+    except RuntimeError as error:  # SuperLU: "Factor is exactly singular"
+        raise ConvergenceError(
+            f"The {A.shape[0]} x {A.shape[0]} matrix is singular: some motion meets neither stiffness nor inertia."
+        ) from error
+    return lu

@@ -1,0 +1,157 @@
+"""Block Krylov basis with full reorthogonalisation: V = orth[X, T X, T^2 X, ...], H = V^T W T V.
+
+W is the inner product (the mass matrix, or none). T symmetric in W gives block Lanczos, any other T block Arnoldi. A
+block finds repeated eigenvalues, and keeps the work in matrix-matrix products, a third of the cost of vector-by-vector.
+Golub and Van Loan, Matrix Computations, 4th ed., sections 10.3.6 and 10.5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+Apply = Callable[[np.ndarray], np.ndarray]
+_DEPENDENT = 1e-13  # a direction this much shorter than its block is rounding of the others
+_ROOM = 200  # columns reserved at first
+_WELL_SPREAD = 3.0  # log of the ratio of singular values up to which one pass leaves an orthonormal block
+
+
+class BlockKrylov:
+    """Growing W-orthonormal basis; `basis` (n, m), `projection` H (m, m), `residuals(Y)` of Ritz vectors basis @ Y.
+
+    The start is T applied to random directions, `width` of them; so is whatever replaces a direction that has closed.
+    """
+
+    def __init__(self, apply: Apply, n: int, width: int, inner: Apply | None = None) -> None:
+        self._apply = apply
+        self._inner = inner
+        self._random = np.random.default_rng(20)
+        self._width = min(width, n)
+        room = min(n, _ROOM) + width
+        self._V = np.empty((n, room), order="F")  # untouched pages cost nothing
+        self._H = np.zeros((room, room))
+        self._size = 0
+        self._border, self._border_start = np.zeros((0, 0)), 0
+        self._block, _ = self._orthonormal(self._fresh(self._width))
+
+    @property
+    def width(self) -> int:
+        """Number of directions that are expanded together."""
+        return self._width
+
+    @property
+    def size(self) -> int:
+        """Number of basis vectors whose image under T is known."""
+        return self._size
+
+    @property
+    def exhausted(self) -> bool:
+        """True when the basis spans the range of T: nothing is left to expand."""
+        return self._block.shape[1] == 0
+
+    @property
+    def basis(self) -> np.ndarray:
+        """V (n, m)."""
+        return self._V[:, : self._size]
+
+    @property
+    def projection(self) -> np.ndarray:
+        """H = V^T W T V (m, m)."""
+        return self._H[: self._size, : self._size]
+
+    def expand(self) -> None:
+        """Apply T to the newest block and orthonormalise the image into the next one."""
+        old, new = self._size, self._size + self._block.shape[1]
+        self._reserve(new + self._block.shape[1])
+        self._V[:, old:new] = self._block
+        self._size = new
+        # symmetric T couples a block to its neighbours only: one full pass is then left to remove rounding
+        since = self._border_start if self._inner is not None else 0
+        self._block, coefficients = self._orthonormal(self._apply(self._block), since)
+        self._H[:new, old:new] = coefficients[:new]
+        self._border = coefficients[new:]
+        self._border_start = old
+        self._H[new : new + self._border.shape[0], old:new] = self._border
+        if self._block.shape[1] < self._width:
+            self._inject(self._width - self._block.shape[1])
+
+    def widen(self, count: int) -> None:
+        """Add fresh directions to the newest block: finds copies of eigenvalues that the start did not hold."""
+        self._width += count
+        self._inject(count)
+
+    def _fresh(self, count: int) -> np.ndarray:
+        return self._apply(self._random.standard_normal((self._V.shape[0], count)))
+
+    def _inject(self, count: int) -> None:
+        held, pending = self._size, self._block.shape[1]
+        self._reserve(held + pending)
+        self._V[:, held : held + pending] = self._block
+        self._size = held + pending  # for the orthogonalisation only: the images of these are not known yet
+        fresh, _ = self._orthonormal(self._fresh(count))
+        self._size = held
+        self._block = np.hstack([self._block, fresh])
+
+    def residuals(self, Y: np.ndarray) -> np.ndarray:
+        """Norms ||T v - theta v||_W of the Ritz vectors v = V Y, with Y (m, k) eigenvectors of H."""
+        norms: np.ndarray = np.linalg.norm(self._border @ Y[self._border_start :], axis=0)
+        return norms
+
+    def polished(self, Y: np.ndarray) -> np.ndarray:
+        """T V Y (n, k) without another application of T: stiff parts that V Y still holds are scaled down by it."""
+        last = self._border @ Y[self._border_start :]
+        image: np.ndarray = self.basis @ (self.projection @ Y) + self._block[:, : last.shape[0]] @ last
+        return image
+
+    def _reserve(self, size: int) -> None:
+        if size > self._V.shape[1]:
+            room = 2 * size
+            V = np.empty((self._V.shape[0], room), order="F")
+            V[:, : self._size] = self.basis
+            H = np.zeros((room, room))
+            H[: self._H.shape[0], : self._H.shape[1]] = self._H
+            self._V, self._H = V, H
+
+    def _orthonormal(self, X: np.ndarray, since: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Q (n, r) orthonormal and orthogonal to V, and the coefficients (m + r, b) with X = [V, Q] coefficients.
+
+        X is known to be orthogonal, but for rounding, to the first `since` columns of V.
+        """
+        V = self.basis
+        WX = self._weighted(X)
+        length = np.sqrt(np.maximum(np.einsum("ij,ij->j", X, WX), 0.0)).max(initial=0.0)
+        above = np.zeros((V.shape[1], X.shape[1]))
+        above[since:] = (WX.T @ V[:, since:]).T
+        below = np.eye(X.shape[1])
+        X = X - V[:, since:] @ above[since:] if V.shape[1] else X
+        for _ in range(4):  # twice is enough (Kahan and Parlett) unless the block itself is nearly dependent
+            WX = self._weighted(X)
+            overlap = (WX.T @ V).T  # faster than V.T @ WX for a narrow WX
+            gram = X.T @ WX - overlap.T @ overlap
+            Q, triangle, spread = _compressed(gram, _DEPENDENT * length)
+            X = (X - V @ overlap) @ Q if V.shape[1] else X @ Q
+            above += overlap @ below
+            below = triangle @ below
+            length = 1.0
+            if spread < _WELL_SPREAD or X.shape[1] == 0:
+                break
+        return X, np.vstack([above, below])
+
+    def _weighted(self, X: np.ndarray) -> np.ndarray:
+        return X if self._inner is None else self._inner(X)
+
+
+def _compressed(gram: np.ndarray, shortest: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Q, R, spread with X = (X Q) R and X Q orthonormal, from X^T W X; directions under `shortest` are left out."""
+    scale = np.sqrt(np.maximum(np.diag(gram), 0.0))
+    kept = np.flatnonzero(scale > shortest)
+    scale = scale[kept]
+    values, vectors = np.linalg.eigh(gram[np.ix_(kept, kept)] / scale / scale[:, None])
+    strong = values > 1e-14 * values.max(initial=0.0)
+    roots, vectors = np.sqrt(values[strong]), vectors[:, strong]
+    Q = np.zeros((gram.shape[0], roots.size))
+    R = np.zeros((roots.size, gram.shape[0]))
+    Q[kept] = vectors / roots / scale[:, None]
+    R[:, kept] = roots[:, None] * vectors.T * scale
+    return Q, R, float(np.ptp(np.log(roots))) if roots.size else 0.0

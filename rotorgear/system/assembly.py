@@ -1,0 +1,84 @@
+"""Scatters element matrices through the DofMap into sparse global ones: A = T^T (sum over elements) T."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.system.dofs import DofMap
+from rotorgear.system.groups import ElementGroup
+
+Term = Callable[[ElementGroup], np.ndarray | None]
+
+
+def assemble(groups: Iterable[ElementGroup], dofs: DofMap, term: Term) -> sp.csc_array:
+    """Return the sum over all elements of `term(group)`, each (e, d, d) or None, as a sparse (n, n)."""
+    rows, cols, values = [], [], []
+    for group in groups:
+        block = term(group)
+        if block is None:
+            continue
+        d = group.dofs.shape[1]
+        rows.append(np.repeat(group.dofs, d, axis=1).ravel())
+        cols.append(np.tile(group.dofs, (1, d)).ravel())
+        values.append(block.ravel())
+    if not rows:
+        return sp.csc_array((dofs.n, dofs.n))
+    row, col, value = np.concatenate(rows), np.concatenate(cols), np.concatenate(values)
+    nonzero = value != 0.0
+    row, col, value = row[nonzero], col[nonzero], value[nonzero]
+    if dofs.selects:
+        row, col = dofs.column[row], dofs.column[col]
+        kept = (row >= 0) & (col >= 0)
+        return sp.csc_array(sp.coo_array((value[kept], (row[kept], col[kept])), shape=(dofs.n, dofs.n)))
+    size = dofs.transform.shape[0]
+    full = sp.csr_array(sp.coo_array((value, (row, col)), shape=(size, size)))
+    return sp.csc_array(dofs.transform.T @ full @ dofs.transform)
+
+
+def strain_factor(groups: Iterable[ElementGroup], dofs: DofMap) -> sp.csr_array | None:
+    """Return S, sparse (s, n), with K = S^T S, row by row from element strains; None where a modulus is not positive.
+
+    S q has the strains of each element, so |S q|^2 is free of the cancellation in q^T K q.
+    """
+    rows, cols, values, first = [], [], [], 0
+    for group in groups:
+        strain, modulus = group.matrices.strain, group.matrices.modulus
+        if strain is None or modulus is None:
+            continue
+        root = _root(modulus)
+        if root is None:
+            return None
+        factor = root @ strain
+        e, s, d = factor.shape
+        number = first + np.arange(e * s).reshape(e, s, 1)
+        rows.append(np.broadcast_to(number, (e, s, d)).ravel())
+        cols.append(np.broadcast_to(group.dofs[:, None, :], (e, s, d)).ravel())
+        values.append(factor.ravel())
+        first += e * s
+    size = dofs.transform.shape[0]
+    if not rows:
+        return sp.csr_array((0, dofs.n))
+    triple = (np.concatenate(values), (np.concatenate(rows), np.concatenate(cols)))
+    full = sp.csr_array(sp.coo_array(triple, shape=(first, size)))
+    return sp.csr_array(full @ dofs.transform)
+
+
+def _root(modulus: np.ndarray) -> np.ndarray | None:
+    """R with R^T R = D for each small matrix; None where one is not positive semidefinite."""
+    off_diagonal = modulus.copy()
+    k = np.arange(modulus.shape[1])
+    diagonal = modulus[:, k, k]
+    off_diagonal[:, k, k] = 0.0
+    if np.any(diagonal < 0.0):
+        return None
+    if not off_diagonal.any():
+        return np.sqrt(diagonal)[:, :, None] * np.eye(modulus.shape[1])
+    # Scaled to unit diagonal, so that stiffnesses in N/m and N m/rad do not drown each other.
+    scale = np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    values, vectors = np.linalg.eigh(modulus / (scale[:, :, None] * scale[:, None, :]))
+    if np.any(values < -1e-12):
+        return None
+    return np.sqrt(np.clip(values, 0.0, None))[:, :, None] * np.swapaxes(vectors, 1, 2) * scale[:, None, :]

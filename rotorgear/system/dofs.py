@@ -1,0 +1,143 @@
+"""Degrees of freedom: which of the six of every node are free, and how rigid stretches of shaft tie nodes together.
+
+All displacements q_all (6 a node, then the internal ones of the elements) follow from the free ones by q_all = T q. Without
+rigid sections T only selects.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from rotorgear.elements.spring import rigid_transfer
+from rotorgear.model.model import Model
+from rotorgear.system.nodes import Nodes
+
+MOTION_DOFS = {"bending": (0, 1, 3, 4), "axial": (2,), "torsion": (5,)}
+_FIXED = {"x": (0,), "y": (1,), "z": (2,), "tilt_x": (3,), "tilt_y": (4,), "torsion": (5,), "all": (0, 1, 2, 3, 4, 5)}
+
+
+@dataclass(frozen=True)
+class DofMap:
+    """Map from the n free degrees of freedom to all a of them: 6 p of the nodes, then the internal ones of the elements.
+
+    Attributes:
+        transform: T, sparse, shape (a, n).
+        column: for each of the a dofs its place among the n where T only selects, -1 where it is held.
+        selects: whether T only selects.
+        held: number of dofs held by supports, by motion of the model, and tied by rigid sections.
+    """
+
+    transform: sp.csr_array
+    column: np.ndarray
+    selects: bool
+    held: dict[str, int]
+
+    @property
+    def n(self) -> int:
+        """Number of free degrees of freedom."""
+        return int(self.transform.shape[1])
+
+    def expand(self, q: np.ndarray) -> np.ndarray:
+        """All displacements from the free ones: (n, ...) -> (a, ...)."""
+        return self.transform @ q
+
+    def describe(self, dof: int, nodes: Nodes) -> str:
+        """Say which displacement a free dof is, for messages."""
+        row = int(np.argmax(np.abs(self.transform[:, [dof]].toarray()[:, 0])))
+        if row >= 6 * len(nodes):
+            return f"an internal {nodes.internal[row - 6 * len(nodes)]} dof of a shaft element"
+        node, k = divmod(row, 6)
+        return f"{('x', 'y', 'z', 'tilt_x', 'tilt_y', 'torsion')[k]} of shaft '{nodes.shaft[node]}' at z = {nodes.z[node]:.6g} m"
+
+
+def map_dofs(model: Model, nodes: Nodes) -> DofMap:
+    """Return the map of free degrees of freedom from motions, fixed supports, pedestals and rigid sections."""
+    count = len(nodes)
+    held = np.zeros((count, 6), dtype=bool)
+    for motion, dofs in MOTION_DOFS.items():
+        if not model.has(motion):
+            held[:, dofs] = True
+    by_motion = int(held.sum())
+    for support in model.supports.values():
+        node = nodes.at(support.shaft, model.shafts[support.shaft].station(support.at))
+        for direction in support.fixed:
+            held[node, _FIXED[direction]] = True
+    for name, bearing in model.bearings.items():
+        if bearing.pedestal is not None:
+            rows = bearing.pedestal.stiffness.as_rows()
+            soft = [k for k in range(3) if any(rows[k]) or any(row[k] for row in rows)]
+            held[nodes.of_pedestal(name), [k for k in range(6) if k not in soft]] = True
+    by_support = int(held.sum()) - by_motion
+    inside = np.array([motion not in model.motions for motion in nodes.internal], dtype=bool)
+    by_motion += int(inside.sum())
+    groups = _rigid_groups(model, nodes)
+    counts = {"motions": by_motion, "supports": by_support, "rigid sections": sum(6 * (len(g) - 1) for g in groups)}
+    if not groups:
+        return _selection(np.concatenate([held.ravel(), inside]), counts)
+    return _tied(nodes, held, inside, groups, counts)
+
+
+def _selection(held: np.ndarray, counts: dict[str, int]) -> DofMap:
+    free = np.flatnonzero(~held)
+    column = np.full(held.size, -1)
+    column[free] = np.arange(free.size)
+    T = sp.csr_array((np.ones(free.size), (free, np.arange(free.size))), shape=(held.size, free.size))
+    return DofMap(T, column, True, counts)
+
+
+def _rigid_groups(model: Model, nodes: Nodes) -> list[list[int]]:
+    """List the runs of neighbouring nodes joined by rigid sections."""
+    groups: list[list[int]] = []
+    for name, elements in nodes.elements.items():
+        for element in elements:
+            if not model.shafts[name].sections[element.section].rigid:
+                continue
+            if groups and groups[-1][-1] == element.left:
+                groups[-1].append(element.right)
+            else:
+                groups.append([element.left, element.right])
+    return groups
+
+
+def _tied(
+    nodes: Nodes, held: np.ndarray, inside: np.ndarray, groups: list[list[int]], counts: dict[str, int]
+) -> DofMap:
+    """Build T where rigid groups move with their first node, within what holds any of their nodes."""
+    of_node = {node: group for group in groups for node in group}
+    rows, cols, values = [], [], []
+    n = 0
+    for first in range(len(nodes)):
+        group = of_node.get(first, [first])
+        if group[0] != first:
+            continue
+        transfer = [rigid_transfer(np.array([0.0, 0.0, nodes.z[node] - nodes.z[first]])) for node in group]
+        constraints = np.vstack([carried[held[node]] for carried, node in zip(transfer, group, strict=True)])
+        free = _null_space(constraints)
+        for carried, node in zip(transfer, group, strict=True):
+            block = carried @ free
+            r, c = np.nonzero(block)
+            rows.append(6 * node + r)
+            cols.append(n + c)
+            values.append(block[r, c])
+        n += free.shape[1]
+    internal = np.flatnonzero(~inside)
+    rows.append(held.size + internal)
+    cols.append(n + np.arange(internal.size))
+    values.append(np.ones(internal.size))
+    n += internal.size
+    size = held.size + inside.size
+    T = sp.csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(cols))), shape=(size, n))
+    return DofMap(T, np.full(size, -1), False, counts)
+
+
+def _null_space(constraints: np.ndarray) -> np.ndarray:
+    """Free motions (6, k) of a node under linear constraints (c, 6); plain selection where constraints hold single dofs."""
+    used = constraints != 0.0
+    if np.all(used.sum(axis=1) == 1):
+        free = ~used.any(axis=0)
+        return np.eye(6)[:, free]
+    return np.asarray(la.null_space(constraints))

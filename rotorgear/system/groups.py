@@ -1,0 +1,248 @@
+"""Element groups: the matrices of each part of a model with the global numbers of their degrees of freedom."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.elements.gear_mesh import (
+    ContactGeometry,
+    equivalent_mass_general,
+    equivalent_mass_torsion,
+    gear_mesh,
+)
+from rotorgear.elements.matrices import ElementMatrices
+from rotorgear.elements.rigid_body import rigid_body
+from rotorgear.elements.shaft import ShaftElements, shaft_elements, strain_motions
+from rotorgear.elements.shaft_bubbles import bubble_motions
+from rotorgear.elements.spring import grounded_spring, linking_spring
+from rotorgear.errors import AnalysisError
+from rotorgear.model.inertia import NodeBody, node_bodies
+from rotorgear.model.model import Model
+from rotorgear.model.supports import Bearing, DampingMatrix, StiffnessMatrix
+from rotorgear.model.torque_flow import MeshForce, TorqueFlow
+from rotorgear.model.train import Train
+from rotorgear.system.nodes import Element, Nodes
+
+# Motion of the six dofs of a node.
+_NODE_MOTIONS = ("bending", "bending", "axial", "bending", "bending", "torsion")
+
+
+@dataclass(frozen=True)
+class ElementGroup:
+    """Elements of one part.
+
+    Attributes:
+        part: address of the part, such as "shafts.input" or "meshes.stage_1".
+        shaft: name of the shaft the part belongs to; "" for a mesh or a coupling.
+        matrices: of its e elements with d dofs each.
+        dofs: numbers among all dofs, those of nodes first, then internal ones, shape (e, d).
+        spin: speed of its shaft over the reference speed.
+        strain_motions: the motion each strain belongs to; empty for springs and meshes.
+    """
+
+    part: str
+    shaft: str
+    matrices: ElementMatrices
+    dofs: np.ndarray
+    spin: float = 0.0
+    strain_motions: tuple[str, ...] = ()
+
+    @property
+    def dof_motions(self) -> tuple[str, ...]:
+        """The motion of each of the d dofs."""
+        d = self.dofs.shape[1]
+        internal = self.strain_motions[6:] if d > 12 else ()
+        return _NODE_MOTIONS * ((d - len(internal)) // 6) + internal
+
+
+def node_dofs(*nodes: int) -> np.ndarray:
+    """Numbers of the dofs of some nodes, six each, as one row (1, d)."""
+    return np.concatenate([6 * node + np.arange(6) for node in nodes])[None]
+
+
+def constant_groups(model: Model, train: Train, flow: TorqueFlow, nodes: Nodes) -> list[ElementGroup]:
+    """Groups that do not depend on speed, except through gyroscopic and circulatory terms in proportion to it."""
+    found = [group for name in model.shafts for group in _shaft(model, train, nodes, name)]
+    for body in node_bodies(model):
+        b = body.body
+        matrices = rigid_body(b.mass, b.polar_inertia, b.diametral_inertia)
+        node = nodes.at(body.shaft, body.z)
+        found.append(ElementGroup(body.part, body.shaft, matrices, node_dofs(node), train.ratio(body.shaft)))
+    found += list(_meshes(model, flow, nodes))
+    for name, bearing in model.bearings.items():
+        found += list(_pedestal(model, nodes, name, bearing))
+        if not bearing.table:
+            found.append(_bearing(model, nodes, name, bearing, _rows(bearing.stiffness), _rows(bearing.damping)))
+    for name, support in model.supports.items():
+        node = nodes.at(support.shaft, model.shafts[support.shaft].station(support.at))
+        matrices = grounded_spring(_rows(support.stiffness), _rows(support.damping))
+        found.append(ElementGroup(f"supports.{name}", support.shaft, matrices, node_dofs(node)))
+    found += list(_couplings(model, nodes))
+    return found
+
+
+def table_groups(model: Model, train: Train, nodes: Nodes, speed: float) -> list[ElementGroup]:
+    """Bearings with tables at a speed of the reference shaft in rad/s.
+
+    Raises:
+        AnalysisError: the speed of a bearing's shaft lies outside its table.
+    """
+    found = []
+    for name, bearing in model.bearings.items():
+        if bearing.table:
+            own = abs(train.ratio(bearing.shaft) * speed)
+            found.append(_bearing(model, nodes, name, bearing, *_interpolate(name, bearing, own)))
+    return found
+
+
+def _rows(matrix: StiffnessMatrix | DampingMatrix | None) -> np.ndarray:
+    return np.zeros((6, 6)) if matrix is None else np.array(matrix.as_rows())
+
+
+def _interpolate(name: str, bearing: Bearing, speed: float) -> tuple[np.ndarray, np.ndarray]:
+    speeds = np.array([row.speed for row in bearing.table])
+    if not speeds[0] * (1.0 - 1e-12) <= speed <= speeds[-1] * (1.0 + 1e-12):
+        rpm = 30.0 / np.pi
+        raise AnalysisError(
+            f"bearings.{name}: its shaft turns at {speed * rpm:.6g} rpm, but its table covers {speeds[0] * rpm:.6g} to "
+            f"{speeds[-1] * rpm:.6g} rpm; ask for a speed inside (--speed) or add rows to the table"
+        )
+    right = int(np.clip(np.searchsorted(speeds, speed), 1, len(speeds) - 1))
+    share = float(np.clip((speed - speeds[right - 1]) / (speeds[right] - speeds[right - 1]), 0.0, 1.0))
+    low, high = bearing.table[right - 1], bearing.table[right]
+    return (
+        (1.0 - share) * _rows(low.stiffness) + share * _rows(high.stiffness),
+        (1.0 - share) * _rows(low.damping) + share * _rows(high.damping),
+    )
+
+
+def _shaft(model: Model, train: Train, nodes: Nodes, name: str) -> Iterator[ElementGroup]:
+    shaft, ratio = model.shafts[name], train.ratio(name)
+    for rigid, order, chosen in alike(model, nodes, name):
+        matrices = shaft_elements(
+            element_data(model, name, chosen),
+            order=order,
+            lumped=shaft.mass_matrix == "lumped",
+            internal_damping=0.0 if rigid else shaft.internal_damping,
+        )
+        if rigid:  # it has mass, but nothing in it can strain
+            matrices = ElementMatrices(mass=matrices.mass, gyroscopic=matrices.gyroscopic)
+        motions = () if rigid else strain_motions(order, shaft.shear_deformation)
+        dofs = shaft_dofs(nodes, chosen, shaft.shear_deformation)
+        yield ElementGroup(f"shafts.{name}", name, matrices, dofs, ratio, motions)
+
+
+def alike(model: Model, nodes: Nodes, shaft: str) -> Iterator[tuple[bool, int, list[Element]]]:
+    """Yield (rigid, order, elements) for the elements of a shaft that share both."""
+    sections = model.shafts[shaft].sections
+    found: dict[tuple[bool, int], list[Element]] = {}
+    for element in nodes.elements[shaft]:
+        found.setdefault((sections[element.section].rigid, element.order), []).append(element)
+    for (rigid, order), chosen in found.items():
+        yield rigid, order, chosen
+
+
+def shaft_dofs(nodes: Nodes, elements: list[Element], shear: bool) -> np.ndarray:
+    """Numbers of the dofs of shaft elements of one order, shape (e, d): left node, right node, internal ones."""
+    left, right = np.array([e.left for e in elements]), np.array([e.right for e in elements])
+    first = 6 * len(nodes) + np.array([e.internal for e in elements])
+    k, inside = np.arange(6), np.arange(len(bubble_motions(elements[0].order, shear)))
+    return np.hstack([6 * left[:, None] + k, 6 * right[:, None] + k, first[:, None] + inside])
+
+
+def element_data(model: Model, name: str, elements: list[Element]) -> ShaftElements:
+    """Sizes and material of some elements of a shaft."""
+    shaft = model.shafts[name]
+    table = []
+    for section in shaft.sections:
+        material = model.material_of(name, section)
+        kappa = np.nan if section.shear_coefficient is None else section.shear_coefficient
+        kappa = kappa if shaft.shear_deformation else np.inf
+        table.append([material.youngs_modulus, material.g, material.nu, material.density, kappa])
+    number = np.array([e.section for e in elements])
+    E, G, nu, rho, kappas = np.array(table)[number].T
+    start, stop = np.array([e.start for e in elements])[:, None], np.array([e.stop for e in elements])[:, None]
+
+    def ends(diameters: list[tuple[float, float, float, float]]) -> np.ndarray:
+        whole = np.array(diameters)[number]
+        left, right = whole[:, :2], whole[:, 2:]
+        return np.hstack([left + (right - left) * start, left + (right - left) * stop])
+
+    length = np.array([e.length for e in elements])
+    stiffness = ends([s.stiffness_diameters() for s in shaft.sections])
+    mass = ends([s.mass_diameters() for s in shaft.sections])
+    return ShaftElements(length, stiffness, mass, E, G, nu, rho, kappas)
+
+
+def _meshes(model: Model, flow: TorqueFlow, nodes: Nodes) -> Iterator[ElementGroup]:
+    bodies = node_bodies(model)
+    for force in flow.forces:
+        c = force.contact
+        pinion, gear = model.gears[c.pinion].shaft, model.gears[c.gear].shaft
+        geometry = ContactGeometry(
+            psi=c.psi, pressure_angle=c.pressure_angle, base_helix_angle=c.base_helix_angle, hand=c.hand,
+            torque_sense=force.torque_sense, pinion_base_radius=c.pinion_base_radius, gear_base_radius=c.gear_base_radius,
+            pinion_offset=c.contact_z - c.pinion_z, gear_offset=c.contact_z - c.gear_z, contact_position=c.contact_position * (1 if force.pinion_drives else -1),
+        )  # fmt: skip
+        damping = _mesh_damping(model, force, geometry, bodies)
+        dofs = node_dofs(nodes.at(pinion, c.pinion_z), nodes.at(gear, c.gear_z))
+        yield ElementGroup(f"meshes.{c.mesh}", "", gear_mesh(geometry, c.stiffness, damping), dofs)
+
+
+def _mesh_damping(model: Model, force: MeshForce, geometry: ContactGeometry, bodies: list[NodeBody]) -> float:
+    """Damping coefficient of one helix in N s/m: given, or from the ratio and the inertia of that helix' share of the gears."""
+    mesh = model.meshes[force.contact.mesh]
+    helices = 2 if model.gears[mesh.pinion].kind == "herringbone" else 1
+    if mesh.damping is not None:
+        return mesh.damping / helices
+    if mesh.damping_ratio == 0.0:
+        return 0.0
+    diagonals = []
+    for name in (mesh.pinion, mesh.gear):
+        own = [body.body for body in bodies if body.part == f"gears.{name}"]
+        mass, polar, tilt = (sum(getattr(b, key) for b in own) / helices
+                             for key in ("mass", "polar_inertia", "diametral_inertia"))  # fmt: skip
+        diagonals.append(np.array([mass, mass, mass, tilt, tilt, polar]))
+    if mesh.equivalent_mass == "general":
+        equivalent = equivalent_mass_general(geometry, *diagonals)
+    else:
+        equivalent = equivalent_mass_torsion(
+            diagonals[0][5], diagonals[1][5], geometry.pinion_base_radius, geometry.gear_base_radius
+        )
+    return 2.0 * mesh.damping_ratio * float(np.sqrt(force.contact.stiffness * equivalent))
+
+
+def _bearing(
+    model: Model, nodes: Nodes, name: str, bearing: Bearing, stiffness: np.ndarray, damping: np.ndarray
+) -> ElementGroup:
+    node = nodes.at(bearing.shaft, model.shafts[bearing.shaft].station(bearing.at))
+    part = f"bearings.{name}"
+    if bearing.pedestal is None:
+        return ElementGroup(part, bearing.shaft, grounded_spring(stiffness, damping), node_dofs(node))
+    origin = np.zeros(3)
+    matrices = linking_spring(stiffness, damping, origin, origin)
+    return ElementGroup(part, bearing.shaft, matrices, node_dofs(nodes.of_pedestal(name), node))
+
+
+def _pedestal(model: Model, nodes: Nodes, name: str, bearing: Bearing) -> Iterator[ElementGroup]:
+    if bearing.pedestal is None:
+        return
+    dofs, part = node_dofs(nodes.of_pedestal(name)), f"bearings.{name}.pedestal"
+    matrices = grounded_spring(_rows(bearing.pedestal.stiffness), _rows(bearing.pedestal.damping))
+    yield ElementGroup(part, bearing.shaft, matrices, dofs)
+    if bearing.pedestal.mass:
+        yield ElementGroup(part, bearing.shaft, rigid_body(bearing.pedestal.mass, 0.0, 0.0), dofs)
+
+
+def _couplings(model: Model, nodes: Nodes) -> Iterator[ElementGroup]:
+    for name, coupling in model.couplings.items():
+        first_z = model.shafts[coupling.from_shaft].station(coupling.from_at)
+        second_z = model.shafts[coupling.to_shaft].station(coupling.to_at)
+        matrices = linking_spring(
+            _rows(coupling.stiffness), _rows(coupling.damping), np.array([0, 0, first_z]), np.array([0, 0, second_z])
+        )
+        dofs = node_dofs(nodes.at(coupling.from_shaft, first_z), nodes.at(coupling.to_shaft, second_z))
+        yield ElementGroup(f"couplings.{name}", "", matrices, dofs)

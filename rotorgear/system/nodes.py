@@ -1,0 +1,172 @@
+"""Discretisation: nodes at the ends of sections and at every part, and elements in each piece between them.
+
+Places closer than 1e-9 of the shaft's length are one
+node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from rotorgear.elements.shaft_bubbles import bubble_motions
+from rotorgear.model.mesh_geometry import node_positions
+from rotorgear.model.model import Model
+from rotorgear.system.plan import Plan
+
+MERGE_DISTANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class Element:
+    """One shaft element.
+
+    Attributes:
+        left, right: its nodes; length in m.
+        section: number of its section, and where in that section it begins and ends (0 to 1).
+        piece: number of its piece from the left end of the shaft.
+        order: polynomial order; internal: number of its first internal dof among those of all elements.
+    """
+
+    left: int
+    right: int
+    length: float
+    section: int
+    start: float
+    stop: float
+    piece: int = 0
+    order: int = 1
+    internal: int = 0
+
+
+@dataclass
+class Nodes:
+    """Nodes of a model and the shaft elements between them.
+
+    Attributes:
+        shaft: name of the shaft of each node; of a pedestal's node, that of its bearing.
+        z: z of each node in m.
+        pedestal: name of the bearing whose pedestal a node is, else "".
+        elements: shaft -> its elements from left to right.
+        internal: the motion of each internal dof of the elements, in their order.
+        merged: sentences about places that became one node.
+    """
+
+    shaft: list[str] = field(default_factory=list)
+    z: list[float] = field(default_factory=list)
+    pedestal: list[str] = field(default_factory=list)
+    elements: dict[str, list[Element]] = field(default_factory=dict)
+    internal: list[str] = field(default_factory=list)
+    merged: list[str] = field(default_factory=list)
+    _on_shaft: dict[str, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.z)
+
+    def at(self, shaft: str, z: float) -> int:
+        """Number of the node of a shaft nearest to z."""
+        numbers, places = self._on_shaft[shaft]
+        return int(numbers[np.argmin(np.abs(places - z))])
+
+    def of_pedestal(self, bearing: str) -> int:
+        """Number of the node of a bearing's pedestal."""
+        return self.pedestal.index(bearing)
+
+    def on_shaft(self, shaft: str) -> np.ndarray:
+        """Numbers of the nodes of a shaft from left to right."""
+        return self._on_shaft[shaft][0]
+
+
+def places(model: Model) -> dict[str, list[tuple[float, str]]]:
+    """List (z, what) of all places that need a node, for every shaft."""
+    found: dict[str, list[tuple[float, str]]] = {}
+    for name, shaft in model.shafts.items():
+        ends = np.cumsum([shaft.start, *[section.length for section in shaft.sections]])
+        found[name] = [(float(ends[0]), "start")]
+        found[name] += [(float(z), f"end of section {number}") for number, z in enumerate(ends[1:])]
+    for name, gear in model.gears.items():
+        found[gear.shaft] += [(z, f"gears.{name}") for z in node_positions(model, name)]
+    for owner, what, at in _stations(model):
+        found[owner].append((model.shafts[owner].station(at), what))
+    return found
+
+
+def _stations(model: Model) -> Iterator[tuple[str, str, float | str]]:
+    """Yield (shaft, address, at) of all parts but gears."""
+    for table in ("disks", "point_masses", "bearings", "supports"):
+        for name, part in getattr(model, table).items():
+            yield part.shaft, f"{table}.{name}", part.at
+    for name, coupling in model.couplings.items():
+        yield coupling.from_shaft, f"couplings.{name}", coupling.from_at
+        yield coupling.to_shaft, f"couplings.{name}", coupling.to_at
+    for table in ("loads", "points"):
+        for name, item in getattr(model, table).items():
+            if item.shaft is not None and item.at is not None:
+                yield item.shaft, f"{table}.{name}", item.at
+
+
+def discretise(model: Model, plan: Plan) -> Nodes:
+    """Return nodes and shaft elements of a model as a plan cuts it."""
+    nodes = Nodes()
+    wanted = places(model)
+    for name in model.shafts:
+        _add_shaft(nodes, model, name, wanted[name], plan)
+    for name, bearing in model.bearings.items():
+        if bearing.pedestal is not None:
+            nodes.shaft.append(bearing.shaft)
+            nodes.z.append(model.shafts[bearing.shaft].station(bearing.at))
+            nodes.pedestal.append(name)
+    return nodes
+
+
+def _merged_places(model: Model, shaft: str, wanted: list[tuple[float, str]]) -> tuple[list[float], list[str]]:
+    """Return the different places of a shaft in order, and sentences about those that were merged."""
+    own = model.shafts[shaft]
+    tolerance = MERGE_DISTANCE * own.length
+    kept: list[tuple[float, str]] = []
+    notes = []
+    for z, what in sorted(wanted):
+        if kept and z - kept[-1][0] <= tolerance:
+            if z != kept[-1][0] and z - kept[-1][0] > 4.0 * np.finfo(float).eps * max(abs(z), own.length):
+                notes.append(
+                    f"shafts.{shaft}: {what} at {z:.9g} m taken to {kept[-1][1]} at {kept[-1][0]:.9g} m, one node"
+                )
+            continue
+        kept.append((z, what))
+    return [z for z, _ in kept], notes
+
+
+def _add_shaft(nodes: Nodes, model: Model, shaft: str, wanted: list[tuple[float, str]], plan: Plan) -> None:
+    own = model.shafts[shaft]
+    breaks, notes = _merged_places(model, shaft, wanted)
+    nodes.merged += notes
+    ends = np.cumsum([own.start, *[section.length for section in own.sections]])
+    z: list[float] = [breaks[0]]
+    pieces: list[Element] = []
+    first = len(nodes)
+    for piece, (left, right) in enumerate(pairwise(breaks)):
+        number = int(np.clip(np.searchsorted(ends, 0.5 * (left + right)) - 1, 0, len(own.sections) - 1))
+        section = own.sections[number]
+        count, order = (1, 1) if section.rigid else plan.of((shaft, piece), section.elements)
+        order = order if own.mass_matrix == "consistent" else 1
+        motions = bubble_motions(order, own.shear_deformation)
+        edges = np.linspace(left, right, count + 1)
+        # A short section far along the shaft: the difference of its ends has lost digits that its length has.
+        slack = 8.0 * np.finfo(float).eps * max(abs(own.start), abs(own.end))
+        whole = abs(left - ends[number]) <= slack and abs(right - ends[number + 1]) <= slack
+        length = (section.length if whole else right - left) / count
+        share = np.clip((edges - ends[number]) / section.length, 0.0, 1.0)
+        for k in range(count):
+            node = first + len(z) - 1
+            within = (number, float(share[k]), float(share[k + 1]))
+            pieces.append(Element(node, node + 1, length, *within, piece, order, len(nodes.internal)))
+            nodes.internal += motions
+            z.append(float(edges[k + 1]))
+    nodes.z += z
+    nodes.shaft += [shaft] * len(z)
+    nodes.pedestal += [""] * len(z)
+    nodes.elements[shaft] = pieces
+    nodes._on_shaft[shaft] = (np.arange(first, first + len(z)), np.array(z))

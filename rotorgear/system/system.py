@@ -1,0 +1,151 @@
+"""The assembled system of a model: M q'' + (C + W G) q' + K q = f, with W the spin of the reference shaft."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.model.model import Model
+from rotorgear.model.torque_flow import TorqueFlow, torque_flow
+from rotorgear.model.train import Train, walk
+from rotorgear.system.assembly import assemble, strain_factor
+from rotorgear.system.dofs import DofMap, map_dofs
+from rotorgear.system.groups import ElementGroup, constant_groups, table_groups
+from rotorgear.system.nodes import Nodes, discretise
+from rotorgear.system.plan import Plan
+from rotorgear.system.strain_forms import StrainForms, strain_forms
+
+
+@dataclass(frozen=True)
+class Matrices:
+    """Sparse matrices at one speed, each (n, n): mass, damping, gyroscopic for unit reference spin, stiffness.
+
+    `stiffness` may be non-symmetric (cross-coupled bearings, internal damping at speed); `symmetric` says whether it is not.
+    """
+
+    mass: sp.csc_array
+    damping: sp.csc_array
+    gyroscopic: sp.csc_array
+    stiffness: sp.csc_array
+    symmetric: bool
+
+
+class System:
+    """Nodes, degrees of freedom and matrices of a model.
+
+    Args:
+        model: a checked model.
+        elements: basic elements in each piece of shaft.
+        plan: how finely each piece is cut, in place of `elements`.
+        direction: +1 or -1, sense in which the input shaft turns; it decides the driving flanks. None: as the operating speed.
+    """
+
+    def __init__(
+        self, model: Model, elements: int | None = None, *, plan: Plan | None = None, direction: int | None = None
+    ) -> None:
+        self.model = model
+        self.plan = plan or Plan(elements or 1)
+        self.train: Train = walk(model)[0]
+        speed = model.operation.speed if model.operation else None
+        self.direction = direction or (-1 if speed is not None and speed < 0.0 else 1)
+        self.flow: TorqueFlow = torque_flow(model, self.train, self.direction)
+        self.nodes: Nodes = discretise(model, self.plan)
+        self.dofs: DofMap = map_dofs(model, self.nodes)
+        self._last: tuple[float, Matrices] | None = None
+
+    @property
+    def n(self) -> int:
+        """Number of degrees of freedom."""
+        return self.dofs.n
+
+    @cached_property
+    def groups(self) -> list[ElementGroup]:
+        """Element groups without the bearings that have tables."""
+        return constant_groups(self.model, self.train, self.flow, self.nodes)
+
+    def groups_at(self, speed: float) -> list[ElementGroup]:
+        """All element groups at a reference speed in rad/s."""
+        return self.groups + table_groups(self.model, self.train, self.nodes, speed)
+
+    @cached_property
+    def mass(self) -> sp.csc_array:
+        """Mass matrix, sparse (n, n)."""
+        return self._sum(self.groups, lambda g: g.matrices.mass)
+
+    @cached_property
+    def gyroscopic(self) -> sp.csc_array:
+        """Gyroscopic matrix for unit spin of the reference shaft, sparse (n, n), skew."""
+        return self._sum(
+            self.groups,
+            lambda g: None if g.matrices.gyroscopic is None or not g.spin else g.spin * g.matrices.gyroscopic,
+        )
+
+    def stiffness(self, speed: float = 0.0) -> sp.csc_array:
+        """Symmetric part of the stiffness at a reference speed in rad/s, sparse (n, n)."""
+        return self._sum(self.groups_at(speed), lambda g: g.matrices.stiffness)
+
+    def circulatory(self, speed: float = 0.0) -> sp.csc_array:
+        """Non-symmetric stiffness of cross-coupled bearings and of internal damping at speed, sparse (n, n)."""
+
+        def term(group: ElementGroup) -> np.ndarray | None:
+            parts = [group.matrices.circulatory]
+            if group.matrices.circulatory_per_speed is not None and group.spin * speed:
+                parts.append(group.spin * speed * group.matrices.circulatory_per_speed)
+            given = [part for part in parts if part is not None]
+            return sum(given[1:], given[0]) if given else None
+
+        return self._sum(self.groups_at(speed), term)
+
+    def damping(self, speed: float = 0.0) -> sp.csc_array:
+        """Damping matrix with the proportional part, sparse (n, n)."""
+        C = self._sum(self.groups_at(speed), lambda g: g.matrices.damping)
+        given = self.model.damping
+        if given.rayleigh_alpha:
+            C = C + given.rayleigh_alpha * self.mass
+        if given.rayleigh_beta:
+            C = C + given.rayleigh_beta * self.stiffness(speed)
+        return sp.csc_array(C)
+
+    def strain_factor(self, speed: float = 0.0) -> sp.csr_array | None:
+        """S with K = S^T S from element strains, sparse (s, n); None where a spring's matrix is not positive."""
+        return strain_factor(self.groups_at(speed), self.dofs)
+
+    def strain_forms(self, speed: float = 0.0) -> StrainForms:
+        """Stiffness, damping and circulatory terms at a reference speed in rad/s as strains and what acts on them."""
+        return strain_forms(self.groups_at(speed), self.dofs, speed, self.model.damping.rayleigh_beta)
+
+    def inertial_terms(self, speed: float = 0.0) -> sp.csc_array:
+        """Part of the velocity terms that comes from inertia, alpha M + W G, sparse (n, n)."""
+        return sp.csc_array(self.model.damping.rayleigh_alpha * self.mass + speed * self.gyroscopic)
+
+    def velocity_terms(self, speed: float | None) -> sp.csc_array | None:
+        """C + W G at a speed, sparse (n, n); None where there is nothing of it, or at standstill without damping (speed None)."""
+        if speed is None:
+            return None
+        D = self.damping(speed)
+        if speed != 0.0:
+            D = sp.csc_array(D + speed * self.gyroscopic)
+        return D if D.nnz and np.any(D.data) else None
+
+    def matrices(self, speed: float = 0.0) -> Matrices:
+        """All matrices at a reference speed in rad/s; those of the last speed are kept."""
+        if self._last is not None and self._last[0] == speed:
+            return self._last[1]
+        skew = self.circulatory(speed)
+        K = self.stiffness(speed)
+        if skew.nnz:
+            K = sp.csc_array(K + skew)
+        self._last = (speed, Matrices(self.mass, self.damping(speed), self.gyroscopic, K, not skew.nnz))
+        return self._last[1]
+
+    def positions(self) -> np.ndarray:
+        """x, y, z of all nodes in m, shape (p, 3); shafts without positions lie at x = y = 0."""
+        axes = {name: shaft.position or (0.0, 0.0) for name, shaft in self.model.shafts.items()}
+        return np.array([[*axes[shaft], z] for shaft, z in zip(self.nodes.shaft, self.nodes.z, strict=True)])
+
+    def _sum(self, groups: list[ElementGroup], term: Callable[[ElementGroup], np.ndarray | None]) -> sp.csc_array:
+        return assemble(groups, self.dofs, term)

@@ -1,0 +1,105 @@
+"""docs/json.md names every key that the commands write as JSON, and no other."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from machinery.snippets import ROOT
+from typer.testing import CliRunner
+
+from rotorgear.cli.main import app
+
+MODEL = ROOT / "models" / "split_torque.toml"
+# Keys below these are names: of parts, motions, points, steps and tables.
+NAMED = {
+    "kinetic_energy": "PART",
+    "strain_energy": "PART",
+    "kinetic_by_motion": "MOTION",
+    "strain_by_motion": "MOTION",
+    "point_amplitude": "POINT",
+    "seconds_by_step": "STEP",
+    "counts": "TABLE",
+}
+# At this speed two modes are near the second mesh order of stage 2: one is matched, one is not. The shaft order of the output
+# is far from all modes. One line lies between two modes, with every column filled in.
+SPEED = "15000 rpm"
+RIG = """frequency_hz,label,uncertainty_hz,damping_ratio
+13.34,output shaft,,
+828.6,ambiguous,3,0.01
+3336,mesh of stage 2,,
+"""
+
+
+def documented(section: str) -> set[str]:
+    """Return the keys of a section's table."""
+    text = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
+    part = text.split(f"\n## {section}\n")[1].split("\n## ")[0]
+    return set(re.findall(r"^\| `([^`]+)` \|", part, flags=re.MULTILINE))
+
+
+def keys(value: Any, path: str = "") -> Iterator[str]:
+    """Yield the path of everything that is no table itself, lists marked by [], and of what may be null."""
+    if isinstance(value, dict):
+        name = NAMED.get(path)
+        for key, inner in value.items():
+            yield from keys(inner, ".".join(filter(None, (path, name or key))))
+    elif isinstance(value, list):
+        yield from ([f"{path}[]"] if not value else (key for item in value for key in keys(item, f"{path}[]")))
+    else:
+        yield path
+
+
+def without_containers(found: set[str]) -> set[str]:
+    """Drop paths of empty lists of tables whose entries occur elsewhere."""
+    return {path for path in found if not any(other.startswith(f"{path}.") for other in found)}
+
+
+def written(tmp_path: Path, *arguments: str) -> dict[str, Any]:
+    """Run a command with --json and return what it wrote."""
+    target = tmp_path / "result.json"
+    run = CliRunner().invoke(app, [*arguments, "--json", str(target)])
+    assert run.exit_code == 0, run.output
+    return dict(json.loads(target.read_text(encoding="utf-8")))
+
+
+@pytest.fixture
+def rig(tmp_path: Path) -> str:
+    file = tmp_path / "rig.csv"
+    file.write_text(RIG, encoding="utf-8")
+    return str(file)
+
+
+def test_the_keys_of_modal_and_of_its_comparison_are_documented(tmp_path: Path, rig: str) -> None:
+    data = written(tmp_path, "modal", str(MODEL), "--speed", SPEED, "--fmax", "5000", "--compare", rig)
+    comparison = data.pop("comparison")
+    assert set(keys(data)) == documented("modal")
+    assert without_containers(set(keys(comparison))) == without_containers(documented("compare"))
+
+
+def test_the_keys_of_compare_are_documented(tmp_path: Path, rig: str) -> None:
+    data = written(tmp_path, "compare", str(MODEL), rig, "--speed", SPEED)
+    assert data.pop("analysis") == "compare"
+    assert without_containers(set(keys(data))) == without_containers(documented("compare"))
+
+
+def test_the_keys_of_check_are_documented(tmp_path: Path) -> None:
+    assert set(keys(written(tmp_path, "check", str(MODEL)))) == documented("check")
+
+
+def test_the_keys_of_accuracy_are_documented(tmp_path: Path) -> None:
+    chain = ROOT / "models" / "torsion_chain.toml"
+    assert set(keys(written(tmp_path, "accuracy", str(chain)))) == documented("accuracy")
+
+
+def test_a_key_that_is_not_in_the_table_is_found() -> None:
+    assert set(keys({"a": [{"b": 1}, {"c": None}], "seconds_by_step": {"x": 1.0}, "d": []})) == {
+        "a[].b",
+        "a[].c",
+        "seconds_by_step.STEP",
+        "d[]",
+    }

@@ -1,0 +1,98 @@
+"""Every validation case holds to its tolerances, and the runner reports what doesn't."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from rotorgear.errors import AnalysisError
+from validation.cases import Case, names, read_case, read_cases
+from validation.runner import main, run
+from validation.table import printed
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_case_is_within_its_tolerances(name: str) -> None:
+    failed = [f"{row.what}: expected {row.expected}, got {row.got}: {row.reason}"
+              for row in run([read_case(name)]) if row.judged and not row.passed]  # fmt: skip
+    assert not failed, "\n".join(failed)
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_case_says_where_each_number_comes_from(name: str) -> None:
+    case = read_case(name)
+    assert case.title.startswith(name)
+    assert len(case.text) > 100
+    for line in case.expectations:
+        assert line.source, line
+        assert line.tolerance or line.note, line
+
+
+def test_the_cases_of_the_first_version_are_all_there() -> None:
+    assert set(names()) >= {"A1", "A2", "A4", "B1", "B2", "B4", "C1", "C2", "C3", "C8"}
+
+
+def _spoiled(name: str, **changes: str) -> Case:
+    case = read_case(name)
+    return replace(case, expectations=(replace(case.expectations[0], **changes), *case.expectations[1:]))
+
+
+def test_a_number_off_by_twice_its_tolerance_fails_and_says_why() -> None:
+    good = float(read_case("B4").expectations[0].expected)
+    rows = list(run([_spoiled("B4", expected=f"{good * (1.0 + 2e-6):.10f}")]))
+    assert [row.passed for row in rows] == [False, True, True, True, True]
+    assert rows[0].reason == "off by 2.0e-06, allowed 1.0e-06"
+    assert "FAIL B4" in printed(rows)
+    assert "closed form" in printed(rows).splitlines()[-1]
+
+
+def test_a_pair_that_is_none_fails() -> None:
+    rows = list(run([_spoiled("B2", mode="1+2", tolerance="abs 100")]))
+    assert not rows[0].passed
+    assert "apart" in rows[0].reason
+
+
+def test_a_wrong_word_and_a_missed_bound_fail() -> None:
+    whirl = next(line for line in read_case("A4").expectations if line.quantity == "whirl")
+    assert not next(iter(run([_spoiled("A4", **{**_text(whirl), "expected": "sideways"})]))).passed
+    assert not next(iter(run([_spoiled("A1", expected=">= 4.5")]))).passed
+
+
+def _text(line: object) -> dict[str, str]:
+    return {key: value for key, value in vars(line).items() if isinstance(value, str)}
+
+
+def test_a_line_without_tolerance_is_shown_and_never_fails() -> None:
+    rows = list(run([_spoiled("B4", expected="1.0", tolerance="")]))
+    assert not rows[0].judged
+    assert "shown" in printed(rows).splitlines()[1]
+
+
+def test_an_unknown_case_is_answered_with_those_that_exist() -> None:
+    with pytest.raises(AnalysisError, match="no validation case 'Z9'; there are A1, "):
+        read_cases(["A1", "Z9"])
+
+
+def test_the_runner_prints_a_table_writes_json_and_returns_0(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["c8"], tmp_path / "rows.json") == 0
+    assert "11 of 11 within tolerance" in capsys.readouterr().out
+    rows = json.loads((tmp_path / "rows.json").read_text())["rows"]
+    assert len(rows) == 11
+    assert all(row["passed"] and row["dofs"] == 12 and row["seconds"] > 0.0 and row["source"] for row in rows)
+
+
+def test_the_package_runs_as_a_module_and_returns_2_for_an_unknown_case() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "validation", "Z9"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("no validation case 'Z9'")

@@ -1,0 +1,21 @@
+"""python -m validation [CASE ...] [--json FILE]: run the validation cases, all of them where none is named."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from rotorgear.errors import RotorgearError
+from validation.runner import main
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(prog="python -m validation", description="Run the validation cases.")
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="cases to run, such as B1 C1 (default: all)")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows to a file as well")
+    options = parser.parse_args()
+    try:
+        sys.exit(main(options.cases, options.json))
+    except RotorgearError as error:
+        print(error, file=sys.stderr)
+        sys.exit(2)

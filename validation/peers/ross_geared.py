@@ -1,0 +1,79 @@
+"""Modal analysis of the geared pair of case C1 with 63 elements, against ROSS (its MultiRotor), on the model file of the case."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+import rotorgear as rg
+from validation.peers.comparison import median_time, print_frequencies, ross, verdict
+
+FILE = Path(__file__).resolve().parents[2] / "models" / "geared_pair.toml"
+REFINE, SPEED, MODES, TARGET = 9, 1500 * np.pi / 30, 13, 5.0
+FIRST = ((0.1, 0.3), (4.24, 0.3), (1.16, 0.22), (0.3, 0.22))  # length and diameter of the segments in m
+SECOND = ((0.3, 0.15), (5.0, 0.15), (0.1, 0.15))
+
+
+def elements(segments: tuple[tuple[float, float], ...], steel: ross.Material) -> list[ross.ShaftElement]:
+    """Each segment in equal elements."""
+    return [
+        ross.ShaftElement(L=length / REFINE, idl=0.0, odl=diameter, material=steel)
+        for length, diameter in segments
+        for _ in range(REFINE)
+    ]
+
+
+def ross_rotor() -> ross.MultiRotor:
+    """The geared pair as ROSS builds it: six dofs a node, axial ones too."""
+    steel = ross.Material(name="rotor_steel", rho=7800, E=207e9, G_s=79.5e9)
+    angle = ross.Q_(22.5, "deg")
+    wheel = ross.GearElement(
+        n=4 * REFINE, m=726.4, Id=56.95, Ip=113.9, n_teeth=328, base_diameter=2 * 0.5086, pr_angle=angle
+    )
+    pinion = ross.GearElement(n=0, m=5, Id=0.002, Ip=0.004, n_teeth=23, base_diameter=2 * 0.03567, pr_angle=angle)
+    first = ross.Rotor(
+        elements(FIRST, steel),
+        [
+            ross.DiskElement(n=REFINE, m=525.7, Id=16.1, Ip=32.2),
+            ross.DiskElement(n=2 * REFINE, m=116.04, Id=3.115, Ip=6.23),
+            wheel,
+        ],
+        [ross.BearingElement(n=k * REFINE, kxx=183.9e6, kyy=200.4e6, cxx=3e3) for k in (0, 3)],
+    )
+    second = ross.Rotor(
+        elements(SECOND, steel),
+        [pinion, ross.DiskElement(n=2 * REFINE, m=7.45, Id=0.0745, Ip=0.149)],
+        [ross.BearingElement(n=k * REFINE, kxx=10.1e6, kyy=41.6e6, cxx=3e3) for k in (1, 3)],
+    )
+    return ross.MultiRotor(
+        first, second, coupled_nodes=(4 * REFINE, 0), gear_mesh_stiffness=1e8, orientation_angle=0.0, position="below"
+    )
+
+
+def own_modes(model: rg.Model, speed: float, estimate: bool) -> rg.ModalResult:
+    """Modes at a speed, from the model; assembly is part of it. One more than compared: the rigid rotation."""
+    return rg.modal(model, speed=speed, modes=MODES + 1, elements=REFINE, error_estimate=estimate)
+
+
+def main() -> int:
+    """Run both programs, print frequencies and times; 0 if they agree and the ratio of times is met."""
+    rotor, model = ross_rotor(), rg.load(FILE)
+    solve, theirs = median_time(lambda speed: rotor.run_modal(speed, num_modes=2 * MODES), SPEED, 9)
+    whole, _ = median_time(lambda speed: ross_rotor().run_modal(speed, num_modes=2 * MODES), SPEED, 5)
+    plain, ours = median_time(lambda speed: own_modes(model, speed, False), SPEED, 25)
+    full, _ = median_time(lambda speed: own_modes(model, speed, True), SPEED, 25)
+    total, _ = median_time(lambda speed: own_modes(rg.load(FILE), speed, True), SPEED, 15)
+    others = np.sort(theirs.wd) / (2 * np.pi)
+    others = others[others > 1e-2][:MODES]  # should it list a rigid mode
+    worst = print_frequencies("ROSS", others, np.sort(ours.frequency_hz[~ours.rigid])[:MODES])
+    print(f"\n{rotor.ndof} dofs in ROSS, {ours.dofs} in rotorgear, {MODES} modes at 1500 rpm, processor time in s")
+    print(f"ROSS {ross.__version__}   run_modal {solve:.4f}, with building the rotor {whole:.4f}")
+    print(f"rotorgear   modal {plain:.4f}, with error estimate {full:.4f}, with reading the file {total:.4f}")
+    print(f"            ratios {solve / plain:.1f}, {solve / full:.1f}, from reading on {whole / total:.1f}")
+    return verdict(worst, solve / plain, TARGET)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,72 @@
+"""Modal analysis of one rotor with 200 elements, against ROSS: two disks on a shaft (Friswell et al. 2010, example 5.9.2)."""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+
+import rotorgear as rg
+from validation.peers.comparison import median_time, print_frequencies, ross, verdict
+
+ELEMENTS, LENGTH, SPEED, MODES, TARGET = 200, 1.5, 100.0, 22, 20.0
+DISKS = ((67, 0.28), (133, 0.35))  # node and outer diameter in m
+STIFFNESS, DAMPING = {"x": 1e6, "y": 0.8e6}, 100.0
+
+
+def ross_rotor() -> ross.Rotor:
+    """The rotor as ROSS builds it, six dofs a node."""
+    steel = ross.Material("rotor_steel", rho=7810, E=211e9, G_s=81.2e9)
+    shaft = [ross.ShaftElement(L=LENGTH / ELEMENTS, idl=0, odl=0.05, material=steel) for _ in range(ELEMENTS)]
+    disks = [ross.DiskElement.from_geometry(n=n, material=steel, width=0.07, i_d=0.05, o_d=d) for n, d in DISKS]
+    bearings = [ross.BearingElement(n=n, kxx=STIFFNESS["x"], kyy=STIFFNESS["y"], cxx=DAMPING) for n in (0, ELEMENTS)]
+    return ross.Rotor(shaft, disks, bearings)
+
+
+def own_model() -> rg.Model:
+    """The same rotor; the places of the disks cut the shaft into three sections of elements of one length."""
+    step = LENGTH / ELEMENTS
+    counts = np.diff([0, *(node for node, _ in DISKS), ELEMENTS])
+    sections = [{"length": float(n) * step, "outer_diameter": 0.05, "elements": int(n)} for n in counts]
+    disks = {
+        f"disk_{node}": {"shaft": "rotor", "at": node * step, "outer_diameter": d, "bore": 0.05, "width": 0.07}
+        for node, d in DISKS
+    }
+    bearings = {
+        at: {"shaft": "rotor", "at": at, "stiffness": STIFFNESS, "damping": {"radial": DAMPING}}
+        for at in ("start", "end")
+    }
+    return rg.Model(
+        materials={"rotor_steel": {"youngs_modulus": 211e9, "shear_modulus": 81.2e9, "density": 7810.0}},
+        shafts={"rotor": {"material": "rotor_steel", "sections": sections}},
+        disks=disks,
+        bearings=bearings,
+    )
+
+
+def own_modes(model: rg.Model, speed: float, estimate: bool) -> rg.ModalResult:
+    """Modes at a speed, from the model; assembly is part of it. Two more than compared: the rigid ones."""
+    return rg.modal(model, speed=speed, modes=MODES + 2, elements=1, error_estimate=estimate)
+
+
+def main() -> int:
+    """Run both programs, print frequencies and times; 0 if they agree and the ratio of times is met."""
+    rotor, model = ross_rotor(), own_model()
+    solve, theirs = median_time(lambda speed: rotor.run_modal(speed, num_modes=2 * MODES), SPEED, 7)
+    whole, _ = median_time(lambda speed: ross_rotor().run_modal(speed, num_modes=2 * MODES), SPEED, 5)
+    plain, ours = median_time(lambda speed: own_modes(model, speed, False), SPEED, 15)
+    full, _ = median_time(lambda speed: own_modes(model, speed, True), SPEED, 15)
+    total, _ = median_time(lambda speed: own_modes(own_model(), speed, True), SPEED, 15)
+    elastic = np.sort(ours.natural_frequency_hz[~ours.rigid])
+    others = np.sort(theirs.wn) / (2 * np.pi)
+    others = others[others > 1e-2][:MODES]  # should it list a rigid mode
+    worst = print_frequencies("ROSS", others, elastic[:MODES])
+    print(f"\n{ours.dofs} dofs, {MODES} modes at {SPEED:g} rad/s, processor time in s")
+    print(f"ROSS {ross.__version__}   run_modal {solve:.4f}, with building the rotor {whole:.4f}")
+    print(f"rotorgear    modal {plain:.4f}, with error estimate {full:.4f}, with building the model {total:.4f}")
+    print(f"            ratios {solve / plain:.1f}, {solve / full:.1f}, from building on {whole / total:.1f}")
+    return verdict(worst, solve / plain, TARGET)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

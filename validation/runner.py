@@ -1,0 +1,123 @@
+"""Runs the cases, judges every line, and prints an aligned table. Exit code 1 where a line is out of its tolerance."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from validation.cases import Case, Expectation, read_cases
+from validation.measure import Solver
+from validation.quantities import words
+from validation.table import printed
+
+
+@dataclass(frozen=True)
+class Row:
+    """One judged line.
+
+    Attributes:
+        case, what: name of the case, and what was compared in words.
+        expected, got: numbers or words.
+        error: relative to the expected number, or absolute where the tolerance is; 0 for words that agree, else 1.
+        tolerance: what was allowed, as in expected.csv; "" is shown but not judged.
+        passed: whether the error is within.
+        dofs, seconds: of the largest model, and of all solutions of this line.
+        reason: why a line failed; "" for one that passed.
+        source, note: as in expected.csv.
+    """
+
+    case: str
+    what: str
+    expected: str
+    got: float | str
+    error: float
+    tolerance: str
+    passed: bool
+    dofs: int
+    seconds: float
+    reason: str
+    source: str
+    note: str
+
+    @property
+    def judged(self) -> bool:
+        """Whether the line has a tolerance."""
+        return bool(self.tolerance)
+
+
+def run(cases: Sequence[Case]) -> Iterator[Row]:
+    """Solve and judge all lines of some cases."""
+    for case in cases:
+        solver = Solver(case)
+        for line in case.expectations:
+            yield _judge(case, line, solver)
+
+
+def _judge(case: Case, line: Expectation, solver: Solver) -> Row:
+    found = solver.measure(line)
+    error = _error(line, found.got)
+    passed = error <= line.allowed() and not found.complaint
+    reason = "" if passed else found.complaint or f"off by {error:.1e}, allowed {line.allowed():.1e}"
+    return Row(
+        case=case.name, what=describe(line), expected=line.expected, got=found.got, error=error, tolerance=line.tolerance,
+        passed=passed, dofs=found.dofs, seconds=found.seconds, reason=reason, source=line.source, note=line.note,
+    )  # fmt: skip
+
+
+def _error(line: Expectation, got: float | str) -> float:
+    """Relative or absolute error; how far below a bound; for words 0 or 1."""
+    if isinstance(got, str):
+        return 0.0 if got == line.expected else 1.0
+    difference = got - line.number
+    if line.is_bound:
+        return max(-difference, 0.0)
+    return abs(difference) if line.absolute else abs(difference / line.number)
+
+
+def describe(line: Expectation) -> str:
+    """Say in one phrase what a line compares."""
+    parts = [Path(line.model).stem, f"mode {line.mode}", words(line.quantity)]
+    if line.speed:
+        parts.append(line.speed)
+    if line.elements:
+        parts.append(f"{' > '.join(map(str, line.elements))} el.")
+    if line.accuracy:
+        parts.append(f"accuracy {line.accuracy:g}")
+    if line.mesh_stiffness:
+        parts.append(f"mesh {' > '.join(f'{k:g}'.replace('+', '') for k in line.mesh_stiffness)} N/m")
+    return ", ".join(parts)
+
+
+def main(wanted: Sequence[str] = (), json_file: Path | None = None) -> int:
+    """Run cases by name (all where none is named), print the table, write JSON on request; 0 where all pass, else 1.
+
+    Raises:
+        AnalysisError: there is no case of that name.
+    """
+    start = time.perf_counter()
+    rows = list(run(read_cases(wanted)))
+    seconds = time.perf_counter() - start
+    sys.stdout.write(printed(rows))
+    judged = [row for row in rows if row.judged]
+    failed = [row for row in judged if not row.passed]
+    shown = len(rows) - len(judged)
+    print(f"\n{len(judged) - len(failed)} of {len(judged)} within tolerance, {shown} shown only, in {seconds:.1f} s")
+    if json_file:
+        _write_json(json_file, rows, seconds)
+    return 1 if failed else 0
+
+
+def _write_json(file: Path, rows: Sequence[Row], seconds: float) -> None:
+    """Write all rows; `passed` is null where a line is not judged."""
+    plain = [{**asdict(row), "passed": row.passed if row.judged else None} for row in rows]
+    unfinished = file.with_name(file.name + ".new")
+    unfinished.write_text(json.dumps({"seconds": seconds, "rows": plain}, indent=1) + "\n", encoding="utf-8")
+    os.replace(unfinished, file)
+
+
+__all__ = ["Row", "describe", "main", "run"]

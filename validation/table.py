@@ -1,0 +1,65 @@
+"""The rows of a validation run as an aligned text table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from validation.runner import Row
+
+HEAD = ("case", "what", "expected", "got", "error", "allowed", "", "dofs", "time")
+_RIGHT = {"expected", "got", "error", "dofs", "time"}
+# Differences this small are rounding, which is another one on every machine.
+ROUNDING = 1e-8
+
+
+def number(got: float | str, expected: str) -> str:
+    """Print a result with the digits of what was expected, 7 or more; with 4 where a round number or a bound was."""
+    if isinstance(got, str):
+        return got
+    given = len(expected.lstrip(">=- 0.").replace(".", ""))
+    digits = max(7, min(12, given)) if given > 2 else 4
+    return f"{got:.{digits}g}"
+
+
+def error(row: Row) -> str:
+    """Print an error with two digits; below rounding it is only said to be that small."""
+    if isinstance(row.got, str) or (row.tolerance == "bound" and row.passed):
+        return "-"
+    return f"< {ROUNDING:.0e}" if row.error < ROUNDING else f"{row.error:.1e}"
+
+
+def verdict(row: Row) -> str:
+    """Return pass, FAIL, or shown for a line without tolerance."""
+    if not row.judged:
+        return "shown"
+    return "pass" if row.passed else "FAIL"
+
+
+def printed(rows: Sequence[Row]) -> str:
+    """Return the table, with sources of failed rows and their reasons below."""
+    cells = [list(HEAD)]
+    cells += [
+        [row.case, row.what, row.expected, number(row.got, row.expected), error(row), row.tolerance or "-", verdict(row),
+         str(row.dofs), f"{row.seconds:.2f} s"]
+        for row in rows
+    ]  # fmt: skip
+    widths = [max(len(line[k]) for line in cells) for k in range(len(HEAD))]
+    lines = [
+        "  ".join(
+            cell.rjust(width) if name in _RIGHT else cell.ljust(width)
+            for cell, width, name in zip(line, widths, HEAD, strict=True)
+        ).rstrip()
+        for line in cells
+    ]
+    lines += [
+        f"FAIL {row.case}: {row.what}: {row.reason} (source: {row.source}{_note(row)})"
+        for row in rows
+        if row.judged and not row.passed
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _note(row: Row) -> str:
+    return f"; {row.note}" if row.note else ""
