@@ -28,12 +28,16 @@ _HOMES = {
     "rotorgear.system.system": ("System",),
     "rotorgear.analysis.modal": ("modal",),
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
+    "rotorgear.analysis.transient": ("transient",),
+    "rotorgear.analysis.spectra": ("spectrum", "spectral_lines"),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
+    "rotorgear.results.transient": ("TransientResult",),
     "rotorgear.results.accuracy": ("AccuracyLadder",),
     "rotorgear.results.comparison": ("Comparison", "RigLine"),
     "rotorgear.export.vtk": ("write_vtk",),
+    "rotorgear.export.stream": ("stream",),
     "rotorgear.export.hdf5": ("save", "read"),
     "rotorgear.errors": ("RotorgearError", "ModelError", "AnalysisError", "ConvergenceError"),
 }  # fmt: skip
@@ -45,8 +49,11 @@ if TYPE_CHECKING:
     from rotorgear.analysis.compare import compare, read_rig_lines
     from rotorgear.analysis.describe_model import describe_model
     from rotorgear.analysis.modal import modal
+    from rotorgear.analysis.spectra import spectral_lines, spectrum
+    from rotorgear.analysis.transient import transient
     from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
     from rotorgear.export.hdf5 import read, save
+    from rotorgear.export.stream import stream
     from rotorgear.export.vtk import write_vtk
     from rotorgear.model.bodies import Disk, PointMass
     from rotorgear.model.gear import Gear, GearBody
@@ -67,6 +74,7 @@ if TYPE_CHECKING:
     from rotorgear.results.accuracy import AccuracyLadder
     from rotorgear.results.comparison import Comparison, RigLine
     from rotorgear.results.modal import ModalResult
+    from rotorgear.results.transient import TransientResult
     from rotorgear.system.system import System
 
 

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic
-from rotorgear.model.fields import Angle, Damping, Length, Part, PositiveStiffness, Ratio
+from rotorgear.model.fields import Angle, Damping, Length, NonNegativeLength, Part, PositiveStiffness, Ratio
 
 
 class Mesh(Part):
@@ -48,4 +48,14 @@ class Mesh(Part):
     )
     stiffness_variation: tuple[StiffnessHarmonic, ...] = Field(
         (), description="harmonics of the mesh stiffness about its mean"
+    )
+    backlash: NonNegativeLength | None = Field(
+        None, description="backlash along the flank normal; without it the teeth never part in a transient"
+    )
+    back_flank: Literal["line", "own normals"] = Field(
+        "line", description="the back flank pushes along the line of the driving flank, or along its own normal"
+    )
+    contact_damping: Literal["clamped", "unclamped", "penetration"] = Field(
+        "clamped",
+        description="clamped: teeth never pull; unclamped: damping may pull; penetration: damping grows with the depth",
     )

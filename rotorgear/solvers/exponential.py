@@ -150,6 +150,10 @@ class ModalFields:
         shapes, rigid, mobile, constant = self.stepper.projected(kind, Y)
         return np.asarray(self.z @ shapes + self.rigid @ rigid + self.u @ mobile + constant)
 
+    def chosen(self, which: np.ndarray) -> ModalFields:
+        """Those of some records."""
+        return ModalFields(self.stepper, self.z[which], self.rigid[which], self.u[which])
+
     def last(self, kind: str) -> np.ndarray:
         """q, v or a of the last record, (n,)."""
         modes, power = self.stepper.modes, "qva".index(kind)

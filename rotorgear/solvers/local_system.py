@@ -113,6 +113,9 @@ class Fields(Protocol):
     def rows(self, kind: str, Y: np.ndarray) -> np.ndarray:
         """Y q, Y v or Y a at the recorded steps, (r, p); `kind` is "q", "v" or "a"."""
 
+    def chosen(self, which: np.ndarray) -> Fields:
+        """Those of some records."""
+
 
 @dataclass(frozen=True)
 class PlainFields:
@@ -125,6 +128,10 @@ class PlainFields:
     def rows(self, kind: str, Y: np.ndarray) -> np.ndarray:
         """Y q, Y v or Y a at the recorded steps, (r, p)."""
         return np.asarray(getattr(self, kind) @ Y.T)
+
+    def chosen(self, which: np.ndarray) -> PlainFields:
+        """Those of some records."""
+        return PlainFields(self.q[which], self.v[which], self.a[which])
 
 
 class Stepper(Protocol):

@@ -1,0 +1,61 @@
+"""What a transient says beside its numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.results.transient import TransientResult
+from rotorgear.solvers.equilibrium import Equilibrium
+from rotorgear.system.local import LocalModel
+
+# Numerical share of the energy above which a run is warned about.
+ENERGY_BOUND = 0.05
+_UNSETTLED = 0.1
+
+
+def transient_left_out(local: LocalModel) -> tuple[str, ...]:
+    """What the model does not need."""
+    meshes = local.system.model.meshes
+    open_ended = [name for name, mesh in meshes.items() if mesh.backlash is None]
+    notes = []
+    if open_ended:
+        notes.append(f"loss of contact in {', '.join(open_ended)}: no backlash is given, so their teeth never part")
+    still = [name for name, mesh in meshes.items() if not mesh.transmission_error and not mesh.stiffness_variation]
+    if still:
+        notes.append(f"excitation by {', '.join(still)}: neither transmission error nor stiffness variation is given")
+    return tuple(notes)
+
+
+def transient_warnings(
+    result: TransientResult, rest: Equilibrium, local: LocalModel, *, accurate: bool
+) -> tuple[str, ...]:
+    """What the reader should know before using the numbers."""
+    notes = list(local.system.nodes.merged)
+    if result.status != "success":
+        notes.append(f"the run ended early at t = {result.time[-1]:.6g} s: {result.status}")
+    if not rest.converged:
+        notes.append("no static equilibrium was found; the run starts from that with linear contacts and has to settle")
+    if rest.free.shape[1] and np.any(np.abs(rest.drift) > 1e-9 * max(np.linalg.norm(local.local.load), 1e-300)):
+        notes.append("the loads do not balance on a free motion: it is carried along and drifts with constant acceleration")
+    if result.energy.share > ENERGY_BOUND:
+        notes.append(
+            f"integration made or lost {100.0 * result.energy.share:.2g} % of the energy; take a smaller step or record more often"
+        )
+    notes += _unsettled(result)
+    return tuple(notes)
+
+
+def _unsettled(result: TransientResult) -> list[str]:
+    """Compare the two halves of what counts."""
+    force = result.mesh_force[result.counted]
+    if len(force) < 16 or not force.any() or np.ptp(result.speed) > 0.0:
+        return []
+    half = len(force) // 2
+    rms = np.sqrt(np.mean(force**2))
+    change = float(np.abs(force[:half].std(axis=0) - force[half:].std(axis=0)).max() / rms)
+    if change <= _UNSETTLED:
+        return []
+    return [
+        f"the root mean squares of the two halves differ by {100.0 * change:.2g} % of the force: not settled, or not periodic; "
+        "settle longer or run longer"
+    ]
