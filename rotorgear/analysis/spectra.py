@@ -99,13 +99,13 @@ def _between_bins(found: Spectrum, i: int) -> float:
 
 
 def _source(result: TransientResult, frequency: float, resolution: float) -> str:
-    """Name of the mesh or shaft order nearest to a line, within the resolution; mesh harmonics of any order count."""
-    best, name = resolution, ""
+    """Name of the mesh order nearest to a line within half the resolution, else of the shaft order where shafts have an unbalance."""
+    best, name = 0.5 * resolution, ""
     for mesh, f in result.mesh_frequency.items():
         order = max(1, round(frequency / f))
         if abs(frequency - order * f) < best * (1.0 - 1e-9):
             best, name = abs(frequency - order * f), f"mesh {mesh} {order}x"
-    if name:
+    if name or not result.model.unbalances:
         return name
     for line in excitation_lines(result.model, float(result.speed[-1])):
         if line.name.startswith("shaft") and abs(frequency - line.frequency_hz) < best:

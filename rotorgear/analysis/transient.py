@@ -26,7 +26,8 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.equilibrium import Equilibrium, equilibrium
-from rotorgear.solvers.local_system import Integrator, state_at_rest
+from rotorgear.solvers.local_forces import gather
+from rotorgear.solvers.local_system import Integrator, local_values, state_at_rest
 from rotorgear.solvers.run import Schedule
 from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.plan import Plan
@@ -115,6 +116,7 @@ class _Task:
     local: LocalModel
     channels: Channels
     rest: Equilibrium
+    rest_force: np.ndarray
     frequencies: dict[str, float]
 
 
@@ -130,7 +132,8 @@ def _task(model: Model | System, speed: float | str | Sequence[tuple[float, floa
     if given.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     local = local_model(given, rotation, largest)
-    return _Task(local, channels(local), equilibrium(local.local), mesh_frequencies(given, largest))
+    rest, force = equilibrium(local.local), mean_forces(local)
+    return _Task(local, channels(local), rest, force, mesh_frequencies(given, largest))
 
 
 def _run(
@@ -195,7 +198,7 @@ def _result(
         settle=grid.settled * grid.spacing,
         contact=tuple(task.local.parts[i].label for i in meshes),
         deflection=found.table("d")[:, columns], mesh_force=found.table("F")[:, columns],
-        mean_force=mean_forces(task.local, meshes),
+        mean_force=task.rest_force[columns],
         contact_time=events[:, :3] / np.maximum(events[:, :3].sum(axis=1, keepdims=True), 1.0),
         contact_losses=found.state.events[meshes, 3],
         channel=task.channels.names, unit=task.channels.units, values=found.table("values"),
@@ -207,14 +210,13 @@ def _result(
     return replace(result, warnings=transient_warnings(result, task.rest, task.local, accurate=same))
 
 
-def mean_forces(local: LocalModel, meshes: list[int]) -> np.ndarray:
-    """Static mean force of each contact from the torque flow, 0 for back flanks."""
-    flow = {}
-    for force in local.system.flow.forces:
-        helices = len(local.system.flow.of_mesh(force.contact.mesh))
-        label = force.contact.mesh if helices == 1 else f"{force.contact.mesh} helix {force.contact.helix + 1}"
-        flow[label] = force.normal_force
-    return np.array([flow.get(local.parts[i].label, 0.0) for i in meshes])
+def mean_forces(local: LocalModel) -> np.ndarray:
+    """Local forces (m,) in static equilibrium without anything that varies in time; NaN where there is none."""
+    still = replace(local.local, forces=gather(tuple(part.law.mean() for part in local.parts)))
+    rest = equilibrium(still)
+    if not rest.converged:
+        return np.full(local.local.m, np.nan)
+    return local_values(still, rest.q, np.zeros(still.n), 0.0)[0]
 
 
 def _settled_of(coarse: Histories, grid: Grid) -> int:

@@ -11,6 +11,10 @@ if TYPE_CHECKING:
     from rotorgear.results.transient import TransientResult
 
 
+# Channels that are kept, saved and drawn, but not listed.
+_UNSHOWN = ("gears.",)
+
+
 def transient_table(result: TransientResult) -> RenderableType:
     """Return contacts, channels and notes as one rich renderable that fits 80 columns."""
     from rich.console import Group
@@ -40,7 +44,7 @@ def _table(title: str = "") -> Any:
 def _contacts(result: TransientResult) -> Any:
     table = _table()
     table.add_column("contact", overflow="fold")
-    for name in ("static N", "mean N", "rms N", "largest N", "K_dyn", "DTE um", "apart %", "back %", "losses"):
+    for name in ("static N", "mean", "rms", "largest", "K_dyn", "DTE um", "apart %", "back %", "losses"):
         table.add_column(name, justify="right")
     for row in result.to_dict()["contacts"]:
         table.add_row(
@@ -58,13 +62,19 @@ def _channels(result: TransientResult) -> Any:
     for name in ("mean", "rms", "largest", "smallest"):
         table.add_column(name, justify="right")
     table.add_column("unit")
-    for row in result.to_dict()["channels"]:
-        table.add_row(row["name"], *(_value(row[key]) for key in ("mean", "rms", "largest", "smallest")), row["unit"])
+    shown = [row for row in result.to_dict()["channels"] if not row["name"].startswith(_UNSHOWN)]
+    for row in shown:
+        if row["name"].startswith("bearings.") and " displacement " in row["name"]:
+            continue
+        table.add_row(row["name"].partition(".")[2], *(_value(row[key]) for key in ("mean", "rms", "largest", "smallest")), row["unit"])
     return table
 
 
 def _value(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4g}"
+    """Four digits, without an exponent where that is as short."""
+    if value is None:
+        return "-"
+    return f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.4g}"
 
 
 def _notes(result: TransientResult) -> list[str]:

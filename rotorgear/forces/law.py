@@ -67,6 +67,10 @@ class ForceLaw(ABC):
         """Linear damping (k, k) about which a solver may expand."""
         return np.zeros((self.components, self.components))
 
+    def mean(self) -> ForceLaw:
+        """Return the law without anything that varies in time."""
+        return self
+
     @classmethod
     @abstractmethod
     def examples(cls) -> tuple[ForceLaw, ...]:

@@ -13,7 +13,7 @@ k(p) = k [1 + sum a_n cos(n p) + b_n sin(n p)], or piecewise linear in p; e(p) a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, pi, sin
 from typing import Any, ClassVar
 
@@ -181,6 +181,13 @@ class MeshContact(ForceLaw):
     def reference_damping(self) -> np.ndarray:
         """c, as with teeth that never part."""
         return np.array([[self.damping if self.contact_damping != "penetration" else 0.0]])
+
+    def mean(self) -> MeshContact:
+        """Return the contact without anything that varies in time."""
+        return replace(
+            self, stiffness_cos=(), stiffness_sin=(), pieces=(), error_cos=(), error_sin=(), impact=0.0,
+            stiffness=float(self.reference_stiffness()[0, 0]),
+        )  # fmt: skip
 
     @classmethod
     def examples(cls) -> tuple[MeshContact, ...]:
