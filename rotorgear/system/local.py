@@ -14,6 +14,7 @@ import scipy.sparse as sp
 
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector
 from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic
+from rotorgear.model.inertia import node_bodies
 from rotorgear.model.mesh_phases import mesh_phases
 from rotorgear.model.torque_flow import MeshForce
 from rotorgear.solvers.local_system import LocalSystem
@@ -131,7 +132,7 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
     stiffness_cos, stiffness_sin = _series(mesh.stiffness_variation)
     error_cos, error_sin = _series(mesh.transmission_error)
     deflection = (force.normal_force / contact.stiffness) or _UNLOADED
-    damping = mesh_damping(model, force, geometry) + model.damping.rayleigh_beta * contact.stiffness
+    damping = mesh_damping(model, force, geometry, node_bodies(model)) + model.damping.rayleigh_beta * contact.stiffness
     gap = "none" if mesh.backlash is None else {"line": "line", "own normals": "one-sided"}[mesh.back_flank]
     late = mesh.helix_stagger if contact.helix else 0.0
     return MeshContact(
