@@ -9,6 +9,9 @@ import numpy as np
 
 from rotorgear.analysis.transient_histories import Histories
 
+# Contact forces that move by less than this share of their size do not move: what is left is rounding.
+_STILL = 1e-8
+
 
 @dataclass(frozen=True)
 class Statistics:
@@ -37,13 +40,14 @@ def statistics(found: Histories, task: Any, settled: int) -> Statistics:
             names.append(f"{what} force {part.label}")
             data.append(float(value))
             scale.append(level)
+    still = bool(data) and all(data[i + 1] <= _STILL * scale[i] for i in range(0, len(data), 3))
     rms = values.std(axis=0) if values.shape[1] else np.zeros(0)
     units = np.array(task.channels.units)
     for i, name in enumerate(task.channels.names):
         names.append(f"rms {name}")
         data.append(float(rms[i]))
         # A channel that hardly moves is measured on the largest of its kind.
-        scale.append(float(rms[units == units[i]].max()))
+        scale.append(np.inf if still else float(rms[units == units[i]].max()))
     return Statistics(tuple(names), np.array(data), np.array(scale))
 
 

@@ -18,6 +18,8 @@ from rotorgear.solvers.factor import single_thread
 
 _EPS = float(np.finfo(float).eps)
 _WORST_CONDITION = 1e10
+# A rate on a free motion below this share of the largest one is rounding.
+_NOISE = 1e-10
 
 
 @dataclass(frozen=True)
@@ -60,17 +62,21 @@ def complex_modes(
     with single_thread(0):
         V, R, squares = _real_basis(M, K, B, modes)
         Kb, Db = V.T @ (K @ V), V.T @ (D @ V)
-        if R.shape[1]:
-            scale = np.abs(R).T @ (abs(D) @ np.abs(V)) + 1e-300
-            coupled = np.abs(R.T @ (D @ V)).max(initial=0.0) > 1e3 * _EPS * scale.max(initial=0.0)
-            own = np.abs(R.T @ (D @ R)).max() > 1e3 * _EPS * (np.abs(R).T @ (abs(D) @ np.abs(R))).max() or coupled
-            if own or np.abs(V.T @ (D @ R)).max(initial=0.0) > 1e3 * _EPS * scale.max(initial=0.0):
-                V, R = np.hstack([R, V]), R[:, :0]
-                Kb, Db = V.T @ (K @ V), V.T @ (D @ V)
+        if R.shape[1] and _is_damped(D, V, R, Db):
+            V, R = np.hstack([R, V]), R[:, :0]
+            Kb, Db = V.T @ (K @ V), V.T @ (D @ V)
         if modal_ratio:
             Db = Db + np.diag(2.0 * modal_ratio * np.sqrt(np.maximum(np.diag(Kb), 0.0)))
         s, X, gains, condition = _pairs(Kb, Db)
     return ComplexModes(s, V @ X, V, gains, R, condition)
+
+
+def _is_damped(D: sp.csc_array, V: np.ndarray, R: np.ndarray, Db: np.ndarray) -> bool:
+    """Whether motions without stiffness meet velocity terms beyond rounding, as rates in 1/s."""
+    DR, size = D @ R, np.abs(Db).max(initial=1e-300)
+    own = np.abs(R.T @ DR).max(initial=0.0)
+    cross = max(np.abs(V.T @ DR).max(initial=0.0), np.abs(V.T @ (D.T @ R)).max(initial=0.0))
+    return bool(own > _NOISE * size or cross > 10.0 * _NOISE * size)
 
 
 def _real_basis(
@@ -123,9 +129,10 @@ def _pairs(K: np.ndarray, D: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nda
         if np.all(root.imag > 0.0):  # all oscillate: closed form
             s = -half + root
             return s, 2.0 * np.eye(b, dtype=complex), np.diag(1.0 / (2.0 * root)), 1.0
-    unit = float(np.sqrt(np.median(np.abs(diagonal)))) or 1.0
+    # In w = [sqrt(k_jj) q_j, q_j'] an undamped structure has orthogonal eigenvectors, whatever its frequencies.
+    unit = np.sqrt(np.maximum(diagonal, 1e-12 * np.abs(diagonal).max(initial=1e-300)))
     A = np.zeros((2 * b, 2 * b))
-    A[:b, b:] = unit * np.eye(b)
+    A[:b, b:] = np.diag(unit)
     A[b:, :b], A[b:, b:] = -K / unit, -D
     s, X = la.eig(A)
     condition = float(np.linalg.cond(X, 1))
@@ -136,4 +143,4 @@ def _pairs(K: np.ndarray, D: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nda
     Y = la.inv(X)
     kept = s.imag >= 0.0
     weight = np.where(s[kept].imag > 0.0, 2.0, 1.0)
-    return s[kept], X[:b, kept] * weight, Y[kept][:, b:] / unit, condition
+    return s[kept], X[:b, kept] * weight / unit[:, None], Y[kept][:, b:], condition
