@@ -50,6 +50,7 @@ class LedgerBook:
     system: LocalSystem
     h: float
     start: State
+    damping_rows: np.ndarray
     table: list[np.ndarray] = field(default_factory=list)
     _spent: float = 0.0
     _last: tuple[float, float] | None = None
@@ -78,6 +79,8 @@ class LedgerBook:
         if not records.t.size:
             return
         power = sum((p.at(records) for p in self._powers), np.zeros(records.t.size))
+        if len(self.damping_rows):
+            power = power + np.sum(records.fields.rows("v", self.damping_rows) ** 2, axis=1)
         t0, p0 = self._last or (0.0, power[0])
         steps = np.diff(records.t, prepend=t0)
         spent = self._spent + np.cumsum(steps * 0.5 * (power + np.concatenate([[p0], power[:-1]])))

@@ -52,6 +52,7 @@ def transient(
     accuracy: float | None = None,
     method: str = "auto",
     modes: int | None = None,
+    modal_damping: float | None = None,
     rho_inf: float | None = None,
     beta: float | None = None,
     gamma: float | None = None,
@@ -72,6 +73,7 @@ def transient(
         accuracy: wanted relative accuracy of the statistics; 0.01 where neither it nor `steps` is given.
         method: auto, newmark, hht, generalised-alpha, exponential or explicit.
         modes: for the exponential method: so many real modes and residual vectors in place of all.
+        modal_damping: damping ratio added to every elastic mode, in place of the one in the model; exponential method only.
         rho_inf: for hht and generalised-alpha: what remains of the highest frequencies after a step, 0 to 1.
         beta, gamma: for newmark; 1/4 and 1/2 where not given.
         elements: basic elements in each piece of shaft; one of second order where not given.
@@ -88,11 +90,13 @@ def transient(
         raise AnalysisError("steps and accuracy: give one of the two; steps fixes the step, accuracy chooses it")
     if accuracy is not None and not 1e-8 <= accuracy < 1.0:
         raise AnalysisError(f"the accuracy must lie between 1e-8 and 1, got {accuracy:g}")
+    if modal_damping is not None and not 0.0 <= modal_damping < 1.0:
+        raise AnalysisError(f"the damping ratio of the modes must lie between 0 and 1, got {modal_damping:g}")
     task = _task(model, speed, elements)
     duration = [None if x is None else quantity(x, "time", name) for x, name in ((time, "time"), (settle, "settle"))]
     grid = grid_of(task.local.local, task.frequencies, duration[0], duration[1], steps, records)
     integrator, reason = integrator_of(
-        method, task.local.local, grid.records * grid.every, modal_ratio=task.local.system.model.damping.modal_ratio,
+        method, task.local.local, grid.records * grid.every, modal_ratio=task.local.system.model.damping.modal_ratio if modal_damping is None else modal_damping,
         modes=modes, rho_inf=rho_inf, beta=beta, gamma=gamma,
     )  # fmt: skip
     laps = {"model": clock.perf_counter() - begun}
@@ -104,7 +108,7 @@ def transient(
         double = replace(grid, every=max(1, grid.every // 2)) if grid.every > 1 else None
         coarse = _run(task, integrator, double or _skipping(grid), progress, text="twice the step")
     laps["error estimate"] = clock.perf_counter() - begun - sum(laps.values())
-    found = _run(task, integrator, grid, progress, stream=stream, key=f"{method} {modes} {rho_inf} {beta} {gamma}")
+    found = _run(task, integrator, grid, progress, stream=stream, key=f"{method} {modes} {modal_damping} {rho_inf} {beta} {gamma}")
     laps["integration"] = clock.perf_counter() - begun - sum(laps.values())
     laps["total"] = clock.perf_counter() - begun
     progress(1.0, "done")

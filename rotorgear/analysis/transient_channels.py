@@ -17,17 +17,17 @@ _AXES = ("x", "y", "z")
 
 @dataclass(frozen=True)
 class Channels:
-    """p channels: value = Y_q q + Y_v v + Y_a a, with rows (p, n) by kind for those that have any."""
+    """p channels: value = Y_q q + Y_v v + Y_a a + Y_F F, with rows (p, n) and (p, m) by kind for those that have any."""
 
     names: tuple[str, ...]
     units: tuple[str, ...]
     rows: dict[str, tuple[np.ndarray, np.ndarray]]
 
-    def values(self, fields: Fields, count: int) -> np.ndarray:
-        """Values (r, p) at the recorded steps."""
-        found = np.zeros((count, len(self.names)))
+    def values(self, fields: Fields, F: np.ndarray) -> np.ndarray:
+        """Values (r, p) at the recorded steps with the local forces F (r, m)."""
+        found = np.zeros((len(F), len(self.names)))
         for kind, (which, Y) in self.rows.items():
-            found[:, which] += fields.rows(kind, Y)
+            found[:, which] += F @ Y.T if kind == "F" else fields.rows(kind, Y)
         return found
 
 
@@ -40,7 +40,7 @@ def channels(local: LocalModel) -> Channels:
     found += _rotations(local)
     names, units = tuple(item[0] for item in found), tuple(item[1] for item in found)
     rows = {}
-    for kind in "qva":
+    for kind in "qvaF":
         which = np.array([i for i, item in enumerate(found) if kind in item[2]], dtype=int)
         if which.size:
             rows[kind] = (which, np.array([found[i][2][kind] for i in which]))
@@ -52,9 +52,12 @@ def _row(local: LocalModel, node: int, dof: int) -> np.ndarray:
 
 
 def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
-    """Force of the shaft on each linear bearing."""
+    """Force of the shaft on each bearing, by its springs and dampers or its rolling elements."""
     found = []
     T = local.system.dofs.transform
+    firsts = local.local.forces.first
+    rolling = {part.part: (int(first), part.law.components)
+               for part, first in zip(local.parts, firsts, strict=False) if part.part.startswith("bearings.")}  # fmt: skip
     for group in local.groups:
         if not group.part.startswith("bearings.") or group.part.endswith(".pedestal"):
             continue
@@ -62,7 +65,9 @@ def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndar
         matrices = group.matrices
         stiffness = sum((A[0] for A in (matrices.stiffness, matrices.circulatory) if A is not None), np.zeros((own.shape[0],) * 2))
         for k, axis in enumerate(_AXES):
-            rows = {"q": stiffness[-6 + k] @ own}
+            rows = {} if group.part in rolling else {"q": stiffness[-6 + k] @ own}
+            if group.part in rolling and k < rolling[group.part][1]:
+                rows["F"] = np.eye(local.local.m)[rolling[group.part][0] + k]
             if matrices.damping is not None:
                 rows["v"] = matrices.damping[0][-6 + k] @ own
             if any(row.any() for row in rows.values()):

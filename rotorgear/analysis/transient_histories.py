@@ -64,14 +64,14 @@ def integrate(
     """
     state = start.copy()
     found = Histories(state, schedule.h)
-    book = LedgerBook(local, schedule.h, start)
+    book = LedgerBook(local, schedule.h, start, integrator.damping_rows(local, float(local.rotation.speeds[0])))
     for chunk in stream.begin(settings or {}) if stream else []:
         _take(found, book, chunk)
     boundary = settled * schedule.every
 
     def receive(records: Records, state: State) -> None:
         part = {
-            "t": records.t, "d": records.d, "F": records.F, "values": wanted.values(records.fields, records.t.size),
+            "t": records.t, "d": records.d, "F": records.F, "values": wanted.values(records.fields, records.F),
         }  # fmt: skip
         before = len(book.table)
         book.add(records)

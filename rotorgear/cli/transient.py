@@ -58,6 +58,10 @@ def transient(
         int | None,
         typer.Option("--modes", help="Exponential: so many modes and residual vectors, not all.", show_default=False),
     ] = None,
+    modal_damping: Annotated[
+        float | None,
+        typer.Option("--modal-damping", help="Damping ratio of every elastic mode, such as 0.02.", show_default=False),
+    ] = None,
     elements: Annotated[
         int | None,
         typer.Option("--elements", help="Basic elements in each piece of shaft.", show_default=False),
@@ -88,7 +92,7 @@ def transient(
     with progress_bar("transient") as progress:
         result = rg.transient(
             rg.load(model), speed=_speeds(rg.load(model), speed, speed_to, time, settle), time=time, settle=settle,
-            accuracy=accuracy, steps=steps, records=records, method=method, rho_inf=rho_inf, modes=modes, elements=elements,
+            accuracy=accuracy, steps=steps, records=records, method=method, rho_inf=rho_inf, modes=modes, modal_damping=modal_damping, elements=elements,
             error_estimate=error_estimate, stream=stream, progress=progress,
         )  # fmt: skip
     out = console()

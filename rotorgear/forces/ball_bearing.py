@@ -117,6 +117,11 @@ class BallBearing(ForceLaw):
             self.outer_groove * self.ball_diameter, self.contact_angle, self.youngs_modulus, self.poisson_ratio,
         )  # fmt: skip
 
+    @property
+    def uses_velocity(self) -> bool:
+        """Deflections only."""
+        return False
+
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
         return schedule, force

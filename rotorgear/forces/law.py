@@ -47,6 +47,11 @@ class ForceLaw(ABC):
         """Number k of relative displacements."""
         return 1
 
+    @property
+    def uses_velocity(self) -> bool:
+        """Whether force or energy depend on the velocities v."""
+        return True
+
     @abstractmethod
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""

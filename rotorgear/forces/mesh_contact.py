@@ -152,6 +152,11 @@ class MeshContact(ForceLaw):
         if starts and (starts[0] != 0.0 or sorted(set(starts)) != starts or starts[-1] >= 1.0):
             raise refuse(self, "pieces", "rising starts from 0 to below 1")
 
+    @property
+    def uses_velocity(self) -> bool:
+        """With damping, or an impact that does work."""
+        return bool(self.damping or self.impact)
+
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
         return schedule, force

@@ -77,6 +77,11 @@ class RollerBearing(ForceLaw):
         """Two."""
         return 2
 
+    @property
+    def uses_velocity(self) -> bool:
+        """Deflections only."""
+        return False
+
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
         return schedule, force

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from rotorgear.model.fields import Angle, NonNegativeLength, Part, Ratio, Station, UnbalanceSize, Whole
+from rotorgear.model.fields import Angle, Force, NonNegativeLength, Part, Ratio, Station, UnbalanceSize, Whole
 
 
 class Unbalance(Part):
@@ -30,3 +30,18 @@ class StiffnessHarmonic(Part):
     harmonic: Whole = Field(description="1 for the mesh frequency, 2 for twice that, ...")
     amplitude: Ratio = Field(description="amplitude as a share of the mean stiffness")
     phase: Angle = Field(0.0, description="phase, counted from the moment when a contact is at the pitch point")
+
+
+class StiffnessPoint(Part):
+    """A point of the mesh stiffness over the mesh cycle; linear in between, and on to the first point of the next cycle."""
+
+    at: Ratio = Field(description="place in the cycle in pitches, 0 to below 1; 0 when a contact is at the pitch point")
+    share: Ratio = Field(description="stiffness there as a share of the mesh's stiffness")
+
+
+class CornerImpact(Part):
+    """A half-sine force between the flanks once a mesh cycle, as teeth that come into contact too early give."""
+
+    force: Force = Field(description="peak of the force of one helix")
+    duration: Ratio = Field(description="duration in pitches, below 1")
+    at: Ratio = Field(0.0, description="its start in the cycle in pitches; 0 when a contact is at the pitch point")

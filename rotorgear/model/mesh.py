@@ -6,8 +6,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic
-from rotorgear.model.fields import Angle, Damping, Length, NonNegativeLength, Part, PositiveStiffness, Ratio
+from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, StiffnessPoint
+from rotorgear.model.fields import Angle, Damping, Length, NonNegativeLength, Part, PositiveStiffness, Ratio, Viscosity
 
 
 class Mesh(Part):
@@ -48,6 +48,14 @@ class Mesh(Part):
     )
     stiffness_variation: tuple[StiffnessHarmonic, ...] = Field(
         (), description="harmonics of the mesh stiffness about its mean"
+    )
+    stiffness_table: tuple[StiffnessPoint, ...] = Field(
+        (), description="mesh stiffness over the mesh cycle, in place of harmonics"
+    )
+    corner_impact: CornerImpact | None = Field(None, description="impact at each entry of a tooth; default: none")
+    friction_coefficient: Ratio = Field(0.0, description="coefficient of sliding friction between the flanks")
+    lubricant_viscosity: Viscosity | None = Field(
+        None, description="viscosity of the oil: friction by Benedict and Kelley's formula, in place of a coefficient"
     )
     backlash: NonNegativeLength | None = Field(
         None, description="backlash along the flank normal; without it the teeth never part in a transient"

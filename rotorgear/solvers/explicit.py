@@ -31,6 +31,10 @@ class Explicit:
         """What it is, in words."""
         return f"explicit Runge-Kutta of order 8, tolerance {self.relative:.0e}"
 
+    def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
+        """None: all damping is in D."""
+        return np.zeros((0, system.n))
+
     def prepare(self, system: LocalSystem, h: float, speed: float, tolerance: float = 1e-10) -> ExplicitStepper:
         """Factor the inertia.
 

@@ -6,7 +6,7 @@ step and found by Newton's method on m unknowns. Hochbruck and Ostermann, Acta N
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -22,11 +22,20 @@ class Exponential:
 
     modes: int | None = None
     modal_ratio: float = 0.0
+    _known: list[tuple[LocalSystem, float, ComplexModes]] = field(default_factory=list, compare=False, repr=False)
 
     @property
     def name(self) -> str:
         """What it is, in words."""
         return "exponential, " + ("all complex modes" if self.modes is None else f"{self.modes} modes with residuals")
+
+    def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
+        """Rows Y (b, n) of the damping by modes: it dissipates |Y v|^2; none where no mode has its own ratio."""
+        if not self.modal_ratio:
+            return np.zeros((0, system.n))
+        V = self._modes(system, speed).basis
+        roots = np.sqrt(np.maximum(np.einsum("ij,ij->j", V, system.stiffness_about @ V), 0.0))
+        return np.asarray(np.sqrt(2.0 * self.modal_ratio * roots)[:, None] * (system.M @ V).T)
 
     def prepare(self, system: LocalSystem, h: float, speed: float, tolerance: float = 1e-10) -> ExponentialStepper:
         """Find the modes and the step's coefficients.
@@ -36,10 +45,16 @@ class Exponential:
         """
         if not system.rotation.is_constant and system.G is not None and system.G.nnz:
             raise AnalysisError("the exponential integrator needs a constant speed; use newmark for a run-up")
-        D = system.damping_about if system.G is None else system.damping_about + speed * system.G
-        B = system.B.toarray()
-        found = complex_modes(system.M, D, system.stiffness_about, B, self.modes, self.modal_ratio)
-        return ExponentialStepper(found, system, h, tolerance)
+        return ExponentialStepper(self._modes(system, speed), system, h, tolerance)
+
+    def _modes(self, system: LocalSystem, speed: float) -> ComplexModes:
+        """The modes, found once for a system and speed."""
+        found = next((modes for known, at, modes in self._known if known is system and at == speed), None)
+        if found is None:
+            D = system.damping_about if system.G is None else system.damping_about + speed * system.G
+            found = complex_modes(system.M, D, system.stiffness_about, system.B.toarray(), self.modes, self.modal_ratio)
+            self._known.append((system, speed, found))
+        return found
 
 
 class ExponentialStepper:
@@ -63,7 +78,7 @@ class ExponentialStepper:
         self._Br, self._rigid_load = Br, modes.rigid.T @ system.load
         self._mobile = modes.basis @ (modes.basis.T @ B) + modes.rigid @ Br
         self._pushed = modes.basis @ (modes.basis.T @ system.load) + modes.rigid @ self._rigid_load
-        needs_v = bool(np.any(c_ref)) or any(law.reference_damping().any() or _viscous(law) for law in system.forces.laws)
+        needs_v = bool(np.any(c_ref)) or any(law.uses_velocity for law in system.forces.laws)
         rows = C if needs_v else C[:m]
         G = (e[:, None] * self._Q1 + Q0).T
         rotation = system.rotation
@@ -163,11 +178,6 @@ class ModalFields:
         if power < 2:
             return np.asarray(x + modes.rigid @ self.rigid[-1, power * nr : (power + 1) * nr])
         return np.asarray(x + self.stepper._mobile @ self.u[-1] + self.stepper._pushed)
-
-
-def _viscous(law: Any) -> bool:
-    """Whether the force of a law depends on velocity."""
-    return bool(getattr(law, "damping", 0.0)) or bool(getattr(law, "velocity_dependent", False))
 
 
 def _parts(A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -23,6 +23,10 @@ class LocalLaw(Protocol):
     def components(self) -> int:
         """Number k of its relative displacements."""
 
+    @property
+    def uses_velocity(self) -> bool:
+        """Whether force or energy depend on the velocities."""
+
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
 

@@ -153,6 +153,9 @@ class Integrator(Protocol):
     def name(self) -> str:
         """What it is, in words."""
 
+    def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
+        """Rows Y (b, n) of damping that the method has beside D: it dissipates |Y v|^2."""
+
     def prepare(self, system: LocalSystem, h: float, speed: float, tolerance: float) -> Stepper:
         """Make ready for a system, a step in s and a speed of the reference in rad/s at which D + W G is taken."""
 

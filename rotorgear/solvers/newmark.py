@@ -59,6 +59,10 @@ class Newmark:
             raise AnalysisError(f"alpha of HHT must lie between 0 and 1/3, got {alpha:g}")
         return Newmark(0.25 * (1.0 + alpha) ** 2, 0.5 + alpha, 0.0, alpha)
 
+    def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
+        """None: all damping is in D."""
+        return np.zeros((0, system.n))
+
     def prepare(self, system: LocalSystem, h: float, speed: float, tolerance: float = 1e-10) -> NewmarkStepper:
         """Factor the step's matrix and condense it to the contacts."""
         return NewmarkStepper(self, system, h, speed, tolerance)

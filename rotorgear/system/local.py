@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector
-from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic
+from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, StiffnessPoint
 from rotorgear.model.inertia import node_bodies
 from rotorgear.model.mesh_phases import mesh_phases
 from rotorgear.model.torque_flow import MeshForce
@@ -21,30 +21,26 @@ from rotorgear.solvers.local_system import LocalSystem
 from rotorgear.solvers.motion import Rotation
 from rotorgear.system.assembly import assemble
 from rotorgear.system.groups import ElementGroup, contact_geometry, mesh_damping, node_dofs
+from rotorgear.system.local_parts import (
+    LocalPart,
+    bearing_parts,
+    columns_at,
+    friction_part,
+    is_rolling,
+    load_parts,
+    unbalance_parts,
+    varying_load,
+    without_stiffness,
+)
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
-    from rotorgear.forces.law import ForceLaw
+    from rotorgear.forces.mesh_contact import MeshContact
 
 # Depth over which damping grows from zero, and the reference depth of penetration damping, relative to the mean deflection.
 _RAMP = 0.02
 # Mean deflection that is taken for a mesh without load.
 _UNLOADED = 1e-6
-
-
-@dataclass(frozen=True)
-class LocalPart:
-    """A law and where it acts: address of its part, what it is, its law, and the columns (a, k) of its displacements among all dofs."""
-
-    part: str
-    label: str
-    law: ForceLaw
-    columns: np.ndarray
-
-    @property
-    def is_mesh(self) -> bool:
-        """Whether it is a tooth contact."""
-        return self.part.startswith("meshes.")
 
 
 @dataclass(frozen=True)
@@ -67,12 +63,16 @@ def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
     """
     from rotorgear.solvers.local_forces import gather
 
-    groups = tuple(group for group in system.groups_at(speed) if not group.part.startswith("meshes."))
+    groups = tuple(
+        without_stiffness(group) if is_rolling(system, group) else group
+        for group in system.groups_at(speed)
+        if not group.part.startswith("meshes.")
+    )
     K = assemble(groups, system.dofs, lambda g: g.matrices.stiffness)
     C = assemble(groups, system.dofs, lambda g: g.matrices.damping)
     damping = system.model.damping
     C = sp.csc_array(C + damping.rayleigh_alpha * system.mass + damping.rayleigh_beta * K)
-    parts = tuple(_mesh_parts(system))
+    parts = (*_mesh_parts(system), *bearing_parts(system), *unbalance_parts(system), *load_parts(system))
     T = system.dofs.transform
     columns = np.hstack([np.zeros((T.shape[0], 0)), *(part.columns for part in parts)])
     local = LocalSystem(
@@ -89,9 +89,11 @@ def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
 
 
 def torque_load(system: System) -> np.ndarray:
-    """Torques of the operating point on all dofs, (a,)."""
+    """Torques of the operating point that never change, on all dofs, (a,)."""
     f = np.zeros(system.dofs.transform.shape[0])
     for item in system.flow.applied:
+        if varying_load(system, item.name) is not None:
+            continue
         f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
     return f
 
@@ -105,24 +107,25 @@ def _mesh_parts(system: System) -> list[LocalPart]:
         if len(system.flow.of_mesh(force.contact.mesh)) == 1:
             label = force.contact.mesh
         law = _mesh_law(system, force, geometry, phases[force.contact.mesh] or 0.0)
-        part = f"meshes.{force.contact.mesh}"
-        found.append(LocalPart(part, label, law, _column(system, force, geometry)))
+        part, dofs = f"meshes.{force.contact.mesh}", _dofs(system, force)
+        column = columns_at(system, dofs, contact_vector(geometry)[None])
+        found.append(LocalPart(part, label, law, column, is_mesh=True))
+        rubbing = friction_part(system, force, geometry, label, law, dofs, column)
+        if rubbing is not None:
+            found.append(rubbing)
         if law.gap == "one-sided":
-            other = replace(geometry, torque_sense=-geometry.torque_sense)
-            found.append(LocalPart(part, f"{label} back", _back(law), _column(system, force, other)))
+            other = contact_vector(replace(geometry, torque_sense=-geometry.torque_sense))
+            found.append(LocalPart(part, f"{label} back", _back(law), columns_at(system, dofs, other[None]), is_mesh=True))
     return found
 
 
-def _column(system: System, force: MeshForce, geometry: ContactGeometry) -> np.ndarray:
+def _dofs(system: System, force: MeshForce) -> np.ndarray:
     contact = force.contact
     pinion, gear = (system.model.gears[name].shaft for name in (contact.pinion, contact.gear))
-    dofs = node_dofs(system.nodes.at(pinion, contact.pinion_z), system.nodes.at(gear, contact.gear_z))[0]
-    column = np.zeros((system.dofs.transform.shape[0], 1))
-    column[dofs, 0] = contact_vector(geometry)
-    return column
+    return node_dofs(system.nodes.at(pinion, contact.pinion_z), system.nodes.at(gear, contact.gear_z))[0]
 
 
-def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase: float):  # type: ignore[no-untyped-def]
+def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase: float) -> MeshContact:
     from rotorgear.forces.mesh_contact import MeshContact
 
     model, contact = system.model, force.contact
@@ -140,11 +143,11 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         contact_damping=mesh.contact_damping, ramp=deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP),
         order=order, phase=phase + 2.0 * np.pi * late, stiffness_cos=stiffness_cos, stiffness_sin=stiffness_sin,
         error_mean=mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0),
-        error_cos=error_cos, error_sin=error_sin,
+        error_cos=error_cos, error_sin=error_sin, pieces=_pieces(mesh.stiffness_table), **_impact(mesh.corner_impact),
     )  # fmt: skip
 
 
-def _back(law):  # type: ignore[no-untyped-def]
+def _back(law: MeshContact) -> MeshContact:
     """The back flank on its own normal: what opens the driving flank closes it."""
     return replace(
         law,
@@ -153,6 +156,24 @@ def _back(law):  # type: ignore[no-untyped-def]
         error_cos=tuple(-x for x in law.error_cos),
         error_sin=tuple(-x for x in law.error_sin),
     )
+
+
+def _pieces(table: tuple[StiffnessPoint, ...]) -> tuple[tuple[float, float, float], ...]:
+    """Straight pieces over one mesh cycle, the last one back to the first point."""
+    if not table:
+        return ()
+    points = [(point.at, point.share) for point in table]
+    if points[0][0] > 0.0:  # the cycle begins inside of the last piece
+        (last, high), (first, low) = points[-1], points[0]
+        points.insert(0, (0.0, high + (low - high) * (1.0 - last) / (1.0 - last + first)))
+    ends = [share for _, share in points[1:]] + [points[0][1]]
+    return tuple((at, share, end) for (at, share), end in zip(points, ends, strict=True))
+
+
+def _impact(impact: CornerImpact | None) -> dict[str, float]:
+    if impact is None:
+        return {}
+    return {"impact": impact.force, "impact_share": impact.duration, "impact_phase": -impact.at}
 
 
 def _series(harmonics: tuple[ErrorHarmonic | StiffnessHarmonic, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:
