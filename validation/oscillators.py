@@ -13,7 +13,7 @@ from rotorgear.forces.law import ForceLaw
 from rotorgear.solvers.explicit import Explicit
 from rotorgear.solvers.exponential import Exponential
 from rotorgear.solvers.local_forces import gather
-from rotorgear.solvers.local_system import Integrator, LocalSystem, Records, State, state_at_rest
+from rotorgear.solvers.local_system import Integrator, LocalSystem, Records, State, local_values, state_at_rest
 from rotorgear.solvers.motion import Rotation
 from rotorgear.solvers.newmark import Newmark
 from rotorgear.solvers.run import Schedule, run
@@ -53,7 +53,7 @@ def integrate(
     integrator = METHODS[method] if isinstance(method, str) else method
     state = state_at_rest(system, h, np.array(q0, float), np.array(v0, float))
     n = system.n
-    found = [(np.zeros(1), state.q[None].copy(), state.v[None].copy(), state.a[None].copy(), state.F[None].copy(), np.zeros(1))]
+    found = [(np.zeros(1), state.q[None].copy(), state.v[None].copy(), state.a[None].copy(), state.F[None].copy(), _stored(system, state))]
 
     def keep(records: Records, _: State) -> None:
         rows = [records.fields.rows(kind, np.eye(n)) for kind in "qva"]
@@ -63,12 +63,16 @@ def integrate(
     return Motion(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
 
 
+def _stored(system: LocalSystem, state: State) -> np.ndarray:
+    return local_values(system, state.q, state.v, 0.0)[1].reshape(-1, 4)[:, 0].sum(keepdims=True)
+
+
 def crossings(t: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Times of the maxima of x: where v falls through zero, from the cubic through v and its slope at both sides."""
     i = np.flatnonzero((v[:-1] > 0.0) & (v[1:] <= 0.0))
     return np.asarray(t[i] + (t[i + 1] - t[i]) * v[i] / (v[i] - v[i + 1]))
 
 
-def order(errors: Sequence[float], ratio: float = 2.0) -> float:
-    """Mean order of errors over steps that shrink by a ratio each time."""
-    return float(np.log(errors[0] / errors[-1]) / np.log(ratio) / (len(errors) - 1))
+def order(steps: Sequence[int], errors: Sequence[float]) -> float:
+    """Mean order of errors over numbers of steps: the slope of a line through their logarithms."""
+    return -float(np.polyfit(np.log(steps), np.log(np.maximum(errors, 1e-300)), 1)[0])

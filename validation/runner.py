@@ -81,6 +81,8 @@ def _error(line: Expectation, got: float | str) -> float:
 
 def describe(line: Expectation) -> str:
     """Say in one phrase what a line compares."""
+    if line.model.endswith(".py"):
+        return ", ".join(part for part in (line.quantity, line.mode) if part)
     parts = [Path(line.model).stem, f"mode {line.mode}", words(line.quantity)]
     if line.speed:
         parts.append(line.speed)
