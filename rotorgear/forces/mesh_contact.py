@@ -138,6 +138,7 @@ class MeshContact(ForceLaw):
     impact: float = parameter("N", "peak of a half-sine force once a mesh cycle", 0.0)
     impact_share: float = parameter("", "its duration as a share of the mesh cycle", 0.25)
     impact_phase: float = parameter("", "share of the cycle by which it comes earlier", 0.0)
+    expanded: bool = parameter("", "whether solvers expand about k and c: not on a flank that is mostly open", True)
 
     def __post_init__(self) -> None:
         if self.gap not in GAPS or self.contact_damping not in DAMPINGS:
@@ -177,21 +178,24 @@ class MeshContact(ForceLaw):
 
     def reference_stiffness(self) -> np.ndarray:
         """The mean stiffness, as with teeth that never part."""
+        return np.array([[self._mean_stiffness() if self.expanded else 0.0]])
+
+    def _mean_stiffness(self) -> float:
         mean = 1.0
         if self.pieces:
             ends = [*(piece[0] for piece in self.pieces[1:]), 1.0]
             mean = sum(0.5 * (a + b) * (end - start) for (start, a, b), end in zip(self.pieces, ends, strict=True))
-        return np.array([[self.stiffness * mean]])
+        return self.stiffness * mean
 
     def reference_damping(self) -> np.ndarray:
         """c, as with teeth that never part."""
-        return np.array([[self.damping if self.contact_damping != "penetration" else 0.0]])
+        return np.array([[self.damping if self.expanded and self.contact_damping != "penetration" else 0.0]])
 
     def mean(self) -> MeshContact:
         """Return the contact without anything that varies in time."""
         return replace(
             self, stiffness_cos=(), stiffness_sin=(), pieces=(), error_cos=(), error_sin=(), impact=0.0,
-            stiffness=float(self.reference_stiffness()[0, 0]),
+            stiffness=self._mean_stiffness(),
         )  # fmt: skip
 
     @classmethod

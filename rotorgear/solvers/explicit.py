@@ -17,14 +17,14 @@ from rotorgear.solvers.factor import factor_general
 from rotorgear.solvers.local_system import LocalSystem, PlainFields, Records, State, blank_records
 
 MOST_DOFS = 600
-_FINEST = 1e-12
+_FINEST = 1e-13
 
 
 @dataclass(frozen=True)
 class Explicit:
     """Dormand and Prince's method of order 8; `relative` is the tolerance of a step."""
 
-    relative: float = 1e-9
+    relative: float = 1e-11
 
     @property
     def name(self) -> str:

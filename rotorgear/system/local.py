@@ -155,6 +155,7 @@ def _back(law: MeshContact) -> MeshContact:
         error_mean=law.backlash - law.error_mean,
         error_cos=tuple(-x for x in law.error_cos),
         error_sin=tuple(-x for x in law.error_sin),
+        expanded=False,
     )
 
 
