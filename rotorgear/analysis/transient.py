@@ -14,6 +14,7 @@ from rotorgear.analysis.transient_histories import Histories, Stream, integrate
 from rotorgear.analysis.transient_notes import transient_left_out, transient_warnings
 from rotorgear.analysis.transient_request import (
     Grid,
+    base_frequencies,
     grid_of,
     integrator_of,
     mesh_frequencies,
@@ -94,7 +95,7 @@ def transient(
         raise AnalysisError(f"the damping ratio of the modes must lie between 0 and 1, got {modal_damping:g}")
     task = _task(model, speed, elements)
     duration = [None if x is None else quantity(x, "time", name) for x, name in ((time, "time"), (settle, "settle"))]
-    grid = grid_of(task.local.local, task.frequencies, duration[0], duration[1], steps, records)
+    grid = grid_of(task.local.local, base_frequencies(task.local.system, task.largest), duration[0], duration[1], steps, records)
     integrator, reason = integrator_of(
         method, task.local.local, grid.records * grid.every, modal_ratio=task.local.system.model.damping.modal_ratio if modal_damping is None else modal_damping,
         modes=modes, rho_inf=rho_inf, beta=beta, gamma=gamma,
@@ -122,6 +123,7 @@ class _Task:
     rest: Equilibrium
     rest_force: np.ndarray
     frequencies: dict[str, float]
+    largest: float
 
 
 def _task(model: Model | System, speed: float | str | Sequence[tuple[float, float | str]] | None, elements: int | None) -> _Task:
@@ -137,7 +139,7 @@ def _task(model: Model | System, speed: float | str | Sequence[tuple[float, floa
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     local = local_model(given, rotation, largest)
     rest, force = equilibrium(local.local), mean_forces(local)
-    return _Task(local, channels(local), rest, force, mesh_frequencies(given, largest))
+    return _Task(local, channels(local), rest, force, mesh_frequencies(given, largest), largest)
 
 
 def _run(

