@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.train import mesh_frequency
 from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.solvers.exponential import Exponential
@@ -145,6 +145,13 @@ def integrator_of(
     reason = "as asked for"
     if method == "auto":
         method, reason = _chosen(local, steps, modal_ratio, modes)
+        if method == "exponential" and not (modal_ratio or modes):
+            candidate = Exponential()
+            try:
+                candidate.prepare(local, 1e-6, float(local.rotation.speeds[0]))
+                return candidate, reason
+            except ConvergenceError:
+                method, reason = "newmark", "the complex modes lie too near to each other for the exponential method"
     if modal_ratio and method != "exponential":
         raise AnalysisError("damping.modal_ratio acts on modes: only the exponential method at constant speed can take it")
     if method == "exponential":

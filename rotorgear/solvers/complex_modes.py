@@ -62,8 +62,9 @@ def complex_modes(
     with single_thread(0):
         V, R, squares = _real_basis(M, K, B, modes)
         Kb, Db = V.T @ (K @ V), V.T @ (D @ V)
-        if R.shape[1] and _is_damped(D, V, R, Db):
-            V, R = np.hstack([R, V]), R[:, :0]
+        if R.shape[1]:
+            met, R = _split_damped(D, V, R, Db)
+            V = np.hstack([met, V])
             Kb, Db = V.T @ (K @ V), V.T @ (D @ V)
         if modal_ratio:
             Db = Db + np.diag(2.0 * modal_ratio * np.sqrt(np.maximum(np.diag(Kb), 0.0)))
@@ -71,12 +72,13 @@ def complex_modes(
     return ComplexModes(s, V @ X, V, gains, R, condition)
 
 
-def _is_damped(D: sp.csc_array, V: np.ndarray, R: np.ndarray, Db: np.ndarray) -> bool:
-    """Whether motions without stiffness meet velocity terms beyond rounding, as rates in 1/s."""
-    DR, size = D @ R, np.abs(Db).max(initial=1e-300)
-    own = np.abs(R.T @ DR).max(initial=0.0)
-    cross = max(np.abs(V.T @ DR).max(initial=0.0), np.abs(V.T @ (D.T @ R)).max(initial=0.0))
-    return bool(own > _NOISE * size or cross > 10.0 * _NOISE * size)
+def _split_damped(D: sp.csc_array, V: np.ndarray, R: np.ndarray, Db: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Split motions without stiffness into those that meet velocity terms (rates in 1/s beyond rounding) and those that meet none."""
+    DR, DtR = D @ R, D.T @ R
+    rates = np.vstack([R.T @ DR, V.T @ DR, R.T @ DtR, V.T @ DtR])
+    _, sizes, turned = la.svd(rates)
+    met = np.concatenate([sizes > 10.0 * _NOISE * np.abs(Db).max(initial=1e-300), np.zeros(R.shape[1] - sizes.size, bool)])
+    return R @ turned[met].T, R @ turned[~met].T
 
 
 def _real_basis(
