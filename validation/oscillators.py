@@ -41,19 +41,36 @@ def local_system(
 ) -> LocalSystem:
     """A system from dense matrices, and laws with their columns (n, k)."""
     M, D, K = (sp.csc_array(np.atleast_2d(np.asarray(A, float))) for A in (M, D, K))
-    columns = np.hstack([np.zeros((M.shape[0], 0)), *(np.asarray(column, float).reshape(M.shape[0], -1) for _, column in laws)])
+    columns = np.hstack(
+        [np.zeros((M.shape[0], 0)), *(np.asarray(column, float).reshape(M.shape[0], -1) for _, column in laws)]
+    )
     forces = gather(tuple(law for law, _ in laws))
     return LocalSystem(M, D, K, sp.csc_array(columns), forces, np.array(load, float), Rotation.constant(speed))
 
 
 def integrate(
-    system: LocalSystem, method: str | Integrator, h: float, steps: int, q0: Sequence[float], v0: Sequence[float], every: int = 1
+    system: LocalSystem,
+    method: str | Integrator,
+    h: float,
+    steps: int,
+    q0: Sequence[float],
+    v0: Sequence[float],
+    every: int = 1,
 ) -> Motion:
     """Run from a state and keep every `every`-th step, with the start as the first record."""
     integrator = METHODS[method] if isinstance(method, str) else method
     state = state_at_rest(system, h, np.array(q0, float), np.array(v0, float))
     n = system.n
-    found = [(np.zeros(1), state.q[None].copy(), state.v[None].copy(), state.a[None].copy(), state.F[None].copy(), _stored(system, state))]
+    found = [
+        (
+            np.zeros(1),
+            state.q[None].copy(),
+            state.v[None].copy(),
+            state.a[None].copy(),
+            state.F[None].copy(),
+            _stored(system, state),
+        )
+    ]
 
     def keep(records: Records, _: State) -> None:
         rows = [records.fields.rows(kind, np.eye(n)) for kind in "qva"]

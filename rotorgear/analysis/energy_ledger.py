@@ -1,6 +1,7 @@
-"""Energy ledger of a transient: what loads and excitation put in, what is stored, what is dissipated, and what integration made or lost.
+"""Energy ledger of a transient: what comes in, what is stored, what is dissipated, and what integration made or lost.
 
-Sums over contacts are taken at every step, those over linear dampers at the records (trapezoidal rule), stored energies at some of them.
+Sums over contacts are taken at every step, those over linear dampers at the records (trapezoidal rule), stored
+energies at some of them.
 """
 
 from __future__ import annotations
@@ -59,7 +60,10 @@ class LedgerBook:
         s = self.system
         K = sp.csc_array(0.5 * (s.K + s.K.T))
         self._stiffness = K
-        candidates = [_Power.of(sp.csc_array(0.5 * (s.D + s.D.T)), "v", s.n), _Power.of(sp.csc_array(s.K - K), "q", s.n)]
+        candidates = [
+            _Power.of(sp.csc_array(0.5 * (s.D + s.D.T)), "v", s.n),
+            _Power.of(sp.csc_array(s.K - K), "q", s.n),
+        ]
         self._powers = [power for power in candidates if power is not None]
         self._load = s.load[None, :]
         self._all = np.eye(s.n)
@@ -92,7 +96,9 @@ class LedgerBook:
         laws = records.energy[which].sum(axis=1)
         work = q @ self._load[0] - self._work_at_start
         self.table.append(
-            np.column_stack([records.t[which], kinetic, strain, laws[:, 0], work, laws[:, 1], spent[which] + laws[:, 2]])
+            np.column_stack(
+                [records.t[which], kinetic, strain, laws[:, 0], work, laws[:, 1], spent[which] + laws[:, 2]]
+            )
         )
 
     def sums(self) -> tuple[float, float, float]:
@@ -108,7 +114,8 @@ class LedgerBook:
         t, kinetic, strain, contact, work, excitation, dissipated = np.vstack(self.table).T
         stored = kinetic + strain + contact
         numerical = stored - self._stored_at_start - work - excitation + dissipated
-        scale = max(float(np.abs(x).max()) for x in (work, excitation, dissipated, stored - self._stored_at_start, kinetic))
+        scale = max(
+            float(np.abs(x).max()) for x in (work, excitation, dissipated, stored - self._stored_at_start, kinetic)
+        )
         share = float(np.abs(numerical).max()) / scale if scale > 0.0 else 0.0
         return EnergyLedger(t, kinetic, strain, contact, work, excitation, dissipated, numerical, share)
-

@@ -33,7 +33,11 @@ def history_of(result: TransientResult, name: str) -> tuple[np.ndarray, str]:
         close = nearest(name, known)
         hint = f"; did you mean '{close}'?" if close else "; known: " + ", ".join(known[:6]) + " ..."
         raise AnalysisError(f"there is no history '{name}'{hint}")
-    unit = result.unit[result.channel.index(name)] if name in result.channel else ("N" if name.startswith("force") else "m")
+    unit = (
+        result.unit[result.channel.index(name)]
+        if name in result.channel
+        else ("N" if name.startswith("force") else "m")
+    )
     return result.history(name), unit
 
 
@@ -99,7 +103,7 @@ def _between_bins(found: Spectrum, i: int) -> float:
 
 
 def _source(result: TransientResult, frequency: float, resolution: float) -> str:
-    """Name of the mesh order nearest to a line within half the resolution, else of the shaft order where shafts have an unbalance."""
+    """Name of the mesh order within half the resolution of a line, else of the shaft order where shafts have an unbalance."""
     best, name = 0.5 * resolution, ""
     for mesh, f in result.mesh_frequency.items():
         order = max(1, round(frequency / f))

@@ -84,7 +84,8 @@ def transient(
 
     Raises:
         AnalysisError: nothing to run, or a request that makes no sense.
-        ConvergenceError: not even the first records came to be. A run that stops later returns what it has, and says so in `status`.
+        ConvergenceError: not even the first records came to be. A run that stops later returns what it has, and says
+        so in `status`.
     """
     begun = clock.perf_counter()
     if steps is not None and accuracy is not None:
@@ -95,9 +96,12 @@ def transient(
         raise AnalysisError(f"the damping ratio of the modes must lie between 0 and 1, got {modal_damping:g}")
     task = _task(model, speed, elements)
     duration = [None if x is None else quantity(x, "time", name) for x, name in ((time, "time"), (settle, "settle"))]
-    grid = grid_of(task.local.local, base_frequencies(task.local.system, task.largest), duration[0], duration[1], steps, records)
+    grid = grid_of(
+        task.local.local, base_frequencies(task.local.system, task.largest), duration[0], duration[1], steps, records
+    )
     integrator, reason = integrator_of(
-        method, task.local.local, grid.records * grid.every, modal_ratio=task.local.system.model.damping.modal_ratio if modal_damping is None else modal_damping,
+        method, task.local.local, grid.records * grid.every, modal_ratio=task.local.system.model.damping.modal_ratio if
+        modal_damping is None else modal_damping,
         modes=modes, rho_inf=rho_inf, beta=beta, gamma=gamma,
     )  # fmt: skip
     laps = {"model": clock.perf_counter() - begun}
@@ -109,7 +113,14 @@ def transient(
         double = replace(grid, every=max(1, grid.every // 2)) if grid.every > 1 else None
         coarse = _run(task, integrator, double or _skipping(grid), progress, text="twice the step")
     laps["error estimate"] = clock.perf_counter() - begun - sum(laps.values())
-    found = _run(task, integrator, grid, progress, stream=stream, key=f"{method} {modes} {modal_damping} {rho_inf} {beta} {gamma}")
+    found = _run(
+        task,
+        integrator,
+        grid,
+        progress,
+        stream=stream,
+        key=f"{method} {modes} {modal_damping} {rho_inf} {beta} {gamma}",
+    )
     laps["integration"] = clock.perf_counter() - begun - sum(laps.values())
     laps["total"] = clock.perf_counter() - begun
     progress(1.0, "done")
@@ -126,7 +137,9 @@ class _Task:
     largest: float
 
 
-def _task(model: Model | System, speed: float | str | Sequence[tuple[float, float | str]] | None, elements: int | None) -> _Task:
+def _task(
+    model: Model | System, speed: float | str | Sequence[tuple[float, float | str]] | None, elements: int | None
+) -> _Task:
     if elements is not None and elements < 1:
         raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
     given = model if isinstance(model, System) else System(model, plan=Plan(elements) if elements else _PLAN)
@@ -143,7 +156,14 @@ def _task(model: Model | System, speed: float | str | Sequence[tuple[float, floa
 
 
 def _run(
-    task: _Task, integrator: Integrator, grid: Grid, progress: Progress, *, stream: Stream | None = None, text: str = "", key: str = ""
+    task: _Task,
+    integrator: Integrator,
+    grid: Grid,
+    progress: Progress,
+    *,
+    stream: Stream | None = None,
+    text: str = "",
+    key: str = "",
 ) -> Histories:
     h = grid.spacing / grid.every
     system = task.local.local
@@ -185,7 +205,13 @@ def _fine_enough(task: _Task, integrator: Integrator, grid: Grid, accuracy: floa
 
 
 def _result(
-    task: _Task, grid: Grid, method: str, reason: str, found: Histories, coarse: Histories | None, laps: dict[str, float]
+    task: _Task,
+    grid: Grid,
+    method: str,
+    reason: str,
+    found: Histories,
+    coarse: Histories | None,
+    laps: dict[str, float],
 ) -> TransientResult:
     system, local = task.local.system, task.local.local
     own: Statistics = statistics(found, task, grid.settled)

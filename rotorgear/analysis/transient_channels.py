@@ -63,7 +63,9 @@ def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndar
             continue
         own = T[group.dofs[0], :].toarray()
         matrices = group.matrices
-        stiffness = sum((A[0] for A in (matrices.stiffness, matrices.circulatory) if A is not None), np.zeros((own.shape[0],) * 2))
+        stiffness = sum(
+            (A[0] for A in (matrices.stiffness, matrices.circulatory) if A is not None), np.zeros((own.shape[0],) * 2)
+        )
         for k, axis in enumerate(_AXES):
             rows = {} if group.part in rolling else {"q": stiffness[-6 + k] @ own}
             if group.part in rolling and k < rolling[group.part][1]:

@@ -1,4 +1,4 @@
-"""One integration of a local model: its histories, statistics and ledger, kept in memory and, if wished, streamed chunk by chunk."""
+"""One integration of a local model: its histories and ledger, kept in memory and, if wished, streamed chunk by chunk."""
 
 from __future__ import annotations
 

@@ -37,11 +37,14 @@ def transient_warnings(
         notes.append(f"the run ended early at t = {result.time[-1]:.6g} s: {result.status}")
     if not rest.converged:
         notes.append("no static equilibrium was found; the run starts from that with linear contacts and has to settle")
-    if rest.free.shape[1] and np.any(np.abs(rest.drift) > 1e-9 * max(np.linalg.norm(local.local.load), 1e-300)):
-        notes.append("the loads do not balance on a free motion: it is carried along and drifts with constant acceleration")
+    if rest.free.shape[1] and np.any(np.abs(rest.drift) > 1e-9 * max(float(np.linalg.norm(local.local.load)), 1e-300)):
+        notes.append(
+            "the loads do not balance on a free motion: it is carried along and drifts with constant acceleration"
+        )
     if result.energy.share > ENERGY_BOUND:
         notes.append(
-            f"integration made or lost {100.0 * result.energy.share:.2g} % of the energy; take a smaller step or record more often"
+            f"integration made or lost {100.0 * result.energy.share:.2g} % of the energy; "
+            "take a smaller step or record more often"
         )
     notes += [*_drifting(result), *_unsettled(result)]
     return tuple(notes)
@@ -59,12 +62,13 @@ def _drifting(result: TransientResult) -> list[str]:
             continue
         values = result.history(history)
         share = abs(float(values[-max(len(values) // 10, 1) :].mean())) / own
-        worst, name = max((worst, name), (share, gear))
+        if share > worst:
+            worst, name = share, gear
     if worst <= _DRIFT:
         return []
     return [
-        f"at the end {name} turns {100.0 * worst:.2g} % off its prescribed speed: the torques do not balance there; mesh phases and gyroscopic terms "
-        "keep to the prescribed speed"
+        f"at the end {name} turns {100.0 * worst:.2g} % off its prescribed speed: the torques do not balance "
+        "there; mesh phases and gyroscopic terms keep to the prescribed speed"
     ]
 
 

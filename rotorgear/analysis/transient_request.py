@@ -83,7 +83,9 @@ def contact_frequency(local: LocalSystem) -> float:
 
     k = np.diag(local.forces.reference_stiffness)
     squares = [
-        k[j] * float(column @ acceleration(local.M, column)) for j, column in enumerate(local.B.toarray().T) if k[j] > 0.0
+        k[j] * float(column @ acceleration(local.M, column))
+        for j, column in enumerate(local.B.toarray().T)
+        if k[j] > 0.0
     ]
     return float(np.sqrt(max(squares, default=0.0))) / (2.0 * np.pi)
 
@@ -107,7 +109,9 @@ def grid_of(
     contact = contact_frequency(local)
     fastest, slowest = max(frequencies.values(), default=0.0), min(frequencies.values(), default=0.0)
     if fastest == 0.0 and (time is None or contact == 0.0):
-        raise AnalysisError("nothing turns that says how long to run and in what steps: give a time, and a speed or meshes")
+        raise AnalysisError(
+            "nothing turns that says how long to run and in what steps: give a time, and a speed or meshes"
+        )
     base = fastest or contact
     settle = settle if settle is not None else (0.0 if time is not None else PERIODS / slowest)
     total = settle + (time if time is not None else PERIODS / slowest)
@@ -121,7 +125,7 @@ def grid_of(
         raise AnalysisError(
             f"{total:g} s would take {count * every:.3g} steps of {spacing / every:.3g} s; ask for less time, or set the steps"
         )
-    return Grid(spacing, count, int(round(settle / spacing)), every)
+    return Grid(spacing, count, round(settle / spacing), every)
 
 
 def integrator_of(
@@ -153,7 +157,9 @@ def integrator_of(
             except ConvergenceError:
                 method, reason = "newmark", "the complex modes lie too near to each other for the exponential method"
     if modal_ratio and method != "exponential":
-        raise AnalysisError("damping.modal_ratio acts on modes: only the exponential method at constant speed can take it")
+        raise AnalysisError(
+            "damping.modal_ratio acts on modes: only the exponential method at constant speed can take it"
+        )
     if method == "exponential":
         return Exponential(modes, modal_ratio), reason
     if method == "explicit":

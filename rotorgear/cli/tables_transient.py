@@ -38,7 +38,9 @@ def _title(result: TransientResult) -> str:
 def _table(title: str = "") -> Any:
     from rich.table import Table
 
-    return Table(box=None, pad_edge=False, header_style="bold", title=title or None, title_justify="left", title_style="bold")
+    return Table(
+        box=None, pad_edge=False, header_style="bold", title=title or None, title_justify="left", title_style="bold"
+    )
 
 
 def _contacts(result: TransientResult) -> Any:
@@ -66,7 +68,11 @@ def _channels(result: TransientResult) -> Any:
     for row in shown:
         if row["name"].startswith("bearings.") and " displacement " in row["name"]:
             continue
-        table.add_row(row["name"].partition(".")[2], *(_value(row[key]) for key in ("mean", "rms", "largest", "smallest")), row["unit"])
+        table.add_row(
+            row["name"].partition(".")[2],
+            *(_value(row[key]) for key in ("mean", "rms", "largest", "smallest")),
+            row["unit"],
+        )
     return table
 
 

@@ -24,7 +24,9 @@ def transient(
     ] = None,
     speed_to: Annotated[
         str | None,
-        typer.Option("--speed-to", help="Run up (or down) to this speed within the time that counts.", show_default=False),
+        typer.Option(
+            "--speed-to", help="Run up (or down) to this speed within the time that counts.", show_default=False
+        ),
     ] = None,
     time: Annotated[
         str | None,
@@ -37,7 +39,9 @@ def transient(
     ] = None,
     accuracy: Annotated[
         float | None,
-        typer.Option("--accuracy", help="Wanted relative accuracy of the statistics (default 0.01).", show_default=False),
+        typer.Option(
+            "--accuracy", help="Wanted relative accuracy of the statistics (default 0.01).", show_default=False
+        ),
     ] = None,
     steps: Annotated[
         int | None,
@@ -92,7 +96,8 @@ def transient(
     with progress_bar("transient") as progress:
         result = rg.transient(
             rg.load(model), speed=_speeds(rg.load(model), speed, speed_to, time, settle), time=time, settle=settle,
-            accuracy=accuracy, steps=steps, records=records, method=method, rho_inf=rho_inf, modes=modes, modal_damping=modal_damping, elements=elements,
+            accuracy=accuracy, steps=steps, records=records, method=method, rho_inf=rho_inf, modes=modes,
+            modal_damping=modal_damping, elements=elements,
             error_estimate=error_estimate, stream=stream, progress=progress,
         )  # fmt: skip
     out = console()

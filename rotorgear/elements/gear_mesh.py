@@ -71,7 +71,8 @@ def contact_vector(geometry: ContactGeometry) -> np.ndarray:
 def sliding_vectors(geometry: ContactGeometry) -> np.ndarray:
     """What the dofs of pinion and gear add to the sliding of the flanks, shape (2, 12).
 
-    The first row is the displacement across the line of action (along k x n_t) at the pitch point, of the pinion relative to the gear; the second
+    The first row is the displacement across the line of action (along k x n_t) at the pitch point, of the pinion
+    relative to the gear; the second
     what a contact at xi adds for each metre of xi.
     """
     g = geometry

@@ -62,9 +62,7 @@ class ChunkStream:
         self._count += 1
 
     def _read(self) -> list[dict[str, np.ndarray]]:
-        found = []
-        for path in sorted(self.folder.glob("chunk_*.h5")):
-            found.append(read_chunk(path))
+        found = [read_chunk(path) for path in sorted(self.folder.glob("chunk_*.h5"))]
         self._count = len(found)
         return found
 

@@ -1,12 +1,15 @@
 """Ball bearing: Hertz contacts of Z balls that turn with the cage, clearance, and coupling of radial, axial and tilting motion.
 
-Ball j stands at phi_j = order * angle + phase + 2 pi j/Z. With the distance A = r_i + r_e - D_w of the groove centres at rest, the inner one moves by
+Ball j stands at phi_j = order * angle + phase + 2 pi j/Z. With the distance
+A = r_i + r_e - D_w of the groove centres at rest, the inner one moves by
 
     u = x cos phi + y sin phi,   w = z + R_i (tx sin phi - ty cos phi)
     delta = sqrt((A cos a0 + u)^2 + (A sin a0 + w)^2) - A,   Q = c_p delta^(3/2) where delta > 0
 
-and F is the gradient of the energy 2/5 c_p sum delta^(5/2), so that the law is conservative but for the turning of the balls. A deep
-groove bearing stands centred: A cos a0 = A - s/2, A sin a0 = 0. ISO/TS 16281:2008; de Mul, Vree and Maas, J. Tribology 111 (1989) 142.
+and F is the gradient of the energy 2/5 c_p sum delta^(5/2), so that the law is conservative but for the turning of the
+balls. A deep
+groove bearing stands centred: A cos a0 = A - s/2, A sin a0 = 0. ISO/TS 16281:2008; de Mul, Vree and Maas, J. Tribology
+111 (1989) 142.
 """
 
 from __future__ import annotations
@@ -82,12 +85,16 @@ class BallBearing(ForceLaw):
     inner_groove: float = parameter("", "groove radius of the inner ring over D_w", 0.52)
     outer_groove: float = parameter("", "groove radius of the outer ring over D_w", 0.53)
     clearance: float = parameter("m", "radial internal clearance s (whole play along a diameter)", 0.0)
-    contact_angle: float = parameter("rad", "free contact angle of an angular contact bearing; its sign is that of the axial load it takes", 0.0)
+    contact_angle: float = parameter(
+        "rad", "free contact angle of an angular contact bearing; its sign is that of the axial load it takes", 0.0
+    )
     youngs_modulus: float = parameter("Pa", "of balls and rings", 210e9)
     poisson_ratio: float = parameter("", "of balls and rings", 0.3)
     order: float = parameter("rad/rad", "turns of the cage for each turn of the reference", 0.0)
     phase: float = parameter("rad", "angle of a ball at angle 0", 0.0)
-    reference: tuple[float, ...] = parameter("N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * _COMPONENTS)
+    reference: tuple[float, ...] = parameter(
+        "N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * _COMPONENTS
+    )
 
     def __post_init__(self) -> None:
         if self.balls < 3:

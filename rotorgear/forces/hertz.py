@@ -4,7 +4,8 @@ Point contact: Q = c_p delta^(3/2), with chi from  1 - 2/(chi^2 - 1) (K/E - 1) -
 
     delta = K [4.5 sum_rho Q^2 / (E (pi chi E')^2)]^(1/3),   E' = Y/(1 - nu^2),   K, E of modulus sqrt(1 - 1/chi^2)
 
-Hamrock and Dowson, Ball Bearing Lubrication (Wiley 1981), ch. 3; ISO/TS 16281:2008 prints it with 1.48 in place of pi/sqrt(4.5) = 1.481.
+Hamrock and Dowson, Ball Bearing Lubrication (Wiley 1981), ch. 3; ISO/TS 16281:2008 prints it with 1.48 in place of
+pi/sqrt(4.5) = 1.481.
 Line contact: q = 35948 L^(8/9) delta^(10/9) in N and mm for steel, both rings together (ISO/TS 16281).
 """
 

@@ -86,9 +86,7 @@ class ForceLaw(ABC):
         """Name -> (unit, meaning) of every parameter."""
         return {item.name: (item.metadata["unit"], item.metadata["meaning"]) for item in fields(cls)}
 
-    def evaluate(
-        self, d: Any, v: Any = 0.0, *, time: float = 0.0, angle: float = 0.0, speed: float = 0.0
-    ) -> LawValue:
+    def evaluate(self, d: Any, v: Any = 0.0, *, time: float = 0.0, angle: float = 0.0, speed: float = 0.0) -> LawValue:
         """Return force and tangents at displacements d and velocities v (k,), a time, and angle and speed of the reference."""
         schedule, force = self.functions()
         k, p, state = self.components, np.ascontiguousarray(self.parameters(), dtype=float), np.zeros(self.state_size())
@@ -96,7 +94,8 @@ class ForceLaw(ABC):
         d, v = (np.ascontiguousarray(np.broadcast_to(np.asarray(x, float), k)).copy() for x in (d, v))
         F, Kd, Kv, energy = np.zeros(k), np.zeros(k * k), np.zeros(k * k), np.zeros(4)
         force(p, state, d, v, F, Kd, Kv, energy)
-        return LawValue(F, Kd.reshape(k, k), Kv.reshape(k, k), *map(float, energy[:3]), int(energy[3]))
+        stored, power_in, dissipated, contact = map(float, energy)
+        return LawValue(F, Kd.reshape(k, k), Kv.reshape(k, k), stored, power_in, dissipated, int(contact))
 
 
 def refuse(law: ForceLaw, name: str, expected: str) -> AnalysisError:

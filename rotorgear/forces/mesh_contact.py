@@ -94,11 +94,8 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     if c != 0.0:
         closing = side * rate
         share, slope = 1.0, 0.0
-        if gap != 2:
-            if mode == 2:
-                share, slope = depth / ramp, 1.0 / ramp
-            elif depth < ramp:
-                share, slope = depth / ramp, 1.0 / ramp
+        if gap != 2 and (mode == 2 or depth < ramp):
+            share, slope = depth / ramp, 1.0 / ramp
         viscous = c * share * closing
         if mode != 1 and gap != 2 and elastic + viscous < 0.0:
             viscous, in_depth = -elastic, 0.0
@@ -124,7 +121,9 @@ class MeshContact(ForceLaw):
     backlash: float = parameter("m", "backlash j along the flank normal", 0.0)
     gap: str = parameter("", "line, one-sided or none", "line")
     contact_damping: str = parameter("", "clamped, unclamped or penetration", "clamped")
-    ramp: float = parameter("m", "depth over which the damping grows to c; the reference depth of penetration damping", 1e-9)
+    ramp: float = parameter(
+        "m", "depth over which the damping grows to c; the reference depth of penetration damping", 1e-9
+    )
     order: float = parameter("rad/rad", "mesh phase for each radian of the reference", 0.0)
     phase: float = parameter("rad", "mesh phase at angle 0", 0.0)
     stiffness_cos: tuple[float, ...] = parameter("", "a_n of k(p), relative to k", ())
@@ -201,7 +200,10 @@ class MeshContact(ForceLaw):
     @classmethod
     def examples(cls) -> tuple[MeshContact, ...]:
         """One of each gap and damping, with harmonics of stiffness and error."""
-        ripple = dict(order=20.0, phase=0.3, stiffness_cos=(0.2, 0.05), stiffness_sin=(0.1,), error_cos=(2e-6,), error_sin=(1e-6,))
+        ripple: dict[str, Any] = {
+            "order": 20.0, "phase": 0.3, "stiffness_cos": (0.2, 0.05), "stiffness_sin": (0.1,), "error_cos": (2e-6,),
+            "error_sin": (1e-6,),
+        }  # fmt: skip
         return (
             cls(3e8, 900.0, 40e-6, ramp=2e-6, **ripple),
             cls(3e8, 900.0, 40e-6, contact_damping="unclamped", ramp=2e-6, **ripple),

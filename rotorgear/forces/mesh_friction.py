@@ -1,12 +1,14 @@
 """Sliding friction of the teeth of one helix: it acts across the line of action, with the place of contact as its arm.
 
-Displacements: d0 along the flank normal, which gives the normal force N of `mesh_contact`, d1 across the line of action at the pitch
+Displacements: d0 along the flank normal, which gives the normal force N of `mesh_contact`, d1 across the line of
+action at the pitch
 point, d2 the relative rotation. At the place xi of a contact, xi = p_bt (p/2 pi) from the pitch point, the flanks slide with
 
     v_s = xi W + d1' + xi d2',    W = |w_p| + |w_g|,    F1 = sum F_s,  F2 = sum xi F_s,   F_s = mu N_j tanh(v_s/v_0)
 
 All contacts between the two ends of the path share N evenly. Helical teeth are cut into slices across the face whose phase lags.
-mu is given, or Benedict and Kelley's, ASLE Trans. 4 (1961) 59:  mu = 0.0127 log10(29.66 w/(eta v_s v_r^2)), w in N/mm, eta in mPa s.
+mu is given, or Benedict and Kelley's, ASLE Trans. 4 (1961) 59:  mu = 0.0127 log10(29.66 w/(eta v_s v_r^2)), w in N/mm,
+eta in mPa s.
 """
 
 from __future__ import annotations
@@ -107,7 +109,7 @@ class MeshFriction(ForceLaw):
 
     title: ClassVar[str] = "tooth friction"
 
-    contact: MeshContact = parameter("", "the normal contact that gives N")
+    contact: MeshContact = parameter("", "the normal contact that gives N")  # noqa: RUF009
     base_pitch: float = parameter("m", "transverse base pitch p_bt")
     start: float = parameter("m", "start of the path of contact, xi from the pitch point")
     end: float = parameter("m", "its end")
@@ -116,7 +118,9 @@ class MeshFriction(ForceLaw):
     overlap: float = parameter("", "overlap ratio of helical teeth; 0 for spur", 0.0)
     viscosity: float = parameter("mPa s", "viscosity for Benedict and Kelley's mu, in place of mu", 0.0)
     line_load: float = parameter("N/mm", "mean load on a millimetre of face, for that mu", 0.0)
-    rolling: float = parameter("m/rad", "rolling speed at the pitch point for each rad/s of the reference, for that mu", 0.0)
+    rolling: float = parameter(
+        "m/rad", "rolling speed at the pitch point for each rad/s of the reference, for that mu", 0.0
+    )
     smooth: float = parameter("m/s", "sliding speed v_0 over which friction changes its sense", 0.05)
 
     def __post_init__(self) -> None:

@@ -1,4 +1,4 @@
-"""Spring with cubic term, clearance and viscous damper between two points or to ground: F = k x + k3 x^3 + c d', x = d beyond +-gap."""
+"""Spring with cubic term, clearance and damper: F = k x + k3 x^3 + c d' with x = d beyond +-gap."""
 
 from __future__ import annotations
 

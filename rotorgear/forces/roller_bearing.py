@@ -2,7 +2,8 @@
 
     delta = x cos phi + y sin phi - s/2,   Q = c_l delta^(10/9) where delta > 0,   c_l = 35948 L^(8/9) (N, mm)
 
-for both rings together, rollers aligned with the raceways (ISO/TS 16281:2008). Roller j stands at phi_j = order * angle + phase + 2 pi j/Z.
+for both rings together, rollers aligned with the raceways (ISO/TS 16281:2008).
+Roller j stands at phi_j = order * angle + phase + 2 pi j/Z.
 """
 
 from __future__ import annotations

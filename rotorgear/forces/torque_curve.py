@@ -2,7 +2,8 @@
 
     M = M0 s(t) [1 + a cos(order * angle + phase)] (|w|/w0)^power,   w = ratio * speed + v
 
-power 2 is the propeller law, 0 a constant torque, -1 constant power. s(t) is a step from 1 to `step` between t1 and t1 + rise (half a cosine): a
+power 2 is the propeller law, 0 a constant torque, -1 constant power. s(t) is a step from 1 to `step` between t1 and t1
++ rise (half a cosine): a
 turbine that is cut back. The law's force is -M, so that a positive torque drives in the positive sense.
 """
 
@@ -89,4 +90,7 @@ class TorqueCurve(ForceLaw):
     @classmethod
     def examples(cls) -> tuple[TorqueCurve, ...]:
         """A propeller, and a ripple with a step."""
-        return (cls(-800.0, 0.2, 2.0, 30.0), cls(500.0, ripple=0.1, order=3.0, step=0.4, step_time=0.0, step_rise=0.01, damping=2.0))
+        return (
+            cls(-800.0, 0.2, 2.0, 30.0),
+            cls(500.0, ripple=0.1, order=3.0, step=0.4, step_time=0.0, step_rise=0.01, damping=2.0),
+        )

@@ -55,14 +55,26 @@ def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator
         yield Problem(f"{address}.stiffness_table", "a table beside harmonics", "one of the two")
     places = [point.at for point in mesh.stiffness_table]
     if any(b <= a for a, b in pairwise(places)) or any(not 0.0 <= at < 1.0 for at in places):
-        yield Problem(f"{address}.stiffness_table", f"places {', '.join(f'{at:g}' for at in places)}", "rising places from 0 to below 1")
+        yield Problem(
+            f"{address}.stiffness_table",
+            f"places {', '.join(f'{at:g}' for at in places)}",
+            "rising places from 0 to below 1",
+        )
     if mesh.corner_impact and not 0.0 < mesh.corner_impact.duration < 1.0:
-        yield Problem(f"{address}.corner_impact.duration", f"{mesh.corner_impact.duration:g}", "a share of the mesh cycle between 0 and 1")
+        yield Problem(
+            f"{address}.corner_impact.duration",
+            f"{mesh.corner_impact.duration:g}",
+            "a share of the mesh cycle between 0 and 1",
+        )
     if mesh.friction_coefficient or mesh.lubricant_viscosity:
         if mesh.friction_coefficient and mesh.lubricant_viscosity:
             yield Problem(address, "friction_coefficient and lubricant_viscosity", "one of the two")
         if not (pinion.normal_module and gear.normal_module and (pinion.width or gear.width)):
-            yield Problem(address, "friction between gears without teeth", "teeth, module and width of both gears: they place the contacts")
+            yield Problem(
+                address,
+                "friction between gears without teeth",
+                "teeth, module and width of both gears: they place the contacts",
+            )
     for key in ("helix_index_error", "helix_stagger"):
         if getattr(mesh, key) and pinion.kind != "herringbone":
             yield Problem(f"{address}.{key}", "a value", "nothing here", "only a herringbone pair has two helices")

@@ -46,7 +46,8 @@ class Load(Part):
     )
     power: Power | None = Field(None, description="power, in place of the torque")
     speed_power: SignedRatio = Field(
-        0.0, description="transient: the torque goes with this power of the speed; 2 for a propeller, -1 for constant power"
+        0.0,
+        description="transient: the torque goes with this power of the speed; 2 for a propeller, -1 for constant power",
     )
     ripple: Ratio = Field(0.0, description="transient: amplitude of the torque's ripple as a share of it")
     ripple_order: PositiveRatio = Field(1.0, description="transient: periods of the ripple in a turn of its shaft")

@@ -114,7 +114,8 @@ class RollingElements(Part):
     length: PositiveLength | None = Field(None, description="effective length of a roller")
     clearance: NonNegativeLength = Field(0.0, description="radial internal clearance: the whole play along a diameter")
     contact_angle: Angle = Field(
-        0.0, description="free contact angle of an angular contact ball bearing; positive where it takes a push towards +z"
+        0.0,
+        description="free contact angle of an angular contact ball bearing; positive where it takes a push towards +z",
     )
     inner_groove: PositiveRatio = Field(0.52, description="groove radius of the inner ring over the ball's diameter")
     outer_groove: PositiveRatio = Field(0.53, description="groove radius of the outer ring over the ball's diameter")

@@ -83,7 +83,9 @@ def draw_spectra(result: TransientResult, figure: Any) -> None:
         axes.semilogy(found.frequency, np.maximum(found.amplitude, 1e-6 * found.amplitude.max()), lw=0.8)
         for mesh, f in () if orders else result.mesh_frequency.items():
             for k in range(1, int(found.frequency[-1] / f) + 1):
-                axes.axvline(k * f, color="tab:red" if mesh == next(iter(result.mesh_frequency)) else "0.6", lw=0.4, ls=":")
+                axes.axvline(
+                    k * f, color="tab:red" if mesh == next(iter(result.mesh_frequency)) else "0.6", lw=0.4, ls=":"
+                )
         axes.set_ylabel(f"{found.unit}")
         axes.set_title(name, fontsize=9)
         axes.grid(alpha=0.3)
@@ -118,7 +120,9 @@ def draw_energy(result: TransientResult, figure: Any) -> None:
     axes = figure.subplots()
     for name in ("kinetic", "strain", "contact", "load_work", "excitation_work", "dissipated", "numerical"):
         axes.plot(1e3 * e.time, getattr(e, name), lw=1.0, label=name.replace("_", " "))
-    axes.set_yscale("symlog", linthresh=max(1e-6 * max(float(np.abs(e.dissipated).max()), float(e.kinetic.max()), 1e-30), 1e-30))
+    axes.set_yscale(
+        "symlog", linthresh=max(1e-6 * max(float(np.abs(e.dissipated).max()), float(e.kinetic.max()), 1e-30), 1e-30)
+    )
     axes.set_xlabel("time, ms")
     axes.set_ylabel("energy since the start, J")
     axes.grid(alpha=0.3)
@@ -132,7 +136,9 @@ def draw_spectrogram(result: TransientResult, figure: Any) -> None:
     name = next((n for n in result.channel if n.endswith("acceleration")), f"force {result.contact[0]}")
     values = result.history(name)[result.counted]
     size = int(min(max(values.size // 60, 64), 4096))
-    f, t, power = spectrogram(values - values.mean(), 1.0 / result.spacing, nperseg=size, noverlap=size // 2, scaling="spectrum")
+    f, t, power = spectrogram(
+        values - values.mean(), 1.0 / result.spacing, nperseg=size, noverlap=size // 2, scaling="spectrum"
+    )
     axes = figure.subplots()
     speeds = np.interp(result.settle + t, result.time, result.speed) * 30.0 / np.pi
     level = 10.0 * np.log10(np.maximum(2.0 * power, 1e-12 * power.max()))

@@ -1,4 +1,4 @@
-"""Result of a transient analysis: histories of contacts and channels, statistics with their error, contact events, energies, cost."""
+"""Result of a transient analysis: histories, statistics with their error, contact events, energies, cost."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from rotorgear.model.model import Model
 class EnergyLedger:
     """Energies in J at times (e,), all since t = 0: what came in, what is stored, what was dissipated, and the rest.
 
-    numerical = stored - stored(0) - load_work - excitation_work + dissipated: what the integration itself made or lost. `share` is its largest size
-    over the largest of the others.
+    numerical = stored - stored(0) - load_work - excitation_work + dissipated: what the integration itself made or lost. `share`
+    is its largest size over the largest of the others.
     """
 
     time: np.ndarray

@@ -1,7 +1,7 @@
 """Complex modes of M q'' + D q' + K q = f, in a basis of real modes, with motions free of stiffness and damping apart.
 
-q = Re(Phi z) + R r with z' = s z + W f and r'' = R^T f, where one z stands for each conjugate pair. The basis holds all real modes, or the
-lowest ones and, for the local forces, the residual attachment vectors K^-1 B as dynamic Ritz vectors.
+q = Re(Phi z) + R r with z' = s z + W f and r'' = R^T f, where one z stands for each conjugate pair. The basis holds
+all real modes, or the lowest ones and, for the local forces, the residual attachment vectors K^-1 B as dynamic Ritz vectors.
 Craig and Kurdila, Fundamentals of Structural Dynamics, 2nd ed. (Wiley 2006), sections 10.3 and 17.
 """
 
@@ -60,7 +60,7 @@ def complex_modes(
         ConvergenceError: eigenvectors so near to each other that the modes are worthless.
     """
     with single_thread(0):
-        V, R, squares = _real_basis(M, K, B, modes)
+        V, R = _real_basis(M, K, B, modes)
         Kb, Db = V.T @ (K @ V), V.T @ (D @ V)
         if R.shape[1]:
             met, R = _split_damped(D, V, R, Db)
@@ -73,18 +73,18 @@ def complex_modes(
 
 
 def _split_damped(D: sp.csc_array, V: np.ndarray, R: np.ndarray, Db: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Split motions without stiffness into those that meet velocity terms (rates in 1/s beyond rounding) and those that meet none."""
+    """Split motions without stiffness into those that meet velocity terms (rates in 1/s) and those that meet none."""
     DR, DtR = D @ R, D.T @ R
     rates = np.vstack([R.T @ DR, V.T @ DR, R.T @ DtR, V.T @ DtR])
     _, sizes, turned = la.svd(rates)
-    met = np.concatenate([sizes > 10.0 * _NOISE * np.abs(Db).max(initial=1e-300), np.zeros(R.shape[1] - sizes.size, bool)])
+    met = np.concatenate(
+        [sizes > 10.0 * _NOISE * np.abs(Db).max(initial=1e-300), np.zeros(R.shape[1] - sizes.size, bool)]
+    )
     return R @ turned[met].T, R @ turned[~met].T
 
 
-def _real_basis(
-    M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | None
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Elastic vectors (n, b), rigid ones (n, r) and lambda of the elastic ones, by eigh(M, K + sigma M), exact for low modes."""
+def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | None) -> tuple[np.ndarray, np.ndarray]:
+    """Elastic vectors (n, b) and rigid ones (n, r), by eigh(M, K + sigma M), exact for low modes."""
     if np.any(M.diagonal() <= 0.0):
         raise AnalysisError("a degree of freedom has no inertia; the exponential integrator needs it: use newmark")
     dense, stiff = M.toarray(), K.toarray()
@@ -99,13 +99,13 @@ def _real_basis(
     rigid[noise == 0.0] = True
     R, V, lam = V[:, rigid], V[:, ~rigid], (1.0 / mu - sigma)[~rigid]
     if modes is not None and modes < V.shape[1]:
-        V, lam = _with_residuals(dense, stiff, V, lam, B, modes)
-    return V, R, lam
+        V = _with_residuals(dense, stiff, V, lam, B, modes)
+    return V, R
 
 
 def _with_residuals(
     M: np.ndarray, K: np.ndarray, V: np.ndarray, lam: np.ndarray, B: np.ndarray, modes: int
-) -> tuple[np.ndarray, np.ndarray]:
+) -> np.ndarray:
     """The lowest modes and what the others give statically under unit local forces, as Ritz vectors with inertia."""
     high, low = V[:, modes:], V[:, :modes]
     residual = high @ ((high.T @ B) / lam[modes:, None])
@@ -114,8 +114,8 @@ def _with_residuals(
     values, turned = la.eigh(residual.T @ (M @ residual))
     kept = values > 1e-10 * values.max(initial=0.0)
     residual = residual @ (turned[:, kept] / np.sqrt(values[kept]))
-    squares, turned = la.eigh(residual.T @ (K @ residual))
-    return np.hstack([low, residual @ turned]), np.concatenate([lam[:modes], squares])
+    _, turned = la.eigh(residual.T @ (K @ residual))
+    return np.hstack([low, residual @ turned])
 
 
 def _pairs(K: np.ndarray, D: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:

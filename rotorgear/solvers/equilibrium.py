@@ -1,7 +1,8 @@
 """Static equilibrium with local forces: where a time integration starts.
 
-About the reference stiffness k, q = q0 + X (k d - F(d)) with X = (K + B k B^T)^-1 B, so d - d0 + A (F(d) - k d) = 0 with A = B^T X,
-which Newton's method solves on m unknowns. What the loads do on free motions R is carried by inertia: f - M R (R^T M R)^-1 R^T f.
+About the reference stiffness k, q = q0 + X (k d - F(d)) with X = (K + B k B^T)^-1 B, so d - d0 + A (F(d) - k d) = 0,
+A = B^T X, which Newton's method solves on m unknowns.
+What the loads do on free motions R is carried by inertia: f - M R (R^T M R)^-1 R^T f.
 """
 
 from __future__ import annotations

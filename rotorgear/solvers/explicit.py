@@ -1,7 +1,9 @@
 """Reference integrator for small models: explicit Runge-Kutta of order 8 with its own step control (DOP853).
 
-Its steps are far smaller than those of the others, because they follow the highest frequency of the structure; it shares nothing with them but
-the force laws, and so it checks them. Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I (Springer 1993), II.5.
+Its steps are far smaller than those of the others, because they follow the highest frequency of the structure; it
+shares nothing with them but
+the force laws, and so it checks them. Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I (Springer
+1993), II.5.
 """
 
 from __future__ import annotations
@@ -44,7 +46,9 @@ class Explicit:
         if np.any(system.M.diagonal() <= 0.0):
             raise AnalysisError("a degree of freedom has no inertia; the explicit integrator needs it: use newmark")
         if system.n > MOST_DOFS:
-            raise AnalysisError(f"{system.n} dofs are too many for the explicit integrator (at most {MOST_DOFS}); use newmark")
+            raise AnalysisError(
+                f"{system.n} dofs are too many for the explicit integrator (at most {MOST_DOFS}); use newmark"
+            )
         return ExplicitStepper(system, h, speed, max(self.relative, _FINEST))
 
 
@@ -81,7 +85,14 @@ class ExplicitStepper:
         begin, end = state.step * self.h, (state.step + steps) * self.h
         y = np.concatenate([state.q, state.v])
         scale = np.concatenate([np.full(n, _size(state.q, y[:n])), np.full(n, _size(state.v, y[n:]))])
-        solver = DOP853(self._slope, begin, y, end, rtol=self.relative, atol=self.relative * np.maximum(scale, _smallest(self.system)))
+        solver = DOP853(
+            self._slope,
+            begin,
+            y,
+            end,
+            rtol=self.relative,
+            atol=self.relative * np.maximum(scale, _smallest(self.system)),
+        )
         done, status = 0, 0
         with np.errstate(all="ignore"):
             while solver.status == "running":

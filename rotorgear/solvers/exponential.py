@@ -1,6 +1,7 @@
 """The exponential integrator: exact for the linear part in complex modes, second order in the local forces, speed constant.
 
-The local forces are split into their linear reference k d + c v, which goes into the modes, and the rest u, which is linear within a
+The local forces are split into their linear reference k d + c v, which goes into the modes, and the rest u, which is
+linear within a
 step and found by Newton's method on m unknowns. Hochbruck and Ostermann, Acta Numerica 19 (2010) 209.
 """
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.complex_modes import ComplexModes, complex_modes
-from rotorgear.solvers.local_system import LocalSystem, Records, State, blank_records, local_values
+from rotorgear.solvers.local_system import LocalSystem, Records, State, blank_records
 
 
 @dataclass(frozen=True)
@@ -98,10 +99,20 @@ class ExponentialStepper:
         weighted = modes.basis.T @ (system.M @ np.column_stack([state.q, state.v]))
         z = self._modal(weighted)
         laws = system.forces
-        u = laws.reference_stiffness @ (system.B.T @ state.q) + laws.reference_damping @ (system.B.T @ state.v) - state.F
+        u = (
+            laws.reference_stiffness @ (system.B.T @ state.q)
+            + laws.reference_damping @ (system.B.T @ state.v)
+            - state.F
+        )
         y = z - self._Q1 @ u
         rigid = modes.rigid.T @ (system.M @ np.column_stack([state.q, state.v]))
-        state.inner = {"yr": y.real.copy(), "yi": y.imag.copy(), "r0": rigid[:, 0].copy(), "r1": rigid[:, 1].copy(), "u": u}
+        state.inner = {
+            "yr": y.real.copy(),
+            "yi": y.imag.copy(),
+            "r0": rigid[:, 0].copy(),
+            "r1": rigid[:, 1].copy(),
+            "u": u,
+        }
 
     def _modal(self, coordinates: np.ndarray) -> np.ndarray:
         """z (nz,) with the given basis coordinates and velocities (b, 2), by least squares on the modes themselves."""

@@ -16,17 +16,17 @@ FAILED, NOT_FINITE = -1, -2
 
 
 @schedule_function
-def no_schedule(angle, speed, time, parameters, state):  # type: ignore[no-untyped-def]
+def no_schedule(angle, speed, time, parameters, state):
     """Nothing depends on time."""
 
 
 @force_function
-def no_force(parameters, state, d, v, force, in_d, in_v, energy):  # type: ignore[no-untyped-def]
+def no_force(parameters, state, d, v, force, in_d, in_v, energy):
     """No force."""
 
 
 @compiled
-def schedule_all(schedules, kind, parameters, parameters_first, state_first, angle, speed, time, state):  # type: ignore[no-untyped-def]
+def schedule_all(schedules, kind, parameters, parameters_first, state_first, angle, speed, time, state):
     """Fill the state of all laws at a time."""
     for i in range(kind.size):
         schedules[kind[i]](
@@ -36,7 +36,9 @@ def schedule_all(schedules, kind, parameters, parameters_first, state_first, ang
 
 
 @compiled
-def force_all(forces, kind, first, parameters, parameters_first, state_first, block_first, state, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
+def force_all(
+    forces, kind, first, parameters, parameters_first, state_first, block_first, state, d, v, F, Kd, Kv, energy
+):
     """Forces (m,), tangents (sum of k*k,) and energies (4 l,) of all laws."""
     for i in range(kind.size):
         a, b, p, q = first[i], first[i + 1], block_first[i], block_first[i + 1]
@@ -47,7 +49,7 @@ def force_all(forces, kind, first, parameters, parameters_first, state_first, bl
 
 
 @compiled
-def solve_small(A, b, n):  # type: ignore[no-untyped-def]
+def solve_small(A, b, n):
     """Solve A x = b in place by Gauss with row exchanges; False where A is singular."""
     for k in range(n):
         pivot, row = abs(A[k, k]), k
@@ -75,7 +77,7 @@ def solve_small(A, b, n):  # type: ignore[no-untyped-def]
 
 @compiled
 def contact_step(forces, kind, first, parameters, parameters_first, state_first, block_first, state,
-                 d_free, v_free, Ad, Av, F, d, v, trial, Kd, Kv, energy, J, tolerance):  # type: ignore[no-untyped-def]  # fmt: skip
+                 d_free, v_free, Ad, Av, F, d, v, trial, Kd, Kv, energy, J, tolerance):  # fmt: skip
     """Find F with F = law(d_free - Ad F, v_free - Av F), from the guess in F; d, v and energy are filled.
 
     Returns the number of linear solutions, or FAILED or NOT_FINITE.
@@ -104,7 +106,9 @@ def contact_step(forces, kind, first, parameters, parameters_first, state_first,
             for i in range(k):
                 rounding = 0.0
                 for j in range(k):
-                    rounding += abs(Kd[block_first[law] + i * k + j]) * (abs(d_free[first[law] + j]) + abs(d[first[law] + j]))
+                    rounding += abs(Kd[block_first[law] + i * k + j]) * (
+                        abs(d_free[first[law] + j]) + abs(d[first[law] + j])
+                    )
                 floor = max(floor, 8.0 * _EPS * rounding)
         if worst <= tolerance * size + floor:
             for i in range(m):
@@ -121,11 +125,11 @@ def contact_step(forces, kind, first, parameters, parameters_first, state_first,
         for law in range(kind.size):
             a, k = first[law], first[law + 1] - first[law]
             for i in range(k):
-                for l in range(k):
-                    kd, kv = Kd[block_first[law] + i * k + l], Kv[block_first[law] + i * k + l]
+                for r in range(k):
+                    kd, kv = Kd[block_first[law] + i * k + r], Kv[block_first[law] + i * k + r]
                     if kd != 0.0 or kv != 0.0:
                         for j in range(m):
-                            J[a + i, j] += kd * Ad[a + l, j] + kv * Av[a + l, j]
+                            J[a + i, j] += kd * Ad[a + r, j] + kv * Av[a + r, j]
         if not solve_small(J, step, m):
             return FAILED
         for i in range(m):

@@ -1,6 +1,7 @@
 """Compiled: the loop of the exponential integrator in complex modes, with forces linear within a step.
 
-With z' = s z + w^T (B u + f) and u linear from u0 to u1, the exact step is z1 = e z0 + Q0 u0 + Q1 u1 + g. In y = z - Q1 u it reads
+With z' = s z + w^T (B u + f) and u linear from u0 to u1, the exact step is z1 = e z0 + Q0 u0 + Q1 u1 + g. In y = z -
+Q1 u it reads
 y1 = e y + (e Q1 + Q0) u0 + g, so that one pass over the modes serves the step; d and v at its end are C y1 + A u1.
 Motions without stiffness and damping follow r1 = r + h r' + h^2 (u0/3 + u1/6), r1' = r' + h (u0 + u1)/2.
 Hochbruck and Ostermann, Acta Numerica 19 (2010) 209.
@@ -18,7 +19,7 @@ _BLOCK = 256
 
 
 @compiled(fast=True)
-def modal_pass(er, ei, Gr, Gi, gr, gi, Cr, Ci, u, yr, yi, out):  # type: ignore[no-untyped-def]
+def modal_pass(er, ei, Gr, Gi, gr, gi, Cr, Ci, u, yr, yi, out):
     """y <- e y + G u + g and out = Re(C y), block by block so that y stays in the fast cache."""
     nz, m, rows = yr.size, u.size, out.size
     for r in range(rows):
@@ -52,7 +53,7 @@ def exponential_loop(
     er, ei, Gr, Gi, gr, gi, Qr, Qi, Cr, Ci, Br, rigid_load, Z, Ad, Av, k_ref, c_ref,
     schedules, forces, kind, first, parameters, parameters_first, state_first, block_first,
     yr, yi, r0, r1, u, F, before, tolerance, records_z, records_r, records_u, records_d, records_F, records_E, sums, last, events,
-):  # type: ignore[no-untyped-def]  # fmt: skip
+):  # fmt: skip
     """Advance `steps` steps in place and record every `every`-th; returns steps done, status and linear solutions."""
     m, nr, nz = F.size, r0.size, yr.size
     state = np.zeros(state_first[-1])

@@ -24,7 +24,7 @@ def newmark_loop(
     Bt_first, Bt_column, Bt_value, P, Ad, Av, load,
     schedules, forces, kind, first, parameters, parameters_first, state_first, block_first,
     q, v, a, F, before, tolerance, records_q, records_v, records_a, records_d, records_F, records_E, sums, last, events,
-):  # type: ignore[no-untyped-def]  # fmt: skip
+):  # fmt: skip
     """Advance `steps` steps in place and record every `every`-th; returns steps done and the status of the last."""
     n, m = q.size, F.size
     state = np.zeros(state_first[-1])

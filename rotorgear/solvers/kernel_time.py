@@ -8,7 +8,7 @@ from rotorgear.solvers.compiled import compiled
 
 
 @compiled
-def rotation_at(t, times, speeds, angles):  # type: ignore[no-untyped-def]
+def rotation_at(t, times, speeds, angles):
     """Angle and speed of the reference at a time; see solvers/motion.py."""
     k = times.size
     if k == 1 or t <= times[0]:
@@ -22,7 +22,7 @@ def rotation_at(t, times, speeds, angles):  # type: ignore[no-untyped-def]
 
 
 @compiled(fast=True)
-def add_products(first, column, K, D, q, v, out):  # type: ignore[no-untyped-def]
+def add_products(first, column, K, D, q, v, out):
     """Subtract K q + D v from out; both matrices in one pattern by rows."""
     for i in range(out.size):
         total = 0.0
@@ -32,7 +32,7 @@ def add_products(first, column, K, D, q, v, out):  # type: ignore[no-untyped-def
 
 
 @compiled(fast=True)
-def row_products(first, column, value, x, out):  # type: ignore[no-untyped-def]
+def row_products(first, column, value, x, out):
     """Sparse matrix by rows times x."""
     for i in range(out.size):
         total = 0.0
@@ -42,7 +42,7 @@ def row_products(first, column, value, x, out):  # type: ignore[no-untyped-def]
 
 
 @compiled(fast=True)
-def lu_solve(Lp, Li, Lx, Up, Ui, Ux, diagonal, row_place, column_place, b, y, x):  # type: ignore[no-untyped-def]
+def lu_solve(Lp, Li, Lx, Up, Ui, Ux, diagonal, row_place, column_place, b, y, x):
     """Solve A x = b from SuperLU's factors by columns, without their diagonals; `diagonal` is 1/diag(U)."""
     n = b.size
     for i in range(n):
@@ -63,7 +63,7 @@ def lu_solve(Lp, Li, Lx, Up, Ui, Ux, diagonal, row_place, column_place, b, y, x)
 
 
 @compiled
-def count_events(energy, last, events):  # type: ignore[no-untyped-def]
+def count_events(energy, last, events):
     """Count, for each law, steps on the driving flank, apart, and on the back flank, and the losses of contact."""
     for law in range(last.size):
         now = int(energy[4 * law + 3])

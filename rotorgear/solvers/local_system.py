@@ -1,6 +1,6 @@
 """A linear structure with local forces, its state in time, and what integrators record of it.
 
-    M q'' + D q' + K q + B F(B^T q, B^T q', t) = f
+M q'' + D q' + K q + B F(B^T q, B^T q', t) = f
 """
 
 from __future__ import annotations
@@ -67,7 +67,8 @@ class LocalSystem:
 class State:
     """Where a run stands after `step` steps: displacements, velocities, accelerations (n,), local forces (m,) and sums.
 
-    `before` are the forces a step earlier; `sums` (l, 2): energy put in and dissipated by each law; `events` (l, 4): steps on the driving
+    `before` are the forces a step earlier; `sums` (l, 2): energy put in and dissipated by each law; `events` (l, 4):
+    steps on the driving
     flank, apart, on the back flank, and losses of contact; `inner` what else an integrator carries on.
     """
 
@@ -85,15 +86,18 @@ class State:
     def copy(self) -> State:
         """Return a copy with arrays of its own."""
         inner = {name: value.copy() for name, value in self.inner.items()}
-        rest = (self.q, self.v, self.a, self.F, self.before, self.sums, self.last, self.events)
-        return State(self.step, *(value.copy() for value in rest), inner)
+        return State(
+            self.step, self.q.copy(), self.v.copy(), self.a.copy(), self.F.copy(), self.before.copy(), self.sums.copy(),
+            self.last.copy(), self.events.copy(), inner,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Records:
     """r recorded steps: time (r,), local d and F (r, m), energies of each law (r, l, 3): stored, put in, dissipated.
 
-    `fields` gives rows of q, v and a. `status`: 0, or what stopped the loop (-1 no convergence, -2 not finite); `done` steps done;
+    `fields` gives rows of q, v and a. `status`: 0, or what stopped the loop (-1 no convergence, -2 not finite); `done`
+    steps done;
     `solutions`: linear ones of m x m.
     """
 
@@ -174,7 +178,9 @@ def _evaluated(
     _, forces, kind, first, parameters, parameters_first, state_first, block_first = laws.arguments()
     schedule_all(laws.schedules, kind, parameters, parameters_first, state_first, angle, speed, t, state)
     d, v = np.ascontiguousarray(d, dtype=float), np.ascontiguousarray(v, dtype=float)
-    force_all(forces, kind, first, parameters, parameters_first, state_first, block_first, state, d, v, F, Kd, Kv, energy)
+    force_all(
+        forces, kind, first, parameters, parameters_first, state_first, block_first, state, d, v, F, Kd, Kv, energy
+    )
     return F, Kd, energy
 
 

@@ -119,14 +119,12 @@ def _one_pattern(*matrices: sp.csc_array) -> tuple[np.ndarray, ...]:
     values = []
     for A in matrices:
         full = sp.csr_array(A)
-        where = {}
         value = np.zeros(pattern.nnz)
         coordinates = full.tocoo()
         key = coordinates.row.astype(np.int64) * full.shape[1] + coordinates.col
         place = np.searchsorted(rows.astype(np.int64) * full.shape[1] + pattern.indices, key)
         np.add.at(value, place, coordinates.data)
         values.append(value)
-        del where
     return (pattern.indptr.astype(np.int32), pattern.indices.astype(np.int32), *values)
 
 

@@ -1,4 +1,4 @@
-"""Runs an integrator in chunks: records go to a receiver chunk by chunk, and whatever stops a run says so and keeps what is there."""
+"""Runs an integrator in chunks: records go to a receiver chunk by chunk, and what stops a run keeps what is there."""
 
 from __future__ import annotations
 

@@ -1,13 +1,13 @@
 """The system as time integrators take it: the linear structure without its meshes, and each tooth contact as a local law.
 
-Per flank and helix one relative displacement d = v^T q (elements/gear_mesh.py); phases of k(t) and e(t) follow from tooth numbers and
-centre lines (model/mesh_phases.py). Nothing here becomes a sign that elements/gear_mesh.py does not give.
+Per flank and helix one relative displacement d = v^T q (elements/gear_mesh.py); phases of k(t) and e(t) follow from tooth
+numbers and centre lines (model/mesh_phases.py). Nothing here becomes a sign that elements/gear_mesh.py does not give.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -115,7 +115,9 @@ def _mesh_parts(system: System) -> list[LocalPart]:
             found.append(rubbing)
         if law.gap == "one-sided":
             other = contact_vector(replace(geometry, torque_sense=-geometry.torque_sense))
-            found.append(LocalPart(part, f"{label} back", _back(law), columns_at(system, dofs, other[None]), is_mesh=True))
+            found.append(
+                LocalPart(part, f"{label} back", _back(law), columns_at(system, dofs, other[None]), is_mesh=True)
+            )
     return found
 
 
@@ -171,7 +173,7 @@ def _pieces(table: tuple[StiffnessPoint, ...]) -> tuple[tuple[float, float, floa
     return tuple((at, share, end) for (at, share), end in zip(points, ends, strict=True))
 
 
-def _impact(impact: CornerImpact | None) -> dict[str, float]:
+def _impact(impact: CornerImpact | None) -> dict[str, Any]:
     if impact is None:
         return {}
     return {"impact": impact.force, "impact_share": impact.duration, "impact_phase": -impact.at}

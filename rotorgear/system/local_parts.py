@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LocalPart:
-    """A law and where it acts: address of its part, what it is, its law, and the columns (a, k) of its displacements among all dofs."""
+    """A law and where it acts: its part, a label, the law, and the columns (a, k) of its displacements among all dofs."""
 
     part: str
     label: str
@@ -75,7 +75,11 @@ def _bearing_law(bearing: Bearing, ratio: float) -> ForceLaw:
     order = float(ratio * slip_free)
     if rolling.kind == "roller":
         return RollerBearing(
-            rolling.elements, rolling.length or 0.0, rolling.clearance, order, reference=(float(linear[0]), float(linear[1]))
+            rolling.elements,
+            rolling.length or 0.0,
+            rolling.clearance,
+            order,
+            reference=(float(linear[0]), float(linear[1])),
         )
     return BallBearing(
         rolling.elements, rolling.element_diameter, rolling.pitch_diameter, rolling.inner_groove, rolling.outer_groove,
@@ -84,7 +88,13 @@ def _bearing_law(bearing: Bearing, ratio: float) -> ForceLaw:
 
 
 def friction_part(
-    system: System, force: MeshForce, geometry: ContactGeometry, label: str, contact: MeshContact, dofs: np.ndarray, column: np.ndarray
+    system: System,
+    force: MeshForce,
+    geometry: ContactGeometry,
+    label: str,
+    contact: MeshContact,
+    dofs: np.ndarray,
+    column: np.ndarray,
 ) -> LocalPart | None:
     """Friction of one helix; None where the mesh has none."""
     from rotorgear.forces.mesh_friction import MeshFriction
@@ -136,7 +146,12 @@ def load_parts(system: System) -> Iterator[LocalPart]:
             item.torque, ratio, load.speed_power, speed * abs(ratio) or 1.0, ripple=load.ripple,
             order=load.ripple_order * abs(ratio), step=load.step_to, step_time=load.step_at, step_rise=load.step_duration,
         )  # fmt: skip
-        yield LocalPart(item.name, item.name, law, columns_at(system, node_dofs(system.nodes.at(item.shaft, item.z))[0], np.eye(6)[5:]))
+        yield LocalPart(
+            item.name,
+            item.name,
+            law,
+            columns_at(system, node_dofs(system.nodes.at(item.shaft, item.z))[0], np.eye(6)[5:]),
+        )
 
 
 def varying_load(system: System, name: str) -> Load | None:

@@ -10,7 +10,7 @@ from rotorgear.analysis.transient import transient
 from rotorgear.errors import ModelError
 from tests.unit.analysis.spur_pair import spur_pair
 
-SHORT = dict(time=0.05, settle=0.1)
+SHORT = {"time": 0.05, "settle": 0.1}
 
 
 def test_zero_backlash_holds_the_teeth_between_both_flanks() -> None:
@@ -18,7 +18,10 @@ def test_zero_backlash_holds_the_teeth_between_both_flanks() -> None:
     assert result.status == "success"
     assert result.contact_time[0, 1] == pytest.approx(0.0, abs=1e-3)  # never apart: one flank hands over to the other
     linear = transient(spur_pair(meshes__pair__contact_damping="unclamped", operation__torque="3 N m"), **SHORT)
-    closed = transient(spur_pair(meshes__pair__backlash="0 mm", meshes__pair__contact_damping="unclamped", operation__torque="3 N m"), **SHORT)
+    closed = transient(
+        spur_pair(meshes__pair__backlash="0 mm", meshes__pair__contact_damping="unclamped", operation__torque="3 N m"),
+        **SHORT,
+    )
     assert closed.mesh_force.std() == pytest.approx(linear.mesh_force.std(), rel=2e-2)
 
 
@@ -57,7 +60,12 @@ def test_a_load_that_reverses_moves_contact_to_the_back_flank(flank: str) -> Non
 
 
 def test_a_mesh_of_1e12_newton_a_metre_carries_the_static_force_exactly_and_the_dynamic_one_with_an_estimate() -> None:
-    still = transient(spur_pair(meshes__pair__stiffness="1e12 N/m", meshes__pair__transmission_error=[], meshes__pair__backlash="20 um"), time=0.01)
+    still = transient(
+        spur_pair(
+            meshes__pair__stiffness="1e12 N/m", meshes__pair__transmission_error=[], meshes__pair__backlash="20 um"
+        ),
+        time=0.01,
+    )
     assert still.mesh_force == pytest.approx(200.0 / (0.048 * np.cos(np.radians(20.0))), rel=1e-6)
     shaken = transient(spur_pair(meshes__pair__stiffness="1e12 N/m"), time=0.05, settle=0.1, accuracy=0.02)
     assert shaken.status == "success"
@@ -65,7 +73,14 @@ def test_a_mesh_of_1e12_newton_a_metre_carries_the_static_force_exactly_and_the_
 
 
 def test_a_bearing_that_is_never_loaded_does_nothing() -> None:
-    rolling = {"kind": "roller", "elements": 12, "element_diameter": "8 mm", "length": "8 mm", "pitch_diameter": "60 mm", "clearance": "0.9 mm"}
+    rolling = {
+        "kind": "roller",
+        "elements": 12,
+        "element_diameter": "8 mm",
+        "length": "8 mm",
+        "pitch_diameter": "60 mm",
+        "clearance": "0.9 mm",
+    }
     spare = {"shaft": "one", "at": "30 mm", "stiffness": {"radial": "1e8 N/m"}, "rolling": rolling}
     with_it = transient(spur_pair(bearings__spare=spare), time=0.02, settle=0.05, steps=200)
     without = transient(spur_pair(), time=0.02, settle=0.05, steps=200)
@@ -86,7 +101,13 @@ def test_torques_that_do_not_balance_are_refused_in_the_model_and_drift_is_told_
 
 
 def test_steps_that_are_far_too_large_stay_bounded_and_are_told() -> None:
-    result = transient(spur_pair(meshes__pair__backlash="20 um", operation__torque="3 N m"), steps=3, records=3, method="newmark", time=0.2)
+    result = transient(
+        spur_pair(meshes__pair__backlash="20 um", operation__torque="3 N m"),
+        steps=3,
+        records=3,
+        method="newmark",
+        time=0.2,
+    )
     assert np.all(np.isfinite(result.mesh_force))
     assert result.error_estimate > 0.05 or "smaller step" in result.status
     assert any("smaller step" in note for note in result.warnings)

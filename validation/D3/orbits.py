@@ -22,7 +22,7 @@ _SETTLE = 40
 
 
 def measure(quantity: str, mode: str) -> float:
-    """xmax, xmin or rms of an orbit with so many steps a period; or the mean order of the state after a period, 200 to 3200 steps."""
+    """xmax, xmin or rms of an orbit with so many steps a period; or the mean order of the state after one period."""
     name, method, *steps = mode.split(", ")
     if quantity == "order of the state":
         counts = [200, 400, 800, 1600, 3200]

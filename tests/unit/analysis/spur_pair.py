@@ -13,7 +13,8 @@ _DATA: dict[str, Any] = {
     "materials": {"steel": {"youngs_modulus": "206 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}},
     "shafts": {
         "one": {"position": ["0 mm", "0 mm"], "material": "steel", "sections": [{"length": "120 mm", "outer_diameter": "40 mm"}]},
-        "two": {"position": ["120 mm", "0 mm"], "material": "steel", "sections": [{"length": "120 mm", "outer_diameter": "50 mm"}]},
+        "two": {"position": ["120 mm", "0 mm"], "material": "steel",
+                "sections": [{"length": "120 mm", "outer_diameter": "50 mm"}]},
     },
     "gears": {
         "pinion": {"shaft": "one", "at": "60 mm", "kind": "spur", "teeth": 24, "normal_module": "4 mm", "width": "30 mm"},
@@ -36,7 +37,7 @@ _DATA: dict[str, Any] = {
 
 
 def spur_pair(**changes: Any) -> rg.Model:
-    """Return the model; `changes` are values by address, with __ between the names: meshes__pair__backlash="0.1 mm". None removes."""
+    """Return the model; `changes` by address, with __ between names: meshes__pair__backlash="0.1 mm". None removes."""
     data = copy.deepcopy(_DATA)
     for address, value in changes.items():
         *way, last = address.split("__")

@@ -35,7 +35,9 @@ def harmonic_force(model: rg.Model, number: int) -> complex:
 @pytest.mark.parametrize("method", ["newmark", "exponential", "generalised-alpha"])
 def test_teeth_that_never_part_give_the_frequency_response(method: str) -> None:
     model = spur_pair()
-    result = transient(System(model), method=method, settle=0.2, time=0.05, steps=1200, records=40, error_estimate=False)
+    result = transient(
+        System(model), method=method, settle=0.2, time=0.05, steps=1200, records=40, error_estimate=False
+    )
     lines = np.fft.rfft(result.mesh_force[-1200:, 0]) / 600.0  # 30 whole periods
     for number in (1, 2):
         assert abs(lines[30 * number]) == pytest.approx(abs(harmonic_force(model, number)), rel=1e-3)
@@ -52,7 +54,9 @@ def test_without_excitation_the_static_forces_stay() -> None:
 
 def test_bearing_forces_carry_the_mesh_force_in_the_mean() -> None:
     result = transient(spur_pair(), time=0.1, settle=0.2)
-    force = {axis: sum(result.history(f"bearings.{b} force {axis}")[result.counted].mean() for b in "ab") for axis in "xy"}
+    force = {
+        axis: sum(result.history(f"bearings.{b} force {axis}")[result.counted].mean() for b in "ab") for axis in "xy"
+    }
     # x: the pinion is pushed away from the wheel; y: along the line of action.
     tangential = 200.0 / 0.048
     assert abs(force["y"]) == pytest.approx(tangential, rel=1e-3)
@@ -72,7 +76,9 @@ def test_the_methods_agree_within_their_error_estimates_while_teeth_part() -> No
 
 
 def test_contact_is_lost_only_if_there_is_backlash_and_the_response_does_not_depend_on_it_before() -> None:
-    quiet = [transient(spur_pair(meshes__pair__backlash=j), time=0.02, settle=0.05, steps=200) for j in ("20 um", "1 mm")]
+    quiet = [
+        transient(spur_pair(meshes__pair__backlash=j), time=0.02, settle=0.05, steps=200) for j in ("20 um", "1 mm")
+    ]
     assert quiet[0].contact_losses.sum() == 0
     assert quiet[1].mesh_force == pytest.approx(quiet[0].mesh_force, rel=1e-9)
 
@@ -86,7 +92,11 @@ def test_own_normals_and_one_line_agree_while_only_the_driving_flank_carries() -
 
 def test_the_backlash_of_the_back_flank_is_the_same_on_its_own_normal() -> None:
     # Turned backwards by hand, the pair meets the back flank after the backlash.
-    system = System(spur_pair(meshes__pair__backlash="50 um", meshes__pair__back_flank="own normals", meshes__pair__transmission_error=[]))
+    system = System(
+        spur_pair(
+            meshes__pair__backlash="50 um", meshes__pair__back_flank="own normals", meshes__pair__transmission_error=[]
+        )
+    )
     local = local_model(system, Rotation.constant(0.0), 0.0).local
     turn = np.zeros(system.dofs.transform.shape[0])
     turn[6 * system.nodes.at("one", 0.06) + 5] = 1.0
@@ -128,14 +138,28 @@ def test_an_unbalance_gives_the_closed_form_whirl() -> None:
 
 
 def test_rolling_bearings_settle_at_the_deflection_of_their_law_under_the_mean_force() -> None:
-    rolling = {"kind": "ball", "elements": 9, "element_diameter": "12 mm", "pitch_diameter": "60 mm", "clearance": "8 um"}
+    rolling = {
+        "kind": "ball",
+        "elements": 9,
+        "element_diameter": "12 mm",
+        "pitch_diameter": "60 mm",
+        "clearance": "8 um",
+    }
     model = spur_pair(bearings__a__rolling=rolling, bearings__b__rolling=rolling, meshes__pair__transmission_error=[],
                       meshes__pair__backlash="50 um")  # fmt: skip
     result = transient(model, time=0.05, settle=0.2, steps=100)
-    x, y, fx, fy = (result.history(f"bearings.a {what} {axis}")[-1] for what in ("displacement", "force") for axis in "xy")
+    x, y, fx, fy = (
+        result.history(f"bearings.a {what} {axis}")[-1] for what in ("displacement", "force") for axis in "xy"
+    )
     assert np.hypot(fx, fy) == pytest.approx(0.5 * 200.0 / 0.048 / np.cos(np.radians(20.0)), rel=0.02)
     order = 0.5 * (1.0 - 12.0 / 60.0)
-    d = [x, y, result.history("bearings.a displacement z")[-1] if "bearings.a displacement z" in result.channel else 0.0, 0.0, 0.0]
+    d = [
+        x,
+        y,
+        result.history("bearings.a displacement z")[-1] if "bearings.a displacement z" in result.channel else 0.0,
+        0.0,
+        0.0,
+    ]
     law = BallBearing(9, 12e-3, 60e-3, clearance=8e-6, order=order)
     force = law.evaluate(d, angle=result.angle[-1]).force[:2]
     assert force == pytest.approx([fx, fy], abs=0.05 * np.hypot(fx, fy))
@@ -143,7 +167,14 @@ def test_rolling_bearings_settle_at_the_deflection_of_their_law_under_the_mean_f
 
 
 def test_varying_compliance_shakes_at_the_rate_of_passing_balls() -> None:
-    rolling = {"kind": "roller", "elements": 12, "element_diameter": "8 mm", "length": "8 mm", "pitch_diameter": "60 mm", "clearance": "20 um"}
+    rolling = {
+        "kind": "roller",
+        "elements": 12,
+        "element_diameter": "8 mm",
+        "length": "8 mm",
+        "pitch_diameter": "60 mm",
+        "clearance": "20 um",
+    }
     model = spur_pair(bearings__a__rolling=rolling, meshes__pair__transmission_error=[])
     result = transient(model, time=0.2, settle=0.2, steps=100)
     passing = 12 * 0.5 * (1.0 - 8.0 / 60.0) * 25.0
@@ -154,7 +185,12 @@ def test_varying_compliance_shakes_at_the_rate_of_passing_balls() -> None:
 
 def test_friction_takes_power_and_reverses_at_the_pitch_point() -> None:
     smooth = transient(spur_pair(meshes__pair__transmission_error=[]), time=0.05, settle=0.1, steps=400)
-    rough = transient(spur_pair(meshes__pair__transmission_error=[], meshes__pair__friction_coefficient=0.06), time=0.05, settle=0.1, steps=400)
+    rough = transient(
+        spur_pair(meshes__pair__transmission_error=[], meshes__pair__friction_coefficient=0.06),
+        time=0.05,
+        settle=0.1,
+        steps=400,
+    )
     assert smooth.mesh_force.std() < 1e-6 * smooth.mesh_force.mean()
     assert rough.mesh_force[rough.counted].std() > 1e-3 * rough.mesh_force.mean()
     lines = rg.spectral_lines(rough, "bearings.a force x")
@@ -171,8 +207,10 @@ def test_friction_takes_power_and_reverses_at_the_pitch_point() -> None:
 def test_a_stiffness_table_of_a_sine_does_what_its_harmonic_does() -> None:
     n = 60
     table = [{"at": i / n, "share": 1.0 + 0.2 * np.cos(2.0 * np.pi * i / n)} for i in range(n)]
-    pair = dict(meshes__pair__transmission_error=[], meshes__pair__backlash="50 um")
-    one = transient(spur_pair(**pair, meshes__pair__stiffness_variation=[{"harmonic": 1, "amplitude": 0.2}]), time=0.02, steps=200)
+    pair = {"meshes__pair__transmission_error": [], "meshes__pair__backlash": "50 um"}
+    one = transient(
+        spur_pair(**pair, meshes__pair__stiffness_variation=[{"harmonic": 1, "amplitude": 0.2}]), time=0.02, steps=200
+    )
     other = transient(spur_pair(**pair, meshes__pair__stiffness_table=table), time=0.02, steps=200)
     assert other.mesh_force == pytest.approx(one.mesh_force, abs=2e-3 * one.mesh_force.std() + 5.0)
 
@@ -180,7 +218,11 @@ def test_a_stiffness_table_of_a_sine_does_what_its_harmonic_does() -> None:
 def test_two_helices_half_a_pitch_apart_cancel_the_first_harmonic_of_an_even_error() -> None:
     gear = {"kind": "herringbone", "helix_angle": "25 deg", "gap": "20 mm"}
     changes = {f"gears__{name}__{key}": value for name in ("pinion", "wheel") for key, value in gear.items()}
-    changes |= {"gears__pinion__hand": "right", "gears__wheel__hand": "left", "shafts__two__position": ["132.4053 mm", "0 mm"]}
+    changes |= {
+        "gears__pinion__hand": "right",
+        "gears__wheel__hand": "left",
+        "shafts__two__position": ["132.4053 mm", "0 mm"],
+    }
     for shaft, d in (("one", "40 mm"), ("two", "50 mm")):
         changes[f"shafts__{shaft}__sections"] = [{"length": "120 mm", "outer_diameter": d}]
     only_first = [{"harmonic": 1, "amplitude": "4 um"}]

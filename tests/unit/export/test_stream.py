@@ -20,10 +20,10 @@ from rotorgear.export.files import WriteError
 from rotorgear.export.stream import read_chunk
 from tests.unit.analysis.spur_pair import spur_pair
 
-SETTINGS: dict[str, Any] = dict(time=0.1, settle=0.02, steps=160, error_estimate=False)
+SETTINGS: dict[str, Any] = {"time": 0.1, "settle": 0.02, "steps": 160, "error_estimate": False}
 
 
-class _Stop(Exception):
+class _StopError(Exception):
     pass
 
 
@@ -36,10 +36,10 @@ def stopped(path: Path, after: int, method: str) -> None:
         keep(chunk)
         written.append(1)
         if len(written) == after:
-            raise _Stop
+            raise _StopError
 
     stream.write = write  # type: ignore[method-assign]
-    with pytest.raises(_Stop):
+    with pytest.raises(_StopError):
         rg.transient(spur_pair(meshes__pair__backlash="20 um"), **SETTINGS, method=method, stream=stream)
 
 
@@ -62,7 +62,9 @@ def test_another_run_is_not_continued(tmp_path: Path) -> None:
         rg.transient(spur_pair(), **SETTINGS, method="newmark", stream=rg.stream(tmp_path / "run.h5", resume=True))
 
 
-def test_a_full_disk_ends_the_run_with_a_sentence_and_keeps_the_chunks_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_ends_the_run_with_a_sentence_and_keeps_the_chunks_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     import h5py
 
     real, opened = h5py.File, []
@@ -86,7 +88,8 @@ def test_what_kill_leaves_is_readable_and_goes_on(tmp_path: Path) -> None:
     root = Path(__file__).resolve().parents[3]
     program = (
         "import rotorgear as rg\nfrom tests.unit.analysis.spur_pair import spur_pair\n"
-        f"rg.transient(spur_pair(), time=20.0, settle=0.0, steps=160, error_estimate=False, method='newmark', stream=rg.stream({str(tmp_path / 'run.h5')!r}))\n"
+        f"rg.transient(spur_pair(), time=20.0, settle=0.0, steps=160, error_estimate=False, method='newmark', "
+        f"stream=rg.stream({str(tmp_path / 'run.h5')!r}))\n"
     )
     environment = {**os.environ, "PYTHONPATH": str(root)}
     process = subprocess.Popen([sys.executable, "-c", program], env=environment, cwd=root)
