@@ -14,12 +14,22 @@ from typing import Any
 from pydantic import BaseModel
 
 from rotorgear.model.bodies import Disk, PointMass
+from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, Unbalance
 from rotorgear.model.gear import Gear, GearBody
 from rotorgear.model.mesh import Mesh
 from rotorgear.model.model import SCHEMA_VERSION, Model
 from rotorgear.model.operation import Load, ModelDamping, Operation, Point
 from rotorgear.model.shaft import LIBRARY, Material, Section, Shaft
-from rotorgear.model.supports import Bearing, Coupling, DampingMatrix, Pedestal, StiffnessMatrix, Support, TableRow
+from rotorgear.model.supports import (
+    Bearing,
+    Coupling,
+    DampingMatrix,
+    Pedestal,
+    RollingElements,
+    StiffnessMatrix,
+    Support,
+    TableRow,
+)
 from rotorgear.quantity import DIMENSIONS
 
 SECTIONS: list[tuple[str, type[BaseModel]]] = [
@@ -31,7 +41,11 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("[gears.NAME]", Gear),
     ("body = { ... } of a gear", GearBody),
     ("[meshes.NAME]", Mesh),
+    ("transmission_error = [{ ... }] of a mesh", ErrorHarmonic),
+    ("stiffness_variation = [{ ... }] of a mesh", StiffnessHarmonic),
+    ("corner_impact = { ... } of a mesh", CornerImpact),
     ("[bearings.NAME]", Bearing),
+    ("rolling = { ... } of a bearing", RollingElements),
     ("table = [{ ... }] of a bearing", TableRow),
     ("pedestal = { ... } of a bearing", Pedestal),
     ("stiffness = { ... } of a bearing, support or coupling", StiffnessMatrix),
@@ -42,6 +56,7 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("[point_masses.NAME]", PointMass),
     ("[damping]", ModelDamping),
     ("[loads.NAME]", Load),
+    ("[unbalances.NAME]", Unbalance),
     ("[points.NAME]", Point),
 ]
 
@@ -85,6 +100,13 @@ RULES: dict[type[BaseModel], str] = {
         Springs that stand for the machine behind a shaft end, or an ideal clamp (`fixed`).""",
     Coupling: """
         Gears join parallel shafts, couplings coaxial ones.""",
+    CornerImpact: """
+        The force of each helix, beside the contact force.""",
+    RollingElements: """
+        Only a transient takes them; all other analyses keep the `stiffness`, which must stand beside them along x, y, axial and
+        tilt.""",
+    Unbalance: """
+        A transient takes it. It turns with its shaft; [conventions](conventions.md) count angles from +x about +z.""",
     Disk: """
         Give `mass` and both inertias, or `outer_diameter` and `width`.""",
     ModelDamping: """

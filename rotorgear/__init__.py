@@ -29,6 +29,7 @@ _HOMES = {
     "rotorgear.analysis.modal": ("modal",),
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
     "rotorgear.analysis.transient": ("transient",),
+    "rotorgear.analysis.transient_ladder": ("transient_ladder",),
     "rotorgear.analysis.spectra": ("spectrum", "spectral_lines"),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     from rotorgear.analysis.modal import modal
     from rotorgear.analysis.spectra import spectral_lines, spectrum
     from rotorgear.analysis.transient import transient
+    from rotorgear.analysis.transient_ladder import transient_ladder
     from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
     from rotorgear.export.hdf5 import read, save
     from rotorgear.export.stream import stream

@@ -103,8 +103,8 @@ def _between_bins(found: Spectrum, i: int) -> float:
 
 
 def _source(result: TransientResult, frequency: float, resolution: float) -> str:
-    """Name of the mesh order within half the resolution of a line, else of the shaft order where shafts have an unbalance."""
-    best, name = 0.5 * resolution, ""
+    """Name of the mesh order within a quarter of the resolution of a line, else of the shaft order where shafts have an unbalance."""
+    best, name = 0.25 * resolution, ""
     for mesh, f in result.mesh_frequency.items():
         order = max(1, round(frequency / f))
         if abs(frequency - order * f) < best * (1.0 - 1e-9):

@@ -26,9 +26,9 @@ from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.transient import TransientResult
-from rotorgear.solvers.equilibrium import Equilibrium, equilibrium
-from rotorgear.solvers.local_forces import gather
-from rotorgear.solvers.local_system import Integrator, local_values, state_at_rest
+from rotorgear.solvers.equilibrium import Equilibrium, equilibrium, still_forces
+from rotorgear.solvers.exponential import Exponential
+from rotorgear.solvers.local_system import Integrator, state_at_rest
 from rotorgear.solvers.run import Schedule
 from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.plan import Plan
@@ -108,10 +108,13 @@ def transient(
     if steps is None:
         grid = _fine_enough(task, integrator, grid, accuracy or DEFAULT_ACCURACY, progress)
     laps["choice of step"] = clock.perf_counter() - begun - sum(laps.values())
-    coarse = None
+    others: list[Histories] = []
     if error_estimate:
         double = replace(grid, every=max(1, grid.every // 2)) if grid.every > 1 else None
-        coarse = _run(task, integrator, double or _skipping(grid), progress, text="twice the step")
+        others.append(_run(task, integrator, double or _skipping(grid), progress, text="twice the step"))
+        if isinstance(integrator, Exponential) and integrator.modes is not None:
+            fuller = Exponential(int(1.5 * integrator.modes), integrator.modal_ratio)
+            others.append(_run(task, fuller, grid, progress, text="more modes"))
     laps["error estimate"] = clock.perf_counter() - begun - sum(laps.values())
     found = _run(
         task,
@@ -124,7 +127,7 @@ def transient(
     laps["integration"] = clock.perf_counter() - begun - sum(laps.values())
     laps["total"] = clock.perf_counter() - begun
     progress(1.0, "done")
-    return _result(task, grid, integrator.name, reason, found, coarse, laps)
+    return _result(task, grid, integrator.name, reason, found, others, laps)
 
 
 @dataclass(frozen=True)
@@ -151,7 +154,7 @@ def _task(
     if given.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     local = local_model(given, rotation, largest)
-    rest, force = equilibrium(local.local), mean_forces(local)
+    rest, force = equilibrium(local.local), still_forces(local.local, tuple(part.law.mean() for part in local.parts))
     return _Task(local, channels(local), rest, force, mesh_frequencies(given, largest), largest)
 
 
@@ -210,15 +213,12 @@ def _result(
     method: str,
     reason: str,
     found: Histories,
-    coarse: Histories | None,
+    others: list[Histories],
     laps: dict[str, float],
 ) -> TransientResult:
     system, local = task.local.system, task.local.local
     own: Statistics = statistics(found, task, grid.settled)
-    same = coarse is not None and coarse.status == "success" and found.status == "success"
-    errors, largest = np.full(own.value.size, np.nan), float("nan")
-    if same and coarse is not None:
-        errors, largest = compared(own, statistics(coarse, task, _settled_of(coarse, grid)))
+    errors, largest = _errors(own, found, others, task, grid)
     t = found.table("t")
     meshes = [i for i, part in enumerate(task.local.parts) if part.is_mesh]
     columns = [int(local.forces.first[i]) for i in meshes]
@@ -239,18 +239,22 @@ def _result(
         dofs=local.n, seconds=laps, method=method, reason=reason, mesh_frequency=task.frequencies,
         status=found.status, left_out=(*left_out(system, float(local.rotation.speeds[0])), *transient_left_out(task.local)),
     )  # fmt: skip
-    return replace(result, warnings=transient_warnings(result, task.rest, task.local, accurate=same))
+    return replace(result, warnings=transient_warnings(result, task.rest, task.local))
 
 
-def mean_forces(local: LocalModel) -> np.ndarray:
-    """Local forces (m,) in static equilibrium without anything that varies in time; NaN where there is none."""
-    still = replace(local.local, forces=gather(tuple(part.law.mean() for part in local.parts)))
-    rest = equilibrium(still)
-    if not rest.converged:
-        return np.full(local.local.m, np.nan)
-    return local_values(still, rest.q, np.zeros(still.n), 0.0)[0]
+def _errors(
+    own: Statistics, found: Histories, others: list[Histories], task: _Task, grid: Grid
+) -> tuple[np.ndarray, float]:
+    """Errors of the statistics: that of the step, from twice the step, and that of missing modes, from half as many more."""
+    if not others or any(run.status != "success" for run in (found, *others)):
+        return np.full(own.value.size, np.nan), float("nan")
+    pairs = [
+        compared(own, statistics(run, task, _settled_of(run, grid)), 1.0 if number else 3.0)
+        for number, run in enumerate(others)
+    ]
+    return np.sum([errors for errors, _ in pairs], axis=0), float(sum(largest for _, largest in pairs))
 
 
-def _settled_of(coarse: Histories, grid: Grid) -> int:
-    t = coarse.table("t")
+def _settled_of(run: Histories, grid: Grid) -> int:
+    t = run.table("t")
     return int(np.searchsorted(t, grid.settled * grid.spacing * (1.0 - 1e-9)))

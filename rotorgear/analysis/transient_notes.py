@@ -28,9 +28,7 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def transient_warnings(
-    result: TransientResult, rest: Equilibrium, local: LocalModel, *, accurate: bool
-) -> tuple[str, ...]:
+def transient_warnings(result: TransientResult, rest: Equilibrium, local: LocalModel) -> tuple[str, ...]:
     """What the reader should know before using the numbers."""
     notes = list(local.system.nodes.merged)
     if result.status != "success":

@@ -51,9 +51,12 @@ def statistics(found: Histories, task: Any, settled: int) -> Statistics:
     return Statistics(tuple(names), np.array(data), np.array(scale))
 
 
-def compared(fine: Statistics, coarse: Statistics) -> tuple[np.ndarray, float]:
-    """Errors (s,) of the finer of two runs with step ratio 2 and order 2, and the largest of them relative to its scale."""
-    errors = np.abs(fine.value - coarse.value) / 3.0
+def compared(fine: Statistics, coarse: Statistics, factor: float = 3.0) -> tuple[np.ndarray, float]:
+    """Errors (s,) of the better of two runs, and the largest of them relative to its scale.
+
+    `factor`: by how much the better one is better, less 1; 3 for a step ratio of 2 and order 2.
+    """
+    errors = np.abs(fine.value - coarse.value) / factor
     known = fine.scale > 0.0
     relative = errors[known] / fine.scale[known]
     return errors, float(relative.max(initial=0.0)) if np.all(np.isfinite(relative)) else float("inf")

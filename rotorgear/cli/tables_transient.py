@@ -84,15 +84,16 @@ def _value(value: float | None) -> str:
 
 
 def _notes(result: TransientResult) -> list[str]:
-    seconds = max(result.seconds.get("integration", 0.0), 1e-9)
     lines = [
         "",
         f"{result.dofs} dofs, {result.steps} steps of {result.step:.4g} s, {result.seconds['total']:.2f} s; {result.method} "
         f"({result.reason})",
-        f"speed: {result.steps / seconds / 1e3:.0f} thousand steps in 1 s",
     ]
     if result.error_estimate == result.error_estimate:
-        lines.append(f"error: statistics within {result.error_estimate:.1e}, from a run of twice the step")
+        lines.append(
+            f"error: statistics within {result.error_estimate:.1e}, from a run of twice the step"
+            + (", and one of more modes" if "modes with" in result.method else "")
+        )
     lines.append(f"energy: integration made or lost {result.energy.share:.1e} of the largest term")
     lines += [f"left out: {note}" for note in result.left_out]
     lines += [f"Warning: {note}" for note in result.warnings]

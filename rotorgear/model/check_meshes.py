@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import pairwise
 
 from rotorgear.errors import Problem, RotorgearError
 from rotorgear.gears.pair import working_centre_distance
@@ -48,18 +47,9 @@ def mesh_problems(model: Tables) -> Iterator[Problem]:
 
 def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator[Problem]:
     """Harmonics of a mesh need its frequency; what tells two helices apart needs two."""
-    for key in ("transmission_error", "stiffness_variation", "stiffness_table", "corner_impact"):
+    for key in ("transmission_error", "stiffness_variation", "corner_impact"):
         if getattr(mesh, key) and not (pinion.teeth and gear.teeth):
             yield Problem(f"{address}.{key}", "harmonics of a mesh whose frequency is unknown", "teeth of both gears")
-    if mesh.stiffness_table and mesh.stiffness_variation:
-        yield Problem(f"{address}.stiffness_table", "a table beside harmonics", "one of the two")
-    places = [point.at for point in mesh.stiffness_table]
-    if any(b <= a for a, b in pairwise(places)) or any(not 0.0 <= at < 1.0 for at in places):
-        yield Problem(
-            f"{address}.stiffness_table",
-            f"places {', '.join(f'{at:g}' for at in places)}",
-            "rising places from 0 to below 1",
-        )
     if mesh.corner_impact and not 0.0 < mesh.corner_impact.duration < 1.0:
         yield Problem(
             f"{address}.corner_impact.duration",

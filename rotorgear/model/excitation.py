@@ -32,13 +32,6 @@ class StiffnessHarmonic(Part):
     phase: Angle = Field(0.0, description="phase, counted from the moment when a contact is at the pitch point")
 
 
-class StiffnessPoint(Part):
-    """A point of the mesh stiffness over the mesh cycle; linear in between, and on to the first point of the next cycle."""
-
-    at: Ratio = Field(description="place in the cycle in pitches, 0 to below 1; 0 when a contact is at the pitch point")
-    share: Ratio = Field(description="stiffness there as a share of the mesh's stiffness")
-
-
 class CornerImpact(Part):
     """A half-sine force between the flanks once a mesh cycle, as teeth that come into contact too early give."""
 

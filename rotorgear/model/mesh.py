@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, StiffnessPoint
+from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
 from rotorgear.model.fields import Angle, Damping, Length, NonNegativeLength, Part, PositiveStiffness, Ratio, Viscosity
 
 
@@ -50,9 +50,6 @@ class Mesh(Part):
     )
     stiffness_variation: tuple[StiffnessHarmonic, ...] = Field(
         (), description="harmonics of the mesh stiffness about its mean"
-    )
-    stiffness_table: tuple[StiffnessPoint, ...] = Field(
-        (), description="mesh stiffness over the mesh cycle, in place of harmonics"
     )
     corner_impact: CornerImpact | None = Field(None, description="impact at each entry of a tooth; default: none")
     friction_coefficient: Ratio = Field(0.0, description="coefficient of sliding friction between the flanks")

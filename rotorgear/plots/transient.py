@@ -14,6 +14,8 @@ from rotorgear.export.files import filling, publish
 from rotorgear.results.transient import TransientResult
 
 _SHOWN_PERIODS = 6
+# Share of the largest line down to which a spectrum is shown.
+_SHOWN_SHARE = 1e-4
 
 
 def draw_transient(result: TransientResult, directory: str | Path) -> list[Path]:
@@ -80,16 +82,29 @@ def draw_spectra(result: TransientResult, figure: Any) -> None:
     orders = bool(np.ptp(result.speed) > 0.0)
     for axes, name in zip(np.atleast_1d(figure.subplots(len(names), 1, sharex=True)), names, strict=True):
         found = spectrum(result, name, orders=orders)
-        axes.semilogy(found.frequency, np.maximum(found.amplitude, 1e-6 * found.amplitude.max()), lw=0.8)
-        for mesh, f in () if orders else result.mesh_frequency.items():
-            for k in range(1, int(found.frequency[-1] / f) + 1):
-                axes.axvline(
-                    k * f, color="tab:red" if mesh == next(iter(result.mesh_frequency)) else "0.6", lw=0.4, ls=":"
-                )
+        top = float(found.amplitude.max()) or 1.0
+        seen = found.frequency[found.amplitude > _SHOWN_SHARE * top]
+        reach = 1.1 * float(seen.max()) if seen.size else float(found.frequency[-1])
+        axes.semilogy(found.frequency[1:], found.amplitude[1:], lw=0.8)
+        for number, (mesh, f) in enumerate([] if orders else _different(result.mesh_frequency)):
+            for k in range(1, int(reach / f) + 1):
+                axes.axvline(k * f, color=f"C{number + 1}", lw=0.7, ls=":", label=f"orders of {mesh}" if k == 1 else None)
+        axes.set_xlim(0.0, reach)
+        axes.set_ylim(0.3 * _SHOWN_SHARE * top, 3.0 * top)
+        if result.mesh_frequency and not orders:
+            axes.legend(fontsize=7, loc="upper right")
         axes.set_ylabel(f"{found.unit}")
         axes.set_title(name, fontsize=9)
         axes.grid(alpha=0.3)
     axes.set_xlabel("order of the input shaft" if orders else "frequency, Hz")
+
+
+def _different(frequencies: dict[str, float]) -> list[tuple[str, float]]:
+    """Meshes of one frequency under one name."""
+    found: dict[float, str] = {}
+    for name, f in frequencies.items():
+        found[round(f, 6)] = f"{found[round(f, 6)]}, {name}" if round(f, 6) in found else name
+    return [(name, f) for f, name in found.items()]
 
 
 def _orbits(result: TransientResult) -> list[str]:
@@ -115,18 +130,23 @@ def draw_orbits(result: TransientResult, figure: Any) -> None:
 
 
 def draw_energy(result: TransientResult, figure: Any) -> None:
-    """The terms of the energy ledger."""
+    """The terms of the energy ledger since the start, and below what the integration made or lost."""
     e = result.energy
-    axes = figure.subplots()
-    for name in ("kinetic", "strain", "contact", "load_work", "excitation_work", "dissipated", "numerical"):
-        axes.plot(1e3 * e.time, getattr(e, name), lw=1.0, label=name.replace("_", " "))
-    axes.set_yscale(
-        "symlog", linthresh=max(1e-6 * max(float(np.abs(e.dissipated).max()), float(e.kinetic.max()), 1e-30), 1e-30)
-    )
-    axes.set_xlabel("time, ms")
-    axes.set_ylabel("energy since the start, J")
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=7)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+    stored = e.strain + e.contact
+    terms = {
+        "kinetic": e.kinetic - e.kinetic[0], "stored in springs and contacts": stored - stored[0], "work of the loads": e.load_work,
+        "work of the excitation": e.excitation_work, "dissipated": e.dissipated,
+    }  # fmt: skip
+    for name, values in terms.items():
+        upper.plot(1e3 * e.time, values, lw=1.0, label=name)
+    upper.set_ylabel("energy since the start, J")
+    upper.legend(fontsize=7)
+    lower.plot(1e3 * e.time, e.numerical, lw=1.0, color="tab:red")
+    lower.set_ylabel("made or lost, J")
+    lower.set_xlabel("time, ms")
+    for axes in (upper, lower):
+        axes.grid(alpha=0.3)
 
 
 def draw_spectrogram(result: TransientResult, figure: Any) -> None:

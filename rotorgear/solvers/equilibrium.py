@@ -7,13 +7,14 @@ What the loads do on free motions R is carried by inertia: f - M R (R^T M R)^-1 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.solvers.eigen import lowest_modes
-from rotorgear.solvers.local_system import LocalSystem, local_tangent
+from rotorgear.solvers.local_forces import LocalLaw, gather
+from rotorgear.solvers.local_system import LocalSystem, local_tangent, local_values
 from rotorgear.solvers.nullspace import SupportedSolver, left_null_space
 
 _ITERATIONS = 80
@@ -65,6 +66,15 @@ def equilibrium(system: LocalSystem) -> Equilibrium:
         return Equilibrium(q0, False, R, R.T @ system.load)
     pushed = system.forces.reference_stiffness @ d - F
     return Equilibrium(q0 + X @ pushed, True, R, R.T @ (system.load - B @ F))
+
+
+def still_forces(system: LocalSystem, laws: tuple[LocalLaw, ...]) -> np.ndarray:
+    """Local forces (m,) in the equilibrium with laws in place of the system's own; NaN where there is none."""
+    still = replace(system, forces=gather(laws))
+    rest = equilibrium(still)
+    if not rest.converged:
+        return np.full(system.m, np.nan)
+    return local_values(still, rest.q, np.zeros(still.n), 0.0)[0]
 
 
 def _local(system: LocalSystem, d0: np.ndarray, A: np.ndarray) -> tuple[np.ndarray, np.ndarray, bool]:

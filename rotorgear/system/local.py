@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector
-from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, StiffnessPoint
+from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
 from rotorgear.model.inertia import node_bodies
 from rotorgear.model.mesh_phases import mesh_phases
 from rotorgear.model.torque_flow import MeshForce
@@ -81,7 +81,7 @@ def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
         K=sp.csc_array(K + system.circulatory(speed)),
         B=sp.csc_array(T.T @ columns),
         forces=gather(tuple(part.law for part in parts)),
-        load=T.T @ torque_load(system),
+        load=T.T @ torque_load(system) + system.mass @ (T.T @ gravity(system)),
         rotation=rotation,
         G=system.gyroscopic if system.gyroscopic.nnz else None,
     )
@@ -96,6 +96,15 @@ def torque_load(system: System) -> np.ndarray:
             continue
         f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
     return f
+
+
+def gravity(system: System) -> np.ndarray:
+    """Acceleration of gravity on all dofs, (a,)."""
+    operation, g = system.model.operation, np.zeros(system.dofs.transform.shape[0])
+    if operation and operation.gravity:
+        for axis, value in enumerate(operation.gravity):
+            g[axis : 6 * len(system.nodes) : 6] = value
+    return g
 
 
 def _mesh_parts(system: System) -> list[LocalPart]:
@@ -145,7 +154,7 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         contact_damping=mesh.contact_damping, ramp=deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP),
         order=order, phase=phase + 2.0 * np.pi * late, stiffness_cos=stiffness_cos, stiffness_sin=stiffness_sin,
         error_mean=mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0),
-        error_cos=error_cos, error_sin=error_sin, pieces=_pieces(mesh.stiffness_table), **_impact(mesh.corner_impact),
+        error_cos=error_cos, error_sin=error_sin, **_impact(mesh.corner_impact),
     )  # fmt: skip
 
 
@@ -159,18 +168,6 @@ def _back(law: MeshContact) -> MeshContact:
         error_sin=tuple(-x for x in law.error_sin),
         expanded=False,
     )
-
-
-def _pieces(table: tuple[StiffnessPoint, ...]) -> tuple[tuple[float, float, float], ...]:
-    """Straight pieces over one mesh cycle, the last one back to the first point."""
-    if not table:
-        return ()
-    points = [(point.at, point.share) for point in table]
-    if points[0][0] > 0.0:  # the cycle begins inside of the last piece
-        (last, high), (first, low) = points[-1], points[0]
-        points.insert(0, (0.0, high + (low - high) * (1.0 - last) / (1.0 - last + first)))
-    ends = [share for _, share in points[1:]] + [points[0][1]]
-    return tuple((at, share, end) for (at, share), end in zip(points, ends, strict=True))
 
 
 def _impact(impact: CornerImpact | None) -> dict[str, Any]:

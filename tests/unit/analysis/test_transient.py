@@ -204,17 +204,6 @@ def test_friction_takes_power_and_reverses_at_the_pitch_point() -> None:
     assert 0.3 * expected < spent / power < 1.0 * expected
 
 
-def test_a_stiffness_table_of_a_sine_does_what_its_harmonic_does() -> None:
-    n = 60
-    table = [{"at": i / n, "share": 1.0 + 0.2 * np.cos(2.0 * np.pi * i / n)} for i in range(n)]
-    pair = {"meshes__pair__transmission_error": [], "meshes__pair__backlash": "50 um"}
-    one = transient(
-        spur_pair(**pair, meshes__pair__stiffness_variation=[{"harmonic": 1, "amplitude": 0.2}]), time=0.02, steps=200
-    )
-    other = transient(spur_pair(**pair, meshes__pair__stiffness_table=table), time=0.02, steps=200)
-    assert other.mesh_force == pytest.approx(one.mesh_force, abs=2e-3 * one.mesh_force.std() + 5.0)
-
-
 def test_two_helices_half_a_pitch_apart_cancel_the_first_harmonic_of_an_even_error() -> None:
     gear = {"kind": "herringbone", "helix_angle": "25 deg", "gap": "20 mm"}
     changes = {f"gears__{name}__{key}": value for name in ("pinion", "wheel") for key, value in gear.items()}
@@ -268,3 +257,11 @@ def test_a_spectrum_is_true_in_amplitude(window: str) -> None:
     assert lines.frequency_hz[strongest] == pytest.approx(2.0 * MESH, rel=1e-3)
     assert lines.source[strongest] == "mesh pair 2x"
     assert lines.amplitude[strongest] == pytest.approx(abs(harmonic_force(spur_pair(), 2)), rel=1e-2)
+
+def test_gravity_bends_the_shafts_and_its_force_arrives_at_the_bearings() -> None:
+    model = spur_pair(operation__gravity=["0 m/s^2", "-9.81 m/s^2", "0 m/s^2"], operation__torque=None, operation__output_shaft=None,
+                      meshes__pair__transmission_error=[])  # fmt: skip
+    result = transient(model, time=0.005, steps=100)
+    total = sum(result.history(f"bearings.{name} force y")[0] for name in "abcd")
+    mass = rg.describe_model(model).total_mass_kg
+    assert total == pytest.approx(-9.81 * mass, rel=1e-9)
