@@ -31,6 +31,7 @@ _HOMES = {
     "rotorgear.analysis.transient": ("transient",),
     "rotorgear.analysis.transient_ladder": ("transient_ladder",),
     "rotorgear.analysis.spectra": ("spectrum", "spectral_lines"),
+    "rotorgear.analysis.rig_spectrum": ("compare_spectrum",),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from rotorgear.analysis.compare import compare, read_rig_lines
     from rotorgear.analysis.describe_model import describe_model
     from rotorgear.analysis.modal import modal
+    from rotorgear.analysis.rig_spectrum import compare_spectrum
     from rotorgear.analysis.spectra import spectral_lines, spectrum
     from rotorgear.analysis.transient import transient
     from rotorgear.analysis.transient_ladder import transient_ladder

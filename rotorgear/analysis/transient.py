@@ -4,42 +4,24 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from rotorgear.analysis.notes import left_out
-from rotorgear.analysis.transient_channels import Channels, channels
-from rotorgear.analysis.transient_histories import Histories, Stream, integrate
+from rotorgear.analysis.transient_histories import Histories, Stream
 from rotorgear.analysis.transient_notes import transient_left_out, transient_warnings
-from rotorgear.analysis.transient_request import (
-    Grid,
-    base_frequencies,
-    grid_of,
-    integrator_of,
-    mesh_frequencies,
-    quantity,
-    rotation_of,
-)
+from rotorgear.analysis.transient_request import Grid, base_frequencies, grid_of, integrator_of, quantity
 from rotorgear.analysis.transient_statistics import Statistics, compared, statistics
+from rotorgear.analysis.transient_task import Task, damped, fine_enough, prepare, run_task, skipping
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.transient import TransientResult
-from rotorgear.solvers.equilibrium import Equilibrium, equilibrium, still_forces
 from rotorgear.solvers.exponential import Exponential
-from rotorgear.solvers.local_system import Integrator, state_at_rest
-from rotorgear.solvers.run import Schedule
-from rotorgear.system.local import LocalModel, local_model
-from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 DEFAULT_ACCURACY = 0.01
-# One element of this order a piece, unless elements are asked for.
-_PLAN = Plan(elements=1, order=2)
-_HALVINGS = 6
-# The search for a step runs over so many steps at most.
-_PROBE = 60_000
 
 
 def transient(
@@ -92,37 +74,34 @@ def transient(
         raise AnalysisError("steps and accuracy: give one of the two; steps fixes the step, accuracy chooses it")
     if accuracy is not None and not 1e-8 <= accuracy < 1.0:
         raise AnalysisError(f"the accuracy must lie between 1e-8 and 1, got {accuracy:g}")
-    if modal_damping is not None and not 0.0 <= modal_damping < 1.0:
-        raise AnalysisError(f"the damping ratio of the modes must lie between 0 and 1, got {modal_damping:g}")
-    task = _task(model, speed, elements)
+    task = prepare(damped(model, modal_damping), speed, elements)
     duration = [None if x is None else quantity(x, "time", name) for x, name in ((time, "time"), (settle, "settle"))]
     grid = grid_of(
         task.local.local, base_frequencies(task.local.system, task.largest), duration[0], duration[1], steps, records
     )
     integrator, reason = integrator_of(
-        method, task.local.local, grid.records * grid.every, modal_ratio=task.local.system.model.damping.modal_ratio if
-        modal_damping is None else modal_damping,
+        method, task.local.local, grid.records * grid.every, modal_ratio=task.local.system.model.damping.modal_ratio,
         modes=modes, rho_inf=rho_inf, beta=beta, gamma=gamma,
     )  # fmt: skip
     laps = {"model": clock.perf_counter() - begun}
     if steps is None:
-        grid = _fine_enough(task, integrator, grid, accuracy or DEFAULT_ACCURACY, progress)
+        grid = fine_enough(task, integrator, grid, accuracy or DEFAULT_ACCURACY, progress)
     laps["choice of step"] = clock.perf_counter() - begun - sum(laps.values())
     others: list[Histories] = []
     if error_estimate:
         double = replace(grid, every=max(1, grid.every // 2)) if grid.every > 1 else None
-        others.append(_run(task, integrator, double or _skipping(grid), progress, text="twice the step"))
+        others.append(run_task(task, integrator, double or skipping(grid), progress, text="twice the step"))
         if isinstance(integrator, Exponential) and integrator.modes is not None:
             fuller = Exponential(int(1.5 * integrator.modes), integrator.modal_ratio)
-            others.append(_run(task, fuller, grid, progress, text="more modes"))
+            others.append(run_task(task, fuller, grid, progress, text="more modes"))
     laps["error estimate"] = clock.perf_counter() - begun - sum(laps.values())
-    found = _run(
+    found = run_task(
         task,
         integrator,
         grid,
         progress,
         stream=stream,
-        key=f"{method} {modes} {modal_damping} {rho_inf} {beta} {gamma}",
+        key=f"{method} {modes} {rho_inf} {beta} {gamma}",
     )
     laps["integration"] = clock.perf_counter() - begun - sum(laps.values())
     laps["total"] = clock.perf_counter() - begun
@@ -130,85 +109,8 @@ def transient(
     return _result(task, grid, integrator.name, reason, found, others, laps)
 
 
-@dataclass(frozen=True)
-class _Task:
-    local: LocalModel
-    channels: Channels
-    rest: Equilibrium
-    rest_force: np.ndarray
-    frequencies: dict[str, float]
-    largest: float
-
-
-def _task(
-    model: Model | System, speed: float | str | Sequence[tuple[float, float | str]] | None, elements: int | None
-) -> _Task:
-    if elements is not None and elements < 1:
-        raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
-    given = model if isinstance(model, System) else System(model, plan=Plan(elements) if elements else _PLAN)
-    rotation = rotation_of(given, speed)
-    largest = float(rotation.speeds[np.argmax(np.abs(rotation.speeds))])
-    direction = -1 if largest < 0.0 else 1
-    if direction != given.direction:
-        given = System(given.model, plan=given.plan, direction=direction)
-    if given.n == 0:
-        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
-    local = local_model(given, rotation, largest)
-    rest, force = equilibrium(local.local), still_forces(local.local, tuple(part.law.mean() for part in local.parts))
-    return _Task(local, channels(local), rest, force, mesh_frequencies(given, largest), largest)
-
-
-def _run(
-    task: _Task,
-    integrator: Integrator,
-    grid: Grid,
-    progress: Progress,
-    *,
-    stream: Stream | None = None,
-    text: str = "",
-    key: str = "",
-) -> Histories:
-    h = grid.spacing / grid.every
-    system = task.local.local
-    settings = {
-        "model": task.local.system.model.model_dump_json(exclude_none=True),
-        "run": f"{h!r} {grid.records} {grid.every} {grid.settled} {system.n} {integrator.name} {key} "
-        f"{system.rotation.times.tolist()} {system.rotation.speeds.tolist()}",
-    }
-
-    def told(fraction: float, step: str) -> None:
-        progress(fraction, f"{text}: {step}" if text else step)
-
-    return integrate(
-        system, integrator, Schedule(h, grid.records * grid.every, grid.every), state_at_rest(system, h, task.rest.q),
-        task.channels, grid.settled, stream=stream, settings=settings, progress=told,
-    )  # fmt: skip
-
-
-def _skipping(grid: Grid) -> Grid:
-    """The grid of twice the step where every step is recorded: every second record is missing."""
-    return replace(grid, spacing=2.0 * grid.spacing, records=grid.records // 2, settled=grid.settled // 2)
-
-
-def _fine_enough(task: _Task, integrator: Integrator, grid: Grid, accuracy: float, progress: Progress) -> Grid:
-    """Halve the step until the statistics of a run, or of its beginning, agree with those of twice the step."""
-    records = min(grid.records, max(_PROBE // grid.every, 8))
-    probe = replace(grid, records=records, settled=min(grid.settled, records // 2))
-    last = statistics(_run(task, integrator, probe, progress, text="choosing the step"), task, probe.settled)
-    for _ in range(_HALVINGS):
-        finer = replace(probe, every=2 * probe.every)
-        now = statistics(_run(task, integrator, finer, progress, text="choosing the step"), task, probe.settled)
-        error = compared(now, last)[1]
-        # What the finer of the two was found to be good for.
-        if error <= accuracy:
-            # Second order: the coarser one is four times worse.
-            return replace(grid, every=finer.every if 4.0 * error > accuracy else probe.every)
-        probe, last = finer, now
-    return replace(grid, every=probe.every)
-
-
 def _result(
-    task: _Task,
+    task: Task,
     grid: Grid,
     method: str,
     reason: str,
@@ -239,11 +141,11 @@ def _result(
         dofs=local.n, seconds=laps, method=method, reason=reason, mesh_frequency=task.frequencies,
         status=found.status, left_out=(*left_out(system, float(local.rotation.speeds[0])), *transient_left_out(task.local)),
     )  # fmt: skip
-    return replace(result, warnings=transient_warnings(result, task.rest, task.local))
+    return replace(result, warnings=transient_warnings(result, task.rest, task.local, estimated=bool(others)))
 
 
 def _errors(
-    own: Statistics, found: Histories, others: list[Histories], task: _Task, grid: Grid
+    own: Statistics, found: Histories, others: list[Histories], task: Task, grid: Grid
 ) -> tuple[np.ndarray, float]:
     """Errors of the statistics: that of the step, from twice the step, and that of missing modes, from half as many more."""
     if not others or any(run.status != "success" for run in (found, *others)):

@@ -28,7 +28,9 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def transient_warnings(result: TransientResult, rest: Equilibrium, local: LocalModel) -> tuple[str, ...]:
+def transient_warnings(
+    result: TransientResult, rest: Equilibrium, local: LocalModel, *, estimated: bool
+) -> tuple[str, ...]:
     """What the reader should know before using the numbers."""
     notes = list(local.system.nodes.merged)
     if result.status != "success":
@@ -39,6 +41,14 @@ def transient_warnings(result: TransientResult, rest: Equilibrium, local: LocalM
         notes.append(
             "the loads do not balance on a free motion: it is carried along and drifts with constant acceleration"
         )
+    if any(note.startswith("damping matrix") for note in result.left_out) and not np.any(
+        local.local.forces.reference_damping
+    ):
+        notes.append(
+            "nothing damps: what the start sets swinging never dies out; give damping, or a modal damping ratio"
+        )
+    if estimated and result.status == "success" and not np.isfinite(result.error_estimate):
+        notes.append("there is no error estimate: the run with twice the step, or with more modes, did not end well")
     if result.energy.share > ENERGY_BOUND:
         notes.append(
             f"integration made or lost {100.0 * result.energy.share:.2g} % of the energy; "

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from rotorgear.results.spectrum import SpectralLines
+    from rotorgear.results.spectrum import RigSpectrum, SpectralLines
     from rotorgear.results.transient import TransientResult
 
 
@@ -113,3 +113,20 @@ def spectrum_table(lines: SpectralLines) -> RenderableType:
         table.add_row(f"{f:.2f}", f"{a:.4g}", what)
     head = f"Spectrum of {lines.name}, {lines.window} window, {lines.resolution_hz:.3g} Hz apart"
     return Group(Text(head, style="bold"), table, "")
+
+
+def rig_table(beside: RigSpectrum) -> RenderableType:
+    """Return rig lines beside spectral lines."""
+    from rich.console import Group
+    from rich.text import Text
+
+    table = _table()
+    for name in ("rig Hz", "Hz", f"amplitude {beside.unit}"):
+        table.add_column(name, justify="right")
+    table.add_column("order, or why there is no line", overflow="fold")
+    for rig, f, a, source, reason in zip(
+        beside.rig_hz, beside.frequency_hz, beside.amplitude, beside.source, beside.reason, strict=True
+    ):
+        found = not reason
+        table.add_row(f"{rig:.6g}", f"{f:.2f}" if found else "-", f"{a:.4g}" if found else "-", reason or source)
+    return Group(Text(f"Rig lines within {100.0 * beside.tolerance:g} %", style="bold"), table, "")

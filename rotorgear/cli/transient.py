@@ -77,6 +77,10 @@ def transient(
         str | None,
         typer.Option("--spectrum", help="List the lines in the spectrum of this history.", show_default=False),
     ] = None,
+    rig: Annotated[
+        Path | None,
+        typer.Option("--rig", help="Put the lines of this rig list beside those of --spectrum.", show_default=False),
+    ] = None,
     json: JsonOption = None,
     save: Annotated[
         Path | None, typer.Option("--save", help="Save the result (HDF5), in chunks while it runs.", show_default=False)
@@ -90,6 +94,8 @@ def transient(
     import rotorgear as rg
     from rotorgear.cli.tables_transient import transient_table
 
+    if rig and not spectrum:
+        raise AnalysisError("--rig needs --spectrum: the history whose lines are compared")
     if resume and save is None:
         raise AnalysisError("--resume needs the --save of the run that was interrupted")
     stream = rg.stream(save, resume=resume) if save else None
@@ -109,6 +115,12 @@ def transient(
         lines = rg.spectral_lines(result, spectrum)
         out.print(spectrum_table(lines))
         data["spectrum"] = lines.to_dict()
+        if rig:
+            from rotorgear.cli.tables_transient import rig_table
+
+            beside = rg.compare_spectrum(result, lines, rg.read_rig_lines(rig))
+            out.print(rig_table(beside))
+            data["rig"] = beside.to_dict()
     write_json(data, json)
     _write(result, save, plot)
     if result.status != "success":

@@ -88,7 +88,9 @@ def draw_spectra(result: TransientResult, figure: Any) -> None:
         axes.semilogy(found.frequency[1:], found.amplitude[1:], lw=0.8)
         for number, (mesh, f) in enumerate([] if orders else _different(result.mesh_frequency)):
             for k in range(1, int(reach / f) + 1):
-                axes.axvline(k * f, color=f"C{number + 1}", lw=0.7, ls=":", label=f"orders of {mesh}" if k == 1 else None)
+                axes.axvline(
+                    k * f, color=f"C{number + 1}", lw=0.7, ls=":", label=f"orders of {mesh}" if k == 1 else None
+                )
         axes.set_xlim(0.0, reach)
         axes.set_ylim(0.3 * _SHOWN_SHARE * top, 3.0 * top)
         if result.mesh_frequency and not orders:
@@ -135,8 +137,8 @@ def draw_energy(result: TransientResult, figure: Any) -> None:
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
     stored = e.strain + e.contact
     terms = {
-        "kinetic": e.kinetic - e.kinetic[0], "stored in springs and contacts": stored - stored[0], "work of the loads": e.load_work,
-        "work of the excitation": e.excitation_work, "dissipated": e.dissipated,
+        "kinetic": e.kinetic - e.kinetic[0], "stored in springs and contacts": stored - stored[0],
+        "work of the loads": e.load_work, "work of the excitation": e.excitation_work, "dissipated": e.dissipated,
     }  # fmt: skip
     for name, values in terms.items():
         upper.plot(1e3 * e.time, values, lw=1.0, label=name)

@@ -49,3 +49,38 @@ class SpectralLines:
                 for f, a, what in zip(self.frequency_hz, self.amplitude, self.source, strict=True)
             ],
         }
+
+
+@dataclass(frozen=True)
+class RigSpectrum:
+    """Spectral lines beside the lines of a rig.
+
+    For each of the k rig lines: its frequency in Hz and label, the nearest spectral line (frequency and amplitude, NaN where
+    none lies within the tolerance), its source, and in words why none is there.
+    """
+
+    name: str
+    unit: str
+    rig_hz: np.ndarray
+    label: tuple[str, ...]
+    frequency_hz: np.ndarray
+    amplitude: np.ndarray
+    source: tuple[str, ...]
+    reason: tuple[str, ...]
+    tolerance: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+
+        def number(value: float) -> float | None:
+            return float(value) if np.isfinite(value) else None
+
+        rows = zip(self.rig_hz, self.label, self.frequency_hz, self.amplitude, self.source, self.reason, strict=True)
+        return {
+            "tolerance": self.tolerance,
+            "lines": [
+                {"rig_hz": float(rig), "label": label, "frequency_hz": number(f), "amplitude": number(a), "source": source,
+                 "reason": reason}
+                for rig, label, f, a, source, reason in rows
+            ],
+        }  # fmt: skip

@@ -258,9 +258,12 @@ def test_a_spectrum_is_true_in_amplitude(window: str) -> None:
     assert lines.source[strongest] == "mesh pair 2x"
     assert lines.amplitude[strongest] == pytest.approx(abs(harmonic_force(spur_pair(), 2)), rel=1e-2)
 
+
 def test_gravity_bends_the_shafts_and_its_force_arrives_at_the_bearings() -> None:
-    model = spur_pair(operation__gravity=["0 m/s^2", "-9.81 m/s^2", "0 m/s^2"], operation__torque=None, operation__output_shaft=None,
-                      meshes__pair__transmission_error=[])  # fmt: skip
+    model = spur_pair(
+        operation__gravity=["0 m/s^2", "-9.81 m/s^2", "0 m/s^2"], operation__torque=None, operation__output_shaft=None,
+        meshes__pair__transmission_error=[],
+    )  # fmt: skip
     result = transient(model, time=0.005, steps=100)
     total = sum(result.history(f"bearings.{name} force y")[0] for name in "abcd")
     mass = rg.describe_model(model).total_mass_kg
