@@ -28,7 +28,7 @@ def transient_table(result: TransientResult) -> RenderableType:
 
 
 def _title(result: TransientResult) -> str:
-    rpm = [f"{w * 9.549296585513721:.6g}" for w in (result.speed[0], result.speed[-1])]
+    rpm = [f"{w * 9.549296585513721:.5g}" for w in (result.speed[0], result.speed[-1])]
     turns = rpm[0] if rpm[0] == rpm[1] else f"{rpm[0]} to {rpm[1]}"
     shaft = result.model.reference_shaft
     counted = result.time[-1] - result.settle

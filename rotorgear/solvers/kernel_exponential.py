@@ -20,31 +20,52 @@ _BLOCK = 256
 
 @compiled(fast=True)
 def modal_pass(er, ei, Gr, Gi, gr, gi, Cr, Ci, u, yr, yi, out):
-    """y <- e y + G u + g and out = Re(C y), block by block so that y stays in the fast cache."""
+    """y <- e y + G u + g and out = Re(C y), block by block so that y stays in the fast cache.
+
+    Slices whose index starts at 0, and several rows at once: only so do the loops become vector instructions.
+    """
     nz, m, rows = yr.size, u.size, out.size
     for r in range(rows):
         out[r] = 0.0
     for start in range(0, nz, _BLOCK):
         stop = min(start + _BLOCK, nz)
-        for j in range(start, stop):
-            a = er[j] * yr[j] - ei[j] * yi[j] + gr[j]
-            yi[j] = er[j] * yi[j] + ei[j] * yr[j] + gi[j]
-            yr[j] = a
-        for i in range(0, m - 1, 2):
-            ui, uk = u[i], u[i + 1]
-            for j in range(start, stop):
-                yr[j] += Gr[i, j] * ui + Gr[i + 1, j] * uk
-                yi[j] += Gi[i, j] * ui + Gi[i + 1, j] * uk
-        if m % 2 == 1:
-            ui = u[m - 1]
-            for j in range(start, stop):
-                yr[j] += Gr[m - 1, j] * ui
-                yi[j] += Gi[m - 1, j] * ui
-        for r in range(rows):
-            total = 0.0
-            for j in range(start, stop):
-                total += Cr[r, j] * yr[j] - Ci[r, j] * yi[j]
-            out[r] += total
+        n, a, b = stop - start, yr[start:stop], yi[start:stop]
+        e, f, p, q = er[start:stop], ei[start:stop], gr[start:stop], gi[start:stop]
+        for j in range(n):
+            x = e[j] * a[j] - f[j] * b[j] + p[j]
+            b[j] = e[j] * b[j] + f[j] * a[j] + q[j]
+            a[j] = x
+        i = 0
+        while i + 3 < m:
+            u0, u1, u2, u3 = u[i], u[i + 1], u[i + 2], u[i + 3]
+            k0, k1, k2, k3 = Gr[i, start:stop], Gr[i + 1, start:stop], Gr[i + 2, start:stop], Gr[i + 3, start:stop]
+            for j in range(n):
+                a[j] += k0[j] * u0 + k1[j] * u1 + k2[j] * u2 + k3[j] * u3
+            k0, k1, k2, k3 = Gi[i, start:stop], Gi[i + 1, start:stop], Gi[i + 2, start:stop], Gi[i + 3, start:stop]
+            for j in range(n):
+                b[j] += k0[j] * u0 + k1[j] * u1 + k2[j] * u2 + k3[j] * u3
+            i += 4
+        while i < m:
+            k0, k1, u0 = Gr[i, start:stop], Gi[i, start:stop], u[i]
+            for j in range(n):
+                a[j] += k0[j] * u0
+                b[j] += k1[j] * u0
+            i += 1
+        r = 0
+        while r + 1 < rows:
+            k0, k1, k2, k3 = Cr[r, start:stop], Ci[r, start:stop], Cr[r + 1, start:stop], Ci[r + 1, start:stop]
+            first, second = 0.0, 0.0
+            for j in range(n):
+                first += k0[j] * a[j] - k1[j] * b[j]
+                second += k2[j] * a[j] - k3[j] * b[j]
+            out[r] += first
+            out[r + 1] += second
+            r += 2
+        if r < rows:
+            k0, k1, first = Cr[r, start:stop], Ci[r, start:stop], 0.0
+            for j in range(n):
+                first += k0[j] * a[j] - k1[j] * b[j]
+            out[r] += first
 
 
 @compiled

@@ -164,10 +164,10 @@ class Integrator(Protocol):
         """Make ready for a system, a step in s and a speed of the reference in rad/s at which D + W G is taken."""
 
 
-def _evaluated(
+def evaluated(
     system: LocalSystem, d: np.ndarray, v: np.ndarray, t: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Forces (m,), tangents in d (flat blocks) and energies (4 l,) at local displacements and velocities and a time."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Forces (m,), tangents in d and v (flat blocks) and energies (4 l,) at local displacements, velocities and a time."""
     from rotorgear.solvers.kernel_contact import force_all, schedule_all
 
     laws = system.forces
@@ -181,18 +181,18 @@ def _evaluated(
     force_all(
         forces, kind, first, parameters, parameters_first, state_first, block_first, state, d, v, F, Kd, Kv, energy
     )
-    return F, Kd, energy
+    return F, Kd, Kv, energy
 
 
 def local_values(system: LocalSystem, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
     """Local forces (m,) and energies (4 l,) of a motion at a time."""
-    F, _, energy = _evaluated(system, system.B.T @ q, system.B.T @ v, t)
+    F, _, _, energy = evaluated(system, system.B.T @ q, system.B.T @ v, t)
     return F, energy
 
 
 def local_tangent(system: LocalSystem, d: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
     """Local forces (m,) at rest and their tangent (m, m) at local displacements and a time."""
-    F, blocks, _ = _evaluated(system, d, np.zeros(system.m), t)
+    F, blocks, _, _ = evaluated(system, d, np.zeros(system.m), t)
     laws, K = system.forces, np.zeros((system.m, system.m))
     for a, b, p, q in zip(laws.first[:-1], laws.first[1:], laws.block_first[:-1], laws.block_first[1:], strict=True):
         K[a:b, a:b] = blocks[p:q].reshape(b - a, b - a)
