@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from importlib import import_module
 from typing import Literal
 
@@ -165,6 +166,7 @@ MODELS = {
 }  # fmt: skip
 
 
+@lru_cache(maxsize=128)  # a refined analysis asks for the same meshes again and again
 def mesh_stiffness(name: str, teeth: ToothPair, load: float | None = None, positions: int = 64) -> MeshStiffness:
     """Stiffness of one helix by a model's name.
 
