@@ -110,6 +110,8 @@ MESH_ROWS: Sequence[Row] = (
     ("mean, normal, all helices N/m", lambda row: f"{row.stiffness_n_per_m:.4g}"),
     ("peak to peak N/m", lambda row: f"{row.stiffness_peak_to_peak_n_per_m:.3g}"),
     ("base force F_bt a helix N", _plain("base_tangential_force_n", 0)),
+    ("dynamic factor K_v", _plain("dynamic_factor", 3)),
+    ("resonance ratio N", _plain("resonance_ratio", 4)),
 )  # fmt: skip
 
 
