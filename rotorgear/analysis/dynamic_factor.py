@@ -71,7 +71,7 @@ def _method_b(
         pinion_teeth=g1.teeth, ratio=g2.teeth / g1.teeth, pinion_speed=spin, pitch_line_velocity=velocity,
         total_contact_ratio=teeth.pair.total_contact_ratio, line_load=line_load, single_stiffness=stiffness.single,
         mesh_stiffness=stiffness.mesh_alpha,
-        reduced_mass=reduced_mass(*inertias, g1.base_radius, g2.base_radius, teeth.width),
+        reduced_mass=reduced_mass(inertias[0], inertias[1], g1.base_radius, g2.base_radius, teeth.width),
         base_pitch_deviation=max(base_pitch_deviation(*item) for item in classes),
         profile_deviation=max(profile_form_deviation(*item) for item in classes), tip_relief=relief,
     )  # fmt: skip

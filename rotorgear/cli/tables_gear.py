@@ -126,9 +126,9 @@ def sheet_parts(sheet: GearSheet) -> Iterator[Any]:
     yield from (f"left out: {note}" for note in sheet.left_out)
     for table, parts in (("gears", sheet.gears), ("meshes", sheet.meshes)):
         yield from (f"Warning: {table}.{part.name}: {text}" for part in parts for text in part.warnings)
-    yield from (
-        f"meshes.{row.name}: {row.stiffness_definition} stiffness; body: {row.stiffness_body}" for row in sheet.meshes
-    )
+    for row in sheet.meshes:
+        yield f"meshes.{row.name}: {row.stiffness_definition} stiffness; body: {row.stiffness_body}"
+        yield f"meshes.{row.name}: {'K_v by ' * (row.dynamic_factor is not None)}{row.dynamic_factor_method}"
 
 
 def _table(head: str, rows: Sequence[Row], columns: Sequence[GearRow | MeshSheetRow]) -> Any:
