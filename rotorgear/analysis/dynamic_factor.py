@@ -40,7 +40,7 @@ def mesh_dynamic_factor(model: Model, name: str, base_force: float | None) -> Dy
     if teeth.first.teeth > teeth.second.teeth:
         teeth, order, grades = teeth.swapped(), order[::-1], grades[::-1]
     spin = abs(walk(model)[0].ratio(model.gears[order[0]].shaft) * speed)
-    line_load = mesh.application_factor * base_force / math.cos(teeth.first.transverse_pressure_angle) / teeth.width
+    line_load = mesh.application_factor * base_force * math.cos(teeth.first.transverse_pressure_angle) / teeth.width
     velocity = 0.5 * teeth.first.reference_diameter * spin
     inertias = [gear_body(model, gear).polar_inertia / helix_count(model, name) for gear in order]
     try:

@@ -113,14 +113,25 @@ def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ..
         transverse_backlash_m=pair.transverse_backlash, normal_backlash_least_m=backlash.least,
         normal_backlash_mean_m=backlash.mean, normal_backlash_most_m=backlash.most,
         least_contact_line_m=float(lines.min()), mean_contact_line_m=mean_contact_line_length(teeth),
-        largest_contact_line_m=float(lines.max()), iso_single_stiffness_n_per_m2=iso.single,
-        iso_mesh_stiffness_n_per_m2=iso.mesh_alpha, stiffness_model=curve.model, stiffness_n_per_m=curve.mean_normal,
+        largest_contact_line_m=float(lines.max()), iso_theoretical_stiffness_n_per_m2=iso.theoretical,
+        iso_single_stiffness_n_per_m2=iso.single, iso_mesh_stiffness_n_per_m2=iso.mesh_alpha,
+        iso_lead_stiffness_n_per_m2=iso.mesh_beta, stiffness_model=curve.model, stiffness_n_per_m=curve.mean_normal,
         stiffness_peak_to_peak_n_per_m=curve.peak_to_peak / base**2, stiffness_definition=curve.definition,
-        stiffness_body=curve.body, base_tangential_force_n=force * base if force else None,
+        stiffness_body=curve.body, pitch_line_velocity_m_per_s=_velocity(model, mesh.pinion, g1),
+        tangential_force_n=force * base * math.cos(g1.transverse_pressure_angle) if force else None,
+        base_tangential_force_n=force * base if force else None,
         dynamic_factor=None if math.isnan(dynamic.value) else dynamic.value, dynamic_factor_method=dynamic.method,
         resonance_ratio=dynamic.resonance_ratio,
         warnings=(*mesh_findings(model, name), *curve.warnings, *dynamic.warnings),
     )  # fmt: skip
+
+
+def _velocity(model: Model, name: str, g: GearGeometry) -> float | None:
+    """v (m/s) at the reference circle at the speed of the operating point."""
+    if model.operation is None or not model.operation.speed:
+        return None
+    spin = walk(model)[0].ratio(model.gears[name].shaft) * model.operation.speed
+    return 0.5 * g.reference_diameter * abs(spin)
 
 
 def _pitch_diameters(teeth: ToothPair) -> tuple[float, float]:

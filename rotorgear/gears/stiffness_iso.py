@@ -84,7 +84,7 @@ def _outside(pinion: GearGeometry, wheel: GearGeometry, contact_ratio: float) ->
 
 def iso_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshStiffness:
     """Mean mesh stiffness c_gamma_alpha b over the period, without ripple."""
-    line_load = None if load is None else load / math.cos(teeth.first.transverse_pressure_angle) / teeth.width
+    line_load = None if load is None else load * math.cos(teeth.first.transverse_pressure_angle) / teeth.width
     values = iso_tooth_stiffness(
         teeth.first,
         teeth.second,
