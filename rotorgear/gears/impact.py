@@ -69,7 +69,8 @@ def corner_contact(teeth: ToothPair, separation: float) -> CornerContact:
     """Where the tip corner of gear 2, driven by gear 1, meets the driver's flank at a separation (m) along the line of action.
 
     Raises:
-        AnalysisError: a negative separation, interference, or one so large that contact comes a base pitch early or meets no involute.
+        AnalysisError: interference, or a separation that is negative or so large that contact comes a base pitch early or
+            meets no involute.
     """
     from scipy.optimize import brentq
 

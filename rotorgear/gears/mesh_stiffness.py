@@ -191,5 +191,7 @@ def mesh_stiffness(name: str, teeth: ToothPair, load: float | None = None, posit
     module, function = entry.home.split(":")
     model: StiffnessModel = getattr(import_module(module), function)
     found = model(teeth, load, positions)
-    found.position.flags.writeable = found.transverse.flags.writeable = False  # the cache hands the same arrays out again
+    found.position.flags.writeable = found.transverse.flags.writeable = (
+        False  # the cache hands the same arrays out again
+    )
     return found

@@ -50,6 +50,12 @@ def on_line_of_action(teeth: ToothPair, position: float) -> tuple[float, float]:
     return pitch + position * math.sin(angle), position * math.cos(angle)
 
 
+def require_picture_name(path: Path) -> None:
+    """AnalysisError unless the name ends with .png or .svg."""
+    if path.suffix.lower() not in (".png", ".svg"):
+        raise AnalysisError(f"A picture ends with .png or .svg, not '{path.suffix}'.")
+
+
 def draw_mesh(sheet: GearSheet, path: str | Path, mesh: str | None = None) -> Path:
     """Write the drawing of a mesh (the first one where none is named) as PNG or SVG and return its path.
 
@@ -59,8 +65,7 @@ def draw_mesh(sheet: GearSheet, path: str | Path, mesh: str | None = None) -> Pa
         WriteError: the file can't be written.
     """
     target = Path(path)
-    if target.suffix.lower() not in (".png", ".svg"):
-        raise AnalysisError(f"A picture ends with .png or .svg, not '{target.suffix}'.")
+    require_picture_name(target)
     name = mesh or next(iter(sheet.pairs), None)
     if name not in sheet.pairs:
         raise AnalysisError("There is no mesh between gears with teeth to draw.")
