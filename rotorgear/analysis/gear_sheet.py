@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -122,8 +123,16 @@ def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ..
         base_tangential_force_n=force * base if force else None,
         dynamic_factor=None if math.isnan(dynamic.value) else dynamic.value, dynamic_factor_method=dynamic.method,
         resonance_ratio=dynamic.resonance_ratio,
-        warnings=(*mesh_findings(model, name), *curve.warnings, *dynamic.warnings),
+        warnings=(*mesh_findings(model, name), *curve.warnings, *dynamic.warnings, *_several_mates(model, name, dynamic)),
     )  # fmt: skip
+
+
+def _several_mates(model: Model, name: str, dynamic: DynamicFactor) -> Iterator[str]:
+    """A sentence for a gear with further mates, whose resonances method B doesn't know."""
+    own = model.meshes[name]
+    for gear in (own.pinion, own.gear):
+        if dynamic.resonance_ratio and sum(gear in (mesh.pinion, mesh.gear) for mesh in model.meshes.values()) > 1:
+            yield f"K_v: '{gear}' has other mates too; N and K_v are those of this pair by itself"
 
 
 def _velocity(model: Model, name: str, g: GearGeometry) -> float | None:
