@@ -14,7 +14,7 @@ from rotorgear.gears.dynamic_factor import (
 )
 from rotorgear.gears.flank_tolerance import base_pitch_deviation, profile_form_deviation
 from rotorgear.gears.mesh_stiffness import ToothPair
-from rotorgear.gears.stiffness_iso import iso_tooth_stiffness
+from rotorgear.gears.stiffness_iso import pair_iso_stiffness
 from rotorgear.model.inertia import gear_body
 from rotorgear.model.mesh_stiffness import helix_count, tooth_pair
 from rotorgear.model.model import Model
@@ -65,7 +65,7 @@ def _method_b(
 ) -> DynamicMesh:
     """Inputs of method B from the pair, pinion first; deviations are those of the tolerance classes."""
     g1, g2 = teeth.first, teeth.second
-    stiffness = iso_tooth_stiffness(g1, g2, teeth.pair.transverse_contact_ratio, line_load=line_load)
+    stiffness = pair_iso_stiffness(teeth, line_load)
     classes = [(gear, grade) for gear, grade in zip((g1, g2), grades, strict=True) if grade is not None]
     return DynamicMesh(
         pinion_teeth=g1.teeth, ratio=g2.teeth / g1.teeth, pinion_speed=spin, pitch_line_velocity=velocity,

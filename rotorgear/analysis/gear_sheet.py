@@ -22,7 +22,7 @@ from rotorgear.gears.measure import (
 from rotorgear.gears.mesh_stiffness import ToothPair
 from rotorgear.gears.outline import tooth_outline
 from rotorgear.gears.pair import profile_shift_sum, standard_centre_distance
-from rotorgear.gears.stiffness_iso import iso_tooth_stiffness
+from rotorgear.gears.stiffness_iso import pair_iso_stiffness
 from rotorgear.model.gear import Gear
 from rotorgear.model.mesh_geometry import gear_geometry
 from rotorgear.model.mesh_stiffness import helix_count, stiffness_of_mesh, tooth_pair
@@ -93,7 +93,7 @@ def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ..
     g1, g2, pair, mesh = teeth.first, teeth.second, teeth.pair, model.meshes[name]
     backlash = mesh_backlash(model, name)
     lines = contact_line_length(teeth, (np.arange(_POSITIONS) + 0.5) / _POSITIONS)
-    iso = iso_tooth_stiffness(g1, g2, pair.transverse_contact_ratio)
+    iso = pair_iso_stiffness(teeth)
     force = sum(force.normal_force for force in forces) / len(forces)
     curve = stiffness_of_mesh(model, name, force or None)
     base = math.cos(pair.base_helix_angle)

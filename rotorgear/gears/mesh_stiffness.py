@@ -35,11 +35,15 @@ class ToothBody:
     Attributes:
         youngs_modulus (Pa), poisson_ratio: of the teeth.
         inner_radius: radius (m) of the bore, or inside of the rim.
+        web_share: thickness of the web over the face width of a helix; 1 for a solid disk.
+        rim_thickness: of the rim below the root circle (m); None for a solid disk.
     """
 
     youngs_modulus: float = 206e9
     poisson_ratio: float = 0.3
     inner_radius: float = 0.0
+    web_share: float = 1.0
+    rim_thickness: float | None = None
 
 
 @dataclass(frozen=True)
