@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable
 from typing import Any
@@ -38,6 +39,32 @@ def test_a_table_over_the_mesh_period_counts_with_its_mean(pair: dict[str, Any])
     table = with_stiffness(pair, ["3e8 N/m", "4e8 N/m", 5e8])
     assert torque_flow(table, walk(table)[0]).forces[0].contact.stiffness == pytest.approx(4e8, rel=1e-14)
     assert stiffness_of_mesh(table, "stage").normal == pytest.approx([3e8, 4e8, 5e8], rel=1e-14)
+
+
+def test_a_fourier_series_keeps_its_mean_amplitudes_and_phases(pair: dict[str, Any]) -> None:
+    series = {"mean": "4e8 N/m", "amplitudes": [0.2, 0.0, 0.05], "phases": ["30 deg", 0.0, "-90 deg"]}
+    curve = stiffness_of_mesh(with_stiffness(pair, series), "stage")
+    assert curve.mean_normal == pytest.approx(4e8, rel=1e-13)
+    got = curve.harmonics(4) / curve.mean
+    want = [0.2 * cmath.exp(1j * math.pi / 6), 0.0, -0.05j, 0.0]
+    assert max(abs(one - other) for one, other in zip(got, want, strict=True)) < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("series", "words"),
+    [
+        ({"mean": "4e8 N/m"}, "amplitudes as shares of it"),
+        ({"mean": "4e8 N/m", "amplitudes": [0.1], "phases": [0.0, 0.0]}, "as many phases or none"),
+        ({"mean": "4e8 N/m", "amplitudes": [0.1], "phase": [0.0]}, "as many phases or none"),
+        ({"mean": "4e8 N/m", "amplitudes": [0.9, -0.4]}, "leave the stiffness positive"),
+        ({"mean": "-4e8 N/m", "amplitudes": [0.1]}, "a positive stiffness"),
+        ({"mean": "4e8 N/m", "amplitudes": ["0.1 mm"]}, "meshes.stage.stiffness"),
+    ],
+)
+def test_a_series_that_makes_no_sense_is_refused(pair: dict[str, Any], series: dict[str, Any], words: str) -> None:
+    with pytest.raises(ModelError, match=words) as caught:
+        with_stiffness(pair, series)
+    assert [problem.address for problem in caught.value.problems] == ["meshes.stage.stiffness"]
 
 
 def test_both_helices_of_a_herringbone_share_the_load_and_add_up(split: dict[str, Any]) -> None:
