@@ -113,10 +113,12 @@ def iso_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshS
     line_load = None if load is None else load * math.cos(teeth.first.transverse_pressure_angle) / teeth.width
     values = pair_iso_stiffness(teeth, line_load)
     k = np.full(positions, values.mesh_alpha * teeth.width)
+    nominal = "a tip reaches past the base tangent point of its mate (interference): the contact ratio is nominal"
+    warnings = (*values.warnings, nominal) if teeth.pair.interference else values.warnings
     body = f"blanks as in ISO 6336-1 (C_R = {blank_factor(teeth):.3f}); the approach is that of the teeth"
     return MeshStiffness(
         model="iso", position=np.arange(positions) / positions, transverse=k, definition="secant", helices=1, load=load,
-        body=body, base_helix_angle=teeth.pair.base_helix_angle, warnings=values.warnings,
+        body=body, base_helix_angle=teeth.pair.base_helix_angle, warnings=warnings,
     )  # fmt: skip
 
 

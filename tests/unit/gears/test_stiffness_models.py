@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -127,6 +128,35 @@ def test_a_single_pair_by_potential_energy_lies_within_the_scatter_of_the_standa
     iso = iso_tooth_stiffness(SPUR.first, SPUR.second, SPUR.pair.transverse_contact_ratio).single
     peak = slice_stiffness(SPUR, np.linspace(SPUR.pair.start_of_contact, SPUR.pair.end_of_contact, 51)).max()
     assert peak == pytest.approx(iso, rel=0.2)
+
+
+def test_where_a_tip_works_below_the_base_circle_there_is_no_energy_to_compute() -> None:
+    teeth = teeth_of(8, 60, 3e-3, 0, 0.03)
+    assert teeth.pair.interference
+    with pytest.raises(AnalysisError, match="interference.*reduce the tip diameter"):
+        mesh_stiffness("potential_energy", teeth)
+    assert "contact ratio is nominal" in mesh_stiffness("iso", teeth).warnings[-1]
+
+
+def test_the_sweep_of_pairs_is_computed_or_refused_with_a_sentence() -> None:
+    refused, done = set(), 0
+    for z, x, pressure, helix in itertools.product((6, 8, 12, 25, 150), (-0.6, 0.0, 0.9), (14.5, 20, 25), (0, 20, 35)):
+        g = GearGeometry(z, 2e-3, deg(pressure), deg(helix), profile_shift=x)
+        mate = GearGeometry(50, 2e-3, deg(pressure), deg(helix))
+        bodies = (ToothBody(inner_radius=0.15 * own.root_diameter) for own in (g, mate))
+        try:
+            tooth_outline(g)
+            teeth = ToothPair(g, mate, pair_geometry(g, mate, 0.02), 0.02, *bodies)
+            iso, energy = (mesh_stiffness(name, teeth, 2e3, 16) for name in ("iso", "potential_energy"))
+        except AnalysisError as error:
+            refused.add(str(error))
+            continue
+        assert np.all(energy.transverse > 0.0)
+        assert 0.7 < energy.mean / iso.mean < 1.35  # both are within their scatter of each other, for every real tooth
+        done += 1
+    assert done > 50
+    known = ("interference", "pointed", "cuts through the root", "no involute is left")
+    assert all(any(words in sentence for words in known) for sentence in refused)
 
 
 def test_two_helices_double_in_phase_and_average_when_staggered() -> None:
