@@ -32,11 +32,13 @@ _HOMES = {
     "rotorgear.analysis.transient_ladder": ("transient_ladder",),
     "rotorgear.analysis.spectra": ("spectrum", "spectral_lines"),
     "rotorgear.analysis.rig_spectrum": ("compare_spectrum",),
+    "rotorgear.analysis.gear_sheet": ("gear_sheet",),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
     "rotorgear.results.transient": ("TransientResult",),
     "rotorgear.results.accuracy": ("AccuracyLadder",),
+    "rotorgear.results.gear_sheet": ("GearSheet",),
     "rotorgear.results.comparison": ("Comparison", "RigLine"),
     "rotorgear.export.vtk": ("write_vtk",),
     "rotorgear.export.stream": ("stream",),
@@ -50,6 +52,7 @@ if TYPE_CHECKING:
     from rotorgear.analysis.accuracy import accuracy_ladder
     from rotorgear.analysis.compare import compare, read_rig_lines
     from rotorgear.analysis.describe_model import describe_model
+    from rotorgear.analysis.gear_sheet import gear_sheet
     from rotorgear.analysis.modal import modal
     from rotorgear.analysis.rig_spectrum import compare_spectrum
     from rotorgear.analysis.spectra import spectral_lines, spectrum
@@ -77,6 +80,7 @@ if TYPE_CHECKING:
     )
     from rotorgear.results.accuracy import AccuracyLadder
     from rotorgear.results.comparison import Comparison, RigLine
+    from rotorgear.results.gear_sheet import GearSheet
     from rotorgear.results.modal import ModalResult
     from rotorgear.results.transient import TransientResult
     from rotorgear.system.system import System

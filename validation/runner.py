@@ -13,6 +13,7 @@ from pathlib import Path
 from validation.cases import Case, Expectation, read_cases
 from validation.measure import Solver
 from validation.quantities import words
+from validation.sheet import is_of_sheet, sheet_words
 from validation.table import printed
 
 
@@ -83,6 +84,8 @@ def describe(line: Expectation) -> str:
     """Say in one phrase what a line compares."""
     if line.model.endswith(".py"):
         return ", ".join(part for part in (line.quantity, line.mode) if part)
+    if is_of_sheet(line.quantity):
+        return f"{Path(line.model).stem}, {sheet_words(line.quantity)}"
     parts = [Path(line.model).stem, f"mode {line.mode}", words(line.quantity)]
     if line.speed:
         parts.append(line.speed)

@@ -7,7 +7,7 @@ point, d2 the relative rotation. At the place xi of a contact, xi = p_bt (p/2 pi
     v_s = xi W + d1' + xi d2',    W = |w_p| + |w_g|,    F1 = sum F_s,  F2 = sum xi F_s,   F_s = mu N_j tanh(v_s/v_0)
 
 All contacts between the two ends of the path share N evenly. Helical teeth are cut into slices across the face whose phase lags.
-mu is given, or Benedict and Kelley's, ASLE Trans. 4 (1961) 59:  mu = 0.0127 log10(29.66 w/(eta v_s v_r^2)), w in N/mm,
+mu is given, or Benedict and Kelley's, ASLE Trans. 4 (1961) 59:  mu = 0.0127 log10(29.66 w/(eta v_s v_r^2)), w in N/m,
 eta in mPa s.
 """
 
@@ -117,7 +117,7 @@ class MeshFriction(ForceLaw):
     coefficient: float = parameter("", "mu", 0.0)
     overlap: float = parameter("", "overlap ratio of helical teeth; 0 for spur", 0.0)
     viscosity: float = parameter("mPa s", "viscosity for Benedict and Kelley's mu, in place of mu", 0.0)
-    line_load: float = parameter("N/mm", "mean load on a millimetre of face, for that mu", 0.0)
+    line_load: float = parameter("N/m", "mean load on a metre of face, for that mu", 0.0)
     rolling: float = parameter(
         "m/rad", "rolling speed at the pitch point for each rad/s of the reference, for that mu", 0.0
     )
@@ -167,5 +167,5 @@ class MeshFriction(ForceLaw):
         normal = MeshContact(3e8, 900.0, 40e-6, ramp=2e-6, order=20.0, phase=0.3)
         return (
             cls(normal, 8.5e-3, -6e-3, 7e-3, 1.5, 0.06),
-            cls(normal, 8.5e-3, -6e-3, 7e-3, 1.5, overlap=1.4, viscosity=20.0, line_load=200.0, rolling=0.02),
+            cls(normal, 8.5e-3, -6e-3, 7e-3, 1.5, overlap=1.4, viscosity=20.0, line_load=2e5, rolling=0.02),
         )

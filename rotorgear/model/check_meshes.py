@@ -41,7 +41,7 @@ def mesh_problems(model: Tables) -> Iterator[Problem]:
             yield Problem(address, f"two gears on shaft '{pinion.shaft}'", "gears on two shafts")
         else:
             yield from _excitations(address, mesh, pinion, gear)
-            found = [*_mates(address, pinion, gear), *_faces(model, address, mesh)]
+            found = [*_mates(address, pinion, gear), *_faces(model, address, mesh), *_teeth(address, mesh, pinion)]
             yield from found or _axes(model, address, name)
 
 
@@ -50,6 +50,10 @@ def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator
     for key in ("transmission_error", "stiffness_variation", "corner_impact"):
         if getattr(mesh, key) and not (pinion.teeth and gear.teeth):
             yield Problem(f"{address}.{key}", "harmonics of a mesh whose frequency is unknown", "teeth of both gears")
+    if mesh.stiffness_variation and not isinstance(mesh.stiffness, int | float):
+        yield Problem(
+            f"{address}.stiffness_variation", "harmonics beside a stiffness that varies itself", "one of the two"
+        )
     if mesh.corner_impact and not 0.0 < mesh.corner_impact.duration < 1.0:
         yield Problem(
             f"{address}.corner_impact.duration",
@@ -68,6 +72,13 @@ def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator
     for key in ("helix_index_error", "helix_stagger"):
         if getattr(mesh, key) and pinion.kind != "herringbone":
             yield Problem(f"{address}.{key}", "a value", "nothing here", "only a herringbone pair has two helices")
+
+
+def _teeth(address: str, mesh: Mesh, pinion: Gear) -> Iterator[Problem]:
+    """A stiffness model needs teeth."""
+    if isinstance(mesh.stiffness, str) and pinion.lumped:
+        wanted = "a stiffness such as '5e8 N/m' between gears that are given by their base radius"
+        yield Problem(f"{address}.stiffness", f"'{mesh.stiffness}'", wanted, "a stiffness model needs teeth")
 
 
 def _mates(address: str, pinion: Gear, gear: Gear) -> Iterator[Problem]:

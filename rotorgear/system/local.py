@@ -16,6 +16,7 @@ from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector
 from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
 from rotorgear.model.inertia import node_bodies
 from rotorgear.model.mesh_phases import mesh_phases
+from rotorgear.model.mesh_stiffness import stiffness_of_mesh
 from rotorgear.model.torque_flow import MeshForce
 from rotorgear.solvers.local_system import LocalSystem
 from rotorgear.solvers.motion import Rotation
@@ -154,7 +155,7 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         contact_damping=mesh.contact_damping, ramp=deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP),
         order=order, phase=phase + 2.0 * np.pi * late, stiffness_cos=stiffness_cos, stiffness_sin=stiffness_sin,
         error_mean=mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0),
-        error_cos=error_cos, error_sin=error_sin, **_impact(mesh.corner_impact),
+        error_cos=error_cos, error_sin=error_sin, pieces=_pieces(system, force), **_impact(mesh.corner_impact),
     )  # fmt: skip
 
 
@@ -168,6 +169,21 @@ def _back(law: MeshContact) -> MeshContact:
         error_sin=tuple(-x for x in law.error_sin),
         expanded=False,
     )
+
+
+def _pieces(system: System, force: MeshForce) -> tuple[tuple[float, float, float], ...]:
+    """Straight pieces of k over its mean in a mesh cycle, where the file gives a curve or a stiffness model."""
+    name = force.contact.mesh
+    if isinstance(system.model.meshes[name].stiffness, int | float):
+        return ()
+    curve = system.flow.stiffness.get(name) or stiffness_of_mesh(system.model, name, force.normal_force or None)
+    share = curve.transverse / curve.transverse.mean()
+    if (
+        not force.pinion_drives
+    ):  # its positions count along the path from approach of the pinion: time runs the other way
+        share = np.roll(share[::-1], 1)
+    ends = np.roll(share, -1)
+    return tuple((i / share.size, float(a), float(b)) for i, (a, b) in enumerate(zip(share, ends, strict=True)))
 
 
 def _impact(impact: CornerImpact | None) -> dict[str, Any]:

@@ -115,7 +115,7 @@ def friction_part(
     law = MeshFriction(
         contact=contact, base_pitch=base_pitch, start=ends[0], end=ends[1], closing=sense * (pinion - gear),
         coefficient=mesh.friction_coefficient, overlap=pair.overlap_ratio, viscosity=1e3 * (mesh.lubricant_viscosity or 0.0),
-        line_load=1e-3 * force.normal_force / min(widths), rolling=float(rolling),
+        line_load=force.normal_force / min(widths), rolling=float(rolling),
     )  # fmt: skip
     across = columns_at(system, dofs, np.array([[1.0], [sense]]) * sliding_vectors(geometry))
     return LocalPart(f"meshes.{name}", f"{label} friction", law, np.hstack([column, across]))

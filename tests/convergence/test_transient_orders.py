@@ -1,4 +1,4 @@
-"""The split-torque gearbox with contacts that part: order of the methods, and agreement with a reference that shares nothing with them."""
+"""The split-torque gearbox with contacts that part: order of the methods, and agreement with an explicit reference."""
 
 from __future__ import annotations
 

@@ -2,9 +2,9 @@
 
     python -m validation.benchmarks.transient_speed
 
-The split-torque gearbox with about 600 dofs and 8 contact lines that part (k(t) +-25 %, e 4 um, a fifth of the torque, 200 steps in a period of the fastest mesh).
-Prints, in CPU seconds of one thread: steps in a second of each, their ratios, the rms difference of the contact forces, and the share of the in-cache matrix-vector
-bandwidth that the exponential method reaches. All methods start from one state.
+The split-torque gearbox with about 600 dofs and 8 contact lines that part: k(t) +-25 %, e 4 um, a fifth of the torque, 200 steps
+in a period of the fastest mesh. Prints, in CPU seconds of one thread, steps in a second of each, their ratios, the difference of the
+contact forces, and the share of the in-cache matrix-vector bandwidth that the exponential method reaches.
 """
 
 from __future__ import annotations

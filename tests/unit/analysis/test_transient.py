@@ -268,3 +268,31 @@ def test_gravity_bends_the_shafts_and_its_force_arrives_at_the_bearings() -> Non
     total = sum(result.history(f"bearings.{name} force y")[0] for name in "abcd")
     mass = rg.describe_model(model).total_mass_kg
     assert total == pytest.approx(-9.81 * mass, rel=1e-9)
+
+
+def test_a_list_of_stiffnesses_over_the_mesh_period_does_what_its_fourier_series_does() -> None:
+    pair = {"meshes__pair__transmission_error": [], "meshes__pair__backlash": "50 um"}
+    n = 60
+    values = [3e8 * (1.0 + 0.2 * np.cos(2.0 * np.pi * i / n)) for i in range(n)]
+    series = {"mean": "3e8 N/m", "amplitudes": [0.2]}
+    harmonic = spur_pair(**pair, meshes__pair__stiffness_variation=[{"harmonic": 1, "amplitude": 0.2}])
+    models = [harmonic, *(spur_pair(**pair, meshes__pair__stiffness=given) for given in (values, series))]
+    found = [transient(m, time=0.02, steps=200) for m in models]
+    for other in found[1:]:
+        assert other.mesh_force == pytest.approx(found[0].mesh_force, abs=1e-2 * np.ptp(found[0].mesh_force))
+
+
+def test_a_stiffness_model_shakes_the_pair_with_its_curve() -> None:
+    model = spur_pair(meshes__pair__transmission_error=[], meshes__pair__stiffness="potential_energy")
+    system = System(model)
+    local = local_model(system, Rotation.constant(model.operation.speed), model.operation.speed).local
+    law = local.forces.laws[0]
+    curve = system.flow.stiffness["pair"]
+    normal = curve.transverse / np.cos(0.0) ** 2
+    k = [
+        law.evaluate([1e-5], angle=(2.0 * np.pi * u - law.phase) / law.order, speed=100.0).in_displacement[0, 0]
+        for u in curve.position
+    ]
+    assert k == pytest.approx(normal, rel=1e-6)
+    result = transient(model, time=0.02, settle=0.02, steps=100)
+    assert result.mesh_force.std() > 0.01 * result.mesh_force.mean()
