@@ -81,18 +81,10 @@ class ExplicitStepper:
 
     def advance(self, state: State, steps: int, every: int) -> Records:
         """Advance a state in place by some steps and record every `every`-th."""
-        n, kept = self.system.n, blank_records(steps, every, self.system.n, self.system)
+        kept = blank_records(steps, every, self.system.n, self.system)
         begin, end = state.step * self.h, (state.step + steps) * self.h
         y = np.concatenate([state.q, state.v])
-        scale = np.concatenate([np.full(n, _size(state.q, y[:n])), np.full(n, _size(state.v, y[n:]))])
-        solver = DOP853(
-            self._slope,
-            begin,
-            y,
-            end,
-            rtol=self.relative,
-            atol=self.relative * np.maximum(scale, _smallest(self.system)),
-        )
+        solver = DOP853(self._slope, begin, y, end, rtol=self.relative, atol=self.relative * self._sizes(state))
         done, status = 0, 0
         with np.errstate(all="ignore"):
             while solver.status == "running":
@@ -109,6 +101,14 @@ class ExplicitStepper:
         state.step += done
         fields = PlainFields(kept["q"][:r], kept["v"][:r], kept["a"][:r])
         return Records(t, kept["d"][:r], kept["F"][:r], kept["energy"][:r], fields, done, status, solver.nfev)
+
+    def _sizes(self, state: State) -> np.ndarray:
+        """Sizes (2n,) that errors of displacements and velocities are taken relative to."""
+        s = self.system
+        ratio = np.abs(s.stiffness_about.diagonal()) / s.M.diagonal()
+        typical = float(np.sqrt(np.median(ratio[ratio > 0.0]))) if np.any(ratio > 0.0) else 1.0
+        far = max(_size(state.q), _smallest(s), _size(state.v) / typical)
+        return np.concatenate([np.full(s.n, far), np.full(s.n, far * typical)])
 
     def _look(self, state: State, kept: dict[str, Any], number: int, every: int, y: np.ndarray) -> None:
         """Take the state over after a step, with what forces did in it."""
