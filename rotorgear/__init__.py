@@ -20,6 +20,7 @@ _HOMES = {
     "rotorgear.model.shaft": ("Shaft", "Section", "Material"),
     "rotorgear.model.bodies": ("Disk", "PointMass"),
     "rotorgear.model.gear": ("Gear", "GearBody"),
+    "rotorgear.model.excitation": ("ErrorHarmonic", "StiffnessHarmonic", "Unbalance"),
     "rotorgear.model.mesh": ("Mesh",),
     "rotorgear.model.supports": (
         "Bearing", "TableRow", "Pedestal", "Support", "Coupling", "StiffnessMatrix", "DampingMatrix",
@@ -27,10 +28,12 @@ _HOMES = {
     "rotorgear.model.operation": ("Operation", "Load", "ModelDamping", "Point"),
     "rotorgear.system.system": ("System",),
     "rotorgear.analysis.modal": ("modal",),
+    "rotorgear.analysis.static": ("static",),
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
+    "rotorgear.results.static": ("StaticResult",),
     "rotorgear.results.accuracy": ("AccuracyLadder",),
     "rotorgear.results.comparison": ("Comparison", "RigLine"),
     "rotorgear.export.vtk": ("write_vtk",),
@@ -45,10 +48,12 @@ if TYPE_CHECKING:
     from rotorgear.analysis.compare import compare, read_rig_lines
     from rotorgear.analysis.describe_model import describe_model
     from rotorgear.analysis.modal import modal
+    from rotorgear.analysis.static import static
     from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
     from rotorgear.export.hdf5 import read, save
     from rotorgear.export.vtk import write_vtk
     from rotorgear.model.bodies import Disk, PointMass
+    from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic, Unbalance
     from rotorgear.model.gear import Gear, GearBody
     from rotorgear.model.load import json_schema, load, loads
     from rotorgear.model.mesh import Mesh
@@ -67,6 +72,7 @@ if TYPE_CHECKING:
     from rotorgear.results.accuracy import AccuracyLadder
     from rotorgear.results.comparison import Comparison, RigLine
     from rotorgear.results.modal import ModalResult
+    from rotorgear.results.static import StaticResult
     from rotorgear.system.system import System
 
 

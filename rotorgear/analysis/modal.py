@@ -15,13 +15,13 @@ from rotorgear.analysis.notes import left_out, mode_warnings
 from rotorgear.analysis.points import point_amplitudes
 from rotorgear.analysis.reach import Reach
 from rotorgear.analysis.refine import DEFAULT_ACCURACY, START, all_finer, errors_of, refined, total_error
+from rotorgear.analysis.request import direction_of, speed_in_rad_s
 from rotorgear.analysis.stations import shapes_at_stations
 from rotorgear.analysis.whirl import whirl_by_shaft, whirl_words
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.fields import MOTIONS
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.results.modal import ModalResult, Piece
 from rotorgear.system.plan import PieceKey, Plan
 from rotorgear.system.system import System
@@ -65,7 +65,7 @@ def modal(
         AnalysisError: nothing to solve, a dof with neither inertia nor stiffness, a speed outside a bearing's table.
         ConvergenceError: a guard of the solver was not met, or the accuracy can't be reached; never a silent loss.
     """
-    speed = _speed(speed)
+    speed = speed_in_rad_s(speed)
     _check_request(speed, modes, fmax, elements, accuracy)
     unknown = set(only) - set(MOTIONS)
     if unknown:
@@ -124,14 +124,10 @@ def _next_plan(
 
 
 def _system(model: Model | System, speed: float | None, plan: Plan) -> System:
-    system = model if isinstance(model, System) else System(model, plan=plan, direction=_direction(speed))
+    system = model if isinstance(model, System) else System(model, plan=plan, direction=direction_of(speed))
     if system.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     return system
-
-
-def _direction(speed: float | None) -> int | None:
-    return None if not speed else int(np.sign(speed))
 
 
 class _Clock:
@@ -143,16 +139,6 @@ class _Clock:
         now = time.perf_counter()
         self.laps[name] = self.laps.get(name, 0.0) + now - self._last
         self._last = now
-
-
-def _speed(given: float | str | None) -> float | None:
-    """Speed in rad/s from a number or a text with its unit."""
-    if given is None:
-        return None
-    try:
-        return parse_quantity(given, "speed")
-    except QuantityError as error:
-        raise AnalysisError(f"speed: got {given!r}, expected {error}") from None
 
 
 def _check_request(

@@ -17,7 +17,6 @@ from rotorgear.system.components import dof_motions, independent_groups
 from rotorgear.system.strain_forms import StrainForms
 from rotorgear.system.system import System
 
-
 # Backward error above which a damped mode is refused.
 _LARGEST_RESIDUAL = 1e-8
 

@@ -20,6 +20,8 @@ ModelFile = Annotated[Path, typer.Argument(help="Model file (TOML).", show_defau
 JsonOption = Annotated[
     Path | None, typer.Option("--json", help="Write the result as JSON to this file.", show_default=False)
 ]
+SaveOption = Annotated[Path | None, typer.Option("--save", help="Save the result (HDF5).", show_default=False)]
+PlotOption = Annotated[Path | None, typer.Option("--plot", help="Draw it to this PNG, SVG or PDF.", show_default=False)]
 ElementsOption = Annotated[
     int | None,
     typer.Option(
