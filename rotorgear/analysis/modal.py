@@ -66,7 +66,7 @@ def modal(
         ConvergenceError: a guard of the solver was not met, or the accuracy can't be reached; never a silent loss.
     """
     speed = speed_in_rad_s(speed)
-    _check_request(speed, modes, fmax, elements, accuracy)
+    check_request(speed, modes, fmax, elements, accuracy)
     unknown = set(only) - set(MOTIONS)
     if unknown:
         raise AnalysisError(f"only: got {', '.join(sorted(unknown))}, expected motions among {', '.join(MOTIONS)}")
@@ -141,9 +141,10 @@ class _Clock:
         self._last = now
 
 
-def _check_request(
+def check_request(
     speed: float | None, modes: int | None, fmax: float | None, elements: int | None, accuracy: float | None
 ) -> None:
+    """AnalysisError where a wish for modes or for a mesh makes no sense."""
     for name, value in (("the number of modes", modes), ("the number of elements", elements)):
         if value is not None and value < 1:
             raise AnalysisError(f"{name} must be at least 1, got {value}")

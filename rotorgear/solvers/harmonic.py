@@ -1,0 +1,103 @@
+"""Harmonic response Z(w) q = f, Z = K + i w D - w^2 M (+ i w P diag(d) P^T): direct, or in a basis that certifies itself.
+
+The reduced solution q = X y comes from X^T Z X y = X^T f. Its residual f - Z q is cheap at every frequency; where it is
+largest the full problem is solved, which measures the true error there, and the solution joins the basis until that error is
+below the tolerance. Greedy reduced basis: Hesthaven, Rozza and Stamm, Certified Reduced Basis Methods (Springer 2016), ch. 3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from rotorgear.solvers.factor import factor_general
+
+
+@dataclass(frozen=True)
+class LowRankDamping:
+    """Damping P diag(d) P^T with P (n, m): that of single modes, so it is never assembled."""
+
+    vectors: np.ndarray
+    sizes: np.ndarray
+
+
+@dataclass(frozen=True)
+class Dynamics:
+    """M, D, K at one parameter, sparse (n, n); D and K may be non-symmetric."""
+
+    M: sp.csc_array
+    D: sp.csc_array
+    K: sp.csc_array
+    low_rank: LowRankDamping | None = None
+
+    def solve(self, w: float, f: np.ndarray) -> np.ndarray:
+        """Solve at one frequency in rad/s: f (n, p) complex -> q (n, p).
+
+        Raises
+        ------
+        ConvergenceError
+            Z is singular: an undamped resonance to the last digit.
+        """
+        f = np.asarray(f, complex)
+        factor = factor_general(sp.csc_array(self.K + (1j * w) * self.D - w**2 * self.M, dtype=complex))
+        q = factor.solve(f)
+        if self.low_rank is None:
+            return q
+        P, d = self.low_rank.vectors, 1j * w * self.low_rank.sizes
+        spread = factor.solve(P.astype(complex))
+        inner = np.eye(len(d)) + d[:, None] * (P.T @ spread)
+        return np.asarray(q - spread @ np.linalg.solve(inner, d[:, None] * (P.T @ q)))
+
+    def apply(self, w: float, q: np.ndarray) -> np.ndarray:
+        """Z q at one frequency, (n, p)."""
+        out = self.K @ q + 1j * w * (self.D @ q) - w**2 * (self.M @ q)
+        if self.low_rank is not None:
+            P, d = self.low_rank.vectors, self.low_rank.sizes
+            out = out + 1j * w * (P @ (d[:, None] * (P.T @ q)))
+        return np.asarray(out)
+
+
+@dataclass(frozen=True)
+class Projected:
+    """The same in a real basis X (n, r): small dense matrices, and what residuals need."""
+
+    basis: np.ndarray
+    images: tuple[np.ndarray, np.ndarray, np.ndarray]  # M X, D X, K X, each (n, r)
+    small: tuple[np.ndarray, np.ndarray, np.ndarray]
+
+    def solve(self, w: np.ndarray, f: np.ndarray) -> np.ndarray:
+        """Solve at p frequencies (p,) with their own right sides f (n, p): coordinates y (r, p)."""
+        M, D, K = self.small
+        Z = K[None] + 1j * w[:, None, None] * D[None] - (w**2)[:, None, None] * M[None]
+        return np.asarray(np.linalg.solve(Z, (self.basis.T @ f).T[:, :, None])[:, :, 0].T)
+
+    def residual(self, w: np.ndarray, f: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """f - Z X y, (n, p)."""
+        MX, DX, KX = self.images
+        return np.asarray(f - KX @ y - DX @ (1j * w * y) + MX @ (w**2 * y))
+
+
+def projected(dynamics: Dynamics, X: np.ndarray) -> Projected:
+    """Project M, D and K on a basis."""
+    MX, DX, KX = dynamics.M @ X, dynamics.D @ X, dynamics.K @ X
+    if dynamics.low_rank is not None:
+        P, d = dynamics.low_rank.vectors, dynamics.low_rank.sizes
+        DX = DX + P @ (d[:, None] * (P.T @ X))
+    return Projected(X, (MX, DX, KX), (X.T @ MX, X.T @ DX, X.T @ KX))
+
+
+def orthonormal(X: np.ndarray, new: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """X (n, r) and what `new` (n, p) adds to it, orthonormal after multiplication of the rows by `scale` (n,)."""
+    rows = scale[:, None]
+    columns = new * rows
+    size = np.linalg.norm(columns, axis=0)
+    columns = columns[:, size > 0.0] / size[size > 0.0]
+    have = X * rows
+    for _ in range(2):  # twice is enough
+        columns = columns - have @ (have.T @ columns)
+    q, r, _ = la.qr(columns, mode="economic", pivoting=True) if columns.size else (columns, np.zeros((0, 0)), None)
+    kept = np.abs(np.diag(r)) > 1e-8
+    return np.hstack([X, q[:, : len(kept)][:, kept] / rows])
