@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 
 from rotorgear.analysis.mean_state import mean_state
-from rotorgear.analysis.modal import check_request, pieces
+from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.orders import Order, orders_of
 from rotorgear.analysis.plant import Plant, Readings
-from rotorgear.analysis.request import direction_of, speed_in_rad_s
+from rotorgear.analysis.modal_request import check_request, direction_of, speed_in_si
 from rotorgear.analysis.response_error import mesh_error, speed_warnings
 from rotorgear.analysis.response_mesh import damped_modes, plan_up_to
 from rotorgear.analysis.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
@@ -127,7 +127,7 @@ def _speeds(model: Model, given: Sequence[float] | Sequence[str] | None) -> np.n
         if not operating:
             raise AnalysisError("no speeds: give them, or [operation] a speed, and the run-up goes to a fifth above it")
         return operating * np.linspace(_LOWEST, _HIGHEST, _POINTS)
-    found = np.array([speed_in_rad_s(speed) for speed in given], float)
+    found = np.array([speed_in_si(speed) for speed in given], float)
     if not found.size or not np.all(np.isfinite(found)):
         raise AnalysisError("speeds: got none, expected at least one rotational speed")
     if np.any(found == 0.0) or np.any(np.sign(found) != np.sign(found[0])):
@@ -145,7 +145,7 @@ def _check(method: str, damping_ratio: float, fmax: float | None, elements: int 
 
 def _shape_speed(model: Model, given: float | str | None, speeds: np.ndarray, readings: list[Readings]) -> float:
     """Speed of the deflection shapes: as asked for, the operating speed where it is in the range, else that of the largest force."""
-    asked = speed_in_rad_s(given)
+    asked = speed_in_si(given)
     if asked is not None:
         if asked == 0.0 or np.sign(asked) != np.sign(speeds[0]):
             raise AnalysisError("the speed of the deflection shapes must have the sense of the run-up and not be 0")

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.analysis.modal import modal
-from rotorgear.analysis.modal_solve import Wanted, solve
+from rotorgear.analysis.modal_solve import solve
+from rotorgear.analysis.modes import Wanted
 from rotorgear.analysis.refine import DEFAULT_ACCURACY, START
 from rotorgear.model.model import Model
 from rotorgear.results.modal import ModalResult

@@ -152,9 +152,7 @@ def _worst(residuals: np.ndarray) -> list[tuple[int, int]]:
     return [(int(at[o]), int(o)) for o in ranked]
 
 
-def modal_sweep(
-    plant: Plant, orders: list[Order], speeds: np.ndarray, modes: np.ndarray, progress: Progress
-) -> Sweep:
+def modal_sweep(plant: Plant, orders: list[Order], speeds: np.ndarray, modes: np.ndarray, progress: Progress) -> Sweep:
     """Solve in a basis that is grown until it is proved good, then at every speed."""
     with single_thread(plant.system.n):
         sweep = ModalSweep(plant, orders, speeds, modes)

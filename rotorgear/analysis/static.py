@@ -9,7 +9,7 @@ import numpy as np
 
 from rotorgear.analysis.places import displacement_places
 from rotorgear.analysis.points import point_amplitudes
-from rotorgear.analysis.request import direction_of, speed_in_rad_s
+from rotorgear.analysis.modal_request import direction_of, speed_in_si
 from rotorgear.analysis.static_forces import bearing_forces, forces_on_gears, imbalance, support_forces
 from rotorgear.analysis.static_sensitivity import Sensitivity, sensitivities
 from rotorgear.analysis.static_shares import helix_shares, share_rows
@@ -47,7 +47,7 @@ def static(
         AnalysisError: nothing loads the model, it is a mechanism that the loads push, or no set of flanks carries them.
     """
     start = time.perf_counter()
-    given = speed_in_rad_s(speed)
+    given = speed_in_si(speed)
     if given is None and model.operation:
         given = model.operation.speed
     if elements is not None and elements < 1:

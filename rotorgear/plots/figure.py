@@ -1,4 +1,4 @@
-"""Opens a matplotlib figure without a window, and writes it whole to a PNG or SVG."""
+"""matplotlib figures without a window, written whole."""
 
 from __future__ import annotations
 
@@ -8,13 +8,11 @@ from typing import Any
 from rotorgear.errors import AnalysisError, MissingExtraError
 from rotorgear.export.files import replacing
 
-ENDINGS = (".png", ".svg", ".pdf")
-# Told apart by colour-blind readers (Okabe and Ito), dark enough on white.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#555555", "#8B4513")
+_FORMATS = (".png", ".svg", ".pdf")
 
 
-def new_figure(width: float, height: float) -> Any:
-    """Return an empty figure of a size in inches.
+def new_figure(size: tuple[float, float]) -> Any:
+    """An empty figure of a size in inches.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
@@ -23,19 +21,21 @@ def new_figure(width: float, height: float) -> Any:
         from matplotlib.figure import Figure
     except ImportError:
         raise MissingExtraError("A plot", "matplotlib", "plots") from None
-    return Figure(figsize=(width, height), layout="constrained")
+    return Figure(figsize=size, layout="constrained")
 
 
 def write_figure(figure: Any, path: str | Path) -> Path:
-    """Write a figure and return its path.
+    """Write a figure as PNG, SVG or PDF by the name's ending, and return its path.
 
     Raises:
-        AnalysisError: a name that ends otherwise. WriteError: the file can't be written.
+        AnalysisError: another ending. WriteError: the file can't be written.
     """
     target = Path(path)
-    if target.suffix.lower() not in ENDINGS:
-        raise AnalysisError(f"a plot is written to a name that ends in {', '.join(ENDINGS)}, got '{target}'")
-    kind = target.suffix.lower().removeprefix(".")
+    kind = target.suffix.lower()
+    if kind not in _FORMATS:
+        raise AnalysisError(f"a plot is written as PNG, SVG or PDF by the ending of its name; got '{target.name}'")
+    # Without a date the same result gives the same file.
+    metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(kind)
     with replacing(target) as scratch:
-        figure.savefig(scratch, format=kind, dpi=120, metadata={"Date": None} if kind == "svg" else None)
+        figure.savefig(scratch, dpi=130, format=kind[1:], metadata=metadata)
     return target

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.figure import COLOURS, new_figure, write_figure
+from rotorgear.plots.colours import COLOURS
+from rotorgear.plots.figure import new_figure, write_figure
 from rotorgear.results.static import StaticResult
 
 
@@ -19,7 +20,7 @@ def draw_static(result: StaticResult, path: str | Path) -> Path:
     """
     shafts = [name for name in result.model.shafts if result.nodes.on_shaft(name).size > 1]
     upper = bool(result.contact_mesh) or bool(result.bearing_force)
-    figure = new_figure(10.0, (3.6 if upper else 0.0) + 1.9 * max(len(shafts), 1))
+    figure = new_figure((10.0, (3.6 if upper else 0.0) + 1.9 * max(len(shafts), 1)))
     top, bottom = figure.subfigures(2, 1, height_ratios=[3.4, 1.8 * max(len(shafts), 1)]) if upper else (None, figure)
     if top is not None:
         left, right = top.subplots(1, 2, width_ratios=[1.0, 1.1])
