@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 
 from rotorgear.analysis.mean_state import mean_state
+from rotorgear.analysis.modal_request import check_request, direction_of, speed_in_si
 from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.orders import Order, orders_of
 from rotorgear.analysis.plant import Plant, Readings
-from rotorgear.analysis.modal_request import check_request, direction_of, speed_in_si
 from rotorgear.analysis.response_error import mesh_error, speed_warnings
 from rotorgear.analysis.response_mesh import damped_modes, plan_up_to
 from rotorgear.analysis.run_up import choose_method, direct_sweep, modal_sweep, solve_orders

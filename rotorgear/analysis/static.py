@@ -7,9 +7,9 @@ import time
 
 import numpy as np
 
+from rotorgear.analysis.modal_request import direction_of, speed_in_si
 from rotorgear.analysis.places import displacement_places
 from rotorgear.analysis.points import point_amplitudes
-from rotorgear.analysis.modal_request import direction_of, speed_in_si
 from rotorgear.analysis.static_forces import bearing_forces, forces_on_gears, imbalance, support_forces
 from rotorgear.analysis.static_sensitivity import Sensitivity, sensitivities
 from rotorgear.analysis.static_shares import helix_shares, share_rows
