@@ -8,6 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.orders import Order
+from rotorgear.analysis.places import part_nodes
 from rotorgear.analysis.points import point_place
 from rotorgear.model.fields import DOF_NAMES
 from rotorgear.solvers.harmonic import Dynamics, LowRankDamping
@@ -17,17 +18,25 @@ from rotorgear.system.system import System
 
 @dataclass(frozen=True)
 class Readings:
-    """Amplitudes at one speed: mesh force and transmission error (o, c), bearing force (o, b, 3), acceleration (o, k)."""
+    """Amplitudes at one speed.
+
+    Attributes:
+        mesh_force, transmission_error: (o, c); bearing_force: (o, b, 3); acceleration: of the named points, (o, k).
+        displacement: x y z tx ty tz at gears, disks and bearings, (o, d, 6).
+    """
 
     mesh_force: np.ndarray
     transmission_error: np.ndarray
     bearing_force: np.ndarray
     acceleration: np.ndarray
+    displacement: np.ndarray
 
     @property
     def stacked(self) -> np.ndarray:
-        """Forces only, (o, c + 3 b)."""
-        return np.hstack([self.mesh_force, self.bearing_force.reshape(len(self.bearing_force), -1)])
+        """All forces, (o, c + 3 b); where a model has neither mesh nor bearing, the displacements, (o, 3 d)."""
+        orders = len(self.mesh_force)
+        forces = np.hstack([self.mesh_force, self.bearing_force.reshape(orders, -1)])
+        return forces if forces.size else self.displacement[:, :, :3].reshape(orders, -1)
 
 
 class Plant:
@@ -49,6 +58,9 @@ class Plant:
             modes, w, zeta = damping
             self.low_rank = LowRankDamping(np.asarray(system.mass @ modes), 2.0 * zeta * w)
         self.has_tables = any(bearing.table for bearing in system.model.bearings.values())
+        self.places = part_nodes(system)
+        rows = [6 * node + dof for node in self.places.values() for dof in range(6)]
+        self._place_rows = sp.csr_array(system.dofs.transform)[rows, :]
         self._points = [_row(system, name) for name in system.model.points]
         self._parts: tuple[sp.csc_array, ...] | None = None
         self._read: tuple[np.ndarray, np.ndarray] | None = None
@@ -82,9 +94,9 @@ class Plant:
         force = impedance * ((lines.vectors.T @ q).T - error) + varied
         K, C = self._bearings(speed)
         held = -((K @ q) + (C @ q) * (1j * w)).T.reshape(len(w), -1, 3)
-        rows = np.array(self._points).reshape(len(self._points), -1)
-        moved = (rows @ q).T if len(self._points) else np.zeros((len(w), 0), complex)
-        return Readings(force, (lines.rotation.T @ q).T, held, -(w**2)[:, None] * moved)
+        moved = (np.reshape(self._points, (len(self._points), len(q))) @ q).T
+        there = (self._place_rows @ q).T.reshape(len(w), len(self.places), 6)
+        return Readings(force, (lines.rotation.T @ q).T, held, -(w**2)[:, None] * moved, there)
 
     def _bearings(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Rows that give the force on each bearing's node along x y z from displacements and velocities, (3 b, n) each."""

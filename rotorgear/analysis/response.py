@@ -94,6 +94,7 @@ def response(
         contact_helix=np.array([state.contact.helix for state in setup.lines.states], dtype=int),
         mean_force=setup.mean_force, mesh_force=stacked[0], transmission_error=stacked[1],
         bearings=tuple(model.bearings), bearing_force=stacked[2], points=tuple(model.points), acceleration=stacked[3],
+        places=tuple(plant.places), displacement=stacked[4],
         shape_speed=at, shapes=shapes, nodes=nodes, damping_ratio=zeta, solver_error=run.solver_error, checked=run.checked,
         error_estimate=estimate, dofs=system.n, discretisation=pieces(system),
         seconds={"total": time.perf_counter() - clock}, left_out=(*left, *setup.notes),
@@ -116,7 +117,7 @@ def _within(orders: list[Order], speeds: np.ndarray, fmax: float | None) -> tupl
 
 
 def _stacked(readings: list[Readings]) -> list[np.ndarray]:
-    names = ("mesh_force", "transmission_error", "bearing_force", "acceleration")
+    names = ("mesh_force", "transmission_error", "bearing_force", "acceleration", "displacement")
     return [np.stack([getattr(item, name) for item in readings], axis=1) for name in names]
 
 
@@ -144,7 +145,7 @@ def _check(method: str, damping_ratio: float, fmax: float | None, elements: int 
 
 
 def _shape_speed(model: Model, given: float | str | None, speeds: np.ndarray, readings: list[Readings]) -> float:
-    """Speed of the deflection shapes: as asked for, the operating speed where it is in the range, else that of the largest force."""
+    """Speed of the deflection shapes: as asked for, the operating one if it is in the range, else that of the largest force."""
     asked = speed_in_si(given)
     if asked is not None:
         if asked == 0.0 or np.sign(asked) != np.sign(speeds[0]):

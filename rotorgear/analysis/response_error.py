@@ -34,7 +34,7 @@ def mesh_error(
     zeta, limit = damping
     rich = Plant(finer, lines, (*damped_modes(finer, limit), zeta) if zeta else None)
     forces = np.array([item.stacked for item in readings])  # (s, o, ...)
-    size = np.abs(forces).max(axis=2)
+    size = np.abs(forces).max(axis=2, initial=0.0)
     worst = 0.0
     wanted = {order.name: order for order in orders_of(finer, lines, mean)}
     for o in np.argsort(-size.max(axis=0))[:_CHECKED_ON_FINER]:
@@ -80,6 +80,6 @@ def speed_warnings(
         return []
     rpm = 30.0 / np.pi
     return [
-        f"speeds are {step * rpm:.4g} rpm apart, but the sharpest resonance met is only {width * rpm:.2g} rpm wide at half power: its "
-        "peak may be higher than shown; more points or a narrower range show it"
+        f"speeds are {step * rpm:.4g} rpm apart, but the sharpest resonance met is {width * rpm:.2g} rpm wide at half power: "
+        "its peak may be higher than shown; more points or a narrower range show it"
     ]

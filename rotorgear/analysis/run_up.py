@@ -119,7 +119,8 @@ class ModalSweep:
             if error <= TOLERANCE:
                 return
         raise ConvergenceError(
-            f"the modal solution still differs by {error:.1e} from direct ones with {self.basis.shape[1]} vectors; use --method direct"
+            f"the modal solution still differs by {error:.1e} from direct ones with {self.basis.shape[1]} vectors; "
+            "use --method direct"
         )
 
     def _improve(self, speeds: np.ndarray) -> float:

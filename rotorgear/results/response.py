@@ -24,6 +24,7 @@ class ResponseResult:
         transmission_error: (o, s, c) dynamic transmission error r_b1 theta_1 + r_b2 theta_2 in the plane of action, m.
         bearings: their names; bearing_force: (o, s, b, 3) force on the shaft in N.
         points: names of the points; acceleration: (o, s, k) along the direction of each, m/s^2 or rad/s^2.
+        places: gears, disks and bearings by address; displacement: x y z tx ty tz of each, (o, s, d, 6), m and rad.
         shape_speed: speed of the deflection shapes in rad/s; shapes: (p, 6, o) displacements there in m and rad.
         nodes: where the p nodes are.
         damping_ratio: added to every elastic mode.
@@ -44,6 +45,8 @@ class ResponseResult:
     bearing_force: np.ndarray
     points: tuple[str, ...]
     acceleration: np.ndarray
+    places: tuple[str, ...]
+    displacement: np.ndarray
     shape_speed: float
     shapes: np.ndarray
     nodes: NodeTable
