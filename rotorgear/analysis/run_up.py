@@ -17,7 +17,7 @@ from rotorgear.solvers.harmonic import Dynamics, Projected, orthonormal, project
 TOLERANCE = 1e-6
 # Above so many unknowns in all, the basis is cheaper than direct solutions.
 _DIRECT_UP_TO = 60_000
-_ROUNDS, _PER_ROUND, _SPEEDS_WHILE_GROWING = 40, 4, 24
+_ROUNDS, _PER_ROUND, _SPEEDS_WHILE_GROWING = 40, 12, 24
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def direct_sweep(plant: Plant, orders: list[Order], speeds: np.ndarray, progress
         dynamics = plant.dynamics(speed)
         w, f = plant.loads(orders, speed)
         q = solve_orders(plant, dynamics, w, f)
-        rest = np.column_stack([f[:, j] - dynamics.apply(w[j], q[:, [j]])[:, 0] for j in range(len(w))])
+        rest = f - dynamics.apply(w, q)
         scale = np.linalg.norm(_forces_inside(dynamics, w, q), axis=0) + np.linalg.norm(f, axis=0)
         worst = max(worst, float(np.max(np.linalg.norm(rest, axis=0) / np.where(scale > 0.0, scale, 1.0))))
         readings.append(plant.read(orders, speed, w, q))
@@ -83,30 +83,27 @@ class ModalSweep:
         loads = np.hstack([plant.loads(orders, float(self.speeds[-1]))[1]])
         patterns = np.hstack([loads.real, loads.imag, plant.lines.vectors])
         self.basis = orthonormal(np.zeros((plant.system.n, 0)), np.hstack([modes, shifted.solve(patterns)]), self.scale)
-        self._projection: tuple[Projected, Projected, Projected] | None = None
+        self._projection: tuple[Projected, Projected] | None = None
         self.modes = modes.shape[1]
         self.checked, self.error = 0, np.inf
 
-    def reduced(self, speed: float) -> Projected:
+    def reduced(self, dynamics: Dynamics, speed: float) -> Projected:
         """The projection at a speed: put together from two speeds where nothing but W G and W K changes."""
         if self.plant.has_tables:
-            return projected(self.plant.dynamics(speed), self.basis)
-        if self._projection is None or self._projection[0].basis is not self.basis:
+            return projected(dynamics, self.basis)
+        if self._projection is None:
             still, turning = (projected(self.plant.dynamics(x), self.basis) for x in (0.0, 1.0))
-            self._projection = still, turning, still
-        still, turning, _ = self._projection
-        images = tuple(a + speed * (b - a) for a, b in zip(still.images, turning.images, strict=True))
-        small = tuple(a + speed * (b - a) for a, b in zip(still.small, turning.small, strict=True))
-        return Projected(self.basis, images, small)
+            self._projection = still, turning
+        return self._projection[0].between(self._projection[1], speed)
 
     def solve(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Frequencies (o,), displacements (n, o) and relative residuals (o,) at a speed."""
         w, f = self.plant.loads(self.orders, speed)
-        reduced = self.reduced(speed)
-        y = reduced.solve(w, f)
-        rest = reduced.residual(w, f, y) / self.scale[:, None]
+        dynamics = self.plant.dynamics(speed)
+        q = self.basis @ self.reduced(dynamics, speed).solve(w, self.basis.T @ f)
+        rest = (f - dynamics.apply(w, q)) / self.scale[:, None]
         size = np.linalg.norm(f / self.scale[:, None], axis=0)
-        return w, self.basis @ y, np.linalg.norm(rest, axis=0) / np.where(size > 0.0, size, 1.0)
+        return w, q, np.linalg.norm(rest, axis=0) / np.where(size > 0.0, size, 1.0)
 
     def grow(self, progress: Progress) -> None:
         """Add direct solutions until the largest error against them is below the tolerance, at every point tried."""
@@ -142,15 +139,17 @@ class ModalSweep:
                 new += [exact.real, exact.imag]
         if error > TOLERANCE:
             self.basis = orthonormal(self.basis, np.array(new).T, self.scale)
+            self._projection = None
         self.error = error
         return error
 
 
 def _worst(residuals: np.ndarray) -> list[tuple[int, int]]:
-    """(speed, order) of the largest residuals, one for each order at most."""
-    at = residuals.argmax(axis=0)
-    ranked = np.argsort(-residuals[at, np.arange(residuals.shape[1])])[:_PER_ROUND]
-    return [(int(at[o]), int(o)) for o in ranked]
+    """(speed, order) where the residual of an order is larger than at the speeds beside it, the largest of these first."""
+    padded = np.pad(residuals, ((1, 1), (0, 0)), constant_values=-1.0)
+    peaks = np.argwhere((residuals >= padded[:-2]) & (residuals > padded[2:]))
+    ranked = sorted(peaks.tolist(), key=lambda at: -residuals[at[0], at[1]])
+    return [(s, o) for s, o in ranked[:_PER_ROUND]]
 
 
 def modal_sweep(plant: Plant, orders: list[Order], speeds: np.ndarray, modes: np.ndarray, progress: Progress) -> Sweep:

@@ -51,42 +51,43 @@ class Dynamics:
         inner = np.eye(len(d)) + d[:, None] * (P.T @ spread)
         return np.asarray(q - spread @ np.linalg.solve(inner, d[:, None] * (P.T @ q)))
 
-    def apply(self, w: float, q: np.ndarray) -> np.ndarray:
-        """Z q at one frequency, (n, p)."""
-        out = self.K @ q + 1j * w * (self.D @ q) - w**2 * (self.M @ q)
+    def apply(self, w: float | np.ndarray, q: np.ndarray) -> np.ndarray:
+        """Z q, (n, p), at one frequency or at one for each column."""
+        out = self.K @ q + (self.D @ q) * (1j * w) - (self.M @ q) * (w**2)
         if self.low_rank is not None:
             P, d = self.low_rank.vectors, self.low_rank.sizes
-            out = out + 1j * w * (P @ (d[:, None] * (P.T @ q)))
+            out = out + (P @ (d[:, None] * (P.T @ q))) * (1j * w)
         return np.asarray(out)
 
 
 @dataclass(frozen=True)
 class Projected:
-    """The same in a real basis X (n, r): small dense matrices, and what residuals need."""
+    """X^T M X, X^T D X and X^T K X in a real basis X, each (r, r)."""
 
-    basis: np.ndarray
-    images: tuple[np.ndarray, np.ndarray, np.ndarray]  # M X, D X, K X, each (n, r)
-    small: tuple[np.ndarray, np.ndarray, np.ndarray]
+    M: np.ndarray
+    D: np.ndarray
+    K: np.ndarray
+
+    def between(self, other: Projected, share: float) -> Projected:
+        """This one plus a share of the way to another, for matrices that are linear in a parameter."""
+        M, D, K = (
+            mine + share * (theirs - mine) for mine, theirs in ((self.M, other.M), (self.D, other.D), (self.K, other.K))
+        )
+        return Projected(M, D, K)
 
     def solve(self, w: np.ndarray, f: np.ndarray) -> np.ndarray:
-        """Solve at p frequencies (p,) with their own right sides f (n, p): coordinates y (r, p)."""
-        M, D, K = self.small
-        Z = K[None] + 1j * w[:, None, None] * D[None] - (w**2)[:, None, None] * M[None]
-        return np.asarray(np.linalg.solve(Z, (self.basis.T @ f).T[:, :, None])[:, :, 0].T)
-
-    def residual(self, w: np.ndarray, f: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """f - Z X y, (n, p)."""
-        MX, DX, KX = self.images
-        return np.asarray(f - KX @ y - DX @ (1j * w * y) + MX @ (w**2 * y))
+        """Solve at p frequencies (p,) with their own projected right sides f (r, p): coordinates y (r, p)."""
+        Z = self.K[None] + 1j * w[:, None, None] * self.D[None] - (w**2)[:, None, None] * self.M[None]
+        return np.asarray(np.linalg.solve(Z, f.T[:, :, None])[:, :, 0].T)
 
 
 def projected(dynamics: Dynamics, X: np.ndarray) -> Projected:
-    """Project M, D and K on a basis."""
-    MX, DX, KX = dynamics.M @ X, dynamics.D @ X, dynamics.K @ X
+    """Project M, D and K on a basis X (n, r)."""
+    M, D, K = (X.T @ (part @ X) for part in (dynamics.M, dynamics.D, dynamics.K))
     if dynamics.low_rank is not None:
-        P, d = dynamics.low_rank.vectors, dynamics.low_rank.sizes
-        DX = DX + P @ (d[:, None] * (P.T @ X))
-    return Projected(X, (MX, DX, KX), (X.T @ MX, X.T @ DX, X.T @ KX))
+        seen = dynamics.low_rank.vectors.T @ X
+        D = D + seen.T @ (dynamics.low_rank.sizes[:, None] * seen)
+    return Projected(M, D, K)
 
 
 def orthonormal(X: np.ndarray, new: np.ndarray, scale: np.ndarray) -> np.ndarray:
