@@ -14,7 +14,7 @@ from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.orders import Order, orders_of
 from rotorgear.analysis.plant import Plant, Readings
 from rotorgear.analysis.response_error import mesh_error, speed_warnings
-from rotorgear.analysis.response_mesh import damped_modes, plan_up_to
+from rotorgear.analysis.response_mesh import MARGIN, damped_modes, plan_up_to
 from rotorgear.analysis.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
 from rotorgear.analysis.stations import shapes_at_stations
 from rotorgear.errors import AnalysisError
@@ -26,10 +26,8 @@ from rotorgear.system.contacts import contact_lines
 from rotorgear.system.system import System
 
 METHODS = ("auto", "modal", "direct")
-# Modes are found, and the mesh is refined for them, up to this much above the highest excited frequency.
-MARGIN = 1.25
 # A run-up without speeds goes from a tenth of the operating speed to a fifth above it.
-_LOWEST, _HIGHEST, _POINTS = 0.1, 1.2, 221
+LOWEST, HIGHEST, _POINTS = 0.1, 1.2, 221
 
 
 def response(
@@ -127,7 +125,7 @@ def _speeds(model: Model, given: Sequence[float] | Sequence[str] | None) -> np.n
         operating = model.operation.speed if model.operation else None
         if not operating:
             raise AnalysisError("no speeds: give them, or [operation] a speed, and the run-up goes to a fifth above it")
-        return operating * np.linspace(_LOWEST, _HIGHEST, _POINTS)
+        return operating * np.linspace(LOWEST, HIGHEST, _POINTS)
     found = np.array([speed_in_si(speed) for speed in given], float)
     if not found.size or not np.all(np.isfinite(found)):
         raise AnalysisError("speeds: got none, expected at least one rotational speed")

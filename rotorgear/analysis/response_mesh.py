@@ -13,6 +13,9 @@ from rotorgear.results.modal import ModalResult
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
+# Modes are found, and the mesh is refined for them, up to this much above the highest excited frequency.
+MARGIN = 1.25
+
 
 def plan_up_to(model: Model, fmax: float, elements: int | None, accuracy: float | None) -> Plan:
     """The mesh that modes up to a frequency in Hz need, or a fixed one."""

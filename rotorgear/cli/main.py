@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli import accuracy, check, compare, modal, schema, static, validate, view
+from rotorgear.cli import accuracy, check, compare, frf, modal, response, schema, static, validate, view
 from rotorgear.errors import RotorgearError
 
 app = typer.Typer(
@@ -20,6 +20,8 @@ app = typer.Typer(
 app.command()(modal.modal)
 app.command()(compare.compare)
 app.command()(static.static)
+app.command()(response.response)
+app.command()(frf.frf)
 app.command()(check.check)
 app.command()(accuracy.accuracy)
 app.command()(view.view)

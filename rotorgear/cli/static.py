@@ -17,6 +17,7 @@ from rotorgear.cli.common import (
     progress_bar,
     write_json,
 )
+from rotorgear.cli.response import VtkOption
 
 
 def static(
@@ -35,6 +36,7 @@ def static(
     json: JsonOption = None,
     save: SaveOption = None,
     plot: PlotOption = None,
+    vtk: VtkOption = None,
 ) -> None:  # fmt: skip
     """Deflections, bearing and mesh forces, load sharing of branches and helices, assembly condition of loops."""
     import rotorgear as rg
@@ -52,3 +54,6 @@ def static(
         from rotorgear.plots.static import draw_static
 
         typer.echo(f"wrote {draw_static(result, plot)}")
+    if vtk:
+        rg.write_deflections(result, vtk)
+        typer.echo(f"wrote {vtk / 'static.vtp'}")

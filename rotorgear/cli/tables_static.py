@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from rotorgear.cli.common import error_words, table
+
 if TYPE_CHECKING:
     from rotorgear.results.static import StaticResult
 
@@ -41,28 +43,19 @@ def static_tables(result: StaticResult, *, sensitivity: bool = False) -> list[An
     return parts
 
 
-def _table(*names: str, left: int = 1) -> Any:
-    from rich.table import Table
-
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for number, name in enumerate(names):
-        table.add_column(name, justify="left" if number < left else "right")
-    return table
-
-
 def _meshes(result: StaticResult) -> Any:
-    table = _table("mesh", "driver", "F_n N", "helix %", "press um", "Fx N", "Fy N", "Fz N", "phase", left=2)
+    out = table("mesh", "driver", "F_n N", "helix %", "press um", "Fx N", "Fy N", "Fz N", "phase", left=2)
     for k, mesh in enumerate(result.contact_mesh):
         two = len(result.contacts_of(mesh)) == 2
         name = f"{mesh} {'LR'[int(result.contact_helix[k])]}" if two else mesh
         phase = result.mesh_phase.get(mesh, math.nan)
-        table.add_row(
+        out.add_row(
             name, result.driver[k] if result.carries[k] else "open", f"{result.mesh_force[k]:.1f}",
             f"{100.0 * result.helix_share[k]:.2f}" if two else "-", f"{1e6 * result.mesh_deflection[k]:.3f}",
             *(f"{_signless(value):.0f}" for value in result.mesh_force_on_gear[k]),
             "-" if phase != phase else f"{phase:.4f}",
         )  # fmt: skip
-    return table
+    return out
 
 
 def _signless(value: float) -> float:
@@ -70,11 +63,11 @@ def _signless(value: float) -> float:
 
 
 def _shares(result: StaticResult) -> Any:
-    table = _table("shared by", "mesh", "share %", "times mean", "decided by", left=2)
+    out = table("shared by", "mesh", "share %", "times mean", "decided by", left=2)
     for row in result.shares:
-        table.add_row(row.gear, row.mesh, f"{100.0 * row.share:.3f}", f"{row.factor:.4f}", row.decided_by)
-    table.add_row("sharing factor", "", "", f"{result.sharing_factor:.4f}", "K_gamma")
-    return table
+        out.add_row(row.gear, row.mesh, f"{100.0 * row.share:.3f}", f"{row.factor:.4f}", row.decided_by)
+    out.add_row("sharing factor", "", "", f"{result.sharing_factor:.4f}", "K_gamma")
+    return out
 
 
 def _sensitivities(result: StaticResult) -> list[Any]:
@@ -87,11 +80,11 @@ def _sensitivities(result: StaticResult) -> list[Any]:
         helix = " at the larger z" if key == "helix_index_error" else ""
         rows.append((abs(step * change[0]), step * change[0], part, f"{words}{helix}"))
     rows.sort(key=lambda row: -row[0])
-    table = _table("what changes", "by", "share, points", left=2)
+    out = table("what changes", "by", "share, points", left=2)
     for _, change, part, words in rows[:_LINES]:
-        table.add_row(part, words, f"{100.0 * change:+.3f}")
+        out.add_row(part, words, f"{100.0 * change:+.3f}")
     more = f" (the {_LINES} largest of {len(rows)}; --json has all)" if len(rows) > _LINES else ""
-    return [f"[bold]Share of {first.mesh} in {first.gear}[/bold], change in percentage points{more}", table]
+    return [f"[bold]Share of {first.mesh} in {first.gear}[/bold], change in percentage points{more}", out]
 
 
 def _loops(result: StaticResult) -> list[str]:
@@ -110,17 +103,17 @@ def _loops(result: StaticResult) -> list[str]:
 
 
 def _supports(result: StaticResult) -> Any:
-    table = _table("on the shaft, from", "Fx N", "Fy N", "Fz N", "Mx N m", "My N m", "Mz N m")
+    out = table("on the shaft, from", "Fx N", "Fy N", "Fz N", "Mx N m", "My N m", "Mz N m")
     for kind, forces in (("", result.bearing_force), ("support ", result.support_force)):
         for name, value in forces.items():
             if kind and not value.any():
                 continue
-            table.add_row(
+            out.add_row(
                 f"{kind}{name}",
                 *(f"{_rounded(x, 0.05):.1f}" for x in value[:3]),
                 *(f"{_rounded(x, 0.005):.2f}" for x in value[3:]),
             )
-    return table
+    return out
 
 
 def _rounded(value: float, least: float) -> float:
@@ -128,27 +121,23 @@ def _rounded(value: float, least: float) -> float:
 
 
 def _displacements(result: StaticResult) -> Any:
-    table = _table("moves", "x um", "y um", "z um", "tilt_x", "tilt_y", "twist")
+    out = table("moves", "x um", "y um", "z um", "tilt_x", "tilt_y", "twist")
     for place, value in result.place_displacement.items():
         name = place.partition(".")[2].replace(" left", " L").replace(" right", " R")
-        table.add_row(
+        out.add_row(
             name,
             *(f"{_rounded(1e6 * x, 5e-4):.3f}" for x in value[:3]),
             *(f"{_rounded(1e6 * x, 0.05):.1f}" for x in value[3:]),
         )
-    return table
+    return out
 
 
 def _notes(result: StaticResult) -> list[str]:
     lines = [
         "tilts and twist in urad; L and R: helix at the smaller and the larger z",
         f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
-        f"error: forces change by {_size(result.error_estimate)} when every element is halved; "
-        f"residual {_size(result.imbalance)}",
+        f"error: forces change by {error_words(result.error_estimate)} when every element is halved; "
+        f"residual {error_words(result.imbalance)}",
     ]
     lines += [f"left out: {note}" for note in result.left_out]
     return lines + [f"Warning: {note}" for note in result.warnings]
-
-
-def _size(value: float) -> str:
-    return "<1e-9" if value < 1e-9 else f"{value:.0e}"

@@ -13,14 +13,21 @@ from typing import TYPE_CHECKING, Any
 from rotorgear.errors import MissingExtraError, ModelError, RotorgearError
 from rotorgear.export.files import replacing
 from rotorgear.export.hdf5_values import get_value, put_value
+from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult
+from rotorgear.results.response import ResponseResult
 from rotorgear.results.static import StaticResult
 
 if TYPE_CHECKING:
     from types import ModuleType
 
 FORMAT, FORMAT_VERSION = "rotorgear result", 1
-_KINDS: dict[str, type[Any]] = {"modal": ModalResult, "static": StaticResult}
+_KINDS: dict[str, type[Any]] = {
+    "modal": ModalResult,
+    "static": StaticResult,
+    "response": ResponseResult,
+    "frf": FrequencyResponse,
+}
 # The package is loaded before its modules; importing it from here would turn the house upside down.
 _VERSION: str = sys.modules[__name__.partition(".")[0]].__version__
 

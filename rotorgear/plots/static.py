@@ -48,7 +48,7 @@ def _mesh_bars(axis: Any, result: StaticResult) -> None:
     axis.margins(y=0.15)
     if helices == 2:
         axis.legend(frameon=False, fontsize=8)
-    _plain(axis)
+    plain_axis(axis)
 
 
 def _bearing_bars(axis: Any, result: StaticResult) -> None:
@@ -64,7 +64,7 @@ def _bearing_bars(axis: Any, result: StaticResult) -> None:
     axis.set_title("Bearings", fontsize=10)
     if names:
         axis.legend(frameon=False, fontsize=8)
-    _plain(axis)
+    plain_axis(axis)
 
 
 def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> None:
@@ -82,13 +82,14 @@ def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> None:
             if shaft == name:
                 axis.axvline(1e3 * result.model.shafts[name].station(at), color=colour, lw=0.8, ls=":")
         axis.set_ylabel(f"{name}\num", fontsize=9)
-        _plain(axis)
+        plain_axis(axis)
     axes[0].legend(frameon=False, fontsize=8, ncols=2, loc="best")
     axes[0].set_title("Deflection of the shafts (dotted: gears grey, bearings green)", fontsize=10)
     axes[-1].set_xlabel("z, mm")
 
 
-def _plain(axis: Any) -> None:
+def plain_axis(axis: Any) -> None:
+    """Light grid, no frame on top and right."""
     axis.grid(True, alpha=0.25)
     for side in ("top", "right"):
         axis.spines[side].set_visible(False)
