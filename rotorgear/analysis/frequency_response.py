@@ -16,8 +16,7 @@ from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.plant import Plant, dof_row
 from rotorgear.analysis.points import named_place
 from rotorgear.analysis.refine import all_finer
-from rotorgear.analysis.response_mesh import MARGIN, damped_modes, plan_up_to
-from rotorgear.analysis.run_up import relative_residual
+from rotorgear.analysis.response_mesh import MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
@@ -67,11 +66,11 @@ def frequency_response(
     first = mean_state(System(model, direction=direction_of(turns)), turns)
     limit = 2.0 * np.pi * MARGIN * float(hz[-1])
     progress(0.02, "discretisation")
-    plan = plan_up_to(model, MARGIN * float(hz[-1]), elements, accuracy)
+    plan = plan_up_to(at_speed(model, turns), MARGIN * float(hz[-1]), elements, accuracy)
     system = System(model, plan=plan, direction=first.system.direction, flow=first.system.flow)
 
     def solve(system: System, hz: np.ndarray, progress: Progress) -> tuple[np.ndarray, float]:
-        modes = (*damped_modes(system, limit), zeta) if zeta else None
+        modes = (*damped_modes(system, limit, turns), zeta) if zeta else None
         plant = Plant(system, contact_lines(system), modes)
         rows = {text: _row(system, text, place) for text, place in places.items()}
         return _solved(plant, turns, hz, [rows[t] for t in inputs], [rows[t] for t in outputs], progress)
@@ -83,7 +82,8 @@ def frequency_response(
         at = _strongest(receptance)
         finer = System(model, plan=all_finer(system), direction=system.direction, flow=system.flow)
         there, _ = solve(finer, hz[at], silent)
-        estimate = float(np.max(np.abs(there - receptance[at]) / np.abs(there).max(axis=0)))
+        largest = np.abs(there).max(axis=0)
+        estimate = float(np.max(np.abs(there - receptance[at]) / np.where(largest > 0.0, largest, 1.0)))
     progress(1.0, "done")
     return FrequencyResponse(
         model=model, speed=turns, frequency_hz=hz, inputs=tuple(inputs), outputs=tuple(outputs), receptance=receptance,
@@ -124,7 +124,7 @@ def _solved(
                 progress(0.05 + 0.9 * k / len(hz), f"{value:.5g} Hz")
             w = 2.0 * np.pi * float(value)
             q = dynamics.solve(w, f)
-            worst = max(worst, relative_residual(dynamics, np.full(f.shape[1], w), f, q))
+            worst = max(worst, dynamics.relative_residual(w, f, q))
             rows.append(read @ q)
     return np.array(rows), worst
 

@@ -14,7 +14,7 @@ from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.orders import Order, orders_of
 from rotorgear.analysis.plant import Plant, Readings
 from rotorgear.analysis.response_error import mesh_error, speed_warnings
-from rotorgear.analysis.response_mesh import MARGIN, damped_modes, plan_up_to
+from rotorgear.analysis.response_mesh import MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
 from rotorgear.analysis.stations import shapes_at_stations
 from rotorgear.errors import AnalysisError
@@ -67,12 +67,12 @@ def response(
     orders, left = _within(orders_of(first.system, first.lines, first.mean_force), chosen, fmax)
     top = max(order.ratio for order in orders) * float(np.max(np.abs(chosen)))
     progress(0.02, "discretisation")
-    plan = plan_up_to(model, MARGIN * top / (2.0 * np.pi), elements, accuracy)
+    plan = plan_up_to(at_speed(model, float(chosen[-1])), MARGIN * top / (2.0 * np.pi), elements, accuracy)
     system = System(model, plan=plan, direction=first.system.direction, flow=first.system.flow)
     setup = replace(first, system=system, lines=contact_lines(system))
     names = {order.name for order in orders}
     orders = [order for order in orders_of(system, setup.lines, setup.mean_force) if order.name in names]
-    modes, w = damped_modes(system, MARGIN * top)
+    modes, w = damped_modes(system, MARGIN * top, float(chosen[-1]))
     plant = Plant(system, setup.lines, (modes, w, zeta))
     how, why = choose_method(method, len(chosen) * len(orders), system.n)
     run = (

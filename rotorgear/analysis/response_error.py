@@ -32,7 +32,7 @@ def mesh_error(
     finer = System(system.model, plan=all_finer(system), direction=system.direction, flow=system.flow)
     lines = contact_lines(finer)
     zeta, limit = damping
-    rich = Plant(finer, lines, (*damped_modes(finer, limit), zeta) if zeta else None)
+    rich = Plant(finer, lines, (*damped_modes(finer, limit, float(speeds[-1])), zeta) if zeta else None)
     forces = np.array([item.stacked for item in readings])  # (s, o, ...)
     size = np.abs(forces).max(axis=2, initial=0.0)
     worst = 0.0

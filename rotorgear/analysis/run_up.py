@@ -49,19 +49,11 @@ def direct_sweep(plant: Plant, orders: list[Order], speeds: np.ndarray, progress
         dynamics = plant.dynamics(speed)
         w, f = plant.loads(orders, speed)
         q = solve_orders(plant, dynamics, w, f)
-        worst = max(worst, relative_residual(dynamics, w, f, q))
+        worst = max(worst, dynamics.relative_residual(w, f, q))
         readings.append(plant.read(orders, speed, w, q))
     return Sweep(
         readings, worst, len(speeds) * len(orders), "direct sparse LU; largest residual relative to the forces inside"
     )
-
-
-def relative_residual(dynamics: Dynamics, w: np.ndarray, f: np.ndarray, q: np.ndarray) -> float:
-    """Largest residual of Z q = f over the columns, relative to the sizes of the forces inside."""
-    rest = f - dynamics.apply(w, q)
-    inside = abs(dynamics.K) @ np.abs(q) + w**2 * (abs(dynamics.M) @ np.abs(q))
-    scale = np.linalg.norm(inside, axis=0) + np.linalg.norm(f, axis=0)
-    return float(np.max(np.linalg.norm(rest, axis=0) / np.where(scale > 0.0, scale, 1.0)))
 
 
 def solve_orders(plant: Plant, dynamics: Dynamics, w: np.ndarray, f: np.ndarray) -> np.ndarray:

@@ -32,20 +32,20 @@ def response_tables(result: ResponseResult) -> list[Any]:
 
 
 def _orders(result: ResponseResult) -> Any:
-    out = table("order", "times input", f"Hz at {abs(result.speed_rpm[-1]):.6g} rpm", left=1)
-    for order, ratio, top in zip(result.orders, result.ratio, result.frequency_hz[:, -1], strict=True):
-        out.add_row(order, f"{ratio:.6g}", f"{top:.2f}")
+    out = table("no", "order", "times input", f"Hz at {abs(result.speed_rpm[-1]):.6g} rpm", left=2)
+    for number, (order, ratio) in enumerate(zip(result.orders, result.ratio, strict=True), 1):
+        out.add_row(str(number), order, f"{ratio:.6g}", f"{result.frequency_hz[number - 1, -1]:.2f}")
     return out
 
 
 def _largest(result: ResponseResult) -> Any:
     """The largest amplitude of each quantity and the order, speed and frequency of it."""
-    out = table("largest of", "", "by order", "rpm", "Hz", "amplitude", left=3)
+    out = table("largest of", "", "order no", "rpm", "Hz", "amplitude", left=2)
     for mesh in dict.fromkeys(result.contact_mesh):
         own = result.contacts_of(mesh)
         _row(out, result, "mesh force", mesh, np.abs(result.mesh_force[:, :, own]).max(axis=2), 1.0, "N")
         error = np.abs(result.transmission_error[:, :, own]).max(axis=2)
-        _row(out, result, "transmission error", mesh, error, 1e6, "um")
+        _row(out, result, "DTE", mesh, error, 1e6, "um")
     for k, name in enumerate(result.bearings):
         force = np.abs(result.bearing_force[:, :, k]).max(axis=2)
         _row(out, result, "bearing force", name, force, 1.0, "N")
@@ -65,13 +65,14 @@ def _row(out: Any, result: ResponseResult, what: str, name: str, size: np.ndarra
     if size[o, s] == 0.0:
         return
     out.add_row(
-        what, name, result.orders[o], f"{result.speed_rpm[s]:.1f}", f"{result.frequency_hz[o, s]:.1f}",
+        what, name, str(o + 1), f"{result.speed_rpm[s]:.1f}", f"{result.frequency_hz[o, s]:.1f}",
         f"{factor * size[o, s]:.4g} {unit}",
     )  # fmt: skip
 
 
 def _notes(result: ResponseResult) -> list[str]:
     lines = [
+        *(["DTE: dynamic transmission error, r_b1 theta_1 + r_b2 theta_2"] if result.contact_mesh else []),
         "amplitudes are half of peak to peak, each order by itself; forces without their mean",
         f"{len(result.speeds)} speeds, {result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
         f"solver error {error_words(result.solver_error)} at {result.checked} points checked; "

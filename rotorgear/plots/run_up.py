@@ -14,6 +14,7 @@ from rotorgear.results.response import ResponseResult
 
 _MOST_LINES = len(COLOURS)
 _WIDTH, _HEIGHT = 5.6, 2.9
+_HEADROOM = 0.45  # for the legend, as a share of the height of the curves
 
 
 def draw_run_up(result: ResponseResult, path: str | Path) -> Path:
@@ -76,11 +77,12 @@ def _lines(axis: Any, result: ResponseResult, names: list[str], sizes: np.ndarra
     more = len(ranked) - _MOST_LINES
     top = float(sizes.max(initial=0.0))
     if top > 0.0:
-        axis.set_ylim(max(1e-4 * top, 0.5 * float(sizes[sizes > 0.0].min())), 3.0 * top)
+        low = max(1e-4 * top, 0.5 * float(sizes[sizes > 0.0].min()))
+        axis.set_ylim(low, top * (top / low) ** _HEADROOM)
     operating = result.model.operation.speed if result.model.operation else None
     first, last = sorted((float(result.speeds[0]), float(result.speeds[-1])))
     if operating and first <= operating <= last:
         axis.axvline(operating * 30.0 / np.pi, color="#777777", lw=0.9, ls="--")
     axis.set_title(label + (f" ({more} weaker left out)" if more > 0 else ""), fontsize=9.5)
-    axis.legend(frameon=False, fontsize=7.5, ncols=2 if len(ranked) > 3 else 1)
+    axis.legend(frameon=False, fontsize=7, ncols=2 if len(ranked) > 2 else 1, loc="upper left")
     plain_axis(axis)
