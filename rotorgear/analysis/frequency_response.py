@@ -16,7 +16,7 @@ from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.plant import Plant, dof_row
 from rotorgear.analysis.points import named_place
 from rotorgear.analysis.refine import all_finer
-from rotorgear.analysis.response_mesh import MARGIN, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response_mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
@@ -47,7 +47,7 @@ def frequency_response(
         frequencies: in Hz, positive, (f,).
         inputs, outputs: names of points, or a part and a direction such as "bearings.left:x".
         speed: of the input shaft in rad/s or with its unit; None: standstill.
-        damping_ratio: added to every elastic mode up to 1.25 times the highest frequency, beside that of the model.
+        damping_ratio: added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
         elements: so many basic elements in each piece of shaft. None: refined as for modes up to the highest frequency.
         accuracy: relative error of the frequencies of these modes; 1e-3 where neither this nor `elements` is given.
         progress: callable that is told fraction and step.
@@ -64,7 +64,7 @@ def frequency_response(
     places = {text: named_place(model, text) for text in (*inputs, *outputs)}
     zeta = damping_ratio + model.damping.modal_ratio
     first = mean_state(System(model, direction=direction_of(turns)), turns)
-    limit = 2.0 * np.pi * MARGIN * float(hz[-1])
+    limit = 2.0 * np.pi * DAMPED * float(hz[-1])
     progress(0.02, "discretisation")
     plan = plan_up_to(at_speed(model, turns), MARGIN * float(hz[-1]), elements, accuracy)
     system = System(model, plan=plan, direction=first.system.direction, flow=first.system.flow)

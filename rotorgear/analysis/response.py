@@ -14,7 +14,7 @@ from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.orders import Order, orders_of
 from rotorgear.analysis.plant import Plant, Readings
 from rotorgear.analysis.response_error import mesh_error, speed_warnings
-from rotorgear.analysis.response_mesh import MARGIN, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response_mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
 from rotorgear.analysis.stations import shapes_at_stations
 from rotorgear.errors import AnalysisError
@@ -48,7 +48,7 @@ def response(
         model: a model with unbalances, or meshes with harmonics of transmission error or stiffness.
         speeds: of the input shaft, in rad/s or with units; None: 221 from 10 to 120 % of the operating speed.
         fmax: orders above this frequency in Hz at the highest speed are left out; None: none is.
-        damping_ratio: added to every elastic mode up to 1.25 times the highest frequency, beside that of the model.
+        damping_ratio: added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
         method: "modal", "direct" or "auto".
         elements: so many basic elements in each piece of shaft. None: refined as for modes up to the highest frequency.
         accuracy: relative error of the frequencies of these modes; 1e-3 where neither this nor `elements` is given.
@@ -72,7 +72,7 @@ def response(
     setup = replace(first, system=system, lines=contact_lines(system))
     names = {order.name for order in orders}
     orders = [order for order in orders_of(system, setup.lines, setup.mean_force) if order.name in names]
-    modes, w = damped_modes(system, MARGIN * top, float(chosen[-1]))
+    modes, w = damped_modes(system, DAMPED * top, float(chosen[-1]))
     plant = Plant(system, setup.lines, (modes, w, zeta))
     how, why = choose_method(method, len(chosen) * len(orders), system.n)
     run = (
@@ -81,7 +81,7 @@ def response(
         else modal_sweep(plant, orders, chosen, modes, progress)
     )
     progress(0.96, "error estimate")
-    estimate = mesh_error(plant, orders, chosen, run.readings, (zeta, MARGIN * top), setup.mean_force)
+    estimate = mesh_error(plant, orders, chosen, run.readings, (zeta, DAMPED * top), setup.mean_force)
     at = _shape_speed(model, shape_speed, chosen, run.readings)
     nodes, shapes = _shapes(plant, orders, at)
     stacked = _stacked(run.readings)

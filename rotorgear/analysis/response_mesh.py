@@ -18,8 +18,8 @@ from rotorgear.system.groups import table_values
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
-# Modes are found, and the mesh is refined for them, up to this much above the highest excited frequency.
-MARGIN = 1.25
+# Up to this much above the highest excited frequency the mesh is refined, and modes get their damping ratio.
+MARGIN, DAMPED = 1.25, 1.5
 
 
 def plan_up_to(model: Model, fmax: float, elements: int | None, accuracy: float | None) -> Plan:
