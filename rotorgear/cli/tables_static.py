@@ -79,7 +79,7 @@ def _sensitivities(result: StaticResult) -> list[Any]:
         step, words = _STEPS["index_error" if key.endswith("index_error") else key]
         helix = " at the larger z" if key == "helix_index_error" else ""
         rows.append((abs(step * change[0]), step * change[0], part, f"{words}{helix}"))
-    rows.sort(key=lambda row: -row[0])
+    rows.sort(key=lambda row: -float(f"{row[0]:.6g}"))  # mirrored parts are equal but for rounding: as in the file
     out = table("what changes", "by", "share, points", left=2)
     for _, change, part, words in rows[:_LINES]:
         out.add_row(part, words, f"{100.0 * change:+.3f}")

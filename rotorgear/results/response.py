@@ -93,7 +93,7 @@ class ResponseResult:
         def by_mesh(values: np.ndarray) -> dict[str, Any]:
             return {mesh: [np.abs(values[:, :, k]).tolist() for k in self.contacts_of(mesh)] for mesh in meshes}
 
-        force = np.abs(self.bearing_force)
+        force, moved = np.abs(self.bearing_force), np.abs(self.displacement)
         return {
             "analysis": "response",
             "title": self.model.title,
@@ -108,8 +108,12 @@ class ResponseResult:
                 name: {axis: force[:, :, k, j].tolist() for j, axis in enumerate("xyz")}
                 for k, name in enumerate(self.bearings)
             },
-            "acceleration_m_s2": {
+            "acceleration": {
                 name: np.abs(self.acceleration[:, :, k]).tolist() for k, name in enumerate(self.points)
+            },
+            "displacement_m": {
+                place: {axis: moved[:, :, k, j].tolist() for j, axis in enumerate("xyz")}
+                for k, place in enumerate(self.places)
             },
             "shape_speed_rpm": self.shape_speed * 30.0 / np.pi,
             "damping_ratio": self.damping_ratio,
