@@ -108,9 +108,7 @@ class ResponseResult:
                 name: {axis: force[:, :, k, j].tolist() for j, axis in enumerate("xyz")}
                 for k, name in enumerate(self.bearings)
             },
-            "acceleration": {
-                name: np.abs(self.acceleration[:, :, k]).tolist() for k, name in enumerate(self.points)
-            },
+            "acceleration": {name: np.abs(self.acceleration[:, :, k]).tolist() for k, name in enumerate(self.points)},
             "displacement_m": {
                 place: {axis: moved[:, :, k, j].tolist() for j, axis in enumerate("xyz")}
                 for k, place in enumerate(self.places)
