@@ -43,6 +43,8 @@ _TABLE = [
     ("rotational_stiffness", "N*m/rad", "a rotational stiffness", "1e5 N m/rad"),
     ("unbalance", "kg*m", "an unbalance", "20 g mm"),
     ("acceleration", "m/s^2", "an acceleration", "9.81 m/s^2"),
+    ("force", "N", "a force", "500 N"),
+    ("viscosity", "Pa*s", "a dynamic viscosity", "0.01 Pa s"),
     ("damping", "N*s/m", "a damping coefficient", "500 N s/m"),
     ("rotational_damping", "N*m*s/rad", "a rotational damping coefficient", "2 N m s/rad"),
     ("ratio", "", "a ratio", "0.05"),

@@ -71,14 +71,8 @@ class Solver:
         if key not in self.solved:
             file, speed, elements, accuracy, stiffness = key
             model = _model(self.case.folder / file, stiffness)
-            count = (
-                max(
-                    _highest(line.mode)
-                    for line in self.case.expectations
-                    if line.quantity not in FORCED and key in keys(line)
-                )
-                + MOST_RIGID
-            )
+            own = [line for line in self.case.expectations if line.quantity not in FORCED and key in keys(line)]
+            count = max(_highest(line.mode) for line in own) + MOST_RIGID
             start = time.perf_counter()
             result = rg.modal(
                 model,
