@@ -49,8 +49,8 @@ def console() -> Console:
     return Console(highlight=False, width=None if sys.stdout.isatty() else 80)
 
 
-def parse_speed(text: str | None) -> float | None:
-    """Speed in rad/s from the command line.
+def parse_speed(text: str | None, option: str = "--speed") -> float | None:
+    """Speed in rad/s from an option of the command line.
 
     Raises:
         AnalysisError: not a rotational speed.
@@ -64,7 +64,7 @@ def parse_speed(text: str | None) -> float | None:
     try:
         return parse_quantity(text, "speed")
     except QuantityError as error:
-        raise AnalysisError(f"--speed: got '{text}', expected {error}") from None
+        raise AnalysisError(f"{option}: got '{text}', expected {error}") from None
 
 
 def table(*names: str, left: int = 1) -> Any:

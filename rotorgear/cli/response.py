@@ -79,7 +79,7 @@ def response(
     with progress_bar("response") as progress:
         result = rg.response(
             built, speeds=_speeds(built, start, stop, points), fmax=fmax, damping_ratio=damping, method=method,
-            elements=elements, accuracy=accuracy, shape_speed=parse_speed(shape_speed), progress=progress,
+            elements=elements, accuracy=accuracy, shape_speed=parse_speed(shape_speed, "--shape-speed"), progress=progress,
         )  # fmt: skip
     out = console()
     for part in response_tables(result):
@@ -108,7 +108,7 @@ def _speeds(model: Model, start: str | None, stop: str | None, points: int) -> l
     from rotorgear.analysis.response import HIGHEST, LOWEST
 
     operating = model.operation.speed if model.operation else None
-    low, high = parse_speed(start), parse_speed(stop)
+    low, high = parse_speed(start, "--from"), parse_speed(stop, "--to")
     if (low is None or high is None) and not operating:
         raise AnalysisError("--from and --to: give both, since the model has no operating speed")
     if points < 1:

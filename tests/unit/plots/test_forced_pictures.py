@@ -104,7 +104,7 @@ def test_the_static_deflection_in_vtk_is_true_in_metres(tmp_path: Path) -> None:
     ("arguments", "words"),
     [
         (["response", str(GEARBOX), "--points", "0"], "--points"),
-        (["response", str(GEARBOX), "--from", "10 mm"], "--speed|speed"),
+        (["response", str(GEARBOX), "--from", "10 mm"], "--from: got"),
         (["response", str(GEARBOX), "--from", "0", "--points", "2"], "none of them 0"),
         (["response", str(ROOT / "models" / "geared_pair.toml"), "--points", "2"], "nothing excites"),
         (["frf", str(GEARBOX), "--from", "x", "--to", "y", "--fmax", "10"], "'x' is no place"),
@@ -117,5 +117,5 @@ def test_the_static_deflection_in_vtk_is_true_in_metres(tmp_path: Path) -> None:
 def test_a_slip_on_the_command_line_gets_a_sentence(arguments: list[str], words: str) -> None:
     run = CliRunner().invoke(app, arguments)
     assert isinstance(run.exception, rg.RotorgearError)
-    assert any(word in str(run.exception) for word in words.split("|"))
+    assert words in str(run.exception)
     assert "\n" not in str(run.exception)
