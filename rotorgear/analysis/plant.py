@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -37,6 +38,12 @@ class Readings:
         orders = len(self.mesh_force)
         forces = np.hstack([self.mesh_force, self.bearing_force.reshape(orders, -1)])
         return forces if forces.size else self.displacement[:, :, :3].reshape(orders, -1)
+
+
+def joined(parts: Sequence[Readings]) -> Readings:
+    """Readings of several lists of orders at one speed as those of all of them."""
+    names = [item.name for item in fields(Readings)]
+    return Readings(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
 
 class Plant:

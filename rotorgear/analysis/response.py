@@ -78,7 +78,7 @@ def response(
     run = (
         direct_sweep(plant, orders, chosen, progress)
         if how == "direct"
-        else modal_sweep(plant, orders, chosen, modes, progress)
+        else modal_sweep(plant, orders, chosen, (modes, w), progress)
     )
     progress(0.96, "error estimate")
     estimate = mesh_error(plant, orders, chosen, run.readings, (zeta, DAMPED * top), setup.mean_force)

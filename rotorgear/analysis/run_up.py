@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from rotorgear.analysis.orders import Order
-from rotorgear.analysis.plant import Plant, Readings
+from rotorgear.analysis.plant import Plant, Readings, joined
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress
 from rotorgear.solvers.factor import factor_symmetric, single_thread
@@ -16,8 +17,10 @@ from rotorgear.solvers.harmonic import Dynamics, Projected, orthonormal, project
 # The basis grows until its error against direct solutions is below this, at the points where its residual is largest.
 TOLERANCE = 1e-6
 # Above so many unknowns in all, the basis is cheaper than direct solutions.
-_DIRECT_UP_TO = 60_000
-_ROUNDS, _PER_ROUND, _SPEEDS_WHILE_GROWING = 40, 12, 24
+_DIRECT_UP_TO = 100_000
+_ROUNDS, _PER_ROUND, _SPEEDS_WHILE_GROWING = 40, 6, 24
+# Modes up to this much above the highest frequency of an order are in its basis.
+_MODES_UP_TO = 1.5
 
 
 @dataclass(frozen=True)
@@ -146,23 +149,54 @@ def _worst(residuals: np.ndarray) -> list[tuple[int, int]]:
     return [(s, o) for s, o in ranked[:_PER_ROUND]]
 
 
-def modal_sweep(plant: Plant, orders: list[Order], speeds: np.ndarray, modes: np.ndarray, progress: Progress) -> Sweep:
-    """Solve in a basis that is grown until it is proved good, then at every speed."""
+def modal_sweep(
+    plant: Plant, orders: list[Order], speeds: np.ndarray, modes: tuple[np.ndarray, np.ndarray], progress: Progress
+) -> Sweep:
+    """Solve each order in a basis of its own, grown until it is proved good, then at every speed.
+
+    `modes` are shapes (n, m) and w (m,) in rad/s. Slow orders get along with few of them.
+    """
+    shapes, w = modes
+    readings, error, checked, sizes = [], 0.0, 0, []
     with single_thread(plant.system.n):
-        sweep = ModalSweep(plant, orders, speeds, modes)
-        sweep.grow(progress)
-        for _ in range(_ROUNDS):
-            readings, residuals = [], []
-            for k, speed in enumerate(speeds):
-                progress(0.35 + 0.6 * k / len(speeds), f"speed {k + 1} of {len(speeds)}")
-                w, q, rest = sweep.solve(float(speed))
-                readings.append(plant.read(orders, float(speed), w, q))
-                residuals.append(rest)
-            points = [(float(speeds[s]), o) for s, o in _worst(np.array(residuals))]
-            if sweep.check(points) <= TOLERANCE:
-                break
-        else:
-            raise ConvergenceError("the modal solution does not come near direct ones; use --method direct")
-    added = sweep.basis.shape[1]
-    method = f"modal, {sweep.modes} modes and {added - sweep.modes} static and direct solutions as basis"
-    return Sweep(readings, sweep.error, sweep.checked, method)
+        for number, order in enumerate(orders):
+            top = _MODES_UP_TO * order.ratio * float(np.max(np.abs(speeds)))
+            sweep = ModalSweep(plant, [order], speeds, shapes[:, w <= top])
+            share = _Share(progress, number, len(orders), order.name)
+            readings.append(_swept(sweep, order.name, share))
+            error, checked = max(error, sweep.error), checked + sweep.checked
+            sizes.append((sweep.modes, sweep.basis.shape[1] - sweep.modes))
+    most, added = max(sizes)
+    method = f"modal, up to {most} modes and {added} static and direct solutions as basis of an order"
+    return Sweep([joined(parts) for parts in zip(*readings, strict=True)], error, checked, method)
+
+
+@dataclass(frozen=True)
+class _Share:
+    """Progress of one of several parts."""
+
+    whole: Progress
+    number: int
+    count: int
+    name: str
+
+    def __call__(self, done: float) -> None:
+        self.whole((self.number + done) / self.count, self.name)
+
+
+def _swept(sweep: ModalSweep, name: str, progress: Callable[[float], None]) -> list[Readings]:
+    """Readings of one order at every speed, when the basis has been proved where its residual is largest."""
+    plant, orders, speeds = sweep.plant, sweep.orders, sweep.speeds
+    sweep.grow(lambda fraction, _: progress(fraction))
+    for _ in range(_ROUNDS):
+        readings, residuals = [], []
+        for k, speed in enumerate(speeds):
+            if k % 10 == 0:
+                progress(0.35 + 0.6 * k / len(speeds))
+            w, q, rest = sweep.solve(float(speed))
+            readings.append(plant.read(orders, float(speed), w, q))
+            residuals.append(rest)
+        points = [(float(speeds[s]), o) for s, o in _worst(np.array(residuals))]
+        if sweep.check(points) <= TOLERANCE:
+            return readings
+    raise ConvergenceError(f"the modal solution of {name} does not come near direct ones; use --method direct")
