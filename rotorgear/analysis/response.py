@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from rotorgear.analysis.mean_state import mean_state
+from rotorgear.analysis.mean_state import Setup, mean_state
 from rotorgear.analysis.modal_request import check_request, direction_of, speed_in_si
 from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.orders import Order, orders_of
 from rotorgear.analysis.plant import Plant, Readings
-from rotorgear.analysis.response_error import mesh_error, speed_warnings
+from rotorgear.analysis.response_error import mesh_error, parting, speed_warnings
 from rotorgear.analysis.response_mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
 from rotorgear.analysis.stations import shapes_at_stations
@@ -23,6 +23,7 @@ from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import NodeTable
 from rotorgear.results.response import ResponseResult
 from rotorgear.system.contacts import contact_lines
+from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 METHODS = ("auto", "modal", "direct")
@@ -68,10 +69,8 @@ def response(
     top = max(order.ratio for order in orders) * float(np.max(np.abs(chosen)))
     progress(0.02, "discretisation")
     plan = plan_up_to(at_speed(model, float(chosen[-1])), MARGIN * top / (2.0 * np.pi), elements, accuracy)
-    system = System(model, plan=plan, direction=first.system.direction, flow=first.system.flow)
-    setup = replace(first, system=system, lines=contact_lines(system))
-    names = {order.name for order in orders}
-    orders = [order for order in orders_of(system, setup.lines, setup.mean_force) if order.name in names]
+    setup, orders = _discretised(first, plan, orders)
+    system = setup.system
     modes, w = damped_modes(system, DAMPED * top, float(chosen[-1]))
     plant = Plant(system, setup.lines, (modes, w, zeta))
     how, why = choose_method(method, len(chosen) * len(orders), system.n)
@@ -96,8 +95,17 @@ def response(
         shape_speed=at, shapes=shapes, nodes=nodes, damping_ratio=zeta, solver_error=run.solver_error, checked=run.checked,
         error_estimate=estimate, dofs=system.n, discretisation=pieces(system),
         seconds={"total": time.perf_counter() - clock}, left_out=(*left, *setup.notes),
-        warnings=tuple(speed_warnings(plant, orders, chosen, (modes, w, zeta))), method=f"{run.method} ({how}: {why})",
+        warnings=(*speed_warnings(plant, orders, chosen, (modes, w, zeta)), *parting(setup, stacked[0], chosen)),
+        method=f"{run.method} ({how}: {why})",
     )  # fmt: skip
+
+
+def _discretised(first: Setup, plan: Plan, orders: list[Order]) -> tuple[Setup, list[Order]]:
+    """The same state on another mesh, with the orders of the same names."""
+    system = System(first.system.model, plan=plan, direction=first.system.direction, flow=first.system.flow)
+    setup = replace(first, system=system, lines=contact_lines(system))
+    names = {order.name for order in orders}
+    return setup, [o for o in orders_of(system, setup.lines, setup.mean_force) if o.name in names]
 
 
 def _within(orders: list[Order], speeds: np.ndarray, fmax: float | None) -> tuple[list[Order], list[str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.analysis.mean_state import Setup
 from rotorgear.analysis.orders import Order, orders_of
 from rotorgear.analysis.plant import Plant, Readings
 from rotorgear.analysis.refine import all_finer
@@ -83,3 +84,26 @@ def speed_warnings(
         f"speeds are {step * rpm:.4g} rpm apart, but the sharpest resonance met is {width * rpm:.2g} rpm wide at half power: "
         "its peak may be higher than shown; more points or a narrower range show it"
     ]
+
+
+def parting(setup: Setup, force: np.ndarray, speeds: np.ndarray) -> list[str]:
+    """A sentence for each mesh whose teeth would part: dynamic force (o, s, c) of one order above the mean force."""
+    found = []
+    lines = setup.lines
+    for mesh in dict.fromkeys(lines.names):
+        own = [k for k, name in enumerate(lines.names) if name == mesh]
+        share = np.abs(force[:, :, own]).max(axis=0) / np.maximum(setup.mean_force[own], 1e-300)  # (s, own)
+        over = np.flatnonzero(share.max(axis=1) > 1.0)
+        if not over.size:
+            continue
+        if not np.any(setup.mean_force[own] > 0.0):
+            found.append(
+                f"meshes.{mesh} carries no mean force: its teeth part, and the linear answer takes them as joined"
+            )
+            continue
+        rpm = np.abs(speeds[over]) * 30.0 / np.pi
+        found.append(
+            f"meshes.{mesh}: its dynamic force exceeds the mean force at {len(over)} of {len(speeds)} speeds, between "
+            f"{rpm.min():.6g} and {rpm.max():.6g} rpm; there the teeth part, and the linear answer ends"
+        )
+    return found

@@ -352,6 +352,15 @@ def test_an_undamped_run_up_says_that_its_peaks_are_accidents() -> None:
     assert any("nothing damps" in text for text in result.warnings)
 
 
+def test_teeth_that_would_part_are_warned_about() -> None:
+    error = [{"harmonic": 1, "amplitude": 1e-5}]
+    strong = rg.response(torsional_pair(transmission_error=error, damping=2000.0), speeds=[0.95 * W_N / 24, W_N / 24])
+    assert np.abs(strong.mesh_force).max() > strong.mean_force[0]
+    assert any("teeth part" in text and "2 of 2 speeds" in text for text in strong.warnings)
+    weak = rg.response(torsional_pair(transmission_error=error, damping=2000.0), speeds=[0.1 * W_N / 24])
+    assert not any("teeth part" in text for text in weak.warnings)
+
+
 def test_speeds_that_step_over_a_resonance_are_warned_about() -> None:
     result = rg.response(jeffcott(), speeds=[60.0, 120.0])
     assert any("half power" in text for text in result.warnings)
