@@ -32,6 +32,7 @@ _HOMES = {
     "rotorgear.analysis.response": ("response",),
     "rotorgear.analysis.frequency_response": ("frequency_response",),
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
+    "rotorgear.analysis.gear_sheet": ("gear_sheet",),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
@@ -39,6 +40,7 @@ _HOMES = {
     "rotorgear.results.response": ("ResponseResult",),
     "rotorgear.results.frequency_response": ("FrequencyResponse",),
     "rotorgear.results.accuracy": ("AccuracyLadder",),
+    "rotorgear.results.gear_sheet": ("GearSheet",),
     "rotorgear.results.comparison": ("Comparison", "RigLine"),
     "rotorgear.export.vtk": ("write_vtk",),
     "rotorgear.export.vtk_deflection": ("write_deflections",),
@@ -53,6 +55,7 @@ if TYPE_CHECKING:
     from rotorgear.analysis.compare import compare, read_rig_lines
     from rotorgear.analysis.describe_model import describe_model
     from rotorgear.analysis.frequency_response import frequency_response
+    from rotorgear.analysis.gear_sheet import gear_sheet
     from rotorgear.analysis.modal import modal
     from rotorgear.analysis.response import response
     from rotorgear.analysis.static import static
@@ -80,6 +83,7 @@ if TYPE_CHECKING:
     from rotorgear.results.accuracy import AccuracyLadder
     from rotorgear.results.comparison import Comparison, RigLine
     from rotorgear.results.frequency_response import FrequencyResponse
+    from rotorgear.results.gear_sheet import GearSheet
     from rotorgear.results.modal import ModalResult
     from rotorgear.results.response import ResponseResult
     from rotorgear.results.static import StaticResult

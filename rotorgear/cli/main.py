@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli import accuracy, check, compare, frf, modal, response, schema, static, validate, view
+from rotorgear.cli import accuracy, check, compare, frf, gear, modal, response, schema, static, validate, view
 from rotorgear.errors import RotorgearError
 
 app = typer.Typer(
@@ -23,6 +23,7 @@ app.command()(static.static)
 app.command()(response.response)
 app.command()(frf.frf)
 app.command()(check.check)
+app.command()(gear.gear)
 app.command()(accuracy.accuracy)
 app.command()(view.view)
 app.command()(schema.schema)

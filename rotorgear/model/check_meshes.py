@@ -41,7 +41,7 @@ def mesh_problems(model: Tables) -> Iterator[Problem]:
             yield Problem(address, f"two gears on shaft '{pinion.shaft}'", "gears on two shafts")
         else:
             yield from _excitations(address, mesh, pinion, gear)
-            found = [*_mates(address, pinion, gear), *_faces(model, address, mesh)]
+            found = [*_mates(address, pinion, gear), *_faces(model, address, mesh), *_teeth(address, mesh, pinion)]
             yield from found or _axes(model, address, name)
 
 
@@ -53,6 +53,13 @@ def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator
     for key in ("helix_index_error", "helix_stagger"):
         if getattr(mesh, key) and pinion.kind != "herringbone":
             yield Problem(f"{address}.{key}", "a value", "nothing here", "only a herringbone pair has two helices")
+
+
+def _teeth(address: str, mesh: Mesh, pinion: Gear) -> Iterator[Problem]:
+    """A stiffness model needs teeth."""
+    if isinstance(mesh.stiffness, str) and pinion.lumped:
+        wanted = "a stiffness such as '5e8 N/m' between gears that are given by their base radius"
+        yield Problem(f"{address}.stiffness", f"'{mesh.stiffness}'", wanted, "a stiffness model needs teeth")
 
 
 def _mates(address: str, pinion: Gear, gear: Gear) -> Iterator[Problem]:
