@@ -150,7 +150,7 @@ Position = Annotated[tuple[Length, Length], BeforeValidator(_parse_position)]
 
 def _parse_gravity(value: Any) -> Any:
     if not isinstance(value, list | tuple) or len(value) != 3:
-        raise _refuse("its x, y and z such as ['0 m/s^2', '-9.81 m/s^2', '0 m/s^2']")
+        raise refuse("its x, y and z such as ['0 m/s^2', '-9.81 m/s^2', '0 m/s^2']")
     return value
 
 
