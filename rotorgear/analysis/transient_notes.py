@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.results.transient import TransientResult
-from rotorgear.solvers.equilibrium import Equilibrium
+from rotorgear.solvers.contact_equilibrium import Equilibrium
 from rotorgear.system.local import LocalModel
 
 # Numerical share of the energy above which a run is warned about.

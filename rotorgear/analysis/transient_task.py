@@ -14,7 +14,7 @@ from rotorgear.analysis.transient_statistics import compared, statistics
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress
-from rotorgear.solvers.equilibrium import Equilibrium, equilibrium, still_forces
+from rotorgear.solvers.contact_equilibrium import Equilibrium, equilibrium, still_forces
 from rotorgear.solvers.local_system import Integrator, state_at_rest
 from rotorgear.solvers.run import Schedule
 from rotorgear.system.local import LocalModel, local_model

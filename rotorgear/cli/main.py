@@ -7,7 +7,20 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli import accuracy, check, compare, gear, modal, schema, transient, validate, view
+from rotorgear.cli import (
+    accuracy,
+    check,
+    compare,
+    frf,
+    gear,
+    modal,
+    response,
+    schema,
+    static,
+    transient,
+    validate,
+    view,
+)
 from rotorgear.errors import RotorgearError
 
 app = typer.Typer(
@@ -19,6 +32,9 @@ app = typer.Typer(
 )
 app.command()(modal.modal)
 app.command()(compare.compare)
+app.command()(static.static)
+app.command()(response.response)
+app.command()(frf.frf)
 app.command()(transient.transient)
 app.command()(check.check)
 app.command()(gear.gear)

@@ -13,14 +13,23 @@ from typing import TYPE_CHECKING, Any
 from rotorgear.errors import MissingExtraError, ModelError, RotorgearError
 from rotorgear.export.files import replacing
 from rotorgear.export.hdf5_values import get_value, put_value
+from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult
+from rotorgear.results.response import ResponseResult
+from rotorgear.results.static import StaticResult
 from rotorgear.results.transient import TransientResult
 
 if TYPE_CHECKING:
     from types import ModuleType
 
 FORMAT, FORMAT_VERSION = "rotorgear result", 1
-_KINDS: dict[str, type] = {"modal": ModalResult, "transient": TransientResult}
+_KINDS: dict[str, type[Any]] = {
+    "modal": ModalResult,
+    "static": StaticResult,
+    "response": ResponseResult,
+    "frf": FrequencyResponse,
+    "transient": TransientResult,
+}
 # The package is loaded before its modules; importing it from here would turn the house upside down.
 _VERSION: str = sys.modules[__name__.partition(".")[0]].__version__
 
@@ -32,7 +41,7 @@ class ReadError(RotorgearError):
         super().__init__(f"{path} can't be read: {reason}")
 
 
-def save(result: ModalResult | TransientResult, path: str | Path) -> Path:
+def save(result: Any, path: str | Path) -> Path:
     """Write a result to an HDF5 file and return its path.
 
     Raises:
@@ -84,7 +93,7 @@ def _import_h5py() -> ModuleType:
     return h5py
 
 
-def _kind(path: Path, file: Any) -> type:
+def _kind(path: Path, file: Any) -> type[Any]:
     """Class of the result in a file; ReadError for a foreign or newer file."""
     if file.attrs.get("format") != FORMAT:
         raise ReadError(path, "it is no result of rotorgear")

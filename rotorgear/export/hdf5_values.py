@@ -17,9 +17,10 @@ import numpy as np
 
 from rotorgear.model.model import Model
 from rotorgear.results.modal import NodeTable, Piece
+from rotorgear.results.static import LoopAssembly, Share
 from rotorgear.results.transient import EnergyLedger
 
-_RECORDS: dict[str, type] = {cls.__name__: cls for cls in (NodeTable, Piece, EnergyLedger)}
+_RECORDS: dict[str, type] = {cls.__name__: cls for cls in (NodeTable, Piece, Share, LoopAssembly, EnergyLedger)}
 
 
 def put_value(h5: ModuleType, parent: Any, name: str, value: Any) -> None:

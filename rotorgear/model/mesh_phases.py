@@ -54,7 +54,7 @@ class _Walk:
 
 @dataclass(frozen=True)
 class MeshPhases:
-    """Phase of each mesh in rad, 0 to 2 pi (None without teeth), when the reference shaft's mark is at +x."""
+    """Phase of each mesh in rad, 0 to 2 pi (None without teeth), at the time when the mark of the reference shaft is at +x."""
 
     phase: dict[str, float | None]
     loops: tuple[Assembly, ...]
@@ -88,10 +88,10 @@ def _walk(model: Tables, train: Train) -> _Walk:
                     done.shaft.setdefault(other, done.shaft[one])
         ready = [n for n in waiting if any(s in done.shaft for s in _shafts(model, n))]
         if not ready:
-            others = [s for n in waiting for s in _shafts(model, n)]
-            if not others:
+            rest = [shaft for mesh in waiting for shaft in _shafts(model, mesh)]
+            if not rest:
                 return done
-            done.shaft[others[0]] = 0.0  # a part of the train of its own
+            done.shaft[rest[0]] = 0.0  # a part of the train of its own
             continue
         # The walk goes outwards: a loop is closed by the mesh farthest from the input.
         open_ones = [n for n in ready if not all(s in done.shaft for s in _shafts(model, n))]

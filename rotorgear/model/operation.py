@@ -31,7 +31,7 @@ class Operation(Part):
     torque: Torque | None = Field(None, description="torque into the input shaft, in the sense of its rotation")
     output_shaft: str | None = Field(None, description="name of the shaft that takes the power")
     gravity: Gravity | None = Field(
-        None, description="acceleration of gravity along x, y and z, for statics; default: none"
+        None, description="acceleration of gravity along x, y and z, for statics and transients; default: none"
     )
 
 

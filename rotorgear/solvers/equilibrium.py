@@ -1,105 +1,75 @@
-"""Static equilibrium with local forces: where a time integration starts.
+"""Static equilibrium K q = f where some motions R are free of strain: K R = 0 and R^T K = 0. K may be non-symmetric.
 
-About the reference stiffness k, q = q0 + X (k d - F(d)) with X = (K + B k B^T)^-1 B, so d - d0 + A (F(d) - k d) = 0,
-A = B^T X, which Newton's method solves on m unknowns.
-What the loads do on free motions R is carried by inertia: f - M R (R^T M R)^-1 R^T f.
+The loads must do no work on R. Then q is the solution on a statically determinate support of r dofs, which carries no load;
+what is left open is q + R c. (For a symmetric K and one orthogonal to R by inertia see static.py.)
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.solvers.eigen import lowest_modes
-from rotorgear.solvers.local_forces import LocalLaw, gather
-from rotorgear.solvers.local_system import LocalSystem, local_tangent, local_values
-from rotorgear.solvers.nullspace import SupportedSolver, left_null_space
+from rotorgear.errors import ConvergenceError
+from rotorgear.solvers.nullspace import SupportedSolver
+from rotorgear.solvers.static import UnbalancedLoadError
 
-_ITERATIONS = 80
-_TOLERANCE = 1e-10
+_BALANCE = 1e-8  # as in static.py: work relative to the sum of its absolute parts that counts as none
+_RESIDUAL = 1e-11
+_ROUNDING = 1e-11
+_REFINEMENTS = 4
 
 
-@dataclass(frozen=True)
 class Equilibrium:
-    """A static state.
+    """Solves K q = f again and again for loads that leave the free motions R (n, r) alone.
 
-    Attributes:
-        q: displacements (n,), M-orthogonal to the free motions.
-        converged: whether all local forces are in equilibrium there; if not, q is that with the reference stiffness.
-        free: R (n, r), M-orthonormal motions without stiffness.
-        drift: (r,) acceleration of each free motion under the loads, 0 where they balance.
+    Raises
+    ------
+    AnalysisError
+        K is singular beyond R.
     """
 
-    q: np.ndarray
-    converged: bool
-    free: np.ndarray
-    drift: np.ndarray
+    def __init__(self, K: sp.csc_array, R: np.ndarray) -> None:
+        self._K = sp.csc_array(K, dtype=float)
+        diagonal = np.abs(self._K.diagonal())
+        typical = float(np.median(diagonal[diagonal > 0.0])) if np.any(diagonal > 0.0) else 1.0
+        self._scale = np.sqrt(np.where(diagonal > 0.0, diagonal, typical))  # metres and radians compete fairly
+        self._R = np.linalg.qr(R * self._scale[:, None])[0]  # of q * scale
+        self._solver = SupportedSolver(self._K, self._R, self._R)
 
+    def solve(self, f: np.ndarray) -> np.ndarray:
+        """Return q (n, p) for loads f (n, p).
 
-def free_motions(M: sp.csc_array, K: sp.csc_array) -> np.ndarray:
-    """M-orthonormal motions (n, r) without strain; symmetric part of K only."""
-    symmetric = sp.csc_array(0.5 * (K + K.T))
-    count = min(M.shape[0], 8)
-    while True:
-        found = lowest_modes(M, symmetric, count=count)
-        if found.rigid_count < count or count == M.shape[0] or found.complete:
-            return np.asarray(found.vectors[:, : found.rigid_count])
-        count = min(2 * count, M.shape[0])
+        Raises
+        ------
+        UnbalancedLoadError
+            A load does work on a free motion.
+        ConvergenceError
+            The residual stays above 1e-11 of the forces inside; `partial` holds q.
+        """
+        rest = self._balanced(f)
+        target, q = rest, np.zeros_like(f)
+        size = abs(self._K)
+        for _ in range(_REFINEMENTS):
+            q = q + self._solver.solve(rest)
+            rest = self._free_of_rigid(target - self._K @ q)
+            scale = np.abs(size @ np.abs(q)) + np.abs(target)
+            noise = np.max(np.abs(rest / self._scale[:, None]), axis=0)
+            if np.all(noise <= _RESIDUAL * np.max(scale / self._scale[:, None], axis=0)):
+                return q
+        raise ConvergenceError("the static solution keeps a residual: look for stiffnesses many decades apart", q)
 
+    def _balanced(self, f: np.ndarray) -> np.ndarray:
+        """The loads less the rounding of their balance."""
+        scaled = f / self._scale[:, None]
+        work, parts = self._R.T @ scaled, np.abs(self._R.T) @ np.abs(scaled)
+        if self._R.shape[1]:
+            noise = _ROUNDING * np.linalg.norm(scaled, axis=0)  # a motion that the loads hardly touch
+            imbalance = (np.abs(work) / np.maximum(parts, np.where(noise > 0.0, noise, 1.0))).max(axis=1)
+            imbalance[np.all(np.abs(work) <= noise, axis=1)] = 0.0
+            if np.any(imbalance > _BALANCE):
+                raise UnbalancedLoadError(imbalance)
+        return self._free_of_rigid(f)
 
-def equilibrium(system: LocalSystem) -> Equilibrium:
-    """Return the static state at t = 0, at rest relative to the prescribed rotation."""
-    K, M = system.stiffness_about, system.M
-    R = free_motions(M, K)
-    B = system.B.toarray()
-    solver = SupportedSolver(K, R * np.sqrt(np.maximum(K.diagonal(), 1e-300))[:, None], left_null_space(K, M, R))
-
-    def settled(f: np.ndarray) -> np.ndarray:
-        q = solver.solve(f - M @ (R @ (R.T @ f)))
-        return np.asarray(q - R @ (R.T @ (M @ q)))
-
-    q0, X = settled(system.load), settled(B) if system.m else np.zeros((system.n, 0))
-    d, F, converged = _local(system, B.T @ q0, B.T @ X)
-    if not converged:
-        return Equilibrium(q0, False, R, R.T @ system.load)
-    pushed = system.forces.reference_stiffness @ d - F
-    return Equilibrium(q0 + X @ pushed, True, R, R.T @ (system.load - B @ F))
-
-
-def still_forces(system: LocalSystem, laws: tuple[LocalLaw, ...]) -> np.ndarray:
-    """Local forces (m,) in the equilibrium with laws in place of the system's own; NaN where there is none."""
-    still = replace(system, forces=gather(laws))
-    rest = equilibrium(still)
-    if not rest.converged:
-        return np.full(system.m, np.nan)
-    return local_values(still, rest.q, np.zeros(still.n), 0.0)[0]
-
-
-def _local(system: LocalSystem, d0: np.ndarray, A: np.ndarray) -> tuple[np.ndarray, np.ndarray, bool]:
-    """Newton's method for d - d0 + A (F(d) - k d) = 0 with a shortened step where a full one does not bring it down."""
-    k = system.forces.reference_stiffness
-    d = d0.copy()
-
-    def residual(d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        F, Kd = local_tangent(system, d, 0.0)
-        return d - d0 + A @ (F - k @ d), F, Kd
-
-    r, F, Kd = residual(d)
-    for _ in range(_ITERATIONS):
-        size = np.abs(d0).max(initial=0.0) + np.abs(A @ F).max(initial=0.0)
-        if not np.all(np.isfinite(r)):
-            break
-        if np.abs(r).max(initial=0.0) <= _TOLERANCE * size:
-            return d, F, True
-        step = np.linalg.lstsq(np.eye(d.size) + A @ (Kd - k), -r, rcond=1e-14)[0]
-        share = 1.0
-        while True:
-            trial = d + share * step
-            r_new, F_new, Kd_new = residual(trial)
-            if np.linalg.norm(r_new) < (1.0 - 1e-4 * share) * np.linalg.norm(r) or share < 1e-3:
-                break
-            share *= 0.5
-        d, r, F, Kd = trial, r_new, F_new, Kd_new
-    return d0, local_tangent(system, d0, 0.0)[0], False
+    def _free_of_rigid(self, f: np.ndarray) -> np.ndarray:
+        scaled = f / self._scale[:, None]
+        return np.asarray((scaled - self._R @ (self._R.T @ scaled)) * self._scale[:, None])

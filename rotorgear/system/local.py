@@ -22,6 +22,7 @@ from rotorgear.solvers.local_system import LocalSystem
 from rotorgear.solvers.motion import Rotation
 from rotorgear.system.assembly import assemble
 from rotorgear.system.groups import ElementGroup, contact_geometry, mesh_damping, node_dofs
+from rotorgear.system.loads import weight_loads
 from rotorgear.system.local_parts import (
     LocalPart,
     bearing_parts,
@@ -82,7 +83,7 @@ def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
         K=sp.csc_array(K + system.circulatory(speed)),
         B=sp.csc_array(T.T @ columns),
         forces=gather(tuple(part.law for part in parts)),
-        load=T.T @ torque_load(system) + system.mass @ (T.T @ gravity(system)),
+        load=T.T @ (torque_load(system) + _weight(system)),
         rotation=rotation,
         G=system.gyroscopic if system.gyroscopic.nnz else None,
     )
@@ -99,13 +100,10 @@ def torque_load(system: System) -> np.ndarray:
     return f
 
 
-def gravity(system: System) -> np.ndarray:
-    """Acceleration of gravity on all dofs, (a,)."""
-    operation, g = system.model.operation, np.zeros(system.dofs.transform.shape[0])
-    if operation and operation.gravity:
-        for axis, value in enumerate(operation.gravity):
-            g[axis : 6 * len(system.nodes) : 6] = value
-    return g
+def _weight(system: System) -> np.ndarray:
+    operation = system.model.operation
+    gravity = operation.gravity if operation else None
+    return weight_loads(system, gravity) if gravity else np.zeros(system.dofs.transform.shape[0])
 
 
 def _mesh_parts(system: System) -> list[LocalPart]:

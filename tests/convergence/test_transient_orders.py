@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rotorgear.solvers.equilibrium import equilibrium
+from rotorgear.solvers.contact_equilibrium import equilibrium
 from rotorgear.solvers.explicit import Explicit
 from rotorgear.solvers.exponential import Exponential
 from rotorgear.solvers.local_system import Integrator, LocalSystem, state_at_rest

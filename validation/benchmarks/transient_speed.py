@@ -20,7 +20,7 @@ from scipy.sparse.linalg import splu
 
 import rotorgear as rg
 from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic
-from rotorgear.solvers.equilibrium import equilibrium
+from rotorgear.solvers.contact_equilibrium import equilibrium
 from rotorgear.solvers.exponential import Exponential
 from rotorgear.solvers.local_system import LocalSystem, State, evaluated, local_values, state_at_rest
 from rotorgear.solvers.motion import Rotation

@@ -11,7 +11,7 @@ from rotorgear.forces.law import ForceLaw, parameter
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.plain_spring import PlainSpring
 from rotorgear.forces.torque_curve import TorqueCurve
-from rotorgear.solvers.equilibrium import equilibrium
+from rotorgear.solvers.contact_equilibrium import equilibrium
 from rotorgear.solvers.exponential import Exponential
 from rotorgear.solvers.local_system import LocalSystem, state_at_rest
 from rotorgear.solvers.motion import Rotation
