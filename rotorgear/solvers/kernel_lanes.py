@@ -1,0 +1,255 @@
+"""Compiled: many small systems side by side through the same time steps, by the Runge-Kutta method of order 4.
+
+    z'' = f - K z - D z' - B F(B^T z, B^T z', t),   M = 1,   time in radians of the fastest mesh
+
+Every array has the systems as its last axis of LANES entries, so that the innermost loops run over systems and vectorise. What depends
+on time only (k(t), e(t), prescribed forces) stands in tables over the common period, for the times at and between steps. Tangents T obey
+T'' = -K T - D T' - B (Kd B^T T + Kv B^T T') along the trajectory; each mesh period they are freed of rigid motions and made
+orthonormal, and the logarithms of their growth sum up to Lyapunov exponents (Benettin et al., Meccanica 15 (1980) 9).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.solvers.compiled import compiled
+from rotorgear.solvers.kernel_contact import schedule_all
+
+LANES = 32
+# How a column acts: as MeshContact.gap does, or as a force that is prescribed.
+LINE, ONE_SIDED, NEVER_PARTS, PRESCRIBED = 0, 1, 2, 3
+CLAMPED, UNCLAMPED, PENETRATION = 0, 1, 2
+# Rows of the tables: share of the mean stiffness, error, its slope, share of the prescribed force.
+STIFFNESS, ERROR, SLOPE, PUSH = 0, 1, 2, 3
+# Rows of the sums: steps on the driving flank, apart, on the back flank, losses of contact; least and largest of the displacement
+# d, of the approach d - e and of the force; sums of force, its square, displacement, its square.
+DRIVING, APART, BACK, LOSSES, D_MIN, D_MAX, X_MIN, X_MAX, F_MIN, F_MAX, F_SUM, F_SQUARES, D_SUM, D_SQUARES = range(14)
+
+
+@compiled
+def tabulate(schedules, kind, parameters, parameters_first, state_first, angles, out):
+    """State (r, s) of all laws at angles (r,) of the reference, at unit speed."""
+    for i in range(angles.size):
+        schedule_all(schedules, kind, parameters, parameters_first, state_first, angles[i], 1.0, 0.0, out[i])
+
+
+@compiled(fast=True)
+def read_table(table, row, out):
+    """One time of the tables, for all lanes; a table with one lane serves them all."""
+    for j in range(out.shape[0]):
+        for f in range(4):
+            if table.shape[3] == 1:
+                value = table[row, j, f, 0]
+                for w in range(LANES):
+                    out[j, f, w] = value
+            else:
+                for w in range(LANES):
+                    out[j, f, w] = table[row, j, f, w]
+
+
+@compiled(fast=True)
+def approach(structure, q, v, d, dv):
+    """d = B^T q and its velocity."""
+    bfirst, bcolumn, bvalue = structure[5], structure[6], structure[7]
+    for j in range(d.shape[0]):
+        for w in range(LANES):
+            d[j, w] = 0.0
+            dv[j, w] = 0.0
+        for p in range(bfirst[j], bfirst[j + 1]):
+            c = bcolumn[p]
+            for w in range(LANES):
+                d[j, w] += bvalue[p, w] * q[c, w]
+                dv[j, w] += bvalue[p, w] * v[c, w]
+
+
+@compiled(fast=True)
+def contacts(laws, table, d, dv, F, Kd, Kv, side):
+    """Forces (m, w) of forces/mesh_contact.py without branches over lanes, their tangents, and the flank that touches."""
+    gap, mode, stiffness, damping, backlash, ramp, push = laws
+    for j in range(gap.size):
+        if gap[j] == PRESCRIBED:
+            for w in range(LANES):
+                F[j, w], Kd[j, w], Kv[j, w], side[j, w] = push[j, w] * table[j, PUSH, w], 0.0, 0.0, 0.0
+        elif gap[j] == NEVER_PARTS:
+            for w in range(LANES):
+                k, c = stiffness[j, w] * table[j, STIFFNESS, w], damping[j, w]
+                x, rate = d[j, w] - table[j, ERROR, w], dv[j, w] - table[j, SLOPE, w]
+                F[j, w] = k * x + c * rate + push[j, w] * table[j, PUSH, w]
+                Kd[j, w], Kv[j, w], side[j, w] = k, c, 1.0
+        else:
+            most = np.inf if mode[j] == PENETRATION else 1.0
+            least = -np.inf if mode[j] == UNCLAMPED else 0.0
+            for w in range(LANES):
+                k, c = stiffness[j, w] * table[j, STIFFNESS, w], damping[j, w]
+                x, rate = d[j, w] - table[j, ERROR, w], dv[j, w] - table[j, SLOPE, w]
+                behind = -x - backlash[j, w]
+                touch = 1.0 if x > 0.0 else (-1.0 if behind > 0.0 else 0.0)
+                depth = x if x > 0.0 else (behind if behind > 0.0 else 0.0)
+                closing = touch * rate
+                share = depth * ramp[j, w]
+                grows = ramp[j, w] if share < most else 0.0
+                share = share if share < most else most
+                total = k * depth + c * share * closing
+                holds = 1.0 if (total > least and touch != 0.0) else 0.0
+                F[j, w] = touch * holds * total + push[j, w] * table[j, PUSH, w]
+                Kd[j, w] = holds * (k + c * grows * closing)
+                Kv[j, w] = holds * c * share
+                side[j, w] = touch
+
+
+@compiled(fast=True)
+def accelerate(structure, share, F, q, v, a):
+    """a = share f - K q - D v - B F."""
+    first, column, K, D, load, _, _, bvalue, cfirst, ccolumn, cplace = structure
+    for i in range(load.shape[0]):
+        for w in range(LANES):
+            a[i, w] = share * load[i, w]
+        for p in range(first[i], first[i + 1]):
+            c = column[p]
+            for w in range(LANES):
+                a[i, w] -= K[p, w] * q[c, w] + D[p, w] * v[c, w]
+        for p in range(cfirst[i], cfirst[i + 1]):
+            c, place = ccolumn[p], cplace[p]
+            for w in range(LANES):
+                a[i, w] -= bvalue[place, w] * F[c, w]
+
+
+@compiled(fast=True)
+def stage_state(q, v, share, a, qs, vs):
+    """State of a stage from that of the one before, whose slopes are (vs, a)."""
+    for i in range(q.shape[0]):
+        for w in range(LANES):
+            qs[i, w] = q[i, w] + share * vs[i, w]
+            vs[i, w] = v[i, w] + share * a[i, w]
+
+
+@compiled(fast=True)
+def add_stage(weight, dq, dv, sum_q, sum_v):
+    """Add a stage's slopes to the step's."""
+    for i in range(dq.shape[0]):
+        for w in range(LANES):
+            sum_q[i, w] += weight * dq[i, w]
+            sum_v[i, w] += weight * dv[i, w]
+
+
+@compiled(fast=True)
+def count(mesh, table, d, F, side, last, sums):
+    """Take a step into the statistics of the mesh contacts."""
+    for j in range(d.shape[0]):
+        if not mesh[j]:
+            continue
+        for w in range(LANES):
+            now, f, x = side[j, w], F[j, w], d[j, w]
+            sums[j, DRIVING, w] += 1.0 if now > 0.0 else 0.0
+            sums[j, APART, w] += 1.0 if now == 0.0 else 0.0
+            sums[j, BACK, w] += 1.0 if now < 0.0 else 0.0
+            sums[j, LOSSES, w] += 1.0 if (now == 0.0 and last[j, w] != 0.0) else 0.0
+            last[j, w] = now
+            sums[j, F_SUM, w] += f
+            sums[j, F_SQUARES, w] += f * f
+            sums[j, D_SUM, w] += x
+            sums[j, D_SQUARES, w] += x * x
+        for w in range(LANES):
+            f, x = F[j, w], d[j, w]
+            sums[j, D_MIN, w] = min(sums[j, D_MIN, w], x)
+            sums[j, D_MAX, w] = max(sums[j, D_MAX, w], x)
+            sums[j, F_MIN, w] = min(sums[j, F_MIN, w], f)
+            sums[j, F_MAX, w] = max(sums[j, F_MAX, w], f)
+            x -= table[j, ERROR, w]
+            sums[j, X_MIN, w] = min(sums[j, X_MIN, w], x)
+            sums[j, X_MAX, w] = max(sums[j, X_MAX, w], x)
+
+
+@compiled(fast=True)
+def remove(part, along):
+    """Take away from `part` (k, w) what lies along the unit vectors `along` (k, w)."""
+    total = np.zeros(LANES)
+    for i in range(part.shape[0]):
+        for w in range(LANES):
+            total[w] += part[i, w] * along[i, w]
+    for i in range(part.shape[0]):
+        for w in range(LANES):
+            part[i, w] -= total[w] * along[i, w]
+
+
+@compiled(fast=True)
+def orthonormal(tangents, rigid, growth):
+    """Free tangents (t, 2 n, w) of rigid motions (r, n, w), make them orthonormal one by one, add the logarithms of their sizes."""
+    n = tangents.shape[1] // 2
+    for a in range(tangents.shape[0]):
+        for r in range(rigid.shape[0]):
+            remove(tangents[a, :n], rigid[r])
+            remove(tangents[a, n:], rigid[r])
+        for b in range(a):
+            remove(tangents[a], tangents[b])
+        size = np.zeros(LANES)
+        for i in range(2 * n):
+            for w in range(LANES):
+                size[w] += tangents[a, i, w] ** 2
+        for w in range(LANES):
+            growth[a, w] += 0.5 * np.log(size[w])
+            size[w] = 1.0 / np.sqrt(size[w])
+        for i in range(2 * n):
+            for w in range(LANES):
+                tangents[a, i, w] *= size[w]
+
+
+@compiled(fast=True, free=True)
+def lanes_loop(turns, steps, counting, structure, laws, mesh, table, rigid, q, v, tangents, last, growth, section, sums):
+    """Advance all lanes in place by common periods and record a section at the end of each.
+
+    Args:
+        turns: periods of the fastest mesh in a common one; steps: steps in one of those.
+        counting: whether the statistics count.
+        structure: patterns by rows and values (., w) of K, D, f and B; laws: of the columns; mesh: (m,) which are contacts.
+        table: (2 turns steps + 1, m, 4, 1 or w); rigid: orthonormal motions without strain, (r, n, w).
+        q, v: (n, w); tangents: (t, 2 n, w); last: (m, w) flanks that touched last.
+        growth: (p, t, w), section: (p, m, 2, w), sums: (m, 14, w): what is found in p common periods.
+    """
+    n, m, t = q.shape[0], mesh.size, tangents.shape[0]
+    h = 2.0 * np.pi / steps
+    now = np.empty((m, 4, LANES))
+    d, dv, F, Kd, Kv, side = (np.zeros((m, LANES)), np.zeros((m, LANES)), np.zeros((m, LANES)), np.zeros((m, LANES)),
+                              np.zeros((m, LANES)), np.zeros((m, LANES)))  # fmt: skip
+    qs, vs, a = np.empty((n, LANES)), np.empty((n, LANES)), np.empty((n, LANES))
+    sum_q, sum_v = np.empty((n, LANES)), np.empty((n, LANES))
+    tq, tv, ta = np.empty((t, n, LANES)), np.empty((t, n, LANES)), np.empty((t, n, LANES))
+    sum_tq, sum_tv = np.empty((t, n, LANES)), np.empty((t, n, LANES))
+    for period in range(growth.shape[0]):
+        for step in range(turns * steps):
+            sum_q[:], sum_v[:], sum_tq[:], sum_tv[:] = 0.0, 0.0, 0.0, 0.0
+            for stage in range(4):
+                share = 0.0 if stage == 0 else (h if stage == 3 else 0.5 * h)
+                weight = (1.0 if stage in (0, 3) else 2.0) * h / 6.0
+                if stage != 2:
+                    read_table(table, 2 * step + (0 if stage == 0 else (2 if stage == 3 else 1)), now)
+                if stage == 0:
+                    qs[:], vs[:] = q, v
+                    tq[:], tv[:] = tangents[:, :n], tangents[:, n:]
+                else:
+                    stage_state(q, v, share, a, qs, vs)
+                    for k in range(t):
+                        stage_state(tangents[k, :n], tangents[k, n:], share, ta[k], tq[k], tv[k])
+                approach(structure, qs, vs, d, dv)
+                contacts(laws, now, d, dv, F, Kd, Kv, side)
+                if stage == 0 and counting:
+                    count(mesh, now, d, F, side, last, sums)
+                accelerate(structure, 1.0, F, qs, vs, a)
+                add_stage(weight, vs, a, sum_q, sum_v)
+                for k in range(t):
+                    approach(structure, tq[k], tv[k], d, dv)
+                    for j in range(m):
+                        for w in range(LANES):
+                            F[j, w] = Kd[j, w] * d[j, w] + Kv[j, w] * dv[j, w]
+                    accelerate(structure, 0.0, F, tq[k], tv[k], ta[k])
+                    add_stage(weight, tv[k], ta[k], sum_tq[k], sum_tv[k])
+            for i in range(n):
+                for w in range(LANES):
+                    q[i, w] += sum_q[i, w]
+                    v[i, w] += sum_v[i, w]
+            tangents[:, :n] += sum_tq
+            tangents[:, n:] += sum_tv
+            if t and (step + 1) % steps == 0:
+                orthonormal(tangents, rigid, growth[period])
+        approach(structure, q, v, d, dv)
+        section[period, :, 0], section[period, :, 1] = d, dv

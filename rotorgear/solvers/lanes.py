@@ -1,0 +1,157 @@
+"""Blocks of up to 32 small systems that run side by side, and what a run leaves of each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.solvers.small_system import SmallSystem
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How long: steps in a period of the fastest mesh, common periods that settle and count, tangents to follow.
+
+    The tangents are followed over the last `warm` of the periods that settle, so that they find the direction of most growth.
+    """
+
+    steps: int
+    settle: int
+    count: int
+    tangents: int
+    warm: int = 40
+
+
+@dataclass(frozen=True)
+class Start:
+    """A state: z and z' (n,)."""
+
+    z: np.ndarray
+    dz: np.ndarray
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """What a run leaves of one system.
+
+    Attributes:
+        section: displacement and velocity (in m and m/s) of each local displacement at the end of each common period, (p, m, 2).
+        growth: (p, t) logarithm of the growth of each tangent in a common period.
+        sums: (m, 14) statistics, see kernel_lanes.py; forces in N.
+        end: state at the end. finite: whether everything stayed finite.
+    """
+
+    section: np.ndarray
+    growth: np.ndarray
+    sums: np.ndarray
+    end: Start
+    finite: bool
+
+
+def run_block(
+    systems: Sequence[SmallSystem], starts: Sequence[Start], tables: Sequence[np.ndarray], plan: Plan
+) -> list[Orbit]:
+    """Run up to LANES systems of one kind side by side.
+
+    Args:
+        systems: of the same n, m, kinds of columns, rigid motions and common period.
+        starts: one a system. tables: one a system, or one for all, (2 turns steps + 1, m, 4).
+        plan: how long.
+    """
+    from rotorgear.solvers.kernel_lanes import LANES, lanes_loop
+
+    count = len(systems)
+    if not 0 < count <= LANES:
+        raise ValueError(f"{count} systems in a block, expected 1 to {LANES}")
+    filled = [*systems, *[systems[-1]] * (LANES - count)]
+    first = systems[0]
+    structure, laws = _structure(filled), _laws(filled)
+    mesh = first.columns.mesh
+    wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
+    table = np.ascontiguousarray(np.stack(wide, axis=-1))
+    rigid = _stacked([s.rigid for s in filled])
+    begins = [*starts, *[starts[-1]] * (LANES - count)]
+    q, v = _stacked([s.z for s in begins]), _stacked([s.dz for s in begins])
+    tangents = _tangents(first, plan.tangents)
+    last, sums = np.zeros((mesh.size, LANES)), blank_sums(mesh.size)
+
+    def run(periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        growth = np.zeros((periods, len(followed), LANES))
+        section = np.zeros((periods, mesh.size, 2, LANES))
+        lanes_loop(first.turns, plan.steps, counting, structure, laws, mesh, table, rigid, q, v, followed, last, growth,
+                   section, sums)  # fmt: skip
+        return growth, section
+
+    warm = min(plan.warm, plan.settle) if plan.tangents else 0
+    with np.errstate(all="ignore"):
+        run(plan.settle - warm, False, tangents[:0])
+        run(warm, False, tangents)
+        growth, section = run(plan.count, True, tangents)
+    return [_orbit(filled[i], i, growth, section, sums, q, v) for i in range(count)]
+
+
+def _orbit(
+    system: SmallSystem, lane: int, growth: np.ndarray, section: np.ndarray, sums: np.ndarray, q: np.ndarray, v: np.ndarray
+) -> Orbit:
+    """One lane, with forces in N and velocities in m/s."""
+    from rotorgear.solvers.kernel_lanes import F_MAX, F_MIN, F_SQUARES, F_SUM
+
+    found, moved = sums[:, :, lane].copy(), section[..., lane].copy()
+    for row in (F_MIN, F_MAX, F_SUM):
+        found[:, row] *= system.w**2
+    found[:, F_SQUARES] *= system.w**4
+    moved[:, :, 1] *= system.w
+    end = Start(q[:, lane].copy(), v[:, lane].copy())
+    finite = bool(np.all(np.isfinite(moved)) and np.all(np.isfinite(end.z)))
+    return Orbit(moved, growth[..., lane].copy(), found, end, finite)
+
+
+def blank_sums(m: int) -> np.ndarray:
+    """Statistics (m, 14, w) before anything was counted."""
+    from rotorgear.solvers.kernel_lanes import D_MAX, D_MIN, F_MAX, F_MIN, LANES, X_MAX, X_MIN
+
+    sums = np.zeros((m, 14, LANES))
+    sums[:, [D_MIN, X_MIN, F_MIN]], sums[:, [D_MAX, X_MAX, F_MAX]] = np.inf, -np.inf
+    return sums
+
+
+def _tangents(system: SmallSystem, count: int) -> np.ndarray:
+    """Random tangents (t, 2 n, w), the same for all lanes and runs."""
+    from rotorgear.solvers.kernel_lanes import LANES
+
+    drawn = np.random.default_rng(1).standard_normal((count, 2 * system.n))
+    return np.ascontiguousarray(np.repeat(drawn[:, :, None], LANES, axis=2))
+
+
+def _stacked(values: Sequence[np.ndarray]) -> np.ndarray:
+    return np.ascontiguousarray(np.stack(values, axis=-1), dtype=float)
+
+
+def _structure(systems: Sequence[SmallSystem]) -> tuple[np.ndarray, ...]:
+    """Patterns of all lanes together, without what is zero in all of them, and values by lane."""
+    K, D, B = (_stacked([getattr(s, name) for s in systems]) for name in ("K", "D", "B"))
+    first, column, rows = _pattern(np.any((K != 0.0) | (D != 0.0), axis=2))
+    acts = np.any(B != 0.0, axis=2)
+    bfirst, bcolumn, brows = _pattern(acts.T)
+    cfirst, ccolumn, crows = _pattern(acts)
+    place = {(int(i), int(j)): p for p, (j, i) in enumerate(zip(brows, bcolumn, strict=True))}
+    cplace = np.array([place[int(i), int(j)] for i, j in zip(crows, ccolumn, strict=True)], dtype=np.int64)
+    return (
+        first, column, np.ascontiguousarray(K[rows, column]), np.ascontiguousarray(D[rows, column]),
+        _stacked([s.load for s in systems]), bfirst, bcolumn, np.ascontiguousarray(B[bcolumn, brows]), cfirst, ccolumn, cplace,
+    )  # fmt: skip
+
+
+def _pattern(mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Row starts, columns and rows of what is set, by rows."""
+    rows, columns = np.nonzero(mask)
+    first = np.concatenate([[0], np.cumsum(mask.sum(axis=1))])
+    return first.astype(np.int64), columns.astype(np.int64), rows.astype(np.int64)
+
+
+def _laws(systems: Sequence[SmallSystem]) -> tuple[np.ndarray, ...]:
+    names = ("stiffness", "damping", "backlash", "ramp", "push")
+    own = systems[0].columns
+    return (own.gap, own.mode, *(_stacked([getattr(s.columns, name) for s in systems]) for name in names))
