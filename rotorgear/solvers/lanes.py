@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from rotorgear.solvers.small_system import SmallSystem
+
+# Steps between two questions whether to go on: a fraction of a second.
+_SLICE = 50_000
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,13 @@ class Start:
     z: np.ndarray
     dz: np.ndarray
 
+    def moved(self, old: SmallSystem, new: SmallSystem) -> Start:
+        """The same displacements and velocities in the coordinates of another system."""
+        if old is new:
+            return self
+        q, v = (np.linalg.solve(old.root.T, x) for x in (self.z, self.dz * old.w))
+        return Start(new.root.T @ q, new.root.T @ v / new.w)
+
 
 @dataclass(frozen=True)
 class Orbit:
@@ -51,7 +61,11 @@ class Orbit:
 
 
 def run_block(
-    systems: Sequence[SmallSystem], starts: Sequence[Start], tables: Sequence[np.ndarray], plan: Plan
+    systems: Sequence[SmallSystem],
+    starts: Sequence[Start],
+    tables: Sequence[np.ndarray],
+    plan: Plan,
+    go_on: Callable[[], bool] = lambda: True,
 ) -> list[Orbit]:
     """Run up to LANES systems of one kind side by side.
 
@@ -59,6 +73,7 @@ def run_block(
         systems: of the same n, m, kinds of columns, rigid motions and common period.
         starts: one a system. tables: one a system, or one for all, (2 turns steps + 1, m, 4).
         plan: how long.
+        go_on: asked now and then; the run is given up with a KeyboardInterrupt where it says no.
     """
     from rotorgear.solvers.kernel_lanes import LANES, lanes_loop
 
@@ -80,8 +95,12 @@ def run_block(
     def run(periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         growth = np.zeros((periods, len(followed), LANES))
         section = np.zeros((periods, mesh.size, 2, LANES))
-        lanes_loop(first.turns, plan.steps, counting, structure, laws, mesh, table, rigid, q, v, followed, last, growth,
-                   section, sums)  # fmt: skip
+        stride = max(1, _SLICE // (first.turns * plan.steps))
+        for p in range(0, periods, stride):
+            if not go_on():
+                raise KeyboardInterrupt
+            lanes_loop(first.turns, plan.steps, counting, structure, laws, mesh, table, rigid, q, v, followed, last,
+                       growth[p : p + stride], section[p : p + stride], sums)  # fmt: skip
         return growth, section
 
     warm = min(plan.warm, plan.settle) if plan.tangents else 0

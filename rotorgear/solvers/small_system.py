@@ -16,7 +16,7 @@ from rotorgear.solvers.local_system import LocalSystem
 # Dense matrices in the kernel: beyond this many, other methods are cheaper.
 MOST_DOFS = 80
 # The Runge-Kutta method of order 4 is stable along the imaginary axis up to 2.83, along the negative one up to 2.79.
-STABLE = 2.7
+STABLE = 2.5
 # Products of a frequency and a step that leave errors of 1e-3 or so in a period.
 ACCURATE = 0.35
 
@@ -41,7 +41,7 @@ class SmallSystem:
 
     Attributes:
         K, D: (n, n); load: (n,); B: (n, m); rigid: (r, n) orthonormal motions without strain; rest: z in equilibrium, (n,).
-        columns: of the local forces. w: rad/s of the fastest mesh; turns: its periods in the common one.
+        root: L, (n, n). columns: of the local forces. w: rad/s of the fastest mesh; turns: its periods in the common one.
         fastest: largest |eigenvalue| of the linear system, in radians of the mesh.
     """
 
@@ -51,6 +51,7 @@ class SmallSystem:
     B: np.ndarray
     rigid: np.ndarray
     rest: np.ndarray
+    root: np.ndarray
     columns: Columns
     w: float
     turns: int
@@ -98,7 +99,7 @@ def small_system(
         [-about / w**2, -(D + B @ local.forces.reference_damping @ B.T) / w],
     ])  # fmt: skip
     return SmallSystem(
-        _clean(K) / w**2, _clean(D) / w, inverse @ local.load / w**2, _clean(B), rigid, L.T @ rest.q,
+        _clean(K) / w**2, _clean(D) / w, inverse @ local.load / w**2, _clean(B), rigid, L.T @ rest.q, L,
         scaled(columns, w), w, turns, float(np.abs(np.linalg.eigvals(A)).max()),
     )  # fmt: skip
 
