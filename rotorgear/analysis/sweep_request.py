@@ -14,7 +14,7 @@ from rotorgear.solvers.small_system import STABLE, SmallSystem, steps_needed
 
 DIRECTIONS = ("each", "up", "down", "both")
 MOST_STEPS = 5000
-LEAST_STEPS = 100
+LEAST_STEPS = 200
 _NUMBERS = {"starts": 1000, "settle": 10_000_000, "count": 10_000_000}
 
 
@@ -83,7 +83,7 @@ def start_of(system: SmallSystem, number: int, seed: int) -> Start:
 def steps_of(points: Sequence[Point | None], wanted: int | None) -> tuple[np.ndarray, dict[int, str]]:
     """Steps of each point in a period of its fastest mesh, and why a point can't be run with them.
 
-    Without a wanted number: so many that the highest frequency is followed, from 100 on, in classes 2^(1/2) apart, so that few
+    Without a wanted number: so many that the highest frequency is followed, from 200 on, in classes 2^(1/2) apart, so that few
     different numbers occur.
     """
     steps, refused = np.zeros(len(points), dtype=np.int64), {}
