@@ -48,32 +48,46 @@ def read_table(table, row, out):
 
 
 @compiled(fast=True)
-def approach(structure, q, v, d, dv):
-    """d = B^T q and its velocity."""
-    bfirst, bcolumn, bvalue = structure[5], structure[6], structure[7]
-    for j in range(d.shape[0]):
+def product(first, column, value, x, out):
+    """out = A x for a sparse matrix with values by lane, four columns in one pass over the lanes."""
+    for i in range(out.shape[0]):
+        p, end = first[i], first[i + 1]
         for w in range(LANES):
-            d[j, w] = 0.0
-            dv[j, w] = 0.0
-        for p in range(bfirst[j], bfirst[j + 1]):
-            c = bcolumn[p]
+            out[i, w] = 0.0
+        while p + 3 < end:
+            a, b, c, d = column[p], column[p + 1], column[p + 2], column[p + 3]
             for w in range(LANES):
-                d[j, w] += bvalue[p, w] * q[c, w]
-                dv[j, w] += bvalue[p, w] * v[c, w]
+                out[i, w] += (value[p, w] * x[a, w] + value[p + 1, w] * x[b, w]) + (
+                    value[p + 2, w] * x[c, w] + value[p + 3, w] * x[d, w]
+                )
+            p += 4
+        if p + 1 < end:
+            a, b = column[p], column[p + 1]
+            for w in range(LANES):
+                out[i, w] += value[p, w] * x[a, w] + value[p + 1, w] * x[b, w]
+            p += 2
+        if p < end:
+            a = column[p]
+            for w in range(LANES):
+                out[i, w] += value[p, w] * x[a, w]
 
 
 @compiled(fast=True)
-def contacts(laws, table, d, dv, F, Kd, Kv, side):
-    """Forces (m, w) of forces/mesh_contact.py without branches over lanes, their tangents, and the flank that touches."""
+def contacts(laws, table, d, F, Kd, Kv, side):
+    """Forces (m, w) of forces/mesh_contact.py without branches over lanes, their tangents, and the flank that touches.
+
+    d: displacements and below them velocities, (2 m, w).
+    """
     gap, mode, stiffness, damping, backlash, ramp, push = laws
-    for j in range(gap.size):
+    m = gap.size
+    for j in range(m):
         if gap[j] == PRESCRIBED:
             for w in range(LANES):
                 F[j, w], Kd[j, w], Kv[j, w], side[j, w] = push[j, w] * table[j, PUSH, w], 0.0, 0.0, 0.0
         elif gap[j] == NEVER_PARTS:
             for w in range(LANES):
                 k, c = stiffness[j, w] * table[j, STIFFNESS, w], damping[j, w]
-                x, rate = d[j, w] - table[j, ERROR, w], dv[j, w] - table[j, SLOPE, w]
+                x, rate = d[j, w] - table[j, ERROR, w], d[m + j, w] - table[j, SLOPE, w]
                 F[j, w] = k * x + c * rate + push[j, w] * table[j, PUSH, w]
                 Kd[j, w], Kv[j, w], side[j, w] = k, c, 1.0
         else:
@@ -81,16 +95,16 @@ def contacts(laws, table, d, dv, F, Kd, Kv, side):
             least = -np.inf if mode[j] == UNCLAMPED else 0.0
             for w in range(LANES):
                 k, c = stiffness[j, w] * table[j, STIFFNESS, w], damping[j, w]
-                x, rate = d[j, w] - table[j, ERROR, w], dv[j, w] - table[j, SLOPE, w]
+                x, rate = d[j, w] - table[j, ERROR, w], d[m + j, w] - table[j, SLOPE, w]
                 behind = -x - backlash[j, w]
                 touch = 1.0 if x > 0.0 else (-1.0 if behind > 0.0 else 0.0)
-                depth = x if x > 0.0 else (behind if behind > 0.0 else 0.0)
+                depth = max(max(x, behind), 0.0)
                 closing = touch * rate
                 share = depth * ramp[j, w]
                 grows = ramp[j, w] if share < most else 0.0
-                share = share if share < most else most
+                share = min(share, most)
                 total = k * depth + c * share * closing
-                holds = 1.0 if (total > least and touch != 0.0) else 0.0
+                holds = touch * touch if total > least else 0.0
                 F[j, w] = touch * holds * total + push[j, w] * table[j, PUSH, w]
                 Kd[j, w] = holds * (k + c * grows * closing)
                 Kv[j, w] = holds * c * share
@@ -98,44 +112,32 @@ def contacts(laws, table, d, dv, F, Kd, Kv, side):
 
 
 @compiled(fast=True)
-def accelerate(structure, share, F, q, v, a):
-    """a = share f - K q - D v - B F."""
-    first, column, K, D, load, _, _, bvalue, cfirst, ccolumn, cplace = structure
-    for i in range(load.shape[0]):
+def next_stage(weight, share, base, stage, a, total):
+    """Add a stage's slopes to those of the step, and turn its state into that of the next one."""
+    n = a.shape[0]
+    for i in range(n):
         for w in range(LANES):
-            a[i, w] = share * load[i, w]
-        for p in range(first[i], first[i + 1]):
-            c = column[p]
-            for w in range(LANES):
-                a[i, w] -= K[p, w] * q[c, w] + D[p, w] * v[c, w]
-        for p in range(cfirst[i], cfirst[i + 1]):
-            c, place = ccolumn[p], cplace[p]
-            for w in range(LANES):
-                a[i, w] -= bvalue[place, w] * F[c, w]
+            dq, dv = stage[n + i, w], a[i, w]
+            total[i, w] += weight * dq
+            total[n + i, w] += weight * dv
+            stage[i, w] = base[i, w] + share * dq
+            stage[n + i, w] = base[n + i, w] + share * dv
 
 
 @compiled(fast=True)
-def stage_state(q, v, share, a, qs, vs):
-    """State of a stage from that of the one before, whose slopes are (vs, a)."""
-    for i in range(q.shape[0]):
+def last_stage(weight, base, stage, a, total):
+    """Add the slopes of the last stage, and take the step."""
+    n = a.shape[0]
+    for i in range(n):
         for w in range(LANES):
-            qs[i, w] = q[i, w] + share * vs[i, w]
-            vs[i, w] = v[i, w] + share * a[i, w]
-
-
-@compiled(fast=True)
-def add_stage(weight, dq, dv, sum_q, sum_v):
-    """Add a stage's slopes to the step's."""
-    for i in range(dq.shape[0]):
-        for w in range(LANES):
-            sum_q[i, w] += weight * dq[i, w]
-            sum_v[i, w] += weight * dv[i, w]
+            base[i, w] += total[i, w] + weight * stage[n + i, w]
+            base[n + i, w] += total[n + i, w] + weight * a[i, w]
 
 
 @compiled(fast=True)
 def count(mesh, table, d, F, side, last, sums):
     """Take a step into the statistics of the mesh contacts."""
-    for j in range(d.shape[0]):
+    for j in range(mesh.size):
         if not mesh[j]:
             continue
         for w in range(LANES):
@@ -195,61 +197,56 @@ def orthonormal(tangents, rigid, growth):
 
 
 @compiled(fast=True, free=True)
-def lanes_loop(turns, steps, counting, structure, laws, mesh, table, rigid, q, v, tangents, last, growth, section, sums):
+def lanes_loop(turns, steps, counting, matrix, across, laws, mesh, table, rigid, state, tangents, last, growth, section, sums):
     """Advance all lanes in place by common periods and record a section at the end of each.
 
     Args:
         turns: periods of the fastest mesh in a common one; steps: steps in one of those.
         counting: whether the statistics count.
-        structure: patterns by rows and values (., w) of K, D, f and B; laws: of the columns; mesh: (m,) which are contacts.
+        matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1); across: d and d' from (z, z'), (2 m, 2 n).
+        laws: of the columns, arrays (m,) and (m, w); mesh: (m,) which are contacts.
         table: (2 turns steps + 1, m, 4, 1 or w); rigid: orthonormal motions without strain, (r, n, w).
-        q, v: (n, w); tangents: (t, 2 n, w); last: (m, w) flanks that touched last.
-        growth: (p, t, w), section: (p, m, 2, w), sums: (m, 14, w): what is found in p common periods.
+        state: z and z', (2 n, w); tangents: (t, 2 n, w); last: (m, w) flanks that touched last.
+        growth: (p, t, w), section: (p, 2 m, w), sums: (m, 14, w): what is found in p common periods.
     """
-    n, m, t = q.shape[0], mesh.size, tangents.shape[0]
+    n, m, t = state.shape[0] // 2, mesh.size, tangents.shape[0]
     h = 2.0 * np.pi / steps
     now = np.empty((m, 4, LANES))
-    d, dv, F, Kd, Kv, side = (np.zeros((m, LANES)), np.zeros((m, LANES)), np.zeros((m, LANES)), np.zeros((m, LANES)),
-                              np.zeros((m, LANES)), np.zeros((m, LANES)))  # fmt: skip
-    qs, vs, a = np.empty((n, LANES)), np.empty((n, LANES)), np.empty((n, LANES))
-    sum_q, sum_v = np.empty((n, LANES)), np.empty((n, LANES))
-    tq, tv, ta = np.empty((t, n, LANES)), np.empty((t, n, LANES)), np.empty((t, n, LANES))
-    sum_tq, sum_tv = np.empty((t, n, LANES)), np.empty((t, n, LANES))
+    d, Kd, Kv, side = np.zeros((2 * m, LANES)), np.zeros((m, LANES)), np.zeros((m, LANES)), np.zeros((m, LANES))
+    y, a, total = np.ones((2 * n + m + 1, LANES)), np.empty((n, LANES)), np.empty((2 * n, LANES))
+    moved, ta, moved_total = np.zeros((t, 2 * n + m + 1, LANES)), np.empty((n, LANES)), np.empty((t, 2 * n, LANES))
+    F = y[2 * n : 2 * n + m]
     for period in range(growth.shape[0]):
         for step in range(turns * steps):
-            sum_q[:], sum_v[:], sum_tq[:], sum_tv[:] = 0.0, 0.0, 0.0, 0.0
+            y[: 2 * n] = state
+            total[:] = 0.0
+            for k in range(t):
+                moved[k, : 2 * n] = tangents[k]
+                moved_total[k] = 0.0
             for stage in range(4):
-                share = 0.0 if stage == 0 else (h if stage == 3 else 0.5 * h)
                 weight = (1.0 if stage in (0, 3) else 2.0) * h / 6.0
+                share = h if stage == 2 else 0.5 * h
                 if stage != 2:
-                    read_table(table, 2 * step + (0 if stage == 0 else (2 if stage == 3 else 1)), now)
-                if stage == 0:
-                    qs[:], vs[:] = q, v
-                    tq[:], tv[:] = tangents[:, :n], tangents[:, n:]
-                else:
-                    stage_state(q, v, share, a, qs, vs)
-                    for k in range(t):
-                        stage_state(tangents[k, :n], tangents[k, n:], share, ta[k], tq[k], tv[k])
-                approach(structure, qs, vs, d, dv)
-                contacts(laws, now, d, dv, F, Kd, Kv, side)
+                    read_table(table, 2 * step + (stage + 1) // 2, now)
+                product(*across, y, d)
+                contacts(laws, now, d, F, Kd, Kv, side)
                 if stage == 0 and counting:
                     count(mesh, now, d, F, side, last, sums)
-                accelerate(structure, 1.0, F, qs, vs, a)
-                add_stage(weight, vs, a, sum_q, sum_v)
+                product(*matrix, y, a)
+                if stage < 3:
+                    next_stage(weight, share, state, y, a, total)
+                else:
+                    last_stage(weight, state, y, a, total)
                 for k in range(t):
-                    approach(structure, tq[k], tv[k], d, dv)
+                    product(*across, moved[k], d)
                     for j in range(m):
                         for w in range(LANES):
-                            F[j, w] = Kd[j, w] * d[j, w] + Kv[j, w] * dv[j, w]
-                    accelerate(structure, 0.0, F, tq[k], tv[k], ta[k])
-                    add_stage(weight, tv[k], ta[k], sum_tq[k], sum_tv[k])
-            for i in range(n):
-                for w in range(LANES):
-                    q[i, w] += sum_q[i, w]
-                    v[i, w] += sum_v[i, w]
-            tangents[:, :n] += sum_tq
-            tangents[:, n:] += sum_tv
+                            moved[k, 2 * n + j, w] = Kd[j, w] * d[j, w] + Kv[j, w] * d[m + j, w]
+                    product(*matrix, moved[k], ta)
+                    if stage < 3:
+                        next_stage(weight, share, tangents[k], moved[k], ta, moved_total[k])
+                    else:
+                        last_stage(weight, tangents[k], moved[k], ta, moved_total[k])
             if t and (step + 1) % steps == 0:
                 orthonormal(tangents, rigid, growth[period])
-        approach(structure, q, v, d, dv)
-        section[period, :, 0], section[period, :, 1] = d, dv
+        product(*across, state, section[period])

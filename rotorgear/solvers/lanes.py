@@ -82,24 +82,24 @@ def run_block(
         raise ValueError(f"{count} systems in a block, expected 1 to {LANES}")
     filled = [*systems, *[systems[-1]] * (LANES - count)]
     first = systems[0]
-    structure, laws = _structure(filled), _laws(filled)
+    matrix, across, laws = *_matrices(filled), _laws(filled)
     mesh = first.columns.mesh
     wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
     table = np.ascontiguousarray(np.stack(wide, axis=-1))
     rigid = _stacked([s.rigid for s in filled])
     begins = [*starts, *[starts[-1]] * (LANES - count)]
-    q, v = _stacked([s.z for s in begins]), _stacked([s.dz for s in begins])
+    state = _stacked([np.concatenate([s.z, s.dz]) for s in begins])
     tangents = _tangents(first, plan.tangents)
     last, sums = np.zeros((mesh.size, LANES)), blank_sums(mesh.size)
 
     def run(periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         growth = np.zeros((periods, len(followed), LANES))
-        section = np.zeros((periods, mesh.size, 2, LANES))
+        section = np.zeros((periods, 2 * mesh.size, LANES))
         stride = max(1, _SLICE // (first.turns * plan.steps))
         for p in range(0, periods, stride):
             if not go_on():
                 raise KeyboardInterrupt
-            lanes_loop(first.turns, plan.steps, counting, structure, laws, mesh, table, rigid, q, v, followed, last,
+            lanes_loop(first.turns, plan.steps, counting, matrix, across, laws, mesh, table, rigid, state, followed, last,
                        growth[p : p + stride], section[p : p + stride], sums)  # fmt: skip
         return growth, section
 
@@ -108,21 +108,22 @@ def run_block(
         run(plan.settle - warm, False, tangents[:0])
         run(warm, False, tangents)
         growth, section = run(plan.count, True, tangents)
-    return [_orbit(filled[i], i, growth, section, sums, q, v) for i in range(count)]
+    return [_orbit(filled[i], i, growth, section, sums, state) for i in range(count)]
 
 
 def _orbit(
-    system: SmallSystem, lane: int, growth: np.ndarray, section: np.ndarray, sums: np.ndarray, q: np.ndarray, v: np.ndarray
+    system: SmallSystem, lane: int, growth: np.ndarray, section: np.ndarray, sums: np.ndarray, state: np.ndarray
 ) -> Orbit:
     """One lane, with forces in N and velocities in m/s."""
     from rotorgear.solvers.kernel_lanes import F_MAX, F_MIN, F_SQUARES, F_SUM
 
-    found, moved = sums[:, :, lane].copy(), section[..., lane].copy()
+    found, n = sums[:, :, lane].copy(), system.n
+    moved = np.stack([section[:, : len(sums), lane], section[:, len(sums) :, lane]], axis=2)
     for row in (F_MIN, F_MAX, F_SUM):
         found[:, row] *= system.w**2
     found[:, F_SQUARES] *= system.w**4
     moved[:, :, 1] *= system.w
-    end = Start(q[:, lane].copy(), v[:, lane].copy())
+    end = Start(state[:n, lane].copy(), state[n:, lane].copy())
     finite = bool(np.all(np.isfinite(moved)) and np.all(np.isfinite(end.z)))
     return Orbit(moved, growth[..., lane].copy(), found, end, finite)
 
@@ -148,26 +149,25 @@ def _stacked(values: Sequence[np.ndarray]) -> np.ndarray:
     return np.ascontiguousarray(np.stack(values, axis=-1), dtype=float)
 
 
-def _structure(systems: Sequence[SmallSystem]) -> tuple[np.ndarray, ...]:
-    """Patterns of all lanes together, without what is zero in all of them, and values by lane."""
-    K, D, B = (_stacked([getattr(s, name) for s in systems]) for name in ("K", "D", "B"))
-    first, column, rows = _pattern(np.any((K != 0.0) | (D != 0.0), axis=2))
-    acts = np.any(B != 0.0, axis=2)
-    bfirst, bcolumn, brows = _pattern(acts.T)
-    cfirst, ccolumn, crows = _pattern(acts)
-    place = {(int(i), int(j)): p for p, (j, i) in enumerate(zip(brows, bcolumn, strict=True))}
-    cplace = np.array([place[int(i), int(j)] for i, j in zip(crows, ccolumn, strict=True)], dtype=np.int64)
+Sparse = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+def _matrices(systems: Sequence[SmallSystem]) -> tuple[Sparse, Sparse]:
+    """z'' from (z, z', F, 1), and d, d' from (z, z')."""
+    zero = np.zeros_like(systems[0].B.T)
     return (
-        first, column, np.ascontiguousarray(K[rows, column]), np.ascontiguousarray(D[rows, column]),
-        _stacked([s.load for s in systems]), bfirst, bcolumn, np.ascontiguousarray(B[bcolumn, brows]), cfirst, ccolumn, cplace,
-    )  # fmt: skip
+        _sparse([np.hstack([-s.K, -s.D, -s.B, s.load[:, None]]) for s in systems]),
+        _sparse([np.block([[s.B.T, zero], [zero, s.B.T]]) for s in systems]),
+    )
 
 
-def _pattern(mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Row starts, columns and rows of what is set, by rows."""
+def _sparse(matrices: Sequence[np.ndarray]) -> Sparse:
+    """Row starts, columns and values by lane (p, w) of what is not zero in all lanes."""
+    values = _stacked(matrices)
+    mask = np.any(values != 0.0, axis=2)
     rows, columns = np.nonzero(mask)
     first = np.concatenate([[0], np.cumsum(mask.sum(axis=1))])
-    return first.astype(np.int64), columns.astype(np.int64), rows.astype(np.int64)
+    return first.astype(np.int64), columns.astype(np.int64), np.ascontiguousarray(values[rows, columns])
 
 
 def _laws(systems: Sequence[SmallSystem]) -> tuple[np.ndarray, ...]:

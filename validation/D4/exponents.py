@@ -17,9 +17,9 @@ from validation.oscillators import local_system
 
 # zeta, mean force, its amplitude, frequency, backlash, state at phase 0, steps a period, periods that settle and count.
 ORBITS = {
-    "oscillator": (0.05, 0.0, 0.1, 0.8, False, (0.1, 0.0), 100, 100, 3000),
-    "linear": (0.05, 0.1, 0.05, 0.5, True, (1.16637168142, 0.00221238938), 400, 100, 1000),
-    "one-sided": (0.05, 0.1, 0.05, 0.8, True, (0.73407845091, 0.09773807864), 400, 100, 1000),
+    "oscillator": (0.05, 0.0, 0.1, 0.8, False, (0.1, 0.0), 50, 100, 3000),
+    "linear": (0.05, 0.1, 0.05, 0.5, True, (1.16637168142, 0.00221238938), 200, 40, 400),
+    "one-sided": (0.05, 0.1, 0.05, 0.8, True, (0.73407845091, 0.09773807864), 400, 40, 400),
     "chaotic": (0.05, 0.1, 0.8, 1.1, True, (0.5, 0.0), 200, 200, 500),
 }
 _LANES = 16
