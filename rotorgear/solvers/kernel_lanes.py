@@ -73,42 +73,42 @@ def product(first, column, value, x, out):
 
 
 @compiled(fast=True)
-def contacts(laws, table, d, F, Kd, Kv, side):
+def contacts(gap, mode, values, table, d, F, found):
     """Forces (m, w) of forces/mesh_contact.py without branches over lanes, their tangents, and the flank that touches.
 
-    d: displacements and below them velocities, (2 m, w).
+    All arrays of lanes are flat, so that the compiler sees how far apart their rows are, and vectorises: values (m, 5, w): k, c,
+    backlash, 1/ramp, prescribed force; table (m, 4, w); d (m, 2, w): displacement and velocity; found (m, 3, w).
     """
-    gap, mode, stiffness, damping, backlash, ramp, push = laws
-    m = gap.size
-    for j in range(m):
+    for j in range(gap.size):
+        p, q, x0, r = 5 * LANES * j, 4 * LANES * j, 2 * LANES * j, 3 * LANES * j
         if gap[j] == PRESCRIBED:
             for w in range(LANES):
-                F[j, w], Kd[j, w], Kv[j, w], side[j, w] = push[j, w] * table[j, PUSH, w], 0.0, 0.0, 0.0
+                F[LANES * j + w] = values[p + 4 * LANES + w] * table[q + PUSH * LANES + w]
         elif gap[j] == NEVER_PARTS:
             for w in range(LANES):
-                k, c = stiffness[j, w] * table[j, STIFFNESS, w], damping[j, w]
-                x, rate = d[j, w] - table[j, ERROR, w], d[m + j, w] - table[j, SLOPE, w]
-                F[j, w] = k * x + c * rate + push[j, w] * table[j, PUSH, w]
-                Kd[j, w], Kv[j, w], side[j, w] = k, c, 1.0
+                k, c = values[p + w] * table[q + w], values[p + LANES + w]
+                x, rate = d[x0 + w] - table[q + ERROR * LANES + w], d[x0 + LANES + w] - table[q + SLOPE * LANES + w]
+                F[LANES * j + w] = k * x + c * rate + values[p + 4 * LANES + w] * table[q + PUSH * LANES + w]
+                found[r + w], found[r + LANES + w], found[r + 2 * LANES + w] = k, c, 1.0
         else:
             most = np.inf if mode[j] == PENETRATION else 1.0
             least = -np.inf if mode[j] == UNCLAMPED else 0.0
             for w in range(LANES):
-                k, c = stiffness[j, w] * table[j, STIFFNESS, w], damping[j, w]
-                x, rate = d[j, w] - table[j, ERROR, w], d[m + j, w] - table[j, SLOPE, w]
-                behind = -x - backlash[j, w]
+                k, c = values[p + w] * table[q + w], values[p + LANES + w]
+                x, rate = d[x0 + w] - table[q + ERROR * LANES + w], d[x0 + LANES + w] - table[q + SLOPE * LANES + w]
+                behind, ramp = -x - values[p + 2 * LANES + w], values[p + 3 * LANES + w]
                 touch = 1.0 if x > 0.0 else (-1.0 if behind > 0.0 else 0.0)
                 depth = max(max(x, behind), 0.0)
                 closing = touch * rate
-                share = depth * ramp[j, w]
-                grows = ramp[j, w] if share < most else 0.0
+                share = depth * ramp
+                grows = ramp if share < most else 0.0
                 share = min(share, most)
                 total = k * depth + c * share * closing
                 holds = touch * touch if total > least else 0.0
-                F[j, w] = touch * holds * total + push[j, w] * table[j, PUSH, w]
-                Kd[j, w] = holds * (k + c * grows * closing)
-                Kv[j, w] = holds * c * share
-                side[j, w] = touch
+                F[LANES * j + w] = touch * holds * total + values[p + 4 * LANES + w] * table[q + PUSH * LANES + w]
+                found[r + w] = holds * (k + c * grows * closing)
+                found[r + LANES + w] = holds * c * share
+                found[r + 2 * LANES + w] = touch
 
 
 @compiled(fast=True)
@@ -117,11 +117,11 @@ def next_stage(weight, share, base, stage, a, total):
     n = a.shape[0]
     for i in range(n):
         for w in range(LANES):
-            dq, dv = stage[n + i, w], a[i, w]
-            total[i, w] += weight * dq
-            total[n + i, w] += weight * dv
-            stage[i, w] = base[i, w] + share * dq
-            stage[n + i, w] = base[n + i, w] + share * dv
+            total[i, w] += weight * stage[n + i, w]
+            stage[i, w] = base[i, w] + share * stage[n + i, w]
+        for w in range(LANES):
+            total[n + i, w] += weight * a[i, w]
+            stage[n + i, w] = base[n + i, w] + share * a[i, w]
 
 
 @compiled(fast=True)
@@ -135,31 +135,32 @@ def last_stage(weight, base, stage, a, total):
 
 
 @compiled(fast=True)
-def count(mesh, table, d, F, side, last, sums):
-    """Take a step into the statistics of the mesh contacts."""
+def count(mesh, table, d, F, found, last, sums):
+    """Take a step into the statistics of the mesh contacts; flat arrays as in `contacts`, sums (m, 14, w)."""
     for j in range(mesh.size):
         if not mesh[j]:
             continue
+        s, f0, x0, e0 = 14 * LANES * j, LANES * j, 2 * LANES * j, (4 * j + ERROR) * LANES
         for w in range(LANES):
-            now, f, x = side[j, w], F[j, w], d[j, w]
-            sums[j, DRIVING, w] += 1.0 if now > 0.0 else 0.0
-            sums[j, APART, w] += 1.0 if now == 0.0 else 0.0
-            sums[j, BACK, w] += 1.0 if now < 0.0 else 0.0
-            sums[j, LOSSES, w] += 1.0 if (now == 0.0 and last[j, w] != 0.0) else 0.0
-            last[j, w] = now
-            sums[j, F_SUM, w] += f
-            sums[j, F_SQUARES, w] += f * f
-            sums[j, D_SUM, w] += x
-            sums[j, D_SQUARES, w] += x * x
+            now = found[(3 * j + 2) * LANES + w]
+            sums[s + w] += 1.0 if now > 0.0 else 0.0
+            sums[s + APART * LANES + w] += 1.0 if now == 0.0 else 0.0
+            sums[s + BACK * LANES + w] += 1.0 if now < 0.0 else 0.0
+            sums[s + LOSSES * LANES + w] += abs(last[f0 + w]) if now == 0.0 else 0.0
+            last[f0 + w] = now
         for w in range(LANES):
-            f, x = F[j, w], d[j, w]
-            sums[j, D_MIN, w] = min(sums[j, D_MIN, w], x)
-            sums[j, D_MAX, w] = max(sums[j, D_MAX, w], x)
-            sums[j, F_MIN, w] = min(sums[j, F_MIN, w], f)
-            sums[j, F_MAX, w] = max(sums[j, F_MAX, w], f)
-            x -= table[j, ERROR, w]
-            sums[j, X_MIN, w] = min(sums[j, X_MIN, w], x)
-            sums[j, X_MAX, w] = max(sums[j, X_MAX, w], x)
+            f, x = F[f0 + w], d[x0 + w]
+            sums[s + F_SUM * LANES + w] += f
+            sums[s + F_SQUARES * LANES + w] += f * f
+            sums[s + D_SUM * LANES + w] += x
+            sums[s + D_SQUARES * LANES + w] += x * x
+            sums[s + D_MIN * LANES + w] = min(sums[s + D_MIN * LANES + w], x)
+            sums[s + D_MAX * LANES + w] = max(sums[s + D_MAX * LANES + w], x)
+            sums[s + F_MIN * LANES + w] = min(sums[s + F_MIN * LANES + w], f)
+            sums[s + F_MAX * LANES + w] = max(sums[s + F_MAX * LANES + w], f)
+            x -= table[e0 + w]
+            sums[s + X_MIN * LANES + w] = min(sums[s + X_MIN * LANES + w], x)
+            sums[s + X_MAX * LANES + w] = max(sums[s + X_MAX * LANES + w], x)
 
 
 @compiled(fast=True)
@@ -197,14 +198,15 @@ def orthonormal(tangents, rigid, growth):
 
 
 @compiled(fast=True, free=True)
-def lanes_loop(turns, steps, counting, matrix, across, laws, mesh, table, rigid, state, tangents, last, growth, section, sums):
+def lanes_loop(turns, steps, counting, matrix, across, gap, mode, values, mesh, table, rigid, state, tangents, last,
+               growth, section, sums):  # fmt: skip
     """Advance all lanes in place by common periods and record a section at the end of each.
 
     Args:
         turns: periods of the fastest mesh in a common one; steps: steps in one of those.
         counting: whether the statistics count.
-        matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1); across: d and d' from (z, z'), (2 m, 2 n).
-        laws: of the columns, arrays (m,) and (m, w); mesh: (m,) which are contacts.
+        matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1); across: d and d' of each column from (z, z'), (2 m, 2 n).
+        gap, mode, mesh: of the columns, (m,); values: theirs, (m, 5, w), see `contacts`.
         table: (2 turns steps + 1, m, 4, 1 or w); rigid: orthonormal motions without strain, (r, n, w).
         state: z and z', (2 n, w); tangents: (t, 2 n, w); last: (m, w) flanks that touched last.
         growth: (p, t, w), section: (p, 2 m, w), sums: (m, 14, w): what is found in p common periods.
@@ -212,10 +214,12 @@ def lanes_loop(turns, steps, counting, matrix, across, laws, mesh, table, rigid,
     n, m, t = state.shape[0] // 2, mesh.size, tangents.shape[0]
     h = 2.0 * np.pi / steps
     now = np.empty((m, 4, LANES))
-    d, Kd, Kv, side = np.zeros((2 * m, LANES)), np.zeros((m, LANES)), np.zeros((m, LANES)), np.zeros((m, LANES))
+    d, found = np.zeros((2 * m, LANES)), np.zeros((m, 3, LANES))
     y, a, total = np.ones((2 * n + m + 1, LANES)), np.empty((n, LANES)), np.empty((2 * n, LANES))
     moved, ta, moved_total = np.zeros((t, 2 * n + m + 1, LANES)), np.empty((n, LANES)), np.empty((t, 2 * n, LANES))
     F = y[2 * n : 2 * n + m]
+    flat = (values.reshape(values.size), now.reshape(now.size), d.reshape(d.size), F.reshape(F.size), found.reshape(found.size))
+    flat_last, flat_sums = last.reshape(last.size), sums.reshape(sums.size)
     for period in range(growth.shape[0]):
         for step in range(turns * steps):
             y[: 2 * n] = state
@@ -229,9 +233,9 @@ def lanes_loop(turns, steps, counting, matrix, across, laws, mesh, table, rigid,
                 if stage != 2:
                     read_table(table, 2 * step + (stage + 1) // 2, now)
                 product(*across, y, d)
-                contacts(laws, now, d, F, Kd, Kv, side)
+                contacts(gap, mode, *flat)
                 if stage == 0 and counting:
-                    count(mesh, now, d, F, side, last, sums)
+                    count(mesh, *flat[1:], flat_last, flat_sums)
                 product(*matrix, y, a)
                 if stage < 3:
                     next_stage(weight, share, state, y, a, total)
@@ -241,7 +245,7 @@ def lanes_loop(turns, steps, counting, matrix, across, laws, mesh, table, rigid,
                     product(*across, moved[k], d)
                     for j in range(m):
                         for w in range(LANES):
-                            moved[k, 2 * n + j, w] = Kd[j, w] * d[j, w] + Kv[j, w] * d[m + j, w]
+                            moved[k, 2 * n + j, w] = found[j, 0, w] * d[2 * j, w] + found[j, 1, w] * d[2 * j + 1, w]
                     product(*matrix, moved[k], ta)
                     if stage < 3:
                         next_stage(weight, share, tangents[k], moved[k], ta, moved_total[k])

@@ -82,8 +82,8 @@ def run_block(
         raise ValueError(f"{count} systems in a block, expected 1 to {LANES}")
     filled = [*systems, *[systems[-1]] * (LANES - count)]
     first = systems[0]
-    matrix, across, laws = *_matrices(filled), _laws(filled)
-    mesh = first.columns.mesh
+    (matrix, across), values = _matrices(filled), _values(filled)
+    mesh, kinds = first.columns.mesh, (first.columns.gap, first.columns.mode)
     wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
     table = np.ascontiguousarray(np.stack(wide, axis=-1))
     rigid = _stacked([s.rigid for s in filled])
@@ -99,8 +99,8 @@ def run_block(
         for p in range(0, periods, stride):
             if not go_on():
                 raise KeyboardInterrupt
-            lanes_loop(first.turns, plan.steps, counting, matrix, across, laws, mesh, table, rigid, state, followed, last,
-                       growth[p : p + stride], section[p : p + stride], sums)  # fmt: skip
+            lanes_loop(first.turns, plan.steps, counting, matrix, across, *kinds, values, mesh, table, rigid, state, followed,
+                       last, growth[p : p + stride], section[p : p + stride], sums)  # fmt: skip
         return growth, section
 
     warm = min(plan.warm, plan.settle) if plan.tangents else 0
@@ -118,7 +118,7 @@ def _orbit(
     from rotorgear.solvers.kernel_lanes import F_MAX, F_MIN, F_SQUARES, F_SUM
 
     found, n = sums[:, :, lane].copy(), system.n
-    moved = np.stack([section[:, : len(sums), lane], section[:, len(sums) :, lane]], axis=2)
+    moved = section[:, :, lane].reshape(len(section), len(sums), 2).copy()
     for row in (F_MIN, F_MAX, F_SUM):
         found[:, row] *= system.w**2
     found[:, F_SQUARES] *= system.w**4
@@ -154,10 +154,10 @@ Sparse = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 def _matrices(systems: Sequence[SmallSystem]) -> tuple[Sparse, Sparse]:
     """z'' from (z, z', F, 1), and d, d' from (z, z')."""
-    zero = np.zeros_like(systems[0].B.T)
     return (
         _sparse([np.hstack([-s.K, -s.D, -s.B, s.load[:, None]]) for s in systems]),
-        _sparse([np.block([[s.B.T, zero], [zero, s.B.T]]) for s in systems]),
+        # Displacement and velocity of a column lie side by side.
+        _sparse([np.stack([np.kron([1.0, 0.0], s.B.T), np.kron([0.0, 1.0], s.B.T)], axis=1).reshape(-1, 2 * s.n) for s in systems]),
     )
 
 
@@ -170,7 +170,7 @@ def _sparse(matrices: Sequence[np.ndarray]) -> Sparse:
     return first.astype(np.int64), columns.astype(np.int64), np.ascontiguousarray(values[rows, columns])
 
 
-def _laws(systems: Sequence[SmallSystem]) -> tuple[np.ndarray, ...]:
+def _values(systems: Sequence[SmallSystem]) -> np.ndarray:
+    """Values of the columns (m, 5, w), as the kernel reads them."""
     names = ("stiffness", "damping", "backlash", "ramp", "push")
-    own = systems[0].columns
-    return (own.gap, own.mode, *(_stacked([getattr(s.columns, name) for s in systems]) for name in names))
+    return _stacked([np.stack([getattr(s.columns, name) for name in names], axis=1) for s in systems])
