@@ -49,27 +49,37 @@ def read_table(table, row, out):
 
 @compiled(fast=True)
 def product(first, column, value, x, out):
-    """out = A x for a sparse matrix with values by lane, four columns in one pass over the lanes."""
+    """out = A x for a sparse matrix with values by lane, up to six columns in one pass over the lanes; its rows hold even numbers."""
     for i in range(out.shape[0]):
         p, end = first[i], first[i + 1]
-        for w in range(LANES):
-            out[i, w] = 0.0
-        while p + 3 < end:
+        if p + 4 < end:
+            a, b, c = column[p], column[p + 1], column[p + 2]
+            d, e, f = column[p + 3], column[p + 4], column[p + 5]
+            for w in range(LANES):
+                out[i, w] = (value[p, w] * x[a, w] + value[p + 1, w] * x[b, w] + value[p + 2, w] * x[c, w]) + (
+                    value[p + 3, w] * x[d, w] + value[p + 4, w] * x[e, w] + value[p + 5, w] * x[f, w]
+                )
+            p += 6
+        elif p + 2 < end:
             a, b, c, d = column[p], column[p + 1], column[p + 2], column[p + 3]
             for w in range(LANES):
-                out[i, w] += (value[p, w] * x[a, w] + value[p + 1, w] * x[b, w]) + (
+                out[i, w] = (value[p, w] * x[a, w] + value[p + 1, w] * x[b, w]) + (
                     value[p + 2, w] * x[c, w] + value[p + 3, w] * x[d, w]
                 )
             p += 4
-        if p + 1 < end:
+        elif p < end:
+            a, b = column[p], column[p + 1]
+            for w in range(LANES):
+                out[i, w] = value[p, w] * x[a, w] + value[p + 1, w] * x[b, w]
+            p += 2
+        else:
+            for w in range(LANES):
+                out[i, w] = 0.0
+        while p < end:
             a, b = column[p], column[p + 1]
             for w in range(LANES):
                 out[i, w] += value[p, w] * x[a, w] + value[p + 1, w] * x[b, w]
             p += 2
-        if p < end:
-            a = column[p]
-            for w in range(LANES):
-                out[i, w] += value[p, w] * x[a, w]
 
 
 @compiled(fast=True)

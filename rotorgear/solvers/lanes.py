@@ -162,9 +162,11 @@ def _matrices(systems: Sequence[SmallSystem]) -> tuple[Sparse, Sparse]:
 
 
 def _sparse(matrices: Sequence[np.ndarray]) -> Sparse:
-    """Row starts, columns and values by lane (p, w) of what is not zero in all lanes."""
+    """Row starts, columns and values by lane (p, w) of what is not zero in all lanes; rows of an odd length get a zero more."""
     values = _stacked(matrices)
     mask = np.any(values != 0.0, axis=2)
+    for row in np.flatnonzero(mask.sum(axis=1) % 2):
+        mask[row, np.flatnonzero(~mask[row])[-1]] = True
     rows, columns = np.nonzero(mask)
     first = np.concatenate([[0], np.cumsum(mask.sum(axis=1))])
     return first.astype(np.int64), columns.astype(np.int64), np.ascontiguousarray(values[rows, columns])
