@@ -37,7 +37,7 @@ def tabulate(schedules, kind, parameters, parameters_first, state_first, angles,
 def read_table(table, row, out):
     """One time of the tables, for all lanes; a table with one lane serves them all."""
     for j in range(out.shape[0]):
-        for f in range(4):
+        for f in range(table.shape[2]):
             if table.shape[3] == 1:
                 value = table[row, j, f, 0]
                 for w in range(LANES):
@@ -122,26 +122,29 @@ def contacts(gap, mode, values, table, d, F, found):
 
 
 @compiled(fast=True)
-def next_stage(weight, share, base, stage, a, total):
-    """Add a stage's slopes to those of the step, and turn its state into that of the next one."""
+def next_stage(keep, weight, share, base, stage, a, total):
+    """Add a stage's slopes to those of the step (keep 1; 0: begin with them), and turn its state into that of the next one."""
     n = a.shape[0]
     for i in range(n):
         for w in range(LANES):
-            total[i, w] += weight * stage[n + i, w]
+            total[i, w] = keep * total[i, w] + weight * stage[n + i, w]
             stage[i, w] = base[i, w] + share * stage[n + i, w]
         for w in range(LANES):
-            total[n + i, w] += weight * a[i, w]
+            total[n + i, w] = keep * total[n + i, w] + weight * a[i, w]
             stage[n + i, w] = base[n + i, w] + share * a[i, w]
 
 
 @compiled(fast=True)
 def last_stage(weight, base, stage, a, total):
-    """Add the slopes of the last stage, and take the step."""
+    """Add the slopes of the last stage, and take the step: state and first stage of the next one."""
     n = a.shape[0]
     for i in range(n):
         for w in range(LANES):
             base[i, w] += total[i, w] + weight * stage[n + i, w]
+            stage[i, w] = base[i, w]
+        for w in range(LANES):
             base[n + i, w] += total[n + i, w] + weight * a[i, w]
+            stage[n + i, w] = base[n + i, w]
 
 
 @compiled(fast=True)
@@ -217,27 +220,24 @@ def lanes_loop(turns, steps, counting, matrix, across, gap, mode, values, mesh, 
         counting: whether the statistics count.
         matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1); across: d and d' of each column from (z, z'), (2 m, 2 n).
         gap, mode, mesh: of the columns, (m,); values: theirs, (m, 5, w), see `contacts`.
-        table: (2 turns steps + 1, m, 4, 1 or w); rigid: orthonormal motions without strain, (r, n, w).
+        table: (2 turns steps + 1, m, 4, 1 or w), without its last row where no force is prescribed; rigid: orthonormal motions without strain, (r, n, w).
         state: z and z', (2 n, w); tangents: (t, 2 n, w); last: (m, w) flanks that touched last.
         growth: (p, t, w), section: (p, 2 m, w), sums: (m, 14, w): what is found in p common periods.
     """
     n, m, t = state.shape[0] // 2, mesh.size, tangents.shape[0]
     h = 2.0 * np.pi / steps
-    now = np.empty((m, 4, LANES))
+    now = np.zeros((m, 4, LANES))
     d, found = np.zeros((2 * m, LANES)), np.zeros((m, 3, LANES))
-    y, a, total = np.ones((2 * n + m + 1, LANES)), np.empty((n, LANES)), np.empty((2 * n, LANES))
-    moved, ta, moved_total = np.zeros((t, 2 * n + m + 1, LANES)), np.empty((n, LANES)), np.empty((t, 2 * n, LANES))
+    y, a, total = np.ones((2 * n + m + 1, LANES)), np.empty((n, LANES)), np.zeros((2 * n, LANES))
+    moved, ta, moved_total = np.zeros((t, 2 * n + m + 1, LANES)), np.empty((n, LANES)), np.zeros((t, 2 * n, LANES))
     F = y[2 * n : 2 * n + m]
     flat = (values.reshape(values.size), now.reshape(now.size), d.reshape(d.size), F.reshape(F.size), found.reshape(found.size))
     flat_last, flat_sums = last.reshape(last.size), sums.reshape(sums.size)
+    y[: 2 * n], moved[:, : 2 * n] = state, tangents
     for period in range(growth.shape[0]):
         for step in range(turns * steps):
-            y[: 2 * n] = state
-            total[:] = 0.0
-            for k in range(t):
-                moved[k, : 2 * n] = tangents[k]
-                moved_total[k] = 0.0
             for stage in range(4):
+                keep = 0.0 if stage == 0 else 1.0
                 weight = (1.0 if stage in (0, 3) else 2.0) * h / 6.0
                 share = h if stage == 2 else 0.5 * h
                 if stage != 2:
@@ -248,7 +248,7 @@ def lanes_loop(turns, steps, counting, matrix, across, gap, mode, values, mesh, 
                     count(mesh, *flat[1:], flat_last, flat_sums)
                 product(*matrix, y, a)
                 if stage < 3:
-                    next_stage(weight, share, state, y, a, total)
+                    next_stage(keep, weight, share, state, y, a, total)
                 else:
                     last_stage(weight, state, y, a, total)
                 for k in range(t):
@@ -258,9 +258,10 @@ def lanes_loop(turns, steps, counting, matrix, across, gap, mode, values, mesh, 
                             moved[k, 2 * n + j, w] = found[j, 0, w] * d[2 * j, w] + found[j, 1, w] * d[2 * j + 1, w]
                     product(*matrix, moved[k], ta)
                     if stage < 3:
-                        next_stage(weight, share, tangents[k], moved[k], ta, moved_total[k])
+                        next_stage(keep, weight, share, tangents[k], moved[k], ta, moved_total[k])
                     else:
                         last_stage(weight, tangents[k], moved[k], ta, moved_total[k])
             if t and (step + 1) % steps == 0:
                 orthonormal(tangents, rigid, growth[period])
+                moved[:, : 2 * n] = tangents
         product(*across, state, section[period])

@@ -85,7 +85,8 @@ def run_block(
     (matrix, across), values = _matrices(filled), _values(filled)
     mesh, kinds = first.columns.mesh, (first.columns.gap, first.columns.mode)
     wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
-    table = np.ascontiguousarray(np.stack(wide, axis=-1))
+    pushed = any(np.any(s.columns.push) for s in systems)
+    table = np.ascontiguousarray(np.stack(wide, axis=-1)[:, :, : 4 if pushed else 3])
     rigid = _stacked([s.rigid for s in filled])
     begins = [*starts, *[starts[-1]] * (LANES - count)]
     state = _stacked([np.concatenate([s.z, s.dz]) for s in begins])
@@ -165,11 +166,14 @@ def _sparse(matrices: Sequence[np.ndarray]) -> Sparse:
     """Row starts, columns and values by lane (p, w) of what is not zero in all lanes; rows of an odd length get a zero more."""
     values = _stacked(matrices)
     mask = np.any(values != 0.0, axis=2)
-    for row in np.flatnonzero(mask.sum(axis=1) % 2):
-        mask[row, np.flatnonzero(~mask[row])[-1]] = True
-    rows, columns = np.nonzero(mask)
-    first = np.concatenate([[0], np.cumsum(mask.sum(axis=1))])
-    return first.astype(np.int64), columns.astype(np.int64), np.ascontiguousarray(values[rows, columns])
+    first, columns, kept = [0], [], []
+    for row, used in enumerate(mask):
+        own = np.flatnonzero(used)
+        odd = own.size % 2
+        columns += [own, own[:odd]]
+        kept += [values[row, own], np.zeros((odd, values.shape[2]))]
+        first.append(first[-1] + own.size + odd)
+    return np.array(first, dtype=np.int64), np.concatenate(columns).astype(np.int64), np.ascontiguousarray(np.concatenate(kept))
 
 
 def _values(systems: Sequence[SmallSystem]) -> np.ndarray:
