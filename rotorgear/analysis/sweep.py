@@ -12,7 +12,7 @@ from rotorgear.analysis.sweep_axes import Axis, Family, axis_of, points_of
 from rotorgear.analysis.sweep_blocks import Workers, blocks, packed, unpacked, waves
 from rotorgear.analysis.sweep_classify import CHAOS, TOLERANCE
 from rotorgear.analysis.sweep_gather import gathered
-from rotorgear.analysis.sweep_point import Point, model_point
+from rotorgear.analysis.sweep_point import Point, PointMaker
 from rotorgear.analysis.sweep_request import Request, start_of, steps_of
 from rotorgear.analysis.transient_histories import Stream
 from rotorgear.errors import RotorgearError
@@ -98,6 +98,7 @@ def _ready(
     progress: Progress,
 ) -> tuple[list[str], list[Point | None], list[str]]:
     """Models as texts, the points made ready, and why a point failed."""
+    maker = PointMaker()
     family = None if change else Family(model, axes)
     texts, points, failure = [], [], []
     for i, value in enumerate(values):
@@ -106,7 +107,7 @@ def _ready(
         try:
             own = change(model, value) if change else family.at(value)  # type: ignore[union-attr]
             text = own.model_dump_json(exclude_none=True)
-            point = model_point(own)
+            point = maker(own)
         except RotorgearError as error:
             reason = str(error)
         texts.append(text)
@@ -140,8 +141,12 @@ def _run(
             tasks = []
             for block in rest:
                 own = [p for p in (points[job.point] for job in block) if p is not None]
-                states = [_start(job.after, job.run, points, p, found, request) for job, p in zip(block, own, strict=True)]
-                plan = Plan(int(steps[block[0].point]), request.settle, request.count, min(request.exponents, _most(own[0])))
+                states = [
+                    _start(job.after, job.run, points, p, found, request) for job, p in zip(block, own, strict=True)
+                ]
+                plan = Plan(
+                    int(steps[block[0].point]), request.settle, request.count, min(request.exponents, _most(own[0]))
+                )
                 tasks.append((own, states, plan))
             for block, orbits in zip(rest, pool.run(tasks), strict=True):
                 found.update(zip([job.key for job in block], orbits, strict=True))

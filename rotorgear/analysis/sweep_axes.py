@@ -43,7 +43,9 @@ def axis_of(address: str, values: str | Sequence[float | str]) -> Axis:
     if isinstance(values, str) and ":" in values:
         parts = values.split(":")
         if len(parts) != 3 or not parts[2].strip().isdigit() or int(parts[2]) < 2:
-            raise AnalysisError(f"over {address}: got '{values}', expected FROM:TO:COUNT such as '3000 rpm:6000 rpm:31'")
+            raise AnalysisError(
+                f"over {address}: got '{values}', expected FROM:TO:COUNT such as '3000 rpm:6000 rpm:31'"
+            )
         ends, unit = _numbers(address, parts[:2])
         return Axis(address, tuple(float(x) for x in np.linspace(ends[0], ends[1], int(parts[2]))), unit)
     listed = values.split(",") if isinstance(values, str) else list(values)

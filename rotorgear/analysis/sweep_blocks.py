@@ -46,9 +46,7 @@ def waves(shape: Sequence[int], directions: Sequence[str], starts: int) -> list[
                 places = range(first) if direction == "up" else range(first - 1, -1, -1)
                 step = -rest if direction == "up" else rest
                 for wave, i in enumerate(places):
-                    found[wave] += [
-                        Job(i * rest + k, run, i * rest + k + step if wave else None) for k in range(rest)
-                    ]
+                    found[wave] += [Job(i * rest + k, run, i * rest + k + step if wave else None) for k in range(rest)]
             run += 1
     return found
 
@@ -72,7 +70,9 @@ def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarra
             yield members[at : at + width]
 
 
-def run_jobs(points: Sequence[Point], starts: Sequence[Start], plan: Plan, go_on: Callable[[], bool] | None = None) -> list[Orbit]:
+def run_jobs(
+    points: Sequence[Point], starts: Sequence[Start], plan: Plan, go_on: Callable[[], bool] | None = None
+) -> list[Orbit]:
     """Run the jobs of one block."""
     tables: dict[bytes, np.ndarray] = {}
     for point in points:

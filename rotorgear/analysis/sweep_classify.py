@@ -47,7 +47,12 @@ def exponents(growth: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray
 
 
 def classify(
-    x: np.ndarray, extent: np.ndarray, exponent: float | None, error: float, tolerance: float = TOLERANCE, chaos: float = CHAOS
+    x: np.ndarray,
+    extent: np.ndarray,
+    exponent: float | None,
+    error: float,
+    tolerance: float = TOLERANCE,
+    chaos: float = CHAOS,
 ) -> Motion:
     """Return the kind of motion.
 

@@ -47,7 +47,9 @@ def gathered(
             failed[i] = "its contacts are not those of the other points"
             continue
         if not orbit.finite:
-            failed[i] = failed[i] or f"the run '{request.runs[run]}' left all bounds: ask for more steps, or give more damping"
+            failed[i] = (
+                failed[i] or f"the run '{request.runs[run]}' left all bounds: ask for more steps, or give more damping"
+            )
             continue
         mesh = point.system.columns.mesh
         own = orbit.section[:, mesh]
@@ -59,11 +61,20 @@ def gathered(
         exponent[i, run, :k], error[i, run, :k] = exponents(orbit.growth, float(point.system.turns))
         largest = float(exponent[i, run, 0]) if k else None
         kind = classify(
-            own[:, :, 0], found["amplitude"], largest, float(error[i, run, 0]) if k else 0.0, request.tolerance, request.chaos
+            own[:, :, 0],
+            found["amplitude"],
+            largest,
+            float(error[i, run, 0]) if k else 0.0,
+            request.tolerance,
+            request.chaos,
         )
         motion[i * r + run] = kind.kind
-    static = np.array([q.static_force if q is not None and q.contact == contact else np.full(c, np.nan) for q in points])
-    stiffness = np.array([q.stiffness if q is not None and q.contact == contact else np.full(c, np.nan) for q in points])
+    static = np.array(
+        [q.static_force if q is not None and q.contact == contact else np.full(c, np.nan) for q in points]
+    )
+    stiffness = np.array(
+        [q.stiffness if q is not None and q.contact == contact else np.full(c, np.nan) for q in points]
+    )
     return SweepResult(
         model=model, address=tuple(axis.address for axis in axes), unit=tuple(axis.unit for axis in axes),
         values=np.array(values, dtype=float), shape=np.array([len(axis.values) for axis in axes]), run=request.runs, contact=contact,

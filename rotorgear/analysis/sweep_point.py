@@ -11,11 +11,11 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
-from rotorgear.solvers.contact_equilibrium import equilibrium, still_forces
+from rotorgear.solvers.contact_equilibrium import Equilibrium, equilibrium, still_forces
 from rotorgear.solvers.local_forces import LocalForces
 from rotorgear.solvers.local_system import LocalSystem
 from rotorgear.solvers.motion import Rotation
-from rotorgear.solvers.small_system import Columns, SmallSystem, small_system
+from rotorgear.solvers.small_system import Columns, SmallSystem, refuse_large, small_system
 from rotorgear.system.local import local_model
 from rotorgear.system.system import System
 
@@ -34,7 +34,8 @@ class Point:
     """A small system with what a sweep reads off it.
 
     Attributes:
-        system: for the kernels. forces: its laws. order: radians of the fastest mesh for each of the reference.
+        system: for the kernels. forces: its laws. order: radians of the fastest mesh for each of the reference, with the
+        sign of its speed.
         contact: names of the mesh contacts; static_force: theirs without anything that varies, (c,) in N.
         stiffness: their mean stiffness, (c,) in N/m. drift: whether the torques don't balance. shape: bytes that two points
         share where their tables are the same.
@@ -57,49 +58,90 @@ class Point:
                 self.system.turns, self.contact)  # fmt: skip
 
 
-def model_point(model: Model) -> Point:
-    """Make a model ready at its own speed.
+@dataclass(frozen=True)
+class Still:
+    """What of a point does not depend on its speed: the local system, orders, names of contacts, and the state at rest."""
 
-    Raises:
-        AnalysisError: no speed, no mesh that turns, no common period, too many dofs, or forces that sweeps don't take.
-    """
-    speed = model.operation.speed if model.operation else None
-    if not speed:
-        raise AnalysisError("the model gives no speed of operation: set operation.speed, or sweep over it")
+    local: LocalSystem
+    orders: list[Fraction]
+    contact: tuple[str, ...]
+    rest: Equilibrium
+    static: np.ndarray
+
+
+class PointMaker:
+    """Makes models ready, and keeps the last state at rest for the next model where only the speed is another."""
+
+    def __init__(self) -> None:
+        self._key = ""
+        self._still: Still | None = None
+
+    def __call__(self, model: Model) -> Point:
+        """Make a model ready at its own speed.
+
+        Raises:
+            AnalysisError: no speed, no mesh that turns, no common period, too many dofs, or forces that sweeps don't take.
+        """
+        speed = model.operation.speed if model.operation else None
+        if not model.operation or not speed:
+            raise AnalysisError("the model gives no speed of operation: set operation.speed, or sweep over it")
+        standing = model.operation.model_copy(update={"speed": 1.0 if speed > 0.0 else -1.0})
+        key = model.model_copy(update={"operation": standing}).model_dump_json(exclude_none=True)
+        if self._still is None or key != self._key or not _standing(model):
+            self._key, self._still = key, _still(model, speed)
+        return ready(self._still, speed, model.damping.modal_ratio)
+
+
+def _standing(model: Model) -> bool:
+    """Whether nothing but the rotation itself depends on the speed: no power, no tables, no internal damping, no torque over speed."""
+    operation = model.operation
+    assert operation is not None
+    powers = [operation.power, *(load.power for load in model.loads.values())]
+    varying = any(load.varies for load in model.loads.values())
+    tables = any(bearing.table for bearing in model.bearings.values())
+    inner = any(section for shaft in model.shafts.values() for section in shaft.sections)
+    return all(power is None for power in powers) and not (varying or tables or inner)
+
+
+def _still(model: Model, speed: float) -> Still:
     system = System(model)
     if system.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+    refuse_large(system.n)
     found = local_model(system, Rotation.constant(speed), speed)
-    names = tuple(part.label for part in found.parts if part.is_mesh)
     for part in found.parts:
         column_of(part.law, part.part)
     orders = [o for part in found.parts for o in _order(part.law, part.label)]
-    return local_point(found.local, orders, names, abs(speed), model.damping.modal_ratio)
+    return still(found.local, orders, tuple(part.label for part in found.parts if part.is_mesh))
 
 
-def local_point(
-    local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...], speed: float, modal_ratio: float = 0.0
-) -> Point:
-    """Make a system with local forces ready.
+def still(local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...]) -> Still:
+    """Find the state at rest of a system with local forces.
 
     Args:
-        local: the system. orders: periods of what varies in a turn of the reference.
-        contact: names of its mesh contacts. speed: of the reference in rad/s, without its sign.
-        modal_ratio: damping ratio added to every mode with strain.
+        local: the system. orders: periods of what varies in a turn of the reference. contact: names of its mesh contacts.
     """
-    fastest, turns = common_period(orders)
-    laws = local.forces.laws
-    columns = _columns([column for law in laws for column in column_of(law, type(law).__name__, speed)])
     rest = equilibrium(local)
-    static = still_forces(local, tuple(law.mean() for law in laws))  # type: ignore[attr-defined]
+    static = still_forces(local, tuple(law.mean() for law in local.forces.laws))  # type: ignore[attr-defined]
     if not np.all(np.isfinite(static)):
         # Contacts that are open at rest: what the driving flanks alone would carry.
         static = local.forces.reference_stiffness @ (local.B.T @ rest.q)
-    system = small_system(local, rest, columns, float(fastest) * speed, turns, modal_ratio)
-    drift = bool(rest.drift.size and np.abs(rest.drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
-    shape = b"".join(_shape(law) for law in laws)
-    mesh = columns.mesh
-    return Point(system, local.forces, float(fastest), contact, static[mesh], columns.stiffness[mesh], drift, shape)
+    return Still(local, orders, contact, rest, static)
+
+
+def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
+    """Make a system ready at a speed of the reference in rad/s; `modal_ratio` is added to every mode with strain."""
+    local = replace(known.local, rotation=Rotation.constant(speed))
+    fastest, turns = common_period(known.orders)
+    laws = local.forces.laws
+    columns = _columns([column for law in laws for column in column_of(law, type(law).__name__, speed)])
+    system = small_system(local, known.rest, columns, float(fastest) * abs(speed), turns, modal_ratio)
+    drift = known.rest.drift
+    drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
+    shape, mesh = b"".join(_shape(law) for law in laws), columns.mesh
+    return Point(
+        system, local.forces, float(np.copysign(fastest, speed)), known.contact, known.static[mesh], columns.stiffness[mesh], drifts, shape
+    )
 
 
 def common_period(orders: list[Fraction]) -> tuple[Fraction, int]:
@@ -128,7 +170,9 @@ def _order(law: ForceLaw, label: str) -> list[Fraction]:
         return []
     found = Fraction(value).limit_denominator(100000)
     if abs(float(found) - value) > _WHOLE * value:
-        raise AnalysisError(f"{label}: its order {value:.9g} of the input shaft is no ratio of whole numbers, so nothing repeats")
+        raise AnalysisError(
+            f"{label}: its order {value:.9g} of the input shaft is no ratio of whole numbers, so nothing repeats"
+        )
     return [found]
 
 
@@ -160,7 +204,9 @@ def column_of(law: object, place: str, speed: float = 1.0) -> list[tuple[float, 
         "BallBearing": "rolling elements in a bearing",
         "RollerBearing": "rolling elements in a bearing",
     }.get(type(law).__name__, type(law).__name__)
-    raise AnalysisError(f"{place}: sweeps don't take {reason}; leave it out, or run single points by the transient analysis")
+    raise AnalysisError(
+        f"{place}: sweeps don't take {reason}; leave it out, or run single points by the transient analysis"
+    )
 
 
 def _columns(rows: list[tuple[float, ...]]) -> Columns:
@@ -188,7 +234,9 @@ def table_of(point: Point, steps: int) -> np.ndarray:
     angles = np.pi / steps / point.order * np.arange(rows)
     forces = point.forces
     states = np.zeros((rows, max(1, int(forces.state_first[-1]))))
-    tabulate(forces.schedules, forces.kind, forces.parameters, forces.parameters_first, forces.state_first, angles, states)
+    tabulate(
+        forces.schedules, forces.kind, forces.parameters, forces.parameters_first, forces.state_first, angles, states
+    )
     table = np.zeros((rows, forces.m, 4))
     for i, law in enumerate(forces.laws):
         state = states[:, forces.state_first[i] : forces.state_first[i + 1]]
@@ -202,8 +250,7 @@ def table_of(point: Point, steps: int) -> np.ndarray:
         elif isinstance(law, TorqueCurve):
             table[:, at, PUSH] = -state[:, 0] / law.torque if law.torque else 0.0
         else:
-            own = replace(law, power=0.0, amplitude=1.0)  # type: ignore[type-var]
-            phase = own.order * angles + own.phase
-            for k, values in enumerate((np.cos(phase), np.sin(phase))[: own.components]):
+            phase = law.order * angles + law.phase  # type: ignore[attr-defined]
+            for k, values in enumerate((np.cos(phase), np.sin(phase))[: law.components]):
                 table[:, at + k, PUSH] = -values
     return table

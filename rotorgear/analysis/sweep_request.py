@@ -54,6 +54,7 @@ class Request:
     @property
     def runs(self) -> tuple[str, ...]:
         """Names of the runs of each point."""
+
         def name(direction: str, number: int) -> str:
             words = [] if direction == "each" else [direction]
             words += ["static" if direction == "each" else ""] if number == 0 else [f"start {number + 1}"]
@@ -94,7 +95,9 @@ def steps_of(points: Sequence[Point | None], wanted: int | None) -> tuple[np.nda
         if wanted is not None:
             steps[i] = wanted
             if wanted < least:
-                refused[i] = f"{wanted} steps are unstable: the stiffest part needs at least {least} in a period of the fastest mesh"
+                refused[i] = (
+                    f"{wanted} steps are unstable: the stiffest part needs at least {least} in a period of the fastest mesh"
+                )
             continue
         classes = max(0, int(np.ceil(2.0 * np.log2(max(needed, LEAST_STEPS) / LEAST_STEPS) - 1e-9)))
         steps[i] = int(np.ceil(LEAST_STEPS * 2.0 ** (0.5 * classes)))

@@ -46,7 +46,9 @@ def sweep(
     save: Annotated[
         Path | None, typer.Option("--save", help="Save the result (HDF5), in blocks while it runs.", show_default=False)
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with an interrupted sweep of the same --save.")] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with an interrupted sweep of the same --save.")
+    ] = False,
     plot: Annotated[
         Path | None, typer.Option("--plot", help="Draw pictures of the result to this folder.", show_default=False)
     ] = None,

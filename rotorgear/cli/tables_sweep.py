@@ -40,12 +40,11 @@ def _title(result: SweepResult) -> str:
 
 def _route(result: SweepResult, run: int) -> str:
     """Kinds of motion along the parameter: "1T 4600 to 4900, chaotic from 4950"."""
+
     def at(p: int) -> str:
         return f"{result.values[p, 0]:.6g}"
 
-    parts = [
-        f"{kind} {at(a)}" + (f" to {at(b)}" if b > a else "") for kind, a, b in result.route(run)
-    ]
+    parts = [f"{kind} {at(a)}" + (f" to {at(b)}" if b > a else "") for kind, a, b in result.route(run)]
     label = f"route ({result.run[run]})" if len(result.run) > 1 else "route"
     unit = f" {result.unit[0]}" if result.unit[0] else ""
     return f"{label}: " + ", ".join(parts) + unit
@@ -82,7 +81,11 @@ def _number(value: float, form: str) -> str:
 def _notes(result: SweepResult) -> list[str]:
     first, last = int(result.steps.min()), int(result.steps.max())
     turns = sorted({int(n) for n in result.turns if n})
-    period = "the mesh period" if turns == [1] else f"{turns[0] if len(turns) == 1 else f'{turns[0]} to {turns[-1]}'} periods of the fastest mesh"
+    period = (
+        "the mesh period"
+        if turns == [1]
+        else f"{turns[0] if len(turns) == 1 else f'{turns[0]} to {turns[-1]}'} periods of the fastest mesh"
+    )
     lines = [
         "",
         "LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; p-p, K_dyn, apart and back: of the worst "

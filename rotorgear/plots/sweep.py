@@ -65,7 +65,9 @@ def draw_bifurcation(result: SweepResult, figure: Any, contact: int = 0) -> None
         axes[1].axhline(0.0, color="k", lw=0.6)
         axes[1].set_ylabel("LE per mesh\nperiod")
     for values, name, colour in ((result.apart, "apart", 0), (result.back, "back flank", 1)):
-        axes[-1].plot(result.values[:, 0], 100.0 * values[:, 0, contact], ".-", ms=3, lw=0.7, color=COLOURS[colour], label=name)
+        axes[-1].plot(
+            result.values[:, 0], 100.0 * values[:, 0, contact], ".-", ms=3, lw=0.7, color=COLOURS[colour], label=name
+        )
     axes[-1].set_ylabel("share of\ntime, %")
     axes[-1].legend(fontsize=7)
     axes[-1].set_xlabel(_label(result, 0))
@@ -107,7 +109,7 @@ def draw_map(result: SweepResult, figure: Any) -> None:
     from matplotlib.colors import BoundaryNorm, ListedColormap
 
     n1, n2 = (int(n) for n in result.shape)
-    x, y = result.values[:: n2, 0], result.values[:n2, 1]
+    x, y = result.values[::n2, 0], result.values[:n2, 1]
     kinds = np.array([_class(result.motion_at(p)) for p in range(n1 * n2)], dtype=float).reshape(n1, n2).T
     exponent = bool(result.lyapunov.shape[2])
     axes = np.atleast_1d(figure.subplots(2 if exponent else 1, 1, sharex=True))
@@ -119,7 +121,9 @@ def draw_map(result: SweepResult, figure: Any) -> None:
     if exponent:
         values = result.lyapunov[:, 0, 0].reshape(n1, n2).T
         reach = float(np.nanmax(np.abs(values), initial=1e-12))
-        picture = axes[1].pcolormesh(x, y, values, cmap="RdBu_r", vmin=-reach, vmax=reach, shading="nearest", rasterized=True)
+        picture = axes[1].pcolormesh(
+            x, y, values, cmap="RdBu_r", vmin=-reach, vmax=reach, shading="nearest", rasterized=True
+        )
         figure.colorbar(picture, ax=axes[1], label="LE per mesh period")
     for one in axes:
         one.set_ylabel(_label(result, 1), fontsize=8)

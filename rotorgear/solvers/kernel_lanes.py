@@ -231,7 +231,13 @@ def lanes_loop(turns, steps, counting, matrix, across, gap, mode, values, mesh, 
     y, a, total = np.ones((2 * n + m + 1, LANES)), np.empty((n, LANES)), np.zeros((2 * n, LANES))
     moved, ta, moved_total = np.zeros((t, 2 * n + m + 1, LANES)), np.empty((n, LANES)), np.zeros((t, 2 * n, LANES))
     F = y[2 * n : 2 * n + m]
-    flat = (values.reshape(values.size), now.reshape(now.size), d.reshape(d.size), F.reshape(F.size), found.reshape(found.size))
+    flat = (
+        values.reshape(values.size),
+        now.reshape(now.size),
+        d.reshape(d.size),
+        F.reshape(F.size),
+        found.reshape(found.size),
+    )
     flat_last, flat_sums = last.reshape(last.size), sums.reshape(sums.size)
     y[: 2 * n], moved[:, : 2 * n] = state, tangents
     for period in range(growth.shape[0]):

@@ -158,7 +158,12 @@ def _matrices(systems: Sequence[SmallSystem]) -> tuple[Sparse, Sparse]:
     return (
         _sparse([np.hstack([-s.K, -s.D, -s.B, s.load[:, None]]) for s in systems]),
         # Displacement and velocity of a column lie side by side.
-        _sparse([np.stack([np.kron([1.0, 0.0], s.B.T), np.kron([0.0, 1.0], s.B.T)], axis=1).reshape(-1, 2 * s.n) for s in systems]),
+        _sparse(
+            [
+                np.stack([np.kron([1.0, 0.0], s.B.T), np.kron([0.0, 1.0], s.B.T)], axis=1).reshape(-1, 2 * s.n)
+                for s in systems
+            ]
+        ),
     )
 
 
@@ -173,7 +178,11 @@ def _sparse(matrices: Sequence[np.ndarray]) -> Sparse:
         columns += [own, own[:odd]]
         kept += [values[row, own], np.zeros((odd, values.shape[2]))]
         first.append(first[-1] + own.size + odd)
-    return np.array(first, dtype=np.int64), np.concatenate(columns).astype(np.int64), np.ascontiguousarray(np.concatenate(kept))
+    return (
+        np.array(first, dtype=np.int64),
+        np.concatenate(columns).astype(np.int64),
+        np.ascontiguousarray(np.concatenate(kept)),
+    )
 
 
 def _values(systems: Sequence[SmallSystem]) -> np.ndarray:

@@ -1,6 +1,6 @@
 """A small system with local forces as the lane kernels take it: mass one, time in radians of the fastest mesh.
 
-    z = L^T q with M = L L^T, ' = d/d(w t):   z'' = f - K z - D z' - B F,   B^T z = B^T q
+z = L^T q with M = L L^T, ' = d/d(w t):   z'' = f - K z - D z' - B F,   B^T z = B^T q
 """
 
 from __future__ import annotations
@@ -76,11 +76,7 @@ def small_system(
     Raises:
         AnalysisError: too many dofs, or one without inertia.
     """
-    if local.n > MOST_DOFS:
-        raise AnalysisError(
-            f"{local.n} dofs are too many for a sweep (at most {MOST_DOFS}): lump the shafts (rigid gears on springs), or run "
-            "single points by the transient analysis"
-        )
+    refuse_large(local.n)
     try:
         L = np.linalg.cholesky(local.M.toarray())
     except np.linalg.LinAlgError:
@@ -102,6 +98,15 @@ def small_system(
         _clean(K) / w**2, _clean(D) / w, inverse @ local.load / w**2, _clean(B), rigid, L.T @ rest.q, L,
         scaled(columns, w), w, turns, float(np.abs(np.linalg.eigvals(A)).max()),
     )  # fmt: skip
+
+
+def refuse_large(n: int) -> None:
+    """AnalysisError where n dofs are too many."""
+    if n > MOST_DOFS:
+        raise AnalysisError(
+            f"{n} dofs are too many for a sweep (at most {MOST_DOFS}): lump the shafts (rigid gears on springs), or run single "
+            "points by the transient analysis"
+        )
 
 
 def scaled(columns: Columns, w: float) -> Columns:

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from rotorgear.analysis.sweep_classify import exponents
-from rotorgear.analysis.sweep_point import local_point, table_of
+from rotorgear.analysis.sweep_point import ready, still, table_of
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.rotating_force import RotatingForce
 from rotorgear.solvers.flow_exponents import flow_exponents
@@ -54,7 +54,7 @@ def _orbit(name: str) -> np.ndarray:
     contact = MeshContact(1.0, backlash=2.0, error_mean=1.0) if parts else MeshContact(1.0, gap="none")
     laws = [(contact, [[1.0]]), (RotatingForce(amplitude), [[1.0]])]
     system = local_system([[1.0]], [[2.0 * zeta]], [[0.0]], [mean], laws, speed=frequency)
-    point = local_point(system, [Fraction(1)], (name,), frequency)
+    point = ready(still(system, [Fraction(1)], (name,)), frequency)
     starts = [Start(np.array([x0 * (1.0 + 1e-3 * i)]), np.array([v0 / frequency])) for i in range(_LANES)]
     orbits = run_block([point.system] * _LANES, starts, [table_of(point, steps)], Plan(steps, settle, count, 2))
     rates = [exponents(orbit.growth, 2.0 * np.pi / frequency)[0] for orbit in orbits]

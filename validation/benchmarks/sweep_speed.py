@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.analysis.sweep_point import Point, local_point, table_of
+from rotorgear.analysis.sweep_point import Point, ready, still, table_of
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.solvers.compiled import compiled
 from rotorgear.solvers.lanes import Plan, Start, run_block
@@ -119,7 +119,7 @@ def _structure(point: Point) -> tuple[np.ndarray, ...]:
 def points(n: int, m: int, count: int = LANES) -> list[Point]:
     """Points over the speed."""
     speeds = _SPEED * np.linspace(0.8, 1.2, count)
-    return [local_point(chain(n, m, w), [Fraction(1)], tuple(map(str, range(m))), w) for w in speeds]
+    return [ready(still(chain(n, m, w), [Fraction(1)], tuple(map(str, range(m)))), w) for w in speeds]
 
 
 def apart(n: int, m: int, periods: int = 20) -> float:

@@ -14,12 +14,12 @@ import rotorgear as rg
 from rotorgear.analysis.sweep_axes import Family, axis_of, axis_of_option, places_of, points_of
 from rotorgear.analysis.sweep_blocks import waves
 from rotorgear.analysis.sweep_classify import classify, exponents, period_of
-from rotorgear.analysis.sweep_point import common_period, local_point, table_of
+from rotorgear.analysis.sweep_point import common_period, ready, still, table_of
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.solvers.lanes import Plan, Start, run_block
 from rotorgear.solvers.small_system import SmallSystem
-from validation.benchmarks.sweep_speed import apart, chain
+from validation.benchmarks.sweep_speed import apart
 from validation.oscillators import integrate, local_system
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -31,6 +31,7 @@ COST = ("seconds",)
 
 def same(a: rg.SweepResult, b: rg.SweepResult) -> bool:
     """Whether two results are the same to the last bit but for their cost."""
+
     def equal(x: Any, y: Any) -> bool:
         return bool(np.array_equal(x, y, equal_nan=True)) if isinstance(x, np.ndarray) else x == y
 
@@ -58,7 +59,7 @@ def test_the_kernel_follows_newmark_in_small_steps(law: MeshContact) -> None:
     K = np.diag([0.4, 0.3, 0.5])
     M = np.array([[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 1.5]])
     local = local_system(M, 0.05 * M, K, [0.1, -0.05, 0.0], [(law, [[1.0], [-1.0], [0.2]])], speed=speed)
-    point = local_point(local, [Fraction(1)], ("m",), speed)
+    point = ready(still(local, [Fraction(1)], ("m",)), speed)
     steps, periods = 800, 6
     start = Start(point.system.rest, np.zeros(n))
     orbit = run_block([point.system], [start], [table_of(point, steps)], Plan(steps, 0, periods, 0))[0]
@@ -74,7 +75,7 @@ def test_the_kernel_follows_newmark_in_small_steps(law: MeshContact) -> None:
 def test_the_method_is_of_order_four_where_teeth_do_not_part() -> None:
     law = MeshContact(1.0, 0.05, gap="none", order=1.0, stiffness_cos=(0.2,), error_sin=(0.1,))
     local = local_system(np.eye(1), [[0.05]], [[0.4]], [0.1], [(law, [[1.0]])], speed=0.9)
-    point = local_point(local, [Fraction(1)], ("m",), 0.9)
+    point = ready(still(local, [Fraction(1)], ("m",)), 0.9)
 
     def end(steps: int) -> float:
         start = Start(np.zeros(1), np.zeros(1))
@@ -88,8 +89,10 @@ def test_the_method_is_of_order_four_where_teeth_do_not_part() -> None:
 def damped_chain(rigid: bool) -> SmallSystem:
     law = MeshContact(1.0, gap="none", order=1.0)
     K = [[0.3, -0.3], [-0.3, 0.3]] if rigid else [[0.5, -0.3], [-0.3, 0.9]]
-    local = local_system(np.diag([1.0, 3.0]), 0.04 * np.diag([1.0, 3.0]), K, [0.1, -0.1], [(law, [[1.0], [-1.0]])], speed=0.8)
-    return local_point(local, [Fraction(1)], ("m",), 0.8).system
+    local = local_system(
+        np.diag([1.0, 3.0]), 0.04 * np.diag([1.0, 3.0]), K, [0.1, -0.1], [(law, [[1.0], [-1.0]])], speed=0.8
+    )
+    return ready(still(local, [Fraction(1)], ("m",)), 0.8).system
 
 
 @pytest.mark.parametrize("rigid", [False, True])
@@ -117,12 +120,12 @@ def test_statistics_of_a_sweep_are_those_of_the_transient() -> None:
     assert swept.motion == ("1T",)
     assert swept.largest_force[0, 0, 0] == pytest.approx(row["largest_force_n"], rel=2e-3)
     assert swept.amplitude[0, 0, 0] == pytest.approx(row["peak_to_peak_dte_m"], rel=2e-3)
-    assert swept.mean_force[0, 0, 0] == pytest.approx(row["mean_force_n"], rel=2e-3)
-    assert swept.rms_force[0, 0, 0] == pytest.approx(row["rms_force_n"], rel=2e-3)
+    assert swept.mean_force[0, 0, 0] == pytest.approx(row["mean_force_n"], rel=5e-3)
+    assert swept.rms_force[0, 0, 0] == pytest.approx(row["rms_force_n"], rel=5e-3)
     assert swept.apart[0, 0, 0] == pytest.approx(row["apart_share"], abs=5e-3)
     assert swept.static_force[0, 0] == pytest.approx(row["static_force_n"])
     # Periodic: what goes in comes out, so the mean force is the static one.
-    assert swept.mean_force[0, 0, 0] == pytest.approx(swept.static_force[0, 0], rel=1e-3)
+    assert swept.mean_force[0, 0, 0] == pytest.approx(swept.static_force[0, 0], rel=2e-4)
 
 
 def test_the_pair_goes_from_one_period_to_two_and_chaos() -> None:
@@ -171,7 +174,9 @@ def test_up_and_down_keep_their_own_attractor_and_resume_too(tmp_path: Path) -> 
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        rg.sweep(rg.load(PAIR), over, direction="both", settle=100, count=40, stream=rg.stream(path), progress=stop_late)
+        rg.sweep(
+            rg.load(PAIR), over, direction="both", settle=100, count=40, stream=rg.stream(path), progress=stop_late
+        )
     again = rg.sweep(rg.load(PAIR), over, direction="both", settle=100, count=40, stream=rg.stream(path, resume=True))
     assert same(both, again)
 
@@ -310,3 +315,8 @@ def test_the_family_of_a_model_keeps_everything_else() -> None:
     other = Family(model, [axis_of("meshes.pair.backlash", ["20 um"])]).at([20.0])
     assert other.meshes["pair"].backlash == pytest.approx(20e-6)
     assert other.gears == model.gears
+
+
+def test_the_pair_turns_backwards_as_it_does_forwards() -> None:
+    result = rg.sweep(rg.load(PAIR), {"operation.speed": ["8000 rpm", "-8000 rpm"]}, **SHORT)
+    assert result.section[1] == pytest.approx(result.section[0], rel=1e-6, abs=1e-12)
