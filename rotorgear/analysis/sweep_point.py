@@ -140,7 +140,7 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
     shape, mesh = b"".join(_shape(law) for law in laws), columns.mesh
     return Point(
-        system, local.forces, float(np.copysign(fastest, speed)), known.contact, known.static[mesh], columns.stiffness[mesh], drifts, shape
+        system, local.forces, float(np.copysign(float(fastest), speed)), known.contact, known.static[mesh], columns.stiffness[mesh], drifts, shape
     )
 
 
