@@ -93,7 +93,7 @@ class PointMaker:
 
 
 def _standing(model: Model) -> bool:
-    """Whether nothing but the rotation itself depends on the speed: no power, no tables, no internal damping, no torque over speed."""
+    """Whether only the rotation depends on the speed: no power, no tables, no internal damping, no torque over speed."""
     operation = model.operation
     assert operation is not None
     powers = [operation.power, *(load.power for load in model.loads.values())]
@@ -140,7 +140,14 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
     shape, mesh = b"".join(_shape(law) for law in laws), columns.mesh
     return Point(
-        system, local.forces, float(np.copysign(float(fastest), speed)), known.contact, known.static[mesh], columns.stiffness[mesh], drifts, shape
+        system,
+        local.forces,
+        float(np.copysign(float(fastest), speed)),
+        known.contact,
+        known.static[mesh],
+        columns.stiffness[mesh],
+        drifts,
+        shape,
     )
 
 
@@ -157,8 +164,8 @@ def common_period(orders: list[Fraction]) -> tuple[Fraction, int]:
     turns = fastest / base
     if turns > MOST_TURNS:
         raise AnalysisError(
-            f"the meshes repeat together after {int(turns)} periods of the fastest only (at most {MOST_TURNS}); choose numbers of "
-            "teeth with common factors"
+            f"the meshes repeat together after {int(turns)} periods of the fastest only (at most {MOST_TURNS}); choose "
+            "numbers of teeth with common factors"
         )
     return fastest, int(turns)
 
@@ -185,7 +192,7 @@ def column_of(law: object, place: str, speed: float = 1.0) -> list[tuple[float, 
     from rotorgear.forces.mesh_contact import DAMPINGS, GAPS, MeshContact
     from rotorgear.forces.rotating_force import RotatingForce
     from rotorgear.forces.torque_curve import TorqueCurve
-    from rotorgear.solvers.kernel_lanes import LINE, NEVER_PARTS, ONE_SIDED, PRESCRIBED
+    from rotorgear.solvers.kernel_lane_parts import LINE, NEVER_PARTS, ONE_SIDED, PRESCRIBED
 
     if isinstance(law, MeshContact):
         gap = {"line": LINE, "one-sided": ONE_SIDED, "none": NEVER_PARTS}[GAPS[GAPS.index(law.gap)]]
@@ -228,7 +235,7 @@ def table_of(point: Point, steps: int) -> np.ndarray:
     """Tables of a point over its common period, (2 turns steps + 1, m, 4)."""
     from rotorgear.forces.mesh_contact import MeshContact
     from rotorgear.forces.torque_curve import TorqueCurve
-    from rotorgear.solvers.kernel_lanes import ERROR, PUSH, SLOPE, STIFFNESS, tabulate
+    from rotorgear.solvers.kernel_lane_parts import ERROR, PUSH, SLOPE, STIFFNESS, tabulate
 
     rows = 2 * point.system.turns * steps + 1
     angles = np.pi / steps / point.order * np.arange(rows)

@@ -103,7 +103,7 @@ def steps_of(points: Sequence[Point | None], wanted: int | None) -> tuple[np.nda
         steps[i] = int(np.ceil(LEAST_STEPS * 2.0 ** (0.5 * classes)))
         if steps[i] > MOST_STEPS:
             refused[i] = (
-                f"the stiffest part needs {needed} steps in a period of the fastest mesh (at most {MOST_STEPS} are chosen): make it "
-                "rigid, or ask for the steps"
+                f"the stiffest part needs {needed} steps in a period of the fastest mesh (at most {MOST_STEPS} are chosen): "
+                "make it rigid, or ask for the steps"
             )
     return steps, refused

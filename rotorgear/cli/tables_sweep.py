@@ -22,8 +22,7 @@ def sweep_table(result: SweepResult) -> RenderableType:
 
     parts: list[RenderableType] = [Text(_title(result), style="bold"), Text("")]
     if len(result.shape) == 1:
-        for r in range(len(result.run)):
-            parts.append(Text(_route(result, r)))
+        parts += [Text(_route(result, r)) for r in range(len(result.run))]
         parts.append(Text(""))
     rows = len(result.values) * len(result.run)
     parts += [_points(result, range(min(rows, _MOST)))]
@@ -79,20 +78,25 @@ def _number(value: float, form: str) -> str:
 
 
 def _notes(result: SweepResult) -> list[str]:
-    first, last = int(result.steps.min()), int(result.steps.max())
-    turns = sorted({int(n) for n in result.turns if n})
-    period = (
-        "the mesh period"
-        if turns == [1]
-        else f"{turns[0] if len(turns) == 1 else f'{turns[0]} to {turns[-1]}'} periods of the fastest mesh"
-    )
+    what = "p-p, K_dyn, apart and back: of the worst contact"
+    if result.lyapunov.shape[2]:
+        what = f"LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; {what}"
+    sound = result.steps[result.steps > 0]
+    first, last = int(sound.min()), int(sound.max())
+    steps = f"{first}" if first == last else f"{first} to {last}"
     lines = [
         "",
-        "LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; p-p, K_dyn, apart and back: of the worst "
-        "contact" if result.lyapunov.shape[2] else "p-p, K_dyn, apart and back: of the worst contact",
-        f"T is {period}; {result.settle} settled, {result.count} counted; repeats within {100.0 * result.tolerance:g} % of the peak to "
-        f"peak; chaotic: LE > {result.chaos:g}",
-        f"{result.dofs} dofs, {first if first == last else f'{first} to {last}'} steps a mesh period, {result.seconds['total']:.2f} s; "
-        f"{result.method}",
-    ]  # fmt: skip
+        what,
+        f"T is {period_words(result)}; {result.settle} settled, {result.count} counted; repeats within "
+        f"{100.0 * result.tolerance:g} % of the peak to peak; chaotic: LE > {result.chaos:g}",
+        f"{result.dofs} dofs, {steps} steps a mesh period, {result.seconds['total']:.2f} s; {result.method}",
+    ]
     return lines + [f"Warning: {note}" for note in result.warnings]
+
+
+def period_words(result: SweepResult) -> str:
+    """The common period in words."""
+    turns = sorted({int(n) for n in result.turns if n})
+    if turns == [1]:
+        return "the mesh period"
+    return f"{turns[0]}{f' to {turns[-1]}' if len(turns) > 1 else ''} periods of the fastest mesh"
