@@ -49,6 +49,7 @@ _HOMES = {
     "rotorgear.results.comparison": ("Comparison", "RigLine"),
     "rotorgear.export.vtk": ("write_vtk",),
     "rotorgear.export.stream": ("stream",),
+    "rotorgear.export.vtk_motion": ("write_motion",),
     "rotorgear.export.vtk_deflection": ("write_deflections",),
     "rotorgear.export.hdf5": ("save", "read"),
     "rotorgear.errors": ("RotorgearError", "ModelError", "AnalysisError", "ConvergenceError"),
@@ -74,6 +75,7 @@ if TYPE_CHECKING:
     from rotorgear.export.stream import stream
     from rotorgear.export.vtk import write_vtk
     from rotorgear.export.vtk_deflection import write_deflections
+    from rotorgear.export.vtk_motion import write_motion
     from rotorgear.model.bodies import Disk, PointMass
     from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic, Unbalance
     from rotorgear.model.gear import Gear, GearBody

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from rotorgear.analysis.notes import left_out
+from rotorgear.analysis.stations import shapes_at_stations
 from rotorgear.analysis.transient_histories import Histories, Stream
 from rotorgear.analysis.transient_notes import transient_left_out, transient_warnings
 from rotorgear.analysis.transient_request import Grid, base_frequencies, grid_of, integrator_of, quantity
@@ -41,6 +42,7 @@ def transient(
     gamma: float | None = None,
     elements: int | None = None,
     error_estimate: bool = True,
+    frames: int = 0,
     stream: Stream | None = None,
     progress: Progress = silent,
 ) -> TransientResult:
@@ -61,6 +63,7 @@ def transient(
         beta, gamma: for newmark; 1/4 and 1/2 where not given.
         elements: basic elements in each piece of shaft; one of second order where not given.
         error_estimate: False leaves the comparison with twice the step out.
+        frames: so many records at the end keep the motion of all nodes, for an animation.
         stream: keeps chunks while the run goes on (`rotorgear.stream`), and starts an interrupted run again.
         progress: callable that is told fraction and step.
 
@@ -74,6 +77,8 @@ def transient(
         raise AnalysisError("steps and accuracy: give one of the two; steps fixes the step, accuracy chooses it")
     if accuracy is not None and not 1e-8 <= accuracy < 1.0:
         raise AnalysisError(f"the accuracy must lie between 1e-8 and 1, got {accuracy:g}")
+    if frames < 0:
+        raise AnalysisError(f"frames: got {frames}, expected 0 or more")
     task = prepare(damped(model, modal_damping), speed, elements)
     duration = [None if x is None else quantity(x, "time", name) for x, name in ((time, "time"), (settle, "settle"))]
     grid = grid_of(
@@ -101,6 +106,7 @@ def transient(
         grid,
         progress,
         stream=stream,
+        frames=frames,
         key=f"{method} {modes} {rho_inf} {beta} {gamma}",
     )
     laps["integration"] = clock.perf_counter() - begun - sum(laps.values())
@@ -127,6 +133,9 @@ def _result(
     events = found.state.events[meshes].astype(float)
     if found.ledger is None:
         raise ConvergenceError(found.status)
+    motion_time = np.concatenate([np.zeros(0), *(t for t, _ in found.motion)])
+    motion = np.vstack([np.zeros((0, local.n)), *(q for _, q in found.motion)])
+    nodes, shapes = shapes_at_stations(system, system.dofs.transform @ motion.T)
     result = TransientResult(
         model=system.model, time=t, angle=local.rotation.angle(t), speed=local.rotation.speed(t),
         settle=grid.settled * grid.spacing,
@@ -139,6 +148,7 @@ def _result(
         quantity=own.name, quantity_value=own.value, quantity_error=errors, energy=found.ledger,
         step=grid.spacing / grid.every, steps=found.state.step, every=grid.every, error_estimate=largest,
         dofs=local.n, seconds=laps, method=method, reason=reason, mesh_frequency=task.frequencies,
+        nodes=nodes, motion_time=motion_time, motion=shapes,
         status=found.status, left_out=(*left_out(system, float(local.rotation.speeds[0])), *transient_left_out(task.local)),
     )  # fmt: skip
     return replace(result, warnings=transient_warnings(result, task.rest, task.local, estimated=bool(others)))

@@ -84,6 +84,7 @@ def run_task(
     stream: Stream | None = None,
     text: str = "",
     key: str = "",
+    frames: int = 0,
 ) -> Histories:
     """Integrate over a grid; `text` names a run that only serves another one, which an interruption ends for good."""
     h = grid.spacing / grid.every
@@ -99,7 +100,7 @@ def run_task(
 
     found = integrate(
         system, integrator, Schedule(h, grid.records * grid.every, grid.every), state_at_rest(system, h, task.rest.q),
-        task.channels, grid.settled, stream=stream, settings=settings, progress=told,
+        task.channels, grid.settled, stream=stream, settings=settings, frames=frames, progress=told,
     )  # fmt: skip
     if text and found.status.startswith("interrupted"):
         raise KeyboardInterrupt
