@@ -108,7 +108,7 @@ def transient(
     laps["integration"] = clock.perf_counter() - begun - sum(laps.values())
     laps["total"] = clock.perf_counter() - begun
     progress(1.0, "done")
-    return _result(task, grid, integrator.name, reason, found, others, laps)
+    return _result(task, grid, integrator.name, reason, found, others, laps, estimated=error_estimate)
 
 
 def _result(
@@ -119,6 +119,8 @@ def _result(
     found: Histories,
     others: list[tuple[Histories, float]],
     laps: dict[str, float],
+    *,
+    estimated: bool,
 ) -> TransientResult:
     system, local = task.local.system, task.local.local
     own: Statistics = statistics(found, task, grid.settled)
@@ -147,7 +149,7 @@ def _result(
         nodes=nodes, motion_time=motion_time, motion=shapes,
         status=found.status, left_out=(*left_out(system, float(local.rotation.speeds[0])), *transient_left_out(task.local)),
     )  # fmt: skip
-    return replace(result, warnings=transient_warnings(result, task.rest, task.local, estimated=bool(others)))
+    return replace(result, warnings=transient_warnings(result, task.rest, task.local, estimated=estimated))
 
 
 def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> list[tuple[Histories, float]]:
@@ -160,7 +162,10 @@ def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progr
         loose = Explicit(100.0 * integrator.relative)
         return [(run_task(task, loose, grid, progress, text="looser tolerance"), 1.0)]
     double = replace(grid, every=grid.every // 2) if grid.every > 1 else skipping(grid)
-    found = [(run_task(task, integrator, double, progress, text="twice the step"), 3.0)]
+    try:
+        found = [(run_task(task, integrator, double, progress, text="twice the step"), 3.0)]
+    except ConvergenceError:
+        return []
     if isinstance(integrator, Exponential) and integrator.modes is not None:
         fuller = Exponential(int(1.5 * integrator.modes), integrator.modal_ratio)
         found.append((run_task(task, fuller, grid, progress, text="more modes"), 1.0))

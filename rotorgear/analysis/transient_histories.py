@@ -102,7 +102,7 @@ def integrate(
         except KeyboardInterrupt:
             found.status = f"interrupted after {state.step} of {schedule.steps} steps"
             break
-    if not found.parts:
+    if not any(part["t"].size for part in found.parts):
         raise ConvergenceError(found.status)
     found.ledger = book.close()
     return found
