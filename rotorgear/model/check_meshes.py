@@ -40,8 +40,15 @@ def mesh_problems(model: Tables) -> Iterator[Problem]:
         elif pinion.shaft == gear.shaft:
             yield Problem(address, f"two gears on shaft '{pinion.shaft}'", "gears on two shafts")
         else:
-            found = [*_mates(address, pinion, gear), *_faces(model, address, mesh)]
+            found = [*_mates(address, pinion, gear), *_faces(model, address, mesh), *_teeth(address, mesh, pinion)]
             yield from found or _axes(model, address, name)
+
+
+def _teeth(address: str, mesh: Mesh, pinion: Gear) -> Iterator[Problem]:
+    """A stiffness model needs teeth."""
+    if isinstance(mesh.stiffness, str) and pinion.lumped:
+        wanted = "a stiffness such as '5e8 N/m' between gears that are given by their base radius"
+        yield Problem(f"{address}.stiffness", f"'{mesh.stiffness}'", wanted, "a stiffness model needs teeth")
 
 
 def _mates(address: str, pinion: Gear, gear: Gear) -> Iterator[Problem]:
