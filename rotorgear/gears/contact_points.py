@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 
 from rotorgear.gears.gear_compliance import GearCompliance
 from rotorgear.gears.line_of_action import LineOfAction
@@ -123,9 +124,10 @@ def _gathered(
 
 @dataclass(frozen=True)
 class PatchLoads:
-    """Nodal loads (n, nodes) of unit normal forces on the slices of one gear, and (n,) the mean logarithm of the patches' half-width."""
+    """Nodal loads, sparse (n, nodes), of unit normal forces on the slices of one gear, and (n,) the mean logarithm of the
+    patches' half-widths in the transverse section, in normal modules."""
 
-    loads: np.ndarray
+    loads: sp.csr_array
     log_width: np.ndarray
 
 
@@ -154,7 +156,7 @@ def patch_loads(
         loads = np.einsum("nqh,nqr->nhr", along, across).reshape(len(slices), -1)
     else:
         loads = across.sum(axis=1)
-    return PatchLoads(loads, np.sum(np.log(c) * slices.weight, axis=1))
+    return PatchLoads(sp.csr_array(loads), np.sum(np.log(c) * slices.weight, axis=1))
 
 
 def _shares(nodes: np.ndarray, places: np.ndarray, weights: np.ndarray) -> np.ndarray:

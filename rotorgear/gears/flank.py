@@ -6,8 +6,7 @@ Reference: ISO 21771-1, section on flank modifications.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,7 +22,7 @@ class FlankModification:
         crowning: depth at both ends of the face, parabolic.
         end_relief, end_relief_length: linear relief at both ends of the face, and its length.
         helix_slope: depth at the end of larger z less that at the end of smaller z; negative the other way.
-        pitch_error: tooth number -> how far its flank stands back along the line of action; missing teeth are exact.
+        pitch_error: (tooth, how far its flank stands back along the line of action); the other teeth are exact.
     """
 
     tip_relief: float = 0.0
@@ -35,7 +34,7 @@ class FlankModification:
     end_relief: float = 0.0
     end_relief_length: float = 0.0
     helix_slope: float = 0.0
-    pitch_error: Mapping[int, float] = field(default_factory=dict)
+    pitch_error: tuple[tuple[int, float], ...] = ()
 
     @property
     def along_face(self) -> bool:
@@ -45,8 +44,15 @@ class FlankModification:
     @property
     def largest(self) -> float:
         """Sum of the sizes of all deviations: no gap is larger."""
-        pitch = max(map(abs, self.pitch_error.values()), default=0.0)
+        pitch = max((abs(error) for _, error in self.pitch_error), default=0.0)
         return self.tip_relief + self.root_relief + self.crowning + self.end_relief + abs(self.helix_slope) + pitch
+
+    def pitch_depth(self, tooth: np.ndarray, teeth: int) -> np.ndarray:
+        """How far the flanks of teeth (any whole numbers, counted round the gear) stand back."""
+        table = np.zeros(teeth)
+        for number, error in self.pitch_error:
+            table[number % teeth] += error
+        return np.asarray(table[np.asarray(tooth) % teeth])
 
     def depth(self, roll: np.ndarray, z: np.ndarray, form: float, tip: float, width: float) -> np.ndarray:
         """Removed depth at roll lengths and places z from the middle of the face, of one shape.

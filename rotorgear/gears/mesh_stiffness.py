@@ -21,8 +21,10 @@ from typing import Literal
 import numpy as np
 
 from rotorgear.errors import AnalysisError
+from rotorgear.gears.flank import FlankModification
 from rotorgear.gears.geometry import GearGeometry
 from rotorgear.gears.pair import PairGeometry
+from rotorgear.gears.tooth_fe import ToothFe
 from rotorgear.quantity import nearest
 
 Definition = Literal["secant", "tangent"]
@@ -51,6 +53,8 @@ class ToothPair:
         pair: their geometry at the centre distance.
         width: common face width (m) of one helix.
         first_body, second_body: what the teeth stand on.
+        first_flank, second_flank: deviations of the flanks; misalignment: of the flanks over the whole face (m), positive
+            where they stand apart at larger z. Only the loaded contact takes them in, as it does `fe`, the FE settings.
     """
 
     first: GearGeometry
@@ -59,6 +63,10 @@ class ToothPair:
     width: float
     first_body: ToothBody = ToothBody()
     second_body: ToothBody = ToothBody()
+    first_flank: FlankModification = FlankModification()
+    second_flank: FlankModification = FlankModification()
+    misalignment: float = 0.0
+    fe: ToothFe = ToothFe()
 
     @property
     def base_pitch(self) -> float:
@@ -69,7 +77,10 @@ class ToothPair:
         """The same teeth with gear 2 as gear 1."""
         p = self.pair
         turned = replace(p, start_of_contact=-p.end_of_contact, end_of_contact=-p.start_of_contact)
-        return ToothPair(self.second, self.first, turned, self.width, self.second_body, self.first_body)
+        return ToothPair(
+            self.second, self.first, turned, self.width, self.second_body, self.first_body, self.second_flank,
+            self.first_flank, self.misalignment, self.fe,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -86,7 +86,7 @@ def _layer_mesh(mesh: PitchMesh, height: float, twist: float) -> tuple[Any, np.n
     corners = 1 + int(quads.max())  # the corners come first among the nodes
     flat = mesh.lattice[:corners].T.astype(float)
     ends = np.hstack([np.vstack([flat, np.full((1, corners), z)]) for z in (0.0, 2.0)])
-    straight = skfem.MeshHex2.from_mesh(skfem.MeshHex(ends, _hexahedra(quads, corners)))
+    straight = skfem.MeshHex2.from_mesh(skfem.MeshHex(np.ascontiguousarray(ends), _hexahedra(quads, corners)))
     lattice = np.rint(straight.doflocs.T).astype(int)
     number = {tuple(place): k for k, place in enumerate(mesh.lattice)}
     below = np.array([number[tuple(place)] for place in lattice[:, :2]])

@@ -110,7 +110,7 @@ def pitch_mesh(outline: ToothOutline, size: MeshSize, inner_radius: float) -> Pi
         )
     skfem = scikit_fem()
     corners, cells = _cells(size)
-    straight = skfem.MeshQuad2.from_mesh(skfem.MeshQuad(corners.T.astype(float), cells.T))
+    straight = skfem.MeshQuad2.from_mesh(skfem.MeshQuad(np.ascontiguousarray(corners.T, float), np.ascontiguousarray(cells.T)))
     lattice = np.rint(2.0 * straight.doflocs.T).astype(int)
     grids = _rim_points(outline, size, inner_radius), _tooth_points(outline, size)
     points = _mapped(lattice, grids, size)

@@ -1,0 +1,84 @@
+"""Settings of the finite-element tooth model: presets, body, and the mesh sizes that they stand for.
+
+Bodies. "rim": an arc of seven pitches, held at its end cuts and on a circle three normal modules below the root, so the approach
+is measured against that circle. "ring": all pitches on a full disc of the face's width, held at the bore or inside of the rim.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.tooth_mesh import MeshSize
+
+Preset = Literal["preview", "default", "fine"]
+Body = Literal["rim", "ring"]
+PRESETS: tuple[Preset, ...] = ("preview", "default", "fine")
+ARC = 7
+RIM = 3.0
+
+
+@dataclass(frozen=True)
+class ToothFe:
+    """How teeth are modelled.
+
+    Attributes:
+        preset: preview, default or fine.
+        body: "rim" or "ring".
+        rim_thickness: of the "rim" body in normal modules.
+        arc: pitches of the "rim" body, an odd number.
+        exclude_torsion: leave the wind-up of the disc out of a "ring", where the rotor model has it already.
+        space: whether the model is three-dimensional; None: where the teeth are helical or change along the face.
+        size: mesh size in place of the preset's.
+        patch: largest half-width of a load patch in normal modules, in place of the preset's.
+        slices: slices of a contact line over the whole face, in place of two a layer.
+    """
+
+    preset: Preset = "default"
+    body: Body = "rim"
+    rim_thickness: float = RIM
+    arc: int = ARC
+    exclude_torsion: bool = False
+    space: bool | None = None
+    size: MeshSize | None = None
+    patch: float | None = None
+    slices: int | None = None
+
+    def __post_init__(self) -> None:
+        for name, allowed in (("preset", PRESETS), ("body", ("rim", "ring"))):
+            if getattr(self, name) not in allowed:
+                raise AnalysisError(f"{name}: got '{getattr(self, name)}', expected one of {', '.join(allowed)}")
+        if self.arc < 3 or self.arc % 2 == 0:
+            raise AnalysisError(f"An arc needs an odd number of at least 3 pitches, not {self.arc}.")
+        if not self.rim_thickness > 0.0:
+            raise AnalysisError(f"The rim thickness must be positive, not {self.rim_thickness:g} normal modules.")
+
+    @property
+    def patch_width(self) -> float:
+        """c_0 in normal modules."""
+        return self.patch or (0.2 if self.preset == "fine" else 0.3)
+
+    def mesh_size(self, width: float, *, space: bool) -> MeshSize:
+        """Elements for a face of `width` normal modules."""
+        if self.size is not None:
+            return self.size
+        if not space:
+            return _PLANE[self.preset]
+        size, thickness = _SPACE[self.preset]
+        return replace(size, face=max(_LEAST_LAYERS, round(width / thickness)))
+
+
+# Rows and columns as measured against finer meshes; see docs/mesh.md for error against run time.
+_PLANE = {
+    "preview": MeshSize(6, 2, 4, 2, 4),
+    "default": MeshSize(10, 3, 8, 3, 6),
+    "fine": MeshSize(16, 4, 12, 4, 8),
+}
+# The same with the thickness of a layer in normal modules; the preview takes slices of the plane model instead.
+_SPACE = {
+    "preview": (MeshSize(7, 2, 4, 2, 3), 2.7),
+    "default": (MeshSize(8, 2, 5, 2, 3), 1.8),
+    "fine": (MeshSize(10, 3, 6, 3, 4), 1.08),
+}
+_LEAST_LAYERS = 4
