@@ -20,6 +20,8 @@ _ACROSS = 24
 _ALONG = 3
 # Pieces of a contact line shorter than this share of a slice are dropped: they carry nothing and spoil the conditioning.
 _SLIVER = 0.03
+# A corner contact beyond either end of a contact line is cut into so many slices, whatever its length.
+_CORNER_SLICES = 2
 
 
 @dataclass(frozen=True)
@@ -98,7 +100,7 @@ def _cut(
     length = high - low
     if length < _SLIVER * step:
         return []
-    count = max(1, int(length / step + 1e-9))
+    count = max(1, int(length / step + 1e-9)) if closed else _CORNER_SLICES
     centres = low + length / count * (np.arange(count) + 0.5)
     return [(centre + 0.5 * length / count * _legendre()[0], length / count) for centre in centres]
 

@@ -21,6 +21,8 @@ _STRIP_MARGIN, _LEAST_PATCH = 1.3, 0.08
 # Corner contacts are followed up to this share of the base pitch.
 _MOST_BEYOND = 0.25
 _PASSES = 12
+# They are followed a little farther than they touch, so that the next pass does not ask for more.
+_MORE_BEYOND = 1.05
 
 
 @dataclass(frozen=True)
@@ -89,10 +91,11 @@ def mesh_cycle(problem: ContactProblem, load: float, positions: np.ndarray, prog
     beyond = _beyond(problem, 1.5 * load / (8e9 * problem.width) + problem.largest_gap)
     for _ in range(_PASSES):
         cycle, wanted_patch, wanted_beyond = _swept(problem, load, normal, positions, least, beyond, progress)
-        if wanted_patch <= least and wanted_beyond == beyond:
+        near = all(have <= _MORE_BEYOND**2 * want for have, want in zip(beyond, wanted_beyond, strict=True))
+        if wanted_patch <= least and near and all(np.array(wanted_beyond) <= beyond):
             return cycle
         least = max(least, 1.02 * wanted_patch)
-        beyond = wanted_beyond
+        beyond = (_MORE_BEYOND * wanted_beyond[0], _MORE_BEYOND * wanted_beyond[1])
     return cycle
 
 
@@ -149,8 +152,7 @@ def _swept(
         eigenvalue, widths[1], beyond, _notes(problem, slices, force, beyond),
     )  # fmt: skip
     wanted = _beyond(problem, float((approach - open_gap).max()) / cosine + problem.largest_gap)
-    reached = tuple(max(a, b) for a, b in zip(wanted, beyond, strict=True))
-    return cycle, _patch_for(float(strip.max()), problem), (reached[0], reached[1])
+    return cycle, _patch_for(float(strip.max()), problem), wanted
 
 
 class _Responses:

@@ -133,26 +133,38 @@ def _condensed(K: np.ndarray, inside: int) -> np.ndarray:
 def _stacked(
     K: sp.csc_array, p: int, inside: np.ndarray, keep: np.ndarray, layers: int, cut: int, unknowns: int, progress: Progress
 ) -> Sector:
-    """Condense the middle plane of one layer, then join so many of them one by one and condense each shared plane."""
+    """Condense the middle plane of one layer, then stack layers: equal blocks are doubled, so few joints are worked out."""
     i, k = len(inside), len(keep)
     order = np.concatenate([p + inside, inside, 2 * p + inside, keep, p + keep, 2 * p + keep])
-    layer = _condensed(K[order][:, order].toarray(), i)  # now: bottom, top inside, then kept of three planes
-    S = _condensed(layer, i)
-    for count in range(1, layers):
-        progress(count / layers, f"layer {count + 1} of {layers}")
-        have = len(S) - i  # kept so far
-        new = 2 * i + have + 2 * k
-        joined = np.zeros((new, new))
-        old = np.concatenate([np.arange(i), 2 * i + np.arange(have)])
-        joined[np.ix_(old, old)] = S
-        shared = 2 * i + have - k + np.arange(3 * k)
-        own = np.concatenate([np.arange(2 * i), shared])
-        joined[np.ix_(own, own)] += layer
-        S = _condensed(joined, i)
-    S = _condensed(S, i)
+    block = _condensed(K[order][:, order].toarray(), i)  # bottom and top inside, then what is kept of its planes
+    stack: np.ndarray | None = None
+    rest, done = layers, 0
+    while rest:
+        progress(done / layers, f"{done} of {layers} layers")
+        if rest % 2:
+            stack = block if stack is None else _joined(stack, block, i, k)
+        rest //= 2
+        done = layers - rest
+        if rest:
+            block = _joined(block, block, i, k)
+    assert stack is not None
+    S = _condensed(stack, 2 * i)
     progress(1.0, "pitch condensed")
     planes = 2 * layers + 1
     number = np.arange(planes * k).reshape(planes, k)
     final = np.concatenate([number[:, :cut].ravel(), number[:, cut : 2 * cut].ravel(), number[:, 2 * cut :].ravel()])
     S = S[np.ix_(final, final)]
     return Sector(0.5 * (S + S.T), planes * cut, planes * (k - 2 * cut), unknowns)
+
+
+def _joined(lower: np.ndarray, upper: np.ndarray, i: int, k: int) -> np.ndarray:
+    """Two blocks of layers as one: the plane between them is condensed, except for its k kept unknowns."""
+    first, second = len(lower) - 2 * i, len(upper) - 2 * i
+    size = 3 * i + first + second - k
+    whole = np.zeros((size, size))
+    shared, bottom, top, kept = 0, i, 2 * i, 3 * i
+    here = np.r_[bottom : bottom + i, shared : shared + i, kept : kept + first]
+    whole[np.ix_(here, here)] = lower
+    here = np.r_[shared : shared + i, top : top + i, kept + first - k : kept + first - k + second]
+    whole[np.ix_(here, here)] += upper
+    return _condensed(whole, i)

@@ -78,7 +78,7 @@ _PLANE = {
 # The same with the thickness of a layer in normal modules; the preview takes slices of the plane model instead.
 _SPACE = {
     "preview": (MeshSize(7, 2, 4, 2, 3), 2.7),
-    "default": (MeshSize(8, 2, 5, 2, 3), 1.8),
-    "fine": (MeshSize(10, 3, 6, 3, 4), 1.08),
+    "default": (MeshSize(8, 3, 6, 3, 4), 1.08),
+    "fine": (MeshSize(10, 3, 6, 3, 4), 0.77),
 }
 _LEAST_LAYERS = 4
