@@ -28,10 +28,12 @@ _HOMES = {
     "rotorgear.system.system": ("System",),
     "rotorgear.analysis.modal": ("modal",),
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
+    "rotorgear.analysis.gear_sheet": ("gear_sheet",),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
     "rotorgear.results.accuracy": ("AccuracyLadder",),
+    "rotorgear.results.gear_sheet": ("GearSheet",),
     "rotorgear.results.comparison": ("Comparison", "RigLine"),
     "rotorgear.export.vtk": ("write_vtk",),
     "rotorgear.export.hdf5": ("save", "read"),
@@ -44,6 +46,7 @@ if TYPE_CHECKING:
     from rotorgear.analysis.accuracy import accuracy_ladder
     from rotorgear.analysis.compare import compare, read_rig_lines
     from rotorgear.analysis.describe_model import describe_model
+    from rotorgear.analysis.gear_sheet import gear_sheet
     from rotorgear.analysis.modal import modal
     from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
     from rotorgear.export.hdf5 import read, save
@@ -66,6 +69,7 @@ if TYPE_CHECKING:
     )
     from rotorgear.results.accuracy import AccuracyLadder
     from rotorgear.results.comparison import Comparison, RigLine
+    from rotorgear.results.gear_sheet import GearSheet
     from rotorgear.results.modal import ModalResult
     from rotorgear.system.system import System
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli import accuracy, check, compare, modal, schema, validate, view
+from rotorgear.cli import accuracy, check, compare, gear, modal, schema, validate, view
 from rotorgear.errors import RotorgearError
 
 app = typer.Typer(
@@ -20,6 +20,7 @@ app = typer.Typer(
 app.command()(modal.modal)
 app.command()(compare.compare)
 app.command()(check.check)
+app.command()(gear.gear)
 app.command()(accuracy.accuracy)
 app.command()(view.view)
 app.command()(schema.schema)

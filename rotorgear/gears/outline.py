@@ -19,6 +19,8 @@ from rotorgear.gears.geometry import GearGeometry, impossible_teeth
 
 # Points along the trochoid at which the crossing with the involute is looked for before it is refined.
 _SCAN = 801
+# Thinner tips, in normal modules, are refused.
+LEAST_TIP = 0.02
 
 
 @dataclass(frozen=True)
@@ -111,7 +113,7 @@ def tooth_outline(g: GearGeometry) -> ToothOutline:
     base_half = (math.pi / 2 + 2.0 * g.profile_shift * math.tan(g.normal_pressure_angle)) / g.teeth + (
         math.tan(g.transverse_pressure_angle) - g.transverse_pressure_angle
     )
-    if g.transverse_tip_thickness <= 0.0:
+    if g.normal_tip_thickness < LEAST_TIP * g.normal_module:
         raise AnalysisError(_pointed(g))
     roll, angle, undercut = g.tool_form_roll_length, g.normal_pressure_angle, False
     if roll < 0.0:
@@ -131,8 +133,8 @@ def tooth_outline(g: GearGeometry) -> ToothOutline:
 
 def _pointed(g: GearGeometry) -> str:
     return (
-        f"The teeth are pointed below the tip diameter of {1e3 * g.effective_tip_diameter:.6g} mm: "
-        "reduce the tip diameter, the addendum or the profile shift."
+        f"The teeth are pointed at the tip diameter of {1e3 * g.effective_tip_diameter:.6g} mm, or all but "
+        f"(thinner than {LEAST_TIP:g} normal modules): reduce the tip diameter, the addendum or the profile shift."
     )
 
 

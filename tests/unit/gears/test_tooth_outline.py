@@ -91,7 +91,7 @@ def test_the_root_radius_left_out_is_that_of_iso_53() -> None:
     assert (round(radius(1.25), 2), round(radius(1.4), 2), round(radius(1.25, 25), 3)) == (0.38, 0.39, 0.318)
 
 
-REFUSALS = ("pointed below the tip", "cuts through the root", "cuts the flank up to", "no flank is left")
+REFUSALS = ("pointed at the tip diameter", "cuts through the root", "cuts the flank up to", "no flank is left")
 
 
 def test_the_sweep_of_gears_is_drawn_or_refused_with_a_sentence() -> None:
