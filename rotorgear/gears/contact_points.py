@@ -9,6 +9,7 @@ Gauss-Legendre along the slice), spread over the flank's nodes by the quadratic 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import scipy.sparse as sp
@@ -80,6 +81,7 @@ def contact_slices(
     return _gathered(line, pieces, positions, tangent, weight)
 
 
+@cache
 def _legendre() -> tuple[np.ndarray, np.ndarray]:
     x, w = np.polynomial.legendre.leggauss(_ALONG)
     return x, 0.5 * w

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.compliance_model import compliance_key, gear_compliance
+from rotorgear.gears.compliance_model import ComplianceKey, compliance_key, gear_compliance
 from rotorgear.gears.contact_points import Slices
 from rotorgear.gears.flank import FlankModification
 from rotorgear.gears.gear_compliance import GearCompliance
@@ -34,6 +34,7 @@ class ContactProblem:
         plane: whether the compliance is that of a unit width. uncoupled: whether slices along the face don't feel each other.
         slices: of a contact line over the whole face. patch: largest half-width of a patch in normal modules.
         flanks: deviations of both flanks. teeth: numbers of teeth. misalignment: over the whole face (m).
+        body: what the teeth stand on. unknowns: of both finite-element models together.
         warnings: sentences.
     """
 
@@ -51,6 +52,8 @@ class ContactProblem:
     flanks: tuple[FlankModification, FlankModification]
     teeth: tuple[int, int]
     misalignment: float
+    body: str
+    unknowns: int
     warnings: tuple[str, ...] = ()
 
     def place(self, gear: int, z: np.ndarray) -> np.ndarray:
@@ -108,7 +111,7 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent) -> ContactPro
     space = fe.space if fe.space is not None else (line.base_helix_angle > 0.0 or along) and fe.preset != "preview"
     uncoupled = not space and (line.base_helix_angle > 0.0 or along)
     module, bodies = teeth.first.normal_module, (teeth.first_body, teeth.second_body)
-    found, scale = [], []
+    found, scale, inner = [], [], []
     for i, (g, body) in enumerate(zip((teeth.first, teeth.second), bodies, strict=True)):
         key = compliance_key(g, fe, body.poisson_ratio, teeth.width, body.inner_radius, space=space)
         name = ("pinion", "gear")[i]
@@ -117,7 +120,8 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent) -> ContactPro
             progress(0.5 * (i + fraction), f"{name}: {text}")
 
         told(0.0, "teeth")
-        found.append(gear_compliance(key, told))
+        found.append(_without_torsion(gear_compliance(key, told), key, teeth, i))
+        inner.append(module * key.inner_radius)
         scale.append((math.cos(line.base_helix_angle) ** 2 if not space else 1.0 / module) / body.youngs_modulus)
     size = fe.mesh_size(teeth.width / module, space=space)
     slices = _STATIONS if uncoupled else (fe.slices or 2 * size.face if space else 1)
@@ -126,8 +130,24 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent) -> ContactPro
         line, teeth.width, module, (found[0], found[1]), (scale[0], scale[1]),
         np.array([2.0 * value / math.pi for value in plane_strain]), 1.0 / sum(plane_strain),
         not space, uncoupled, slices, fe.patch_width, flanks, (teeth.first.teeth, teeth.second.teeth),
-        teeth.misalignment, _warnings(teeth, line),
+        teeth.misalignment, fe.body_text(fe.arc, (inner[0], inner[1])), sum(item.unknowns for item in found), _warnings(teeth, line),
     )  # fmt: skip
+
+
+def _without_torsion(found: GearCompliance, key: ComplianceKey, teeth: ToothPair, gear: int) -> GearCompliance:
+    """A ring's compliance without the wind-up of its disc between the held circle and the root, if that is asked for.
+
+    A torque r_b per unit of width turns the root against the bore by r_b (1/r_i^2 - 1/r_f^2)/(4 pi G), all flanks alike.
+    """
+    if not (teeth.fe.exclude_torsion and teeth.fe.body == "ring"):
+        return found
+    g = key.geometry
+    shear = 0.5 / (1.0 + key.poisson_ratio)
+    twist = (1.0 / key.inner_radius**2 - 4.0 / g.root_diameter**2) / (4.0 * math.pi * shear)
+    wind_up = g.base_radius**2 * twist
+    if key.width:
+        wind_up *= math.cos(g.base_helix_angle) ** 2 / key.width
+    return replace(found, flexibility=found.flexibility - wind_up)
 
 
 def _warnings(teeth: ToothPair, line: LineOfAction) -> tuple[str, ...]:

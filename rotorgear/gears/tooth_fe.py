@@ -59,6 +59,14 @@ class ToothFe:
         """c_0 in normal modules."""
         return self.patch or (0.2 if self.preset == "fine" else 0.3)
 
+    def body_text(self, arc_teeth: int, inner: tuple[float, float]) -> str:
+        """What the teeth stand on and where that is held, in a line; inner: radii of the held circles (m)."""
+        radii = " and ".join(f"{1e3 * radius:.5g}" for radius in inner)
+        if self.body == "rim":
+            return f"rim: arc of {arc_teeth} pitches, held at its end cuts and at radius {radii} mm"
+        torsion = ", without the wind-up of the disc" if self.exclude_torsion else ""
+        return f"ring: full disc held at radius {radii} mm{torsion}"
+
     def mesh_size(self, width: float, *, space: bool) -> MeshSize:
         """Elements for a face of `width` normal modules."""
         if self.size is not None:

@@ -7,15 +7,20 @@ for one helix. Here the two are brought to one `MeshStiffness` of the whole mesh
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rotorgear.errors import AnalysisError
+from rotorgear.model.flank import Flank
 from rotorgear.model.inertia import bore_of
 from rotorgear.model.mesh_geometry import base_helix_angle, gear_geometry, mesh_pair
 from rotorgear.model.tables import Tables
 
 if TYPE_CHECKING:
+    from rotorgear.gears.flank import FlankModification
     from rotorgear.gears.mesh_stiffness import MeshStiffness, ToothBody, ToothPair
+    from rotorgear.gears.tooth_fe import ToothFe
+    from rotorgear.model.mesh import Mesh
 
 POSITIONS = 64
 
@@ -52,7 +57,49 @@ def tooth_pair(model: Tables, mesh: str) -> ToothPair:
     if first is None or second is None or pair is None:
         raise AnalysisError(f"meshes.{mesh}: gears given by their base radius have no teeth to look at.")
     width = min(model.gears[name].width or 0.0 for name in names)
-    return ToothPair(first, second, pair, width, *(_tooth_body(model, name) for name in names))
+    bodies, flanks = ([part(model, name) for name in names] for part in (_tooth_body, _flank))
+    return ToothPair(
+        first, second, pair, width, *bodies, *flanks, model.meshes[mesh].misalignment, _tooth_fe(model.meshes[mesh])
+    )
+
+
+def mirrored(teeth: ToothPair) -> ToothPair:
+    """The pair seen from the other end of the face: that of the other hand, or with the other flanks in contact."""
+    flanks = [replace(flank, helix_slope=-flank.helix_slope) for flank in (teeth.first_flank, teeth.second_flank)]
+    return replace(teeth, misalignment=-teeth.misalignment, first_flank=flanks[0], second_flank=flanks[1])
+
+
+def _tooth_fe(mesh: Mesh) -> ToothFe:
+    from rotorgear.gears.tooth_fe import ToothFe
+
+    table = mesh.tooth_fe
+    return ToothFe(table.preset, table.body, table.rim_thickness, exclude_torsion=table.exclude_torsion)
+
+
+def _flank(model: Tables, name: str) -> FlankModification:
+    from rotorgear.gears.flank import FlankModification
+    from rotorgear.gears.outline import tooth_outline
+
+    gear, geometry = model.gears[name], gear_geometry(model.gears[name])
+    given = gear.flank
+    if geometry is None or (given == Flank() and not gear.tip_relief):
+        return FlankModification()
+    outline = tooth_outline(geometry)
+
+    def roll(diameter: float | None) -> float:
+        return math.sqrt(max(0.25 * (diameter or 0.0) ** 2 - geometry.base_radius**2, 0.0))
+
+    return FlankModification(
+        tip_relief=gear.tip_relief,
+        tip_relief_length=outline.tip_roll_length - roll(gear.tip_relief_diameter),
+        root_relief=given.root_relief,
+        root_relief_length=roll(given.root_relief_diameter) - outline.form_roll_length,
+        crowning=given.crowning,
+        end_relief=given.end_relief,
+        end_relief_length=given.end_relief_length,
+        helix_slope=given.helix_slope,
+        pitch_error=tuple((int(tooth), error) for tooth, error in sorted(given.pitch_errors.items())),
+    )
 
 
 def _tooth_body(model: Tables, name: str) -> ToothBody:
@@ -94,4 +141,4 @@ def stiffness_of_mesh(
         one = mesh_stiffness(given, tooth_pair(model, mesh), load, positions)
     except AnalysisError as error:
         raise AnalysisError(f"meshes.{mesh}: {error}") from None
-    return one.of_both_helices() if helices == 2 else one
+    return one.of_both_helices(model.meshes[mesh].stagger) if helices == 2 else one

@@ -57,6 +57,17 @@ class TorqueFlow:
     forces: tuple[MeshForce, ...]
     stiffness: dict[str, MeshStiffness] = field(default_factory=dict)
 
+    def with_dynamic_stiffness(self) -> TorqueFlow:
+        """The same state with the stiffness of each modelled mesh against small motions about the mean load."""
+        forces = []
+        for force in self.forces:
+            curve = self.stiffness.get(force.contact.mesh)
+            if curve is not None:
+                own = replace(force.contact, stiffness=curve.dynamic_normal / curve.helices)
+                force = replace(force, contact=own)
+            forces.append(force)
+        return replace(self, forces=tuple(forces))
+
     def of_mesh(self, mesh: str) -> tuple[MeshForce, ...]:
         """The contacts of one mesh."""
         return tuple(force for force in self.forces if force.contact.mesh == mesh)
@@ -111,7 +122,7 @@ def _solved(
     lines: list[Contact] = []
     for name in model.meshes:
         given = given_mean(model, name)
-        lines += contacts(model, name, curves[name].mean_normal if given is None else given)
+        lines += contacts(model, name, curves[name].static_normal if given is None else given)
     return lines, contact_forces(model, train, applied, lines) if applied and lines else [0.0] * len(lines)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 import scipy.sparse as sp
@@ -42,17 +43,21 @@ class System:
         elements: basic elements in each piece of shaft.
         plan: how finely each piece is cut, in place of `elements`.
         direction: +1 or -1, sense in which the input shaft turns; it decides the driving flanks. None: as the operating speed.
+        mesh: which stiffness a loaded tooth contact has: "dynamic", its tangent at the mean load, for small motions; "static",
+            its secant, for the deflection under that load. The others have one only.
     """
 
     def __init__(
-        self, model: Model, elements: int | None = None, *, plan: Plan | None = None, direction: int | None = None
-    ) -> None:
+        self, model: Model, elements: int | None = None, *, plan: Plan | None = None, direction: int | None = None,
+        mesh: Literal["dynamic", "static"] = "dynamic",
+    ) -> None:  # fmt: skip
         self.model = model
         self.plan = plan or Plan(elements or 1)
         self.train: Train = walk(model)[0]
         speed = model.operation.speed if model.operation else None
         self.direction = direction or (-1 if speed is not None and speed < 0.0 else 1)
-        self.flow: TorqueFlow = torque_flow(model, self.train, self.direction)
+        flow = torque_flow(model, self.train, self.direction)
+        self.flow: TorqueFlow = flow.with_dynamic_stiffness() if mesh == "dynamic" else flow
         self.nodes: Nodes = discretise(model, self.plan)
         self.dofs: DofMap = map_dofs(model, self.nodes)
         self._last: tuple[float, Matrices] | None = None
