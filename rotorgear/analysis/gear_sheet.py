@@ -6,8 +6,10 @@ import math
 
 import numpy as np
 
+from rotorgear.analysis.dynamic_factor import mesh_dynamic_factor
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.contact_lines import contact_line_length, mean_contact_line_length
+from rotorgear.gears.dynamic_factor import DynamicFactor
 from rotorgear.gears.geometry import GearGeometry, check_gear
 from rotorgear.gears.measure import (
     best_span,
@@ -94,6 +96,9 @@ def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ..
     force = sum(force.normal_force for force in forces) / len(forces)
     curve = stiffness_of_mesh(model, name, force or None)
     base = math.cos(pair.base_helix_angle)
+    dynamic = mesh_dynamic_factor(model, name, force * base or None)
+    if isinstance(dynamic, str):
+        dynamic = DynamicFactor(math.nan, dynamic)
     return MeshSheetRow(
         name=name, pinion=mesh.pinion, gear=mesh.gear, ratio=g2.teeth / g1.teeth, centre_distance_m=pair.centre_distance,
         reference_centre_distance_m=standard_centre_distance(g1, g2),
@@ -112,7 +117,9 @@ def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ..
         iso_mesh_stiffness_n_per_m2=iso.mesh_alpha, stiffness_model=curve.model, stiffness_n_per_m=curve.mean_normal,
         stiffness_peak_to_peak_n_per_m=curve.peak_to_peak / base**2, stiffness_definition=curve.definition,
         stiffness_body=curve.body, base_tangential_force_n=force * base if force else None,
-        warnings=(*mesh_findings(model, name), *curve.warnings),
+        dynamic_factor=None if math.isnan(dynamic.value) else dynamic.value, dynamic_factor_method=dynamic.method,
+        resonance_ratio=dynamic.resonance_ratio,
+        warnings=(*mesh_findings(model, name), *curve.warnings, *dynamic.warnings),
     )  # fmt: skip
 
 

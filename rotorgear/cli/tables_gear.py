@@ -110,6 +110,8 @@ MESH_ROWS: Sequence[Row] = (
     ("mean, normal, all helices N/m", lambda row: f"{row.stiffness_n_per_m:.4g}"),
     ("peak to peak N/m", lambda row: f"{row.stiffness_peak_to_peak_n_per_m:.3g}"),
     ("base force F_bt a helix N", _plain("base_tangential_force_n", 0)),
+    ("dynamic factor K_v", _plain("dynamic_factor", 3)),
+    ("resonance ratio N", _plain("resonance_ratio", 4)),
 )  # fmt: skip
 
 
@@ -124,9 +126,9 @@ def sheet_parts(sheet: GearSheet) -> Iterator[Any]:
     yield from (f"left out: {note}" for note in sheet.left_out)
     for table, parts in (("gears", sheet.gears), ("meshes", sheet.meshes)):
         yield from (f"Warning: {table}.{part.name}: {text}" for part in parts for text in part.warnings)
-    yield from (
-        f"meshes.{row.name}: {row.stiffness_definition} stiffness; body: {row.stiffness_body}" for row in sheet.meshes
-    )
+    for row in sheet.meshes:
+        yield f"meshes.{row.name}: {row.stiffness_definition} stiffness; body: {row.stiffness_body}"
+        yield f"meshes.{row.name}: {'K_v by ' * (row.dynamic_factor is not None)}{row.dynamic_factor_method}"
 
 
 def _table(head: str, rows: Sequence[Row], columns: Sequence[GearRow | MeshSheetRow]) -> Any:

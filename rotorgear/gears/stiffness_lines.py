@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rotorgear.gears.contact_lines import contact_line_length, mean_contact_line_length
+from rotorgear.gears.contact_lines import contact_line_length
 from rotorgear.gears.mesh_stiffness import MeshStiffness, ToothPair
 from rotorgear.gears.stiffness_iso import iso_stiffness
 
@@ -24,5 +24,4 @@ def contact_line_stiffness(teeth: ToothPair, load: float | None, positions: int)
     inside = (np.arange(_FINER) + 0.5) / _FINER - 0.5
     u = (mean.position[:, None] + inside / positions).ravel()
     length = contact_line_length(teeth, u).reshape(positions, _FINER).mean(axis=1)
-    share = length / mean_contact_line_length(teeth)
-    return replace(mean, model="contact_line", transverse=mean.transverse * share)
+    return replace(mean, model="contact_line", transverse=mean.transverse * length / length.mean())

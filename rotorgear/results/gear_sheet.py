@@ -101,6 +101,9 @@ class MeshSheetRow:
     stiffness_definition: str
     stiffness_body: str
     base_tangential_force_n: float | None
+    dynamic_factor: float | None
+    dynamic_factor_method: str
+    resonance_ratio: float | None
     warnings: tuple[str, ...]
 
 
