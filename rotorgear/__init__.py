@@ -29,11 +29,13 @@ _HOMES = {
     "rotorgear.analysis.modal": ("modal",),
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
     "rotorgear.analysis.gear_sheet": ("gear_sheet",),
+    "rotorgear.analysis.mesh_analysis": ("mesh_analysis",),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
     "rotorgear.results.accuracy": ("AccuracyLadder",),
     "rotorgear.results.gear_sheet": ("GearSheet",),
+    "rotorgear.results.mesh": ("MeshResult",),
     "rotorgear.results.comparison": ("Comparison", "RigLine"),
     "rotorgear.export.vtk": ("write_vtk",),
     "rotorgear.export.hdf5": ("save", "read"),
@@ -47,6 +49,7 @@ if TYPE_CHECKING:
     from rotorgear.analysis.compare import compare, read_rig_lines
     from rotorgear.analysis.describe_model import describe_model
     from rotorgear.analysis.gear_sheet import gear_sheet
+    from rotorgear.analysis.mesh_analysis import mesh_analysis
     from rotorgear.analysis.modal import modal
     from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
     from rotorgear.export.hdf5 import read, save
@@ -70,6 +73,7 @@ if TYPE_CHECKING:
     from rotorgear.results.accuracy import AccuracyLadder
     from rotorgear.results.comparison import Comparison, RigLine
     from rotorgear.results.gear_sheet import GearSheet
+    from rotorgear.results.mesh import MeshResult
     from rotorgear.results.modal import ModalResult
     from rotorgear.system.system import System
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli import accuracy, check, compare, gear, modal, schema, validate, view
+from rotorgear.cli import accuracy, check, compare, gear, mesh, modal, schema, validate, view
 from rotorgear.errors import RotorgearError
 
 app = typer.Typer(
@@ -21,6 +21,7 @@ app.command()(modal.modal)
 app.command()(compare.compare)
 app.command()(check.check)
 app.command()(gear.gear)
+app.command()(mesh.mesh)
 app.command()(accuracy.accuracy)
 app.command()(view.view)
 app.command()(schema.schema)

@@ -72,8 +72,8 @@ class ContactProblem:
             form, tip = self.line.form[i], self.line.tip[i]
             found = found + flank.depth(slices.roll[i], slices.z, form, tip, self.width)
             if flank.pitch_error:
-                side = 1 if i == 0 else -1
-                found = found + flank.pitch_depth(side * slices.pair, self.teeth[i])[:, None]
+                # Pair -n comes into mesh n periods after pair 0.
+                found = found + flank.pitch_depth(-slices.pair, self.teeth[i])[:, None]
         return np.asarray(np.sum(found * slices.weight, axis=1))
 
 
@@ -98,6 +98,15 @@ def line_of_action(teeth: ToothPair) -> LineOfAction:
     return line
 
 
+def in_space(teeth: ToothPair) -> tuple[bool, bool]:
+    """Whether the teeth need a three-dimensional model, and whether slices that don't feel each other stand in for it."""
+    fe = teeth.fe
+    flanks = (teeth.first_flank, teeth.second_flank)
+    varies = teeth.first.helix_angle > 0.0 or any(flank.along_face for flank in flanks) or bool(teeth.misalignment)
+    space = fe.space if fe.space is not None else varies and fe.preset != "preview"
+    return space, varies and not space
+
+
 def contact_problem(teeth: ToothPair, progress: Progress = silent) -> ContactProblem:
     """Prepare the contact of one helix: the compliance of both gears is read from disk or computed.
 
@@ -107,9 +116,7 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent) -> ContactPro
     """
     fe, line = teeth.fe, line_of_action(teeth)
     flanks = (teeth.first_flank, teeth.second_flank)
-    along = any(flank.along_face for flank in flanks) or bool(teeth.misalignment)
-    space = fe.space if fe.space is not None else (line.base_helix_angle > 0.0 or along) and fe.preset != "preview"
-    uncoupled = not space and (line.base_helix_angle > 0.0 or along)
+    space, uncoupled = in_space(teeth)
     module, bodies = teeth.first.normal_module, (teeth.first_body, teeth.second_body)
     found, scale, inner = [], [], []
     for i, (g, body) in enumerate(zip((teeth.first, teeth.second), bodies, strict=True)):

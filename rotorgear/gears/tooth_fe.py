@@ -90,3 +90,19 @@ _SPACE = {
     "fine": (MeshSize(10, 3, 6, 3, 4), 0.77),
 }
 _LEAST_LAYERS = 4
+
+# The mesh that the error of a preset is estimated by, in its plane and in space.
+_COARSER: dict[Preset, tuple[MeshSize, tuple[MeshSize, float]]] = {
+    "preview": (MeshSize(4, 2, 4, 2, 3), (MeshSize(5, 2, 4, 2, 3), 3.6)),
+    "default": (_PLANE["preview"], _SPACE["preview"]),
+    "fine": (_PLANE["default"], _SPACE["default"]),
+}
+
+
+def coarser_size(fe: ToothFe, width: float, *, space: bool) -> MeshSize:
+    """A coarser mesh of the same kind, for a face of `width` normal modules."""
+    if fe.size is not None:
+        rows = [max(2, round(0.7 * n)) for n in (fe.size.involute, fe.size.fillet, fe.size.tooth, fe.size.land, fe.size.rim)]
+        return MeshSize(*rows, face=max(2, round(0.7 * fe.size.face)) if fe.size.face else 0)
+    plane, (size, thickness) = _COARSER[fe.preset]
+    return replace(size, face=max(_LEAST_LAYERS - 1, round(width / thickness))) if space else plane

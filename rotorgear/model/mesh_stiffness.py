@@ -113,8 +113,24 @@ def _tooth_body(model: Tables, name: str) -> ToothBody:
     return ToothBody(material.youngs_modulus, material.nu, inner)
 
 
+def helix_senses(model: Tables, mesh: str, sense: int = 1) -> tuple[int, ...]:
+    """For each helix +1 where contact runs ahead at larger z (the pinion's teeth lead there), -1 where it runs behind.
+
+    A right-hand helix is farther round about +z at larger z, so its flanks that push about +z (torque sense +1) lead there.
+    A spur gear counts as +1.
+    """
+    pinion = model.gears[model.meshes[mesh].pinion]
+    hand = {"right": 1, "left": -1, None: 1}[pinion.hand] * (sense if pinion.kind != "spur" else 1)
+    return (hand, -hand)[: helix_count(model, mesh)]
+
+
 def stiffness_of_mesh(
-    model: Tables, mesh: str, normal_force: float | None = None, positions: int = POSITIONS, name: str | None = None
+    model: Tables,
+    mesh: str,
+    normal_force: float | None = None,
+    positions: int = POSITIONS,
+    name: str | None = None,
+    sense: int = 1,
 ) -> MeshStiffness:
     """Stiffness of a whole mesh over one mesh period.
 
@@ -124,6 +140,7 @@ def stiffness_of_mesh(
         normal_force: mean force (N) along the flank normal on one helix; None where none flows.
         positions: how many positions of one mesh period, for a stiffness model.
         name: a stiffness model in place of what the file says.
+        sense: of the torque on the pinion about +z; it matters where flanks differ along the face.
 
     Raises:
         AnalysisError: teeth or a load that the stiffness model can't do.
@@ -137,8 +154,12 @@ def stiffness_of_mesh(
     if not isinstance(given, str):
         values = given if isinstance(given, tuple) else (given,)
         return given_stiffness(values, angle, helices, None if load is None else helices * load, positions)
+    teeth = tooth_pair(model, mesh)
     try:
-        one = mesh_stiffness(given, tooth_pair(model, mesh), load, positions)
+        found = [
+            mesh_stiffness(given, teeth if ahead > 0 else mirrored(teeth), load, positions)
+            for ahead in helix_senses(model, mesh, sense)
+        ]
     except AnalysisError as error:
         raise AnalysisError(f"meshes.{mesh}: {error}") from None
-    return one.of_both_helices(model.meshes[mesh].stagger) if helices == 2 else one
+    return found[0].of_both_helices(model.meshes[mesh].stagger, found[1]) if helices == 2 else found[0]

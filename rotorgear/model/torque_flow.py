@@ -132,9 +132,10 @@ def _loaded(model: Tables, lines: Sequence[Contact], squeeze: Sequence[float]) -
     found = {}
     for name in model.meshes:
         if is_modelled(model, name):
-            own = [abs(force) for line, force in zip(lines, squeeze, strict=True) if line.mesh == name]
+            own = [force for line, force in zip(lines, squeeze, strict=True) if line.mesh == name]
             mean = sum(own) / len(own)
-            found[name] = stiffness_of_mesh(model, name, mean if mean > UNLOADED * largest else None)
+            carries = abs(mean) > UNLOADED * largest
+            found[name] = stiffness_of_mesh(model, name, abs(mean) if carries else None, sense=1 if mean >= 0.0 else -1)
     return found
 
 
