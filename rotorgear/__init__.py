@@ -30,6 +30,7 @@ _HOMES = {
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
     "rotorgear.analysis.gear_sheet": ("gear_sheet",),
     "rotorgear.analysis.mesh_analysis": ("mesh_analysis",),
+    "rotorgear.analysis.mesh_ladder": ("mesh_ladder",),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from rotorgear.analysis.describe_model import describe_model
     from rotorgear.analysis.gear_sheet import gear_sheet
     from rotorgear.analysis.mesh_analysis import mesh_analysis
+    from rotorgear.analysis.mesh_ladder import mesh_ladder
     from rotorgear.analysis.modal import modal
     from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
     from rotorgear.export.hdf5 import read, save

@@ -16,7 +16,16 @@ if TYPE_CHECKING:
 
 def accuracy(
     model: ModelFile,
-    analysis: Annotated[str, typer.Option("--analysis", help="What is run; so far: modal.")] = "modal",
+    analysis: Annotated[
+        str, typer.Option("--analysis", help="What is run: modal, or mesh (teeth in contact).")
+    ] = "modal",
+    mesh: Annotated[
+        str | None, typer.Option("--mesh", help="With --analysis mesh: name of the mesh.", show_default=False)
+    ] = None,
+    torque: Annotated[
+        str | None,
+        typer.Option("--torque", help="With --analysis mesh: torque on the pinion.", show_default=False),
+    ] = None,
     speed: SpeedOption = None,
     modes: Annotated[int, typer.Option("--modes", min=1, help="Number of modes that are compared.")] = 24,
     reference: Annotated[
@@ -33,8 +42,13 @@ def accuracy(
     """Error against run time and dofs over a ladder of discretisations, with the measured order."""
     import rotorgear as rg
 
+    if analysis == "mesh":
+        _refuse_modal_options(speed, reference)
+        return _mesh(model, mesh, torque, plot, json)
     if analysis != "modal":
-        raise AnalysisError(f"--analysis: got '{analysis}', expected modal")
+        raise AnalysisError(f"--analysis: got '{analysis}', expected modal or mesh")
+    if mesh is not None or torque is not None:
+        raise AnalysisError("--mesh and --torque belong to --analysis mesh.")
     given = [line.frequency_hz for line in rg.read_rig_lines(reference)] if reference else None
     with progress_bar("accuracy") as progress:
         ladder = rg.accuracy_ladder(
@@ -47,6 +61,29 @@ def accuracy(
         from rotorgear.plots.accuracy import draw_accuracy
 
         typer.echo(f"wrote {draw_accuracy(ladder, plot)}")
+
+
+def _refuse_modal_options(speed: str | None, reference: Path | None) -> None:
+    if speed is not None or reference is not None:
+        raise AnalysisError("--speed and --reference belong to --analysis modal.")
+
+
+def _mesh(model: Path, mesh: str | None, torque: str | None, plot: Path | None, json: Path | None) -> None:
+    """The ladder of a mesh."""
+    import rotorgear as rg
+    from rotorgear.cli.mesh import parse_torque
+    from rotorgear.cli.tables_mesh import ladder_parts
+
+    pinion_torque = parse_torque(torque)
+    with progress_bar("accuracy") as progress:
+        ladder = rg.mesh_ladder(rg.load(model), mesh, torque=pinion_torque, progress=progress)
+    for part in ladder_parts(ladder):
+        console().print(part)
+    write_json(ladder.to_dict(), json)
+    if plot:
+        from rotorgear.plots.mesh_ladder import draw_mesh_ladder
+
+        typer.echo(f"wrote {draw_mesh_ladder(ladder, plot)}")
 
 
 def table(ladder: AccuracyLadder) -> list[Any]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.results.mesh import PLANE, MeshResult
+from rotorgear.results.mesh_ladder import MeshLadder
 
 
 def mesh_parts(found: MeshResult, harmonics: int) -> Iterator[Any]:
@@ -105,3 +106,25 @@ def _loads(found: MeshResult) -> Any:
             f"{1e6 * point.ste_peak_to_peak_m:.4f} um", f"{point.contact_ratio:.3f}",
         )  # fmt: skip
     return table
+
+
+def ladder_parts(ladder: MeshLadder) -> Iterator[Any]:
+    """The error ladder of a mesh."""
+    yield f"[bold]{ladder.title or 'Mesh'}[/bold]: mesh '{ladder.mesh}', F_bt {ladder.base_force_n:.6g} N on a helix"
+    yield f"body: {ladder.body}"
+    yield f"errors in % against {ladder.reference};"
+    yield "after the stroke what the analysis itself estimates"
+    yield ""
+    table = _table("mesh", "elements", "dofs", "FE", "contact", "k", "k pp", "STE pp")
+    for rung in ladder.rungs:
+        cells = []
+        for name in ("mean_stiffness", "peak_to_peak_stiffness", "ste_peak_to_peak"):
+            estimate = rung.estimate
+            said = "-" if estimate is None else f"{100 * getattr(estimate, name):.2g}"
+            cells.append(f"{100 * getattr(rung.error, name):.2g} / {said}")
+        elements = f"{rung.elements}" + (f" x {rung.layers}" if rung.layers else "")
+        method = rung.method.removeprefix("preset ")
+        seconds = [f"{rung.fe_seconds:.2f} s", f"{rung.contact_seconds:.2f} s"]
+        table.add_row(method, elements, str(rung.dofs), *seconds, *cells)
+    yield table
+    yield ""

@@ -69,14 +69,14 @@ def pitch_of(key: ComplianceKey) -> tuple[ToothOutline, PitchMesh]:
     return outline, pitch_mesh(outline, key.size, key.inner_radius)
 
 
-def gear_compliance(key: ComplianceKey, progress: Progress = silent) -> GearCompliance:
-    """Compliance of a gear, from the disk where it is known.
+def gear_compliance(key: ComplianceKey, progress: Progress = silent, *, fresh: bool = False) -> GearCompliance:
+    """Compliance of a gear, from the disk where it is known; `fresh`: computed in any case, to measure how long it takes.
 
     Raises:
         AnalysisError: teeth that can't be made or meshed.
         MissingExtraError: scikit-fem is not installed and the gear is not known yet.
     """
-    return cached(key, lambda: _computed(key, progress))
+    return _computed(key, progress) if fresh else cached(key, lambda: _computed(key, progress))
 
 
 def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:

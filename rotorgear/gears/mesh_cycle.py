@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.errors import AnalysisError
 from rotorgear.gears.contact_points import PatchLoads, Slices, contact_slices, patch_loads
 from rotorgear.gears.gear_compliance import GearCompliance
 from rotorgear.gears.loaded_contact import ContactState, PositionContact, hertz_half_width, solve_contact
@@ -19,8 +20,10 @@ from rotorgear.progress import Progress, silent
 # The patch stays wider than the Hertz strip by this factor, and than this in normal modules.
 _STRIP_MARGIN, _LEAST_PATCH = 1.3, 0.08
 # Corner contacts are followed up to this share of the base pitch.
-_MOST_BEYOND = 0.25
+_MOST_BEYOND = 0.45
 _PASSES = 12
+# Wider strips (half-width over m_n) are no line contact any more; above such a pressure (Pa) no gear steel stays elastic.
+_WIDEST_STRIP, _MOST_PRESSURE = 0.5, 4e9
 # They are followed a little farther than they touch, so that the next pass does not ask for more.
 _MORE_BEYOND = 1.05
 
@@ -142,6 +145,7 @@ def _swept(
         state: ContactState = solve_contact(contact, normal)
         force[own], strip[own] = state.force, state.strip
         approach[i], tangent[i], open_gap[i] = state.approach, state.tangent, gap[own].min()
+        _require_line_contact(problem, state)
         residual, eigenvalue = max(residual, state.residual), min(eigenvalue, float(np.linalg.eigvalsh(C)[0]))
         progress((i + 1) / p, f"contact {i + 1} of {p}")
     cosine = float(np.cos(line.base_helix_angle))
@@ -149,7 +153,7 @@ def _swept(
     pressure = np.where(force > 0.0, 2.0 * load_per_length / (np.pi * np.maximum(strip, 1e-300)), 0.0)
     cycle = MeshCycle(
         positions, load, approach / cosine, open_gap / cosine, tangent * cosine**2, slices, force, strip, pressure, residual,
-        eigenvalue, widths[1], beyond, _notes(problem, slices, force, beyond),
+        eigenvalue, widths[1], beyond, _notes(problem, slices, force, pressure, beyond),
     )  # fmt: skip
     wanted = _beyond(problem, float((approach - open_gap).max()) / cosine + problem.largest_gap)
     return cycle, _patch_for(float(strip.max()), problem), wanted
@@ -187,10 +191,25 @@ class _Responses:
         return np.asarray(0.5 * (C + C.T))
 
 
-def _notes(problem: ContactProblem, slices: Slices, force: np.ndarray, beyond: tuple[float, float]) -> tuple[str, ...]:
+def _require_line_contact(problem: ContactProblem, state: ContactState) -> None:
+    widest = float(state.strip.max()) / problem.module
+    if widest > _WIDEST_STRIP:
+        raise AnalysisError(
+            f"At this load the contact strip would be {2.0 * widest:.2g} modules wide, which is no line contact any more: reduce "
+            "the torque."
+        )
+
+
+def _notes(
+    problem: ContactProblem, slices: Slices, force: np.ndarray, pressure: np.ndarray, beyond: tuple[float, float]
+) -> tuple[str, ...]:
     notes = []
-    most = _MOST_BEYOND * problem.line.base_pitch * (1.0 - 1e-9)
-    if max(beyond) >= most:
+    if pressure.max() > _MOST_PRESSURE:
+        notes.append(f"a contact pressure of {1e-9 * pressure.max():.2g} GPa is beyond any gear steel; the result is elastic")
+    most, cosine = _MOST_BEYOND * problem.line.base_pitch, np.cos(problem.line.base_helix_angle)
+    widest = min(float(problem.line.corner(gear, np.array([0.9 * most]))[0][0]) for gear in (0, 1)) * cosine
+    far = (slices.gap @ slices.weight >= widest) & (force > 0.0)
+    if max(beyond) >= most * (1.0 - 1e-9) and far.any():
         notes.append(
             f"tip corners were followed to {_MOST_BEYOND:g} base pitches beyond the line of action only; at this load they may "
             "touch farther out"

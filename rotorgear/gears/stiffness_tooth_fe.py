@@ -36,8 +36,7 @@ def tooth_fe_stiffness(teeth: ToothPair, load: float | None, positions: int) -> 
     """Secant and tangent stiffness of one helix over one mesh period at F_bt = load (N)."""
     if not load:
         raise AnalysisError("The stiffness of loaded teeth needs a load: give the torque or power that the mesh carries.")
-    # Rounding of the torque flow must not make another load.
-    problem, cycle = loaded_cycle(teeth, float(f"{load:.12g}"), np.arange(positions) / positions)
+    problem, cycle = loaded_cycle(teeth, load, np.arange(positions) / positions)
     return MeshStiffness(
         model="tooth_fe", position=cycle.position, transverse=cycle.secant, definition="secant", helices=1, load=cycle.load,
         body=problem.body, base_helix_angle=problem.line.base_helix_angle, warnings=problem.warnings + cycle.warnings,

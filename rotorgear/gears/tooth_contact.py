@@ -107,8 +107,8 @@ def in_space(teeth: ToothPair) -> tuple[bool, bool]:
     return space, varies and not space
 
 
-def contact_problem(teeth: ToothPair, progress: Progress = silent) -> ContactProblem:
-    """Prepare the contact of one helix: the compliance of both gears is read from disk or computed.
+def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: bool = False) -> ContactProblem:
+    """Prepare the contact of one helix: the compliance of both gears is read from disk or computed (`fresh`: always computed).
 
     Raises:
         AnalysisError: teeth that can't be made, meshed or brought into contact.
@@ -127,7 +127,7 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent) -> ContactPro
             progress(0.5 * (i + fraction), f"{name}: {text}")
 
         told(0.0, "teeth")
-        found.append(_without_torsion(gear_compliance(key, told), key, teeth, i))
+        found.append(_without_torsion(gear_compliance(key, told, fresh=fresh), key, teeth, i))
         inner.append(module * key.inner_radius)
         scale.append((math.cos(line.base_helix_angle) ** 2 if not space else 1.0 / module) / body.youngs_modulus)
     size = fe.mesh_size(teeth.width / module, space=space)

@@ -104,5 +104,13 @@ def coarser_size(fe: ToothFe, width: float, *, space: bool) -> MeshSize:
     if fe.size is not None:
         rows = [max(2, round(0.7 * n)) for n in (fe.size.involute, fe.size.fillet, fe.size.tooth, fe.size.land, fe.size.rim)]
         return MeshSize(*rows, face=max(2, round(0.7 * fe.size.face)) if fe.size.face else 0)
-    plane, (size, thickness) = _COARSER[fe.preset]
-    return replace(size, face=max(_LEAST_LAYERS - 1, round(width / thickness))) if space else plane
+    own = sized(fe, _COARSER[fe.preset][1 if space else 0], width).size
+    assert own is not None
+    return own
+
+
+def sized(fe: ToothFe, size: MeshSize | tuple[MeshSize, float], width: float) -> ToothFe:
+    """Settings with a mesh of one's own: for a plane model, or with the thickness of a layer, for a face of `width` modules."""
+    if isinstance(size, MeshSize):
+        return replace(fe, size=size)
+    return replace(fe, size=replace(size[0], face=max(_LEAST_LAYERS - 1, round(width / size[1]))))

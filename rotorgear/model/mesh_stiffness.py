@@ -150,7 +150,8 @@ def stiffness_of_mesh(
 
     given = name or model.meshes[mesh].stiffness
     helices, angle = helix_count(model, mesh), base_helix_angle(model.gears[model.meshes[mesh].pinion])
-    load = None if not normal_force else normal_force * math.cos(angle)
+    # Rounding of the torque flow must not make another load: equal meshes are solved once.
+    load = None if not normal_force else float(f"{normal_force * math.cos(angle):.12g}")
     if not isinstance(given, str):
         values = given if isinstance(given, tuple) else (given,)
         return given_stiffness(values, angle, helices, None if load is None else helices * load, positions)
