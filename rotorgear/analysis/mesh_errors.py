@@ -15,7 +15,8 @@ from rotorgear.gears.tooth_contact import in_space
 from rotorgear.gears.tooth_fe import coarser_size
 from rotorgear.results.mesh import MeshErrors
 
-_REMAINING = {"preview": 1.5, "default": 0.35, "fine": 2.0}
+# Shares in the plane and in space, where the default mesh and the fine one lie close together.
+_REMAINING = {"preview": (1.5, 1.5), "default": (0.35, 0.35), "fine": (0.6, 3.5)}
 
 
 def coarser(teeth: ToothPair) -> ToothPair | None:
@@ -31,7 +32,7 @@ def estimated(
     teeth: ToothPair, k: np.ndarray, error: np.ndarray, other_k: np.ndarray, other_error: np.ndarray
 ) -> MeshErrors:
     """Estimates from stiffness and transmission error (p,) of the teeth and of the same on the coarser mesh."""
-    share = 1.0 if teeth.fe.size is not None else _REMAINING[teeth.fe.preset]
+    share = 1.0 if teeth.fe.size is not None else _REMAINING[teeth.fe.preset][in_space(teeth)[0]]
 
     def relative(one: float, other: float) -> float:
         return share * abs(other - one) / max(abs(one), 1e-300)

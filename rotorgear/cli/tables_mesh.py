@@ -48,7 +48,7 @@ def _table(*columns: str) -> Any:
 
     table = Table(box=None, pad_edge=False, header_style="bold")
     for number, column in enumerate(columns):
-        table.add_column(column, justify="right" if number else "left", no_wrap=not number)
+        table.add_column(column, justify="right" if number else "left", no_wrap=True)
     return table
 
 
@@ -121,8 +121,8 @@ def ladder_parts(ladder: MeshLadder) -> Iterator[Any]:
         for name in ("mean_stiffness", "peak_to_peak_stiffness", "ste_peak_to_peak"):
             estimate = rung.estimate
             said = "-" if estimate is None else f"{100 * getattr(estimate, name):.2g}"
-            cells.append(f"{100 * getattr(rung.error, name):.2g} / {said}")
-        elements = f"{rung.elements}" + (f" x {rung.layers}" if rung.layers else "")
+            cells.append(f"{100 * getattr(rung.error, name):.2g}/{said}")
+        elements = f"{rung.elements}" + (f"x{rung.layers}" if rung.layers else "")
         method = rung.method.removeprefix("preset ")
         seconds = [f"{rung.fe_seconds:.2f} s", f"{rung.contact_seconds:.2f} s"]
         table.add_row(method, elements, str(rung.dofs), *seconds, *cells)
