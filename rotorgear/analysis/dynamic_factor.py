@@ -14,7 +14,7 @@ from rotorgear.gears.dynamic_factor import (
 )
 from rotorgear.gears.flank_tolerance import base_pitch_deviation, profile_form_deviation
 from rotorgear.gears.mesh_stiffness import ToothPair
-from rotorgear.gears.stiffness_iso import iso_tooth_stiffness
+from rotorgear.gears.stiffness_iso import pair_iso_stiffness
 from rotorgear.model.inertia import gear_body
 from rotorgear.model.mesh_stiffness import helix_count, tooth_pair
 from rotorgear.model.model import Model
@@ -40,7 +40,7 @@ def mesh_dynamic_factor(model: Model, name: str, base_force: float | None) -> Dy
     if teeth.first.teeth > teeth.second.teeth:
         teeth, order, grades = teeth.swapped(), order[::-1], grades[::-1]
     spin = abs(walk(model)[0].ratio(model.gears[order[0]].shaft) * speed)
-    line_load = mesh.application_factor * base_force / math.cos(teeth.first.transverse_pressure_angle) / teeth.width
+    line_load = mesh.application_factor * base_force * math.cos(teeth.first.transverse_pressure_angle) / teeth.width
     velocity = 0.5 * teeth.first.reference_diameter * spin
     inertias = [gear_body(model, gear).polar_inertia / helix_count(model, name) for gear in order]
     try:
@@ -65,7 +65,7 @@ def _method_b(
 ) -> DynamicMesh:
     """Inputs of method B from the pair, pinion first; deviations are those of the tolerance classes."""
     g1, g2 = teeth.first, teeth.second
-    stiffness = iso_tooth_stiffness(g1, g2, teeth.pair.transverse_contact_ratio, line_load=line_load)
+    stiffness = pair_iso_stiffness(teeth, line_load)
     classes = [(gear, grade) for gear, grade in zip((g1, g2), grades, strict=True) if grade is not None]
     return DynamicMesh(
         pinion_teeth=g1.teeth, ratio=g2.teeth / g1.teeth, pinion_speed=spin, pitch_line_velocity=velocity,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from rotorgear.gears.measure import (
 from rotorgear.gears.mesh_stiffness import ToothPair
 from rotorgear.gears.outline import tooth_outline
 from rotorgear.gears.pair import profile_shift_sum, standard_centre_distance
-from rotorgear.gears.stiffness_iso import iso_tooth_stiffness
+from rotorgear.gears.stiffness_iso import pair_iso_stiffness
 from rotorgear.model.gear import Gear
 from rotorgear.model.mesh_geometry import gear_geometry
 from rotorgear.model.mesh_stiffness import helix_count, stiffness_of_mesh, tooth_pair
@@ -92,7 +93,7 @@ def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ..
     g1, g2, pair, mesh = teeth.first, teeth.second, teeth.pair, model.meshes[name]
     backlash = mesh_backlash(model, name)
     lines = contact_line_length(teeth, (np.arange(_POSITIONS) + 0.5) / _POSITIONS)
-    iso = iso_tooth_stiffness(g1, g2, pair.transverse_contact_ratio)
+    iso = pair_iso_stiffness(teeth)
     force = sum(force.normal_force for force in forces) / len(forces)
     curve = stiffness_of_mesh(model, name, force or None)
     base = math.cos(pair.base_helix_angle)
@@ -113,14 +114,33 @@ def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ..
         transverse_backlash_m=pair.transverse_backlash, normal_backlash_least_m=backlash.least,
         normal_backlash_mean_m=backlash.mean, normal_backlash_most_m=backlash.most,
         least_contact_line_m=float(lines.min()), mean_contact_line_m=mean_contact_line_length(teeth),
-        largest_contact_line_m=float(lines.max()), iso_single_stiffness_n_per_m2=iso.single,
-        iso_mesh_stiffness_n_per_m2=iso.mesh_alpha, stiffness_model=curve.model, stiffness_n_per_m=curve.mean_normal,
+        largest_contact_line_m=float(lines.max()), iso_theoretical_stiffness_n_per_m2=iso.theoretical,
+        iso_single_stiffness_n_per_m2=iso.single, iso_mesh_stiffness_n_per_m2=iso.mesh_alpha,
+        iso_lead_stiffness_n_per_m2=iso.mesh_beta, stiffness_model=curve.model, stiffness_n_per_m=curve.mean_normal,
         stiffness_peak_to_peak_n_per_m=curve.peak_to_peak / base**2, stiffness_definition=curve.definition,
-        stiffness_body=curve.body, base_tangential_force_n=force * base if force else None,
+        stiffness_body=curve.body, pitch_line_velocity_m_per_s=_velocity(model, mesh.pinion, g1),
+        tangential_force_n=force * base * math.cos(g1.transverse_pressure_angle) if force else None,
+        base_tangential_force_n=force * base if force else None,
         dynamic_factor=None if math.isnan(dynamic.value) else dynamic.value, dynamic_factor_method=dynamic.method,
         resonance_ratio=dynamic.resonance_ratio,
-        warnings=(*mesh_findings(model, name), *curve.warnings, *dynamic.warnings),
+        warnings=(*mesh_findings(model, name), *curve.warnings, *dynamic.warnings, *_several_mates(model, name, dynamic)),
     )  # fmt: skip
+
+
+def _several_mates(model: Model, name: str, dynamic: DynamicFactor) -> Iterator[str]:
+    """A sentence for a gear with further mates, whose resonances method B doesn't know."""
+    own = model.meshes[name]
+    for gear in (own.pinion, own.gear):
+        if dynamic.resonance_ratio and sum(gear in (mesh.pinion, mesh.gear) for mesh in model.meshes.values()) > 1:
+            yield f"K_v: '{gear}' has other mates too; N and K_v are those of this pair by itself"
+
+
+def _velocity(model: Model, name: str, g: GearGeometry) -> float | None:
+    """v (m/s) at the reference circle at the speed of the operating point."""
+    if model.operation is None or not model.operation.speed:
+        return None
+    spin = walk(model)[0].ratio(model.gears[name].shaft) * model.operation.speed
+    return 0.5 * g.reference_diameter * abs(spin)
 
 
 def _pitch_diameters(teeth: ToothPair) -> tuple[float, float]:

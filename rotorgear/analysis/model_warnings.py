@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rotorgear.analysis.mesh_notes import mesh_stiffness_warnings
 from rotorgear.gears.geometry import check_gear
 from rotorgear.model.mesh_geometry import base_radius, gear_geometry
 from rotorgear.model.pair_checks import mesh_findings
@@ -14,6 +15,7 @@ def model_warnings(system: System) -> Iterator[str]:
     """Yield a sentence for everything that is worth a second look."""
     yield from _gears(system)
     yield from _meshes(system)
+    yield from mesh_stiffness_warnings(system)
     yield from _train(system)
     yield from _couplings(system)
 

@@ -24,13 +24,14 @@ def gear(
     """Print the gear sheet: geometry, measures, contact ratios, backlash and stiffness of all teeth."""
     import rotorgear as rg
     from rotorgear.cli.tables_gear import sheet_parts
+    from rotorgear.plots.gear_mesh import draw_mesh, require_picture_name
 
+    if picture is not None:
+        require_picture_name(picture)
     sheet = rg.gear_sheet(rg.load(model), mesh=mesh)
     out = console()
     for part in sheet_parts(sheet):
         out.print(part)
     write_json(sheet.to_dict(), json)
     if picture is not None:
-        from rotorgear.plots.gear_mesh import draw_mesh
-
         out.print(f"drawn: {draw_mesh(sheet, picture, mesh=mesh)}")

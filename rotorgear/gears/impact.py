@@ -69,7 +69,8 @@ def corner_contact(teeth: ToothPair, separation: float) -> CornerContact:
     """Where the tip corner of gear 2, driven by gear 1, meets the driver's flank at a separation (m) along the line of action.
 
     Raises:
-        AnalysisError: a negative separation, interference, or one so large that the corner meets no involute.
+        AnalysisError: interference, or a separation that is negative or so large that contact comes a base pitch early or
+            meets no involute.
     """
     from scipy.optimize import brentq
 
@@ -83,6 +84,11 @@ def corner_contact(teeth: ToothPair, separation: float) -> CornerContact:
     if separation > 0.0:
         step = 1e-3 * teeth.base_pitch
         while corner_gap(teeth, step) < separation:
+            if step > teeth.base_pitch:
+                raise AnalysisError(
+                    f"A separation of {1e6 * separation:.4g} um brings the tip corner into contact more than a base pitch "
+                    "too early: corner contact is meant for the give of teeth, give a smaller one."
+                )
             step *= 1.5
         advance = float(brentq(lambda s: corner_gap(teeth, s) - separation, 0.0, step, xtol=1e-15, rtol=1e-13))
     _, tangent, point = _state(teeth, advance)

@@ -37,11 +37,15 @@ class ToothBody:
     Attributes:
         youngs_modulus (Pa), poisson_ratio: of the teeth.
         inner_radius: radius (m) of the bore, or inside of the rim.
+        web_share: thickness of the web over the face width of a helix; 1 for a solid disk.
+        rim_thickness: of the rim below the root circle (m); None for a solid disk.
     """
 
     youngs_modulus: float = 206e9
     poisson_ratio: float = 0.3
     inner_radius: float = 0.0
+    web_share: float = 1.0
+    rim_thickness: float | None = None
 
 
 @dataclass(frozen=True)
@@ -231,4 +235,8 @@ def mesh_stiffness(name: str, teeth: ToothPair, load: float | None = None, posit
         )
     module, function = entry.home.split(":")
     model: StiffnessModel = getattr(import_module(module), function)
-    return model(teeth, load, positions)
+    found = model(teeth, load, positions)
+    found.position.flags.writeable = found.transverse.flags.writeable = (
+        False  # the cache hands the same arrays out again
+    )
+    return found

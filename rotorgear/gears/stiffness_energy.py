@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from rotorgear.errors import AnalysisError
 from rotorgear.gears.contact_lines import contact_lines
 from rotorgear.gears.mesh_stiffness import MeshStiffness, ToothBody, ToothPair
 from rotorgear.gears.outline import ToothOutline, tooth_outline
@@ -40,7 +41,16 @@ def _outlines(teeth: ToothPair) -> tuple[ToothOutline, ToothOutline]:
 
 
 def potential_energy_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshStiffness:
-    """Sum of all slices in contact over one mesh period; it does not depend on the load."""
+    """Sum of all slices in contact over one mesh period; it does not depend on the load.
+
+    Raises:
+        AnalysisError: interference, or teeth that can't be cut.
+    """
+    if teeth.pair.interference:
+        raise AnalysisError(
+            "a tip reaches past the base tangent point of its mate (interference), where the tooth has no involute to "
+            "compute a stiffness of: reduce the tip diameter, or use more teeth or profile shift."
+        )
     path = np.linspace(teeth.pair.start_of_contact, teeth.pair.end_of_contact, _PATH)
     per_width = slice_stiffness(teeth, path)
     inside = (np.arange(_FINER) + 0.5) / _FINER - 0.5
@@ -66,9 +76,16 @@ def _body(outline: ToothOutline, body: ToothBody) -> str:
 
 def _warnings(teeth: ToothPair) -> tuple[str, ...]:
     found = []
-    bodies = (teeth.first_body, teeth.second_body)
+    bodies, pair = (teeth.first_body, teeth.second_body), teeth.pair
+    tangent = math.tan(pair.working_transverse_pressure_angle)
+    lowest = (
+        teeth.first.base_radius * tangent + pair.start_of_contact,
+        teeth.second.base_radius * tangent - pair.end_of_contact,
+    )
     for number, (outline, body) in enumerate(zip(_outlines(teeth), bodies, strict=True), 1):
         ratio, angle = ring_shape(outline, body)
+        if lowest[number - 1] < outline.form_roll_length - 1e-6 * outline.geometry.base_radius:
+            found.append(f"gear {number}: contact begins in the fillet, which is taken as involute there")
         if ratio < RING_RATIO[0]:
             found.append(
                 f"gear {number}: the rim is thinner than the ring formula covers (r_f / r_inner = {ratio:.3g})"

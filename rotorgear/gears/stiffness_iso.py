@@ -2,7 +2,8 @@
 
 q' = C1 + C2/z_n1 + C3/z_n2 + C4 x1 + C5 x1/z_n1 + C6 x2 + C7 x2/z_n2 + C8 x1^2 + C9 x2^2,   c'_th = 1/q'
 c' = c'_th C_M C_R C_B cos b,   c_gamma_alpha = c' (0.75 eps_alpha + 0.25),   c_gamma_beta = 0.85 c_gamma_alpha
-Below 100 N/mm of line load c' is reduced by (F_t K_A / b / 100)^0.25. Solid steel disks: C_R = 1 and E = 206 GPa; other
+C_R = 1 + ln(b_s / b) / (5 e^(s_R / 5 m_n)) for a web b_s and a rim s_R, 0.2 <= b_s/b <= 1.2, s_R/m_n >= 1; the mean of both
+gears. Below 100 N/mm of line load c' is reduced by (F_t K_A / b / 100)^0.25. The standard is for steel, E = 206 GPa; other
 moduli in proportion to the reduced modulus. Reference: ISO 6336-1:2006, clause 9, method B. The standard's unit is
 N/(mm um); here it is N/m^2 = 1e-9 N/(mm um).
 """
@@ -15,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.gears.geometry import GearGeometry
-from rotorgear.gears.mesh_stiffness import MeshStiffness, ToothPair
+from rotorgear.gears.mesh_stiffness import MeshStiffness, ToothBody, ToothPair
 
 UNIT = 1e9  # N/(mm um) in N/m^2
 _C = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
@@ -82,21 +83,42 @@ def _outside(pinion: GearGeometry, wheel: GearGeometry, contact_ratio: float) ->
     return tuple(found)
 
 
-def iso_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshStiffness:
-    """Mean mesh stiffness c_gamma_alpha b over the period, without ripple."""
-    line_load = None if load is None else load / math.cos(teeth.first.transverse_pressure_angle) / teeth.width
-    values = iso_tooth_stiffness(
+def pair_iso_stiffness(teeth: ToothPair, line_load: float | None = None) -> IsoStiffness:
+    """The standard's stiffness of a pair with its blanks and moduli, at a line load F_t K_A / b (N/m)."""
+    return iso_tooth_stiffness(
         teeth.first,
         teeth.second,
         teeth.pair.transverse_contact_ratio,
         line_load=line_load,
+        gear_blank_factor=blank_factor(teeth),
         modulus_ratio=_modulus_ratio(teeth),
     )
+
+
+def blank_factor(teeth: ToothPair) -> float:
+    """C_R of a pair: the mean of both gears."""
+    bodies = (teeth.first_body, teeth.second_body)
+    return 0.5 * sum(_blank_factor(body, teeth.first.normal_module) for body in bodies)
+
+
+def _blank_factor(body: ToothBody, module: float) -> float:
+    if body.rim_thickness is None:
+        return 1.0
+    rim = max(body.rim_thickness / module, 1.0)
+    return 1.0 + math.log(min(max(body.web_share, 0.2), 1.2)) / (5.0 * math.exp(rim / 5.0))
+
+
+def iso_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshStiffness:
+    """Mean mesh stiffness c_gamma_alpha b over the period, without ripple."""
+    line_load = None if load is None else load * math.cos(teeth.first.transverse_pressure_angle) / teeth.width
+    values = pair_iso_stiffness(teeth, line_load)
     k = np.full(positions, values.mesh_alpha * teeth.width)
-    body = "solid disks of ISO 6336-1 (C_R = 1); the approach is that of the teeth"
+    nominal = "a tip reaches past the base tangent point of its mate (interference): the contact ratio is nominal"
+    warnings = (*values.warnings, nominal) if teeth.pair.interference else values.warnings
+    body = f"blanks as in ISO 6336-1 (C_R = {blank_factor(teeth):.3f}); the approach is that of the teeth"
     return MeshStiffness(
         model="iso", position=np.arange(positions) / positions, transverse=k, definition="secant", helices=1, load=load,
-        body=body, base_helix_angle=teeth.pair.base_helix_angle, warnings=values.warnings,
+        body=body, base_helix_angle=teeth.pair.base_helix_angle, warnings=warnings,
     )  # fmt: skip
 
 

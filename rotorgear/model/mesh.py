@@ -17,8 +17,9 @@ class Mesh(Part):
     pinion: str = Field(description="name of the gear that is called the pinion")
     gear: str = Field(description="name of its mate")
     stiffness: StiffnessValue = Field(
-        description="mean mesh stiffness along the flank normal, both helices together; a list of such values over one mesh "
-        "period; or the name of a stiffness model, which takes the mean load of the torque flow"
+        description="mean mesh stiffness along the flank normal, both helices together; a list of such values over one "
+        "mesh period; a Fourier series { mean, amplitudes, phases }; or the name of a stiffness model, which takes the "
+        "mean load of the torque flow"
     )
     damping_ratio: Ratio = Field(0.0, description="damping ratio zeta: c = 2 zeta sqrt(k m_e)")
     damping: Damping | None = Field(

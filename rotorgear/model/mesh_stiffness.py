@@ -107,10 +107,11 @@ def _tooth_body(model: Tables, name: str) -> ToothBody:
 
     gear, geometry = model.gears[name], gear_geometry(model.gears[name])
     material = model.material_of(gear.shaft, name=gear.material)
-    inner = 0.5 * bore_of(model, name)
-    if gear.body.rim_thickness is not None and geometry is not None:
-        inner = 0.5 * geometry.root_diameter - gear.body.rim_thickness
-    return ToothBody(material.youngs_modulus, material.nu, inner)
+    inner, rim, web = 0.5 * bore_of(model, name), gear.body.rim_thickness, gear.body.web_thickness
+    if rim is not None and geometry is not None:
+        inner = 0.5 * geometry.root_diameter - rim
+    share = 1.0 if web is None or not gear.width else web / gear.width
+    return ToothBody(material.youngs_modulus, material.nu, inner, share, rim)
 
 
 def helix_senses(model: Tables, mesh: str, sense: int = 1) -> tuple[int, ...]:

@@ -50,6 +50,12 @@ def on_line_of_action(teeth: ToothPair, position: float) -> tuple[float, float]:
     return pitch + position * math.sin(angle), position * math.cos(angle)
 
 
+def require_picture_name(path: Path) -> None:
+    """AnalysisError unless the name ends with .png or .svg."""
+    if path.suffix.lower() not in (".png", ".svg"):
+        raise AnalysisError(f"A picture ends with .png or .svg, not '{path.suffix}'.")
+
+
 def draw_mesh(sheet: GearSheet, path: str | Path, mesh: str | None = None) -> Path:
     """Write the drawing of a mesh (the first one where none is named) as PNG or SVG and return its path.
 
@@ -59,8 +65,7 @@ def draw_mesh(sheet: GearSheet, path: str | Path, mesh: str | None = None) -> Pa
         WriteError: the file can't be written.
     """
     target = Path(path)
-    if target.suffix.lower() not in (".png", ".svg"):
-        raise AnalysisError(f"A picture ends with .png or .svg, not '{target.suffix}'.")
+    require_picture_name(target)
     name = mesh or next(iter(sheet.pairs), None)
     if name not in sheet.pairs:
         raise AnalysisError("There is no mesh between gears with teeth to draw.")
@@ -77,7 +82,9 @@ def draw_mesh(sheet: GearSheet, path: str | Path, mesh: str | None = None) -> Pa
     whole.set_title(f"{name}: centre distance {1e3 * row.centre_distance_m:.3f} mm", fontsize=10)
     ratios = f"eps_alpha {row.transverse_contact_ratio:.3f}, eps_beta {row.overlap_ratio:.3f}"
     near.set_title(f"working pressure angle {row.working_pressure_angle_deg:.3f} deg, {ratios}", fontsize=10)
-    figure.legend(*near.get_legend_handles_labels(), loc="outside lower center", ncols=7, frameon=False, fontsize=8)
+    handles = dict(zip(*near.get_legend_handles_labels()[::-1], strict=True))
+    first = {row.pinion: handles[row.pinion], row.gear: handles[row.gear]} | handles
+    figure.legend(first.values(), first.keys(), loc="outside lower center", ncols=7, frameon=False, fontsize=8)
     with replacing(target) as scratch:
         plain = target.suffix.lower() == ".svg"
         figure.savefig(scratch, dpi=130, format=target.suffix[1:].lower(), metadata={"Date": None} if plain else None)

@@ -62,7 +62,8 @@ class MeshSheetRow:
     """One mesh: the pair at its centre distance, its backlash and its stiffness.
 
     Pairs of numbers are of pinion and gear. `stiffness_n_per_m` is what the rotor model uses, along the flank normal, of all
-    helices; the ISO values are per face width in the transverse plane, in N/m^2 (1e9 of it are 1 N/(mm um)).
+    helices; the ISO values c'_th, c', c_gamma_alpha and c_gamma_beta are per face width in the transverse plane, in N/m^2
+    (1e9 of it are 1 N/(mm um)). Velocity and tangential force F_t are those at the reference circle, forces of one helix.
     """
 
     name: str
@@ -93,13 +94,17 @@ class MeshSheetRow:
     least_contact_line_m: float
     mean_contact_line_m: float
     largest_contact_line_m: float
+    iso_theoretical_stiffness_n_per_m2: float
     iso_single_stiffness_n_per_m2: float
     iso_mesh_stiffness_n_per_m2: float
+    iso_lead_stiffness_n_per_m2: float
     stiffness_model: str
     stiffness_n_per_m: float
     stiffness_peak_to_peak_n_per_m: float
     stiffness_definition: str
     stiffness_body: str
+    pitch_line_velocity_m_per_s: float | None
+    tangential_force_n: float | None
     base_tangential_force_n: float | None
     dynamic_factor: float | None
     dynamic_factor_method: str

@@ -91,6 +91,10 @@ def test_the_keys_of_check_are_documented(tmp_path: Path) -> None:
     assert set(keys(written(tmp_path, "check", str(MODEL)))) == documented("check")
 
 
+def test_the_keys_of_gear_are_documented(tmp_path: Path) -> None:
+    assert set(keys(written(tmp_path, "gear", str(MODEL)))) == documented("gear")
+
+
 def test_the_keys_of_accuracy_are_documented(tmp_path: Path) -> None:
     chain = ROOT / "models" / "torsion_chain.toml"
     assert set(keys(written(tmp_path, "accuracy", str(chain)))) == documented("accuracy")
