@@ -107,7 +107,12 @@ def _periods(teeth: ToothPair, wanted: int | None) -> int:
 
 
 def _solve(
-    request: MeshRequest, teeth: ToothPair, base_force: float, u: np.ndarray, stagger: float, progress: Progress = silent
+    request: MeshRequest,
+    teeth: ToothPair,
+    base_force: float,
+    u: np.ndarray,
+    stagger: float,
+    progress: Progress = silent,
 ) -> _Solved:
     """All helices at one load; they share it evenly, and the mesh approaches by their mean."""
     cycles: list[MeshCycle] = []
@@ -174,9 +179,7 @@ def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> 
     """A mesh with another stiffness model: its curve, and the transmission error that follows from it at the load."""
     normal = request.load.normal_force_n / request.helices if request.load else None
     name = None if request.model == "given" else request.model
-    curve: MeshStiffness = stiffness_of_mesh(
-        model, request.name, normal, positions, name=name, sense=request.senses[0]
-    )
+    curve: MeshStiffness = stiffness_of_mesh(model, request.name, normal, positions, name=name, sense=request.senses[0])
     error = None if request.load is None else request.load.base_force_n / curve.transverse
     clock.lap("stiffness")
     width = request.teeth.width if request.teeth else model.gears[model.meshes[request.name].pinion].width or 0.0

@@ -43,7 +43,9 @@ def compliance_key(
     """What to compute for a gear (m) with a face `width` (m) and a body that is held at `bore_radius` (m) if it is a ring."""
     m = geometry.normal_module
     tip = geometry.effective_tip_diameter / m
-    unit = replace(geometry, normal_module=1.0, tip_diameter=_rounded(tip), profile_shift=_rounded(geometry.profile_shift))
+    unit = replace(
+        geometry, normal_module=1.0, tip_diameter=_rounded(tip), profile_shift=_rounded(geometry.profile_shift)
+    )
     root = 0.5 * unit.root_diameter
     inner = bore_radius / m if fe.body == "ring" else max(root - fe.rim_thickness, LEAST_INNER * root)
     if fe.body == "ring" and inner <= 0.0:

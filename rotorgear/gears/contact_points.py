@@ -52,7 +52,13 @@ class Slices:
 
 
 def contact_slices(
-    line: LineOfAction, positions: np.ndarray, width: float, slices: int, beyond: tuple[float, float], *, stations: bool = False
+    line: LineOfAction,
+    positions: np.ndarray,
+    width: float,
+    slices: int,
+    beyond: tuple[float, float],
+    *,
+    stations: bool = False,
 ) -> Slices:
     """Cut the contact lines at positions u (p,) (in base pitches from the pitch point).
 
@@ -108,7 +114,11 @@ def _cut(
 
 
 def _gathered(
-    line: LineOfAction, pieces: list[tuple[int, int, int, np.ndarray, float]], positions: np.ndarray, tangent: float, weight: np.ndarray
+    line: LineOfAction,
+    pieces: list[tuple[int, int, int, np.ndarray, float]],
+    positions: np.ndarray,
+    tangent: float,
+    weight: np.ndarray,
 ) -> Slices:
     position, pair, zone = (np.array([piece[i] for piece in pieces], int) for i in range(3))
     z = np.array([piece[3] for piece in pieces]).reshape(len(pieces), len(weight))
@@ -169,7 +179,10 @@ def _shares(nodes: np.ndarray, places: np.ndarray, weights: np.ndarray) -> np.nd
     ends = nodes[::2]
     element = np.clip(np.searchsorted(ends, places, side="right") - 1, 0, len(ends) - 2)
     t = np.clip(2.0 * (places - ends[element]) / (ends[element + 1] - ends[element]) - 1.0, -1.0, 1.0)
-    shapes = np.stack([0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)], -1) * np.broadcast_to(weights, (n, q, m))[..., None]
+    shapes = (
+        np.stack([0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)], -1)
+        * np.broadcast_to(weights, (n, q, m))[..., None]
+    )
     row = np.arange(n * q).reshape(n, q, 1, 1) * len(nodes)
     index = row + 2 * element[..., None] + np.arange(3)
     return np.bincount(index.ravel(), shapes.ravel(), n * q * len(nodes)).reshape(n, q, len(nodes))

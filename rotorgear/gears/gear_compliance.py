@@ -79,6 +79,15 @@ def chained(sector: Sector, teeth: int, reach: int, *, ring: bool) -> tuple[np.n
     return _reciprocal(np.array(found))
 
 
+def cut_motions(sector: Sector, force: np.ndarray, teeth: int, *, ring: bool) -> np.ndarray:
+    """Motions (cuts, c, k) of the cuts between pitches for k sets of flank forces (f, k) on the middle one."""
+    c, S = sector.cut, sector.stiffness
+    factor = la.cho_factor(S[2 * c :, 2 * c :], lower=True, check_finite=False)
+    load = S[: 2 * c, 2 * c :] @ la.cho_solve(factor, force)
+    carried = la.cho_solve(factor, S[2 * c :, : 2 * c])
+    return _cut_motions(S[: 2 * c, : 2 * c] - S[: 2 * c, 2 * c :] @ carried, load, teeth, c, ring)
+
+
 def _cut_motions(K: np.ndarray, load: np.ndarray, teeth: int, c: int, ring: bool) -> np.ndarray:
     """Motions (cuts, c, n) of all cuts for the loads on the middle pitch; the held end cuts of a rim do not move."""
     A, B, D = K[:c, :c], K[:c, c:], K[c:, c:]

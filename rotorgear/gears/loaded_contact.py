@@ -95,7 +95,9 @@ def _local(contact: PositionContact, force: np.ndarray, total: float, *, tangent
     return np.asarray(np.sum(contact.local * np.maximum(share, _LEAST_LOCAL), axis=1) / contact.length)
 
 
-def _state(contact: PositionContact, C: np.ndarray, force: np.ndarray, approach: float, total: float, count: int) -> ContactState:
+def _state(
+    contact: PositionContact, C: np.ndarray, force: np.ndarray, approach: float, total: float, count: int
+) -> ContactState:
     open_by = C @ force + contact.gap - approach
     loaded = force > 0.0
     residual = max(float(np.abs(open_by[loaded]).max()), float(np.maximum(-open_by, 0.0).max()))

@@ -41,7 +41,7 @@ class MeshCycle:
         pressure: (n,) largest Hertz pressure (Pa).
         residual: largest violation of the contact conditions (m).
         least_eigenvalue: smallest one of all compliance matrices (m/N).
-        patch: largest half-width of the patches in normal modules.
+        patch: least and largest half-width of the patches in normal modules.
         beyond: how far corner contacts were followed before the start and after the end (m).
         warnings: sentences.
     """
@@ -57,7 +57,7 @@ class MeshCycle:
     pressure: np.ndarray
     residual: float
     least_eigenvalue: float
-    patch: float
+    patch: tuple[float, float]
     beyond: tuple[float, float]
     warnings: tuple[str, ...] = ()
 
@@ -123,17 +123,30 @@ def _beyond(problem: ContactProblem, approach: float) -> tuple[float, float]:
 
 
 def _swept(
-    problem: ContactProblem, load: float, normal: float, positions: np.ndarray, least: float, beyond: tuple[float, float], progress: Progress
+    problem: ContactProblem,
+    load: float,
+    normal: float,
+    positions: np.ndarray,
+    least: float,
+    beyond: tuple[float, float],
+    progress: Progress,
 ) -> tuple[MeshCycle, float, tuple[float, float]]:
     """One sweep over all positions; also the patch and the reach of corners that its solution asks for."""
     line, p = problem.line, len(positions)
     slices = contact_slices(line, positions, problem.width, problem.slices, beyond, stations=problem.uncoupled)
     widths = (least, max(problem.patch, least))
-    patches = [patch_loads(slices, i, problem.compliance[i], problem.module, problem.place(i, slices.z), widths) for i in (0, 1)]
+    patches = [
+        patch_loads(slices, i, problem.compliance[i], problem.module, problem.place(i, slices.z), widths)
+        for i in (0, 1)
+    ]
     gap = problem.gap(slices)
     length = slices.length / np.cos(line.base_helix_angle)
-    R = np.sum(slices.roll[0] * slices.roll[1] / slices.roll.sum(axis=0) * slices.weight, axis=1) / np.cos(line.base_helix_angle)
-    log_width = np.log(problem.module * np.cos(line.base_helix_angle)) + np.stack([patch.log_width for patch in patches], -1)
+    R = np.sum(slices.roll[0] * slices.roll[1] / slices.roll.sum(axis=0) * slices.weight, axis=1) / np.cos(
+        line.base_helix_angle
+    )
+    log_width = np.log(problem.module * np.cos(line.base_helix_angle)) + np.stack(
+        [patch.log_width for patch in patches], -1
+    )
     responses = _Responses(problem, slices, patches)
     force, strip = np.zeros(len(slices)), np.zeros(len(slices))
     approach, tangent, open_gap = np.zeros(p), np.zeros(p), np.zeros(p)
@@ -153,7 +166,7 @@ def _swept(
     pressure = np.where(force > 0.0, 2.0 * load_per_length / (np.pi * np.maximum(strip, 1e-300)), 0.0)
     cycle = MeshCycle(
         positions, load, approach / cosine, open_gap / cosine, tangent * cosine**2, slices, force, strip, pressure, residual,
-        eigenvalue, widths[1], beyond, _notes(problem, slices, force, pressure, beyond),
+        eigenvalue, widths, beyond, _notes(problem, slices, force, pressure, beyond),
     )  # fmt: skip
     wanted = _beyond(problem, float((approach - open_gap).max()) / cosine + problem.largest_gap)
     return cycle, _patch_for(float(strip.max()), problem), wanted
@@ -170,7 +183,9 @@ class _Responses:
             compliance: GearCompliance = problem.compliance[i]
             # Pair k + 1 of the pinion stands clockwise of pair k, that of the gear the other way.
             side = 1 if i == 0 else -1
-            self.moved.append([patches[i].loads @ (problem.scale[i] * compliance.response(side * o)) for o in range(reach + 1)])
+            self.moved.append(
+                [patches[i].loads @ (problem.scale[i] * compliance.response(side * o)) for o in range(reach + 1)]
+            )
 
     def compliance(self, own: np.ndarray) -> np.ndarray:
         """(n, n) in m/N of the slices `own` of one position."""
@@ -205,7 +220,9 @@ def _notes(
 ) -> tuple[str, ...]:
     notes = []
     if pressure.max() > _MOST_PRESSURE:
-        notes.append(f"a contact pressure of {1e-9 * pressure.max():.2g} GPa is beyond any gear steel; the result is elastic")
+        notes.append(
+            f"a contact pressure of {1e-9 * pressure.max():.2g} GPa is beyond any gear steel; the result is elastic"
+        )
     most, cosine = _MOST_BEYOND * problem.line.base_pitch, np.cos(problem.line.base_helix_angle)
     widest = min(float(problem.line.corner(gear, np.array([0.9 * most]))[0][0]) for gear in (0, 1)) * cosine
     far = (slices.gap @ slices.weight >= widest) & (force > 0.0)
@@ -215,5 +232,7 @@ def _notes(
             "touch farther out"
         )
     if np.any(slices.corner & (force > 0.0)):
-        notes.append("tip corners carry load: sharp corners are taken as line contacts, which may be 5 to 7 % too stiff there")
+        notes.append(
+            "tip corners carry load: sharp corners are taken as line contacts, which may be 5 to 7 % too stiff there"
+        )
     return tuple(notes)

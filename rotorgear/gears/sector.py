@@ -37,7 +37,8 @@ class Sector:
     unknowns: int
 
 
-def _clockwise(angle: float, dimension: int) -> np.ndarray:
+def clockwise(angle: float, dimension: int) -> np.ndarray:
+    """Matrix (d, d) of a clockwise rotation about z, 2 or 3 dimensions."""
     c, s = np.cos(angle), np.sin(angle)
     R = np.eye(dimension)
     R[:2, :2] = [[c, s], [-s, c]]
@@ -67,19 +68,24 @@ def layered_sector(
     g = mesh.outline.geometry
     height = width / layers
     twist = np.tan(g.base_helix_angle) / g.base_radius
-    hexes, place_of = _layer_mesh(mesh, height, twist)
+    hexes, place_of = layer_mesh(mesh, height, twist)
     K_e = element_matrices(skfem.Basis(hexes, skfem.ElementHex2(), intorder=4), poisson_ratio)
     p = 3 * len(mesh.points)
     K = assembled(K_e, component_dofs(place_of[hexes.dofs.element_dofs], 3), 3 * p)
-    tilt = np.hstack([np.cos(g.base_helix_angle) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(g.base_helix_angle))])
+    tilt = np.hstack(
+        [np.cos(g.base_helix_angle) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(g.base_helix_angle))]
+    )
     frame, free, inside, keep = _frames(mesh, tilt)
-    turn = [sp.csc_array(sp.kron(sp.eye_array(len(mesh.points)), _clockwise(twist * h, 3))) @ frame for h in (0.0, 0.5 * height, height)]
+    turn = [
+        sp.csc_array(sp.kron(sp.eye_array(len(mesh.points)), clockwise(twist * h, 3))) @ frame
+        for h in (0.0, 0.5 * height, height)
+    ]
     T = sp.block_diag(turn, format="csc")
     K = sp.csc_array(T.T @ K @ T)
     return _stacked(K, p, inside, keep, layers, 3 * len(mesh.left), len(free) * (2 * layers + 1), progress)
 
 
-def _layer_mesh(mesh: PitchMesh, height: float, twist: float) -> tuple[Any, np.ndarray]:
+def layer_mesh(mesh: PitchMesh, height: float, twist: float) -> tuple[Any, np.ndarray]:
     """One layer of quadratic hexahedra, and the place of each of its nodes: plane by plane, there as in the plane mesh."""
     skfem = scikit_fem()
     quads = mesh.mesh.t
@@ -107,7 +113,7 @@ def _frames(mesh: PitchMesh, normal: np.ndarray) -> tuple[sp.csc_array, np.ndarr
     """Frame of the unknowns in one plane (displacements = frame @ unknowns) and the numbers of free, inner and kept ones."""
     d, count = normal.shape[1], len(mesh.points)
     blocks = np.tile(np.eye(d), (count, 1, 1))
-    blocks[mesh.right] = _clockwise(mesh.pitch_angle, d)
+    blocks[mesh.right] = clockwise(mesh.pitch_angle, d)
     for node, direction in zip(mesh.flank, normal, strict=True):
         q, _ = np.linalg.qr(np.column_stack([direction, np.eye(d)[:, : d - 1] + 0.1]))
         q[:, 0] = direction  # qr keeps it up to its sign
@@ -131,7 +137,14 @@ def _condensed(K: np.ndarray, inside: int) -> np.ndarray:
 
 
 def _stacked(
-    K: sp.csc_array, p: int, inside: np.ndarray, keep: np.ndarray, layers: int, cut: int, unknowns: int, progress: Progress
+    K: sp.csc_array,
+    p: int,
+    inside: np.ndarray,
+    keep: np.ndarray,
+    layers: int,
+    cut: int,
+    unknowns: int,
+    progress: Progress,
 ) -> Sector:
     """Condense the middle plane of one layer, then stack layers: equal blocks are doubled, so few joints are worked out."""
     i, k = len(inside), len(keep)

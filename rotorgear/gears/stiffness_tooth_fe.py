@@ -35,7 +35,9 @@ def _prepared(teeth: ToothPair, progress: Progress) -> ContactProblem:
 def tooth_fe_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshStiffness:
     """Secant and tangent stiffness of one helix over one mesh period at F_bt = load (N)."""
     if not load:
-        raise AnalysisError("The stiffness of loaded teeth needs a load: give the torque or power that the mesh carries.")
+        raise AnalysisError(
+            "The stiffness of loaded teeth needs a load: give the torque or power that the mesh carries."
+        )
     problem, cycle = loaded_cycle(teeth, load, np.arange(positions) / positions)
     return MeshStiffness(
         model="tooth_fe", position=cycle.position, transverse=cycle.secant, definition="secant", helices=1, load=cycle.load,

@@ -82,6 +82,16 @@ class PitchMesh:
     mesh: Any = field(repr=False, compare=False)
 
     @property
+    def loaded_column(self) -> int:
+        """Doubled lattice number of the column on the loaded flank."""
+        return int(self.lattice[self.flank[0], 0])
+
+    @property
+    def tooth_rows(self) -> tuple[int, int]:
+        """Doubled lattice numbers of the rows where tooth and involute begin."""
+        return int(self.lattice[self.right[-1], 1]), int(self.lattice[self.flank[0], 1])
+
+    @property
     def pitch_angle(self) -> float:
         """2 pi / z (rad)."""
         return 2.0 * math.pi / self.outline.geometry.teeth
@@ -110,7 +120,9 @@ def pitch_mesh(outline: ToothOutline, size: MeshSize, inner_radius: float) -> Pi
         )
     skfem = scikit_fem()
     corners, cells = _cells(size)
-    straight = skfem.MeshQuad2.from_mesh(skfem.MeshQuad(np.ascontiguousarray(corners.T, float), np.ascontiguousarray(cells.T)))
+    straight = skfem.MeshQuad2.from_mesh(
+        skfem.MeshQuad(np.ascontiguousarray(corners.T, float), np.ascontiguousarray(cells.T))
+    )
     lattice = np.rint(2.0 * straight.doflocs.T).astype(int)
     grids = _rim_points(outline, size, inner_radius), _tooth_points(outline, size)
     points = _mapped(lattice, grids, size)

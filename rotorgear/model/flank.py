@@ -29,7 +29,8 @@ class ToothFeTable(Part):
 
     preset: Literal["preview", "default", "fine"] = Field("default", description="mesh of teeth and contact lines")
     body: Literal["rim", "ring"] = Field(
-        "rim", description="rim: a few teeth held below their roots; ring: a full disc held at its bore or inside of the rim"
+        "rim",
+        description="rim: a few teeth held below their roots; ring: a full disc held at its bore or inside of the rim",
     )
     rim_thickness: PositiveRatio = Field(3.0, description="depth of the rim's held circle below the root over m_n")
     exclude_torsion: bool = Field(False, description="ring: leave the wind-up of the disc to the rotor model")

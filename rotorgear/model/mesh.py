@@ -32,7 +32,9 @@ class Mesh(Part):
         0.0, description="the centre distance may deviate by so much to both sides, for the backlash"
     )
     application_factor: PositiveRatio = Field(1.0, description="application factor K_A of ISO 6336, for K_v")
-    stagger: Ratio = Field(0.0, description="herringbone: lead of the helix at larger z in mesh periods, 0 or 0.5 as a rule")
+    stagger: Ratio = Field(
+        0.0, description="herringbone: lead of the helix at larger z in mesh periods, 0 or 0.5 as a rule"
+    )
     misalignment: Length = Field(
         0.0, description="distance of the flanks at the end of larger z of the common face less that at its other end"
     )

@@ -232,5 +232,5 @@ def _harmonics(position: np.ndarray, values: np.ndarray, count: int) -> np.ndarr
     n = len(values)
     periods = round(n * float(position[1] - position[0])) if n > 1 else 1
     most = (n // periods - 1) // 2
-    spectrum = 2.0 * np.fft.fft(values)[periods :: periods][: min(count, most)] / n
+    spectrum = 2.0 * np.fft.fft(values)[periods::periods][: min(count, most)] / n
     return np.asarray(spectrum)

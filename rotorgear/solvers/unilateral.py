@@ -17,7 +17,9 @@ _BLOCK_ROUNDS = 40
 _TOLERANCE = 1e-12
 
 
-def unilateral(C: np.ndarray, gap: np.ndarray, total: float, start: np.ndarray | None = None) -> tuple[np.ndarray, float]:
+def unilateral(
+    C: np.ndarray, gap: np.ndarray, total: float, start: np.ndarray | None = None
+) -> tuple[np.ndarray, float]:
     """Forces (n,) and approach d of bodies pressed together by `total` > 0.
 
     Args:

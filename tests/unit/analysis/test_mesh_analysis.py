@@ -197,6 +197,8 @@ def test_in_a_loop_of_meshes_split_and_stiffness_agree() -> None:
     torque = 2.5e6 / (16350 * np.pi / 30.0)
     radius = flow.of_mesh("stage_1a")[0].contact.pinion_base_radius
     base = flow.of_mesh("stage_1a")[0].contact.base_helix_angle
-    carried = sum(f.normal_force for name in ("stage_1a", "stage_1b") for f in flow.of_mesh(name)) * radius * np.cos(base)
+    carried = (
+        sum(f.normal_force for name in ("stage_1a", "stage_1b") for f in flow.of_mesh(name)) * radius * np.cos(base)
+    )
     assert carried == pytest.approx(torque, rel=1e-9)
     assert flow.stiffness["stage_1a"].load == pytest.approx(0.5 * torque / radius, rel=1e-6)

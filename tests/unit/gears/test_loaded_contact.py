@@ -26,7 +26,13 @@ def test_one_slice_approaches_as_the_hertz_strip_and_the_rest_of_the_body() -> N
     modulus = E / (2.0 * (1.0 - nu**2))
     log_c = np.log(1.2e-3)
     contact = PositionContact(
-        np.array([[3e-9]]), np.zeros(1), np.array([L]), np.full((1, 2), K), np.full((1, 2), log_c), np.array([R]), modulus
+        np.array([[3e-9]]),
+        np.zeros(1),
+        np.array([L]),
+        np.full((1, 2), K),
+        np.full((1, 2), log_c),
+        np.array([R]),
+        modulus,
     )
     state = solve_contact(contact, load)
     a = float(hertz_half_width(np.array(load / L), np.array(R), modulus))
@@ -55,7 +61,13 @@ def test_the_tangent_stiffness_of_many_slices_is_the_slope_of_the_load() -> None
     A = rng.normal(size=(30, 30))
     C = 1e-10 * (A @ A.T / 30.0 + np.eye(30))
     contact = PositionContact(
-        C, 3e-6 * rng.random(30), np.full(30, 2e-3), np.full((30, 2), 2.8e-12), np.full((30, 2), np.log(1e-3)), np.full(30, 0.02), 1.13e11
+        C,
+        3e-6 * rng.random(30),
+        np.full(30, 2e-3),
+        np.full((30, 2), 2.8e-12),
+        np.full((30, 2), np.log(1e-3)),
+        np.full(30, 0.02),
+        1.13e11,
     )
     load, step = 4e3, 1e-5
     low, middle, high = (solve_contact(contact, load * (1.0 + s)) for s in (-step, 0.0, step))
