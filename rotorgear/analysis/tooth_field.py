@@ -7,8 +7,6 @@ by xi/r_b - (half angle at the base circle) - a_w from +y.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from rotorgear.analysis.mesh_request import mesh_request
@@ -50,8 +48,7 @@ def tooth_fields(
     request = mesh_request(model, mesh, "tooth_fe", torque, {"preset": preset, "body": body})
     assert request.teeth is not None
     teeth = request.teeth if request.senses[0] > 0 else mirrored(request.teeth)
-    space, uncoupled = in_space(teeth)
-    if uncoupled:
+    if in_space(teeth)[1]:
         raise AnalysisError(
             "The preview of a pair that changes along the face has no body to show: take --preset default."
         )

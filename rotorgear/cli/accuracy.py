@@ -44,7 +44,8 @@ def accuracy(
 
     if analysis == "mesh":
         _refuse_modal_options(speed, reference)
-        return _mesh(model, mesh, torque, plot, json)
+        _mesh(model, mesh, torque, plot, json)
+        return
     if analysis != "modal":
         raise AnalysisError(f"--analysis: got '{analysis}', expected modal or mesh")
     if mesh is not None or torque is not None:

@@ -62,13 +62,13 @@ def _main(found: MeshResult) -> Any:
         width = f"{per * value:.4f} N/(mm um)" if per else "-"
         table.add_row(name, f"{value:.5g} N/m", width, "-" if error is None else f"{100 * error:.2g} %")
 
-    row("mean stiffness", found.mean_stiffness, errors and errors.mean_stiffness)
-    row("peak to peak", found.peak_to_peak_stiffness, errors and errors.peak_to_peak_stiffness)
+    row("mean stiffness", found.mean_stiffness, errors.mean_stiffness if errors else None)
+    row("peak to peak", found.peak_to_peak_stiffness, errors.peak_to_peak_stiffness if errors else None)
     if found.tangent is not None:
         row("mean tangent stiffness", float(found.tangent.mean()), None)
     row("mean along the normal", found.mean_normal_stiffness, None)
     if found.transmission_error is not None and found.no_load_error is not None:
-        ste, error = found.transmission_error, errors and errors.ste_peak_to_peak
+        ste, error = found.transmission_error, errors.ste_peak_to_peak if errors else None
         table.add_row("transmission error, mean", f"{1e6 * ste.mean():.4f} um", "", "")
         table.add_row(
             "peak to peak", f"{1e6 * np.ptp(ste):.4f} um", "", "-" if error is None else f"{100 * error:.2g} %"

@@ -89,7 +89,9 @@ def _write(path: Path, key: Any, found: GearCompliance) -> None:
     scratch = path.with_name(f".{path.stem}.{uuid.uuid4().hex}")
     try:
         with scratch.open("wb") as file:
-            np.savez(file, **values, key=np.array(f"{VERSION} {key!r}"), checksum=np.array(_checksum(values)))
+            labels = {"key": np.array(f"{VERSION} {key!r}"), "checksum": np.array(_checksum(values))}
+            store: Any = np.savez  # its stubs take names for options
+            store(file, **values, **labels)
         os.replace(scratch, path)
     finally:
         scratch.unlink(missing_ok=True)

@@ -83,7 +83,7 @@ def contact_slices(
             for zone, ends in enumerate(zones):
                 for z, length in _cut(middle, tangent, ends, half, slices, stations, closed=zone == 1):
                     pieces.append((p, k, zone, z, length))
-    weight = np.array([1.0]) if tangent == 0.0 and slices == 1 or stations else _legendre()[1]
+    weight = np.array([1.0]) if (tangent == 0.0 and slices == 1) or stations else _legendre()[1]
     return _gathered(line, pieces, positions, tangent, weight)
 
 

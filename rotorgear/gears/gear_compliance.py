@@ -70,7 +70,7 @@ def chained(sector: Sector, teeth: int, reach: int, *, ring: bool) -> tuple[np.n
     for o in range(-reach, reach + 1):
         left = middle + o
         right = (left + 1) % len(cuts) if ring else left + 1
-        inside = 0 <= left and left + 1 < len(cuts) + (1 if ring else 0)
+        inside = left >= 0 and left + 1 < len(cuts) + (1 if ring else 0)
         if not inside:
             found.append(np.zeros_like(own))
             continue
@@ -97,7 +97,7 @@ def _cut_motions(K: np.ndarray, load: np.ndarray, teeth: int, c: int, ring: bool
     diagonal, moved = D + A, np.zeros((teeth + 1, c, n))
     rhs = np.zeros((teeth + 1, c, n))
     rhs[middle], rhs[middle + 1] = -load[:c], -load[c:]
-    factors = []
+    factors: list[tuple[np.ndarray, bool]] = []
     for cut in range(1, teeth):  # block elimination from the left
         pivot = diagonal if cut == 1 else diagonal - B.T @ la.cho_solve(factors[-1], B)
         if cut > 1:

@@ -28,6 +28,7 @@ from rotorgear.gears.tooth_fe import ToothFe
 from rotorgear.quantity import nearest
 
 Definition = Literal["secant", "tangent"]
+_EXACT, _DEFAULT_FE = FlankModification(), ToothFe()
 
 
 @dataclass(frozen=True)
@@ -67,10 +68,10 @@ class ToothPair:
     width: float
     first_body: ToothBody = ToothBody()
     second_body: ToothBody = ToothBody()
-    first_flank: FlankModification = FlankModification()
-    second_flank: FlankModification = FlankModification()
+    first_flank: FlankModification = _EXACT
+    second_flank: FlankModification = _EXACT
     misalignment: float = 0.0
-    fe: ToothFe = ToothFe()
+    fe: ToothFe = _DEFAULT_FE
 
     @property
     def base_pitch(self) -> float:

@@ -137,7 +137,8 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
         line, teeth.width, module, (found[0], found[1]), (scale[0], scale[1]),
         np.array([2.0 * value / math.pi for value in plane_strain]), 1.0 / sum(plane_strain),
         not space, uncoupled, slices, fe.patch_width, flanks, (teeth.first.teeth, teeth.second.teeth),
-        teeth.misalignment, fe.body_text(fe.arc, (inner[0], inner[1])), sum(item.unknowns for item in found), _warnings(teeth, line),
+        teeth.misalignment, fe.body_text(fe.arc, (inner[0], inner[1])), sum(item.unknowns for item in found),
+        _warnings(teeth, line),
     )  # fmt: skip
 
 

@@ -102,10 +102,11 @@ _COARSER: dict[Preset, tuple[MeshSize, tuple[MeshSize, float]]] = {
 def coarser_size(fe: ToothFe, width: float, *, space: bool) -> MeshSize:
     """A coarser mesh of the same kind, for a face of `width` normal modules."""
     if fe.size is not None:
-        rows = [
-            max(2, round(0.7 * n)) for n in (fe.size.involute, fe.size.fillet, fe.size.tooth, fe.size.land, fe.size.rim)
-        ]
-        return MeshSize(*rows, face=max(2, round(0.7 * fe.size.face)) if fe.size.face else 0)
+        given = fe.size
+        involute, fillet, tooth, land, rim = (
+            max(2, round(0.7 * n)) for n in (given.involute, given.fillet, given.tooth, given.land, given.rim)
+        )
+        return MeshSize(involute, fillet, tooth, land, rim, max(2, round(0.7 * given.face)) if given.face else 0)
     own = sized(fe, _COARSER[fe.preset][1 if space else 0], width).size
     assert own is not None
     return own

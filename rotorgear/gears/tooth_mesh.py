@@ -262,6 +262,6 @@ def _require_sound(found: PitchMesh) -> None:
     if not determinant.min() > 0.0:
         g = found.outline.geometry
         raise AnalysisError(
-            f"The teeth of a gear with z = {g.teeth}, x = {g.profile_shift:.4g} are undercut so deeply that they can't be meshed: "
-            "use more teeth or more profile shift."
+            f"The teeth of a gear with z = {g.teeth}, x = {g.profile_shift:.4g} are undercut so deeply that they can't be "
+            "meshed: use more teeth or more profile shift."
         )

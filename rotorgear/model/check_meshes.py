@@ -28,6 +28,8 @@ def mesh_settings(model: Tables) -> Iterator[Problem]:
         if mesh.damping is not None and mesh.damping_ratio:
             yield Problem(address, "damping and damping_ratio", "one of the two")
         yield from pressure_angle_problems(f"{address}.pressure_angle", mesh.pressure_angle)
+        if mesh.stagger >= 1.0:
+            yield Problem(f"{address}.stagger", f"{mesh.stagger:g}", "a share of the mesh period, from 0 to below 1")
 
 
 def mesh_problems(model: Tables) -> Iterator[Problem]:
@@ -45,7 +47,11 @@ def mesh_problems(model: Tables) -> Iterator[Problem]:
 
 
 def _teeth(address: str, mesh: Mesh, pinion: Gear) -> Iterator[Problem]:
-    """A stiffness model needs teeth."""
+    """A stiffness model needs teeth, and a stagger two helices."""
+    if mesh.stagger and pinion.kind != "herringbone":
+        yield Problem(
+            f"{address}.stagger", f"{mesh.stagger:g}", "0, or herringbone gears", "one helix has nothing to lead"
+        )
     if isinstance(mesh.stiffness, str) and pinion.lumped:
         wanted = "a stiffness such as '5e8 N/m' between gears that are given by their base radius"
         yield Problem(f"{address}.stiffness", f"'{mesh.stiffness}'", wanted, "a stiffness model needs teeth")

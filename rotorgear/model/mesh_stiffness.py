@@ -57,10 +57,11 @@ def tooth_pair(model: Tables, mesh: str) -> ToothPair:
     if first is None or second is None or pair is None:
         raise AnalysisError(f"meshes.{mesh}: gears given by their base radius have no teeth to look at.")
     width = min(model.gears[name].width or 0.0 for name in names)
-    bodies, flanks = ([part(model, name) for name in names] for part in (_tooth_body, _flank))
+    bodies, flanks = [_tooth_body(model, name) for name in names], [_flank(model, name) for name in names]
     return ToothPair(
-        first, second, pair, width, *bodies, *flanks, model.meshes[mesh].misalignment, _tooth_fe(model.meshes[mesh])
-    )
+        first, second, pair, width, bodies[0], bodies[1], flanks[0], flanks[1], model.meshes[mesh].misalignment,
+        _tooth_fe(model.meshes[mesh]),
+    )  # fmt: skip
 
 
 def mirrored(teeth: ToothPair) -> ToothPair:

@@ -2,7 +2,8 @@
 
 Block pivoting on the active set with a bordered dense system; where it runs in a circle, the primal active-set method, whose
 energy falls in every step, takes over. Both end in the one exact solution of the convex problem.
-Reference: Nocedal and Wright, Numerical Optimization, section 16.5; Lawson and Hanson, Solving Least Squares Problems, chapter 23.
+Reference: Nocedal and Wright, Numerical Optimization, section 16.5;
+Lawson and Hanson, Solving Least Squares Problems, chapter 23.
 """
 
 from __future__ import annotations

@@ -16,7 +16,8 @@ def pair_file(
 ) -> str:
     """Text of a model: two shafts in stiff bearings, a torque on the pinion's, the rest on the wheel's."""
     distance = 285.0 / math.cos(math.radians(helix))
-    text = 'schema_version = 1\ntitle = "Pair 34/80"\n[operation]\ninput_shaft = "one"\noutput_shaft = "two"\nspeed = "1000 rpm"\n'
+    text = 'schema_version = 1\ntitle = "Pair 34/80"\n'
+    text += '[operation]\ninput_shaft = "one"\noutput_shaft = "two"\nspeed = "1000 rpm"\n'
     text += f'[loads.drive]\nshaft = "one"\nkind = "input"\ntorque = "{torque}"\n' if torque else ""
     text += '[loads.brake]\nshaft = "two"\nkind = "output"\n' if torque else ""
     for name, x, teeth, own, extra in (("one", 0.0, 34, hand[0], pinion), ("two", distance, 80, hand[1], wheel)):

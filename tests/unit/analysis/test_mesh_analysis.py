@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.sparse.linalg as spl
-from tests.unit.analysis.geared import pair_file
 
 import rotorgear as rg
 from rotorgear.model.torque_flow import torque_flow
 from rotorgear.model.train import walk
 from rotorgear.system.system import System
+from tests.unit.analysis.geared import pair_file
 
 PREVIEW = 'tooth_fe = { preset = "preview" }'
 NAMED = f'stiffness = "tooth_fe"\n{PREVIEW}'
@@ -110,7 +110,8 @@ def test_a_staggered_herringbone_has_no_odd_orders() -> None:
     one = mesh_of(pair_file(20.86, "helical", mesh=NAMED), torque=500.0)
     assert plain.stiffness == pytest.approx(2.0 * one.stiffness, rel=1e-9)
     c, whole = half.ste_harmonics(4), plain.ste_harmonics(4)
-    assert c is not None and whole is not None
+    assert c is not None
+    assert whole is not None
     assert abs(c[::2]).max() <= 1e-9 * abs(whole).max()
     assert abs(c[1::2]) == pytest.approx(abs(whole[1::2]), rel=1e-9)
 
@@ -152,7 +153,7 @@ def test_loads_are_tabled_on_request() -> None:
 
 def test_a_mesh_without_load_says_what_to_give() -> None:
     text = pair_file(torque="", mesh='stiffness = "1e9 N/m"')
-    with pytest.raises(rg.AnalysisError, match="carries no torque.*--torque"):
+    with pytest.raises(rg.AnalysisError, match=r"carries no torque.*--torque"):
         mesh_of(text)
     assert mesh_of(text, stiffness="iso").load is None
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 import multiprocessing as mp
 import os
-from pathlib import Path
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from tests.unit.gears.tooth_pairs import COARSE, helical, pair, spur
 
 from rotorgear.gears import compliance_cache
 from rotorgear.gears.compliance_cache import cached, entry_name, forget
@@ -19,6 +18,7 @@ from rotorgear.gears.compliance_model import ComplianceKey, compliance_key, gear
 from rotorgear.gears.gear_compliance import GearCompliance, chained
 from rotorgear.gears.sector import Sector, layered_sector, plane_sector
 from rotorgear.gears.tooth_fe import ToothFe
+from tests.unit.gears.tooth_pairs import COARSE, helical, pair, spur
 
 NU = 0.3
 

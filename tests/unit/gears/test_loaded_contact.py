@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.optimize as so
-from tests.unit.gears.tooth_pairs import COARSE, LOAD, WIDTH, cycle, helical, pair, spur
 
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.flank import FlankModification
@@ -15,6 +14,7 @@ from rotorgear.gears.loaded_contact import PositionContact, hertz_half_width, so
 from rotorgear.gears.mesh_stiffness import ToothPair
 from rotorgear.gears.stiffness_tooth_fe import loaded_cycle
 from rotorgear.gears.tooth_fe import ToothFe
+from tests.unit.gears.tooth_pairs import COARSE, LOAD, WIDTH, cycle, helical, pair, spur
 
 # CalculiX, plane strain, spur 34/80 at the pitch point: approach 10 um, arc of three pitches, rim of three modules.
 PITCH_POINT = 18.708e9

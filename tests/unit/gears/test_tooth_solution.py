@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.unit.gears.tooth_pairs import COARSE, helical, spur
 
 from rotorgear.gears.compliance_model import ComplianceKey, compliance_key, gear_compliance
 from rotorgear.gears.tooth_fe import ToothFe
 from rotorgear.gears.tooth_solution import solve_teeth
+from tests.unit.gears.tooth_pairs import COARSE, helical, spur
 
 
 def key_of(body: str, *, space: bool) -> ComplianceKey:
