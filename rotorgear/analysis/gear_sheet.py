@@ -98,8 +98,7 @@ def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ..
     curve = stiffness_of_mesh(model, name, force or None)
     base = math.cos(pair.base_helix_angle)
     dynamic = mesh_dynamic_factor(model, name, force * base or None)
-    if isinstance(dynamic, str):
-        dynamic = DynamicFactor(math.nan, dynamic)
+    factor = dynamic if isinstance(dynamic, DynamicFactor) else None
     return MeshSheetRow(
         name=name, pinion=mesh.pinion, gear=mesh.gear, ratio=g2.teeth / g1.teeth, centre_distance_m=pair.centre_distance,
         reference_centre_distance_m=standard_centre_distance(g1, g2),
@@ -121,17 +120,18 @@ def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ..
         stiffness_body=curve.body, pitch_line_velocity_m_per_s=_velocity(model, mesh.pinion, g1),
         tangential_force_n=force * base * math.cos(g1.transverse_pressure_angle) if force else None,
         base_tangential_force_n=force * base if force else None,
-        dynamic_factor=None if math.isnan(dynamic.value) else dynamic.value, dynamic_factor_method=dynamic.method,
-        resonance_ratio=dynamic.resonance_ratio,
-        warnings=(*mesh_findings(model, name), *curve.warnings, *dynamic.warnings, *_several_mates(model, name, dynamic)),
+        dynamic_factor=factor.value if factor else None, resonance_ratio=factor.resonance_ratio if factor else None,
+        dynamic_factor_method=dynamic if isinstance(dynamic, str) else dynamic.method,
+        warnings=(*mesh_findings(model, name), *curve.warnings, *(_of_factor(model, name, factor) if factor else ())),
     )  # fmt: skip
 
 
-def _several_mates(model: Model, name: str, dynamic: DynamicFactor) -> Iterator[str]:
-    """A sentence for a gear with further mates, whose resonances method B doesn't know."""
+def _of_factor(model: Model, name: str, factor: DynamicFactor) -> Iterator[str]:
+    """Warnings of K_v, and a sentence for a gear with further mates, whose resonances method B doesn't know."""
+    yield from factor.warnings
     own = model.meshes[name]
     for gear in (own.pinion, own.gear):
-        if dynamic.resonance_ratio and sum(gear in (mesh.pinion, mesh.gear) for mesh in model.meshes.values()) > 1:
+        if factor.resonance_ratio and sum(gear in (mesh.pinion, mesh.gear) for mesh in model.meshes.values()) > 1:
             yield f"K_v: '{gear}' has other mates too; N and K_v are those of this pair by itself"
 
 

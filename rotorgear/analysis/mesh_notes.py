@@ -19,10 +19,11 @@ def mesh_stiffness_left_out(system: System) -> Iterator[str]:
             ripple = f"ripple of the given stiffness, {100.0 * share:.3g} % peak to peak"
             yield f"meshes.{name}: {ripple}; its mean {mean:.4g} N/m is taken"
         elif name in system.flow.stiffness:
-            yield f"meshes.{name}: {_of_model(system.flow.stiffness[name])}"
+            taken = sum(force.contact.stiffness for force in system.flow.of_mesh(name))
+            yield f"meshes.{name}: {_of_model(system.flow.stiffness[name], taken)}"
 
 
-def _of_model(curve: MeshStiffness) -> str:
+def _of_model(curve: MeshStiffness, taken: float) -> str:
     share = float(np.ptp(curve.transverse)) / curve.mean
     ripple = (
         f"ripple of {100.0 * share:.3g} % peak to peak" if share else f"ripple, which '{curve.model}' does not know"
@@ -30,7 +31,7 @@ def _of_model(curve: MeshStiffness) -> str:
     load = "without a load" if not curve.load else f"at F_bt = {curve.load:.4g} N"
     helices = "" if curve.helices == 1 else " of both helices"
     return (
-        f"{ripple}; the mean stiffness of '{curve.model}', {curve.mean_normal:.4g} N/m along the flank normal "
+        f"{ripple}; the mean stiffness of '{curve.model}', {taken:.4g} N/m along the flank normal "
         f"({curve.definition}, {load}{helices}), is taken"
     )
 

@@ -9,7 +9,8 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from rotorgear.analysis.damped_solve import DampedProblem, damped_group
+from rotorgear.analysis.damped_problem import DampedProblem
+from rotorgear.analysis.damped_solve import damped_group
 from rotorgear.analysis.modes import Modes, Wanted
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen import UndampedModes, lowest_modes

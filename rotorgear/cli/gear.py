@@ -17,7 +17,11 @@ def gear(
     ] = None,
     picture: Annotated[
         Path | None,
-        typer.Option("--picture", help="Draw the teeth in mesh into this file (.png or .svg).", show_default=False),
+        typer.Option(
+            "--picture",
+            help="Draw the teeth of --mesh, or of the first mesh, into this file (.png or .svg).",
+            show_default=False,
+        ),
     ] = None,
     json: JsonOption = None,
 ) -> None:

@@ -39,11 +39,33 @@ def _base_length(g: GearGeometry) -> float:
 
 
 def ideal_ball_diameter(g: GearGeometry) -> float:
-    """D_M (m) of the ball that touches the flanks at the cylinder d + 2 x m_n, or near the base circle where that is inside."""
+    """D_M (m) of the ball that touches the flanks at the cylinder d + 2 x m_n, or near the base circle where that is inside.
+
+    With the roll angle t of the touched points and T = tan^2 b_b, a_K solves a_K - t - eta_b + (tan a_K - t) T = 0, and
+    D = (tan a_K - t) z m_n cos a_n / cos^2 b_b: the normal from the ball's centre is D/2 long, D/2 cos b_b of it transverse.
+    """
     middle = max(g.reference_diameter + 2.0 * g.profile_shift * g.normal_module, 2.0 * g.base_radius * (1.0 + 1e-3))
     touch = math.sqrt((middle / (2.0 * g.base_radius)) ** 2 - 1.0)
-    centre = touch + _space_half_angle(g)
-    return _base_length(g) * (math.tan(centre) - touch)
+    slant, space = math.tan(g.base_helix_angle) ** 2, _space_half_angle(g)
+    low, high = math.atan(touch), 0.5 * math.pi
+    for _ in range(60):  # it grows with a_K throughout
+        centre = 0.5 * (low + high)
+        if centre - touch - space + (math.tan(centre) - touch) * slant < 0.0:
+            low = centre
+        else:
+            high = centre
+    return _base_length(g) * (math.tan(low) - touch) / math.cos(g.base_helix_angle) ** 2
+
+
+def ball_contact_diameter(g: GearGeometry, ball_diameter: float) -> float:
+    """Diameter (m) at which a ball touches the flanks: its roll length is r_b tan a_K - D/2 cos b_b.
+
+    Raises:
+        AnalysisError: a ball that falls to the bottom of the space.
+    """
+    centre = (over_balls(g, ball_diameter) - ball_diameter) / _oddness(g)
+    roll = math.sqrt(max(centre**2 - (2.0 * g.base_radius) ** 2, 0.0)) - ball_diameter * math.cos(g.base_helix_angle)
+    return math.hypot(2.0 * g.base_radius, roll)
 
 
 def over_balls(g: GearGeometry, ball_diameter: float) -> float:

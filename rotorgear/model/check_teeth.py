@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from rotorgear.errors import Problem, RotorgearError
 from rotorgear.gears.geometry import GearGeometry
-from rotorgear.gears.measure import over_balls, with_allowance
+from rotorgear.gears.measure import ball_contact_diameter, ideal_ball_diameter, with_allowance
 from rotorgear.gears.outline import ToothOutline, tooth_outline
 from rotorgear.model.check_flank import flank_problems
 from rotorgear.model.gear import Gear
@@ -30,11 +30,21 @@ def tooth_problems(address: str, gear: Gear, geometry: GearGeometry) -> Iterator
         yield Problem(
             f"{address}.accuracy_grade", str(gear.accuracy_grade), f"a class from 1 to {_LAST_GRADE} of ISO 1328-1"
         )
+    yield from _ball(address, gear, geometry)
+
+
+def _ball(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem]:
+    """The ball must touch the flanks of the thinnest tooth below its tip."""
+    thinnest = with_allowance(geometry, allowance(gear).lower)
+    key = "ball_diameter" if gear.ball_diameter is not None else "lower_thickness_allowance"
     try:
-        over_balls(with_allowance(geometry, allowance(gear).lower), ball_diameter(gear, geometry))
+        touched = ball_contact_diameter(thinnest, ball_diameter(gear, geometry))
     except RotorgearError as error:
-        key = "ball_diameter" if gear.ball_diameter is not None else "lower_thickness_allowance"
         yield Problem(f"{address}.{key}", "", str(error))
+        return
+    if gear.ball_diameter is not None and touched > geometry.effective_tip_diameter:
+        wanted = f"a ball that touches the flanks below the tip, such as {1e3 * ideal_ball_diameter(geometry):.4g} mm"
+        yield Problem(f"{address}.{key}", millimetres(gear.ball_diameter), wanted)
 
 
 def _allowances(address: str, gear: Gear) -> Iterator[Problem]:

@@ -61,6 +61,7 @@ class System:
         self.nodes: Nodes = discretise(model, self.plan)
         self.dofs: DofMap = map_dofs(model, self.nodes)
         self._last: tuple[float, Matrices] | None = None
+        self._last_damping: tuple[float, sp.csc_array] | None = None
 
     @property
     def n(self) -> int:
@@ -106,14 +107,17 @@ class System:
         return self._sum(self.groups_at(speed), term)
 
     def damping(self, speed: float = 0.0) -> sp.csc_array:
-        """Damping matrix with the proportional part, sparse (n, n)."""
+        """Damping matrix with the proportional part, sparse (n, n); that of the last speed is kept."""
+        if self._last_damping is not None and self._last_damping[0] == speed:
+            return self._last_damping[1]
         C = self._sum(self.groups_at(speed), lambda g: g.matrices.damping)
         given = self.model.damping
         if given.rayleigh_alpha:
             C = C + given.rayleigh_alpha * self.mass
         if given.rayleigh_beta:
             C = C + given.rayleigh_beta * self.stiffness(speed)
-        return sp.csc_array(C)
+        self._last_damping = (speed, sp.csc_array(C))
+        return self._last_damping[1]
 
     def strain_factor(self, speed: float = 0.0) -> sp.csr_array | None:
         """S with K = S^T S from element strains, sparse (s, n); None where a spring's matrix is not positive."""

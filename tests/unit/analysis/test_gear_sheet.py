@@ -103,3 +103,13 @@ def test_the_json_holds_plain_finite_numbers(tmp_path: Path) -> None:
     assert row["total_contact_ratio"] == pytest.approx(
         row["transverse_contact_ratio"] + row["overlap_ratio"], rel=1e-14
     )
+
+
+def test_a_pinion_with_two_mates_is_told_that_k_v_knows_one() -> None:
+    data = tomllib.loads((MODELS / "split_torque.toml").read_text(encoding="utf-8"))
+    for gear in data["gears"].values():
+        gear["accuracy_grade"] = 5
+    rows = {row.name: row for row in rg.gear_sheet(rg.Model(**data)).meshes}
+    assert "'pinion_1' has other mates too" in " ".join(rows["stage_1a"].warnings)
+    assert "'wheel_a'" not in " ".join(rows["stage_1a"].warnings)
+    assert rows["stage_1a"].dynamic_factor == pytest.approx(rows["stage_1b"].dynamic_factor, rel=1e-6)

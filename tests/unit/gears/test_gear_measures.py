@@ -13,6 +13,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.backlash import Allowance, normal_backlash
 from rotorgear.gears.geometry import GearGeometry
 from rotorgear.gears.measure import (
+    ball_contact_diameter,
     best_span,
     ideal_ball_diameter,
     normal_thickness,
@@ -33,21 +34,27 @@ def base_half_angle(g: GearGeometry) -> float:
 
 
 def clearance(g: GearGeometry, centre: float) -> float:
-    """Distance from a point on the middle of a space, at radius `centre`, to the helicoid beside it, by a refined grid search."""
+    """Distance from a point on the middle of a space to the helicoid beside it."""
+    return nearest(g, centre)[0]
+
+
+def nearest(g: GearGeometry, centre: float) -> tuple[float, float]:
+    """Distance from a point on the middle of a space, at radius `centre`, to the helicoid beside it, and radius of the point
+    there, by a refined grid search."""
     turn, half, middle = 2 * math.pi / g.lead, base_half_angle(g), math.pi / g.teeth
     reach = 0.0 if math.isinf(g.lead) else 2 * g.normal_module
     low, high = np.array([0.0, -reach]), np.array([1.5, reach])
-    best = math.inf
+    best, at = math.inf, 0.0
     for _ in range(9):
         roll, z = np.linspace(low[0], high[0], 201)[:, None], np.linspace(low[1], high[1], 201)
         radius, angle = g.base_radius * np.hypot(1, roll), half - (roll - np.arctan(roll)) + turn * z
         x, y = radius * np.cos(angle) - centre * math.cos(middle), radius * np.sin(angle) - centre * math.sin(middle)
         distance = np.sqrt(x**2 + y**2 + z**2)
         i, j = np.unravel_index(np.argmin(distance), distance.shape)
-        best, size = float(distance[i, j]), (high - low) / 16
+        best, at, size = float(distance[i, j]), float(radius[i, 0]), (high - low) / 16
         point = np.array([roll[i, 0], z[j]])
         low, high = np.maximum(point - size, [0.0, -reach]), point + size
-    return best
+    return best, at
 
 
 @pytest.mark.parametrize(
@@ -59,6 +66,9 @@ def test_balls_in_the_spaces_touch_the_true_flanks(teeth: int, helix: float, shi
     centre = brentq(lambda r: clearance(g, r) - 0.5 * ball, 1.001 * g.base_radius, 1.5 * g.base_radius, xtol=1e-14)
     apart = math.pi if teeth % 2 == 0 else math.pi - math.pi / teeth
     assert over_balls(g, ball) == pytest.approx(2 * centre * math.sin(apart / 2) + ball, rel=1e-10)
+    touched = 2 * nearest(g, centre)[1]
+    assert touched == pytest.approx(g.reference_diameter + 2 * shift * g.normal_module, rel=1e-5)
+    assert ball_contact_diameter(g, ball) == pytest.approx(touched, rel=1e-5)
 
 
 def test_a_dimension_over_balls_gives_the_shift_back() -> None:

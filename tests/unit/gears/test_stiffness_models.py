@@ -133,7 +133,7 @@ def test_a_single_pair_by_potential_energy_lies_within_the_scatter_of_the_standa
 def test_where_a_tip_works_below_the_base_circle_there_is_no_energy_to_compute() -> None:
     teeth = teeth_of(8, 60, 3e-3, 0, 0.03)
     assert teeth.pair.interference
-    with pytest.raises(AnalysisError, match="interference.*reduce the tip diameter"):
+    with pytest.raises(AnalysisError, match=r"interference.*reduce the tip diameter"):
         mesh_stiffness("potential_energy", teeth)
     assert "contact ratio is nominal" in mesh_stiffness("iso", teeth).warnings[-1]
 

@@ -119,6 +119,12 @@ def test_what_teeth_cannot_be_is_refused_at_its_address(
         assert f"gears.pinion.{key}" in found
 
 
+def test_a_ball_must_touch_the_flanks(pair: dict[str, Any], addresses: Callable[[dict[str, Any]], list[str]]) -> None:
+    for diameter in ("0.3 mm", "20 mm"):
+        pair["gears"]["pinion"]["ball_diameter"] = diameter
+        assert addresses(pair) == ["gears.pinion.ball_diameter"]
+
+
 def test_pointed_teeth_are_refused_with_the_remedy(pair: dict[str, Any]) -> None:
     pair["gears"]["pinion"] |= {"teeth": 12, "profile_shift": 1.1, "helix_angle": "20 deg"}
     with pytest.raises(ModelError, match=r"reduce the tip diameter, the addendum or the profile shift"):
