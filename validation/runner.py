@@ -12,6 +12,7 @@ from pathlib import Path
 
 from validation.cases import Case, Expectation, read_cases
 from validation.measure import Solver
+from validation.mesh import is_of_mesh, mesh_words
 from validation.quantities import words
 from validation.sheet import is_of_sheet, sheet_words
 from validation.table import printed
@@ -82,6 +83,8 @@ def _error(line: Expectation, got: float | str) -> float:
 
 def describe(line: Expectation) -> str:
     """Say in one phrase what a line compares."""
+    if is_of_mesh(line.quantity):
+        return f"{Path(line.model).stem}, {mesh_words(line.quantity)}"
     if is_of_sheet(line.quantity):
         return f"{Path(line.model).stem}, {sheet_words(line.quantity)}"
     parts = [Path(line.model).stem, f"mode {line.mode}", words(line.quantity)]

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from rotorgear.model.fields import Length, Name, NonNegativeLength, Part, PositiveLength, PositiveRatio
+from rotorgear.model.fields import Length, Name, NonNegativeLength, Part, PositiveLength, PositiveRatio, Whole
 
 
 class Flank(Part):
@@ -33,4 +33,5 @@ class ToothFeTable(Part):
         description="rim: a few teeth held below their roots; ring: a full disc held at its bore or inside of the rim",
     )
     rim_thickness: PositiveRatio = Field(3.0, description="depth of the rim's held circle below the root over m_n")
+    pitches: Whole = Field(7, description="rim: pitches of the arc, an odd number of at least 3; its end cuts are held")
     exclude_torsion: bool = Field(False, description="ring: leave the wind-up of the disc to the rotor model")

@@ -74,7 +74,7 @@ def _tooth_fe(mesh: Mesh) -> ToothFe:
     from rotorgear.gears.tooth_fe import ToothFe
 
     table = mesh.tooth_fe
-    return ToothFe(table.preset, table.body, table.rim_thickness, exclude_torsion=table.exclude_torsion)
+    return ToothFe(table.preset, table.body, table.rim_thickness, table.pitches, table.exclude_torsion)
 
 
 def _flank(model: Tables, name: str) -> FlankModification:
