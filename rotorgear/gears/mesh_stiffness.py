@@ -141,9 +141,12 @@ class MeshStiffness:
     @property
     def dynamic_normal(self) -> float:
         """Mean stiffness along the flank normal in N/m against small motions about the mean load."""
-        if self.tangent is None:
-            return self.mean_normal
-        return float(np.mean(self.tangent)) / math.cos(self.base_helix_angle) ** 2
+        return self.about_load.mean_normal
+
+    @property
+    def about_load(self) -> MeshStiffness:
+        """The curve that small motions about the load meet: the tangent one where there is one."""
+        return self if self.tangent is None else replace(self, transverse=self.tangent, definition="tangent")
 
     @property
     def peak_to_peak(self) -> float:
