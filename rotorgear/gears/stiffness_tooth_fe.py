@@ -10,7 +10,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.mesh_cycle import MeshCycle, mesh_cycle
 from rotorgear.gears.mesh_stiffness import MeshStiffness, ToothPair
 from rotorgear.gears.tooth_contact import ContactProblem, contact_problem
-from rotorgear.progress import Progress, silent
+from rotorgear.progress import Progress, listener, silent
 
 _problem = lru_cache(maxsize=8)(contact_problem)
 
@@ -38,7 +38,7 @@ def tooth_fe_stiffness(teeth: ToothPair, load: float | None, positions: int) -> 
         raise AnalysisError(
             "The stiffness of loaded teeth needs a load: give the torque or power that the mesh carries."
         )
-    problem, cycle = loaded_cycle(teeth, load, np.arange(positions) / positions)
+    problem, cycle = loaded_cycle(teeth, load, np.arange(positions) / positions, listener())
     return MeshStiffness(
         model="tooth_fe", position=cycle.position, transverse=cycle.secant, definition="secant", helices=1, load=cycle.load,
         body=problem.body, base_helix_angle=problem.line.base_helix_angle, warnings=problem.warnings + cycle.warnings,

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.unit.analysis.geared import pair_file
 from typer.testing import CliRunner
 
 from rotorgear.cli.main import app
 from rotorgear.errors import RotorgearError
+from tests.unit.analysis.geared import pair_file
 
 PREVIEW = 'stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'
 
@@ -33,7 +33,14 @@ def run(*arguments: object) -> str:
 
 def test_it_prints_stiffness_load_body_and_errors_in_eighty_columns(spur: Path) -> None:
     text = run("mesh", spur, "--loads", "0.1,1")
-    for word in ("secant", "rim: arc of 7 pitches", "F_bt", "mean stiffness", "contact ratio under load", "load factor"):
+    for word in (
+        "secant",
+        "rim: arc of 7 pitches",
+        "F_bt",
+        "mean stiffness",
+        "contact ratio under load",
+        "load factor",
+    ):
         assert word in text
     assert max(len(line.rstrip()) for line in text.splitlines()) <= 80
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from tests.unit.analysis.geared import pair_file
 
 import rotorgear as rg
+from tests.unit.analysis.geared import pair_file
 
 
 @pytest.mark.parametrize(
