@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rotorgear.analysis.clock import Clock
+from rotorgear.analysis.enriched_error import enriched_errors
 from rotorgear.analysis.modal_request import MOST_MODES, check_count, check_request, speed_in_si
 from rotorgear.analysis.modal_result import modal_result
 from rotorgear.analysis.modal_solve import solve
@@ -88,6 +89,8 @@ def modal(
         )
         clock.lap("error estimate")
         if fixed:
+            if error_estimate:
+                estimate = enriched_errors(system, Wanted(speed, None, None, tuple(only), pruning), found, estimate)
             break
         plan = _next_plan(system, reach, found, parts, estimate, target)
         if plan is not None:

@@ -62,6 +62,7 @@ class System:
         self.dofs: DofMap = map_dofs(model, self.nodes)
         self._last: tuple[float, Matrices] | None = None
         self._last_damping: tuple[float, sp.csc_array] | None = None
+        self._last_stiffness: tuple[float, sp.csc_array] | None = None
 
     @property
     def n(self) -> int:
@@ -91,8 +92,10 @@ class System:
         )
 
     def stiffness(self, speed: float = 0.0) -> sp.csc_array:
-        """Symmetric part of the stiffness at a reference speed in rad/s, sparse (n, n)."""
-        return self._sum(self.groups_at(speed), lambda g: g.matrices.stiffness)
+        """Symmetric part of the stiffness at a reference speed in rad/s, sparse (n, n); that of the last speed is kept."""
+        if self._last_stiffness is None or self._last_stiffness[0] != speed:
+            self._last_stiffness = (speed, self._sum(self.groups_at(speed), lambda g: g.matrices.stiffness))
+        return self._last_stiffness[1]
 
     def circulatory(self, speed: float = 0.0) -> sp.csc_array:
         """Non-symmetric stiffness of cross-coupled bearings and of internal damping at speed, sparse (n, n)."""
