@@ -13,7 +13,7 @@ from rotorgear.gears.mesh_cycle import MeshCycle, mesh_cycle
 from rotorgear.gears.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_contact import ContactProblem, contact_problem, in_space
 from rotorgear.gears.tooth_fe import PRESETS, sized
-from rotorgear.gears.tooth_mesh import MeshSize
+from rotorgear.gears.tooth_points import MeshSize
 from rotorgear.model.mesh_stiffness import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent

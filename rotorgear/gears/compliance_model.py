@@ -15,7 +15,8 @@ from rotorgear.gears.geometry import GearGeometry
 from rotorgear.gears.outline import ToothOutline, tooth_outline
 from rotorgear.gears.sector import layered_sector, plane_sector
 from rotorgear.gears.tooth_fe import ToothFe
-from rotorgear.gears.tooth_mesh import LEAST_INNER, MeshSize, PitchMesh, pitch_mesh
+from rotorgear.gears.tooth_mesh import LEAST_INNER, PitchMesh, pitch_mesh
+from rotorgear.gears.tooth_points import MeshSize
 from rotorgear.progress import Progress, silent
 
 # Teeth to either side of a loaded one whose response is kept; a pair further away is not felt.

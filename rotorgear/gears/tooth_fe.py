@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.tooth_mesh import MeshSize
+from rotorgear.gears.tooth_points import MeshSize
 
 Preset = Literal["preview", "default", "fine"]
 Body = Literal["rim", "ring"]

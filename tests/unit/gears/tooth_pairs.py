@@ -13,7 +13,7 @@ from rotorgear.gears.mesh_stiffness import ToothPair
 from rotorgear.gears.pair import pair_geometry
 from rotorgear.gears.stiffness_tooth_fe import loaded_cycle
 from rotorgear.gears.tooth_fe import ToothFe
-from rotorgear.gears.tooth_mesh import MeshSize
+from rotorgear.gears.tooth_points import MeshSize
 
 WIDTH = 54e-3
 COARSE = MeshSize(5, 2, 4, 2, 3, 4)
