@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.mesh_stiffness import MODELS, ToothPair
 from rotorgear.gears.tooth_fe import ToothFe
+from rotorgear.model.applied_torques import applied_torques
 from rotorgear.model.mesh_geometry import base_helix_angle, base_radius
 from rotorgear.model.mesh_stiffness import helix_count, helix_senses, tooth_pair
 from rotorgear.model.model import Model
@@ -64,13 +65,13 @@ def mesh_request(
         raise AnalysisError(f"--stiffness: there is no stiffness model '{chosen}': {hint}.")
     if chosen == "given" and isinstance(given, str):
         raise AnalysisError(f"--stiffness given: meshes.{name} names the model '{given}' and gives no numbers.")
+    teeth = None if chosen == "given" else _with(tooth_pair(model, name), fe)
     load, sense = _load(model, name, torque)
     if load is None and chosen in MODELS and MODELS[chosen].needs_load:
         raise AnalysisError(
             f"meshes.{name} carries no torque, and the stiffness of loaded teeth needs one: give --torque, or power or loads in "
             "the model."
         )
-    teeth = None if chosen == "given" else _with(tooth_pair(model, name), fe)
     return MeshRequest(name, chosen, teeth, helix_count(model, name), helix_senses(model, name, sense), load)
 
 
@@ -104,8 +105,11 @@ def _load(model: Model, name: str, torque: float | None) -> tuple[MeshLoad | Non
             raise AnalysisError(f"--torque: got {torque:g} N m, expected one that is not zero")
         force = abs(torque) / lever
         return MeshLoad(torque, force, force / cosine, "given"), 1 if torque > 0.0 else -1
+    train = walk(model)[0]
+    if not applied_torques(model, train)[0]:
+        return None, 1
     speed = model.operation.speed if model.operation else None
-    forces = torque_flow(model, walk(model)[0], -1 if speed is not None and speed < 0.0 else 1).of_mesh(name)
+    forces = torque_flow(model, train, -1 if speed is not None and speed < 0.0 else 1).of_mesh(name)
     normal, sense = sum(force.normal_force for force in forces), forces[0].torque_sense
     if not normal:
         return None, sense

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -156,6 +157,15 @@ def test_a_mesh_without_load_says_what_to_give() -> None:
     with pytest.raises(rg.AnalysisError, match=r"carries no torque.*--torque"):
         mesh_of(text)
     assert mesh_of(text, stiffness="iso").load is None
+    assert mesh_of(pair_file(torque="", mesh=NAMED), stiffness="iso").load is None
+    assert mesh_of(pair_file(torque="", mesh=NAMED), torque=100.0).load is not None
+
+
+def test_gears_without_teeth_are_refused() -> None:
+    model = rg.load(Path(__file__).parents[3] / "models" / "geared_pair.toml")
+    with pytest.raises(rg.AnalysisError, match="given by their base radius have no teeth"):
+        rg.mesh_analysis(model, torque=100.0)
+    assert rg.mesh_analysis(model, stiffness="given").mean_normal_stiffness == pytest.approx(1e8)
 
 
 @pytest.mark.parametrize(
@@ -186,8 +196,6 @@ def test_the_result_is_plain_json() -> None:
 
 
 def test_in_a_loop_of_meshes_split_and_stiffness_agree() -> None:
-    from pathlib import Path
-
     text = (Path(__file__).parents[3] / "models" / "split_torque.toml").read_text(encoding="utf-8")
     for number in ("5.63e8 N/m", "1.2e9 N/m"):
         text = text.replace(f'stiffness = "{number}"', f'stiffness = "tooth_fe"\n{PREVIEW}')

@@ -61,7 +61,9 @@ def test_other_stiffness_models_answer_too(spur: Path, tmp_path: Path) -> None:
         assert f"stiffness model {name}" in text
 
 
-@pytest.mark.parametrize("helix", [0.0, 20.86], ids=["plane", "space"])
+@pytest.mark.parametrize(
+    "helix", [pytest.param(0.0, id="plane"), pytest.param(20.86, id="space", marks=pytest.mark.long)]
+)
 def test_vtk_files_hold_meshes_that_touch_and_stresses(helix: float, tmp_path: Path) -> None:
     pv = pytest.importorskip("pyvista")
     file = tmp_path / "pair.toml"
