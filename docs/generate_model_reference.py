@@ -14,6 +14,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from rotorgear.model.bodies import Disk, PointMass
+from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic, Unbalance
 from rotorgear.model.flank import Flank, ToothFeTable
 from rotorgear.model.gear import Gear, GearBody
 from rotorgear.model.mesh import Mesh
@@ -34,6 +35,8 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("flank = { ... } of a gear", Flank),
     ("[meshes.NAME]", Mesh),
     ("tooth_fe = { ... } of a mesh", ToothFeTable),
+    ("transmission_error = [{ ... }] of a mesh", ErrorHarmonic),
+    ("stiffness_variation = [{ ... }] of a mesh", StiffnessHarmonic),
     ("[bearings.NAME]", Bearing),
     ("table = [{ ... }] of a bearing", TableRow),
     ("pedestal = { ... } of a bearing", Pedestal),
@@ -45,6 +48,7 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("[point_masses.NAME]", PointMass),
     ("[damping]", ModelDamping),
     ("[loads.NAME]", Load),
+    ("[unbalances.NAME]", Unbalance),
     ("[points.NAME]", Point),
 ]
 

@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from validation.cases import Case, Expectation, read_cases
+from validation.forced import FORCED
 from validation.measure import Solver
 from validation.mesh import is_of_mesh, mesh_words
 from validation.quantities import words
@@ -87,7 +88,11 @@ def describe(line: Expectation) -> str:
         return f"{Path(line.model).stem}, {mesh_words(line.quantity)}"
     if is_of_sheet(line.quantity):
         return f"{Path(line.model).stem}, {sheet_words(line.quantity)}"
-    parts = [Path(line.model).stem, f"mode {line.mode}", words(line.quantity)]
+    parts = [
+        Path(line.model).stem,
+        f"{'order' if line.quantity in FORCED else 'mode'} {line.mode}",
+        words(line.quantity),
+    ]
     if line.speed:
         parts.append(line.speed)
     if line.elements:

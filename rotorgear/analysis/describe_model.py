@@ -15,7 +15,18 @@ from rotorgear.results.description import MeshRow, ModelDescription, ShaftRow, T
 from rotorgear.system.system import System
 
 _RPM = 30.0 / math.pi
-_COUNTED = ("shafts", "gears", "meshes", "disks", "point_masses", "bearings", "supports", "couplings", "points")
+_COUNTED = (
+    "shafts",
+    "gears",
+    "meshes",
+    "disks",
+    "point_masses",
+    "bearings",
+    "supports",
+    "couplings",
+    "unbalances",
+    "points",
+)
 
 
 def describe_model(model: Model, *, elements: int | None = None) -> ModelDescription:

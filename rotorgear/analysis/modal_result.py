@@ -81,14 +81,10 @@ def _turned(shapes: np.ndarray) -> np.ndarray:
     """Turn each mode's phase so that its largest displacement is real and positive."""
     if shapes.shape[2] == 0:
         return shapes
-    size = np.abs(shapes)
-    flat = (size[:, :3] if size[:, :3].any() else size).reshape(-1, shapes.shape[2])
-    moving = flat.max(axis=0, initial=0.0) > 1e-9 * size.reshape(-1, shapes.shape[2]).max(axis=0, initial=0.0)
-    rows = shapes[:, :3].reshape(-1, shapes.shape[2])
-    everything = shapes.reshape(-1, shapes.shape[2])
-    for mode in range(shapes.shape[2]):
-        values = rows[:, mode] if moving[mode] else everything[:, mode]
-        peak = values[np.argmax(np.abs(values))]
-        if peak != 0.0:
-            shapes[:, :, mode] *= np.conj(peak) / np.abs(peak)
+    mode = np.arange(shapes.shape[2])
+    everything, rows = shapes.reshape(-1, len(mode)), shapes[:, :3].reshape(-1, len(mode))
+    size, along = np.abs(everything), np.abs(rows)
+    moving = along.max(axis=0, initial=0.0) > 1e-9 * size.max(axis=0, initial=0.0)
+    peak = np.where(moving, rows[along.argmax(axis=0), mode], everything[size.argmax(axis=0), mode])
+    shapes *= np.where(peak != 0.0, np.conj(peak) / np.where(peak != 0.0, np.abs(peak), 1.0), 1.0)
     return shapes

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli import accuracy, check, compare, gear, mesh, modal, schema, validate, view
+from rotorgear.cli import accuracy, check, compare, frf, gear, mesh, modal, response, schema, static, validate, view
 from rotorgear.errors import RotorgearError
 
 app = typer.Typer(
@@ -19,6 +19,9 @@ app = typer.Typer(
 )
 app.command()(modal.modal)
 app.command()(compare.compare)
+app.command()(static.static)
+app.command()(response.response)
+app.command()(frf.frf)
 app.command()(check.check)
 app.command()(gear.gear)
 app.command()(mesh.mesh)

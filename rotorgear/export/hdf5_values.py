@@ -17,8 +17,9 @@ import numpy as np
 
 from rotorgear.model.model import Model
 from rotorgear.results.modal import NodeTable, Piece
+from rotorgear.results.static import LoopAssembly, Share
 
-_RECORDS: dict[str, type] = {cls.__name__: cls for cls in (NodeTable, Piece)}
+_RECORDS: dict[str, type] = {cls.__name__: cls for cls in (NodeTable, Piece, Share, LoopAssembly)}
 
 
 def put_value(h5: ModuleType, parent: Any, name: str, value: Any) -> None:

@@ -113,6 +113,8 @@ RotationalDamping = Annotated[float, Unit("rotational_damping", "non-negative")]
 Ratio = Annotated[float, Unit("ratio", "non-negative")]
 PositiveRatio = Annotated[float, Unit("ratio", "positive")]
 SignedRatio = Annotated[float, Unit("ratio")]
+UnbalanceSize = Annotated[float, Unit("unbalance", "non-negative")]
+Acceleration = Annotated[float, Unit("acceleration")]
 
 
 def _parse_station(value: Any) -> float | str:
@@ -144,6 +146,15 @@ def _parse_position(value: Any) -> Any:
 
 
 Position = Annotated[tuple[Length, Length], BeforeValidator(_parse_position)]
+
+
+def _parse_gravity(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        raise refuse("its x, y and z such as ['0 m/s^2', '-9.81 m/s^2', '0 m/s^2']")
+    return value
+
+
+Gravity = Annotated[tuple[Acceleration, Acceleration, Acceleration], BeforeValidator(_parse_gravity)]
 
 
 def _parse_matrix(value: Any) -> tuple[tuple[float, ...], ...]:

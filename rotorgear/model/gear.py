@@ -76,6 +76,10 @@ class Gear(Part):
     base_radius: PositiveLength | None = Field(None, description="base radius of a lumped gear, in place of the module")
     transverse_pressure_angle: Angle | None = Field(None, description="transverse pressure angle of a lumped gear")
     base_helix_angle: Angle | None = Field(None, description="base helix angle of a lumped helical gear")
+    clocking: Angle | None = Field(
+        None,
+        description="angle of a tooth's middle from the mark of the shaft, about +z; default: what closes a loop, else 0",
+    )
     nodes: Literal[1, 2] | None = Field(
         None, description="herringbone: 2 = a node for each helix, joined by the shaft (default); 1 = one rigid node"
     )

@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic
 from rotorgear.model.fields import Angle, Damping, Length, NonNegativeLength, Part, PositiveRatio, Ratio
 from rotorgear.model.flank import ToothFeTable
 from rotorgear.model.mesh_stiffness_field import StiffnessValue
@@ -47,4 +48,21 @@ class Mesh(Part):
     )
     pressure_angle: Angle | None = Field(
         None, description="working transverse pressure angle, only where the shafts have no positions"
+    )
+    index_error: Length = Field(
+        0.0,
+        description="gap along the flank normal that must close before this mesh carries (timing error of a branch)",
+    )
+    helix_index_error: Length = Field(
+        0.0, description="gap that the helix at the larger z of a herringbone has beside that"
+    )
+    helix_stagger: Ratio = Field(
+        0.0,
+        description="herringbone: by how many pitches the teeth at the larger z are ahead; 0 in phase, 0.5 staggered",
+    )
+    transmission_error: tuple[ErrorHarmonic, ...] = Field(
+        (), description="harmonics of the static transmission error, positive where it opens the gap"
+    )
+    stiffness_variation: tuple[StiffnessHarmonic, ...] = Field(
+        (), description="harmonics of the mesh stiffness about its mean"
     )

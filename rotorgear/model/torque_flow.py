@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.model.applied_torques import AppliedTorque, applied_torques
@@ -57,13 +57,14 @@ class TorqueFlow:
     forces: tuple[MeshForce, ...]
     stiffness: dict[str, MeshStiffness] = field(default_factory=dict)
 
-    def with_dynamic_stiffness(self) -> TorqueFlow:
-        """The same state with the stiffness of each modelled mesh against small motions about the mean load."""
+    def with_stiffness(self, kind: Literal["dynamic", "static"]) -> TorqueFlow:
+        """The same state with the stiffness of each modelled mesh against small motions, or for the deflection at the load."""
         forces = []
         for force in self.forces:
             curve = self.stiffness.get(force.contact.mesh)
             if curve is not None:
-                own = replace(force.contact, stiffness=curve.dynamic_normal / curve.helices)
+                normal = curve.dynamic_normal if kind == "dynamic" else curve.static_normal
+                own = replace(force.contact, stiffness=normal / curve.helices)
                 force = replace(force, contact=own)
             forces.append(force)
         return replace(self, forces=tuple(forces))

@@ -14,7 +14,7 @@ from rotorgear.model.model import Model
 from rotorgear.model.torque_flow import TorqueFlow, torque_flow
 from rotorgear.model.train import Train, walk
 from rotorgear.system.assembly import assemble, strain_factor
-from rotorgear.system.dofs import DofMap, map_dofs
+from rotorgear.system.dofs import DofMap, map_dofs, rigid_groups
 from rotorgear.system.groups import ElementGroup, constant_groups, table_groups
 from rotorgear.system.nodes import Nodes, discretise
 from rotorgear.system.plan import Plan
@@ -43,21 +43,28 @@ class System:
         elements: basic elements in each piece of shaft.
         plan: how finely each piece is cut, in place of `elements`.
         direction: +1 or -1, sense in which the input shaft turns; it decides the driving flanks. None: as the operating speed.
+        flow: mean mesh forces and driving flanks, where they are known better than from torsion alone.
         mesh: which stiffness a loaded tooth contact has: "dynamic", its tangent at the mean load, for small motions; "static",
             its secant, for the deflection under that load. The others have one only.
     """
 
     def __init__(
-        self, model: Model, elements: int | None = None, *, plan: Plan | None = None, direction: int | None = None,
+        self,
+        model: Model,
+        elements: int | None = None,
+        *,
+        plan: Plan | None = None,
+        direction: int | None = None,
+        flow: TorqueFlow | None = None,
         mesh: Literal["dynamic", "static"] = "dynamic",
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.model = model
         self.plan = plan or Plan(elements or 1)
         self.train: Train = walk(model)[0]
         speed = model.operation.speed if model.operation else None
         self.direction = direction or (-1 if speed is not None and speed < 0.0 else 1)
-        flow = torque_flow(model, self.train, self.direction)
-        self.flow: TorqueFlow = flow.with_dynamic_stiffness() if mesh == "dynamic" else flow
+        self.mesh: Literal["dynamic", "static"] = mesh
+        self.flow: TorqueFlow = (flow or torque_flow(model, self.train, self.direction)).with_stiffness(mesh)
         self.nodes: Nodes = discretise(model, self.plan)
         self.dofs: DofMap = map_dofs(model, self.nodes)
         self._last: tuple[float, Matrices] | None = None
@@ -153,6 +160,10 @@ class System:
             K = sp.csc_array(K + skew)
         self._last = (speed, Matrices(self.mass, self.damping(speed), self.gyroscopic, K, not skew.nnz))
         return self._last[1]
+
+    def rigid_with(self, node: int) -> list[int]:
+        """The nodes that rigid sections tie to a node, itself among them."""
+        return next((group for group in rigid_groups(self.model, self.nodes) if node in group), [node])
 
     def positions(self) -> np.ndarray:
         """x, y, z of all nodes in m, shape (p, 3); shafts without positions lie at x = y = 0."""

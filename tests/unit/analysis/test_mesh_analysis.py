@@ -11,6 +11,7 @@ import pytest
 import scipy.sparse.linalg as spl
 
 import rotorgear as rg
+from rotorgear.analysis.mean_state import mean_state
 from rotorgear.model.torque_flow import torque_flow
 from rotorgear.model.train import walk
 from rotorgear.system.system import System
@@ -55,6 +56,14 @@ def test_the_rotor_model_deflects_as_the_loaded_teeth_do(helix: float, kind: str
     assert found.transmission_error is not None
     mean = float(found.transmission_error.mean()) * np.cos(found.base_helix_angle)
     assert deflection_of_rotor_model(text) == pytest.approx(mean, rel=1e-6)
+
+
+def test_statics_press_the_teeth_together_as_loaded_contact_does() -> None:
+    model = rg.loads(pair_file(20.86, "helical", mesh=NAMED))
+    found = rg.mesh_analysis(model, estimate=False)
+    assert found.transmission_error is not None
+    mean = float(found.transmission_error.mean()) * np.cos(found.base_helix_angle)
+    assert rg.static(model).mesh_deflection[0] == pytest.approx(mean, rel=1e-6)
 
 
 def test_small_motions_meet_the_tangent_stiffness() -> None:
@@ -193,6 +202,17 @@ def test_the_result_is_plain_json() -> None:
     assert again["definition"] == "secant"
     assert len(again["stiffness_n_per_m"]) == len(again["position"]) == 16
     assert again["mean_stiffness_n_per_m"] == pytest.approx(np.mean(again["stiffness_n_per_m"]))
+
+
+def test_a_response_about_the_mean_state_meets_the_tangent_stiffness() -> None:
+    model = rg.loads(pair_file(mesh=NAMED))
+    state = mean_state(System(model, mesh="static"), 100.0)
+    again = System(model, flow=state.system.flow)
+    tangent, secant = (s.flow.of_mesh("pair")[0].contact.stiffness for s in (again, state.system))
+    found = rg.mesh_analysis(model, estimate=False)
+    assert found.tangent is not None
+    assert tangent == pytest.approx(float(found.tangent.mean()), rel=1e-9)
+    assert secant == pytest.approx(1.0 / float(np.mean(1.0 / found.stiffness)), rel=1e-9)
 
 
 def test_in_a_loop_of_meshes_split_and_stiffness_agree() -> None:
