@@ -28,6 +28,8 @@ _HOMES = {
     "rotorgear.system.system": ("System",),
     "rotorgear.analysis.modal": ("modal",),
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
+    "rotorgear.analysis.campbell": ("campbell",),
+    "rotorgear.results.campbell": ("CampbellResult",),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
@@ -42,6 +44,7 @@ __all__ = ["__version__", *_HOME]
 
 if TYPE_CHECKING:
     from rotorgear.analysis.accuracy import accuracy_ladder
+    from rotorgear.analysis.campbell import campbell
     from rotorgear.analysis.compare import compare, read_rig_lines
     from rotorgear.analysis.describe_model import describe_model
     from rotorgear.analysis.modal import modal
@@ -65,6 +68,7 @@ if TYPE_CHECKING:
         TableRow,
     )
     from rotorgear.results.accuracy import AccuracyLadder
+    from rotorgear.results.campbell import CampbellResult
     from rotorgear.results.comparison import Comparison, RigLine
     from rotorgear.results.modal import ModalResult
     from rotorgear.system.system import System

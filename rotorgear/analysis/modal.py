@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 
 import numpy as np
 
+from rotorgear.analysis.clock import Clock
 from rotorgear.analysis.conditioning import conditioning_warnings
 from rotorgear.analysis.describe import describe
 from rotorgear.analysis.energies import mode_energies
@@ -70,7 +70,7 @@ def modal(
     unknown = set(only) - set(MOTIONS)
     if unknown:
         raise AnalysisError(f"only: got {', '.join(sorted(unknown))}, expected motions among {', '.join(MOTIONS)}")
-    clock = _Clock()
+    clock = Clock()
     if modes is None and fmax is None:
         modes = DEFAULT_MODES
     fixed = isinstance(model, System) or elements is not None
@@ -134,17 +134,6 @@ def _direction(speed: float | None) -> int | None:
     return None if not speed else int(np.sign(speed))
 
 
-class _Clock:
-    def __init__(self) -> None:
-        self.laps: dict[str, float] = {}
-        self._last = time.perf_counter()
-
-    def lap(self, name: str) -> None:
-        now = time.perf_counter()
-        self.laps[name] = self.laps.get(name, 0.0) + now - self._last
-        self._last = now
-
-
 def _speed(given: float | str | None) -> float | None:
     """Speed in rad/s from a number or a text with its unit."""
     if given is None:
@@ -176,7 +165,7 @@ def _result(
     found: Modes,
     q: np.ndarray,
     estimate: np.ndarray,
-    clock: _Clock,
+    clock: Clock,
 ) -> ModalResult:
     asked, fmax = wanted
     nodes, displaced = shapes_at_stations(system, q)
@@ -206,7 +195,7 @@ def _result(
         backward_error=found.backward_error,
         dofs=system.n,
         discretisation=pieces(system),
-        seconds={**clock.laps, "total": sum(clock.laps.values())},
+        seconds=clock.total(),
         left_out=(*left_out(system, speed), *found.groups),
         warnings=(
             *mode_warnings(system, asked, found.eigenvalues, fmax),

@@ -160,7 +160,7 @@ def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
         s, vectors, rigid, errors, available, method = _damped(problem, wanted)
     zeta = system.model.damping.modal_ratio
     if zeta and wanted.speed is not None:
-        s = _with_modal_damping(s, zeta)
+        s = with_modal_damping(s, zeta)
     return Modes(s, vectors, rigid, errors, method, available)
 
 
@@ -208,7 +208,7 @@ def _damped(
     )
 
 
-def _with_modal_damping(s: np.ndarray, zeta: float) -> np.ndarray:
+def with_modal_damping(s: np.ndarray, zeta: float) -> np.ndarray:
     """Add a damping ratio to every oscillating mode and keep |s|: what a modal damping ratio states."""
     size = np.abs(s)
     total = np.where(size > 0.0, -s.real / np.where(size > 0.0, size, 1.0), 0.0) + zeta

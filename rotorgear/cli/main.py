@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli import accuracy, check, compare, modal, schema, validate, view
+from rotorgear.cli import accuracy, campbell, check, compare, modal, schema, validate, view
 from rotorgear.errors import RotorgearError
 
 app = typer.Typer(
@@ -18,6 +18,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command()(modal.modal)
+app.command()(campbell.campbell)
 app.command()(compare.compare)
 app.command()(check.check)
 app.command()(accuracy.accuracy)

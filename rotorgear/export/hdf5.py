@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING, Any
 from rotorgear.errors import MissingExtraError, ModelError, RotorgearError
 from rotorgear.export.files import replacing
 from rotorgear.export.hdf5_values import get_value, put_value
+from rotorgear.results.campbell import CampbellResult
 from rotorgear.results.modal import ModalResult
 
 if TYPE_CHECKING:
     from types import ModuleType
 
 FORMAT, FORMAT_VERSION = "rotorgear result", 1
-_KINDS = {"modal": ModalResult}
+_KINDS: dict[str, Any] = {"modal": ModalResult, "campbell": CampbellResult}
 # The package is loaded before its modules; importing it from here would turn the house upside down.
 _VERSION: str = sys.modules[__name__.partition(".")[0]].__version__
 
@@ -31,7 +32,7 @@ class ReadError(RotorgearError):
         super().__init__(f"{path} can't be read: {reason}")
 
 
-def save(result: ModalResult, path: str | Path) -> Path:
+def save(result: ModalResult | CampbellResult, path: str | Path) -> Path:
     """Write a result to an HDF5 file and return its path.
 
     Raises:
@@ -48,7 +49,7 @@ def save(result: ModalResult, path: str | Path) -> Path:
     return Path(path)
 
 
-def read(path: str | Path) -> ModalResult:
+def read(path: str | Path) -> Any:
     """Read a result from an HDF5 file.
 
     Raises:
@@ -83,7 +84,7 @@ def _import_h5py() -> ModuleType:
     return h5py
 
 
-def _kind(path: Path, file: Any) -> type[ModalResult]:
+def _kind(path: Path, file: Any) -> Any:
     """Class of the result in a file; ReadError for a foreign or newer file."""
     if file.attrs.get("format") != FORMAT:
         raise ReadError(path, "it is no result of rotorgear")
