@@ -29,6 +29,9 @@ _HOMES = {
     "rotorgear.analysis.modal": ("modal",),
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
     "rotorgear.analysis.campbell": ("campbell",),
+    "rotorgear.analysis.critical": ("critical_speeds",),
+    "rotorgear.analysis.critical_map": ("critical_map",),
+    "rotorgear.results.critical": ("CriticalResult", "CriticalMap"),
     "rotorgear.results.campbell": ("CampbellResult",),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
@@ -46,6 +49,8 @@ if TYPE_CHECKING:
     from rotorgear.analysis.accuracy import accuracy_ladder
     from rotorgear.analysis.campbell import campbell
     from rotorgear.analysis.compare import compare, read_rig_lines
+    from rotorgear.analysis.critical import critical_speeds
+    from rotorgear.analysis.critical_map import critical_map
     from rotorgear.analysis.describe_model import describe_model
     from rotorgear.analysis.modal import modal
     from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
@@ -70,6 +75,7 @@ if TYPE_CHECKING:
     from rotorgear.results.accuracy import AccuracyLadder
     from rotorgear.results.campbell import CampbellResult
     from rotorgear.results.comparison import Comparison, RigLine
+    from rotorgear.results.critical import CriticalMap, CriticalResult
     from rotorgear.results.modal import ModalResult
     from rotorgear.system.system import System
 

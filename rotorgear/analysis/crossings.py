@@ -145,7 +145,7 @@ def crossings(
         s = modes.damped(np.array([root.s]))[0]
         share = participation(line, seen, place)
         found.append(
-            Crossing(line.name, root.branch + 1, root.speed, float(s.imag) / (2.0 * np.pi), float(-s.real / abs(s)),
+            Crossing(line.name, root.branch + 1, root.speed, float(s.imag) / (2.0 * np.pi), float(-s.real / abs(s)) + 0.0,
                      seen.whirl[place], share, share >= EXCITED)
         )  # fmt: skip
     return tuple(sorted(found, key=lambda item: (abs(item.speed), item.frequency_hz)))

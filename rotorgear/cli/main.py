@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli import accuracy, campbell, check, compare, modal, schema, validate, view
+from rotorgear.cli import accuracy, campbell, check, compare, critical, modal, schema, validate, view
 from rotorgear.errors import RotorgearError
 
 app = typer.Typer(
@@ -19,6 +19,7 @@ app = typer.Typer(
 )
 app.command()(modal.modal)
 app.command()(campbell.campbell)
+app.command()(critical.critical)
 app.command()(compare.compare)
 app.command()(check.check)
 app.command()(accuracy.accuracy)

@@ -14,13 +14,14 @@ from rotorgear.errors import MissingExtraError, ModelError, RotorgearError
 from rotorgear.export.files import replacing
 from rotorgear.export.hdf5_values import get_value, put_value
 from rotorgear.results.campbell import CampbellResult
+from rotorgear.results.critical import CriticalResult
 from rotorgear.results.modal import ModalResult
 
 if TYPE_CHECKING:
     from types import ModuleType
 
 FORMAT, FORMAT_VERSION = "rotorgear result", 1
-_KINDS: dict[str, Any] = {"modal": ModalResult, "campbell": CampbellResult}
+_KINDS: dict[str, Any] = {"modal": ModalResult, "campbell": CampbellResult, "critical": CriticalResult}
 # The package is loaded before its modules; importing it from here would turn the house upside down.
 _VERSION: str = sys.modules[__name__.partition(".")[0]].__version__
 
@@ -32,7 +33,7 @@ class ReadError(RotorgearError):
         super().__init__(f"{path} can't be read: {reason}")
 
 
-def save(result: ModalResult | CampbellResult, path: str | Path) -> Path:
+def save(result: ModalResult | CampbellResult | CriticalResult, path: str | Path) -> Path:
     """Write a result to an HDF5 file and return its path.
 
     Raises:

@@ -17,9 +17,10 @@ import numpy as np
 
 from rotorgear.model.model import Model
 from rotorgear.results.campbell import Crossing, ExcitationOrder, Margin, Onset
+from rotorgear.results.critical import CriticalSpeed
 from rotorgear.results.modal import NodeTable, Piece
 
-_RECORDS: dict[str, type] = {cls.__name__: cls for cls in (NodeTable, Piece, ExcitationOrder, Crossing, Margin, Onset)}
+_RECORDS: dict[str, type] = {cls.__name__: cls for cls in (NodeTable, Piece, ExcitationOrder, Crossing, Margin, Onset, CriticalSpeed)}
 
 
 def put_value(h5: ModuleType, parent: Any, name: str, value: Any) -> None:
@@ -122,6 +123,7 @@ _WRITERS: tuple[_Writer, ...] = (
     ("texts", lambda v: isinstance(v, tuple) and all(isinstance(x, str) for x in v), _put_texts),
     ("lists", lambda v: isinstance(v, tuple) and all(isinstance(x, tuple) for x in v), _put_lists),
     ("array", lambda v: isinstance(v, np.ndarray), _put_array),
+    ("truth", lambda v: isinstance(v, bool), _put_array),
     ("numbers", lambda v: _is_table(v, (float, int)), _put_table),
     ("arrays", lambda v: _is_table(v, np.ndarray), _put_table),
     ("integer", lambda v: isinstance(v, int | np.integer), _put_array),
@@ -136,6 +138,7 @@ _READERS: dict[str, Callable[[Any], Any]] = {
     "texts": _get_texts,
     "lists": lambda item: tuple(tuple(json.loads(text)) for text in _get_texts(item)),
     "array": lambda item: item[()],
+    "truth": lambda item: bool(item[()]),
     "numbers": _table_of(float),
     "arrays": _table_of(np.asarray),
     "integer": lambda item: int(item[()]),
