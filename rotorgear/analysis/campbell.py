@@ -302,7 +302,7 @@ def _left_out(system: System, found: SpeedModes, grid: np.ndarray, operating: fl
         notes.append("margins: the model has no operating speed")
     elif operating not in grid:
         notes.append("margins: the operating speed lies outside of the range")
-    return (*notes, *found.snapshots[0].notes)
+    return (*notes, *found.notes)
 
 
 def _warnings(system: System, found: SpeedModes, tracks: list[Track], onsets: tuple[Onset, ...]) -> tuple[str, ...]:

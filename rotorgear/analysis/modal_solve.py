@@ -110,7 +110,7 @@ def solve(system: System, wanted: Wanted) -> Modes:
         found = [_solve_group(_part(whole, g, system.n), wanted, system) for g in chosen]
     except LooseDofError as error:
         raise _loose(system, whole) or AnalysisError(str(error)) from None
-    notes = _group_notes(motions, groups, chosen)
+    notes = group_notes(motions, groups, chosen)
     return _merged(system, chosen, found, wanted, speed, notes)
 
 
@@ -244,7 +244,7 @@ def _merged(
     return Modes(s[order], vectors, rigid[order], errors[order], method, available, notes)
 
 
-def _group_notes(motions: np.ndarray, groups: list[np.ndarray], chosen: list[np.ndarray]) -> tuple[str, ...]:
+def group_notes(motions: np.ndarray, groups: list[np.ndarray], chosen: list[np.ndarray]) -> tuple[str, ...]:
     """Say which groups of dofs were solved apart and which were left out."""
     notes = []
     kept = {int(group[0]) for group in chosen}

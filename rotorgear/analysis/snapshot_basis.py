@@ -11,12 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.analysis.modal_solve import Modes, Wanted, solve, with_modal_damping
+from rotorgear.analysis.modal_solve import Modes, Wanted, group_notes, solve, with_modal_damping
 from rotorgear.analysis.speed_family import ReducedFamily, SpeedFamily
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress, silent
 from rotorgear.solvers.reduced_pencil import Eigen, Pencil, eigen
 from rotorgear.solvers.subspace import Subspace
+from rotorgear.system.components import dof_motions
 from rotorgear.system.system import System
 
 TOLERANCE = 1e-9
@@ -50,9 +51,6 @@ class Snapshot:
     s: np.ndarray
     vectors: np.ndarray
     rigid: np.ndarray
-    complete: bool
-    method: str
-    notes: tuple[str, ...]
 
 
 @dataclass
@@ -101,9 +99,11 @@ class SpeedModes:
         return sum(part.space.size for part in self._parts)
 
     @property
-    def solutions(self) -> int:
-        """How many reduced problems were solved."""
-        return len(self._known)
+    def notes(self) -> tuple[str, ...]:
+        """Sentences about groups of dofs that were solved apart or left out."""
+        motions, groups = dof_motions(self.system), [part.dofs for part in self._parts]
+        chosen = [part.dofs for part in self._parts if part.space.size]
+        return group_notes(motions, groups, chosen)
 
     def basis(self) -> list[np.ndarray]:
         """The basis of each group over all free dofs, (n, r_g)."""
@@ -177,9 +177,8 @@ class SpeedModes:
             ask += count - len(moving)
         kept = moving[:count]
         return Snapshot(
-            speed, s[kept], found.vectors[:, kept], found.vectors[:, found.rigid].real,
-            len(s) < (ask or np.inf) and limit is None, found.method, found.groups,
-        )  # fmt: skip
+            speed, s[kept], found.vectors[:, kept], found.vectors[:, found.rigid].real
+        )
 
     def _add(self, snapshot: Snapshot) -> int:
         """Put a true solution into the basis; return the number of new columns."""

@@ -45,10 +45,13 @@ def draw_campbell(result: CampbellResult, path: str | Path, *, colour: str = "mo
     _crossings(axis, result, top)
     if result.operating_speed is not None and left <= result.operating_speed * RPM <= right:
         axis.axvline(result.operating_speed * RPM, color="black", lw=0.8)
-        axis.text(result.operating_speed * RPM, 0.004 * top, " operating speed", fontsize=7, rotation=90, va="bottom", ha="right")
+        axis.annotate(
+            "operating speed", (result.operating_speed * RPM, top), xytext=(0, 3), textcoords="offset points", fontsize=7,
+            ha="center",
+        )  # fmt: skip
     axis.set_xlabel(f"speed of {result.model.reference_shaft}, rpm")
     axis.set_ylabel("damped frequency, Hz")
-    axis.set_title(result.model.title or "Campbell diagram", fontsize=11, pad=26)
+    figure.suptitle(result.model.title or "Campbell diagram", fontsize=11)
     axis.grid(True, alpha=0.15)
     _legend(axis, result, colour)
     return write_figure(figure, path)
@@ -72,7 +75,7 @@ def _branches(figure: Any, axis: Any, result: CampbellResult, colour: str) -> No
         values, label = _mean(result.log_decrement), "logarithmic decrement"
     lines = LineCollection(segments[there], array=values.ravel()[there], cmap="viridis", lw=1.7, zorder=3)
     axis.add_collection(lines)
-    figure.colorbar(lines, ax=axis, label=label, pad=0.13, fraction=0.03)
+    figure.colorbar(lines, ax=axis, label=label, pad=0.06, fraction=0.03)
 
 
 def _mean(values: np.ndarray) -> np.ndarray:
