@@ -5,6 +5,7 @@ The modes are those of `SpeedModes.at`; a step is judged by `solvers.tracking`.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -21,7 +22,7 @@ _END = 2.0**-10
 
 @dataclass
 class Track:
-    """Chains of modes: `number` (speeds, chains) place of each chain's mode among those at a speed, -1 where it doesn't oscillate.
+    """Chains of modes: `number` (speeds, chains) place of each chain's mode at a speed, -1 where it doesn't oscillate.
 
     `halvings` counts the speeds that were put between; `unsure` lists speeds in rad/s at which two modes stayed hard to tell.
     """
@@ -42,7 +43,7 @@ def track(modes: Callable[[float], Eigen], speeds: np.ndarray, watched: int) -> 
     walk = _Walk(modes, abs(speeds[-1] - speeds[0]), watched)
     first = modes(speeds[0])
     chains = [np.arange(len(first.s))]
-    for a, b in zip(speeds[:-1], speeds[1:], strict=True):
+    for a, b in itertools.pairwise(speeds):
         partner = walk.link(float(a), float(b))
         ends = chains[-1]
         here = np.where(ends >= 0, partner[np.maximum(ends, 0)], -1) if len(partner) else np.full(len(ends), -1)

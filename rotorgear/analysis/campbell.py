@@ -1,7 +1,7 @@
 """Campbell diagram: the modes of a gearbox over the speed of its input shaft, followed as branches, with excitation lines.
 
-Every shaft turns at its own ratio. Modes come from a certified basis (`snapshot_basis`), are followed by `branches`, and are damped and
-gyroscopic as in `modal` at a speed.
+Every shaft turns at its own ratio. Modes come from a certified basis (`snapshot_basis`), are followed by `branches`, and
+are damped and gyroscopic as in `modal` at a speed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from rotorgear.analysis.clock import Clock
 from rotorgear.analysis.crossings import Chain, crossings, margins, roots
 from rotorgear.analysis.discretise import system_for_speeds
 from rotorgear.analysis.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
-from rotorgear.analysis.modal import pieces
+from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.notes import left_out
 from rotorgear.analysis.refine import errors_of, total_error
 from rotorgear.analysis.snapshot_basis import Request, Snapshot, SpeedModes
@@ -50,8 +50,8 @@ def campbell(
 
     Args:
         model: a model, or its assembled system, which is then taken as it is.
-        speeds: of the input shaft, all of one sense; numbers are rad/s, texts carry their unit. None: 51 speeds from 0 to 1.25 times
-            the operating speed.
+        speeds: of the input shaft, all of one sense; numbers are rad/s, texts carry their unit. None: 51 speeds from 0 to
+            1.25 times the operating speed.
         modes: a branch is returned when it is among the lowest so many oscillating modes at one of the speeds; 24 where neither
             `modes` nor `fmax` is given.
         fmax: the same for all modes up to this many Hz.
@@ -320,6 +320,6 @@ def _warnings(system: System, found: SpeedModes, tracks: list[Track], onsets: tu
 def _method(found: SpeedModes, tracks: list[Track], count: int) -> str:
     halvings = sum(track.halvings for track in tracks)
     return (
-        f"basis of {found.size} columns from {len(found.snapshots)} true solutions, {len(found.checks)} more as a check: off by at most "
-        f"{found.error:.0e}; {count} speeds, {halvings} steps halved to follow the modes"
+        f"basis of {found.size} columns from {len(found.snapshots)} true solutions, {len(found.checks)} more as a check: "
+        f"off by at most {found.error:.0e}; {count} speeds, {halvings} steps halved to follow the modes"
     )

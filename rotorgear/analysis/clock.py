@@ -1,4 +1,4 @@
-"""Wall time by step."""
+"""Time taken by the steps of an analysis."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import time
 
 
 class Clock:
-    """Laps since the last one, added up by name."""
+    """Seconds that went into each step."""
 
     def __init__(self) -> None:
         self.laps: dict[str, float] = {}
         self._last = time.perf_counter()
 
     def lap(self, name: str) -> None:
-        """Count the time since the last lap to a step."""
+        """Add the time since the last lap to a step."""
         now = time.perf_counter()
         self.laps[name] = self.laps.get(name, 0.0) + now - self._last
         self._last = now

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -12,7 +13,7 @@ from rotorgear.analysis.clock import Clock
 from rotorgear.analysis.crossings import EXCITED, participation
 from rotorgear.analysis.discretise import system_for_speeds
 from rotorgear.analysis.excitation import excitation_orders
-from rotorgear.analysis.modal import pieces
+from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.notes import left_out
 from rotorgear.analysis.speed_family import SpeedFamily
 from rotorgear.analysis.speeds import highest_speed
@@ -45,7 +46,7 @@ def critical_speeds(
         model: a model, or its assembled system, which is then taken as it is.
         top_speed: rad/s, or a text with its unit; negative turns the other way. None: 1.25 times the operating speed.
         shaft_orders, mesh_orders: multiples of the speed of every shaft, and of the frequency of every mesh.
-        damped: with all damping and circulatory terms (a critical speed is where the damped frequency meets the line), or without.
+        damped: with all damping and circulatory terms, where the damped frequency has to meet the line; or without.
         fmax: only those with a frequency up to this many Hz.
         elements, accuracy: as in `modal`; an accuracy is met at the highest speed.
         progress: callable that is told fraction and step.
@@ -58,13 +59,21 @@ def critical_speeds(
     top = highest_speed(parts, top_speed)
     lines = excitation_orders(parts, shaft_orders, mesh_orders)
     if not lines or top == 0.0:
-        raise AnalysisError("no line of excitation: give a speed above 0 and an order of a shaft, or of a mesh with numbers of teeth")
+        raise AnalysisError(
+            "no line of excitation: give a speed above 0 and an order of a shaft, or of a mesh with numbers of teeth"
+        )
     if fmax is not None and not (np.isfinite(fmax) and fmax > 0.0):
         raise AnalysisError(f"the highest frequency must be positive, got {fmax} Hz")
     clock = Clock()
     highest = max(line.frequency_hz(top) for line in lines)
     system = system_for_speeds(
-        model, [top], modes=None, fmax=min(highest, fmax or np.inf), elements=elements, accuracy=accuracy, progress=progress
+        model,
+        [top],
+        modes=None,
+        fmax=min(highest, fmax or np.inf),
+        elements=elements,
+        accuracy=accuracy,
+        progress=progress,
     )
     clock.lap("mesh")
     family = SpeedFamily(system, *sorted((0.0, top)))
@@ -97,11 +106,13 @@ def affine_pieces(system: System, family: SpeedFamily, top: float, damped: bool)
     inner = sorted(abs(float(speed)) for speed in family.knots if 0.0 < abs(speed) < end * (1.0 - 1e-12))
     edges = [min((abs(float(w)) for w in family.knots), default=0.0), *inner, end]
     edges = sorted(set(edges))
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
+    for low, high in itertools.pairwise(edges):
         (D_a, K_a), (D_b, K_b) = (_matrices(system, sign * speed, damped) for speed in (low, high))
         D1, K1 = (D_b - D_a) / (high - low), (K_b - K_a) / (high - low)
         D0, K0 = D_a - low * D1, K_a - low * K1
-        yield Affine(system.mass, *(_clean(A, B) for A, B in ((D0, D_a), (D1, D_b / high), (K0, K_a), (K1, K_b / high))), low, high)
+        parts = ((D0, D_a), (D1, D_b / high), (K0, K_a), (K1, K_b / high))
+        D0, D1, K0, K1 = (_clean(A, scale) for A, scale in parts)
+        yield Affine(system.mass, D0, D1, K0, K1, low, high)
 
 
 def _clean(A: sp.csc_array, scale: sp.csc_array) -> sp.csc_array:
@@ -117,12 +128,13 @@ def _matrices(system: System, speed: float, damped: bool) -> tuple[sp.csc_array,
     gyroscopic = speed * system.gyroscopic
     if not damped:
         return sp.csc_array(gyroscopic), system.stiffness(speed)
-    return sp.csc_array(system.damping(speed) + gyroscopic), sp.csc_array(system.stiffness(speed) + system.circulatory(speed))
+    stiffness = system.stiffness(speed) + system.circulatory(speed)
+    return sp.csc_array(system.damping(speed) + gyroscopic), sp.csc_array(stiffness)
 
 
 def _cut(whole: Affine, dofs: np.ndarray) -> Affine:
-    parts = [sp.csc_array(A[:, dofs][dofs]) for A in (whole.M, whole.D0, whole.D1, whole.K0, whole.K1)]
-    return Affine(*parts, whole.low, whole.high)
+    M, D0, D1, K0, K1 = (sp.csc_array(A[:, dofs][dofs]) for A in (whole.M, whole.D0, whole.D1, whole.K0, whole.K1))
+    return Affine(M, D0, D1, K0, K1, whole.low, whole.high)
 
 
 def _result(

@@ -42,8 +42,8 @@ def critical_map(
 ) -> CriticalMap:
     """Return undamped critical speeds of one order of one shaft over the radial stiffness of all bearings.
 
-    Every bearing keeps its axial, tilting and torsional stiffness and its pedestal; its stiffness along x and y, cross terms and table
-    give way to the one value.
+    Every bearing keeps its axial, tilting and torsional stiffness and its pedestal; its stiffness along x and y, cross terms and
+    table give way to the one value.
 
     Args:
         model: a model with at least one bearing.
@@ -79,7 +79,14 @@ def critical_map(
     clock.lap("critical speeds")
     tables = {kind: _padded([row[kind] for row in rows]) for kind in ("forward", "backward", "other")}
     return CriticalMap(
-        model=model, line=line.name, stiffness=values, **tables, bearings=own, top_speed=top, dofs=stiffest.n, seconds=clock.total()
+        model=model,
+        line=line.name,
+        stiffness=values,
+        **tables,
+        bearings=own,
+        top_speed=top,
+        dofs=stiffest.n,
+        seconds=clock.total(),
     )
 
 
@@ -96,7 +103,9 @@ def _by_whirl(system: System, order: float, top: float) -> dict[str, list[float]
     seen = shapes.portraits(shapes.coordinates(0, np.vstack([one, 1j * one])), speeds)
     bending = seen.energies.kinetic_by_motion.get("bending", np.zeros(len(found)))
     for k, speed in enumerate(speeds):
-        net = sum(float(v[k]) * _share(seen.energies.kinetic_by_shaft, name, k) for name, v in seen.whirl_by_shaft.items())
+        net = sum(
+            float(v[k]) * _share(seen.energies.kinetic_by_shaft, name, k) for name, v in seen.whirl_by_shaft.items()
+        )
         kind = "other" if bending[k] < 0.5 else ("forward" if net > 0.0 else "backward")
         table[kind].append(float(speed))
     return {kind: sorted(values, key=abs) for kind, values in table.items()}

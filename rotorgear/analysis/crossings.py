@@ -1,7 +1,7 @@
 """Where branches meet excitation lines, where they turn unstable, and how far the operating speed is from that.
 
-A root of a function of an eigenvalue over speed is bracketed by two speeds of the track and found by a safeguarded secant; at every
-trial the eigenpair is refined in the reduced problem from the cubic through both ends.
+A root of a function of an eigenvalue over speed is bracketed by two speeds of the track and found by a safeguarded secant; at
+every trial the eigenpair is refined in the reduced problem from the cubic through both ends.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _CLOSE = 1e-13
 
 @dataclass(frozen=True)
 class Chain:
-    """One branch: number of its group, and s and coordinates q in the group's basis at each speed; NaN where it doesn't oscillate."""
+    """One branch: its group, and s and coordinates q in the group's basis at each speed; NaN where it doesn't oscillate."""
 
     group: int
     s: np.ndarray
@@ -56,7 +56,13 @@ def roots(modes: SpeedModes, chains: Sequence[Chain], speeds: np.ndarray, branch
 
 
 def _root(
-    modes: SpeedModes, chain: Chain, branch: int, ends: np.ndarray, values: tuple[float, float], measure: Measure, k: int
+    modes: SpeedModes,
+    chain: Chain,
+    branch: int,
+    ends: np.ndarray,
+    values: tuple[float, float],
+    measure: Measure,
+    k: int,
 ) -> Root:
     (a, b), (fa, fb) = (float(ends[0]), float(ends[1])), values
     s, q = chain.s[k], chain.q[k]
@@ -75,7 +81,9 @@ def _root(
     return Root(branch, float(w), s, q)
 
 
-def _nearest(modes: SpeedModes, chain: Chain, speed: float, guess: complex, k: int, share: float) -> tuple[complex, np.ndarray]:
+def _nearest(
+    modes: SpeedModes, chain: Chain, speed: float, guess: complex, k: int, share: float
+) -> tuple[complex, np.ndarray]:
     """The branch at a speed between two of the track: refined from the nearer end's vector, or searched among all modes there."""
     pencil = modes.pencil(chain.group, speed)
     start = chain.q[k] if share < 0.5 else chain.q[k + 1]
@@ -111,7 +119,9 @@ def participation(line: ExcitationOrder, seen: Portraits, k: int) -> float:
     """
     energies = seen.energies
     if line.kind != "shaft":
-        return sum(float(energies.strain[f"meshes.{name}"][k]) for name in line.parts if f"meshes.{name}" in energies.strain)
+        return sum(
+            float(energies.strain[f"meshes.{name}"][k]) for name in line.parts if f"meshes.{name}" in energies.strain
+        )
     total = 0.0
     for name in line.parts:
         if line.name.endswith(" 1x"):
@@ -123,7 +133,11 @@ def participation(line: ExcitationOrder, seen: Portraits, k: int) -> float:
 
 
 def crossings(
-    modes: SpeedModes, shapes: BasisShapes, chains: Sequence[Chain], speeds: np.ndarray, lines: Sequence[ExcitationOrder]
+    modes: SpeedModes,
+    shapes: BasisShapes,
+    chains: Sequence[Chain],
+    speeds: np.ndarray,
+    lines: Sequence[ExcitationOrder],
 ) -> tuple[Crossing, ...]:
     """All crossings of branches and lines, by speed."""
     hits: list[tuple[ExcitationOrder, Root]] = []

@@ -51,7 +51,9 @@ def excitation_orders(
             for label, distance in _sidebands(model, train, name, sidebands) if once else ():
                 add("sideband", f"{order:g}x {label}", order * once + distance, name)
     return tuple(
-        ExcitationOrder(f"{'shaft' if kind == 'shaft' else 'mesh'} {', '.join(names)} {label}", kind, tuple(names), order)
+        ExcitationOrder(
+            f"{'shaft' if kind == 'shaft' else 'mesh'} {', '.join(names)} {label}", kind, tuple(names), order
+        )
         for (kind, label, order), names in found.items()
     )
 

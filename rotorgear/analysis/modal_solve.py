@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.analysis.damped_solve import DampedProblem, damped_group
+from rotorgear.analysis.modes import Modes, Wanted
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen import UndampedModes, lowest_modes
 from rotorgear.solvers.pencil import LooseDofError
@@ -17,59 +18,8 @@ from rotorgear.system.components import dof_motions, independent_groups
 from rotorgear.system.strain_forms import StrainForms
 from rotorgear.system.system import System
 
-
 # Backward error above which a damped mode is refused.
 _LARGEST_RESIDUAL = 1e-8
-
-
-@dataclass(frozen=True)
-class Wanted:
-    """What a modal analysis is asked for.
-
-    Attributes:
-        speed: of the reference shaft in rad/s; None is undamped at standstill.
-        modes: how many modes; limit: all of them up to this |s| in rad/s. None is no such limit.
-        only: motions that a group of dofs must have to be solved; empty for all.
-        pruning: False solves all dofs as one group, for comparison.
-    """
-
-    speed: float | None
-    modes: int | None
-    limit: float | None
-    only: tuple[str, ...] = ()
-    pruning: bool = True
-
-
-@dataclass(frozen=True)
-class Modes:
-    """What the solvers give: eigenvalues s (m,), free shapes (n, m), rigid (m,), backward error (m,), sentences.
-
-    `available` is the number of modes that the model has, None where it was not counted; `groups` says how the dofs fell apart.
-    """
-
-    eigenvalues: np.ndarray
-    vectors: np.ndarray
-    rigid: np.ndarray
-    backward_error: np.ndarray
-    method: str
-    available: int | None
-    groups: tuple[str, ...] = ()
-
-    @property
-    def is_complete(self) -> bool:
-        """Whether these are all the modes that the discretised model has."""
-        return self.available is not None and len(self.eigenvalues) >= self.available
-
-    def first(self, count: int) -> Modes:
-        """The first modes only."""
-        columns = slice(count)
-        return replace(
-            self,
-            eigenvalues=self.eigenvalues[columns],
-            vectors=self.vectors[:, columns],
-            rigid=self.rigid[columns],
-            backward_error=self.backward_error[columns],
-        )
 
 
 @dataclass(frozen=True)
@@ -187,8 +137,8 @@ def _damped(
     worst = float(found.backward_error.max(initial=0.0))
     if worst > _LARGEST_RESIDUAL:
         raise ConvergenceError(
-            f"a damped mode leaves a residual of {worst:.1e} relative to the matrices, so the modes can't be trusted; ask for fewer "
-            "modes, or look for stiffness or damping many decades apart",
+            f"a damped mode leaves a residual of {worst:.1e} relative to the matrices, so the modes can't be trusted; ask for "
+            "fewer modes, or look for stiffness or damping many decades apart",
             found,
         )
     s = np.where(found.rigid, 0.0, found.eigenvalues)

@@ -44,4 +44,17 @@ def mode_warnings(
     unstable = int(np.sum(eigenvalues.real > 1e-9 * np.abs(eigenvalues)))
     if unstable:
         notes.append(f"{unstable} unstable mode{'s' if unstable > 1 else ''}: negative damping ratio, the motion grows")
+    gathers = gathering(system)
+    if gathers is not None and np.any((eigenvalues.imag == 0.0) & (np.abs(eigenvalues) >= gathers)):
+        notes.append(
+            f"damping in proportion to the stiffness gathers overdamped modes without end at {gathers / (2.0 * np.pi):.4g} Hz: "
+            "those from there on are not all that there are"
+        )
     return tuple(notes)
+
+
+def gathering(system: System) -> float | None:
+    """Lowest |s| in rad/s, 1/b, at which overdamped modes gather where damping b K goes with the stiffness; None without."""
+    given = [shaft.internal_damping for shaft in system.model.shafts.values()]
+    b = system.model.damping.rayleigh_beta + max(given, default=0.0)
+    return 1.0 / b if b > 0.0 else None

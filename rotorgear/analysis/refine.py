@@ -27,11 +27,11 @@ def total_error(parts: dict[PieceKey, np.ndarray], modes: int) -> np.ndarray:
 
 
 def errors_of(
-    system: System, speed: float | None, s: np.ndarray, q: np.ndarray, rigid: np.ndarray
+    system: System, speed: float | None, s: np.ndarray, x: np.ndarray, rigid: np.ndarray
 ) -> dict[PieceKey, np.ndarray]:
-    """Estimated relative error by piece, (m,) each, zero for rigid modes, from shapes (a, m)."""
+    """Estimated relative error by piece, (m,) each, zero for rigid modes, from free shapes x (n, m)."""
     elastic = ~rigid & (np.abs(s) > 0.0)
-    found = bubble_errors(system, speed, s[elastic], q[:, elastic]) if elastic.any() else {}
+    found = bubble_errors(system, speed, s[elastic], x[:, elastic]) if elastic.any() else {}
     spread = {}
     for piece, part in found.items():
         spread[piece] = np.zeros(len(s))

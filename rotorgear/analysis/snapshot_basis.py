@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.analysis.modal_solve import Modes, Wanted, group_notes, solve, with_modal_damping
+from rotorgear.analysis.modal_solve import group_notes, solve, with_modal_damping
+from rotorgear.analysis.modes import Modes, Wanted
 from rotorgear.analysis.speed_family import ReducedFamily, SpeedFamily
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress, silent
@@ -75,9 +76,7 @@ class SpeedModes:
         ConvergenceError: the basis doesn't reach the tolerance.
     """
 
-    def __init__(
-        self, system: System, low: float, high: float, request: Request, progress: Progress = silent
-    ) -> None:
+    def __init__(self, system: System, low: float, high: float, request: Request, progress: Progress = silent) -> None:
         self.system, self.request = system, request
         self.family = SpeedFamily(system, low, high)
         self._conservative = self.family.is_conservative
@@ -115,7 +114,7 @@ class SpeedModes:
         return found
 
     def at(self, speed: float) -> list[Eigen]:
-        """Oscillating modes of each group at a speed, in the coordinates of its basis; without the model's modal damping ratio."""
+        """Oscillating modes of each group at a speed, in coordinates of its basis; without the model's modal damping ratio."""
         speed = float(speed)
         if speed not in self._known:
             self._known[speed] = [
@@ -155,8 +154,8 @@ class SpeedModes:
                 continue
             if len(self.snapshots) >= _MOST_SNAPSHOTS or not self._add(middle):
                 raise ConvergenceError(
-                    f"modes from a basis of {self.size} columns are {error:.1e} off at {middle.speed * 30 / np.pi:.6g} rpm, above "
-                    f"{TOLERANCE:g}; ask for fewer modes or a narrower range of speeds, or use modal at single speeds"
+                    f"modes from a basis of {self.size} columns are {error:.1e} off at {middle.speed * 30 / np.pi:.6g} rpm, "
+                    f"above {TOLERANCE:g}; ask for fewer modes or a narrower range of speeds, or use modal at single speeds"
                 )
             self._project()
             waiting += [(a, middle.speed), (middle.speed, b)]
@@ -176,9 +175,7 @@ class SpeedModes:
                 break
             ask += count - len(moving)
         kept = moving[:count]
-        return Snapshot(
-            speed, s[kept], found.vectors[:, kept], found.vectors[:, found.rigid].real
-        )
+        return Snapshot(speed, s[kept], found.vectors[:, kept], found.vectors[:, found.rigid].real)
 
     def _add(self, snapshot: Snapshot) -> int:
         """Put a true solution into the basis; return the number of new columns."""
@@ -224,7 +221,7 @@ class SpeedModes:
 
 
 def _size(system: System, speed: float) -> np.ndarray:
-    """What the vectors are weighted with, (n,): stiffness and inertia of each dof, the latter at the stiffest dof's own frequency."""
+    """Weights of the dofs (n,): stiffness and inertia of each, the latter at a typical dof's own frequency."""
     K, M = system.stiffness(speed).diagonal(), system.mass.diagonal()
     both = (K > 0.0) & (M > 0.0)
     if not both.any():

@@ -72,7 +72,7 @@ class SpeedFamily:
 
     @property
     def is_conservative(self) -> bool:
-        """Whether nothing takes out energy or brings it in: without damping, cross-coupled and indefinite springs s is imaginary."""
+        """Whether nothing takes energy out or brings it in (no damping, cross-coupled or indefinite spring): s is imaginary."""
         forms = self._constant
         quiet = not (forms.viscosity.nnz or forms.circulation.nnz or self._per_speed.nnz)
         tables = all(not C.nnz and abs(K - K.T).max() == 0.0 for C, K in self._tables)
@@ -116,7 +116,7 @@ def _whole_stiffness(group: ElementGroup) -> np.ndarray | None:
 
 
 def table_speeds(system: System, low: float, high: float) -> np.ndarray:
-    """Reference speeds (k,) from `low` to `high` at which the matrices of a bearing with a table have a kink; none without tables."""
+    """Reference speeds (k,) from `low` to `high` at which a table of a bearing has a kink; none without tables."""
     found: set[float] = set()
     sign = -1.0 if min(low, high) < 0.0 else 1.0
     for bearing in system.model.bearings.values():

@@ -6,20 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rotorgear.analysis.modal_request import speed_in_si
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
-from rotorgear.quantity import QuantityError, parse_quantity
 
 DEFAULT_SPEEDS = 51
 _BEYOND = 1.25
-
-
-def parsed_speed(given: float | str) -> float:
-    """Speed in rad/s from a number or a text with its unit."""
-    try:
-        return parse_quantity(given, "speed")
-    except QuantityError as error:
-        raise AnalysisError(f"speed: got {given!r}, expected {error}") from None
 
 
 def operating_speed(model: Model) -> float | None:
@@ -34,10 +26,12 @@ def highest_speed(model: Model, given: float | str | None = None) -> float:
         AnalysisError: neither is known.
     """
     if given is not None:
-        return parsed_speed(given)
+        return speed_in_si(given)
     operating = operating_speed(model)
     if not operating:
-        raise AnalysisError("the model has no operating speed, so say up to which speed to look (--to, such as '12000 rpm')")
+        raise AnalysisError(
+            "the model has no operating speed, so say up to which speed to look (--to, such as '12000 rpm')"
+        )
     return _BEYOND * operating
 
 
@@ -54,7 +48,9 @@ def chosen_speeds(model: Model, given: Sequence[float | str] | None) -> np.ndarr
     Raises:
         AnalysisError: fewer than two different speeds, or speeds of both senses.
     """
-    speeds = speed_range(0.0, highest_speed(model)) if given is None else np.array([parsed_speed(v) for v in given], float)
+    speeds = (
+        speed_range(0.0, highest_speed(model)) if given is None else np.array([speed_in_si(v) for v in given], float)
+    )
     if speeds.size and (speeds.min() < 0.0 < speeds.max()):
         raise AnalysisError(
             "the speeds go through zero into the other sense of rotation, which loads other flanks: analyse each sense by itself"

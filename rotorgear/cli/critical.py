@@ -47,7 +47,8 @@ def critical(
         bool, typer.Option("--map", help="Also the undamped map over the stiffness of the bearings.")
     ] = False,
     shaft: Annotated[
-        str | None, typer.Option("--map-shaft", help="Shaft that excites in the map (default: the input).", show_default=False)
+        str | None,
+        typer.Option("--map-shaft", help="Shaft that excites in the map (default: the input).", show_default=False),
     ] = None,
     plot: PlotOption = None,
     json: JsonOption = None,
@@ -98,7 +99,10 @@ def _print(result: CriticalResult, chart: CriticalMap | None) -> None:
     out = console()
     kind = "damped" if result.damped else "undamped"
     out.print(
-        Text(f"{result.model.title or 'Critical speeds'}: {kind} critical speeds to {result.top_speed * _RPM:.6g} rpm", style="bold")
+        Text(
+            f"{result.model.title or 'Critical speeds'}: {kind} critical speeds to {result.top_speed * _RPM:.6g} rpm",
+            style="bold",
+        )
     )
     out.print(_table(result))
     out.print("")
@@ -126,7 +130,15 @@ def _table(result: CriticalResult) -> Any:
     for item in result.speeds:
         share = f"{100.0 * item.participation:.2f}" if item.excited else "none"
         zeta = [f"{100.0 * item.damping_ratio:.3f}"] if result.damped else []
-        row = [f"{item.speed * _RPM:.2f}", f"{item.frequency_hz:.3f}", item.line, *zeta, item.whirl, share, item.description]
+        row = [
+            f"{item.speed * _RPM:.2f}",
+            f"{item.frequency_hz:.3f}",
+            item.line,
+            *zeta,
+            item.whirl,
+            share,
+            item.description,
+        ]
         table.add_row(*row)
     return table
 

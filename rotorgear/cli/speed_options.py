@@ -20,9 +20,7 @@ ToOption = Annotated[
     str | None,
     typer.Option("--to", help="Highest speed (default 1.25 times the operating speed).", show_default=False),
 ]
-PlotOption = Annotated[
-    Path | None, typer.Option("--plot", help="Draw it to this PNG, SVG or PDF.", show_default=False)
-]
+PlotOption = Annotated[Path | None, typer.Option("--plot", help="Draw it to this PNG, SVG or PDF.", show_default=False)]
 SaveOption = Annotated[Path | None, typer.Option("--save", help="Save the result (HDF5).", show_default=False)]
 
 

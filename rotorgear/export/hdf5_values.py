@@ -20,7 +20,9 @@ from rotorgear.results.campbell import Crossing, ExcitationOrder, Margin, Onset
 from rotorgear.results.critical import CriticalSpeed
 from rotorgear.results.modal import NodeTable, Piece
 
-_RECORDS: dict[str, type] = {cls.__name__: cls for cls in (NodeTable, Piece, ExcitationOrder, Crossing, Margin, Onset, CriticalSpeed)}
+_RECORDS: dict[str, type] = {
+    cls.__name__: cls for cls in (NodeTable, Piece, ExcitationOrder, Crossing, Margin, Onset, CriticalSpeed)
+}
 
 
 def put_value(h5: ModuleType, parent: Any, name: str, value: Any) -> None:

@@ -27,8 +27,8 @@ def write_branch(
 ) -> list[Path]:
     """Write `branch_NN_KKK.vtp` for every speed and `branch_NN.pvd`, whose time is the speed in rpm; return the paths.
 
-    Each file holds the undeformed solids with `displacement_real` and `displacement_imag`, scaled by `displacement_scale`, in the phase
-    that goes on smoothly from the speed before, and frequency, log decrement and speed in the field data.
+    Each file holds the undeformed solids with `displacement_real` and `displacement_imag`, scaled by `displacement_scale`, in the
+    phase that goes on smoothly from the speed before, and frequency, log decrement and speed in the field data.
 
     Args:
         result: branches over speed. directory: folder to write to; made if need be. branch: which, counted from 0.
@@ -70,7 +70,7 @@ def write_branch(
 
 
 def smooth_shapes(result: CampbellResult, branch: int) -> Sequence[tuple[int, np.ndarray]]:
-    """(number of the speed, shape (p, 6)) of a branch where it oscillates, each in phase with the one before, the first peak real."""
+    """(number of the speed, shape (p, 6)) of a branch where it oscillates, each in phase with the one before."""
     found: list[tuple[int, np.ndarray]] = []
     for k in np.flatnonzero(np.isfinite(result.eigenvalues[:, branch])):
         shape = result.basis @ result.coordinates[k, :, branch]

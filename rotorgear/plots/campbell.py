@@ -25,8 +25,8 @@ def draw_campbell(result: CampbellResult, path: str | Path, *, colour: str = "mo
     Args:
         result: branches over speed.
         path: file to write.
-        colour: "motion" (bending, axial, torsion, mixed by their shares of the kinetic energy), "mesh" (share of all meshes in the
-            strain energy) or "damping" (logarithmic decrement).
+        colour: "motion" (bending, axial, torsion, mixed by their shares of the kinetic energy), "mesh" (share of all meshes in
+            the strain energy) or "damping" (logarithmic decrement).
 
     Raises:
         AnalysisError: an unknown colour. MissingExtraError: matplotlib is not installed.
@@ -60,7 +60,9 @@ def draw_campbell(result: CampbellResult, path: str | Path, *, colour: str = "mo
 def _branches(figure: Any, axis: Any, result: CampbellResult, colour: str) -> None:
     from matplotlib.collections import LineCollection
 
-    points = np.stack([np.broadcast_to(result.speed_rpm[:, None], result.frequency_hz.shape), result.frequency_hz], axis=-1)
+    points = np.stack(
+        [np.broadcast_to(result.speed_rpm[:, None], result.frequency_hz.shape), result.frequency_hz], axis=-1
+    )
     segments = np.stack([points[:-1], points[1:]], axis=2).reshape(-1, 2, 2)
     there = np.isfinite(segments).all(axis=(1, 2))
     if colour == "motion":
@@ -174,5 +176,7 @@ def _legend(axis: Any, result: CampbellResult, colour: str) -> None:
     kinds = {line.kind for line in result.lines}
     handles += [Line2D([], [], color=_LINES[k], ls="--", lw=0.9, label=f"{k} orders") for k in _LINES if k in kinds]
     if any(item.excited for item in result.crossings):
-        handles.append(Line2D([], [], color="black", marker="o", mfc="none", ms=6, mew=0.7, ls="none", label="crossing, rpm"))
+        handles.append(
+            Line2D([], [], color="black", marker="o", mfc="none", ms=6, mew=0.7, ls="none", label="crossing, rpm")
+        )
     axis.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=6, frameon=False, fontsize=8)

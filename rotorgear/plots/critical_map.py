@@ -25,7 +25,12 @@ def draw_critical_map(chart: CriticalMap, path: str | Path) -> Path:
         values = np.abs(getattr(chart, kind)) * RPM
         for column in range(values.shape[1]):
             axis.loglog(
-                chart.stiffness, values[:, column], style, color=colour, lw=1.4, label=_label(kind) if column == 0 else None
+                chart.stiffness,
+                values[:, column],
+                style,
+                color=colour,
+                lw=1.4,
+                label=_label(kind) if column == 0 else None,
             )
     _bearings(axis, chart)
     axis.set_xlabel("radial stiffness of every bearing, N/m")

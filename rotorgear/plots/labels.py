@@ -6,9 +6,7 @@ import numpy as np
 
 # Size of a short label, and distances at which it is tried, as shares of the axes.
 _WIDTH, _HEIGHT = 0.046, 0.026
-_TRIALS = tuple(
-    (r * np.cos(a), r * np.sin(a)) for r in (0.03, 0.045) for a in np.radians((60, 120, -60, -120, 0, 180))
-)
+_TRIALS = tuple((r * np.cos(a), r * np.sin(a)) for r in (0.03, 0.045) for a in np.radians((60, 120, -60, -120, 0, 180)))
 
 
 def spread(places: list[float], least: float) -> list[float]:

@@ -66,7 +66,7 @@ class Margin:
         line: its name. frequency_hz: of the line. branch: counted from 1; 0 where the line lies above
             all branches, or can't excite any.
         mode_hz: damped frequency of that mode. margin: mode_hz / frequency_hz - 1. participation: as at a crossing.
-        crossing_speed: nearest speed in rad/s, in the range analysed, at which the line meets a mode that it can excite; NaN: none.
+        crossing_speed: nearest speed in rad/s, in the range, at which the line meets a mode that it can excite; NaN: none.
     """
 
     line: str
@@ -95,7 +95,7 @@ class CampbellResult:
         model: the model that was analysed.
         speeds: (k,) speeds of the input shaft in rad/s, ascending in size.
         eigenvalues: (k, b) complex, s in rad/s; NaN where a branch does not oscillate, or is out of reach.
-        whirl: (k, b) numbers into `WHIRL_WORDS`; whirl_by_shaft: shaft -> (k, b), -1 backward to +1 forward, in that shaft's sense.
+        whirl: (k, b) numbers into `WHIRL_WORDS`; whirl_by_shaft: shaft -> (k, b), -1 backward to +1 forward, in its own sense.
         kinetic_by_motion, strain_by_motion, mesh_strain: shares of energy, motion or mesh -> (k, b).
         description: one line for each branch, at its first speed.
         error_estimate: (b,) estimated relative discretisation error, the larger of both ends; NaN where it was left out.

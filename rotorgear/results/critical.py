@@ -76,7 +76,16 @@ class CriticalResult:
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but the shapes as plain values for JSON; the keys are documented in docs/json.md."""
-        names = ("line", "frequency_hz", "damping_ratio", "whirl", "participation", "excited", "description", "residual")
+        names = (
+            "line",
+            "frequency_hz",
+            "damping_ratio",
+            "whirl",
+            "participation",
+            "excited",
+            "description",
+            "residual",
+        )
         return {
             "analysis": "critical",
             "title": self.model.title,

@@ -71,7 +71,9 @@ def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, f
             best, off = search, abs(np.log(lowest))
         w0 *= lowest
     if best is None:
-        raise ConvergenceError("The frequency scale of the damped problem could not be found; give frequency_scale.")
+        raise ConvergenceError(
+            "The lowest frequencies could not be located: inertia, damping and stiffness lie too many decades apart."
+        )
     return best  # a spectrum without a place near which its lowest eigenvalues gather: any scale will do
 
 

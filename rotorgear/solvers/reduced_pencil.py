@@ -95,8 +95,7 @@ def _inverted(pencil: Pencil, shift: float) -> tuple[np.ndarray, np.ndarray, np.
     diagonal = np.abs(np.diag(pencil.K)) + shift**2 * np.abs(np.diag(pencil.M)) + shift * np.abs(np.diag(pencil.D))
     scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
     M, D, K = (
-        factor * A * scale[:, None] * scale
-        for factor, A in ((shift**2, pencil.M), (shift, pencil.D), (1.0, pencil.K))
+        factor * A * scale[:, None] * scale for factor, A in ((shift**2, pencil.M), (shift, pencil.D), (1.0, pencil.K))
     )
     try:
         P = la.inv(K + D + M, check_finite=False)

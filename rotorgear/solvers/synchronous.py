@@ -4,9 +4,9 @@ Between two speeds a and b the matrices are affine, D = D_0 + W D_1 and K = K_0 
 
     [ K_0 + s (p D_0 - i K_1) + s^2 (p^2 M - i p D_1) ] x = 0 ,       W = Im s
 
-which for D_0 = K_1 = 0 is K x = W^2 (p^2 M - i p G) x, a Hermitian but indefinite pair. It is inverted at s = i (a + b)/2, so that all
-speeds between a and b lie in the disc around it. With damping Re s is not zero, and the root of Im lambda(W) = p W is found from it
-by a secant, each trial an eigenpair of the pencil at a real W.
+which for D_0 = K_1 = 0 is K x = W^2 (p^2 M - i p G) x, a Hermitian but indefinite pair. It is inverted at s = i (a + b)/2, so that
+all speeds between a and b lie in the disc around it. With damping Re s is not zero, and the root of Im lambda(W) = p W is
+found from it by a secant, each trial an eigenpair of the pencil at a real W.
 """
 
 from __future__ import annotations
@@ -79,7 +79,8 @@ def synchronous_speeds(family: Affine, order: float) -> list[Synchronous]:
             if _count_agrees(family, order, found):
                 return found
     raise ConvergenceError(
-        f"a count by pivot signs does not confirm the {len(found)} critical speeds of order {order:g} that were found", found
+        f"a count by pivot signs does not confirm the {len(found)} critical speeds of order {order:g} that were found",
+        found,
     )
 
 
@@ -106,7 +107,9 @@ def _starts(family: Affine, order: float, attempt: int) -> tuple[np.ndarray, np.
     return centre * (sigma + 1.0 / mu[keep]), scale[:, None] * X[:n, keep]
 
 
-def _largest(apply: Callable[[np.ndarray], np.ndarray], size: int, least: float, attempt: int) -> tuple[np.ndarray, np.ndarray]:
+def _largest(
+    apply: Callable[[np.ndarray], np.ndarray], size: int, least: float, attempt: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Eigenpairs of a linear map (2n) that hold all with |mu| >= least."""
     if size <= 2 * _DENSE_UP_TO:
         return np.linalg.eig(apply(np.eye(size, dtype=complex)))
@@ -119,12 +122,16 @@ def _largest(apply: Callable[[np.ndarray], np.ndarray], size: int, least: float,
         try:
             mu, X = eigs(operator, k=count, ncv=min(size, 2 * count + 20), which="LM", v0=start, tol=1e-11)
         except ArpackNoConvergence as error:
-            raise ConvergenceError(f"the {count} critical speeds nearest to the middle of the range did not settle") from error
+            raise ConvergenceError(
+                f"the {count} critical speeds nearest to the middle of the range did not settle"
+            ) from error
         if np.abs(mu).min() < least:
             return mu, X
         count *= 2
     if size > 6000:
-        raise ConvergenceError(f"more than {_MOST} critical speeds lie in the range; ask for a narrower one, or give fmax")
+        raise ConvergenceError(
+            f"more than {_MOST} critical speeds lie in the range; ask for a narrower one, or give fmax"
+        )
     return np.linalg.eig(apply(np.eye(size, dtype=complex)))
 
 
@@ -154,7 +161,9 @@ def _polished(family: Affine, order: float, s: complex, x: np.ndarray) -> Synchr
 
 
 def _same(one: Synchronous, other: Synchronous, M: sp.csc_array) -> bool:
-    if abs(one.speed - other.speed) > 1e-9 * one.speed or abs(one.eigenvalue - other.eigenvalue) > 1e-8 * abs(one.eigenvalue):
+    if abs(one.speed - other.speed) > 1e-9 * one.speed or abs(one.eigenvalue - other.eigenvalue) > 1e-8 * abs(
+        one.eigenvalue
+    ):
         return False
     x, y = one.vector, other.vector
     sizes = abs(np.vdot(x, M @ x)) * abs(np.vdot(y, M @ y))

@@ -109,7 +109,12 @@ def _twins(s: np.ndarray, rate: np.ndarray, length: float) -> np.ndarray:
 
 
 def _doubtful(
-    cost: np.ndarray, mismatch: np.ndarray, rows: np.ndarray, columns: np.ndarray, twins_a: np.ndarray, twins_b: np.ndarray
+    cost: np.ndarray,
+    mismatch: np.ndarray,
+    rows: np.ndarray,
+    columns: np.ndarray,
+    twins_a: np.ndarray,
+    twins_b: np.ndarray,
 ) -> np.ndarray:
     """Which links are not clearly better than any other, or do not follow their derivatives."""
     chosen = cost[rows, columns]
@@ -133,9 +138,7 @@ def _veering(
     doubt = np.zeros(len(a.s), bool)
     for i, j in np.argwhere(np.triu(swapped)):
         one, two = linked[i], linked[j]
-        width = max(
-            _width(a, rates[0], slope, one, two), _width(b, rates[1], slope, partner[one], partner[two])
-        )
+        width = max(_width(a, rates[0], slope, one, two), _width(b, rates[1], slope, partner[one], partner[two]))
         if width > narrowest:
             doubt[[one, two]] = True
     return doubt

@@ -3,10 +3,11 @@
 A mode (s, q) of the discretised model leaves a residual r = (s^2 M + s D + K) q against bubbles b that the element doesn't have
 yet. Solved in each element by itself, the quadratic form moves by
 
-    d = sum over elements  r^T (K_bb - w^2 M_bb)^-1 r,        |ds| = d / |q^H (2 s M + D) q|
+    d = sum over elements  t^T (s^2 M_bb + s D_bb + K_bb)^-1 r,        |ds| = |d| / |y^H (2 s M + D) q|
 
-which is the hierarchical estimate of Bank and Smith, SIAM J. Numer. Anal. 30 (1993) 921, for an eigenvalue. It costs no second
-solution, and it says where the error comes from.
+with the left shape y and its residual t: the hierarchical estimate of Bank and Smith, SIAM J. Numer. Anal. 30 (1993) 921, for
+an eigenvalue. It needs no second solution, and it says where the error comes from. Lumped mass adds its own change, of the
+other sign.
 """
 
 from __future__ import annotations
@@ -18,8 +19,9 @@ import numpy as np
 import scipy.linalg as la
 
 from rotorgear.elements.shaft import ShaftElements, distinct_elements
-from rotorgear.elements.shaft_bubbles import bubble_places
+from rotorgear.elements.shaft_bubbles import bubble_motions, bubble_places
 from rotorgear.system.groups import alike, element_data, shaft_dofs
+from rotorgear.system.left_shapes import left_shapes
 from rotorgear.system.nodes import Element
 from rotorgear.system.plan import PieceKey
 from rotorgear.system.system import System
@@ -41,22 +43,27 @@ class _Bubbles:
     lumping: np.ndarray | None
 
 
-def bubble_errors(system: System, speed: float | None, s: np.ndarray, q: np.ndarray) -> dict[PieceKey, np.ndarray]:
+def bubble_errors(system: System, speed: float | None, s: np.ndarray, x: np.ndarray) -> dict[PieceKey, np.ndarray]:
     """Return the estimated relative error of |s| that each piece of shaft brings: piece -> (m,), infinite where it is too coarse.
 
     Args:
         system: the discretised model.
         speed: speed of the reference shaft in rad/s; None is undamped at standstill.
         s: eigenvalues (m,), none of them zero.
-        q: shapes of all dofs (a, m), of any scale.
+        x: their shapes in the free dofs (n, m), of any scale.
     """
-    size = _frequency_form(system, speed, s, q)
+    y = left_shapes(system, speed, s, x)
+    first, second = _frequency_form(system, speed, s, x, y)
+    right, left = system.dofs.expand(x), system.dofs.expand(y)
     found: dict[PieceKey, np.ndarray] = {}
     for shaft, order, elements in _flexible(system):
-        moved = _moved(system, speed or 0.0, shaft, order, elements, s, q)  # (e, m)
+        moved = _moved(system, speed or 0.0, shaft, order, elements, s, right, left)  # (e, m)
         for number in sorted({element.piece for element in elements}):
             own = [k for k, element in enumerate(elements) if element.piece == number]
-            found[shaft, number] = moved[own].sum(axis=0) / size
+            change = np.abs(moved[own].sum(axis=0))
+            finite = np.where(np.isfinite(change), change, 0.0)
+            share = 2.0 * finite / (first + np.sqrt(first**2 + 4.0 * second * finite))
+            found[shaft, number] = np.where(np.isfinite(change), share, np.inf)
     return found
 
 
@@ -67,49 +74,63 @@ def _flexible(system: System) -> Iterator[tuple[str, int, list[Element]]]:
                 yield shaft, order, elements
 
 
-def _frequency_form(system: System, speed: float | None, s: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """|s q^H (2 s M + D) q|, (m,): what turns a change of the quadratic form into a relative change of s."""
-    free = q[_representatives(system)] if system.dofs.selects else np.linalg.pinv(system.dofs.transform.toarray()) @ q
-    product = 2.0 * s * (system.mass @ free)
+def _frequency_form(
+    system: System, speed: float | None, s: np.ndarray, x: np.ndarray, y: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """|s y^H (2 s M + D) x| and |s^2 y^H M x|, each (m,).
+
+    A change d of the quadratic form moves s by e s with second e^2 + first e = |d|; the square matters next to double roots.
+    """
+    inertia = system.mass @ x
+    product = 2.0 * s * inertia
     D = system.velocity_terms(speed)
     if D is not None:
-        product = product + D @ free
-    return np.asarray(np.abs(s * np.sum(free.conj() * product, axis=0)))
-
-
-def _representatives(system: System) -> np.ndarray:
-    return np.flatnonzero(system.dofs.column >= 0)
+        product = product + D @ x
+    first = np.abs(s * np.sum(y.conj() * product, axis=0))
+    return first, np.abs(s**2 * np.sum(y.conj() * inertia, axis=0))
 
 
 def _moved(
-    system: System, speed: float, shaft: str, order: int, elements: list[Element], s: np.ndarray, q: np.ndarray
+    system: System,
+    speed: float,
+    shaft: str,
+    order: int,
+    elements: list[Element],
+    s: np.ndarray,
+    right: np.ndarray,
+    left: np.ndarray,
 ) -> np.ndarray:
     """Change of the quadratic form by the bubbles of each element, (e, m)."""
     model = system.model
     shear = model.shafts[shaft].shear_deformation
     kinds, which = element_data(model, shaft, elements).unique()
     bubbles = _bubble_modes(kinds, order, shear, model.shafts[shaft].mass_matrix == "lumped", model.motions)
-    local = q[shaft_dofs(system.nodes, elements, shear)]  # (e, d, m)
+    dofs = shaft_dofs(system.nodes, elements, shear)
+    x, y = right[dofs], left[dofs].conj()  # (e, d, m)
     spin = speed * system.train.ratio(shaft)
     squared = s**2 + model.damping.rayleigh_alpha * s
-    elastic = 1.0 + s * (model.damping.rayleigh_beta + model.shafts[shaft].internal_damping)
-    r = squared * (bubbles.mass[which] @ local) + elastic * (bubbles.stiffness[which] @ local)
+    internal = model.shafts[shaft].internal_damping
+    elastic = 1.0 + s * (model.damping.rayleigh_beta + internal)
+    r = squared * (bubbles.mass[which] @ x) + elastic * (bubbles.stiffness[which] @ x)
+    t = squared * (bubbles.mass[which] @ y) + elastic * (bubbles.stiffness[which] @ y)
     if spin:
-        r = r + s * spin * (bubbles.gyroscopic[which] @ local)
-    gap = bubbles.squared[which][:, :, None] - np.abs(s) ** 2
-    coarse = np.any(bubbles.squared[which][:, :, None] < _RESOLVED * np.abs(s) ** 2, axis=1)
-    moved = np.sum(np.abs(r) ** 2 / np.where(gap > 0.0, gap, np.inf), axis=1)
+        r = r + s * spin * (bubbles.gyroscopic[which] @ x)
+        t = t - s * spin * (bubbles.gyroscopic[which] @ y)
+    own = bubbles.squared[which][:, :, None]
+    coarse = np.any(own < _RESOLVED * np.abs(s) ** 2, axis=1)
+    # Rotating damping couples the planes of a bubble: seen in the sense of each whirl, the stiffness is w^2 (1 -+ i eta W).
+    held = squared + elastic * own
+    gaps = np.array([held + turn * 1j * internal * spin * own for turn in (1.0, -1.0)])
+    gap = gaps[0] if not internal * spin else np.where(np.abs(gaps[0]) < np.abs(gaps[1]), *gaps)
+    moved = np.sum(t * r / np.where(gap != 0.0, gap, np.inf), axis=1)
     if bubbles.lumping is not None:
-        crime = np.einsum("edm,edf,efm->em", local.conj(), bubbles.lumping[which], local)
-        moved = moved + np.abs(squared * crime)
+        moved = moved - squared * np.einsum("edm,edf,efm->em", y, bubbles.lumping[which], x)
     # Where nothing moves, a coarse element does no harm.
-    return np.where(coarse & (moved > 0.0), np.inf, moved)
+    return np.where(coarse & (moved != 0.0), np.inf, moved)
 
 
 def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, motions: tuple[str, ...]) -> _Bubbles:
     """Modes of the bubbles of an element that is two orders richer, between fixed nodes, for each different element."""
-    from rotorgear.elements.shaft_bubbles import bubble_motions
-
     rich = distinct_elements(kinds, order=order + _RICHER)
     assert rich.mass is not None
     assert rich.gyroscopic is not None

@@ -182,10 +182,12 @@ def _meshes(model: Model, flow: TorqueFlow, nodes: Nodes) -> Iterator[ElementGro
     for force in flow.forces:
         c = force.contact
         pinion, gear = model.gears[c.pinion].shaft, model.gears[c.gear].shaft
+        # Recess follows the driving flank; the element measures from the pitch point towards where the pinion would recede.
+        past_pitch_point = c.contact_position if force.pinion_drives else -c.contact_position
         geometry = ContactGeometry(
             psi=c.psi, pressure_angle=c.pressure_angle, base_helix_angle=c.base_helix_angle, hand=c.hand,
             torque_sense=force.torque_sense, pinion_base_radius=c.pinion_base_radius, gear_base_radius=c.gear_base_radius,
-            pinion_offset=c.contact_z - c.pinion_z, gear_offset=c.contact_z - c.gear_z, contact_position=c.contact_position * (1 if force.pinion_drives else -1),
+            pinion_offset=c.contact_z - c.pinion_z, gear_offset=c.contact_z - c.gear_z, contact_position=past_pitch_point,
         )  # fmt: skip
         damping = _mesh_damping(model, force, geometry, bodies)
         dofs = node_dofs(nodes.at(pinion, c.pinion_z), nodes.at(gear, c.gear_z))

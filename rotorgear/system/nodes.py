@@ -1,7 +1,6 @@
 """Discretisation: nodes at the ends of sections and at every part, and elements in each piece between them.
 
-Places closer than 1e-9 of the shaft's length are one
-node.
+Places closer than 1e-9 of the shaft's length are one node.
 """
 
 from __future__ import annotations
@@ -13,11 +12,13 @@ from itertools import pairwise
 import numpy as np
 
 from rotorgear.elements.shaft_bubbles import bubble_motions
+from rotorgear.errors import AnalysisError
 from rotorgear.model.mesh_geometry import node_positions
 from rotorgear.model.model import Model
 from rotorgear.system.plan import Plan
 
 MERGE_DISTANCE = 1e-9
+MOST_ELEMENTS = 200_000
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,11 @@ def _stations(model: Model) -> Iterator[tuple[str, str, float | str]]:
 
 
 def discretise(model: Model, plan: Plan) -> Nodes:
-    """Return nodes and shaft elements of a model as a plan cuts it."""
+    """Return nodes and shaft elements of a model as a plan cuts it.
+
+    Raises:
+        AnalysisError: a plan with more elements than a computer of this time can take.
+    """
     nodes = Nodes()
     wanted = places(model)
     for name in model.shafts:
@@ -151,7 +156,12 @@ def _add_shaft(nodes: Nodes, model: Model, shaft: str, wanted: list[tuple[float,
         number = int(np.clip(np.searchsorted(ends, 0.5 * (left + right)) - 1, 0, len(own.sections) - 1))
         section = own.sections[number]
         count, order = (1, 1) if section.rigid else plan.of((shaft, piece), section.elements)
-        order = order if own.mass_matrix == "consistent" else 1
+        if own.mass_matrix == "lumped":  # it has no orders; more elements serve
+            count, order = count * order, 1
+        if len(pieces) + count > MOST_ELEMENTS:
+            raise AnalysisError(
+                f"shafts.{shaft}: more than {MOST_ELEMENTS} elements on one shaft, got {count} between two places; ask for fewer"
+            )
         motions = bubble_motions(order, own.shear_deformation)
         edges = np.linspace(left, right, count + 1)
         # A short section far along the shaft: the difference of its ends has lost digits that its length has.

@@ -2,8 +2,9 @@
 
 Run  python -m validation.benchmarks.tracking
 
-Two rotors: three overhung disks on anisotropic bearings, with torsion and axial motion, to 30000 rad/s, and the split-torque gearbox to
-20000 rpm. The truth is the same analysis on 3201 speeds. A branch is wrong where, starting from the same mode, it ends in another one.
+Two rotors: three overhung disks on anisotropic bearings, with torsion and axial motion, to 30000 rad/s, and the split-torque
+gearbox to 20000 rpm. The truth is the same analysis on 3201 speeds. A branch is wrong where, starting from the same mode, it ends
+in another one.
 """
 
 from __future__ import annotations
@@ -34,7 +35,12 @@ def overhung() -> rg.Model:
     }
     damping = {"x": 300.0, "y": 200.0}
     bearings = {
-        "left": {"shaft": "rotor", "at": 0.0, "stiffness": {"x": 3e7, "y": 1.2e7, "axial": 2e7, "torsion": 1e4}, "damping": damping},
+        "left": {
+            "shaft": "rotor",
+            "at": 0.0,
+            "stiffness": {"x": 3e7, "y": 1.2e7, "axial": 2e7, "torsion": 1e4},
+            "damping": damping,
+        },
         "right": {"shaft": "rotor", "at": 0.8, "stiffness": {"x": 4e7, "y": 2e7}, "damping": damping},
     }
     return rg.Model(
@@ -78,14 +84,18 @@ def main() -> int:
     for name, (model, top) in cases().items():
         start = time.process_time()
         truth, fine = branches(model, top, TRUTH)
-        print(f"{name}: {len(truth)} branches, {fine.dofs} dofs, truth on {TRUTH} speeds {time.process_time() - start:.1f} s")
+        print(
+            f"{name}: {len(truth)} branches, {fine.dofs} dofs, truth on {TRUTH} speeds {time.process_time() - start:.1f} s"
+        )
         print(f"  {fine.method}")
         for count in GRIDS:
             start = time.process_time()
             found, coarse = branches(model, top, count)
             bad = wrong(found, truth)
             total += bad
-            print(f"  {count:4d} speeds: {bad} wrong, {time.process_time() - start:.1f} s; {coarse.method.rpartition(', ')[2]}")
+            print(
+                f"  {count:4d} speeds: {bad} wrong, {time.process_time() - start:.1f} s; {coarse.method.rpartition(', ')[2]}"
+            )
     return 1 if total else 0
 
 

@@ -1,0 +1,94 @@
+"""Makes the result of a modal analysis of eigenvalues and shapes: energies, whirl, words, warnings."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.analysis.clock import Clock
+from rotorgear.analysis.conditioning import conditioning_warnings
+from rotorgear.analysis.describe import describe
+from rotorgear.analysis.energies import mode_energies
+from rotorgear.analysis.modes import Modes
+from rotorgear.analysis.notes import left_out, mode_warnings
+from rotorgear.analysis.points import point_amplitudes
+from rotorgear.analysis.stations import shapes_at_stations
+from rotorgear.analysis.whirl import whirl_by_shaft, whirl_words
+from rotorgear.results.modal import ModalResult, Piece
+from rotorgear.system.system import System
+
+
+def modal_result(
+    system: System,
+    speed: float | None,
+    wanted: tuple[int | None, float | None],
+    found: Modes,
+    q: np.ndarray,
+    estimate: np.ndarray,
+    clock: Clock,
+) -> ModalResult:
+    """Return the result of the modes `found` with all displacements q (a, m); `wanted` is modes and highest frequency in Hz."""
+    asked, fmax = wanted
+    nodes, displaced = shapes_at_stations(system, q)
+    everywhere = _turned(displaced.astype(complex))
+    shapes = everywhere[: len(system.nodes)]
+    energies = mode_energies(system, speed or 0.0, q, found.rigid)
+    whirl = whirl_by_shaft(system, shapes, speed or 0.0)
+    words = whirl_words(system, shapes, whirl, energies) if speed else tuple("" for _ in found.eigenvalues)
+    real_root = (found.eigenvalues.imag == 0.0) & ~found.rigid
+    lines = describe(system, shapes, energies, found.rigid, real_root)
+    clock.lap("energies")
+    return ModalResult(
+        model=system.model,
+        speed=speed,
+        eigenvalues=found.eigenvalues,
+        rigid=found.rigid,
+        shapes=everywhere,
+        nodes=nodes,
+        error_estimate=estimate,
+        kinetic_energy=energies.kinetic,
+        strain_energy=energies.strain,
+        kinetic_by_motion=energies.kinetic_by_motion,
+        strain_by_motion=energies.strain_by_motion,
+        whirl=words,
+        whirl_by_shaft=whirl,
+        description=lines,
+        backward_error=found.backward_error,
+        dofs=system.n,
+        discretisation=pieces(system),
+        seconds=clock.total(),
+        left_out=(*left_out(system, speed), *found.groups),
+        warnings=(
+            *mode_warnings(system, asked, found.eigenvalues, fmax),
+            *conditioning_warnings(system, speed, found.eigenvalues, found.rigid, energies.strain),
+        ),
+        method=found.method,
+        point_amplitudes=point_amplitudes(system, shapes),
+    )
+
+
+def pieces(system: System) -> tuple[Piece, ...]:
+    """Say how each piece of shaft was cut."""
+    found = []
+    for shaft, elements in system.nodes.elements.items():
+        for number in sorted({element.piece for element in elements}):
+            own = [element for element in elements if element.piece == number]
+            start, end = system.nodes.z[own[0].left], system.nodes.z[own[-1].right]
+            found.append(Piece(shaft, start, end, len(own), own[0].order))
+    return tuple(found)
+
+
+def _turned(shapes: np.ndarray) -> np.ndarray:
+    """Turn each mode's phase so that its largest displacement is real and positive."""
+    if shapes.shape[2] == 0:
+        return shapes
+    size = np.abs(shapes)
+    flat = (size[:, :3] if size[:, :3].any() else size).reshape(-1, shapes.shape[2])
+    moving = flat.max(axis=0, initial=0.0) > 1e-9 * size.reshape(-1, shapes.shape[2]).max(axis=0, initial=0.0)
+    rows = shapes[:, :3].reshape(-1, shapes.shape[2])
+    everything = shapes.reshape(-1, shapes.shape[2])
+    for mode in range(shapes.shape[2]):
+        values = rows[:, mode] if moving[mode] else everything[:, mode]
+        peak = values[np.argmax(np.abs(values))]
+        if peak != 0.0:
+            shapes[:, :, mode] *= np.conj(peak) / np.abs(peak)
+    return shapes

@@ -1,0 +1,43 @@
+"""How many modes to expect below a frequency, from the waves that fit on the shafts (Weyl's count), before anything is solved.
+
+Each wave of wave number k that a section of length L carries brings k L / pi modes: torsion with sqrt(G/rho), axial with
+sqrt(E/rho), and bending in two planes with the two branches of Timoshenko's beam, the positive roots k^2 of
+
+    E I kG A k^4 - (E I rho A + kG A rho I) w^2 k^2 + rho A w^2 (rho I w^2 - kG A) = 0.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.model.model import Model
+
+_SHEAR = 0.9  # coefficient of a round section: a count needs no more
+
+
+def expected_modes(model: Model, limit: float) -> float:
+    """About how many modes the shafts of a model have up to a frequency in rad/s; gears and springs add a few."""
+    count = 0.0
+    for name, shaft in model.shafts.items():
+        for section in shaft.sections:
+            if section.rigid:
+                continue
+            material = model.material_of(name, section)
+            outer, bore = section.stiffness_diameters()[:2]
+            area, inertia = np.pi / 4.0 * (outer**2 - bore**2), np.pi / 64.0 * (outer**4 - bore**4)
+            waves = _waves(material.youngs_modulus, material.g, material.density, area, inertia, limit)
+            used = sum(waves[motion] for motion in model.motions)
+            count += used * section.length / np.pi
+    return count
+
+
+def _waves(E: float, G: float, rho: float, area: float, inertia: float, w: float) -> dict[str, float]:
+    """Sum of the real wave numbers in 1/m of each motion."""
+    bend, shear = E * inertia, _SHEAR * G * area
+    a = bend * shear
+    b = (bend * rho * area + shear * rho * inertia) * w**2
+    c = rho * area * w**2 * (rho * inertia * w**2 - shear)
+    root = np.sqrt(max(b**2 - 4.0 * a * c, 0.0))
+    squares = [(b + root) / (2.0 * a), (b - root) / (2.0 * a)]
+    bending = 2.0 * sum(np.sqrt(k) for k in squares if k > 0.0)
+    return {"bending": bending, "axial": w * np.sqrt(rho / E), "torsion": w * np.sqrt(rho / G)}
