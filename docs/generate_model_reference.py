@@ -14,6 +14,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from rotorgear.model.bodies import Disk, PointMass
+from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic, Unbalance
 from rotorgear.model.gear import Gear, GearBody
 from rotorgear.model.mesh import Mesh
 from rotorgear.model.model import SCHEMA_VERSION, Model
@@ -31,6 +32,8 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("[gears.NAME]", Gear),
     ("body = { ... } of a gear", GearBody),
     ("[meshes.NAME]", Mesh),
+    ("transmission_error = [{ ... }] of a mesh", ErrorHarmonic),
+    ("stiffness_variation = [{ ... }] of a mesh", StiffnessHarmonic),
     ("[bearings.NAME]", Bearing),
     ("table = [{ ... }] of a bearing", TableRow),
     ("pedestal = { ... } of a bearing", Pedestal),
@@ -42,6 +45,7 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("[point_masses.NAME]", PointMass),
     ("[damping]", ModelDamping),
     ("[loads.NAME]", Load),
+    ("[unbalances.NAME]", Unbalance),
     ("[points.NAME]", Point),
 ]
 

@@ -20,6 +20,7 @@ _HOMES = {
     "rotorgear.model.shaft": ("Shaft", "Section", "Material"),
     "rotorgear.model.bodies": ("Disk", "PointMass"),
     "rotorgear.model.gear": ("Gear", "GearBody"),
+    "rotorgear.model.excitation": ("ErrorHarmonic", "StiffnessHarmonic", "Unbalance"),
     "rotorgear.model.mesh": ("Mesh",),
     "rotorgear.model.supports": (
         "Bearing", "TableRow", "Pedestal", "Support", "Coupling", "StiffnessMatrix", "DampingMatrix",
@@ -27,18 +28,27 @@ _HOMES = {
     "rotorgear.model.operation": ("Operation", "Load", "ModelDamping", "Point"),
     "rotorgear.system.system": ("System",),
     "rotorgear.analysis.modal": ("modal",),
+    "rotorgear.analysis.static": ("static",),
+    "rotorgear.analysis.response": ("response",),
+    "rotorgear.analysis.frequency_response": ("frequency_response",),
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
     "rotorgear.analysis.campbell": ("campbell",),
     "rotorgear.analysis.critical": ("critical_speeds",),
     "rotorgear.analysis.critical_map": ("critical_map",),
     "rotorgear.results.critical": ("CriticalResult", "CriticalMap"),
     "rotorgear.results.campbell": ("CampbellResult",),
+    "rotorgear.analysis.gear_sheet": ("gear_sheet",),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
+    "rotorgear.results.static": ("StaticResult",),
+    "rotorgear.results.response": ("ResponseResult",),
+    "rotorgear.results.frequency_response": ("FrequencyResponse",),
     "rotorgear.results.accuracy": ("AccuracyLadder",),
+    "rotorgear.results.gear_sheet": ("GearSheet",),
     "rotorgear.results.comparison": ("Comparison", "RigLine"),
     "rotorgear.export.vtk": ("write_vtk",),
+    "rotorgear.export.vtk_deflection": ("write_deflections",),
     "rotorgear.export.hdf5": ("save", "read"),
     "rotorgear.errors": ("RotorgearError", "ModelError", "AnalysisError", "ConvergenceError"),
 }  # fmt: skip
@@ -52,11 +62,17 @@ if TYPE_CHECKING:
     from rotorgear.analysis.critical import critical_speeds
     from rotorgear.analysis.critical_map import critical_map
     from rotorgear.analysis.describe_model import describe_model
+    from rotorgear.analysis.frequency_response import frequency_response
+    from rotorgear.analysis.gear_sheet import gear_sheet
     from rotorgear.analysis.modal import modal
+    from rotorgear.analysis.response import response
+    from rotorgear.analysis.static import static
     from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
     from rotorgear.export.hdf5 import read, save
     from rotorgear.export.vtk import write_vtk
+    from rotorgear.export.vtk_deflection import write_deflections
     from rotorgear.model.bodies import Disk, PointMass
+    from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic, Unbalance
     from rotorgear.model.gear import Gear, GearBody
     from rotorgear.model.load import json_schema, load, loads
     from rotorgear.model.mesh import Mesh
@@ -76,7 +92,11 @@ if TYPE_CHECKING:
     from rotorgear.results.campbell import CampbellResult
     from rotorgear.results.comparison import Comparison, RigLine
     from rotorgear.results.critical import CriticalMap, CriticalResult
+    from rotorgear.results.frequency_response import FrequencyResponse
+    from rotorgear.results.gear_sheet import GearSheet
     from rotorgear.results.modal import ModalResult
+    from rotorgear.results.response import ResponseResult
+    from rotorgear.results.static import StaticResult
     from rotorgear.system.system import System
 
 

@@ -33,6 +33,9 @@ class Problem:
         return f"{self.address}: {got}{wanted}{hint}"
 
 
+MOST_SHOWN = 100  # problems of one model that are printed; `problems` holds them all
+
+
 class ModelError(RotorgearError):
     """All the problems of a model at once, found before any matrix is built."""
 
@@ -41,7 +44,10 @@ class ModelError(RotorgearError):
         self.source = source
         count = len(self.problems)
         head = f"{source}: {count} problem{'s' if count != 1 else ''}"
-        super().__init__("\n".join([head, *(f"  {problem}" for problem in self.problems)]))
+        lines = [f"  {problem}" for problem in self.problems[:MOST_SHOWN]]
+        if count > MOST_SHOWN:
+            lines.append(f"  and {count - MOST_SHOWN} more")
+        super().__init__("\n".join([head, *lines]))
 
 
 class AnalysisError(RotorgearError):

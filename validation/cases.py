@@ -7,8 +7,10 @@ Columns of expected.csv:
     elements        basic elements in each piece of a section; "5 > 10" or "5 > 10 > 20" for what needs several meshes
     accuracy        refine until every frequency is estimated to be within it, in place of elements
     mesh_stiffness  in N/m, in place of that of all meshes in the file; "1e11 > 1e12" as above; empty: as in the file
-    quantity        what is compared: a name from `quantities.py`, or "order of" or "extrapolated" and such a name
-    mode            number of the elastic mode; "1+2": a pair that must agree; "2-1": the difference of two
+    quantity        what is compared: a name from `quantities.py`, or "order of" or "extrapolated" and such a name; or a name from
+                    `forced.py`; or "sheet" and a key of the gear sheet, "sheet gears.pinion.base_diameter_m", which has no mode
+    mode            number of the elastic mode, or of the order of a forced response; "1+2": a pair that must agree; "2-1": the
+                    difference of two
     expected        a number as its source prints it, ">= 3.4", or a word
     tolerance       relative, "1e-5"; "abs 0.1"; "2e-4 or half digit": the larger of 2e-4 and half a unit of the last printed
                     digit; "bound" with ">=", "exact" for a word; empty: shown, but not judged (the note says why)

@@ -20,7 +20,9 @@ import rotorgear as rg
 from rotorgear.errors import AnalysisError
 from rotorgear.results.modal import ModalResult
 from validation.cases import Case, Expectation
+from validation.forced import FORCED
 from validation.quantities import elastic
+from validation.sheet import is_of_sheet, measure_sheet
 
 PAIR_AGREEMENT = 1e-10
 MOST_RIGID = 6
@@ -47,6 +49,11 @@ class Solver:
 
     def measure(self, line: Expectation) -> Measured:
         """Measure what a line asks for."""
+        if line.quantity in FORCED:
+            return self._forced(line)
+        if is_of_sheet(line.quantity):
+            got_from_sheet, time_taken = measure_sheet(self.case.folder, line.model, line.quantity)
+            return Measured(got_from_sheet, 0, time_taken)
         kind, name = _split(line.quantity)
         runs = [self._solve(key) for key in keys(line)]
         values = [_pick(elastic(result, name), line.mode) for result, _ in runs]
@@ -55,11 +62,21 @@ class Solver:
         seconds = sum(seconds for _, seconds in runs)
         return Measured(got, max(result.dofs for result, _ in runs), seconds, "; ".join(sorted(complaints)))
 
+    def _forced(self, line: Expectation) -> Measured:
+        """Amplitude or lag of one order at the line's speed."""
+        start = time.perf_counter()
+        model = rg.load(self.case.folder / line.model)
+        elements = line.elements[0] if line.elements else None
+        result = rg.response(model, speeds=[line.speed], elements=elements, accuracy=line.accuracy)
+        value = float(FORCED[line.quantity](result)[int(line.mode) - 1])
+        return Measured(value, result.dofs, time.perf_counter() - start)
+
     def _solve(self, key: Key) -> tuple[ModalResult, float]:
         if key not in self.solved:
             file, speed, elements, accuracy, stiffness = key
             model = _model(self.case.folder / file, stiffness)
-            count = max(_highest(line.mode) for line in self.case.expectations if key in keys(line)) + MOST_RIGID
+            own = [line for line in self.case.expectations if line.quantity not in FORCED and key in keys(line)]
+            count = max(_highest(line.mode) for line in own) + MOST_RIGID
             start = time.perf_counter()
             result = rg.modal(
                 model,

@@ -29,7 +29,7 @@ QUANTITIES: Mapping[str, Callable[[ModalResult], np.ndarray]] = MappingProxyType
     }
 )
 
-_UNITS = {"hz": "Hz", "rad_s": "rad/s", "cpm": "cpm", "1_s": "1/s"}
+_UNITS = {"hz": "Hz", "m": "m", "rad": "rad", "rad_s": "rad/s", "cpm": "cpm", "1_s": "1/s"}
 
 
 def words(quantity: str) -> str:

@@ -11,8 +11,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from validation.cases import Case, Expectation, read_cases
+from validation.forced import FORCED
 from validation.measure import Solver
 from validation.quantities import words
+from validation.sheet import is_of_sheet, sheet_words
 from validation.table import printed
 
 
@@ -81,7 +83,13 @@ def _error(line: Expectation, got: float | str) -> float:
 
 def describe(line: Expectation) -> str:
     """Say in one phrase what a line compares."""
-    parts = [Path(line.model).stem, f"mode {line.mode}", words(line.quantity)]
+    if is_of_sheet(line.quantity):
+        return f"{Path(line.model).stem}, {sheet_words(line.quantity)}"
+    parts = [
+        Path(line.model).stem,
+        f"{'order' if line.quantity in FORCED else 'mode'} {line.mode}",
+        words(line.quantity),
+    ]
     if line.speed:
         parts.append(line.speed)
     if line.elements:

@@ -8,21 +8,20 @@ modes and a first round of damped ones as its basis; a small one takes all modes
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 import numpy as np
 import scipy.sparse as sp
 
+from rotorgear.analysis.damped_problem import DampedProblem, by_strains, relative_noise
 from rotorgear.solvers.damped import DampedModes, damped_modes
 from rotorgear.solvers.eigen import UndampedModes
-from rotorgear.solvers.pencil import rounding_noise
 from rotorgear.solvers.quadratic import newton, scaled
 from rotorgear.solvers.ritz import strain_ritz
 from rotorgear.system.strain_forms import StrainForms
 
-Lowest = Callable[[int | None, float | None], UndampedModes]
 _CLEAN = 1e-10  # rounding of K relative to omega^2 (a bound, rarely met) up to which the assembled matrices do
+_CLEAN_LARGE = (
+    1e-8  # the same for a large group, whose modal coordinates cost more: strains then correct the eigenvalues
+)
 _AS_RIGID = 1e-6  # rounding above which a first round takes a mode as a rigid motion
 _ALL_UP_TO = 120
 _POLISH = 1e-14  # residual in the dofs above which a mode that the matrices do resolve is refined on them
@@ -30,38 +29,21 @@ _NEAR = 1e-6  # a refinement that moves s by more than this share of it has gone
 _ZERO = 1e-9  # a strain, or a gyroscopic term, of a rigid motion this much smaller than its parts is none
 
 
-@dataclass(frozen=True)
-class DampedProblem:
-    """(s^2 M + s D + K) q = 0 of n dofs, with D = alpha M + spin G + C and what K and C are made of.
-
-    `strain` (p, n) is S with S^T S the symmetric part of K; None where a spring is indefinite. `lowest(count, below)` gives the
-    undamped modes.
-    """
-
-    M: sp.csc_array
-    D: sp.csc_array
-    K: sp.csc_array
-    K_symmetric: sp.csc_array
-    inertial: sp.csc_array
-    strain: sp.csr_array | None
-    forms: StrainForms
-    lowest: Lowest
-
-
 def damped_group(problem: DampedProblem, count: int | None, below: float | None) -> tuple[DampedModes, str]:
     """Return the damped modes of lowest |s|, and a word on the coordinates they were found in."""
     undamped = _undamped(problem, None, None)  # the softest modes suffer most
     rigid, elastic = undamped.vectors[:, : undamped.rigid_count], undamped.eigenvalues[undamped.rigid_count :]
-    noise = _relative_noise(problem, np.sqrt(elastic), undamped.vectors[:, undamped.rigid_count :])
+    noise = relative_noise(problem, np.sqrt(elastic), undamped.vectors[:, undamped.rigid_count :])
     scale = float(np.sqrt(elastic[0])) if len(elastic) else None
     drift = _drift_noise(problem, rigid)
-    if problem.strain is None or max(noise.max(initial=0.0), drift) <= _CLEAN:
+    clean = _CLEAN if problem.K.shape[0] <= _ALL_UP_TO else _CLEAN_LARGE
+    if problem.strain is None or max(noise.max(initial=0.0), drift) <= clean:
         found = damped_modes(
             problem.M, problem.D, problem.K, count=count, below=below, rigid_vectors=rigid, frequency_scale=scale
         )
-        return found, ""
+        return by_strains(problem, found), ""
     undamped = _undamped(problem, count, below)
-    noise = _relative_noise(
+    noise = relative_noise(
         problem, np.sqrt(undamped.eigenvalues[undamped.rigid_count :]), undamped.vectors[:, undamped.rigid_count :]
     )
     if problem.K.shape[0] <= _ALL_UP_TO:
@@ -70,13 +52,6 @@ def damped_group(problem: DampedProblem, count: int | None, below: float | None)
     else:
         basis = _enriched(problem, undamped, noise, count, below)
     return _in_coordinates(problem, rigid, basis, count, below), " in modal coordinates"
-
-
-def _relative_noise(problem: DampedProblem, size: np.ndarray, V: np.ndarray) -> np.ndarray:
-    """Rounding that K q and s C q carry, relative to |s|^2 q^H M q, for |s| = size (m,) and M-normal V (n, m)."""
-    K, C = sp.csr_array(abs(problem.K_symmetric)), sp.csr_array(abs(problem.D - problem.inertial))
-    size = np.maximum(size, 1e-150)  # its square is still a number
-    return np.asarray(rounding_noise(K, V) / size**2 + rounding_noise(C, V) / size)
 
 
 def _drift_noise(problem: DampedProblem, rigid: np.ndarray) -> float:
@@ -89,7 +64,7 @@ def _drift_noise(problem: DampedProblem, rigid: np.ndarray) -> float:
     moving = size > 1e-14 * size.max(initial=0.0)
     if not moving.any():
         return 0.0
-    return float(_relative_noise(problem, np.full(rigid.shape[1], size[moving].min()), rigid).max())
+    return float(relative_noise(problem, np.full(rigid.shape[1], size[moving].min()), rigid).max())
 
 
 def _undamped(problem: DampedProblem, count: int | None, below: float | None) -> UndampedModes:
@@ -212,7 +187,7 @@ def _restored(problem: DampedProblem, whole: np.ndarray, found: DampedModes, sca
     V, values = V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])], found.eigenvalues.copy()
     quadratic = scaled(problem.M, problem.D, problem.K, scale)
     size = np.sqrt(np.maximum(np.real(np.einsum("ij,ij->j", V.conj(), problem.M @ V)), 1e-300))
-    clean = ~found.rigid & (_relative_noise(problem, np.abs(values), V / size) <= _CLEAN)
+    clean = ~found.rigid & (relative_noise(problem, np.abs(values), V / size) <= _CLEAN)
     errors = quadratic.residuals(values / quadratic.w0, V / quadratic.scale[:, None])
     for k in np.flatnonzero(clean & (errors > _POLISH)):
         z, v, _ = newton(quadratic, values[k] / quadratic.w0, V[:, k] / quadratic.scale)

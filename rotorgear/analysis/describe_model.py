@@ -15,7 +15,18 @@ from rotorgear.results.description import MeshRow, ModelDescription, ShaftRow, T
 from rotorgear.system.system import System
 
 _RPM = 30.0 / math.pi
-_COUNTED = ("shafts", "gears", "meshes", "disks", "point_masses", "bearings", "supports", "couplings", "points")
+_COUNTED = (
+    "shafts",
+    "gears",
+    "meshes",
+    "disks",
+    "point_masses",
+    "bearings",
+    "supports",
+    "couplings",
+    "unbalances",
+    "points",
+)
 
 
 def describe_model(model: Model, *, elements: int | None = None) -> ModelDescription:
@@ -93,7 +104,7 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
         normal_force_n=tuple(force.normal_force for force in forces),
         driver=mesh.pinion if forces[0].pinion_drives else mesh.gear,
         flank_assumed=any(force.assumed for force in forces),
-        stiffness_n_per_m=mesh.stiffness,
+        stiffness_n_per_m=sum(force.contact.stiffness for force in forces),
         damping_n_s_per_m=sum(damping),
     )
 

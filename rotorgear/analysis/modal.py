@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from rotorgear.analysis.clock import Clock
-from rotorgear.analysis.modal_request import MOST_MODES, check_count, check_request, speed_in_si
+from rotorgear.analysis.enriched_error import enriched_errors
+from rotorgear.analysis.modal_request import MOST_MODES, check_count, check_request, direction_of, speed_in_si
 from rotorgear.analysis.modal_result import modal_result
 from rotorgear.analysis.modal_solve import solve
 from rotorgear.analysis.modes import Modes, Wanted
@@ -88,6 +89,8 @@ def modal(
         )
         clock.lap("error estimate")
         if fixed:
+            if error_estimate:
+                estimate = enriched_errors(system, Wanted(speed, None, None, tuple(only), pruning), found, estimate)
             break
         plan = _next_plan(system, reach, found, parts, estimate, target)
         if plan is not None:
@@ -139,11 +142,7 @@ def _next_plan(
 
 
 def _system(model: Model | System, speed: float | None, plan: Plan) -> System:
-    system = model if isinstance(model, System) else System(model, plan=plan, direction=_direction(speed))
+    system = model if isinstance(model, System) else System(model, plan=plan, direction=direction_of(speed))
     if system.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     return system
-
-
-def _direction(speed: float | None) -> int | None:
-    return None if not speed else int(np.sign(speed))

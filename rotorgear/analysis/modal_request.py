@@ -31,6 +31,11 @@ def speed_in_si(given: float | str | None) -> float | None:
         raise AnalysisError(f"speed: got {given!r}, expected {error}") from None
 
 
+def direction_of(speed: float | None) -> int | None:
+    """+1 or -1, the sense of a speed; None without one, which leaves it to the model."""
+    return None if not speed else int(np.sign(speed))
+
+
 def check_request(
     speed: float | None, modes: int | None, fmax: float | None, elements: int | None, accuracy: float | None
 ) -> None:

@@ -6,20 +6,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg as la
 import scipy.sparse as sp
 
-from rotorgear.analysis.damped_solve import DampedProblem, damped_group
+from rotorgear.analysis.damped_problem import DampedProblem
+from rotorgear.analysis.damped_solve import damped_group
 from rotorgear.analysis.modes import Modes, Wanted
+from rotorgear.analysis.rigid_basis import sorted_rigid
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen import UndampedModes, lowest_modes
 from rotorgear.solvers.pencil import LooseDofError
+from rotorgear.solvers.shift_invert import shifted_operator
 from rotorgear.system.components import dof_motions, independent_groups
 from rotorgear.system.strain_forms import StrainForms
 from rotorgear.system.system import System
 
 # Backward error above which a damped mode is refused.
 _LARGEST_RESIDUAL = 1e-8
+_LARGE = 20_000  # dofs above which a look at the coarsest mesh costs nothing beside the rest
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,8 @@ class _Problem:
     """M, D (None without such terms) and K of one group of dofs, and its strain factor S (None where a spring is indefinite).
 
     `inertial` is the part alpha M + spin G of D and `forms` what the rest of D and K are made of, both None without D and
-    circulatory terms. `symmetric` says whether K is, `damped` whether anything takes energy out.
+    circulatory terms. `symmetric` says whether K is, `damped` whether anything takes energy out, `guess` where the first elastic
+    eigenvalue may be.
     """
 
     M: sp.csc_array
@@ -39,6 +43,7 @@ class _Problem:
     damped: bool
     inertial: sp.csc_array | None = None
     forms: StrainForms | None = None
+    guess: float | None = None
 
 
 def solve(system: System, wanted: Wanted) -> Modes:
@@ -72,7 +77,17 @@ def _problem(system: System, speed: float | None) -> _Problem:
     damped = speed is not None and bool(system.damping(at).nnz)
     plain = D is None and not skew.nnz
     inertial, forms = (None, None) if plain else (system.inertial_terms(at), system.strain_forms(at))
-    return _Problem(system.mass, D, total, K, system.strain_factor(at), not skew.nnz, damped, inertial, forms)
+    return _Problem(
+        system.mass, D, total, K, system.strain_factor(at), not skew.nnz, damped, inertial, forms, _guess(system)
+    )
+
+
+def _guess(system: System) -> float | None:
+    """The first elastic eigenvalue of the coarsest mesh of a large system, in (rad/s)^2: it saves a factorisation."""
+    if system.n < _LARGE:
+        return None
+    coarse = System(system.model, elements=1, direction=system.direction)
+    return shifted_operator(coarse.mass, coarse.stiffness()).elastic if coarse.n else None
 
 
 def _part(whole: _Problem, group: np.ndarray, n: int) -> _Problem:
@@ -94,7 +109,7 @@ def _part(whole: _Problem, group: np.ndarray, n: int) -> _Problem:
     damped = whole.damped and D is not None and bool((D + D.T).nnz)
     inertial = None if whole.inertial is None else cut(whole.inertial)
     forms = None if whole.forms is None else whole.forms.cut(group)
-    return _Problem(cut(whole.M), D, K, K_symmetric, S, symmetric, damped, inertial, forms)
+    return _Problem(cut(whole.M), D, K, K_symmetric, S, symmetric, damped, inertial, forms, whole.guess)
 
 
 def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
@@ -117,7 +132,7 @@ def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
 def _lowest(problem: _Problem, modes: int | None, limit: float | None) -> UndampedModes:
     S = problem.S
     strain = None if S is None else (lambda V: S @ V)
-    return lowest_modes(problem.M, problem.K_symmetric, count=modes, below=limit, strain=strain)
+    return lowest_modes(problem.M, problem.K_symmetric, count=modes, below=limit, strain=strain, guess=problem.guess)
 
 
 def _damped(
@@ -186,7 +201,7 @@ def _merged(
     for place, k in enumerate(order):
         vectors[groups[owner[k]], place] = found[owner[k]].vectors[:, column[k]]
     if np.sum(rigid[order]) > 1:
-        vectors[:, rigid[order]] = _sorted_rigid(system, np.real(vectors[:, rigid[order]]))
+        vectors[:, rigid[order]] = sorted_rigid(system, np.real(vectors[:, rigid[order]]))
     counts = [part.available for part in found]
     available = None if any(count is None for count in counts) else sum(count for count in counts if count is not None)
     methods = list(dict.fromkeys(part.method for part in found))
@@ -223,17 +238,3 @@ def _loose(system: System, whole: _Problem) -> AnalysisError | None:
         remedy = "give the body there its inertia, or hold the motion with a support"
         return AnalysisError(f"neither inertia nor stiffness: {names}{more}; {remedy}")
     return None
-
-
-def _sorted_rigid(system: System, R: np.ndarray) -> np.ndarray:
-    """Turn a basis of the rigid motions so that motions and shafts which do not move each other stand apart."""
-    q = system.dofs.expand(R)[: 6 * len(system.nodes)].reshape(len(system.nodes), 6, -1)
-    shafts = {name: k for k, name in enumerate(system.model.shafts)}
-    weight = np.array([1.0 + shafts[name] for name in system.nodes.shaft])
-    kinds = np.array([1.0, 1.0, 2.0, 1.0, 1.0, 3.0]) * np.sqrt(2.0)
-    scaled = q * np.sqrt(np.outer(weight, kinds))[:, :, None]
-    flat = scaled.reshape(-1, q.shape[2])
-    plain = q.reshape(-1, q.shape[2])
-    turned = R @ la.eigh(flat.T @ flat, plain.T @ plain)[1]
-    norm = np.sqrt(np.einsum("nm,nm->m", turned, system.mass @ turned))
-    return np.asarray(turned / np.where(norm > 0.0, norm, 1.0))

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rotorgear.analysis.mesh_notes import mesh_stiffness_warnings
 from rotorgear.gears.geometry import check_gear
-from rotorgear.model.mesh_geometry import base_radius, gear_geometry, mesh_pair
+from rotorgear.model.mesh_geometry import base_radius, gear_geometry
+from rotorgear.model.pair_checks import mesh_findings
 from rotorgear.system.system import System
 
 
@@ -13,6 +15,7 @@ def model_warnings(system: System) -> Iterator[str]:
     """Yield a sentence for everything that is worth a second look."""
     yield from _gears(system)
     yield from _meshes(system)
+    yield from mesh_stiffness_warnings(system)
     yield from _train(system)
     yield from _couplings(system)
 
@@ -28,14 +31,7 @@ def _meshes(system: System) -> Iterator[str]:
     model = system.model
     for name, mesh in model.meshes.items():
         pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
-        pair = mesh_pair(model, name)
-        if pair and pair.interference:
-            yield f"meshes.{name}: a tip reaches below its mate's base tangent point (interference); contact ratios are nominal"
-        if pair and pair.transverse_backlash < -1e-9:
-            jam = -1e6 * pair.transverse_backlash
-            yield f"meshes.{name}: the axes are too close, teeth without allowance would jam by {jam:.3g} um"
-        if pair and pair.total_contact_ratio < 1.0:
-            yield f"meshes.{name}: total contact ratio {pair.total_contact_ratio:.3g} is below 1, the teeth lose contact"
+        yield from (f"meshes.{name}: {sentence}" for sentence in mesh_findings(model, name))
         if pinion.lumped and pinion.teeth and gear.teeth:
             off = base_radius(gear) / base_radius(pinion) * pinion.teeth / gear.teeth - 1.0
             if abs(off) > 1e-6:

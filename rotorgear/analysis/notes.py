@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.analysis.mesh_notes import mesh_stiffness_left_out, mesh_stiffness_warnings
 from rotorgear.system.system import System
 
 
@@ -27,14 +28,14 @@ def left_out(system: System, speed: float | None) -> tuple[str, ...]:
             notes.append("gyroscopic matrix: nothing that turns can tilt")
         if system.velocity_terms(0.0) is None and not system.model.damping.modal_ratio:
             notes.append("damping matrix: nothing damps")
-    return tuple(notes)
+    return (*notes, *mesh_stiffness_left_out(system))
 
 
 def mode_warnings(
     system: System, asked: int | None, eigenvalues: np.ndarray, fmax: float | None = None
 ) -> tuple[str, ...]:
     """Say what is odd about a set of modes: merged nodes, fewer modes than asked for, unstable ones."""
-    notes = list(system.nodes.merged)
+    notes = [*system.nodes.merged, *mesh_stiffness_warnings(system)]
     if not len(eigenvalues) and fmax is not None:
         notes.append(f"no mode lies at or below {fmax:g} Hz")
     elif asked is not None and fmax is None and len(eigenvalues) < asked:

@@ -20,6 +20,8 @@ ModelFile = Annotated[Path, typer.Argument(help="Model file (TOML).", show_defau
 JsonOption = Annotated[
     Path | None, typer.Option("--json", help="Write the result as JSON to this file.", show_default=False)
 ]
+SaveOption = Annotated[Path | None, typer.Option("--save", help="Save the result (HDF5).", show_default=False)]
+PlotOption = Annotated[Path | None, typer.Option("--plot", help="Draw it to this PNG, SVG or PDF.", show_default=False)]
 ElementsOption = Annotated[
     int | None,
     typer.Option(
@@ -47,8 +49,8 @@ def console() -> Console:
     return Console(highlight=False, width=None if sys.stdout.isatty() else 80)
 
 
-def parse_speed(text: str | None) -> float | None:
-    """Speed in rad/s from the command line.
+def parse_speed(text: str | None, option: str = "--speed") -> float | None:
+    """Speed in rad/s from an option of the command line.
 
     Raises:
         AnalysisError: not a rotational speed.
@@ -62,7 +64,22 @@ def parse_speed(text: str | None) -> float | None:
     try:
         return parse_quantity(text, "speed")
     except QuantityError as error:
-        raise AnalysisError(f"--speed: got '{text}', expected {error}") from None
+        raise AnalysisError(f"{option}: got '{text}', expected {error}") from None
+
+
+def table(*names: str, left: int = 1) -> Any:
+    """An empty table without lines; the first columns stand to the left, the others to the right."""
+    from rich.table import Table
+
+    out = Table(box=None, pad_edge=False, header_style="bold")
+    for number, name in enumerate(names):
+        out.add_column(name, justify="left" if number < left else "right")
+    return out
+
+
+def error_words(value: float) -> str:
+    """A small relative error in one digit; what rounding alone decides is not told apart."""
+    return "<1e-9" if value < 1e-9 else f"{value:.0e}"
 
 
 def write_json(data: dict[str, Any], path: Path | None) -> None:

@@ -7,7 +7,21 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli import accuracy, campbell, check, compare, critical, modal, schema, validate, view
+from rotorgear.cli import (
+    accuracy,
+    campbell,
+    check,
+    compare,
+    critical,
+    frf,
+    gear,
+    modal,
+    response,
+    schema,
+    static,
+    validate,
+    view,
+)
 from rotorgear.errors import RotorgearError
 
 app = typer.Typer(
@@ -21,7 +35,11 @@ app.command()(modal.modal)
 app.command()(campbell.campbell)
 app.command()(critical.critical)
 app.command()(compare.compare)
+app.command()(static.static)
+app.command()(response.response)
+app.command()(frf.frf)
 app.command()(check.check)
+app.command()(gear.gear)
 app.command()(accuracy.accuracy)
 app.command()(view.view)
 app.command()(schema.schema)

@@ -15,13 +15,23 @@ from rotorgear.export.files import replacing
 from rotorgear.export.hdf5_values import get_value, put_value
 from rotorgear.results.campbell import CampbellResult
 from rotorgear.results.critical import CriticalResult
+from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult
+from rotorgear.results.response import ResponseResult
+from rotorgear.results.static import StaticResult
 
 if TYPE_CHECKING:
     from types import ModuleType
 
 FORMAT, FORMAT_VERSION = "rotorgear result", 1
-_KINDS: dict[str, Any] = {"modal": ModalResult, "campbell": CampbellResult, "critical": CriticalResult}
+_KINDS: dict[str, type[Any]] = {
+    "modal": ModalResult,
+    "campbell": CampbellResult,
+    "critical": CriticalResult,
+    "static": StaticResult,
+    "response": ResponseResult,
+    "frf": FrequencyResponse,
+}
 # The package is loaded before its modules; importing it from here would turn the house upside down.
 _VERSION: str = sys.modules[__name__.partition(".")[0]].__version__
 
@@ -33,7 +43,7 @@ class ReadError(RotorgearError):
         super().__init__(f"{path} can't be read: {reason}")
 
 
-def save(result: ModalResult | CampbellResult | CriticalResult, path: str | Path) -> Path:
+def save(result: Any, path: str | Path) -> Path:
     """Write a result to an HDF5 file and return its path.
 
     Raises:
@@ -85,7 +95,7 @@ def _import_h5py() -> ModuleType:
     return h5py
 
 
-def _kind(path: Path, file: Any) -> Any:
+def _kind(path: Path, file: Any) -> type[Any]:
     """Class of the result in a file; ReadError for a foreign or newer file."""
     if file.attrs.get("format") != FORMAT:
         raise ReadError(path, "it is no result of rotorgear")

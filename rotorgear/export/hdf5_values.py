@@ -19,9 +19,11 @@ from rotorgear.model.model import Model
 from rotorgear.results.campbell import Crossing, ExcitationOrder, Margin, Onset
 from rotorgear.results.critical import CriticalSpeed
 from rotorgear.results.modal import NodeTable, Piece
+from rotorgear.results.static import LoopAssembly, Share
 
 _RECORDS: dict[str, type] = {
-    cls.__name__: cls for cls in (NodeTable, Piece, ExcitationOrder, Crossing, Margin, Onset, CriticalSpeed)
+    cls.__name__: cls
+    for cls in (NodeTable, Piece, ExcitationOrder, Crossing, Margin, Onset, CriticalSpeed, Share, LoopAssembly)
 }
 
 

@@ -99,8 +99,8 @@ def check_amplitude(amplitude: float | None) -> None:
 
 
 @dataclass(frozen=True)
-class _Motion:
-    """Scaled displacement of the surface points of a mode, (P, 3) complex, and the scale."""
+class Motion:
+    """Scaled displacement of the surface points of a shape, (P, 3) complex, and the scale."""
 
     scaled: np.ndarray
     scale: float
@@ -121,11 +121,11 @@ def _write_mode(
     scratch: Path,
 ) -> list[str]:
     """Write one mode to the temporary folder and return the names of its files, what refers to others last."""
-    motion = _Motion(*solids.scaled(result.shapes[:, :, mode], amplitude))
+    motion = Motion(*solids.scaled(result.shapes[:, :, mode], amplitude))
     name = f"mode_{mode + 1:02d}"
     save_mesh(_mode_mesh(result, plain, mode, motion), scratch / f"{name}.vtp")
     (scratch / name).mkdir()
-    steps = _write_frames(pv, solids, plain, motion, frames, scratch, name)
+    steps = write_frames(pv, solids, plain, motion, frames, scratch, name)
     (scratch / f"{name}.pvd").write_text(collection(steps), encoding="utf-8")
     return [*dict.fromkeys(file for _, file in steps), f"{name}.vtp", f"{name}.pvd"]
 
@@ -138,7 +138,7 @@ def _with_names(mesh: Any, solids: Solids, result: ModalResult) -> Any:
     return mesh
 
 
-def _mode_mesh(result: ModalResult, plain: Any, mode: int, motion: _Motion) -> Any:
+def _mode_mesh(result: ModalResult, plain: Any, mode: int, motion: Motion) -> Any:
     mesh = plain.copy(deep=False)
     raw = motion.scaled / motion.scale
     for name, values in (("displacement", motion.scaled), ("mass_normalised", raw)):
@@ -153,10 +153,10 @@ def _mode_mesh(result: ModalResult, plain: Any, mode: int, motion: _Motion) -> A
     return mesh
 
 
-def _write_frames(
-    pv: ModuleType, solids: Solids, plain: Any, motion: _Motion, frames: int, scratch: Path, name: str
+def write_frames(
+    pv: ModuleType, solids: Solids, plain: Any, motion: Motion, frames: int, scratch: Path, name: str
 ) -> list[tuple[float, str]]:
-    """Write the frames of a mode; return (phase in degrees, name of the file) for a whole period.
+    """Write the frames of a motion to `name/`; return (phase in degrees, name of the file) for a whole period.
 
     Where all points move in phase, the second half of the period shows the files of the first one backwards.
     """

@@ -22,8 +22,9 @@ class GearGeometry:
     """Tooth data of one external gear (one helix of a herringbone gear); ISO 21771-1.
 
     normal_module (m), normal_pressure_angle and helix_angle (rad, at the reference cylinder), profile_shift x and the
-    addendum_factor and dedendum_factor of the basic rack in normal modules. `tip_diameter` (m) is the given one; None
-    means d + 2 m_n (h_a + x), and `effective_tip_diameter` is the one in force. Values without meaning raise
+    addendum_factor, dedendum_factor and root_radius_factor (rho_fP) of the basic rack in normal modules. `tip_diameter` (m)
+    is the given one; None means d + 2 m_n (h_a + x), and `effective_tip_diameter` is the one in force. So with the root
+    radius: None is that of ISO 53, and `tool_tip_radius_factor` the one in force. Values without meaning raise
     AnalysisError; `check_gear` tells which meaningful values make a bad or an impossible tooth.
     """
 
@@ -35,6 +36,7 @@ class GearGeometry:
     addendum_factor: float = 1.0
     dedendum_factor: float = 1.25
     tip_diameter: float | None = None
+    root_radius_factor: float | None = None
 
     def __post_init__(self) -> None:
         if self.teeth < 1 or self.teeth != int(self.teeth):
@@ -44,6 +46,8 @@ class GearGeometry:
         for name, value in (lengths | factors).items():
             if value is not None and not 0.0 < value < math.inf:
                 raise AnalysisError(f"The {name} of a gear must be positive and finite, not {value:g}.")
+        if self.root_radius_factor is not None and not 0.0 <= self.root_radius_factor < math.inf:
+            raise AnalysisError(f"The root radius factor of a gear must be 0 or more, not {self.root_radius_factor:g}.")
         if not 0.0 < self.normal_pressure_angle < math.pi / 2:
             angle = math.degrees(self.normal_pressure_angle)
             raise AnalysisError(f"The normal pressure angle must lie between 0 and 90 deg, not at {angle:g} deg.")
@@ -108,10 +112,37 @@ class GearGeometry:
         return math.pi * self.reference_diameter / math.tan(self.helix_angle) if self.helix_angle else math.inf
 
     @property
+    def full_radius_factor(self) -> float:
+        """Largest rho_fP at which the tool's tip is still as deep as h_fP: its two roundings meet; negative where none is."""
+        alpha = self.normal_pressure_angle
+        half_land = math.pi / 4 - self.dedendum_factor * math.tan(alpha)
+        return half_land * math.cos(alpha) / (1.0 - math.sin(alpha))
+
+    @property
+    def tool_tip_radius_factor(self) -> float:
+        """rho_fP in force: the given one or that of ISO 53, c_P / (1 - sin a_n), at most the full radius."""
+        wanted = self.root_radius_factor
+        if wanted is None:
+            wanted = (self.dedendum_factor - self.addendum_factor) / (1.0 - math.sin(self.normal_pressure_angle))
+        return max(0.0, min(wanted, self.full_radius_factor))
+
+    @property
+    def straight_flank_factor(self) -> float:
+        """h_FfP: depth of the rack's straight flank below its datum line, h_fP - rho_fP (1 - sin a_n) (ISO 53)."""
+        return self.dedendum_factor - self.tool_tip_radius_factor * (1.0 - math.sin(self.normal_pressure_angle))
+
+    @property
+    def tool_form_roll_length(self) -> float:
+        """xi (m) of the flank point that the end of the rack's straight flank cuts; negative for an undercut tooth."""
+        depth = self.normal_module * (self.straight_flank_factor - self.profile_shift)
+        sine = math.sin(self.transverse_pressure_angle)
+        return 0.5 * self.reference_diameter * sine - depth / sine
+
+    @property
     def minimum_profile_shift(self) -> float:
-        """x below which a rack with straight flanks of depth h_FfP = h_aP (ISO 53) undercuts the tooth."""
+        """x below which the rack's straight flanks of depth h_FfP (ISO 53) undercut the tooth."""
         half_base = self.teeth * math.sin(self.transverse_pressure_angle) ** 2 / (2.0 * math.cos(self.helix_angle))
-        return self.addendum_factor - half_base
+        return self.straight_flank_factor - half_base
 
     @property
     def is_undercut(self) -> bool:
@@ -154,6 +185,11 @@ class GearGeometry:
 def impossible_teeth(g: GearGeometry) -> list[str]:
     """Sentences on circles in the wrong order; any of them means that there is no tooth to speak of."""
     tip, root, base = (1e3 * d for d in (g.effective_tip_diameter, g.root_diameter, 2.0 * g.base_radius))
+    if g.full_radius_factor < 0.0:
+        return [
+            f"The basic rack is pointed before it is {g.dedendum_factor:.6g} normal modules deep: "
+            "use a smaller dedendum or pressure angle."
+        ]
     if root <= 0.0:
         return [f"The root diameter is {root:.6g} mm, not positive: use more teeth or a smaller dedendum."]
     if tip <= root:

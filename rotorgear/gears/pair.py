@@ -100,6 +100,13 @@ class PairGeometry:
         transverse = self.transverse_backlash * math.cos(self.working_transverse_pressure_angle)
         return transverse * math.cos(self.base_helix_angle)
 
+    def active_root_diameters(self, g1: GearGeometry, g2: GearGeometry) -> tuple[float, float]:
+        """d_Nf of both gears (m): where contact with the mate's tip begins; the base diameter with interference."""
+        tangent = math.tan(self.working_transverse_pressure_angle)
+        first = max(g1.base_radius * tangent + self.start_of_contact, 0.0)
+        second = max(g2.base_radius * tangent - self.end_of_contact, 0.0)
+        return 2.0 * math.hypot(g1.base_radius, first), 2.0 * math.hypot(g2.base_radius, second)
+
 
 def _path_beyond_pitch_point(g: GearGeometry, angle: float) -> float:
     """Length of action (m) from the pitch point to where the tip circle of g cuts the line of action at angle a_wt."""

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from rotorgear.errors import Problem, RotorgearError
 from rotorgear.gears.geometry import impossible_teeth
 from rotorgear.model.bodies import Disk
+from rotorgear.model.check_teeth import tooth_problems
 from rotorgear.model.gear import Gear, GearBody
 from rotorgear.model.inertia import disk_body, gear_body, inertia_is_given
 from rotorgear.model.mesh_geometry import gear_geometry
@@ -62,8 +63,10 @@ def _toothed_gear(address: str, gear: Gear) -> Iterator[Problem]:
     found += pressure_angle_problems(f"{address}.normal_pressure_angle", gear.normal_pressure_angle)
     yield from found
     geometry = None if found else gear_geometry(gear)
-    if geometry:
-        yield from (Problem(address, "", text) for text in impossible_teeth(geometry))
+    if geometry and (wrong := list(impossible_teeth(geometry))):
+        yield from (Problem(address, "", text) for text in wrong)
+    elif geometry:
+        yield from tooth_problems(address, gear, geometry)
 
 
 def _lumped_gear(address: str, gear: Gear) -> Iterator[Problem]:

@@ -40,8 +40,26 @@ def mesh_problems(model: Tables) -> Iterator[Problem]:
         elif pinion.shaft == gear.shaft:
             yield Problem(address, f"two gears on shaft '{pinion.shaft}'", "gears on two shafts")
         else:
-            found = [*_mates(address, pinion, gear), *_faces(model, address, mesh)]
+            yield from _excitations(address, mesh, pinion, gear)
+            found = [*_mates(address, pinion, gear), *_faces(model, address, mesh), *_teeth(address, mesh, pinion)]
             yield from found or _axes(model, address, name)
+
+
+def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator[Problem]:
+    """Harmonics of a mesh need its frequency; what tells two helices apart needs two."""
+    for key in ("transmission_error", "stiffness_variation"):
+        if getattr(mesh, key) and not (pinion.teeth and gear.teeth):
+            yield Problem(f"{address}.{key}", "harmonics of a mesh whose frequency is unknown", "teeth of both gears")
+    for key in ("helix_index_error", "helix_stagger"):
+        if getattr(mesh, key) and pinion.kind != "herringbone":
+            yield Problem(f"{address}.{key}", "a value", "nothing here", "only a herringbone pair has two helices")
+
+
+def _teeth(address: str, mesh: Mesh, pinion: Gear) -> Iterator[Problem]:
+    """A stiffness model needs teeth."""
+    if isinstance(mesh.stiffness, str) and pinion.lumped:
+        wanted = "a stiffness such as '5e8 N/m' between gears that are given by their base radius"
+        yield Problem(f"{address}.stiffness", f"'{mesh.stiffness}'", wanted, "a stiffness model needs teeth")
 
 
 def _mates(address: str, pinion: Gear, gear: Gear) -> Iterator[Problem]:

@@ -20,7 +20,7 @@ def stations(model: Tables) -> Iterator[Problem]:
     for name, coupling in model.couplings.items():
         yield from _station(model, f"couplings.{name}.from_at", coupling.from_shaft, coupling.from_at)
         yield from _station(model, f"couplings.{name}.to_at", coupling.to_shaft, coupling.to_at)
-    for table in ("loads", "points"):
+    for table in ("loads", "unbalances", "points"):
         for name, part in getattr(model, table).items():
             if part.shaft is not None and part.at is not None:
                 yield from _station(model, f"{table}.{name}.at", part.shaft, part.at)

@@ -46,7 +46,8 @@ class Part(BaseModel):
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
 
-def _refuse(text: str) -> PydanticCustomError:
+def refuse(text: str) -> PydanticCustomError:
+    """The error that says what was expected in place of a value."""
     return PydanticCustomError("quantity", "{text}", {"text": text})
 
 
@@ -62,12 +63,12 @@ class Unit:
         try:
             number = parse_quantity(value, self.dimension)
         except QuantityError as error:
-            raise _refuse(str(error)) from error
+            raise refuse(str(error)) from error
         # The least positive number keeps its reciprocal and its powers finite.
         if (self.bound == "positive" and number < 1.0 / LARGEST) or (self.bound == "non-negative" and number < 0.0):
             wanted = DIMENSIONS[self.dimension]
             noun = wanted.phrase.removeprefix("an ").removeprefix("a ")
-            raise _refuse(f"a {self.bound} {noun} such as '{wanted.example}'")
+            raise refuse(f"a {self.bound} {noun} such as '{wanted.example}'")
         return number
 
     def schema(self) -> dict[str, Any]:
@@ -112,6 +113,8 @@ RotationalDamping = Annotated[float, Unit("rotational_damping", "non-negative")]
 Ratio = Annotated[float, Unit("ratio", "non-negative")]
 PositiveRatio = Annotated[float, Unit("ratio", "positive")]
 SignedRatio = Annotated[float, Unit("ratio")]
+UnbalanceSize = Annotated[float, Unit("unbalance", "non-negative")]
+Acceleration = Annotated[float, Unit("acceleration")]
 
 
 def _parse_station(value: Any) -> float | str:
@@ -120,7 +123,7 @@ def _parse_station(value: Any) -> float | str:
     try:
         return parse_quantity(value, "length")
     except QuantityError as error:
-        raise _refuse("a position along z such as '120 mm', or 'start' or 'end' of the shaft") from error
+        raise refuse("a position along z such as '120 mm', or 'start' or 'end' of the shaft") from error
 
 
 def _station_schema() -> dict[str, Any]:
@@ -138,17 +141,26 @@ Station = Annotated[float | Literal["start", "end"], BeforeValidator(_parse_stat
 
 def _parse_position(value: Any) -> Any:
     if not isinstance(value, list | tuple) or len(value) != 2:
-        raise _refuse("x and y of the axis such as ['0 mm', '120 mm']")
+        raise refuse("x and y of the axis such as ['0 mm', '120 mm']")
     return value
 
 
 Position = Annotated[tuple[Length, Length], BeforeValidator(_parse_position)]
 
 
+def _parse_gravity(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        raise refuse("its x, y and z such as ['0 m/s^2', '-9.81 m/s^2', '0 m/s^2']")
+    return value
+
+
+Gravity = Annotated[tuple[Acceleration, Acceleration, Acceleration], BeforeValidator(_parse_gravity)]
+
+
 def _parse_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
     rows = value if isinstance(value, list | tuple) else ()
     if len(rows) != 6 or any(not isinstance(row, list | tuple) or len(row) != 6 for row in rows):
-        raise _refuse("6 rows of 6 numbers in SI, rows and columns x y z tilt_x tilt_y torsion")
+        raise refuse("6 rows of 6 numbers in SI, rows and columns x y z tilt_x tilt_y torsion")
     return tuple(
         tuple(_entry(x, f"row {i + 1}, column {j + 1}") for j, x in enumerate(row)) for i, row in enumerate(rows)
     )
@@ -157,11 +169,11 @@ def _parse_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
 def _entry(value: Any, place: str) -> float:
     """A plain number: the entries of a 6 x 6 have several units, so that they are given in SI."""
     if isinstance(value, str):
-        raise _refuse(f"plain numbers in SI, without units; {place} is a text")
+        raise refuse(f"plain numbers in SI, without units; {place} is a text")
     try:
         return parse_quantity(value, "ratio")
     except QuantityError as error:
-        raise _refuse(f"finite numbers in SI; that of {place} is none") from error
+        raise refuse(f"finite numbers in SI; that of {place} is none") from error
 
 
 Matrix6 = Annotated[
@@ -182,7 +194,7 @@ _MOST = 100_000
 def _parse_whole(value: Any) -> int:
     """No 29.0, no "29" and no true for 1."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral) or not 1 <= int(value) <= _MOST:
-        raise _refuse(f"a whole number from 1 to {_MOST}")
+        raise refuse(f"a whole number from 1 to {_MOST}")
     return int(value)
 
 
@@ -194,7 +206,7 @@ Flag = Annotated[bool, Field(strict=True)]
 
 def _parse_name(name: str) -> str:
     if len(name) > 60 or not re.fullmatch(r"[\w-](?:[\w -]*[\w-])?", name) or not re.search(r"[^\W_]", name):
-        raise _refuse("a short name of letters, digits, _ and - such as 'input_left'")
+        raise refuse("a short name of letters, digits, _ and - such as 'input_left'")
     return name
 
 

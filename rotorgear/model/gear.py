@@ -9,11 +9,13 @@ from pydantic import Field
 from rotorgear.model.fields import (
     Angle,
     Inertia,
+    Length,
     Mass,
     NonNegativeLength,
     Part,
     PositiveLength,
     PositiveRatio,
+    Ratio,
     SignedRatio,
     Station,
     Whole,
@@ -51,9 +53,31 @@ class Gear(Part):
     addendum_factor: PositiveRatio = Field(1.0, description="addendum of the rack over m_n")
     dedendum_factor: PositiveRatio = Field(1.25, description="dedendum of the rack over m_n")
     tip_diameter: PositiveLength | None = Field(None, description="tip diameter; default: from addendum and shift")
+    root_radius_factor: Ratio | None = Field(
+        None, description="tip radius of the rack over m_n, which cuts the root fillet; default: that of ISO 53"
+    )
+    tip_relief: NonNegativeLength = Field(
+        0.0, description="linear tip relief C_a at the tip circle, normal to the flank"
+    )
+    tip_relief_diameter: PositiveLength | None = Field(None, description="diameter at which the tip relief starts")
+    upper_thickness_allowance: Length = Field(
+        0.0, description="upper allowance E_sns of the normal tooth thickness, 0 or negative, for the backlash"
+    )
+    lower_thickness_allowance: Length | None = Field(
+        None, description="lower allowance E_sni of the normal tooth thickness; default: the upper one"
+    )
+    ball_diameter: PositiveLength | None = Field(
+        None,
+        description="diameter of the balls or pins that the gear is measured over; default: the ideal one, rounded up",
+    )
+    accuracy_grade: Whole | None = Field(None, description="flank tolerance class 1 to 11 of ISO 1328-1, for K_v")
     base_radius: PositiveLength | None = Field(None, description="base radius of a lumped gear, in place of the module")
     transverse_pressure_angle: Angle | None = Field(None, description="transverse pressure angle of a lumped gear")
     base_helix_angle: Angle | None = Field(None, description="base helix angle of a lumped helical gear")
+    clocking: Angle | None = Field(
+        None,
+        description="angle of a tooth's middle from the mark of the shaft, about +z; default: what closes a loop, else 0",
+    )
     nodes: Literal[1, 2] | None = Field(
         None, description="herringbone: 2 = a node for each helix, joined by the shaft (default); 1 = one rigid node"
     )

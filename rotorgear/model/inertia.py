@@ -70,6 +70,14 @@ def disk_body(model: Tables, disk: Disk) -> RigidBody:
     return hollow_cylinder(disk.outer_diameter or 0.0, bore, disk.width or 0.0, density)
 
 
+def bore_of(model: Tables, name: str) -> float:
+    """Bore of a gear in m: given, or the shaft's diameter there."""
+    gear = model.gears[name]
+    if gear.body.bore is not None:
+        return gear.body.bore
+    return max(model.shafts[gear.shaft].diameter_at(z) for z in node_positions(model, name))
+
+
 def gear_body(model: Tables, name: str) -> RigidBody:
     """Mass and inertias of a whole gear about its middle, given or from its blank.
 
@@ -82,13 +90,9 @@ def gear_body(model: Tables, name: str) -> RigidBody:
     geometry = gear_geometry(gear)
     if geometry is None or not gear.width:
         raise ValueError("mass and inertias, or teeth, module and width to compute them from")
-    shaft = model.shafts[gear.shaft]
-    bore = gear.body.bore
-    if bore is None:
-        bore = max(shaft.diameter_at(z) for z in node_positions(model, name))
     helix = gear_blank(
         geometry.reference_diameter,
-        bore,
+        bore_of(model, name),
         gear.width,
         model.material_of(gear.shaft, name=gear.material).density,
         root_diameter=geometry.root_diameter,

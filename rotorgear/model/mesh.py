@@ -6,7 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from rotorgear.model.fields import Angle, Damping, Length, Part, PositiveStiffness, Ratio
+from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic
+from rotorgear.model.fields import Angle, Damping, Length, NonNegativeLength, Part, PositiveRatio, Ratio
+from rotorgear.model.mesh_stiffness_field import StiffnessValue
 
 
 class Mesh(Part):
@@ -14,8 +16,10 @@ class Mesh(Part):
 
     pinion: str = Field(description="name of the gear that is called the pinion")
     gear: str = Field(description="name of its mate")
-    stiffness: PositiveStiffness = Field(
-        description="mean mesh stiffness along the flank normal, both helices together"
+    stiffness: StiffnessValue = Field(
+        description="mean mesh stiffness along the flank normal, both helices together; a list of such values over one "
+        "mesh period; a Fourier series { mean, amplitudes, phases }; or the name of a stiffness model, which takes the "
+        "mean load of the torque flow"
     )
     damping_ratio: Ratio = Field(0.0, description="damping ratio zeta: c = 2 zeta sqrt(k m_e)")
     damping: Damping | None = Field(
@@ -24,6 +28,10 @@ class Mesh(Part):
     equivalent_mass: Literal["torsion", "general"] = Field(
         "torsion", description="m_e of the damping ratio: from the rotations only, or from all motions of the two gears"
     )
+    centre_distance_allowance: NonNegativeLength = Field(
+        0.0, description="the centre distance may deviate by so much to both sides, for the backlash"
+    )
+    application_factor: PositiveRatio = Field(1.0, description="application factor K_A of ISO 6336, for K_v")
     contact_position: Length = Field(
         0.0, description="place of the contact along the line of action from the pitch point, positive towards recess"
     )
@@ -32,4 +40,21 @@ class Mesh(Part):
     )
     pressure_angle: Angle | None = Field(
         None, description="working transverse pressure angle, only where the shafts have no positions"
+    )
+    index_error: Length = Field(
+        0.0,
+        description="gap along the flank normal that must close before this mesh carries (timing error of a branch)",
+    )
+    helix_index_error: Length = Field(
+        0.0, description="gap that the helix at the larger z of a herringbone has beside that"
+    )
+    helix_stagger: Ratio = Field(
+        0.0,
+        description="herringbone: by how many pitches the teeth at the larger z are ahead; 0 in phase, 0.5 staggered",
+    )
+    transmission_error: tuple[ErrorHarmonic, ...] = Field(
+        (), description="harmonics of the static transmission error, positive where it opens the gap"
+    )
+    stiffness_variation: tuple[StiffnessHarmonic, ...] = Field(
+        (), description="harmonics of the mesh stiffness about its mean"
     )

@@ -59,6 +59,7 @@ def gear_geometry(gear: Gear) -> GearGeometry | None:
         addendum_factor=gear.addendum_factor,
         dedendum_factor=gear.dedendum_factor,
         tip_diameter=gear.tip_diameter,
+        root_radius_factor=gear.root_radius_factor,
     )
 
 
@@ -127,8 +128,11 @@ def mesh_pair(model: Tables, mesh_name: str) -> PairGeometry | None:
     return pair_geometry(first, second, centre_distance=line[0] if line else None, width=min(widths, default=0.0))
 
 
-def contacts(model: Tables, mesh_name: str) -> tuple[Contact, ...]:
-    """Return the contacts of a mesh: one, or two for a herringbone pair (each with half the stiffness)."""
+def contacts(model: Tables, mesh_name: str, stiffness: float = math.nan) -> tuple[Contact, ...]:
+    """Return the contacts of a mesh: one, or two for a herringbone pair (each with half the stiffness).
+
+    `stiffness` is that of the mesh along the flank normal in N/m; without it, the contacts serve their geometry only.
+    """
     mesh = model.meshes[mesh_name]
     pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
     line = centre_line(model, mesh_name)
@@ -150,7 +154,7 @@ def contacts(model: Tables, mesh_name: str) -> tuple[Contact, ...]:
             base_helix_angle=base_helix_angle(pinion),
             pinion_base_radius=base_radius(pinion),
             gear_base_radius=base_radius(gear),
-            stiffness=mesh.stiffness / len(planes),
+            stiffness=stiffness / len(planes),
             contact_position=mesh.contact_position,
         )
         for number, (first, second) in enumerate(planes)

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from rotorgear.model.fields import Part, Power, Rate, Ratio, Speed, Station, Time, Torque
+from rotorgear.model.fields import Gravity, Part, Power, Rate, Ratio, Speed, Station, Time, Torque
 
 
 class Operation(Part):
@@ -17,6 +17,9 @@ class Operation(Part):
     power: Power | None = Field(None, description="power into the input shaft")
     torque: Torque | None = Field(None, description="torque into the input shaft, in the sense of its rotation")
     output_shaft: str | None = Field(None, description="name of the shaft that takes the power")
+    gravity: Gravity | None = Field(
+        None, description="acceleration of gravity along x, y and z, for statics; default: none"
+    )
 
 
 class Load(Part):

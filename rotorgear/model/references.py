@@ -11,7 +11,8 @@ from rotorgear.model.tables import Tables
 
 PartName = tuple[str, str]  # (table, name); the name "" stands for the whole table
 TABLES = (
-    "materials", "shafts", "disks", "point_masses", "gears", "meshes", "bearings", "supports", "couplings", "loads", "points",
+    "materials", "shafts", "disks", "point_masses", "gears", "meshes", "bearings", "supports", "couplings", "loads",
+    "unbalances", "points",
 )  # fmt: skip
 ON_SHAFTS = ("disks", "point_masses", "gears", "bearings", "supports")
 
@@ -32,7 +33,7 @@ class Reference:
 
 def references(model: Tables) -> Iterator[Reference]:
     """Yield every name of a shaft, a gear or another part that some part gives (materials apart)."""
-    for table in (*ON_SHAFTS, "loads"):
+    for table in (*ON_SHAFTS, "loads", "unbalances"):
         for name, part in getattr(model, table).items():
             yield Reference((table, name), "shaft", ("shafts", part.shaft))
     for name, mesh in model.meshes.items():

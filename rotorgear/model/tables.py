@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from rotorgear.model.bodies import Disk, PointMass
+from rotorgear.model.excitation import Unbalance
 from rotorgear.model.fields import Name, Part
 from rotorgear.model.gear import Gear
 from rotorgear.model.mesh import Mesh
@@ -35,6 +36,7 @@ class Tables(Part):
     couplings: dict[Name, Coupling] = Field(default_factory=dict, description="couplings between shafts")
     damping: ModelDamping = Field(default_factory=ModelDamping, description="damping of the model as a whole")
     loads: dict[Name, Load] = Field(default_factory=dict, description="torques, for several inputs or outputs")
+    unbalances: dict[Name, Unbalance] = Field(default_factory=dict, description="unbalances of shafts")
     points: dict[Name, Point] = Field(default_factory=dict, description="named points with a direction")
 
     def material_of(self, shaft: str, section: Section | None = None, name: str | None = None) -> Material:

@@ -84,6 +84,7 @@ def lowest_modes(
     count: int | None = None,
     below: float | None = None,
     strain: Strain | None = None,
+    guess: float | None = None,
 ) -> UndampedModes:
     """The lowest undamped modes of a symmetric positive semidefinite pair, rigid modes included.
 
@@ -94,6 +95,7 @@ def lowest_modes(
     below : only the modes with omega <= below [rad/s], and all of them (the lowest `count` when both are given).
     strain : V (n, m) -> S V (p, m) with K = S^T S, each strain evaluated without forming K. It carries soft modes to
         full precision and tells rigid from soft; without it a mode softer than the rounding of K counts as rigid.
+    guess : an eigenvalue [(rad/s)^2] near the first elastic one; saves the search for it, never changes the answer.
 
     Raises
     ------
@@ -111,7 +113,7 @@ def lowest_modes(
     M, K = sp.csc_array(M, dtype=float), sp.csc_array(K, dtype=float)
     with single_thread(K.shape[0]):
         massless = check_pencil(M, K)
-        return _confirmed(shifted_operator(M, K), _Wanted(count, below), strain, massless)
+        return _confirmed(shifted_operator(M, K, guess), _Wanted(count, below), strain, massless)
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,11 @@ class Quadratic:
         """Q(z) = z^2 M + z D + K; real for a real z."""
         return sp.csc_array(z * z * self.M + z * self.D + self.K)
 
+    def forms(self, V: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """v^H M v, v^H D v and v^H K v of each column of V (n, k): three times (k,)."""
+        mass, velocity, stiffness = (np.einsum("ij,ij->j", V.conj(), A @ V) for A in (self.M, self.D, self.K))
+        return mass, velocity, stiffness
+
     def residuals(self, values: np.ndarray, V: np.ndarray) -> np.ndarray:
         """Backward errors ||Q(z) v|| / ((|z|^2 ||M||_1 + |z| ||D||_1 + ||K||_1) ||v||) of scaled pairs: (m,)."""
         left = (self.M @ V) * values**2 + (self.D @ V) * values + self.K @ V
@@ -47,6 +52,19 @@ class Quadratic:
         size = np.maximum(size * np.linalg.norm(V, axis=0), np.finfo(float).tiny)  # K = 0 leaves no residual either
         errors: np.ndarray = np.linalg.norm(left, axis=0) / size
         return errors
+
+
+def corrected(values: np.ndarray, trust: np.ndarray, forms: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
+    """Roots z (k,) of z^2 a + z b + c next to the given ones, a, b, c = v^H M v, v^H D v, v^H K v: errors of v count twice.
+
+    That is so where v is its own left vector (no damping), and nearly so with little damping. A step of more than `trust`
+    relative to z is not taken.
+    """
+    a, b, c = forms
+    slope = 2.0 * values * a + b
+    step = (values * (values * a + b) + c) / np.where(slope == 0.0, 1.0, slope)
+    taken = (slope != 0.0) & (np.abs(step) <= trust * np.abs(values))
+    return np.asarray(np.where(taken, values - step, values))
 
 
 def scaled(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, w0: float) -> Quadratic:
@@ -74,6 +92,8 @@ class InverseState:
         self._first = sp.csr_array(quadratic.D + sigma * quadratic.M)
         self._second = sp.csr_array(quadratic.M)
         self.zeros = zero_states(quadratic, rigid)
+        inertia = np.maximum(quadratic.M.diagonal(), 0.0)
+        self._balance = np.sqrt(np.maximum(inertia, EPS * inertia.max(initial=0.0)))[:, None]
 
     def project(self, x: np.ndarray) -> np.ndarray:
         """x (2n, k) without its part in the zero eigenspace."""
@@ -85,9 +105,22 @@ class InverseState:
         q = -self.factor.solve(self._first @ x[:n] + self._second @ x[n:])
         return np.vstack([q, x[:n] + self.sigma * q])
 
-    def apply_projected(self, x: np.ndarray) -> np.ndarray:
-        """T x without its part in the zero eigenspace."""
-        return self.project(self.apply(x))
+    def apply_balanced(self, y: np.ndarray) -> np.ndarray:
+        """B T B^-1 y without its part in the zero eigenspace, B = diag(1, sqrt(M_ii)): norms are then nearly energies.
+
+        In energies T is normal but for damping. Without B speeds outweigh displacements, and Ritz values stray among the
+        converged ones.
+        """
+        return self._balanced(self.project(self.apply(self.unbalanced(y))))
+
+    def unbalanced(self, y: np.ndarray) -> np.ndarray:
+        """B^-1 y (2n, k)."""
+        n = self.quadratic.n
+        return np.vstack([y[:n], y[n:] / self._balance])
+
+    def _balanced(self, x: np.ndarray) -> np.ndarray:
+        n = self.quadratic.n
+        return np.vstack([x[:n], self._balance * x[n:]])
 
     def restored(self, mu: np.ndarray, X: np.ndarray, known: np.ndarray) -> np.ndarray:
         """Eigenvectors (2n, k) of T from those X of T projected off the invariant subspace `known` (2n, z).

@@ -15,18 +15,18 @@ import scipy.sparse as sp
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.krylov import BlockKrylov
 from rotorgear.solvers.pencil import EPS
-from rotorgear.solvers.quadratic import InverseState, Quadratic, infinite_states, newton, scaled
+from rotorgear.solvers.quadratic import InverseState, Quadratic, corrected, infinite_states, newton, scaled
 
 _DENSE_UP_TO = 80
 _BLOCK = 4
 _CONVERGED = 1e-12  # residual of T x = mu x relative to mu
 _SOUND = 1e-9  # backward error, and distance of two pairs, above and below which a Krylov result is not taken
-_TOO_BLURRED = (
-    1e-8  # relative rounding of the smallest mu above which the upper spectrum is taken from the companion matrix
-)
+# relative rounding of the smallest mu above which the upper spectrum is taken from the companion matrix
+_TOO_BLURRED = 1e-8
 _LARGEST_DENSE = 6000
 _SHIFT = 0.3  # sigma / w0, w0 being near the lowest |lambda|
 _BLUR = 1e-13  # relative error of 1/mu from rounding above which an eigenpair is refined on the pencil itself
+_BLUR_LARGE = 1e-12  # the same for a large pencil, where a refinement costs more
 
 
 @dataclass
@@ -63,7 +63,7 @@ def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, f
     for attempt in range(1, 12):
         quadratic = scaled(M, D, K, w0)
         inverse = InverseState(quadratic, _SHIFT, R / quadratic.scale[:, None])
-        search = Search(inverse, BlockKrylov(inverse.apply_projected, 2 * quadratic.n, _BLOCK), attempt)
+        search = Search(inverse, BlockKrylov(inverse.apply_balanced, 2 * quadratic.n, _BLOCK), attempt)
         lowest = _probe(search)
         if lowest is None or 0.1 <= lowest <= 10.0:
             return search
@@ -104,7 +104,7 @@ def solve(search: Search, rows: int | None, below: float | None, dense: bool = F
     """At least `rows` pairs, and all up to `below`: more and more of the spectrum until the reach suffices."""
     quadratic = search.inverse.quadratic
     limit = np.inf if below is None else below / quadratic.w0
-    wanted = 2 * rows + 6 if rows is not None else 40
+    wanted = 2 * rows + 4 if rows is not None else 40
     while (
         not dense and quadratic.n > _DENSE_UP_TO and wanted < quadratic.n // 2 and not (rows is None and below is None)
     ):
@@ -146,7 +146,7 @@ def _arnoldi(search: Search, wanted: int) -> Pairs:
     size = float(np.linalg.norm(krylov.projection, 1))
     Y = Y[:, :wanted]
     X = krylov.polished(np.hstack([Y.real, Y.imag]))
-    X = X[:, : Y.shape[1]] + 1j * X[:, Y.shape[1] :]
+    X = search.inverse.unbalanced(X[:, : Y.shape[1]] + 1j * X[:, Y.shape[1] :])
     return _selected(search, mu[:wanted], X, search.inverse.zeros, size, reach=float(1.0 / last))
 
 
@@ -159,7 +159,7 @@ def _most_copies(mu: np.ndarray) -> int:
 def _converged(search: Search, wanted: int) -> tuple[np.ndarray, np.ndarray]:
     """Expand until the first `wanted` Ritz values have settled: all mu (m,) and coordinates (m, m)."""
     krylov = search.krylov
-    goal = 3 * wanted
+    goal = int(3.25 * wanted)
     while True:
         while krylov.size < goal and not krylov.exhausted:
             krylov.expand()
@@ -236,12 +236,15 @@ def _selected(search: Search, mu: np.ndarray, X: np.ndarray, known: np.ndarray, 
     mu = mu[one].astype(complex)
     V = search.inverse.restored(mu, X[:, one].astype(complex), known)[: quadratic.n]
     values = sigma + 1.0 / mu
-    blurred = EPS * np.abs(values - sigma) ** 2 * size > _BLUR * np.abs(values)
+    rounding = EPS * np.abs(values - sigma) ** 2 * size / np.abs(values)
+    blurred = rounding > _BLUR
+    if np.isfinite(reach):  # a large pencil: refinements cost, and a quotient does as well where little damps
+        values = corrected(values, rounding, quadratic.forms(V))
+        blurred = rounding * np.minimum(np.abs(values.real) / np.abs(values) + rounding, 1.0) > _BLUR_LARGE
     for i in np.flatnonzero(blurred):
         values[i], V[:, i], spent = newton(quadratic, values[i], V[:, i])
         search.factorisations += spent
         if values[i].imag < 0.0:  # of a pair next to the real axis the other one may be found
             values[i], V[:, i] = np.conj(values[i]), np.conj(V[:, i])
     order = np.lexsort((values.imag, np.abs(values)))
-    method = "dense" if np.isinf(reach) else "block Arnoldi"
-    return Pairs(values[order], V[:, order], reach - sigma, method)
+    return Pairs(values[order], V[:, order], reach - sigma, "dense" if np.isinf(reach) else "block Arnoldi")

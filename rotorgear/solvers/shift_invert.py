@@ -64,8 +64,8 @@ class ShiftInvert:
         return self.sigma + 1.0 / theta, Y, self.krylov.residuals(Y) / theta
 
 
-def shifted_operator(M: sp.csc_array, K: sp.csc_array) -> ShiftInvert:
-    """Find a useful sigma < 0 and factor K - sigma M.
+def shifted_operator(M: sp.csc_array, K: sp.csc_array, guess: float | None = None) -> ShiftInvert:
+    """Find a useful sigma < 0 and factor K - sigma M; `guess`, a first elastic eigenvalue, saves work where it is right.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def shifted_operator(M: sp.csc_array, K: sp.csc_array) -> ShiftInvert:
     ConvergenceError
         K - sigma M is singular for every shift.
     """
-    sigma, factored = -_first_guess(M, K), 0
+    sigma, factored = -(0.1 * guess if guess else _first_guess(M, K)), 0
     for _ in range(12):
         factored += 1
         factor = _positive_factor(M, K, sigma)

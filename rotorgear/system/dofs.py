@@ -74,7 +74,7 @@ def map_dofs(model: Model, nodes: Nodes) -> DofMap:
     by_support = int(held.sum()) - by_motion
     inside = np.array([motion not in model.motions for motion in nodes.internal], dtype=bool)
     by_motion += int(inside.sum())
-    groups = _rigid_groups(model, nodes)
+    groups = rigid_groups(model, nodes)
     counts = {"motions": by_motion, "supports": by_support, "rigid sections": sum(6 * (len(g) - 1) for g in groups)}
     if not groups:
         return _selection(np.concatenate([held.ravel(), inside]), counts)
@@ -89,7 +89,7 @@ def _selection(held: np.ndarray, counts: dict[str, int]) -> DofMap:
     return DofMap(T, column, True, counts)
 
 
-def _rigid_groups(model: Model, nodes: Nodes) -> list[list[int]]:
+def rigid_groups(model: Model, nodes: Nodes) -> list[list[int]]:
     """List the runs of neighbouring nodes joined by rigid sections."""
     groups: list[list[int]] = []
     for name, elements in nodes.elements.items():

@@ -94,7 +94,7 @@ def table_groups(model: Model, train: Train, nodes: Nodes, speed: float) -> list
     for name, bearing in model.bearings.items():
         if bearing.table:
             own = abs(train.ratio(bearing.shaft) * speed)
-            found.append(_bearing(model, nodes, name, bearing, *_interpolate(name, bearing, own)))
+            found.append(_bearing(model, nodes, name, bearing, *table_values(name, bearing, own)))
     return found
 
 
@@ -102,7 +102,12 @@ def _rows(matrix: StiffnessMatrix | DampingMatrix | None) -> np.ndarray:
     return np.zeros((6, 6)) if matrix is None else np.array(matrix.as_rows())
 
 
-def _interpolate(name: str, bearing: Bearing, speed: float) -> tuple[np.ndarray, np.ndarray]:
+def table_values(name: str, bearing: Bearing, speed: float) -> tuple[np.ndarray, np.ndarray]:
+    """Stiffness and damping (6, 6) of a bearing with a table at the speed of its shaft in rad/s.
+
+    Raises:
+        AnalysisError: the speed lies outside the table.
+    """
     speeds = np.array([row.speed for row in bearing.table])
     if not speeds[0] * (1.0 - 1e-12) <= speed <= speeds[-1] * (1.0 + 1e-12):
         rpm = 30.0 / np.pi

@@ -103,7 +103,7 @@ def _stations(model: Model) -> Iterator[tuple[str, str, float | str]]:
     for name, coupling in model.couplings.items():
         yield coupling.from_shaft, f"couplings.{name}", coupling.from_at
         yield coupling.to_shaft, f"couplings.{name}", coupling.to_at
-    for table in ("loads", "points"):
+    for table in ("loads", "unbalances", "points"):
         for name, item in getattr(model, table).items():
             if item.shaft is not None and item.at is not None:
                 yield item.shaft, f"{table}.{name}", item.at

@@ -13,7 +13,7 @@ from rotorgear.model.model import Model
 from rotorgear.model.torque_flow import TorqueFlow, torque_flow
 from rotorgear.model.train import Train, walk
 from rotorgear.system.assembly import assemble, strain_factor
-from rotorgear.system.dofs import DofMap, map_dofs
+from rotorgear.system.dofs import DofMap, map_dofs, rigid_groups
 from rotorgear.system.groups import ElementGroup, constant_groups, table_groups
 from rotorgear.system.nodes import Nodes, discretise
 from rotorgear.system.plan import Plan
@@ -42,20 +42,29 @@ class System:
         elements: basic elements in each piece of shaft.
         plan: how finely each piece is cut, in place of `elements`.
         direction: +1 or -1, sense in which the input shaft turns; it decides the driving flanks. None: as the operating speed.
+        flow: mean mesh forces and driving flanks, where they are known better than from torsion alone.
     """
 
     def __init__(
-        self, model: Model, elements: int | None = None, *, plan: Plan | None = None, direction: int | None = None
+        self,
+        model: Model,
+        elements: int | None = None,
+        *,
+        plan: Plan | None = None,
+        direction: int | None = None,
+        flow: TorqueFlow | None = None,
     ) -> None:
         self.model = model
         self.plan = plan or Plan(elements or 1)
         self.train: Train = walk(model)[0]
         speed = model.operation.speed if model.operation else None
         self.direction = direction or (-1 if speed is not None and speed < 0.0 else 1)
-        self.flow: TorqueFlow = torque_flow(model, self.train, self.direction)
+        self.flow: TorqueFlow = flow or torque_flow(model, self.train, self.direction)
         self.nodes: Nodes = discretise(model, self.plan)
         self.dofs: DofMap = map_dofs(model, self.nodes)
         self._last: tuple[float, Matrices] | None = None
+        self._last_damping: tuple[float, sp.csc_array] | None = None
+        self._last_stiffness: tuple[float, sp.csc_array] | None = None
 
     @property
     def n(self) -> int:
@@ -85,8 +94,10 @@ class System:
         )
 
     def stiffness(self, speed: float = 0.0) -> sp.csc_array:
-        """Symmetric part of the stiffness at a reference speed in rad/s, sparse (n, n)."""
-        return self._sum(self.groups_at(speed), lambda g: g.matrices.stiffness)
+        """Symmetric part of the stiffness at a reference speed in rad/s, sparse (n, n); that of the last speed is kept."""
+        if self._last_stiffness is None or self._last_stiffness[0] != speed:
+            self._last_stiffness = (speed, self._sum(self.groups_at(speed), lambda g: g.matrices.stiffness))
+        return self._last_stiffness[1]
 
     def circulatory(self, speed: float = 0.0) -> sp.csc_array:
         """Non-symmetric stiffness of cross-coupled bearings and of internal damping at speed, sparse (n, n)."""
@@ -101,14 +112,17 @@ class System:
         return self._sum(self.groups_at(speed), term)
 
     def damping(self, speed: float = 0.0) -> sp.csc_array:
-        """Damping matrix with the proportional part, sparse (n, n)."""
+        """Damping matrix with the proportional part, sparse (n, n); that of the last speed is kept."""
+        if self._last_damping is not None and self._last_damping[0] == speed:
+            return self._last_damping[1]
         C = self._sum(self.groups_at(speed), lambda g: g.matrices.damping)
         given = self.model.damping
         if given.rayleigh_alpha:
             C = C + given.rayleigh_alpha * self.mass
         if given.rayleigh_beta:
             C = C + given.rayleigh_beta * self.stiffness(speed)
-        return sp.csc_array(C)
+        self._last_damping = (speed, sp.csc_array(C))
+        return self._last_damping[1]
 
     def strain_factor(self, speed: float = 0.0) -> sp.csr_array | None:
         """S with K = S^T S from element strains, sparse (s, n); None where a spring's matrix is not positive."""
@@ -141,6 +155,10 @@ class System:
             K = sp.csc_array(K + skew)
         self._last = (speed, Matrices(self.mass, self.damping(speed), self.gyroscopic, K, not skew.nnz))
         return self._last[1]
+
+    def rigid_with(self, node: int) -> list[int]:
+        """The nodes that rigid sections tie to a node, itself among them."""
+        return next((group for group in rigid_groups(self.model, self.nodes) if node in group), [node])
 
     def positions(self) -> np.ndarray:
         """x, y, z of all nodes in m, shape (p, 3); shafts without positions lie at x = y = 0."""

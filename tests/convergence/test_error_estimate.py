@@ -78,3 +78,19 @@ def test_damping_that_gathers_modes_without_end_is_named() -> None:
     assert any("without end at 1592 Hz" in line for line in rg.modal(model, speed=0.0, modes=24).warnings)
     with pytest.raises(rg.AnalysisError, match="without end at 1592 Hz"):
         rg.modal(model, speed=0.0, modes=14, accuracy=1e-10)
+
+
+@pytest.mark.parametrize("elements", [2, 4, 8])
+def test_a_coarse_free_beam_is_estimated_although_its_elements_hide_the_error_from_the_next_order(
+    elements: int,
+) -> None:
+    """With two elements the error of the first mode shows four orders up, not in the next ones."""
+    model = rg.Model(shafts={"s": {"sections": [{"length": 1.0, "outer_diameter": 0.02}]}}, motions=["bending"])
+    exact = rg.modal(model, modes=14, accuracy=1e-10)
+    result = rg.modal(model, modes=14, elements=elements)
+    told = ~result.rigid & np.isfinite(result.error_estimate)
+    count = len(result)
+    error = np.abs(result.frequency_hz / np.where(told, exact.frequency_hz[:count], 1.0) - 1.0)[told]
+    ratio = result.error_estimate[told] / error
+    assert told.sum() >= 2
+    assert np.all((ratio > 0.5) & (ratio < 2.0)), ratio

@@ -24,6 +24,26 @@ NAMED = {
     "point_amplitude": "POINT",
     "seconds_by_step": "STEP",
     "counts": "TABLE",
+    **dict.fromkeys(
+        (
+            "mesh_force_n",
+            "mesh_force_on_gear_n",
+            "mesh_deflection_m",
+            "mesh_carries",
+            "mesh_driver",
+            "helix_share",
+            "mesh_phase",
+            "sensitivity[].mesh_force_n",
+            "mean_mesh_force_n",
+            "dynamic_transmission_error_m",
+        ),
+        "MESH",
+    ),
+    **dict.fromkeys(("bearing_force_n", "bearing_moment_n_m"), "BEARING"),
+    **dict.fromkeys(("support_force_n", "support_moment_n_m"), "SUPPORT"),
+    **dict.fromkeys(("displacement", "displacement_m"), "PLACE"),
+    **dict.fromkeys(("point_displacement", "acceleration"), "POINT"),
+    "torque_n_m": "TORQUE",
 }
 # At this speed two modes are near the second mesh order of stage 2: one is matched, one is not. The shaft order of the output
 # is far from all modes. One line lies between two modes, with every column filled in.
@@ -91,9 +111,31 @@ def test_the_keys_of_check_are_documented(tmp_path: Path) -> None:
     assert set(keys(written(tmp_path, "check", str(MODEL)))) == documented("check")
 
 
+def test_the_keys_of_gear_are_documented(tmp_path: Path) -> None:
+    assert set(keys(written(tmp_path, "gear", str(MODEL)))) == documented("gear")
+
+
 def test_the_keys_of_accuracy_are_documented(tmp_path: Path) -> None:
     chain = ROOT / "models" / "torsion_chain.toml"
     assert set(keys(written(tmp_path, "accuracy", str(chain)))) == documented("accuracy")
+
+
+def test_the_keys_of_static_are_documented(tmp_path: Path) -> None:
+    data = written(tmp_path, "static", str(MODEL))
+    data["warnings"] = ["one"]  # this model has none
+    assert set(keys(data)) == documented("static")
+
+
+def test_the_keys_of_response_are_documented(tmp_path: Path) -> None:
+    data = written(tmp_path, "response", str(MODEL), "--points", "2", "--fmax", "3000", "--elements", "1")
+    assert set(keys(data)) == documented("response")
+
+
+def test_the_keys_of_frf_are_documented(tmp_path: Path) -> None:
+    places = ("--from", "gears.bull:y", "--to", "output_bearing_y")
+    data = written(tmp_path, "frf", str(MODEL), *places, "--fmax", "50", "--points", "3", "--elements", "1")
+    data["left_out"] = ["one"]  # this model has none
+    assert set(keys(data)) == documented("frf")
 
 
 def test_a_key_that_is_not_in_the_table_is_found() -> None:

@@ -9,6 +9,8 @@ import os
 
 os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"))
 
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -54,6 +56,7 @@ def main() -> None:
         worst.append((name, *effectivity))
     parts.insert(1, effectivities(worst))
     parts.insert(2, savings(files))
+    parts.insert(3, benchmarks())
     PAGE.write_text("\n".join(parts), encoding="utf-8")
 
 
@@ -128,6 +131,16 @@ def savings(files: dict[str, Path]) -> str:
         "## Independent groups of dofs\n\nThe same frequencies, solved apart and together (`--no-pruning`):\n\n"
         + table(rows)
     )
+
+
+def benchmarks() -> str:
+    """What the benchmarks of a long chain and of a large model print."""
+    text = "## A long chain and a large model\n"
+    for name in ("torsion_chain", "large_model"):
+        command = ["-m", f"validation.benchmarks.{name}"]
+        told = subprocess.run([sys.executable, *command], cwd=ROOT, capture_output=True, text=True, check=False).stdout
+        text += f"\n`python {' '.join(command)}` prints:\n\n```text\n{told}```\n"
+    return text
 
 
 def timed(model: rg.Model, pruning: bool) -> tuple[rg.ModalResult, float]:

@@ -1,0 +1,41 @@
+"""rotorgear gear: the gear sheet, and a drawing of the mesh."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rotorgear.cli.common import JsonOption, ModelFile, console, write_json
+
+
+def gear(
+    model: ModelFile,
+    mesh: Annotated[
+        str | None, typer.Option("--mesh", help="Only this mesh and its two gears.", show_default=False)
+    ] = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option(
+            "--picture",
+            help="Draw the teeth of --mesh, or of the first mesh, into this file (.png or .svg).",
+            show_default=False,
+        ),
+    ] = None,
+    json: JsonOption = None,
+) -> None:
+    """Print the gear sheet: geometry, measures, contact ratios, backlash and stiffness of all teeth."""
+    import rotorgear as rg
+    from rotorgear.cli.tables_gear import sheet_parts
+    from rotorgear.plots.gear_mesh import draw_mesh, require_picture_name
+
+    if picture is not None:
+        require_picture_name(picture)
+    sheet = rg.gear_sheet(rg.load(model), mesh=mesh)
+    out = console()
+    for part in sheet_parts(sheet):
+        out.print(part)
+    write_json(sheet.to_dict(), json)
+    if picture is not None:
+        out.print(f"drawn: {draw_mesh(sheet, picture, mesh=mesh)}")

@@ -1,0 +1,59 @@
+"""rotorgear static: deflections, forces and load sharing."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from rotorgear.cli.common import (
+    ElementsOption,
+    JsonOption,
+    ModelFile,
+    PlotOption,
+    SaveOption,
+    console,
+    parse_speed,
+    progress_bar,
+    write_json,
+)
+from rotorgear.cli.response import VtkOption
+
+
+def static(
+    model: ModelFile,
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            "--speed", help="Speed of the input shaft; its sign chooses the flanks (default: operating speed).",
+            show_default=False,
+        ),
+    ] = None,
+    elements: ElementsOption = None,
+    sensitivity: Annotated[
+        bool, typer.Option("--sensitivity", help="Also list what the shares of the branches depend on.")
+    ] = False,
+    json: JsonOption = None,
+    save: SaveOption = None,
+    plot: PlotOption = None,
+    vtk: VtkOption = None,
+) -> None:  # fmt: skip
+    """Deflections, bearing and mesh forces, load sharing of branches and helices, assembly condition of loops."""
+    import rotorgear as rg
+    from rotorgear.cli.tables_static import static_tables
+
+    with progress_bar("static") as progress:
+        result = rg.static(rg.load(model), speed=parse_speed(speed), elements=elements, progress=progress)
+    out = console()
+    for part in static_tables(result, sensitivity=sensitivity):
+        out.print(part)
+    write_json(result.to_dict(), json)
+    if save:
+        typer.echo(f"saved {rg.save(result, save)}")
+    if plot:
+        from rotorgear.plots.static import draw_static
+
+        typer.echo(f"wrote {draw_static(result, plot)}")
+    if vtk:
+        rg.write_deflections(result, vtk)
+        typer.echo(f"wrote {vtk / 'static.vtp'}")

@@ -1,0 +1,106 @@
+"""Forced responses as tables for the terminal, 80 columns wide."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rotorgear.cli.common import error_words, table
+
+if TYPE_CHECKING:
+    from rotorgear.results.frequency_response import FrequencyResponse
+    from rotorgear.results.response import ResponseResult
+
+_RPM = 30.0 / math.pi
+_PEAKS = 6
+
+
+def response_tables(result: ResponseResult) -> list[Any]:
+    """Return title, tables of the largest values and notes as rich renderables."""
+    from rich.text import Text
+
+    first, last = result.speed_rpm[0], result.speed_rpm[-1]
+    speeds = f"{first:.6g} rpm" if len(result.speeds) == 1 else f"{first:.6g} to {last:.6g} rpm"
+    parts: list[Any] = [
+        f"[bold]{result.model.title or 'Model'}: forced response, {result.model.reference_shaft} at {speeds}[/bold]"
+    ]
+    parts += ["", _orders(result)]
+    parts += ["", _largest(result)]
+    return [*parts, "", *(Text(line) for line in _notes(result)), ""]
+
+
+def _orders(result: ResponseResult) -> Any:
+    out = table("no", "order", "times input", f"Hz at {abs(result.speed_rpm[-1]):.6g} rpm", left=2)
+    for number, (order, ratio) in enumerate(zip(result.orders, result.ratio, strict=True), 1):
+        out.add_row(str(number), order, f"{ratio:.6g}", f"{result.frequency_hz[number - 1, -1]:.2f}")
+    return out
+
+
+def _largest(result: ResponseResult) -> Any:
+    """The largest amplitude of each quantity and the order, speed and frequency of it."""
+    out = table("largest of", "", "order no", "rpm", "Hz", "amplitude", left=2)
+    for mesh in dict.fromkeys(result.contact_mesh):
+        own = result.contacts_of(mesh)
+        _row(out, result, "mesh force", mesh, np.abs(result.mesh_force[:, :, own]).max(axis=2), 1.0, "N")
+        error = np.abs(result.transmission_error[:, :, own]).max(axis=2)
+        _row(out, result, "DTE", mesh, error, 1e6, "um")
+    for k, name in enumerate(result.bearings):
+        force = np.abs(result.bearing_force[:, :, k]).max(axis=2)
+        _row(out, result, "bearing force", name, force, 1.0, "N")
+    for k, name in enumerate(result.points):
+        turns = result.model.points[name].direction in ("tilt_x", "tilt_y", "torsion")
+        size = np.abs(result.acceleration[:, :, k])
+        _row(out, result, "acceleration", name, size, 1.0, "rad/s2" if turns else "m/s2")
+    if not result.bearings and not result.contact_mesh:
+        for k, place in enumerate(result.places):
+            size = np.abs(result.displacement[:, :, k, :2]).max(axis=2)
+            _row(out, result, "displacement", place, size, 1e6, "um")
+    return out
+
+
+def _row(out: Any, result: ResponseResult, what: str, name: str, size: np.ndarray, factor: float, unit: str) -> None:
+    o, s = np.unravel_index(int(np.argmax(size)), size.shape)
+    if size[o, s] == 0.0:
+        return
+    out.add_row(
+        what, name, str(o + 1), f"{result.speed_rpm[s]:.1f}", f"{result.frequency_hz[o, s]:.1f}",
+        f"{factor * size[o, s]:.4g} {unit}",
+    )  # fmt: skip
+
+
+def _notes(result: ResponseResult) -> list[str]:
+    lines = [
+        *(["DTE: dynamic transmission error, r_b1 theta_1 + r_b2 theta_2"] if result.contact_mesh else []),
+        "amplitudes are half of peak to peak, each order by itself; forces without their mean",
+        f"{len(result.speeds)} speeds, {result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
+        f"solver error {error_words(result.solver_error)} at {result.checked} points checked; "
+        f"on a finer mesh the peaks change by {error_words(result.error_estimate)}",
+        f"damping ratio added to every elastic mode: {result.damping_ratio:g}",
+    ]
+    lines += [f"left out: {note}" for note in result.left_out]
+    return lines + [f"Warning: {note}" for note in result.warnings]
+
+
+def frf_tables(result: FrequencyResponse, quantity: str) -> list[Any]:
+    """Return title, the highest peaks of each response, and notes."""
+    from rich.text import Text
+
+    hz = result.frequency_hz
+    title = f"{result.model.title or 'Model'}: {quantity}, {hz[0]:.6g} to {hz[-1]:.6g} Hz"
+    speed = f", {result.model.reference_shaft} at {result.speed * _RPM:.6g} rpm" if result.speed else ", at standstill"
+    out = table("force at", "response at", "peak Hz", quantity, left=2)
+    for i, entry in enumerate(result.inputs):
+        for o, place in enumerate(result.outputs):
+            for frequency, size in result.peaks(o, i, quantity)[:_PEAKS]:
+                out.add_row(entry, place, f"{frequency:.2f}", f"{size:.3e}")
+    notes = [
+        f"{len(hz)} frequencies, {result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
+        f"residual {error_words(result.residual)} of the forces inside; on a finer mesh the peaks change by "
+        f"{error_words(result.error_estimate)}",
+        f"damping ratio added to every elastic mode: {result.damping_ratio:g}",
+        *(f"left out: {note}" for note in result.left_out),
+        *(f"Warning: {note}" for note in result.warnings),
+    ]
+    return [f"[bold]{title}{speed}[/bold]", "", out, "", *(Text(line) for line in notes), ""]

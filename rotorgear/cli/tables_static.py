@@ -1,0 +1,143 @@
+"""The static result as tables for the terminal, 80 columns wide."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from rotorgear.cli.common import error_words, table
+
+if TYPE_CHECKING:
+    from rotorgear.results.static import StaticResult
+
+# What one line of the sensitivity table is for, by the end of the parameter's name: factor, its words, and the sign of a turn.
+_STEPS = {
+    "index_error": (10e-6, "10 um later"),
+    "stiffness": (0.1, "10 % stiffer"),
+    "centre_line_angle": (math.radians(1.0), "1 deg on"),
+}
+_LINES = 12
+
+
+def static_tables(result: StaticResult, *, sensitivity: bool = False) -> list[Any]:
+    """Return title, tables and notes as rich renderables."""
+    from rich.text import Text
+
+    speed = (
+        "" if result.speed is None else f", {result.model.reference_shaft} at {result.speed * 30.0 / math.pi:.6g} rpm"
+    )
+    parts: list[Any] = [f"[bold]{result.model.title or 'Model'}: statics{speed}[/bold]"]
+    if result.torque:
+        torques = "; ".join(f"{name} {value:.2f} N m" for name, value in result.torque.items())
+        parts.append(f"torques about z: {torques}")
+    if result.contact_mesh:
+        parts += ["", _meshes(result)]
+    if result.shares:
+        parts += ["", _shares(result)]
+        if sensitivity:
+            parts += ["", *_sensitivities(result)]
+    parts += [f"Loop: {text}" for text in _loops(result)]
+    if result.bearing_force or result.support_force:
+        parts += ["", _supports(result)]
+    parts += ["", _displacements(result), "", *(Text(line) for line in _notes(result)), ""]
+    return parts
+
+
+def _meshes(result: StaticResult) -> Any:
+    out = table("mesh", "driver", "F_n N", "helix %", "press um", "Fx N", "Fy N", "Fz N", "phase", left=2)
+    for k, mesh in enumerate(result.contact_mesh):
+        two = len(result.contacts_of(mesh)) == 2
+        name = f"{mesh} {'LR'[int(result.contact_helix[k])]}" if two else mesh
+        phase = result.mesh_phase.get(mesh, math.nan)
+        out.add_row(
+            name, result.driver[k] if result.carries[k] else "open", f"{result.mesh_force[k]:.1f}",
+            f"{100.0 * result.helix_share[k]:.2f}" if two else "-", f"{1e6 * result.mesh_deflection[k]:.3f}",
+            *(f"{_signless(value):.0f}" for value in result.mesh_force_on_gear[k]),
+            "-" if phase != phase else f"{phase:.4f}",
+        )  # fmt: skip
+    return out
+
+
+def _signless(value: float) -> float:
+    return value if abs(value) >= 0.5 else 0.0
+
+
+def _shares(result: StaticResult) -> Any:
+    out = table("shared by", "mesh", "share %", "times mean", "decided by", left=2)
+    for row in result.shares:
+        out.add_row(row.gear, row.mesh, f"{100.0 * row.share:.3f}", f"{row.factor:.4f}", row.decided_by)
+    out.add_row("sharing factor", "", "", f"{result.sharing_factor:.4f}", "K_gamma")
+    return out
+
+
+def _sensitivities(result: StaticResult) -> list[Any]:
+    """Change of the first branch's share in percentage points, largest first."""
+    first = result.shares[0]
+    rows = []
+    for name, change in zip(result.parameter, result.share_derivative, strict=True):
+        part, _, key = name.rpartition(".")
+        step, words = _STEPS["index_error" if key.endswith("index_error") else key]
+        helix = " at the larger z" if key == "helix_index_error" else ""
+        rows.append((abs(step * change[0]), step * change[0], part, f"{words}{helix}"))
+    rows.sort(key=lambda row: -float(f"{row[0]:.6g}"))  # mirrored parts are equal but for rounding: as in the file
+    out = table("what changes", "by", "share, points", left=2)
+    for _, change, part, words in rows[:_LINES]:
+        out.add_row(part, words, f"{100.0 * change:+.3f}")
+    more = f" (the {_LINES} largest of {len(rows)}; --json has all)" if len(rows) > _LINES else ""
+    return [f"[bold]Share of {first.mesh} in {first.gear}[/bold], change in percentage points{more}", out]
+
+
+def _loops(result: StaticResult) -> list[str]:
+    lines = []
+    for loop in result.assembly:
+        if loop.gear:
+            lines.append(
+                f"{loop.mesh} closes a loop: with all teeth aligned to the shafts' marks {loop.rest_pitches:+.4f} pitches are "
+                f"missing; {loop.gear} clocked by {loop.clocking_deg:+.4f} deg closes it"
+            )
+        else:
+            lines.append(
+                f"{loop.mesh} closes a loop with the clockings given: {loop.rest_pitches:+.4f} pitches missing"
+            )
+    return lines
+
+
+def _supports(result: StaticResult) -> Any:
+    out = table("on the shaft, from", "Fx N", "Fy N", "Fz N", "Mx N m", "My N m", "Mz N m")
+    for kind, forces in (("", result.bearing_force), ("support ", result.support_force)):
+        for name, value in forces.items():
+            if kind and not value.any():
+                continue
+            out.add_row(
+                f"{kind}{name}",
+                *(f"{_rounded(x, 0.05):.1f}" for x in value[:3]),
+                *(f"{_rounded(x, 0.005):.2f}" for x in value[3:]),
+            )
+    return out
+
+
+def _rounded(value: float, least: float) -> float:
+    return value if abs(value) >= least else 0.0
+
+
+def _displacements(result: StaticResult) -> Any:
+    out = table("moves", "x um", "y um", "z um", "tilt_x", "tilt_y", "twist")
+    for place, value in result.place_displacement.items():
+        name = place.partition(".")[2].replace(" left", " L").replace(" right", " R")
+        out.add_row(
+            name,
+            *(f"{_rounded(1e6 * x, 5e-4):.3f}" for x in value[:3]),
+            *(f"{_rounded(1e6 * x, 0.05):.1f}" for x in value[3:]),
+        )
+    return out
+
+
+def _notes(result: StaticResult) -> list[str]:
+    lines = [
+        "tilts and twist in urad; L and R: helix at the smaller and the larger z",
+        f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
+        f"error: forces change by {error_words(result.error_estimate)} when every element is halved; "
+        f"residual {error_words(result.imbalance)}",
+    ]
+    lines += [f"left out: {note}" for note in result.left_out]
+    return lines + [f"Warning: {note}" for note in result.warnings]

@@ -1,0 +1,41 @@
+"""Draws frequency responses: size on a logarithmic scale and phase below."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from rotorgear.plots.colours import COLOURS
+from rotorgear.plots.figure import new_figure, write_figure
+from rotorgear.plots.static import plain_axis
+from rotorgear.results.frequency_response import FrequencyResponse
+
+_UNITS = {"receptance": "m/N", "mobility": "m/(N s)", "accelerance": "m/(N s$^2$)"}
+
+
+def draw_frf(result: FrequencyResponse, path: str | Path, *, quantity: str = "receptance") -> Path:
+    """Write the picture (PNG, SVG or PDF by the name's ending) and return its path.
+
+    Raises:
+        AnalysisError: another ending. MissingExtraError: matplotlib is not installed.
+    """
+    figure = new_figure((9.0, 6.0))
+    size, phase = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
+    values = result.of(quantity)
+    pairs = [(o, i) for i in range(len(result.inputs)) for o in range(len(result.outputs))]
+    for number, (o, i) in enumerate(pairs):
+        colour, style = COLOURS[number % len(COLOURS)], ("-", "--", ":")[number // len(COLOURS) % 3]
+        label = f"{result.inputs[i]} to {result.outputs[o]}"
+        size.semilogy(result.frequency_hz, np.abs(values[:, o, i]), color=colour, ls=style, lw=1.3, label=label)
+        phase.plot(result.frequency_hz, np.degrees(np.angle(values[:, o, i])), color=colour, ls=style, lw=1.0)
+    size.set_ylabel(f"{quantity}, {_UNITS[quantity]} (rad and N m for rotations)", fontsize=9)
+    size.legend(frameon=False, fontsize=8)
+    phase.set_ylabel("phase, deg", fontsize=9)
+    phase.set_ylim(-190, 190)
+    phase.set_yticks([-180, -90, 0, 90, 180])
+    phase.set_xlabel("frequency, Hz")
+    for axis in (size, phase):
+        plain_axis(axis)
+    figure.suptitle(result.model.title or "Frequency response", fontsize=11)
+    return write_figure(figure, path)

@@ -1,0 +1,124 @@
+"""Draws two gears in mesh in the transverse plane: both outlines, pitch and base circles, line of action, contact points.
+
+The pinion stands left and drives counter-clockwise; a tooth pair touches at the pitch point.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError, MissingExtraError
+from rotorgear.export.files import replacing
+from rotorgear.gears.mesh_stiffness import ToothPair
+from rotorgear.gears.outline import tooth_outline
+from rotorgear.results.gear_sheet import GearSheet
+
+_COLOURS = ("#1f5fa8", "#b3541e")
+_POINTS = 40
+
+
+def gear_contour(teeth: ToothPair, gear: int) -> np.ndarray:
+    """Closed contour (n, 2) in m of gear 1 or 2, the pinion's axis at the origin, the gear's at (a_w, 0)."""
+    g = teeth.first if gear == 1 else teeth.second
+    outline = tooth_outline(g)
+    radii, angles = outline.tooth(_POINTS)
+    working = g.base_radius / math.cos(teeth.pair.working_transverse_pressure_angle)
+    half = float(outline.involute(math.sqrt(working**2 - g.base_radius**2))[1])
+    middle = -half if gear == 1 else math.pi - half
+    turned = middle + angles[:-1] + 2.0 * math.pi / g.teeth * np.arange(g.teeth)[:, None]
+    radius = np.broadcast_to(radii[:-1], turned.shape)
+    xy = np.stack([radius * np.cos(turned), radius * np.sin(turned)], axis=-1).reshape(-1, 2)
+    xy = np.vstack([xy, xy[:1]])
+    return xy if gear == 1 else xy + np.array([teeth.pair.centre_distance, 0.0])
+
+
+def contact_points(teeth: ToothPair) -> np.ndarray:
+    """Where tooth pairs touch in the middle of the face while one touches at the pitch point, shape (k, 2) in m."""
+    pair, step = teeth.pair, teeth.base_pitch
+    first, last = math.ceil(pair.start_of_contact / step - 1e-12), math.floor(pair.end_of_contact / step + 1e-12)
+    return np.array([on_line_of_action(teeth, k * step) for k in range(first, last + 1)])
+
+
+def on_line_of_action(teeth: ToothPair, position: float) -> tuple[float, float]:
+    """Point (m) on the line of action at a position from the pitch point, positive towards recess."""
+    angle = teeth.pair.working_transverse_pressure_angle
+    pitch = teeth.first.base_radius / math.cos(angle)
+    return pitch + position * math.sin(angle), position * math.cos(angle)
+
+
+def require_picture_name(path: Path) -> None:
+    """AnalysisError unless the name ends with .png or .svg."""
+    if path.suffix.lower() not in (".png", ".svg"):
+        raise AnalysisError(f"A picture ends with .png or .svg, not '{path.suffix}'.")
+
+
+def draw_mesh(sheet: GearSheet, path: str | Path, mesh: str | None = None) -> Path:
+    """Write the drawing of a mesh (the first one where none is named) as PNG or SVG and return its path.
+
+    Raises:
+        AnalysisError: no such mesh, or another ending.
+        MissingExtraError: matplotlib is not installed.
+        WriteError: the file can't be written.
+    """
+    target = Path(path)
+    require_picture_name(target)
+    name = mesh or next(iter(sheet.pairs), None)
+    if name not in sheet.pairs:
+        raise AnalysisError("There is no mesh between gears with teeth to draw.")
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingExtraError("A drawing", "matplotlib", "plots") from None
+    row = next(row for row in sheet.meshes if row.name == name)
+    figure = Figure(figsize=(11.0, 5.6), layout="constrained")
+    whole, near = figure.subplots(1, 2, width_ratios=[1.0, 1.25])
+    for axis in (whole, near):
+        _draw(axis, sheet.pairs[name], (row.pinion, row.gear))
+    _look_near(near, sheet.pairs[name])
+    whole.set_title(f"{name}: centre distance {1e3 * row.centre_distance_m:.3f} mm", fontsize=10)
+    ratios = f"eps_alpha {row.transverse_contact_ratio:.3f}, eps_beta {row.overlap_ratio:.3f}"
+    near.set_title(f"working pressure angle {row.working_pressure_angle_deg:.3f} deg, {ratios}", fontsize=10)
+    handles = dict(zip(*near.get_legend_handles_labels()[::-1], strict=True))
+    first = {row.pinion: handles[row.pinion], row.gear: handles[row.gear]} | handles
+    figure.legend(first.values(), first.keys(), loc="outside lower center", ncols=7, frameon=False, fontsize=8)
+    with replacing(target) as scratch:
+        plain = target.suffix.lower() == ".svg"
+        figure.savefig(scratch, dpi=130, format=target.suffix[1:].lower(), metadata={"Date": None} if plain else None)
+    return target
+
+
+def _draw(axis: Any, teeth: ToothPair, names: tuple[str, str]) -> None:
+    """Both gears with their circles and the path of contact, in mm."""
+    angle, turn = teeth.pair.working_transverse_pressure_angle, np.linspace(0.0, 2.0 * math.pi, 721)
+    centres = ((0.0, 0.0), (1e3 * teeth.pair.centre_distance, 0.0))
+    for number, (g, centre, colour) in enumerate(zip((teeth.first, teeth.second), centres, _COLOURS, strict=True), 1):
+        xy = 1e3 * gear_contour(teeth, number)
+        axis.fill(*xy.T, facecolor=colour, alpha=0.16)
+        axis.plot(*xy.T, color=colour, lw=1.2, label=names[number - 1])
+        for radius, style in ((g.base_radius / math.cos(angle), "-."), (g.base_radius, ":")):
+            label = {"-.": "working pitch circles", ":": "base circles"}[style] if number == 1 else None
+            x, y = 1e3 * radius * np.cos(turn) + centre[0], 1e3 * radius * np.sin(turn)
+            axis.plot(x, y, style, color="#555555", lw=0.8, label=label)
+        axis.plot(*centre, "+", color=colour, ms=8)
+    tangents = [-teeth.first.base_radius * math.tan(angle), teeth.second.base_radius * math.tan(angle)]
+    ends = 1e3 * np.array([on_line_of_action(teeth, x) for x in tangents])
+    axis.plot(*ends.T, "--", color="#333333", lw=0.9, label="line of action")
+    path = 1e3 * np.array(
+        [on_line_of_action(teeth, x) for x in (teeth.pair.start_of_contact, teeth.pair.end_of_contact)]
+    )
+    axis.plot(*path.T, color="#111111", lw=2.4, label="path of contact")
+    axis.plot(*(1e3 * contact_points(teeth)).T, "o", color="#c00000", ms=4.5, label="contact points")
+    axis.set_aspect("equal")
+    axis.tick_params(labelsize=8)
+    axis.set_xlabel("mm", fontsize=8)
+
+
+def _look_near(axis: Any, teeth: ToothPair) -> None:
+    """Show a few teeth around the pitch point."""
+    pitch, reach = 1e3 * on_line_of_action(teeth, 0.0)[0], 5.0e3 * teeth.first.transverse_module
+    axis.set_xlim(pitch - 1.25 * reach, pitch + 1.25 * reach)
+    axis.set_ylim(-reach, reach)

@@ -1,0 +1,95 @@
+"""Draws a static result: how branches and helices share the load, bearing forces, and the deflection of every shaft."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rotorgear.plots.colours import COLOURS
+from rotorgear.plots.figure import new_figure, write_figure
+from rotorgear.results.static import StaticResult
+
+
+def draw_static(result: StaticResult, path: str | Path) -> Path:
+    """Write the picture (PNG, SVG or PDF by the name's ending) and return its path.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    shafts = [name for name in result.model.shafts if result.nodes.on_shaft(name).size > 1]
+    upper = bool(result.contact_mesh) or bool(result.bearing_force)
+    figure = new_figure((10.0, (3.6 if upper else 0.0) + 1.9 * max(len(shafts), 1)))
+    top, bottom = figure.subfigures(2, 1, height_ratios=[3.4, 1.8 * max(len(shafts), 1)]) if upper else (None, figure)
+    if top is not None:
+        left, right = top.subplots(1, 2, width_ratios=[1.0, 1.1])
+        _mesh_bars(left, result)
+        _bearing_bars(right, result)
+    _deflections(bottom, result, shafts)
+    figure.suptitle(result.model.title, fontsize=11)
+    return write_figure(figure, path)
+
+
+def _mesh_bars(axis: Any, result: StaticResult) -> None:
+    meshes = list(dict.fromkeys(result.contact_mesh))
+    helices = max((int(h) for h in result.contact_helix), default=0) + 1
+    for helix in range(helices):
+        at = [k for k in range(len(result.contact_mesh)) if result.contact_helix[k] == helix]
+        x = [meshes.index(result.contact_mesh[k]) + (helix - 0.5 * (helices - 1)) * 0.38 for k in at]
+        label = ("helix at smaller z", "helix at larger z")[helix] if helices == 2 else None
+        bars = axis.bar(x, result.mesh_force[at] / 1e3, width=0.36, color=COLOURS[helix], label=label)
+        axis.bar_label(bars, fmt="%.1f", fontsize=8, padding=1)
+    shares = {row.mesh: row.share for row in result.shares}
+    names = [f"{mesh}\n{100.0 * shares[mesh]:.1f} %" if mesh in shares else mesh for mesh in meshes]
+    axis.set_xticks(range(len(meshes)), names, fontsize=9)
+    axis.set_ylabel("normal force, kN")
+    axis.set_title("Meshes, with the share of each branch" if shares else "Meshes", fontsize=10)
+    axis.margins(y=0.15)
+    if helices == 2:
+        axis.legend(frameon=False, fontsize=8)
+    plain_axis(axis)
+
+
+def _bearing_bars(axis: Any, result: StaticResult) -> None:
+    names = list(result.bearing_force)
+    radial = [float(np.hypot(*result.bearing_force[name][:2])) / 1e3 for name in names]
+    axial = [abs(float(result.bearing_force[name][2])) / 1e3 for name in names]
+    y = np.arange(len(names))
+    axis.barh(y - 0.19, radial, height=0.36, color=COLOURS[0], label="radial")
+    axis.barh(y + 0.19, axial, height=0.36, color=COLOURS[1], label="axial")
+    axis.set_yticks(y, names, fontsize=9)
+    axis.invert_yaxis()
+    axis.set_xlabel("force, kN")
+    axis.set_title("Bearings", fontsize=10)
+    if names:
+        axis.legend(frameon=False, fontsize=8)
+    plain_axis(axis)
+
+
+def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> None:
+    if not shafts:
+        return
+    axes = np.atleast_1d(figure.subplots(len(shafts), 1, sharex=True))
+    for axis, name in zip(axes, shafts, strict=True):
+        own = result.nodes.on_shaft(name)
+        z = 1e3 * result.nodes.position[own, 2]
+        for dof, label in enumerate("xy"):
+            axis.plot(z, 1e6 * result.displacement[own, dof], color=COLOURS[dof], label=label, lw=1.6)
+        own_parts = [(p.shaft, p.at, "#999999") for p in result.model.gears.values()]
+        own_parts += [(p.shaft, p.at, "#009E73") for p in result.model.bearings.values()]
+        for shaft, at, colour in own_parts:
+            if shaft == name:
+                axis.axvline(1e3 * result.model.shafts[name].station(at), color=colour, lw=0.8, ls=":")
+        axis.set_ylabel(f"{name}\num", fontsize=9)
+        plain_axis(axis)
+    axes[0].legend(frameon=False, fontsize=8, ncols=2, loc="best")
+    axes[0].set_title("Deflection of the shafts (dotted: gears grey, bearings green)", fontsize=10)
+    axes[-1].set_xlabel("z, mm")
+
+
+def plain_axis(axis: Any) -> None:
+    """Light grid, no frame on top and right."""
+    axis.grid(True, alpha=0.25)
+    for side in ("top", "right"):
+        axis.spines[side].set_visible(False)

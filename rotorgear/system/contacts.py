@@ -1,0 +1,76 @@
+"""The contacts of a system as lines: vectors v with the approach of the flanks v . q, stiffness and damping along them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.model.torque_flow import MeshForce
+from rotorgear.system.system import System
+
+
+@dataclass(frozen=True)
+class ContactLines:
+    """c contacts, in the order of the file, helices from left to right.
+
+    Attributes:
+        states: mean state of each contact, with its geometry.
+        vectors: v over the free dofs, (n, c); turned: dv/dpsi, the change when the centre line turns, (n, c).
+        rotation: r_b1 tz_1 + r_b2 tz_2 over the free dofs in the sense that presses the teeth, (n, c), in m along the line
+            of action of the transverse plane.
+        stiffness, damping: N/m and N s/m along the flank normal, (c,); gap: m that must close before a contact carries, (c,).
+    """
+
+    states: tuple[MeshForce, ...]
+    vectors: np.ndarray
+    turned: np.ndarray
+    rotation: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    gap: np.ndarray
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Name of the mesh of each contact."""
+        return tuple(state.contact.mesh for state in self.states)
+
+
+def contact_lines(system: System) -> ContactLines:
+    """Return the contacts of a system as vectors over its free degrees of freedom."""
+    states = system.flow.forces
+    groups = [group for group in system.groups if group.part.startswith("meshes.")]
+    count, size = len(states), system.dofs.transform.shape[0]
+    v, turned, rotation = np.zeros((3, size, count))
+    stiffness, damping = np.zeros((2, count))
+    for k, (state, group) in enumerate(zip(states, groups, strict=True)):
+        strain, D, V = group.matrices.strain, group.matrices.modulus, group.matrices.viscosity
+        assert strain is not None
+        assert D is not None
+        stiffness[k], damping[k] = D[0, 0, 0], 0.0 if V is None else V[0, 0, 0]
+        dofs = group.dofs[0]
+        v[dofs, k] = strain[0, 0]
+        turned[dofs, k] = _quarter_turn(strain[0, 0])
+        sense, contact = state.torque_sense, state.contact
+        rotation[dofs[5], k] = sense * contact.pinion_base_radius
+        rotation[dofs[11], k] = sense * contact.gear_base_radius
+    T = system.dofs.transform.T
+    return ContactLines(states, T @ v, T @ turned, T @ rotation, stiffness, damping, _gaps(system, states))
+
+
+def _quarter_turn(vector: np.ndarray) -> np.ndarray:
+    """d/dpsi of a contact vector: displacements and rotations in the plane turn with the centre line."""
+    out = np.zeros_like(vector)
+    for first in (0, 3, 6, 9):
+        out[first], out[first + 1] = -vector[first + 1], vector[first]
+    return out
+
+
+def _gaps(system: System, states: tuple[MeshForce, ...]) -> np.ndarray:
+    meshes = system.model.meshes
+    return np.array(
+        [
+            meshes[s.contact.mesh].index_error + (meshes[s.contact.mesh].helix_index_error if s.contact.helix else 0.0)
+            for s in states
+        ]
+    )

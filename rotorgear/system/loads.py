@@ -1,0 +1,28 @@
+"""Static loads of a model over all dofs: applied torques and weight."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.system.system import System
+
+
+def torque_loads(system: System) -> np.ndarray:
+    """Applied torques at their places, (a,)."""
+    f = np.zeros(system.dofs.transform.shape[0])
+    for item in system.flow.applied:
+        f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
+    return f
+
+
+def weight_loads(system: System, gravity: tuple[float, float, float]) -> np.ndarray:
+    """Weight of all parts in a field of gravity in m/s^2, (a,): M times the acceleration, so that it does the right work."""
+    f = np.zeros(system.dofs.transform.shape[0])
+    moved = np.zeros_like(f)
+    count = 6 * len(system.nodes)
+    for axis in range(3):
+        moved[axis:count:6] = gravity[axis]
+    for group in system.groups:
+        if group.matrices.mass is not None:
+            np.add.at(f, group.dofs, np.einsum("eij,ej->ei", group.matrices.mass, moved[group.dofs]))
+    return f

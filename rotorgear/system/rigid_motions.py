@@ -1,0 +1,77 @@
+"""Motions of a system that strain nothing, from its geometry: what is left to move in statics.
+
+Between its nodes a shaft is free of strain in its six rigid motions only. So the null space of the stiffness lies in the
+span of these motions of every shaft (and of single pedestals), where it is small, and it does not depend on how many
+decades the stiffnesses span.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+import scipy.linalg as la
+
+from rotorgear.elements.spring import rigid_transfer
+from rotorgear.system.groups import ElementGroup
+from rotorgear.system.system import System
+
+# Strains below this share of the largest one that a motion of this size could make count as none.
+_ZERO = 1e-9
+
+
+def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
+    """Return R (n, r), a basis of the motions of the free dofs that strain none of the element groups."""
+    P = _candidates(system)
+    T = system.dofs.transform
+    rows = [_normalised(held) for held in [_off_range(system, P)] if held.size]
+    for group in groups:
+        B, D = group.matrices.strain, group.matrices.modulus
+        if B is None or D is None:
+            continue
+        Z = group.matrices.circulation
+        used = np.any(D != 0.0, axis=2) if Z is None else np.any((D != 0.0) | (Z != 0.0), axis=2)
+        strains = np.einsum("esd,edp->esp", B, P[group.dofs])
+        sizes = np.einsum("esd,edp->esp", np.abs(B), np.abs(P[group.dofs])).max(axis=2)
+        rows.append((strains / np.where(sizes > 0.0, sizes, 1.0)[:, :, None])[used])
+    A = np.vstack(rows) if rows else np.zeros((0, P.shape[1]))
+    null = la.null_space(A, rcond=_ZERO) if A.shape[0] else np.eye(P.shape[1])
+    motions = P @ null
+    free = motions[system.dofs.column >= 0] if system.dofs.selects else la.lstsq(T.toarray(), motions)[0]
+    # Candidates may move held dofs only; what is left of the basis is orthonormal again.
+    u, s, _ = la.svd(free, full_matrices=False) if free.size else (free, np.zeros(0), None)
+    return np.asarray(u[:, s > _ZERO])
+
+
+def _candidates(system: System) -> np.ndarray:
+    """Six motions of each shaft about its middle, rotations scaled to the length of the shaft, and three of each pedestal."""
+    nodes = system.nodes
+    columns = []
+    for name, shaft in system.model.shafts.items():
+        own = [k for k in nodes.on_shaft(name) if not nodes.pedestal[k]]
+        block = np.zeros((system.dofs.transform.shape[0], 6))
+        middle = shaft.start + 0.5 * shaft.length
+        for k in own:
+            block[6 * k : 6 * k + 6] = rigid_transfer(np.array([0.0, 0.0, nodes.z[k] - middle]))
+        block[:, 3:] /= max(shaft.length, 1e-3)
+        columns.append(block)
+    for k, bearing in enumerate(nodes.pedestal):
+        if bearing:
+            block = np.zeros((system.dofs.transform.shape[0], 3))
+            block[[6 * k, 6 * k + 1, 6 * k + 2], [0, 1, 2]] = 1.0
+            columns.append(block)
+    return np.hstack(columns)
+
+
+def _off_range(system: System, P: np.ndarray) -> np.ndarray:
+    """What of the candidates the free dofs can't follow: rows that must vanish."""
+    if system.dofs.selects:
+        return P[system.dofs.column < 0]
+    T = system.dofs.transform.toarray()
+    return np.asarray(P - T @ la.lstsq(T, P)[0])
+
+
+def _normalised(rows: np.ndarray) -> np.ndarray:
+    size = np.abs(rows).max(axis=1)
+    kept = size > 1e-12
+    return np.asarray(rows[kept] / size[kept, None])

@@ -1,0 +1,121 @@
+"""Pictures and VTK files of statics and forced response: what a model has is drawn, whatever it has not."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import rotorgear as rg
+from rotorgear.cli.main import app
+from rotorgear.plots.frf import draw_frf
+from rotorgear.plots.run_up import draw_run_up
+from rotorgear.plots.static import draw_static
+from rotorgear.plots.waterfall import draw_waterfall, waterfall_of
+
+ROOT = Path(__file__).resolve().parents[3]
+GEARBOX = ROOT / "models" / "split_torque.toml"
+
+
+@pytest.fixture(scope="module")
+def run_up() -> rg.ResponseResult:
+    return rg.response(rg.load(GEARBOX), speeds=[900.0, 1300.0, 1712.0], fmax=3000.0, damping_ratio=0.02, elements=1)
+
+
+@pytest.fixture(scope="module")
+def lone_rotor() -> rg.ResponseResult:
+    """Neither mesh nor bearing nor point."""
+    data = tomllib.loads((ROOT / "validation" / "B4" / "unbalanced.toml").read_text(encoding="utf-8"))
+    return rg.response(rg.Model(**{**data, "points": {}}), speeds=[50.0, 90.0, 120.0], elements=1)
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_a_run_up_is_drawn_in_every_format(run_up: rg.ResponseResult, tmp_path: Path, ending: str) -> None:
+    for draw in (draw_run_up, draw_waterfall):
+        assert draw(run_up, tmp_path / f"picture.{ending}").stat().st_size > 3000
+
+
+def test_a_rotor_without_meshes_bearings_and_points_is_drawn_by_its_displacement(
+    lone_rotor: rg.ResponseResult, tmp_path: Path
+) -> None:
+    assert draw_run_up(lone_rotor, tmp_path / "rotor.png").exists()
+    with pytest.raises(rg.AnalysisError, match="no mesh, bearing or point"):
+        draw_waterfall(lone_rotor, tmp_path / "none.png")
+    assert not (tmp_path / "none.png").exists()
+
+
+def test_a_waterfall_names_its_quantity(run_up: rg.ResponseResult) -> None:
+    title, unit, size = waterfall_of(run_up, "bearings.output_left")
+    assert (title, unit) == ("force of bearing output_left", "N")
+    own = run_up.bearing_force[:, :, run_up.bearings.index("output_left")]
+    assert size == pytest.approx(np.sqrt((np.abs(own) ** 2).sum(axis=2)))
+    assert waterfall_of(run_up, "output_bearing_y")[1] == "m/s$^2$"
+    assert waterfall_of(run_up, None)[0] == f"dynamic force of mesh {max(run_up.peaks(), key=lambda row: row[4])[0]}"
+    with pytest.raises(rg.AnalysisError, match="stage_1a"):
+        waterfall_of(run_up, "nowhere")
+
+
+def test_a_wrong_ending_is_refused_and_leaves_nothing(run_up: rg.ResponseResult, tmp_path: Path) -> None:
+    with pytest.raises(rg.AnalysisError, match="PNG"):
+        draw_run_up(run_up, tmp_path / "picture.txt")
+    assert not list(tmp_path.iterdir())
+
+
+def test_statics_and_frequency_responses_are_drawn(tmp_path: Path) -> None:
+    model = rg.load(GEARBOX)
+    assert draw_static(rg.static(model), tmp_path / "static.png").exists()
+    result = rg.frequency_response(
+        model, [10.0, 20.0, 30.0], inputs=["gears.bull:y"], outputs=["output_bearing_y"], elements=1
+    )
+    assert draw_frf(result, tmp_path / "frf.svg", quantity="mobility").exists()
+
+
+def test_operating_deflections_in_vtk_are_those_of_the_result(run_up: rg.ResponseResult, tmp_path: Path) -> None:
+    pv = pytest.importorskip("pyvista")
+    written = rg.write_deflections(run_up, tmp_path)
+    assert {path.name for path in written} >= {"order_01.vtp", "order_01.pvd"}
+    mesh = pv.read(tmp_path / "order_03.vtp")
+    assert str(mesh.field_data["order"][0]) == run_up.orders[2]
+    shown = mesh.point_data["displacement_real"] + 1j * mesh.point_data["displacement_imag"]
+    true = mesh.point_data["displacement_real_m"] + 1j * mesh.point_data["displacement_imag_m"]
+    scale = float(mesh.field_data["displacement_scale"][0])
+    assert shown == pytest.approx(scale * true, rel=1e-4, abs=1e-5 * float(np.abs(shown).max()))
+    nodes = np.abs(run_up.shapes[:, :3, 2]).max()
+    assert 0.5 * nodes < np.abs(true).max() < 5.0 * nodes
+
+
+def test_the_static_deflection_in_vtk_is_true_in_metres(tmp_path: Path) -> None:
+    pv = pytest.importorskip("pyvista")
+    result = rg.static(rg.load(GEARBOX))
+    rg.write_deflections(result, tmp_path)
+    mesh = pv.read(tmp_path / "static.vtp")
+    largest = float(np.linalg.norm(mesh.point_data["displacement_m"], axis=1).max())
+    turned = float(np.abs(result.displacement[:, 3:]).max())
+    assert largest >= 0.9 * float(np.linalg.norm(result.displacement[:, :3], axis=1).max())
+    assert (
+        largest <= float(np.linalg.norm(result.displacement[:, :3], axis=1).max()) + turned * 0.4
+    )  # the bull gear's radius
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["response", str(GEARBOX), "--points", "0"], "--points"),
+        (["response", str(GEARBOX), "--from", "10 mm"], "--from: got"),
+        (["response", str(GEARBOX), "--from", "0", "--points", "2"], "none of them 0"),
+        (["response", str(ROOT / "models" / "geared_pair.toml"), "--points", "2"], "nothing excites"),
+        (["frf", str(GEARBOX), "--from", "x", "--to", "y", "--fmax", "10"], "'x' is no place"),
+        (["frf", str(GEARBOX), "--from", "output_bearing_y", "--to", "output_bearing_y", "--fmax", "-1"], "--fmax"),
+        (["frf", str(GEARBOX), "--from", "output_bearing_y", "--to", "output_bearing_y", "--fmax", "9", "--quantity", "x"],
+         "receptance"),
+        (["static", str(GEARBOX), "--elements", "0"], "at least 1"),
+    ],
+)  # fmt: skip
+def test_a_slip_on_the_command_line_gets_a_sentence(arguments: list[str], words: str) -> None:
+    run = CliRunner().invoke(app, arguments)
+    assert isinstance(run.exception, rg.RotorgearError)
+    assert words in str(run.exception)
+    assert "\n" not in str(run.exception)
