@@ -7,7 +7,22 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli import accuracy, check, compare, frf, gear, mesh, modal, response, schema, static, validate, view
+from rotorgear.cli import (
+    accuracy,
+    campbell,
+    check,
+    compare,
+    critical,
+    frf,
+    gear,
+    mesh,
+    modal,
+    response,
+    schema,
+    static,
+    validate,
+    view,
+)
 from rotorgear.errors import RotorgearError
 
 app = typer.Typer(
@@ -18,6 +33,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command()(modal.modal)
+app.command()(campbell.campbell)
+app.command()(critical.critical)
 app.command()(compare.compare)
 app.command()(static.static)
 app.command()(response.response)
