@@ -174,8 +174,7 @@ def _error_estimate(
 
 
 def _at_snapshot(system: System, snapshot: Snapshot) -> np.ndarray:
-    q = system.dofs.expand(snapshot.vectors)
-    parts = errors_of(system, snapshot.speed, snapshot.s, q, np.zeros(len(snapshot.s), bool))
+    parts = errors_of(system, snapshot.speed, snapshot.s, snapshot.vectors, np.zeros(len(snapshot.s), bool))
     return total_error(parts, len(snapshot.s))
 
 

@@ -105,8 +105,8 @@ class SpeedFamily:
             stiffness=strained.T @ (forms.modulus @ strained) + strained.T @ (forms.circulation @ strained),
             per_speed=strained.T @ (self._per_speed @ strained),
             knots=self.knots,
-            table_damping=np.array([pair[0] for pair in tables]).reshape(-1, r, r),
-            table_stiffness=np.array([pair[1] for pair in tables]).reshape(-1, r, r),
+            table_damping=np.array([pair[0] for pair in tables]).reshape(len(tables), r, r),
+            table_stiffness=np.array([pair[1] for pair in tables]).reshape(len(tables), r, r),
         )
 
 
