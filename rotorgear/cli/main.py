@@ -9,10 +9,13 @@ import typer
 
 from rotorgear.cli import (
     accuracy,
+    campbell,
     check,
     compare,
+    critical,
     frf,
     gear,
+    mesh,
     modal,
     response,
     schema,
@@ -32,6 +35,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command()(modal.modal)
+app.command()(campbell.campbell)
+app.command()(critical.critical)
 app.command()(compare.compare)
 app.command()(static.static)
 app.command()(response.response)
@@ -40,6 +45,7 @@ app.command()(transient.transient)
 app.command()(sweep.sweep)
 app.command()(check.check)
 app.command()(gear.gear)
+app.command()(mesh.mesh)
 app.command()(accuracy.accuracy)
 app.command()(view.view)
 app.command()(schema.schema)
