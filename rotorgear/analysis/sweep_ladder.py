@@ -14,6 +14,8 @@ from rotorgear.results.sweep_ladder import SweepLadder, SweepRung
 
 STEPS, COUNTS = (50, 100, 200, 400), (100, 400, 1600)
 _SETTLE = 300
+# Far enough apart for chaos to forget, near enough to stay with one motion.
+_THROW = 1e-3
 
 
 def sweep_ladder(
@@ -25,7 +27,7 @@ def sweep_ladder(
     starts: int = 32,
     progress: Progress = silent,
 ) -> SweepLadder:
-    """Run one point with several steps and lengths, each from many states side by side.
+    """Run one point with several steps and lengths, each from many states near the static one, side by side.
 
     The scatter between the runs from different states is a check of the standard error that a single run states: where one motion
     attracts them all, both agree.
@@ -46,7 +48,9 @@ def sweep_ladder(
     rungs = []
     for number, (n, count) in enumerate(plans):
         progress(number / len(plans), f"{n} steps, {count} periods")
-        found = sweep(model, {"operation.speed": [given]}, starts=starts, steps=n, settle=_SETTLE, count=count)
+        found = sweep(
+            model, {"operation.speed": [given]}, starts=starts, throw=_THROW, steps=n, settle=_SETTLE, count=count
+        )
         worst = int(np.argmax(found.peak_to_peak[0].mean(axis=0)))
         exponents = found.lyapunov[0, :, 0]
         scatter = exponents.std(ddof=1) if np.ptp(exponents) else 0.0

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 # Periods of the fastest mesh in the common one, at most.
 MOST_TURNS = 1000
+_KEPT = 1000  # states at rest
 _WHOLE = 1e-9  # relative error of a fraction that stands for a ratio of speeds
 # Places of MeshContact's parameters that don't shape its tables: k, c, backlash, gap, damping, ramp, impact.
 _NO_SHAPE = (0, 1, 2, 3, 4, 5, 12)
@@ -70,11 +71,10 @@ class Still:
 
 
 class PointMaker:
-    """Makes models ready, and keeps the last state at rest for the next model where only the speed is another."""
+    """Makes models ready, and keeps states at rest for models where only the speed is another."""
 
     def __init__(self) -> None:
-        self._key = ""
-        self._still: Still | None = None
+        self._known: dict[str, Still] = {}
 
     def __call__(self, model: Model) -> Point:
         """Make a model ready at its own speed.
@@ -87,9 +87,13 @@ class PointMaker:
             raise AnalysisError("the model gives no speed of operation: set operation.speed, or sweep over it")
         standing = model.operation.model_copy(update={"speed": 1.0 if speed > 0.0 else -1.0})
         key = model.model_copy(update={"operation": standing}).model_dump_json(exclude_none=True)
-        if self._still is None or key != self._key or not _standing(model):
-            self._key, self._still = key, _still(model, speed)
-        return ready(self._still, speed, model.damping.modal_ratio)
+        if not _standing(model):
+            return ready(_still(model, speed), speed, model.damping.modal_ratio)
+        if key not in self._known:
+            if len(self._known) >= _KEPT:
+                self._known.clear()
+            self._known[key] = _still(model, speed)
+        return ready(self._known[key], speed, model.damping.modal_ratio)
 
 
 def _standing(model: Model) -> bool:

@@ -60,7 +60,9 @@ def draw_bifurcation(result: SweepResult, figure: Any, contact: int = 0) -> None
                 color=_colour(result, r),
             )  # fmt: skip
     axes[0].set_ylabel("displacement at the section, um")
-    axes[0].set_title(f"{result.contact[contact]}: Poincare section once each {_period(result)}", fontsize=9)
+    axes[0].set_title(
+        f"{result.contact[contact]}: Poincare section once each {result.period_words.removeprefix('the ')}", fontsize=9
+    )
     if len(result.run) > 1:
         axes[0].legend(fontsize=7, markerscale=4, loc="best", ncols=2)
     if exponent:
@@ -80,11 +82,6 @@ def draw_bifurcation(result: SweepResult, figure: Any, contact: int = 0) -> None
 def _dot(result: SweepResult) -> float:
     """Size of a dot: the finer, the more points stand side by side."""
     return float(np.clip(120.0 / len(result.values), 0.8, 3.0))
-
-
-def _period(result: SweepResult) -> str:
-    turns = sorted({int(n) for n in result.turns if n})
-    return "mesh period" if turns == [1] else f"{turns[-1]} periods of the fastest mesh"
 
 
 def _colour(result: SweepResult, run: int) -> str:

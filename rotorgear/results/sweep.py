@@ -76,6 +76,14 @@ class SweepResult:
         static = self.static_force[:, None, :]
         return np.where(static > 0.0, self.largest_force / np.where(static > 0.0, static, 1.0), np.nan)
 
+    @property
+    def period_words(self) -> str:
+        """The common period T in words."""
+        turns = sorted({int(n) for n in self.turns if n})
+        if turns == [1]:
+            return "the mesh period"
+        return f"{turns[0]}{f' to {turns[-1]}' if len(turns) > 1 else ''} periods of the fastest mesh"
+
     def motion_at(self, point: int, run: int = 0) -> str:
         """Kind of motion of a run."""
         return self.motion[point * len(self.run) + run]

@@ -13,8 +13,8 @@ class SweepRung:
 
     Attributes:
         steps: in a period of the fastest mesh. count: common periods that count. seconds: of integration for one run.
-        exponent: mean of the largest Lyapunov exponents of all runs; scatter: their standard deviation; stated: median of the standard
-            errors that the runs state.
+        exponent: mean of the largest Lyapunov exponents of all runs; scatter: their standard deviation; stated: median of
+            the standard errors that the runs state.
         peak_to_peak, peak_to_peak_scatter: of the worst contact in m. dynamic_factor, dynamic_factor_scatter: of that contact.
         motion: kinds that occurred.
     """
