@@ -14,14 +14,23 @@ from typing import Any
 from pydantic import BaseModel
 
 from rotorgear.model.bodies import Disk, PointMass
-from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic, Unbalance
+from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, Unbalance
 from rotorgear.model.flank import Flank, ToothFeTable
 from rotorgear.model.gear import Gear, GearBody
 from rotorgear.model.mesh import Mesh
 from rotorgear.model.model import SCHEMA_VERSION, Model
 from rotorgear.model.operation import Load, ModelDamping, Operation, Point
 from rotorgear.model.shaft import LIBRARY, Material, Section, Shaft
-from rotorgear.model.supports import Bearing, Coupling, DampingMatrix, Pedestal, StiffnessMatrix, Support, TableRow
+from rotorgear.model.supports import (
+    Bearing,
+    Coupling,
+    DampingMatrix,
+    Pedestal,
+    RollingElements,
+    StiffnessMatrix,
+    Support,
+    TableRow,
+)
 from rotorgear.quantity import DIMENSIONS
 
 SECTIONS: list[tuple[str, type[BaseModel]]] = [
@@ -37,7 +46,9 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("tooth_fe = { ... } of a mesh", ToothFeTable),
     ("transmission_error = [{ ... }] of a mesh", ErrorHarmonic),
     ("stiffness_variation = [{ ... }] of a mesh", StiffnessHarmonic),
+    ("corner_impact = { ... } of a mesh", CornerImpact),
     ("[bearings.NAME]", Bearing),
+    ("rolling = { ... } of a bearing", RollingElements),
     ("table = [{ ... }] of a bearing", TableRow),
     ("pedestal = { ... } of a bearing", Pedestal),
     ("stiffness = { ... } of a bearing, support or coupling", StiffnessMatrix),
@@ -97,6 +108,13 @@ RULES: dict[type[BaseModel], str] = {
         Springs that stand for the machine behind a shaft end, or an ideal clamp (`fixed`).""",
     Coupling: """
         Gears join parallel shafts, couplings coaxial ones.""",
+    CornerImpact: """
+        The force of each helix, beside the contact force.""",
+    RollingElements: """
+        Only a transient takes them; all other analyses keep the `stiffness`, which must stand beside them along x, y, axial and
+        tilt.""",
+    Unbalance: """
+        A transient takes it. It turns with its shaft; [conventions](conventions.md) count angles from +x about +z.""",
     Disk: """
         Give `mass` and both inertias, or `outer_diameter` and `width`.""",
     ModelDamping: """

@@ -32,6 +32,10 @@ _HOMES = {
     "rotorgear.analysis.response": ("response",),
     "rotorgear.analysis.frequency_response": ("frequency_response",),
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
+    "rotorgear.analysis.transient": ("transient",),
+    "rotorgear.analysis.transient_ladder": ("transient_ladder",),
+    "rotorgear.analysis.spectra": ("spectrum", "spectral_lines"),
+    "rotorgear.analysis.rig_spectrum": ("compare_spectrum",),
     "rotorgear.analysis.campbell": ("campbell",),
     "rotorgear.analysis.critical": ("critical_speeds",),
     "rotorgear.analysis.critical_map": ("critical_map",),
@@ -43,6 +47,7 @@ _HOMES = {
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
+    "rotorgear.results.transient": ("TransientResult",),
     "rotorgear.results.static": ("StaticResult",),
     "rotorgear.results.response": ("ResponseResult",),
     "rotorgear.results.frequency_response": ("FrequencyResponse",),
@@ -51,6 +56,8 @@ _HOMES = {
     "rotorgear.results.mesh": ("MeshResult",),
     "rotorgear.results.comparison": ("Comparison", "RigLine"),
     "rotorgear.export.vtk": ("write_vtk",),
+    "rotorgear.export.stream": ("stream",),
+    "rotorgear.export.vtk_motion": ("write_motion",),
     "rotorgear.export.vtk_deflection": ("write_deflections",),
     "rotorgear.export.hdf5": ("save", "read"),
     "rotorgear.errors": ("RotorgearError", "ModelError", "AnalysisError", "ConvergenceError"),
@@ -71,11 +78,17 @@ if TYPE_CHECKING:
     from rotorgear.analysis.mesh_ladder import mesh_ladder
     from rotorgear.analysis.modal import modal
     from rotorgear.analysis.response import response
+    from rotorgear.analysis.rig_spectrum import compare_spectrum
+    from rotorgear.analysis.spectra import spectral_lines, spectrum
     from rotorgear.analysis.static import static
+    from rotorgear.analysis.transient import transient
+    from rotorgear.analysis.transient_ladder import transient_ladder
     from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
     from rotorgear.export.hdf5 import read, save
+    from rotorgear.export.stream import stream
     from rotorgear.export.vtk import write_vtk
     from rotorgear.export.vtk_deflection import write_deflections
+    from rotorgear.export.vtk_motion import write_motion
     from rotorgear.model.bodies import Disk, PointMass
     from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic, Unbalance
     from rotorgear.model.gear import Gear, GearBody
@@ -103,6 +116,7 @@ if TYPE_CHECKING:
     from rotorgear.results.modal import ModalResult
     from rotorgear.results.response import ResponseResult
     from rotorgear.results.static import StaticResult
+    from rotorgear.results.transient import TransientResult
     from rotorgear.system.system import System
 
 

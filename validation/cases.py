@@ -2,7 +2,7 @@
 
 Columns of expected.csv:
 
-    model           file of the model, from the case's folder
+    model           file of the model, from the case's folder; or a Python program with a function measure(quantity, mode)
     speed           of the input shaft, with its unit; empty: an undamped analysis at standstill
     elements        basic elements in each piece of a section; "5 > 10" or "5 > 10 > 20" for what needs several meshes
     accuracy        refine until every frequency is estimated to be within it, in place of elements

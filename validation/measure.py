@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 import tomllib
 from dataclasses import dataclass, field
+from importlib import import_module
 from itertools import pairwise, product
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,8 @@ class Solver:
 
     def measure(self, line: Expectation) -> Measured:
         """Measure what a line asks for."""
+        if line.model.endswith(".py"):
+            return self._program(line)
         if line.quantity in FORCED:
             return self._forced(line)
         if is_of_sheet(line.quantity):
@@ -64,6 +67,12 @@ class Solver:
         got = _combine(kind, line, [value for value, _ in values], self.case)
         seconds = sum(seconds for _, seconds in runs)
         return Measured(got, max(result.dofs for result, _ in runs), seconds, "; ".join(sorted(complaints)))
+
+    def _program(self, line: Expectation) -> Measured:
+        """Ask a program in the case's folder: its function measure(quantity, mode) returns the number."""
+        start = time.perf_counter()
+        module = import_module(f"validation.{self.case.name}.{Path(line.model).stem}")
+        return Measured(float(module.measure(line.quantity, line.mode)), 0, time.perf_counter() - start)
 
     def _forced(self, line: Expectation) -> Measured:
         """Amplitude or lag of one order at the line's speed."""

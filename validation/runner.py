@@ -84,6 +84,8 @@ def _error(line: Expectation, got: float | str) -> float:
 
 def describe(line: Expectation) -> str:
     """Say in one phrase what a line compares."""
+    if line.model.endswith(".py"):
+        return ", ".join(part for part in (line.quantity, line.mode) if part)
     if is_of_mesh(line.quantity):
         return f"{Path(line.model).stem}, {mesh_words(line.quantity)}"
     if is_of_sheet(line.quantity):

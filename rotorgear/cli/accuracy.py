@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def accuracy(
     model: ModelFile,
     analysis: Annotated[
-        str, typer.Option("--analysis", help="What is run: modal, or mesh (teeth in contact).")
+        str, typer.Option("--analysis", help="What is run: modal, mesh (teeth in contact) or transient.")
     ] = "modal",
     mesh: Annotated[
         str | None, typer.Option("--mesh", help="With --analysis mesh: name of the mesh.", show_default=False)
@@ -36,6 +36,13 @@ def accuracy(
             show_default=False,
         ),
     ] = None,
+    time: Annotated[
+        str | None, typer.Option("--time", help="Transient: duration (default: 8 mesh periods).", show_default=False)
+    ] = None,
+    modal_damping: Annotated[
+        float | None,
+        typer.Option("--modal-damping", help="Transient: damping ratio of every elastic mode.", show_default=False),
+    ] = None,
     plot: Annotated[Path | None, typer.Option("--plot", help="Draw it to this PNG or SVG.", show_default=False)] = None,
     json: JsonOption = None,
 ) -> None:
@@ -46,15 +53,24 @@ def accuracy(
         _refuse_modal_options(speed, reference)
         _mesh(model, mesh, torque, plot, json)
         return
-    if analysis != "modal":
-        raise AnalysisError(f"--analysis: got '{analysis}', expected modal or mesh")
+    if analysis not in ("modal", "transient"):
+        raise AnalysisError(f"--analysis: got '{analysis}', expected modal, mesh or transient")
     if mesh is not None or torque is not None:
         raise AnalysisError("--mesh and --torque belong to --analysis mesh.")
+    if analysis == "modal" and (time or modal_damping is not None):
+        raise AnalysisError("--time and --modal-damping belong to --analysis transient")
+    if analysis == "transient" and reference:
+        raise AnalysisError("--reference belongs to --analysis modal: a transient is compared with its own finest run")
     given = [line.frequency_hz for line in rg.read_rig_lines(reference)] if reference else None
     with progress_bar("accuracy") as progress:
-        ladder = rg.accuracy_ladder(
-            rg.load(model), speed=parse_speed(speed), modes=modes, reference=given, progress=progress
-        )
+        if analysis == "transient":
+            ladder = rg.transient_ladder(
+                rg.load(model), speed=parse_speed(speed), time=time, modal_damping=modal_damping, progress=progress
+            )
+        else:
+            ladder = rg.accuracy_ladder(
+                rg.load(model), speed=parse_speed(speed), modes=modes, reference=given, progress=progress
+            )
     for part in table(ladder):
         console().print(part)
     write_json(ladder.to_dict(), json)
@@ -99,5 +115,8 @@ def table(ladder: AccuracyLadder) -> list[Any]:
         rows.add_row(
             rung.method, str(rung.dofs), f"{rung.seconds:.3f} s", f"{rung.error:.1e}", f"{rung.estimate:.1e}", order
         )
-    head = f"[bold]{ladder.title}[/bold]: largest relative error of {ladder.modes} frequencies"
+    what = f"largest relative error of {ladder.modes} frequencies"
+    if ladder.analysis == "transient":
+        what = f"rms error of {ladder.modes} contact forces over their change"
+    head = f"[bold]{ladder.title}[/bold]: {what}"
     return [head, f"against {ladder.reference}", "", rows, ""]

@@ -20,6 +20,7 @@ from rotorgear.cli import (
     response,
     schema,
     static,
+    transient,
     validate,
     view,
 )
@@ -39,6 +40,7 @@ app.command()(compare.compare)
 app.command()(static.static)
 app.command()(response.response)
 app.command()(frf.frf)
+app.command()(transient.transient)
 app.command()(check.check)
 app.command()(gear.gear)
 app.command()(mesh.mesh)

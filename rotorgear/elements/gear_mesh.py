@@ -68,6 +68,23 @@ def contact_vector(geometry: ContactGeometry) -> np.ndarray:
     return np.concatenate([n, np.cross(pinion, n), -n, -np.cross(gear, n)])
 
 
+def sliding_vectors(geometry: ContactGeometry) -> np.ndarray:
+    """What the dofs of pinion and gear add to the sliding of the flanks, shape (2, 12).
+
+    The first row is the displacement across the line of action (along k x n_t) at the pitch point, of the pinion
+    relative to the gear; the second
+    what a contact at xi adds for each metre of xi.
+    """
+    g = geometry
+    e, t = _frame(g.psi)
+    k = np.array([0.0, 0.0, 1.0])
+    across = np.cross(k, g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e)
+    pinion = g.pinion_base_radius / cos(g.pressure_angle) * e + g.pinion_offset * k
+    gear = -g.gear_base_radius / cos(g.pressure_angle) * e + g.gear_offset * k
+    turned = np.concatenate([np.zeros(3), k, np.zeros(3), -k])
+    return np.array([np.concatenate([across, np.cross(pinion, across), -across, -np.cross(gear, across)]), turned])
+
+
 def gear_mesh(geometry: ContactGeometry, stiffness: float, damping: float = 0.0) -> ElementMatrices:
     """Spring (N/m) and damper (N s/m) along the flank normal between pinion and gear, 12 dofs, one strain."""
     v = contact_vector(geometry)

@@ -19,6 +19,7 @@ from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult
 from rotorgear.results.response import ResponseResult
 from rotorgear.results.static import StaticResult
+from rotorgear.results.transient import TransientResult
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -31,6 +32,7 @@ _KINDS: dict[str, type[Any]] = {
     "static": StaticResult,
     "response": ResponseResult,
     "frf": FrequencyResponse,
+    "transient": TransientResult,
 }
 # The package is loaded before its modules; importing it from here would turn the house upside down.
 _VERSION: str = sys.modules[__name__.partition(".")[0]].__version__

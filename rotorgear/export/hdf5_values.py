@@ -20,10 +20,22 @@ from rotorgear.results.campbell import Crossing, ExcitationOrder, Margin, Onset
 from rotorgear.results.critical import CriticalSpeed
 from rotorgear.results.modal import NodeTable, Piece
 from rotorgear.results.static import LoopAssembly, Share
+from rotorgear.results.transient import EnergyLedger
 
 _RECORDS: dict[str, type] = {
     cls.__name__: cls
-    for cls in (NodeTable, Piece, ExcitationOrder, Crossing, Margin, Onset, CriticalSpeed, Share, LoopAssembly)
+    for cls in (
+        NodeTable,
+        Piece,
+        ExcitationOrder,
+        Crossing,
+        Margin,
+        Onset,
+        CriticalSpeed,
+        Share,
+        LoopAssembly,
+        EnergyLedger,
+    )
 }
 
 

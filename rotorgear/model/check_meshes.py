@@ -53,9 +53,28 @@ def mesh_problems(model: Tables) -> Iterator[Problem]:
 
 def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator[Problem]:
     """Harmonics of a mesh need its frequency; what tells two helices apart needs two."""
-    for key in ("transmission_error", "stiffness_variation"):
+    for key in ("transmission_error", "stiffness_variation", "corner_impact"):
         if getattr(mesh, key) and not (pinion.teeth and gear.teeth):
             yield Problem(f"{address}.{key}", "harmonics of a mesh whose frequency is unknown", "teeth of both gears")
+    if mesh.stiffness_variation and not isinstance(mesh.stiffness, int | float):
+        yield Problem(
+            f"{address}.stiffness_variation", "harmonics beside a stiffness that varies itself", "one of the two"
+        )
+    if mesh.corner_impact and not 0.0 < mesh.corner_impact.duration < 1.0:
+        yield Problem(
+            f"{address}.corner_impact.duration",
+            f"{mesh.corner_impact.duration:g}",
+            "a share of the mesh cycle between 0 and 1",
+        )
+    if mesh.friction_coefficient or mesh.lubricant_viscosity:
+        if mesh.friction_coefficient and mesh.lubricant_viscosity:
+            yield Problem(address, "friction_coefficient and lubricant_viscosity", "one of the two")
+        if not (pinion.normal_module and gear.normal_module and (pinion.width or gear.width)):
+            yield Problem(
+                address,
+                "friction between gears without teeth",
+                "teeth, module and width of both gears: they place the contacts",
+            )
     for key in ("helix_index_error", "helix_stagger"):
         if getattr(mesh, key) and pinion.kind != "herringbone":
             yield Problem(f"{address}.{key}", "a value", "nothing here", "only a herringbone pair has two helices")

@@ -9,7 +9,7 @@ from itertools import pairwise
 from rotorgear.errors import Problem
 from rotorgear.model.problems import shown
 from rotorgear.model.shaft import Section
-from rotorgear.model.supports import Bearing, DampingMatrix, Pedestal, StiffnessMatrix
+from rotorgear.model.supports import Bearing, DampingMatrix, Pedestal, RollingElements, StiffnessMatrix
 from rotorgear.model.tables import Tables
 from rotorgear.quantity import millimetres
 
@@ -92,8 +92,47 @@ def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
         )
     for number, row in enumerate(bearing.table):
         yield from _six_by_six(f"{address}.table[{number}]", row.stiffness, row.damping)
+    if bearing.rolling:
+        yield from _rolling(address, bearing, bearing.rolling)
     if bearing.pedestal:
         yield from _pedestal(f"{address}.pedestal", bearing.pedestal)
+
+
+def _rolling(address: str, bearing: Bearing, rolling: RollingElements) -> Iterator[Problem]:
+    """Rolling elements that fit into their bearing, beside a stiffness that the linear analyses take."""
+    here = f"{address}.rolling"
+    if bearing.table or (bearing.stiffness and bearing.stiffness.given & {"matrix", "xy", "yx"}):
+        yield Problem(
+            here, "rolling elements beside a table or cross terms", "stiffness along x, y, axial and tilt beside them"
+        )
+    if rolling.elements < 3:
+        yield Problem(f"{here}.elements", str(rolling.elements), "at least 3")
+    if rolling.elements * rolling.element_diameter > math.pi * rolling.pitch_diameter:
+        text = f"{rolling.elements} of {millimetres(rolling.element_diameter)}"
+        yield Problem(
+            f"{here}.element_diameter", text, f"elements that fit on a circle of {millimetres(rolling.pitch_diameter)}"
+        )
+    if (rolling.kind == "roller") != (rolling.length is not None):
+        got = "a roller without length" if rolling.kind == "roller" else "a length of balls"
+        yield Problem(f"{here}.length", got, "a length for rollers, none for balls")
+    if rolling.kind == "roller" and rolling.contact_angle:
+        yield Problem(f"{here}.contact_angle", "an angle", "0 for cylindrical rollers")
+    for key in ("inner_groove", "outer_groove"):
+        if getattr(rolling, key) <= 0.5:
+            yield Problem(
+                f"{here}.{key}", f"{getattr(rolling, key):g}", "more than 0.5: a groove is wider than its ball"
+            )
+    if not abs(rolling.contact_angle) < 1.4:
+        yield Problem(
+            f"{here}.contact_angle", f"{math.degrees(rolling.contact_angle):.6g} deg", "an angle below 80 deg"
+        )
+    reach = 2.0 * (rolling.inner_groove + rolling.outer_groove - 1.0) * rolling.element_diameter
+    if rolling.kind == "ball" and reach > 0.0 and rolling.clearance >= reach * math.cos(rolling.contact_angle):
+        yield Problem(
+            f"{here}.clearance",
+            millimetres(rolling.clearance),
+            f"less than {millimetres(reach)}: the balls would fall out",
+        )
 
 
 def _pedestal(address: str, pedestal: Pedestal) -> Iterator[Problem]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from rotorgear.model.fields import Angle, NonNegativeLength, Part, Ratio, Station, UnbalanceSize, Whole
+from rotorgear.model.fields import Angle, Force, NonNegativeLength, Part, Ratio, Station, UnbalanceSize, Whole
 
 
 class Unbalance(Part):
@@ -30,3 +30,11 @@ class StiffnessHarmonic(Part):
     harmonic: Whole = Field(description="1 for the mesh frequency, 2 for twice that, ...")
     amplitude: Ratio = Field(description="amplitude as a share of the mean stiffness")
     phase: Angle = Field(0.0, description="phase, counted from the moment when a contact is at the pitch point")
+
+
+class CornerImpact(Part):
+    """A half-sine force between the flanks once a mesh cycle, as teeth that come into contact too early give."""
+
+    force: Force = Field(description="peak of the force of one helix")
+    duration: Ratio = Field(description="duration in pitches, below 1")
+    at: Ratio = Field(0.0, description="its start in the cycle in pitches; 0 when a contact is at the pitch point")

@@ -6,8 +6,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic
-from rotorgear.model.fields import Angle, Damping, Length, NonNegativeLength, Part, PositiveRatio, Ratio
+from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
+from rotorgear.model.fields import Angle, Damping, Length, NonNegativeLength, Part, PositiveRatio, Ratio, Viscosity
 from rotorgear.model.flank import ToothFeTable
 from rotorgear.model.mesh_stiffness_field import StiffnessValue
 
@@ -65,4 +65,19 @@ class Mesh(Part):
     )
     stiffness_variation: tuple[StiffnessHarmonic, ...] = Field(
         (), description="harmonics of the mesh stiffness about its mean"
+    )
+    corner_impact: CornerImpact | None = Field(None, description="impact at each entry of a tooth; default: none")
+    friction_coefficient: Ratio = Field(0.0, description="coefficient of sliding friction between the flanks")
+    lubricant_viscosity: Viscosity | None = Field(
+        None, description="viscosity of the oil: friction by Benedict and Kelley's formula, in place of a coefficient"
+    )
+    backlash: NonNegativeLength | None = Field(
+        None, description="backlash along the flank normal; without it the teeth never part in a transient"
+    )
+    back_flank: Literal["line", "own normals"] = Field(
+        "line", description="the back flank pushes along the line of the driving flank, or along its own normal"
+    )
+    contact_damping: Literal["clamped", "unclamped", "penetration"] = Field(
+        "clamped",
+        description="clamped: teeth never pull; unclamped: damping may pull; penetration: damping grows with the depth",
     )

@@ -6,7 +6,20 @@ from typing import Literal
 
 from pydantic import Field
 
-from rotorgear.model.fields import Gravity, Part, Power, Rate, Ratio, Speed, Station, Time, Torque
+from rotorgear.model.fields import (
+    Gravity,
+    Part,
+    PositiveRatio,
+    PositiveTime,
+    Power,
+    Rate,
+    Ratio,
+    SignedRatio,
+    Speed,
+    Station,
+    Time,
+    Torque,
+)
 
 
 class Operation(Part):
@@ -18,7 +31,7 @@ class Operation(Part):
     torque: Torque | None = Field(None, description="torque into the input shaft, in the sense of its rotation")
     output_shaft: str | None = Field(None, description="name of the shaft that takes the power")
     gravity: Gravity | None = Field(
-        None, description="acceleration of gravity along x, y and z, for statics; default: none"
+        None, description="acceleration of gravity along x, y and z, for statics and transients; default: none"
     )
 
 
@@ -32,6 +45,20 @@ class Load(Part):
         None, description="size of the torque; one output may leave it out and takes the rest"
     )
     power: Power | None = Field(None, description="power, in place of the torque")
+    speed_power: SignedRatio = Field(
+        0.0,
+        description="transient: the torque goes with this power of the speed; 2 for a propeller, -1 for constant power",
+    )
+    ripple: Ratio = Field(0.0, description="transient: amplitude of the torque's ripple as a share of it")
+    ripple_order: PositiveRatio = Field(1.0, description="transient: periods of the ripple in a turn of its shaft")
+    step_to: Ratio = Field(1.0, description="transient: share of the torque that remains after a step")
+    step_at: Time = Field(0.0, description="transient: time at which the step begins")
+    step_duration: PositiveTime = Field(0.001, description="transient: how long the step takes")
+
+    @property
+    def varies(self) -> bool:
+        """Whether the torque changes with time or speed."""
+        return bool(self.speed_power or self.ripple or self.step_to != 1.0)
 
 
 class ModelDamping(Part):

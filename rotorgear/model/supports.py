@@ -7,10 +7,14 @@ from typing import Literal
 from pydantic import Field
 
 from rotorgear.model.fields import (
+    Angle,
     Damping,
     Mass,
     Matrix6,
+    NonNegativeLength,
     Part,
+    PositiveLength,
+    PositiveRatio,
     RotationalDamping,
     RotationalStiffness,
     SignedDamping,
@@ -18,6 +22,7 @@ from rotorgear.model.fields import (
     Speed,
     Station,
     Stiffness,
+    Whole,
 )
 
 Rows = tuple[tuple[float, ...], ...]
@@ -99,8 +104,25 @@ class Pedestal(Part):
     damping: DampingMatrix | None = Field(None, description="damping to ground along x, y and z")
 
 
+class RollingElements(Part):
+    """What rolls in a bearing: its Hertz contacts, clearance and turning cage, for a transient."""
+
+    kind: Literal["ball", "roller"] = Field(description="ball, or cylindrical roller")
+    elements: Whole = Field(description="number of balls or rollers")
+    element_diameter: PositiveLength = Field(description="diameter of a ball or roller")
+    pitch_diameter: PositiveLength = Field(description="diameter of the circle of their centres")
+    length: PositiveLength | None = Field(None, description="effective length of a roller")
+    clearance: NonNegativeLength = Field(0.0, description="radial internal clearance: the whole play along a diameter")
+    contact_angle: Angle = Field(
+        0.0,
+        description="free contact angle of an angular contact ball bearing; positive where it takes a push towards +z",
+    )
+    inner_groove: PositiveRatio = Field(0.52, description="groove radius of the inner ring over the ball's diameter")
+    outer_groove: PositiveRatio = Field(0.53, description="groove radius of the outer ring over the ball's diameter")
+
+
 class Bearing(Part):
-    """A linear bearing between a shaft and the ground or a pedestal."""
+    """A bearing between a shaft and the ground or a pedestal: linear, and in a transient with its rolling elements if given."""
 
     shaft: str = Field(description="name of the shaft")
     at: Station = Field(description="z of the bearing, or 'start' or 'end'")
@@ -108,6 +130,9 @@ class Bearing(Part):
     damping: DampingMatrix | None = Field(None, description="damping; default: none")
     table: tuple[TableRow, ...] = Field(
         (), description="rows over speed, linear in between, in place of stiffness and damping"
+    )
+    rolling: RollingElements | None = Field(
+        None, description="rolling elements, which take the place of the stiffness in a transient"
     )
     pedestal: Pedestal | None = Field(None, description="flexible pedestal; default: rigid ground")
 

@@ -23,10 +23,15 @@ def draw_accuracy(ladder: AccuracyLadder, path: str | Path) -> Path:
     except ImportError:
         raise MissingExtraError("A plot", "matplotlib", "plots") from None
     figure = Figure(figsize=(9.0, 4.0), layout="constrained")
-    axes = figure.subplots(1, 2, sharey=True)
-    _curve(axes[0], ladder, "seconds", "seconds, whole analysis")
-    _curve(axes[1], ladder, "dofs", "degrees of freedom")
-    axes[0].set_ylabel(f"largest relative error of {ladder.modes} frequencies")
+    if ladder.analysis == "transient":
+        axes = [figure.subplots()]
+        _curve(axes[0], ladder, "seconds", "seconds, integration")
+        axes[0].set_ylabel(f"rms error of {ladder.modes} contact forces over their change")
+    else:
+        axes = list(figure.subplots(1, 2, sharey=True))
+        _curve(axes[0], ladder, "seconds", "seconds, whole analysis")
+        _curve(axes[1], ladder, "dofs", "degrees of freedom")
+        axes[0].set_ylabel(f"largest relative error of {ladder.modes} frequencies")
     axes[0].legend(frameon=False)
     figure.suptitle(ladder.title, fontsize=11)
     target = Path(path)
@@ -37,7 +42,9 @@ def draw_accuracy(ladder: AccuracyLadder, path: str | Path) -> Path:
 
 
 def _curve(axis: Any, ladder: AccuracyLadder, key: str, label: str) -> None:
-    for family, (marker, colour, name) in _STYLE.items():
+    families = dict.fromkeys(rung.family for rung in ladder.rungs)
+    others = {family: ("osd^v<>"[i % 7], f"C{i}", family) for i, family in enumerate(families)}
+    for family, (marker, colour, name) in {**others, **{key: _STYLE[key] for key in _STYLE if key in families}}.items():
         own = [rung for rung in ladder.rungs if rung.family == family and rung.error < float("inf")]
         if own:
             # An error of exactly zero has no place on a logarithmic axis.

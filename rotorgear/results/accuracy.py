@@ -34,7 +34,10 @@ class Rung:
 
 @dataclass(frozen=True)
 class AccuracyLadder:
-    """Rungs of one model and analysis. `reference` says what the errors are measured against; `modes` how many frequencies."""
+    """Rungs of one model and analysis.
+
+    `reference` says what the errors are measured against; `modes` how many frequencies, or contact forces.
+    """
 
     title: str
     analysis: str

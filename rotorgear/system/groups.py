@@ -182,24 +182,30 @@ def element_data(model: Model, name: str, elements: list[Element]) -> ShaftEleme
     return ShaftElements(length, stiffness, mass, E, G, nu, rho, kappas)
 
 
+def contact_geometry(model: Model, force: MeshForce) -> ContactGeometry:
+    """Geometry of one contact with its driving flank."""
+    c = force.contact
+    # Recess follows the driving flank; the element measures from the pitch point towards where the pinion would recede.
+    past_pitch_point = c.contact_position if force.pinion_drives else -c.contact_position
+    return ContactGeometry(
+        psi=c.psi, pressure_angle=c.pressure_angle, base_helix_angle=c.base_helix_angle, hand=c.hand,
+        torque_sense=force.torque_sense, pinion_base_radius=c.pinion_base_radius, gear_base_radius=c.gear_base_radius,
+        pinion_offset=c.contact_z - c.pinion_z, gear_offset=c.contact_z - c.gear_z, contact_position=past_pitch_point,
+    )  # fmt: skip
+
+
 def _meshes(model: Model, flow: TorqueFlow, nodes: Nodes) -> Iterator[ElementGroup]:
     bodies = node_bodies(model)
     for force in flow.forces:
         c = force.contact
         pinion, gear = model.gears[c.pinion].shaft, model.gears[c.gear].shaft
-        # Recess follows the driving flank; the element measures from the pitch point towards where the pinion would recede.
-        past_pitch_point = c.contact_position if force.pinion_drives else -c.contact_position
-        geometry = ContactGeometry(
-            psi=c.psi, pressure_angle=c.pressure_angle, base_helix_angle=c.base_helix_angle, hand=c.hand,
-            torque_sense=force.torque_sense, pinion_base_radius=c.pinion_base_radius, gear_base_radius=c.gear_base_radius,
-            pinion_offset=c.contact_z - c.pinion_z, gear_offset=c.contact_z - c.gear_z, contact_position=past_pitch_point,
-        )  # fmt: skip
-        damping = _mesh_damping(model, force, geometry, bodies)
+        geometry = contact_geometry(model, force)
+        damping = mesh_damping(model, force, geometry, bodies)
         dofs = node_dofs(nodes.at(pinion, c.pinion_z), nodes.at(gear, c.gear_z))
         yield ElementGroup(f"meshes.{c.mesh}", "", gear_mesh(geometry, c.stiffness, damping), dofs)
 
 
-def _mesh_damping(model: Model, force: MeshForce, geometry: ContactGeometry, bodies: list[NodeBody]) -> float:
+def mesh_damping(model: Model, force: MeshForce, geometry: ContactGeometry, bodies: list[NodeBody]) -> float:
     """Damping coefficient of one helix in N s/m: given, or from the ratio and the inertia of that helix' share of the gears."""
     mesh = model.meshes[force.contact.mesh]
     helices = 2 if model.gears[mesh.pinion].kind == "herringbone" else 1

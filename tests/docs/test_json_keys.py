@@ -25,6 +25,7 @@ NAMED = {
     "point_amplitude": "POINT",
     "seconds_by_step": "STEP",
     "counts": "TABLE",
+    "mesh_frequency_hz": "MESH",
     "helix[].load_share": "PAIR",
     **dict.fromkeys(
         (
@@ -111,6 +112,12 @@ def test_the_keys_of_compare_are_documented(tmp_path: Path, rig: str) -> None:
 
 def test_the_keys_of_check_are_documented(tmp_path: Path) -> None:
     assert set(keys(written(tmp_path, "check", str(MODEL)))) == documented("check")
+
+
+def test_the_keys_of_transient_are_documented(tmp_path: Path, rig: str) -> None:
+    name = "points.output_bearing_y acceleration"
+    run = ["--modal-damping", "0.02", "--steps", "40", "--time", "2 ms", "--spectrum", name, "--rig", rig]
+    assert set(keys(written(tmp_path, "transient", str(MODEL), *run))) == documented("transient")
 
 
 def test_the_keys_of_gear_are_documented(tmp_path: Path) -> None:

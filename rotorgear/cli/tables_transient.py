@@ -1,0 +1,132 @@
+"""The transient result as tables for the terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rotorgear.results.spectrum import RigSpectrum, SpectralLines
+    from rotorgear.results.transient import TransientResult
+
+
+# Channels that are kept, saved and drawn, but not listed.
+_UNSHOWN = ("gears.",)
+
+
+def transient_table(result: TransientResult) -> RenderableType:
+    """Return contacts, channels and notes as one rich renderable that fits 80 columns."""
+    from rich.console import Group
+    from rich.text import Text
+
+    parts: list[RenderableType] = [Text(_title(result), style="bold"), _contacts(result), Text("")]
+    if result.channel:
+        parts.append(_channels(result))
+    parts += [Text(line) for line in _notes(result)]
+    return Group(*parts, "")
+
+
+def _title(result: TransientResult) -> str:
+    rpm = [f"{w * 9.549296585513721:.5g}" for w in (result.speed[0], result.speed[-1])]
+    turns = rpm[0] if rpm[0] == rpm[1] else f"{rpm[0]} to {rpm[1]}"
+    shaft = result.model.reference_shaft
+    counted = result.time[-1] - result.settle
+    return f"{result.model.title or 'Transient'}: {shaft} at {turns} rpm, {counted:.4g} s after {result.settle:.4g} s"
+
+
+def _table(title: str = "") -> Any:
+    from rich.table import Table
+
+    return Table(
+        box=None, pad_edge=False, header_style="bold", title=title or None, title_justify="left", title_style="bold"
+    )
+
+
+def _contacts(result: TransientResult) -> Any:
+    table = _table()
+    table.add_column("contact", overflow="fold")
+    for name in ("static N", "mean", "rms", "largest", "K_dyn", "DTE um", "apart %", "back %", "losses"):
+        table.add_column(name, justify="right")
+    for row in result.to_dict()["contacts"]:
+        table.add_row(
+            row["name"], _value(row["static_force_n"]), _value(row["mean_force_n"]), _value(row["rms_force_n"]),
+            _value(row["largest_force_n"]), "-" if row["dynamic_factor"] is None else f"{row['dynamic_factor']:.3f}",
+            f"{1e6 * (row['peak_to_peak_dte_m'] or 0.0):.2f}", f"{100.0 * row['apart_share']:.1f}",
+            f"{100.0 * row['back_share']:.1f}", str(row["losses"]),
+        )  # fmt: skip
+    return table
+
+
+def _channels(result: TransientResult) -> Any:
+    table = _table()
+    table.add_column("channel", overflow="fold")
+    for name in ("mean", "rms", "largest", "smallest"):
+        table.add_column(name, justify="right")
+    table.add_column("unit")
+    shown = [row for row in result.to_dict()["channels"] if not row["name"].startswith(_UNSHOWN)]
+    for row in shown:
+        if row["name"].startswith("bearings.") and " displacement " in row["name"]:
+            continue
+        table.add_row(
+            row["name"].partition(".")[2],
+            *(_value(row[key]) for key in ("mean", "rms", "largest", "smallest")),
+            row["unit"],
+        )
+    return table
+
+
+def _value(value: float | None) -> str:
+    """Four digits, without an exponent where that is as short."""
+    if value is None:
+        return "-"
+    return f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.4g}"
+
+
+def _notes(result: TransientResult) -> list[str]:
+    lines = [
+        "",
+        f"{result.dofs} dofs, {result.steps} steps of {result.step:.4g} s, {result.seconds['total']:.2f} s; {result.method} "
+        f"({result.reason})",
+    ]
+    if result.error_estimate == result.error_estimate:
+        lines.append(
+            f"error: statistics within {result.error_estimate:.1e}, from a run of twice the step"
+            + (", and one of more modes" if "modes with" in result.method else "")
+        )
+    lines.append(f"energy: integration made or lost {result.energy.share:.1e} of the largest term")
+    lines += [f"left out: {note}" for note in result.left_out]
+    lines += [f"Warning: {note}" for note in result.warnings]
+    return lines
+
+
+def spectrum_table(lines: SpectralLines) -> RenderableType:
+    """Return the lines of a spectrum."""
+    from rich.console import Group
+    from rich.text import Text
+
+    table = _table()
+    table.add_column("Hz", justify="right")
+    table.add_column(f"amplitude {lines.unit}", justify="right")
+    table.add_column("order", overflow="fold")
+    for f, a, what in zip(lines.frequency_hz, lines.amplitude, lines.source, strict=True):
+        table.add_row(f"{f:.2f}", f"{a:.4g}", what)
+    head = f"Spectrum of {lines.name}, {lines.window} window, {lines.resolution_hz:.3g} Hz apart"
+    return Group(Text(head, style="bold"), table, "")
+
+
+def rig_table(beside: RigSpectrum) -> RenderableType:
+    """Return rig lines beside spectral lines."""
+    from rich.console import Group
+    from rich.text import Text
+
+    table = _table()
+    for name in ("rig Hz", "Hz", f"amplitude {beside.unit}"):
+        table.add_column(name, justify="right")
+    table.add_column("order, or why there is no line", overflow="fold")
+    for rig, f, a, source, reason in zip(
+        beside.rig_hz, beside.frequency_hz, beside.amplitude, beside.source, beside.reason, strict=True
+    ):
+        found = not reason
+        table.add_row(f"{rig:.6g}", f"{f:.2f}" if found else "-", f"{a:.4g}" if found else "-", reason or source)
+    return Group(Text(f"Rig lines within {100.0 * beside.tolerance:g} %", style="bold"), table, "")

@@ -1,0 +1,170 @@
+"""rotorgear transient: time response with backlash, varying mesh stiffness and transmission error."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rotorgear.cli.common import JsonOption, ModelFile, console, parse_speed, progress_bar, write_json
+from rotorgear.errors import AnalysisError
+
+if TYPE_CHECKING:
+    from rotorgear.results.transient import TransientResult
+
+
+def transient(
+    model: ModelFile,
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            "--speed", help="Speed of the input shaft, such as '6000 rpm' (default: operation).", show_default=False
+        ),
+    ] = None,
+    speed_to: Annotated[
+        str | None,
+        typer.Option(
+            "--speed-to", help="Run up (or down) to this speed within the time that counts.", show_default=False
+        ),
+    ] = None,
+    time: Annotated[
+        str | None,
+        typer.Option(
+            "--time", help="Time that counts, such as '0.2 s' (default: 30 mesh periods).", show_default=False
+        ),
+    ] = None,
+    settle: Annotated[
+        str | None, typer.Option("--settle", help="Time before it that does not count.", show_default=False)
+    ] = None,
+    accuracy: Annotated[
+        float | None,
+        typer.Option(
+            "--accuracy", help="Wanted relative accuracy of the statistics (default 0.01).", show_default=False
+        ),
+    ] = None,
+    steps: Annotated[
+        int | None,
+        typer.Option("--steps", help="Steps in a period of the fastest mesh, instead.", show_default=False),
+    ] = None,
+    records: Annotated[
+        int | None,
+        typer.Option("--records", help="Records in a period of the fastest mesh (default 40).", show_default=False),
+    ] = None,
+    method: Annotated[
+        str, typer.Option("--method", help="auto, newmark, hht, generalised-alpha, exponential or explicit.")
+    ] = "auto",
+    rho_inf: Annotated[
+        float | None,
+        typer.Option("--rho-inf", help="For hht and generalised-alpha: 1 damps nothing, 0 most.", show_default=False),
+    ] = None,
+    modes: Annotated[
+        int | None,
+        typer.Option("--modes", help="Exponential: so many modes and residual vectors, not all.", show_default=False),
+    ] = None,
+    modal_damping: Annotated[
+        float | None,
+        typer.Option("--modal-damping", help="Damping ratio of every elastic mode, such as 0.02.", show_default=False),
+    ] = None,
+    elements: Annotated[
+        int | None,
+        typer.Option("--elements", help="Basic elements in each piece of shaft.", show_default=False),
+    ] = None,
+    error_estimate: Annotated[
+        bool, typer.Option("--error-estimate/--no-error-estimate", help="Compare with a run of twice the step.")
+    ] = True,
+    spectrum: Annotated[
+        str | None,
+        typer.Option("--spectrum", help="List the lines in the spectrum of this history.", show_default=False),
+    ] = None,
+    rig: Annotated[
+        Path | None,
+        typer.Option("--rig", help="Put the lines of this rig list beside those of --spectrum.", show_default=False),
+    ] = None,
+    json: JsonOption = None,
+    save: Annotated[
+        Path | None, typer.Option("--save", help="Save the result (HDF5), in chunks while it runs.", show_default=False)
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with an interrupted run of the same --save.")] = False,
+    vtk: Annotated[
+        Path | None,
+        typer.Option("--vtk", help="Write the motion at the end to this folder, for ParaView.", show_default=False),
+    ] = None,
+    frames: Annotated[int, typer.Option("--frames", min=2, help="Instants that --vtk writes.")] = 120,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", help="Draw pictures of the result to this folder.", show_default=False)
+    ] = None,
+) -> None:
+    """Time response from the static equilibrium: contact forces, transmission error, bearings, spectra."""
+    import rotorgear as rg
+    from rotorgear.cli.tables_transient import transient_table
+
+    if rig and not spectrum:
+        raise AnalysisError("--rig needs --spectrum: the history whose lines are compared")
+    if resume and save is None:
+        raise AnalysisError("--resume needs the --save of the run that was interrupted")
+    stream = rg.stream(save, resume=resume) if save else None
+    with progress_bar("transient") as progress:
+        result = rg.transient(
+            rg.load(model), speed=_speeds(rg.load(model), speed, speed_to, time, settle), time=time, settle=settle,
+            accuracy=accuracy, steps=steps, records=records, method=method, rho_inf=rho_inf, modes=modes,
+            modal_damping=modal_damping, elements=elements,
+            error_estimate=error_estimate, frames=frames if vtk else 0, stream=stream, progress=progress,
+        )  # fmt: skip
+    out = console()
+    out.print(transient_table(result))
+    data = result.to_dict()
+    if spectrum:
+        from rotorgear.cli.tables_transient import spectrum_table
+
+        lines = rg.spectral_lines(result, spectrum)
+        out.print(spectrum_table(lines))
+        data["spectrum"] = lines.to_dict()
+        if rig:
+            from rotorgear.cli.tables_transient import rig_table
+
+            beside = rg.compare_spectrum(result, lines, rg.read_rig_lines(rig))
+            out.print(rig_table(beside))
+            data["rig"] = beside.to_dict()
+    write_json(data, json)
+    _write(result, save, plot, vtk)
+    if result.status != "success":
+        typer.echo("the run ended early: what it gave so far stands above", err=True)
+        raise typer.Exit(1)
+
+
+def _speeds(model: object, speed: str | None, speed_to: str | None, time: str | None, settle: str | None):  # type: ignore[no-untyped-def]
+    """One speed, or the pairs of a run-up."""
+    from rotorgear.quantity import QuantityError, parse_quantity
+
+    first = parse_speed(speed)
+    if speed_to is None:
+        return first
+    if first is None:
+        first = model.operation.speed if getattr(model, "operation", None) else None  # type: ignore[attr-defined]
+    if first is None or time is None:
+        raise AnalysisError("--speed-to needs a --speed to start from and a --time for the run-up")
+    last = parse_speed(speed_to)
+    try:
+        begin = parse_quantity(settle, "time") if settle else 0.0
+        end = begin + parse_quantity(time, "time")
+    except QuantityError as error:
+        raise AnalysisError(f"--time and --settle: expected {error}") from None
+    return [(begin, first), (end, last)]
+
+
+def _write(result: TransientResult, save: Path | None, plot: Path | None, vtk: Path | None) -> None:
+    import rotorgear as rg
+
+    if save and result.status == "success":
+        rg.save(result, save)
+        rg.stream(save).close()
+        typer.echo(f"saved {save}")
+    if plot:
+        from rotorgear.plots.transient import draw_transient
+
+        paths = draw_transient(result, plot)
+        typer.echo(f"wrote {len(paths)} pictures to {plot}")
+    if vtk:
+        paths = rg.write_motion(result, vtk)
+        typer.echo(f"wrote {len(paths)} files to {vtk}; open motion.pvd in ParaView")

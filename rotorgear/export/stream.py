@@ -1,0 +1,84 @@
+"""Chunks of a long run in files of their own beside the result: each is written under a temporary name and then moved, so that
+whatever stops the process, even kill -9, leaves all chunks before whole.
+
+`run.h5.parts/` holds settings.json and chunk_000001.h5 ...; it goes away when the result itself is saved.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+
+from rotorgear.errors import RotorgearError
+from rotorgear.export.files import WriteError, reason_of, replacing
+
+
+class ChunkStream:
+    """Keeps chunks in a folder beside the file that the result will be saved to."""
+
+    def __init__(self, path: str | Path, *, resume: bool = False) -> None:
+        self.path, self.folder, self._resume = Path(path), Path(f"{path}.parts"), resume
+        self._count = 0
+
+    def begin(self, settings: dict[str, str]) -> list[dict[str, np.ndarray]]:
+        """Make the folder, or read the chunks of the same run that are there.
+
+        Raises:
+            RotorgearError: chunks of another run are there, or of this one and it was not asked to go on.
+            WriteError: the folder can't be made.
+        """
+        mark = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in settings.items()}
+        note = self.folder / "settings.json"
+        if self._resume and note.is_file():
+            if json.loads(note.read_text(encoding="utf-8")) != mark:
+                raise RotorgearError(
+                    f"{self.folder} holds a run with another model or other settings; repeat those, or start without resume"
+                )
+            return self._read()
+        shutil.rmtree(self.folder, ignore_errors=True)
+        try:
+            self.folder.mkdir(parents=True)
+        except OSError as error:
+            raise WriteError(self.folder, reason_of(error)) from None
+        with replacing(note) as scratch:
+            scratch.write_text(json.dumps(mark), encoding="utf-8")
+        return []
+
+    def write(self, chunk: dict[str, np.ndarray]) -> None:
+        """Write a chunk to a file of its own.
+
+        Raises:
+            WriteError: no space, no permission.
+        """
+        import h5py
+
+        with replacing(self.folder / f"chunk_{self._count + 1:06d}.h5") as scratch, h5py.File(scratch, "w") as file:
+            for name, value in chunk.items():
+                file[name] = value
+        self._count += 1
+
+    def _read(self) -> list[dict[str, np.ndarray]]:
+        found = [read_chunk(path) for path in sorted(self.folder.glob("chunk_*.h5"))]
+        self._count = len(found)
+        return found
+
+    def close(self) -> None:
+        """Take the folder away: the result is saved elsewhere."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def read_chunk(path: Path) -> dict[str, np.ndarray]:
+    """Read one chunk."""
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        return {name: file[name][()] for name in file}
+
+
+def stream(path: str | Path, *, resume: bool = False) -> ChunkStream:
+    """Return where a long transient keeps its chunks; with `resume` an interrupted run of the same settings goes on."""
+    return ChunkStream(path, resume=resume)

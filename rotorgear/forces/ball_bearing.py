@@ -1,0 +1,157 @@
+"""Ball bearing: Hertz contacts of Z balls that turn with the cage, clearance, and coupling of radial, axial and tilting motion.
+
+Ball j stands at phi_j = order * angle + phase + 2 pi j/Z. With the distance
+A = r_i + r_e - D_w of the groove centres at rest, the inner one moves by
+
+    u = x cos phi + y sin phi,   w = z + R_i (tx sin phi - ty cos phi)
+    delta = sqrt((A cos a0 + u)^2 + (A sin a0 + w)^2) - A,   Q = c_p delta^(3/2) where delta > 0
+
+and F is the gradient of the energy 2/5 c_p sum delta^(5/2), so that the law is conservative but for the turning of the
+balls. A deep
+groove bearing stands centred: A cos a0 = A - s/2, A sin a0 = 0. ISO/TS 16281:2008; de Mul, Vree and Maas, J. Tribology
+111 (1989) 142.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from rotorgear.forces.hertz import point_contact
+from rotorgear.forces.law import ForceLaw, parameter, refuse
+from rotorgear.solvers.compiled import force_function, schedule_function
+
+_COMPONENTS = 5
+
+
+@schedule_function
+def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
+    """Fill the angle of the first ball, and the speed of the cage."""
+    s[0] = p[5] * angle + p[6]
+    s[1] = p[5] * speed
+
+
+@force_function
+def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
+    """Forces along x, y, z and moments about x, y of the inner ring on the balls."""
+    count, cp, distance, radial, axial, arm = int(p[0]), p[1], p[2], p[3], p[4], p[7]
+    for i in range(5):
+        F[i] = 0.0
+    for i in range(25):
+        Kd[i], Kv[i] = 0.0, 0.0
+    stored, turned, loaded = 0.0, 0.0, 0.0
+    g = np.zeros(5)
+    a, b = np.zeros(5), np.zeros(5)
+    for j in range(count):
+        phi = s[0] + 6.283185307179586 * j / count
+        c, n = np.cos(phi), np.sin(phi)
+        a[0], a[1] = c, n
+        b[2], b[3], b[4] = 1.0, arm * n, -arm * c
+        u = radial + d[0] * c + d[1] * n
+        w = axial + d[2] + arm * (d[3] * n - d[4] * c)
+        length = np.sqrt(u * u + w * w)
+        delta = length - distance
+        if delta <= 0.0:
+            continue
+        loaded = 1.0
+        root = np.sqrt(delta)
+        Q, slope = cp * delta * root, 1.5 * cp * root
+        cosine, sine = u / length, w / length
+        for i in range(5):
+            g[i] = cosine * a[i] + sine * b[i]
+            F[i] += Q * g[i]
+        for i in range(5):
+            for k in range(5):
+                across = (cosine * b[i] - sine * a[i]) * (cosine * b[k] - sine * a[k]) / length
+                Kd[5 * i + k] += slope * g[i] * g[k] + Q * across
+        stored += 0.4 * cp * delta * delta * root
+        du = -d[0] * n + d[1] * c
+        dw = arm * (d[3] * c + d[4] * n)
+        turned += Q * (cosine * du + sine * dw) * s[1]
+    energy[0], energy[1], energy[2], energy[3] = stored, turned, 0.0, loaded
+
+
+@dataclass(frozen=True)
+class BallBearing(ForceLaw):
+    """Ball bearing with five relative displacements: x, y, z of the inner ring against the outer one, and tilts about x and y."""
+
+    title: ClassVar[str] = "ball bearing"
+
+    balls: int = parameter("", "number of balls Z")
+    ball_diameter: float = parameter("m", "diameter D_w of a ball")
+    pitch_diameter: float = parameter("m", "pitch diameter D_pw")
+    inner_groove: float = parameter("", "groove radius of the inner ring over D_w", 0.52)
+    outer_groove: float = parameter("", "groove radius of the outer ring over D_w", 0.53)
+    clearance: float = parameter("m", "radial internal clearance s (whole play along a diameter)", 0.0)
+    contact_angle: float = parameter(
+        "rad", "free contact angle of an angular contact bearing; its sign is that of the axial load it takes", 0.0
+    )
+    youngs_modulus: float = parameter("Pa", "of balls and rings", 210e9)
+    poisson_ratio: float = parameter("", "of balls and rings", 0.3)
+    order: float = parameter("rad/rad", "turns of the cage for each turn of the reference", 0.0)
+    phase: float = parameter("rad", "angle of a ball at angle 0", 0.0)
+    reference: tuple[float, ...] = parameter(
+        "N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * _COMPONENTS
+    )
+
+    def __post_init__(self) -> None:
+        if self.balls < 3:
+            raise refuse(self, "balls", "at least 3")
+        if not 0.0 < self.ball_diameter < self.pitch_diameter:
+            raise refuse(self, "ball_diameter", "a positive diameter below the pitch diameter")
+        if min(self.inner_groove, self.outer_groove) <= 0.5:
+            raise refuse(self, "inner_groove" if self.inner_groove <= 0.5 else "outer_groove", "more than 0.5")
+        if not self.clearance < 2.0 * self.distance:
+            raise refuse(self, "clearance", "less than what parts the grooves")
+
+    @property
+    def components(self) -> int:
+        """Five."""
+        return _COMPONENTS
+
+    @property
+    def distance(self) -> float:
+        """A: distance of the groove centres in m."""
+        return (self.inner_groove + self.outer_groove - 1.0) * self.ball_diameter
+
+    @property
+    def contact_constant(self) -> float:
+        """c_p in N/m^1.5."""
+        return point_contact(
+            self.ball_diameter, self.pitch_diameter, self.inner_groove * self.ball_diameter,
+            self.outer_groove * self.ball_diameter, self.contact_angle, self.youngs_modulus, self.poisson_ratio,
+        )  # fmt: skip
+
+    @property
+    def uses_velocity(self) -> bool:
+        """Deflections only."""
+        return False
+
+    def functions(self) -> tuple[Any, Any]:
+        """Return the compiled functions schedule and force."""
+        return schedule, force
+
+    def state_size(self) -> int:
+        """Angle and speed of the cage."""
+        return 2
+
+    def parameters(self) -> np.ndarray:
+        """Z, c_p, A, A cos a0, A sin a0, order, phase, R_i."""
+        A, a0 = self.distance, self.contact_angle
+        radial, axial = A * np.cos(a0) - 0.5 * self.clearance, A * np.sin(a0)
+        arm = 0.5 * self.pitch_diameter + (self.inner_groove - 0.5) * self.ball_diameter * radial / A
+        return np.array([self.balls, self.contact_constant, A, radial, axial, self.order, self.phase, arm])
+
+    def reference_stiffness(self) -> np.ndarray:
+        """The linear stiffness that is given with the bearing."""
+        return np.diag(self.reference)
+
+    @classmethod
+    def examples(cls) -> tuple[BallBearing, ...]:
+        """A deep groove bearing with clearance that turns, and an angular contact bearing."""
+        return (
+            cls(7, 11.5e-3, 43.5e-3, clearance=10e-6, order=0.4, phase=0.2),
+            cls(12, 14e-3, 77e-3, contact_angle=0.44, order=0.4),
+        )

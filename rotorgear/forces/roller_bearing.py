@@ -1,0 +1,106 @@
+"""Cylindrical roller bearing: line contacts of Z rollers that turn with the cage, and clearance; it carries no axial load.
+
+    delta = x cos phi + y sin phi - s/2,   Q = c_l delta^(10/9) where delta > 0,   c_l = 35948 L^(8/9) (N, mm)
+
+for both rings together, rollers aligned with the raceways (ISO/TS 16281:2008).
+Roller j stands at phi_j = order * angle + phase + 2 pi j/Z.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from rotorgear.forces.hertz import LINE_CONTACT
+from rotorgear.forces.law import ForceLaw, parameter, refuse
+from rotorgear.solvers.compiled import force_function, schedule_function
+
+
+@schedule_function
+def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
+    """Fill the angle of the first roller, and the speed of the cage."""
+    s[0] = p[3] * angle + p[4]
+    s[1] = p[3] * speed
+
+
+@force_function
+def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
+    """Forces along x and y of the inner ring on the rollers."""
+    count = int(p[0])
+    F[0], F[1] = 0.0, 0.0
+    for i in range(4):
+        Kd[i], Kv[i] = 0.0, 0.0
+    stored, turned, loaded = 0.0, 0.0, 0.0
+    for j in range(count):
+        phi = s[0] + 6.283185307179586 * j / count
+        c, n = np.cos(phi), np.sin(phi)
+        delta = d[0] * c + d[1] * n - p[2]
+        if delta <= 0.0:
+            continue
+        loaded = 1.0
+        slope = p[1] * delta ** (1.0 / 9.0)
+        Q = slope * delta
+        slope *= 10.0 / 9.0
+        F[0] += Q * c
+        F[1] += Q * n
+        Kd[0] += slope * c * c
+        Kd[1] += slope * c * n
+        Kd[2] += slope * c * n
+        Kd[3] += slope * n * n
+        stored += 9.0 / 19.0 * Q * delta
+        turned += Q * (d[1] * c - d[0] * n) * s[1]
+    energy[0], energy[1], energy[2], energy[3] = stored, turned, 0.0, loaded
+
+
+@dataclass(frozen=True)
+class RollerBearing(ForceLaw):
+    """Cylindrical roller bearing with two relative displacements: x and y of the inner ring against the outer one."""
+
+    title: ClassVar[str] = "cylindrical roller bearing"
+
+    rollers: int = parameter("", "number of rollers Z")
+    length: float = parameter("m", "effective length L of a roller")
+    clearance: float = parameter("m", "radial internal clearance s (whole play along a diameter)", 0.0)
+    order: float = parameter("rad/rad", "turns of the cage for each turn of the reference", 0.0)
+    phase: float = parameter("rad", "angle of a roller at angle 0", 0.0)
+    reference: tuple[float, float] = parameter("N/m", "linear stiffness along x and y to expand about", (0.0, 0.0))
+
+    def __post_init__(self) -> None:
+        if self.rollers < 3:
+            raise refuse(self, "rollers", "at least 3")
+        if not self.length > 0.0:
+            raise refuse(self, "length", "a positive length")
+
+    @property
+    def components(self) -> int:
+        """Two."""
+        return 2
+
+    @property
+    def uses_velocity(self) -> bool:
+        """Deflections only."""
+        return False
+
+    def functions(self) -> tuple[Any, Any]:
+        """Return the compiled functions schedule and force."""
+        return schedule, force
+
+    def state_size(self) -> int:
+        """Angle and speed of the cage."""
+        return 2
+
+    def parameters(self) -> np.ndarray:
+        """Z, c_l, s/2, order, phase."""
+        constant = LINE_CONTACT * self.length ** (8.0 / 9.0)
+        return np.array([self.rollers, constant, 0.5 * self.clearance, self.order, self.phase])
+
+    def reference_stiffness(self) -> np.ndarray:
+        """The linear stiffness that is given with the bearing."""
+        return np.diag(self.reference)
+
+    @classmethod
+    def examples(cls) -> tuple[RollerBearing, ...]:
+        """One with clearance that turns."""
+        return (cls(6, 13.6e-3, clearance=10e-6, order=0.4, phase=0.1),)

@@ -1,0 +1,200 @@
+"""The system as time integrators take it: the linear structure without its meshes, and each tooth contact as a local law.
+
+Per flank and helix one relative displacement d = v^T q (elements/gear_mesh.py); phases of k(t) and e(t) follow from tooth
+numbers and centre lines (model/mesh_phases.py). Nothing here becomes a sign that elements/gear_mesh.py does not give.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector
+from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
+from rotorgear.model.inertia import node_bodies
+from rotorgear.model.mesh_phases import mesh_phases
+from rotorgear.model.mesh_stiffness import stiffness_of_mesh
+from rotorgear.model.torque_flow import MeshForce
+from rotorgear.solvers.local_system import LocalSystem
+from rotorgear.solvers.motion import Rotation
+from rotorgear.system.assembly import assemble
+from rotorgear.system.groups import ElementGroup, contact_geometry, mesh_damping, node_dofs
+from rotorgear.system.loads import weight_loads
+from rotorgear.system.local_parts import (
+    LocalPart,
+    bearing_parts,
+    columns_at,
+    friction_part,
+    is_rolling,
+    load_parts,
+    unbalance_parts,
+    varying_load,
+    without_stiffness,
+)
+from rotorgear.system.system import System
+
+if TYPE_CHECKING:
+    from rotorgear.forces.mesh_contact import MeshContact
+
+# Depth over which damping grows from zero, and the reference depth of penetration damping, relative to the mean deflection.
+_RAMP = 0.02
+# Mean deflection that is taken for a mesh without load.
+_UNLOADED = 1e-6
+
+
+@dataclass(frozen=True)
+class LocalModel:
+    """A system for time integration with the parts behind its local displacements."""
+
+    system: System
+    local: LocalSystem
+    parts: tuple[LocalPart, ...]
+    groups: tuple[ElementGroup, ...]
+
+
+def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
+    """Return the structure with its contacts as laws.
+
+    Args:
+        system: nodes, dofs and groups.
+        rotation: speed of the reference over time.
+        speed: at which bearings with tables and internal damping are taken, in rad/s.
+    """
+    from rotorgear.solvers.local_forces import gather
+
+    groups = tuple(
+        without_stiffness(group) if is_rolling(system, group) else group
+        for group in system.groups_at(speed)
+        if not group.part.startswith("meshes.")
+    )
+    K = assemble(groups, system.dofs, lambda g: g.matrices.stiffness)
+    C = assemble(groups, system.dofs, lambda g: g.matrices.damping)
+    damping = system.model.damping
+    C = sp.csc_array(C + damping.rayleigh_alpha * system.mass + damping.rayleigh_beta * K)
+    parts = (*_mesh_parts(system), *bearing_parts(system), *unbalance_parts(system), *load_parts(system))
+    T = system.dofs.transform
+    columns = np.hstack([np.zeros((T.shape[0], 0)), *(part.columns for part in parts)])
+    local = LocalSystem(
+        M=system.mass,
+        D=C,
+        K=sp.csc_array(K + system.circulatory(speed)),
+        B=sp.csc_array(T.T @ columns),
+        forces=gather(tuple(part.law for part in parts)),
+        load=T.T @ (torque_load(system) + _weight(system)),
+        rotation=rotation,
+        G=system.gyroscopic if system.gyroscopic.nnz else None,
+    )
+    return LocalModel(system, local, parts, groups)
+
+
+def torque_load(system: System) -> np.ndarray:
+    """Torques of the operating point that never change, on all dofs, (a,)."""
+    f = np.zeros(system.dofs.transform.shape[0])
+    for item in system.flow.applied:
+        if varying_load(system, item.name) is not None:
+            continue
+        f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
+    return f
+
+
+def _weight(system: System) -> np.ndarray:
+    operation = system.model.operation
+    gravity = operation.gravity if operation else None
+    return weight_loads(system, gravity) if gravity else np.zeros(system.dofs.transform.shape[0])
+
+
+def _mesh_parts(system: System) -> list[LocalPart]:
+    phases = mesh_phases(system.model, system.train, system.flow, system.direction).phase
+    found = []
+    for force in system.flow.forces:
+        geometry = contact_geometry(system.model, force)
+        label = f"{force.contact.mesh} helix {force.contact.helix + 1}"
+        if len(system.flow.of_mesh(force.contact.mesh)) == 1:
+            label = force.contact.mesh
+        law = _mesh_law(system, force, geometry, phases[force.contact.mesh] or 0.0)
+        part, dofs = f"meshes.{force.contact.mesh}", _dofs(system, force)
+        column = columns_at(system, dofs, contact_vector(geometry)[None])
+        found.append(LocalPart(part, label, law, column, is_mesh=True))
+        rubbing = friction_part(system, force, geometry, label, law, dofs, column)
+        if rubbing is not None:
+            found.append(rubbing)
+        if law.gap == "one-sided":
+            other = contact_vector(replace(geometry, torque_sense=-geometry.torque_sense))
+            found.append(
+                LocalPart(part, f"{label} back", _back(law), columns_at(system, dofs, other[None]), is_mesh=True)
+            )
+    return found
+
+
+def _dofs(system: System, force: MeshForce) -> np.ndarray:
+    contact = force.contact
+    pinion, gear = (system.model.gears[name].shaft for name in (contact.pinion, contact.gear))
+    return node_dofs(system.nodes.at(pinion, contact.pinion_z), system.nodes.at(gear, contact.gear_z))[0]
+
+
+def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase: float) -> MeshContact:
+    from rotorgear.forces.mesh_contact import MeshContact
+
+    model, contact = system.model, force.contact
+    mesh, pinion = model.meshes[contact.mesh], model.gears[contact.pinion]
+    teeth = pinion.teeth or 0
+    order = teeth * abs(system.train.ratio(pinion.shaft)) * system.direction
+    stiffness_cos, stiffness_sin = _series(mesh.stiffness_variation)
+    error_cos, error_sin = _series(mesh.transmission_error)
+    deflection = (force.normal_force / contact.stiffness) or _UNLOADED
+    damping = mesh_damping(model, force, geometry, node_bodies(model)) + model.damping.rayleigh_beta * contact.stiffness
+    gap = "none" if mesh.backlash is None else {"line": "line", "own normals": "one-sided"}[mesh.back_flank]
+    late = mesh.helix_stagger if contact.helix else 0.0
+    return MeshContact(
+        stiffness=contact.stiffness, damping=damping, backlash=mesh.backlash or 0.0, gap=gap,
+        contact_damping=mesh.contact_damping, ramp=deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP),
+        order=order, phase=phase + 2.0 * np.pi * late, stiffness_cos=stiffness_cos, stiffness_sin=stiffness_sin,
+        error_mean=mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0),
+        error_cos=error_cos, error_sin=error_sin, pieces=_pieces(system, force), **_impact(mesh.corner_impact),
+    )  # fmt: skip
+
+
+def _back(law: MeshContact) -> MeshContact:
+    """The back flank on its own normal: what opens the driving flank closes it."""
+    return replace(
+        law,
+        backlash=0.0,
+        error_mean=law.backlash - law.error_mean,
+        error_cos=tuple(-x for x in law.error_cos),
+        error_sin=tuple(-x for x in law.error_sin),
+        expanded=False,
+    )
+
+
+def _pieces(system: System, force: MeshForce) -> tuple[tuple[float, float, float], ...]:
+    """Straight pieces of k over its mean in a mesh cycle, where the file gives a curve or a stiffness model."""
+    name = force.contact.mesh
+    if isinstance(system.model.meshes[name].stiffness, int | float):
+        return ()
+    curve = system.flow.stiffness.get(name) or stiffness_of_mesh(system.model, name, force.normal_force or None)
+    share = curve.transverse / curve.transverse.mean()
+    if (
+        not force.pinion_drives
+    ):  # its positions count along the path from approach of the pinion: time runs the other way
+        share = np.roll(share[::-1], 1)
+    ends = np.roll(share, -1)
+    return tuple((i / share.size, float(a), float(b)) for i, (a, b) in enumerate(zip(share, ends, strict=True)))
+
+
+def _impact(impact: CornerImpact | None) -> dict[str, Any]:
+    if impact is None:
+        return {}
+    return {"impact": impact.force, "impact_share": impact.duration, "impact_phase": -impact.at}
+
+
+def _series(harmonics: tuple[ErrorHarmonic | StiffnessHarmonic, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Cosine and sine parts by harmonic from amplitudes and phases."""
+    count = max((item.harmonic for item in harmonics), default=0)
+    cosines, sines = np.zeros(count), np.zeros(count)
+    for item in harmonics:
+        cosines[item.harmonic - 1] += item.amplitude * np.cos(item.phase)
+        sines[item.harmonic - 1] -= item.amplitude * np.sin(item.phase)
+    return tuple(cosines), tuple(sines)

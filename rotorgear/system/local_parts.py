@@ -1,0 +1,161 @@
+"""What acts locally beside the teeth's normal contact: rolling bearings, tooth friction, unbalances, and torques that vary."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rotorgear.elements.gear_mesh import ContactGeometry, sliding_vectors
+from rotorgear.model.mesh_geometry import gear_geometry, mesh_pair
+from rotorgear.model.operation import Load
+from rotorgear.model.supports import Bearing
+from rotorgear.model.torque_flow import MeshForce
+from rotorgear.system.groups import ElementGroup, node_dofs
+from rotorgear.system.system import System
+
+if TYPE_CHECKING:
+    from rotorgear.forces.law import ForceLaw
+    from rotorgear.forces.mesh_contact import MeshContact
+
+
+@dataclass(frozen=True)
+class LocalPart:
+    """A law and where it acts: its part, a label, the law, and the columns (a, k) of its displacements among all dofs."""
+
+    part: str
+    label: str
+    law: ForceLaw
+    columns: np.ndarray
+    is_mesh: bool = False
+
+
+def columns_at(system: System, dofs: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Columns (a, k) among all dofs of vectors (k, d) on some dofs (d,)."""
+    found = np.zeros((system.dofs.transform.shape[0], len(rows)))
+    np.add.at(found, dofs, rows.T)
+    return found
+
+
+def is_rolling(system: System, group: ElementGroup) -> bool:
+    """Whether the stiffness of a group gives way to rolling elements."""
+    table, _, name = group.part.partition(".")
+    return table == "bearings" and name in system.model.bearings and system.model.bearings[name].rolling is not None
+
+
+def without_stiffness(group: ElementGroup) -> ElementGroup:
+    """Return a group with its dampers only."""
+    return replace(group, matrices=replace(group.matrices, modulus=None, circulation=None))
+
+
+def bearing_parts(system: System) -> Iterator[LocalPart]:
+    """Yield the bearings with rolling elements."""
+    for name, bearing in system.model.bearings.items():
+        if bearing.rolling is None:
+            continue
+        law = _bearing_law(bearing, float(system.train.ratio(bearing.shaft)))
+        rows = np.eye(6)[: law.components]
+        dofs = node_dofs(system.nodes.at(bearing.shaft, system.model.shafts[bearing.shaft].station(bearing.at)))[0]
+        if bearing.pedestal is not None:
+            dofs = np.concatenate([dofs, node_dofs(system.nodes.of_pedestal(name))[0]])
+            rows = np.hstack([rows, -rows])
+        yield LocalPart(f"bearings.{name}", name, law, columns_at(system, dofs, rows))
+
+
+def _bearing_law(bearing: Bearing, ratio: float) -> ForceLaw:
+    from rotorgear.forces.ball_bearing import BallBearing
+    from rotorgear.forces.roller_bearing import RollerBearing
+
+    rolling = bearing.rolling
+    assert rolling is not None
+    slip_free = 0.5 * (1.0 - rolling.element_diameter * np.cos(rolling.contact_angle) / rolling.pitch_diameter)
+    linear = np.diag(np.array(bearing.stiffness.as_rows())) if bearing.stiffness else np.zeros(6)
+    order = float(ratio * slip_free)
+    if rolling.kind == "roller":
+        return RollerBearing(
+            rolling.elements,
+            rolling.length or 0.0,
+            rolling.clearance,
+            order,
+            reference=(float(linear[0]), float(linear[1])),
+        )
+    return BallBearing(
+        rolling.elements, rolling.element_diameter, rolling.pitch_diameter, rolling.inner_groove, rolling.outer_groove,
+        rolling.clearance, rolling.contact_angle, order=order, reference=tuple(map(float, linear[:5])),
+    )  # fmt: skip
+
+
+def friction_part(
+    system: System,
+    force: MeshForce,
+    geometry: ContactGeometry,
+    label: str,
+    contact: MeshContact,
+    dofs: np.ndarray,
+    column: np.ndarray,
+) -> LocalPart | None:
+    """Friction of one helix; None where the mesh has none."""
+    from rotorgear.forces.mesh_friction import MeshFriction
+
+    model, name = system.model, force.contact.mesh
+    mesh, pair = model.meshes[name], mesh_pair(model, name)
+    if not (mesh.friction_coefficient or mesh.lubricant_viscosity) or pair is None:
+        return None
+    teeth = gear_geometry(model.gears[mesh.pinion])
+    assert teeth is not None
+    # With the gear driving, the contacts run from the end of the path to its start: mirror them.
+    sense = 1.0 if force.pinion_drives else -1.0
+    ends = sorted((sense * pair.start_of_contact, sense * pair.end_of_contact))
+    pinion, gear = (float(system.train.ratio(model.gears[g].shaft)) for g in (mesh.pinion, mesh.gear))
+    widths = [w for w in (model.gears[mesh.pinion].width, model.gears[mesh.gear].width) if w]
+    base_pitch = 2.0 * np.pi * teeth.base_radius / teeth.teeth
+    rolling = 2.0 * teeth.base_radius * np.tan(geometry.pressure_angle) * abs(pinion)
+    law = MeshFriction(
+        contact=contact, base_pitch=base_pitch, start=ends[0], end=ends[1], closing=sense * (pinion - gear),
+        coefficient=mesh.friction_coefficient, overlap=pair.overlap_ratio, viscosity=1e3 * (mesh.lubricant_viscosity or 0.0),
+        line_load=force.normal_force / min(widths), rolling=float(rolling),
+    )  # fmt: skip
+    across = columns_at(system, dofs, np.array([[1.0], [sense]]) * sliding_vectors(geometry))
+    return LocalPart(f"meshes.{name}", f"{label} friction", law, np.hstack([column, across]))
+
+
+def unbalance_parts(system: System) -> Iterator[LocalPart]:
+    """Yield the unbalances: two components that turn with their shaft."""
+    from rotorgear.forces.rotating_force import RotatingForce
+
+    for name, item in system.model.unbalances.items():
+        node = system.nodes.at(item.shaft, system.model.shafts[item.shaft].station(item.at))
+        law = RotatingForce(item.magnitude, float(system.train.ratio(item.shaft)), item.phase, 2.0, plane=True)
+        yield LocalPart(f"unbalances.{name}", name, law, columns_at(system, node_dofs(node)[0], np.eye(6)[:2]))
+
+
+def load_parts(system: System) -> Iterator[LocalPart]:
+    """Yield the loads that vary with time or speed."""
+    from rotorgear.forces.torque_curve import TorqueCurve
+
+    operation = system.model.operation
+    speed = abs(operation.speed) if operation and operation.speed else 0.0
+    for item in system.flow.applied:
+        load = varying_load(system, item.name)
+        if load is None:
+            continue
+        ratio = float(system.train.ratio(item.shaft))
+        law = TorqueCurve(
+            item.torque, ratio, load.speed_power, speed * abs(ratio) or 1.0, ripple=load.ripple,
+            order=load.ripple_order * abs(ratio), step=load.step_to, step_time=load.step_at, step_rise=load.step_duration,
+        )  # fmt: skip
+        yield LocalPart(
+            item.name,
+            item.name,
+            law,
+            columns_at(system, node_dofs(system.nodes.at(item.shaft, item.z))[0], np.eye(6)[5:]),
+        )
+
+
+def varying_load(system: System, name: str) -> Load | None:
+    """The load behind an applied torque, where it varies."""
+    table, _, own = name.partition(".")
+    load = system.model.loads.get(own) if table == "loads" else None
+    return load if load is not None and load.varies else None

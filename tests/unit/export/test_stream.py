@@ -1,0 +1,120 @@
+"""A streamed run can be stopped anywhere and goes on to the same histories."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.errors import RotorgearError
+from rotorgear.export.files import WriteError
+from rotorgear.export.stream import read_chunk
+from tests.unit.analysis.spur_pair import spur_pair
+
+SETTINGS: dict[str, Any] = {"time": 0.1, "settle": 0.02, "steps": 160, "error_estimate": False}
+
+
+class _StopError(Exception):
+    pass
+
+
+def stopped(path: Path, after: int, method: str) -> None:
+    """Run until so many chunks are written, then break off as a crash would."""
+    stream = rg.stream(path)
+    keep, written = stream.write, []
+
+    def write(chunk: dict[str, np.ndarray]) -> None:
+        keep(chunk)
+        written.append(1)
+        if len(written) == after:
+            raise _StopError
+
+    stream.write = write  # type: ignore[method-assign]
+    with pytest.raises(_StopError):
+        rg.transient(spur_pair(meshes__pair__backlash="20 um"), **SETTINGS, method=method, stream=stream)
+
+
+@pytest.mark.parametrize("method", ["newmark", "exponential"])
+def test_a_run_that_was_broken_off_goes_on_to_the_same_histories(tmp_path: Path, method: str) -> None:
+    model = spur_pair(meshes__pair__backlash="20 um")
+    whole = rg.transient(model, **SETTINGS, method=method)
+    stopped(tmp_path / "run.h5", 3, method)
+    assert len(list((tmp_path / "run.h5.parts").glob("chunk_*.h5"))) == 3
+    rest = rg.transient(model, **SETTINGS, method=method, stream=rg.stream(tmp_path / "run.h5", resume=True))
+    assert rest.time == pytest.approx(whole.time)
+    assert rest.mesh_force == pytest.approx(whole.mesh_force, rel=1e-9, abs=1e-9 * np.abs(whole.mesh_force).max())
+    assert rest.energy.dissipated == pytest.approx(whole.energy.dissipated, rel=1e-9)
+    assert np.array_equal(rest.contact_losses, whole.contact_losses)
+
+
+def test_another_run_is_not_continued(tmp_path: Path) -> None:
+    stopped(tmp_path / "run.h5", 1, "newmark")
+    with pytest.raises(RotorgearError, match="another model or other settings"):
+        rg.transient(spur_pair(), **SETTINGS, method="newmark", stream=rg.stream(tmp_path / "run.h5", resume=True))
+
+
+def test_a_full_disk_ends_the_run_with_a_sentence_and_keeps_the_chunks_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import h5py
+
+    real, opened = h5py.File, []
+
+    def full(name: Any, mode: str = "r", **options: Any) -> Any:
+        if mode == "w":
+            opened.append(name)
+            if len(opened) == 3:
+                raise OSError(errno.ENOSPC, "No space left on device")
+        return real(name, mode, **options)
+
+    monkeypatch.setattr(h5py, "File", full)
+    with pytest.raises(WriteError, match="space"):
+        rg.transient(spur_pair(), **SETTINGS, method="newmark", stream=rg.stream(tmp_path / "run.h5"))
+    chunks = sorted((tmp_path / "run.h5.parts").glob("*"))
+    assert [chunk.name for chunk in chunks] == ["chunk_000001.h5", "chunk_000002.h5", "settings.json"]
+    assert all(np.all(np.isfinite(read_chunk(chunk)["F"])) for chunk in chunks[:2])
+
+
+def test_what_kill_leaves_is_readable_and_goes_on(tmp_path: Path) -> None:
+    root = Path(__file__).resolve().parents[3]
+    program = (
+        "import rotorgear as rg\nfrom tests.unit.analysis.spur_pair import spur_pair\n"
+        f"rg.transient(spur_pair(), time=20.0, settle=0.0, steps=160, error_estimate=False, method='newmark', "
+        f"stream=rg.stream({str(tmp_path / 'run.h5')!r}))\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(root)}
+    process = subprocess.Popen([sys.executable, "-c", program], env=environment, cwd=root)
+    parts = tmp_path / "run.h5.parts"
+    until = time.monotonic() + 60.0
+    while len(list(parts.glob("chunk_*.h5"))) < 3 and time.monotonic() < until:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    chunks = [read_chunk(path) for path in sorted(parts.glob("chunk_*.h5"))]
+    assert len(chunks) >= 3
+    t = np.concatenate([chunk["t"] for chunk in chunks])
+    assert np.allclose(np.diff(t), t[1] - t[0])
+    assert all(np.all(np.isfinite(chunk["F"])) for chunk in chunks)
+
+
+def test_an_interrupted_run_returns_what_it_has_and_says_so() -> None:
+    calls = []
+
+    def progress(fraction: float, text: str) -> None:
+        calls.append(fraction)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+
+    result = rg.transient(spur_pair(), **SETTINGS, method="newmark", progress=progress)
+    assert result.status.startswith("interrupted after")
+    assert 0 < len(result.time) < 3000
+    assert any("ended early" in note for note in result.warnings)
