@@ -1,8 +1,8 @@
 """Campbell diagram of the split-torque gearbox against dense solutions at every speed: 24 modes at 100 speeds.
 
 Run  python -m validation.benchmarks.campbell_dense  (one BLAS thread is set by this file itself). The dense way is LAPACK on the
-states of the same matrices, with vectors, since branches can't be followed without; timed at three of the speeds. Exit code 1 where a frequency is off by more than 1e-9 or the ratio
-misses its aim.
+states of the same matrices, with vectors, since branches can't be followed without; timed at three of the speeds. Exit code 1
+where the basis is off by more than 1e-9 or the ratio misses its aim.
 """
 
 from __future__ import annotations
