@@ -415,3 +415,28 @@ def test_two_stages_over_their_common_period_are_those_of_the_transient() -> Non
         assert swept.rms_force[0, 0, i] == pytest.approx(row["rms_force_n"], rel=1e-2)
         end = run.deflection[-1, i]
         assert swept.section[0, 0, -1, i, 0] == pytest.approx(end, abs=5e-3 * swept.amplitude[0, 0, i])
+
+
+def test_unstable_motions_are_no_chaos() -> None:
+    # Teeth that never part, the mesh at twice the natural frequency: Mathieu's instability.
+    model = rg.load(PAIR)
+    mesh = model.meshes["pair"].model_copy(update={"backlash": None})
+    linear = model.model_copy(update={"meshes": {"pair": mesh}})
+    with_bounds = rg.sweep(model, {"operation.speed": ["8500 rpm"]}, starts=2, **SHORT)
+    slow = rg.sweep(linear, {"operation.speed": ["8500 rpm"]}, settle=0, count=60)
+    long = rg.sweep(linear, {"operation.speed": ["8500 rpm", "12000 rpm"]}, settle=2000, count=60)
+    assert not any(with_bounds.failure)
+    assert slow.lyapunov[0, 0, 0] > 0.02
+    assert slow.motion == ("not settled",)
+    assert long.motion == ("failed", "1T")
+    assert "left all bounds" in long.failure[0]
+
+
+@pytest.mark.long
+def test_blocks_go_to_other_processes_as_well() -> None:
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    over = {"operation.speed": "3000 rpm:9000 rpm:70"}
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        assert same(rg.sweep(rg.load(PAIR), over, executor=pool, **SHORT), rg.sweep(rg.load(PAIR), over, **SHORT))
