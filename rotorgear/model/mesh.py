@@ -52,6 +52,11 @@ class Mesh(Part):
         0.0,
         description="herringbone: by how many pitches the teeth at the larger z are ahead; 0 in phase, 0.5 staggered",
     )
+    phase: Angle | None = Field(
+        None,
+        description="angle of the mesh at the time 0, counted from contact at the pitch point; default: what follows from "
+        "teeth, clocking and centre lines",
+    )
     transmission_error: tuple[ErrorHarmonic, ...] = Field(
         (), description="harmonics of the static transmission error, positive where it opens the gap"
     )
