@@ -19,6 +19,10 @@ from rotorgear.gears.pair import PairGeometry, pair_geometry
 from validation.seeds.rows import loaded
 
 MODEL = "herringbone_pair_16dof"
+# Printed: teeth, helix angle in deg, impact force in N.
+PAIRS = {"a": ((34, 80), 20.86, 2230.0), "b": ((30, 72), 33.27, 1920.0)}
+# Printed: helix angle in deg, width in mm, impact force in N.
+CASES = ((15.0, 50.0, 2500.0), (25.0, 50.0, 2100.0), (35.0, 50.0, 1800.0), (25.0, 60.0, 1900.0))
 FILES = {"a": MODEL, "b": "herringbone_pair_16dof_b"}
 STEPS, SETTLE, COUNT = 200, 250, 60
 _HARMONICS = 6
@@ -125,8 +129,7 @@ def spread(teeth: tuple[int, int], helix_deg: float, impact: float, count: int =
 def values() -> dict[str, float | str]:
     """Every value that the rows name."""
     found: dict[str, float | str] = {}
-    data = {"a": ((34, 80), 20.86, 2230.0), "b": ((30, 72), 33.27, 1920.0)}
-    for name, (teeth, helix, impact) in data.items():
+    for name, (teeth, helix, impact) in PAIRS.items():
         found |= {f"{key}_{name}": value for key, value in _of_pair(name, teeth, helix, impact).items()}
     found["pp_drop"] = 100.0 * (1.0 - float(found["pp_b"]) / float(found["pp_a"]))
     found["impact_drop"] = 100.0 * (1.0 - 1920.0 / 2230.0)
@@ -147,18 +150,19 @@ def _of_pair(name: str, teeth: tuple[int, int], helix: float, impact: float) -> 
     v = 2000.0 * math.pi / 60.0 * one.reference_diameter
     load = 1.1 * 2.0 * 2000.0 / one.reference_diameter / 0.050
     simple = simple_dynamic_factor(v, teeth[0], teeth[1] / teeth[0], load, narrow.overlap_ratio, 6).value
-    data = {"a": ((34, 80), 20.86, 2230.0), "b": ((30, 72), 33.27, 1920.0)}[name]
+    loads = loaded(FILES[name]).loads
     variants = {"shifted": {"start": 0.5}, "flipped": {"flipped": True}, "no_impact": {"share": 0.33}}
     sample = spread(teeth, helix, impact)
     out: dict[str, Any] = {
         "eps_alpha": mesh.transverse_contact_ratio, "eps_beta": mesh.overlap_ratio, "eps_beta_50": narrow.overlap_ratio,
         "eps": mesh.transverse_contact_ratio + narrow.overlap_ratio, "centre": 1e3 * mesh.centre_distance,
         "eps_printed_formula": 0.5 * mesh.transverse_contact_ratio, "kv": kv, "mean": mean, "max": largest,
-        "pp": float(np.ptp(wave)) * k, "simple": simple,
+        "pp": float(np.ptp(wave)) * k, "torque": 2.0 * (loads["input_left"].torque or 0.0), "hz": 2000.0 / 60.0 * teeth[0],
+        "simple": simple,
         "kv_low": float(np.quantile(sample, 0.1)), "kv_high": float(np.quantile(sample, 0.9)), "sample": tuple(sample),
     }  # fmt: skip
     for key, change in variants.items():
-        force = 1e-9 if key == "no_impact" else data[2]
+        force = 1e-9 if key == "no_impact" else impact
         out[f"kv_{key}"] = run(pair(teeth, helix, 0.054, force, **change))[0]
     return out
 
@@ -166,9 +170,8 @@ def _of_pair(name: str, teeth: tuple[int, int], helix: float, impact: float) -> 
 def _cases() -> dict[str, float]:
     """Four cases of helix angle and width on the teeth of pair a (the text gives none) with their printed impacts."""
     found = {}
-    for number, (helix, width, impact) in enumerate(
-        ((15.0, 50.0, 2500.0), (25.0, 50.0, 2100.0), (35.0, 50.0, 1800.0), (25.0, 60.0, 1900.0)), 1
-    ):
+    for number, (helix, width, impact) in enumerate(CASES, 1):
+        found |= {f"case{number}_helix": helix, f"case{number}_width": width}
         mesh = geometry((34, 80), helix, 1e-3 * width)[2]
         angle = np.linspace(0.0, 2.0 * np.pi, 721)
         wave = sum(a * np.cos((n + 1) * angle) for n, a in enumerate(ripple(mesh)))

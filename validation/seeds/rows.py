@@ -52,10 +52,9 @@ class Row:
         """Whether the computed number is the printed one, to one unit of its last digit."""
         if isinstance(self.computed, str) or self.computed is None:
             return str(self.computed) == self.printed
-        text = self.printed.lstrip("+-").replace(" ", "")
-        mantissa, _, exponent = text.lower().partition("e")
+        mantissa, _, exponent = self.printed.lower().partition("e")
         last = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
-        return abs(self.computed - float(self.printed)) <= 1.0001 * last * (0.5 if "." in mantissa or exponent else 1e-6)
+        return abs(self.computed - float(self.printed)) < last
 
     @property
     def shown(self) -> str:

@@ -1,0 +1,120 @@
+"""The marine dual-turbine train: statics, modes, and contact statistics of the low-pressure branch over the load ratio.
+
+gamma = T_lp/T_hp at a total torque; a drag torque acts on the LP turbine. Where the net torque of that branch is negative its teeth
+carry on the other flanks, which the program calls the driving ones: its transmission error then opens them with the other sign.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+import rotorgear as rg
+from validation.seeds.rows import changed, loaded
+
+MODEL = "marine_dual_turbine"
+DRAG, PITCH_RADIUS, STIFFNESS = 11.2e3, 0.075, 1.2e10
+# Super-periods of 8 periods of the first stage, after which both stages repeat.
+SETTLE, COUNT, STEPS = 400, 200, 40
+_BLOCKS = 4
+
+
+@dataclass(frozen=True)
+class Contact:
+    """LP first stage in steady motion: share of the time on the back side and apart, with the spread over four blocks;
+    peak to peak (m) of the mesh deflection, and its net torque (N m)."""
+
+    back: float
+    back_spread: float
+    apart: float
+    peak_to_peak: float
+    net_torque: float
+
+
+def operating(gamma: float, total: float = 30e3, *, drag: float = DRAG, table_stiffness: bool = False) -> rg.Model:
+    """The model at a load ratio and a total torque (N m)."""
+    hp = total / (1.0 + gamma)
+    meshes: dict[str, dict[str, object]] = {name: {} for name in ("first_hp", "first_lp", "second_hp", "second_lp")}
+    if gamma * hp < drag:
+        for name, amplitude in (("first_lp", 4.09e-6), ("second_lp", 8.59e-6)):
+            meshes[name]["transmission_error"] = [{"harmonic": 1, "amplitude": amplitude, "phase": 0.5 * math.pi}]
+    if table_stiffness:
+        for name, keys in meshes.items():
+            k, m_e = (1.2e8, 87.5) if name.startswith("first") else (2.5e8, 280.0)
+            keys |= {"stiffness": k, "damping": 0.14 * math.sqrt(k * m_e)}
+    return changed(
+        loaded(MODEL), meshes=meshes,
+        loads={"hp": {"torque": hp}, "lp": {"torque": gamma * hp}, "lp_drag": {"torque": drag}},
+    )  # fmt: skip
+
+
+def contact(gamma: float, total: float = 30e3, *, settle: int = SETTLE, count: int = COUNT, table_stiffness: bool = False) -> Contact:
+    """Run to steady motion and count."""
+    model = operating(gamma, total, table_stiffness=table_stiffness)
+    period = 8.0 * 2.0 * math.pi / 13040.0
+    result = rg.transient(
+        model, method="newmark", steps=STEPS, records=STEPS, settle=settle * period, time=count * period,
+        error_estimate=False,
+    )  # fmt: skip
+    if result.status != "success":
+        raise RuntimeError(result.status)
+    net = gamma * total / (1.0 + gamma) - DRAG
+    depth = result.history("deflection first_lp") - _error(model, result.angle)
+    depth = depth[result.counted]
+    driving, behind = depth > 0.0, depth < -40e-6
+    back = behind if net >= 0.0 else driving
+    blocks = [block.mean() for block in np.array_split(back, _BLOCKS)]
+    return Contact(
+        float(back.mean()), float(np.std(blocks, ddof=1) / math.sqrt(_BLOCKS)), float(1.0 - (driving | behind).mean()),
+        float(np.ptp(depth)), net,
+    )  # fmt: skip
+
+
+def _error(model: rg.Model, angle: np.ndarray) -> np.ndarray:
+    """Transmission error (m) of the LP first stage at angles of the input shaft."""
+    mesh = model.meshes["first_lp"]
+    wave = mesh.transmission_error[0]
+    return np.asarray(wave.amplitude * np.cos(25.0 * angle + (mesh.phase or 0.0) + wave.phase))
+
+
+@cache
+def values() -> dict[str, float | str]:
+    """Every value that the rows name."""
+    model = loaded(MODEL)
+    found: dict[str, float | str] = dict(_statics())
+    nominal = 15e3 / PITCH_RADIUS / STIFFNESS
+    for name, gamma in (("03", 0.3), ("06", 0.6), ("10", 1.0)):
+        for total, suffix in ((30e3, ""), (35e3, "_35")):
+            run = contact(gamma, total)
+            found |= {
+                f"zeta_{name}{suffix}": round(run.back, 2), f"apart_{name}{suffix}": round(run.apart, 2),
+                f"am_{name}{suffix}": round(run.peak_to_peak / nominal, 1),
+                f"zeta_spread_{name}{suffix}": round(run.back_spread, 3),
+            }  # fmt: skip
+        soft = contact(gamma, table_stiffness=True, settle=100, count=50)
+        found |= {f"zeta_soft_{name}": round(soft.back, 2), f"am_soft_{name}": round(soft.peak_to_peak / (15e3 / 0.075 / 1.2e8), 3)}
+    mesh = model.meshes["first_hp"]
+    found["zeta_m"] = (mesh.damping or 0.0) / (2.0 * math.sqrt(STIFFNESS * _equivalent_mass(15.8, 5.2, 0.075, 0.24)))
+    return found
+
+
+def _equivalent_mass(first: float, second: float, r1: float, r2: float) -> float:
+    return first * second / (first * r2**2 + second * r1**2)
+
+
+def _statics() -> dict[str, float]:
+    model = loaded(MODEL)
+    modes = rg.modal(model)
+    free = operating(0.6, drag=1e-9)
+    loads = rg.describe_model(free).to_dict()["torques"]
+    frequencies = rg.describe_model(model).to_dict()["meshes"]
+    hz = {row["name"]: row["mesh_frequency_hz"] for row in frequencies}
+    return {
+        "load_torque": abs(next(row["torque_n_m"] for row in loads if row["name"] == "loads.propeller")) / 1e3,
+        "rigid_modes": float(modes.rigid.sum()), "stage_ratio": hz["second_hp"] / hz["first_hp"],
+        "deflection_table": 1e3 * 15e3 / PITCH_RADIUS / 1.2e8, "deflection_set": 1e6 * 15e3 / PITCH_RADIUS / STIFFNESS,
+        "first_elastic": float(modes.frequency_hz[1]),
+    }  # fmt: skip
