@@ -89,13 +89,14 @@ def values() -> dict[str, float | str]:
     for name, gamma in (("03", 0.3), ("06", 0.6), ("10", 1.0)):
         for total, suffix in ((30e3, ""), (35e3, "_35")):
             run = contact(gamma, total)
+            # One digit where the motion is chaotic: the next one is another on every machine.
+            digits = (1, 0) if gamma == 0.6 else (2, 1)
             found |= {
-                f"zeta_{name}{suffix}": round(run.back, 2), f"apart_{name}{suffix}": round(run.apart, 2),
-                f"am_{name}{suffix}": round(run.peak_to_peak / nominal, 1),
-                f"zeta_spread_{name}{suffix}": round(run.back_spread, 3),
+                f"zeta_{name}{suffix}": round(run.back, digits[0]), f"apart_{name}{suffix}": round(run.apart, digits[0]),
+                f"am_{name}{suffix}": round(run.peak_to_peak / nominal, digits[1]),
             }  # fmt: skip
         soft = contact(gamma, table_stiffness=True, settle=100, count=50)
-        found |= {f"zeta_soft_{name}": round(soft.back, 2), f"am_soft_{name}": round(soft.peak_to_peak / (15e3 / 0.075 / 1.2e8), 3)}
+        found |= {f"zeta_soft_{name}": round(soft.back, 1), f"am_soft_{name}": round(soft.peak_to_peak / (15e3 / 0.075 / 1.2e8), 2)}
     mesh = model.meshes["first_hp"]
     found["zeta_m"] = (mesh.damping or 0.0) / (2.0 * math.sqrt(STIFFNESS * _equivalent_mass(15.8, 5.2, 0.075, 0.24)))
     return found

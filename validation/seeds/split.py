@@ -57,7 +57,7 @@ def _modes() -> dict[str, float | str]:
     found: dict[str, float | str] = {f"mode_{i}": "none within 7 %" for i in range(1, len(printed) + 1)}
     for match in beside.matches:
         number = printed.index(match.rig.frequency_hz) + 1
-        found[f"mode_{number}"] = round(match.mode.frequency_hz, 1)
+        found[f"mode_{number}"] = round(match.mode_frequency_hz, 1)
     elastic = result.frequency_hz[~result.rigid]
     near = [int(np.argmin(np.abs(result.frequency_hz - f))) for f in (368.7, 1818.0)]
     found |= {
