@@ -7,7 +7,9 @@ import argparse
 from validation.seeds.rows import SYSTEMS, rows
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(prog="python -m validation.seeds", description="Published numbers and computed ones.")
+    parser = argparse.ArgumentParser(
+        prog="python -m validation.seeds", description="Published numbers and computed ones."
+    )
     parser.add_argument("systems", nargs="*", metavar="NAME", choices=[*SYSTEMS, []], help=", ".join(SYSTEMS))
     for system in parser.parse_args().systems or SYSTEMS:
         print(f"\n{system}")

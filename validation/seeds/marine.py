@@ -1,7 +1,8 @@
 """The marine dual-turbine train: statics, modes, and contact statistics of the low-pressure branch over the load ratio.
 
-gamma = T_lp/T_hp at a total torque; a drag torque acts on the LP turbine. Where the net torque of that branch is negative its teeth
-carry on the other flanks, which the program calls the driving ones: its transmission error then opens them with the other sign.
+gamma = T_lp/T_hp at a total torque; a drag torque acts on the LP turbine. Where the net torque of that branch is negative its
+teeth carry on the other flanks, which the program calls the driving ones: its transmission error then opens them with the
+other sign.
 """
 
 from __future__ import annotations
@@ -51,7 +52,9 @@ def operating(gamma: float, total: float = 30e3, *, drag: float = DRAG, table_st
     )  # fmt: skip
 
 
-def contact(gamma: float, total: float = 30e3, *, settle: int = SETTLE, count: int = COUNT, table_stiffness: bool = False) -> Contact:
+def contact(
+    gamma: float, total: float = 30e3, *, settle: int = SETTLE, count: int = COUNT, table_stiffness: bool = False
+) -> Contact:
     """Run to steady motion and count."""
     model = operating(gamma, total, table_stiffness=table_stiffness)
     period = 8.0 * 2.0 * math.pi / 13040.0
@@ -82,9 +85,8 @@ def _error(model: rg.Model, angle: np.ndarray) -> np.ndarray:
 
 @cache
 def values() -> dict[str, float | str]:
-    """Every value that the rows name."""
-    model = loaded(MODEL)
-    found: dict[str, float | str] = dict(_statics())
+    """What takes runs."""
+    found: dict[str, float | str] = {}
     nominal = 15e3 / PITCH_RADIUS / STIFFNESS
     for name, gamma in (("03", 0.3), ("06", 0.6), ("10", 1.0)):
         for total, suffix in ((30e3, ""), (35e3, "_35")):
@@ -96,24 +98,24 @@ def values() -> dict[str, float | str]:
                 f"am_{name}{suffix}": round(run.peak_to_peak / nominal, digits[1]),
             }  # fmt: skip
         soft = contact(gamma, table_stiffness=True, settle=100, count=50)
-        found |= {f"zeta_soft_{name}": round(soft.back, 1), f"am_soft_{name}": round(soft.peak_to_peak / (15e3 / 0.075 / 1.2e8), 2)}
-    mesh = model.meshes["first_hp"]
-    found["zeta_m"] = (mesh.damping or 0.0) / (2.0 * math.sqrt(STIFFNESS * _equivalent_mass(15.8, 5.2, 0.075, 0.24)))
+        found |= {
+            f"zeta_soft_{name}": round(soft.back, 1),
+            f"am_soft_{name}": round(soft.peak_to_peak / (15e3 / 0.075 / 1.2e8), 2),
+        }
     return found
 
 
-def _equivalent_mass(first: float, second: float, r1: float, r2: float) -> float:
-    return first * second / (first * r2**2 + second * r1**2)
-
-
-def _statics() -> dict[str, float]:
+def quick() -> dict[str, float | str]:
+    """What follows without a run."""
     model = loaded(MODEL)
     modes = rg.modal(model)
     free = operating(0.6, drag=1e-9)
     loads = rg.describe_model(free).to_dict()["torques"]
     frequencies = rg.describe_model(model).to_dict()["meshes"]
     hz = {row["name"]: row["mesh_frequency_hz"] for row in frequencies}
+    m_e = 1.0 / (0.075**2 / 15.8 + 0.240**2 / 5.2)
     return {
+        "zeta_m": (model.meshes["first_hp"].damping or 0.0) / (2.0 * math.sqrt(STIFFNESS * m_e)),
         "load_torque": abs(next(row["torque_n_m"] for row in loads if row["name"] == "loads.propeller")) / 1e3,
         "rigid_modes": float(modes.rigid.sum()), "stage_ratio": hz["second_hp"] / hz["first_hp"],
         "deflection_table": 1e3 * 15e3 / PITCH_RADIUS / 1.2e8, "deflection_set": 1e6 * 15e3 / PITCH_RADIUS / STIFFNESS,

@@ -71,24 +71,31 @@ def summary(periods: dict[float, str]) -> str:
     return ", ".join(f"{periods[speeds[i]]} to {speeds[i]:.0f}" for i in ends) + " rpm"
 
 
-@cache
-def values() -> dict[str, float | str]:
-    """Every value that the rows name."""
+def quick() -> dict[str, float | str]:
+    """What follows without a run."""
     sheet = rg.describe_model(loaded(MODEL)).to_dict()
     mesh = sheet["meshes"][0]
     sheets = {gear["name"]: gear for gear in rg.gear_sheet(loaded(MODEL)).to_dict()["gears"]}
     gears = [sheets[f"{name}_left"] for name in ("pinion", "gear")]
-    first = route()
-    irregular = [rpm for rpm, period in first.items() if period == IRREGULAR]
-    multi = [rpm for rpm, period in first.items() if period not in ("1T", IRREGULAR)]
-    found: dict[str, float | str] = {
+    return {
         "dofs": float(sheet["dofs"]), "torque": _input(MODEL), "torque_2": _input(SECOND),
         "d1": 1e3 * gears[0]["reference_diameter_m"], "d2": 1e3 * gears[1]["reference_diameter_m"],
         "rb1": 500.0 * gears[0]["base_diameter_m"], "rb2": 500.0 * gears[1]["base_diameter_m"],
         "a": 1e3 * mesh["centre_distance_m"], "eps_alpha": mesh["transverse_contact_ratio"],
         "eps_beta": mesh["overlap_ratio"], "mesh_hz": mesh["mesh_frequency_hz"],
+    }  # fmt: skip
+
+
+@cache
+def values() -> dict[str, float | str]:
+    """What takes runs."""
+    first = route()
+    irregular = [rpm for rpm, period in first.items() if period == IRREGULAR]
+    multi = [rpm for rpm, period in first.items() if period not in ("1T", IRREGULAR)]
+    found: dict[str, float | str] = {
         "route": summary(first), "high": summary(high_speeds()),
-        "first_multi": f"{min(multi):.0f}" if multi else "none", "first_irregular": f"{min(irregular):.0f}" if irregular else "none",
+        "first_multi": f"{min(multi):.0f}" if multi else "none",
+        "first_irregular": f"{min(irregular):.0f}" if irregular else "none",
     }  # fmt: skip
     trends = {
         "torque": [apart(torque=t) for t in (75.0, 150.0, 300.0, 600.0, 1200.0)],
@@ -96,6 +103,4 @@ def values() -> dict[str, float | str]:
         "backlash": [apart(backlash=j) for j in (1e-6, 5e-6, 10e-6, 20e-6, 40e-6)],
         "stiffness": [apart(stiffness=k) for k in (0.5, 0.7, 1.0, 1.4, 2.0)],
     }
-    for name, shares in trends.items():
-        found[f"apart_{name}"] = ", ".join(shares)
-    return found
+    return found | {f"apart_{name}": ", ".join(found) for name, found in trends.items()}

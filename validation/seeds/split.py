@@ -1,4 +1,4 @@
-"""The split-torque gearbox: speeds and torques, its modes against the printed frequencies and against chance, two mode statements."""
+"""The split-torque gearbox: speeds, torques, its modes against the printed list and against chance, two statements on modes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from validation.seeds.rows import entries, loaded
 
 MODEL = "split_torque"
 TOLERANCE, RANGE = 0.07, 5000.0
-_PRINTED = "frequency "
 
 
 def printed_frequencies() -> list[float]:
@@ -20,9 +19,8 @@ def printed_frequencies() -> list[float]:
     return [float(line["printed"]) for line in entries("split") if line["what"].startswith("natural frequency ")]
 
 
-@cache
-def values() -> dict[str, float | str]:
-    """Every value that the rows name."""
+def quick() -> dict[str, float | str]:
+    """Speeds, torques and frequencies."""
     sheet = rg.describe_model(loaded(MODEL)).to_dict()
     speeds = {row["name"]: row["speed_rpm"] for row in sheet["shafts"]}
     hz = {row["name"]: row["mesh_frequency_hz"] for row in sheet["meshes"]}
@@ -38,7 +36,7 @@ def values() -> dict[str, float | str]:
         found[f"shaft_{name}"] = nearest
     for name, printed in (("4883", 4883.0), ("5356", 5356.0)):
         found[f"tone_{name}"] = _nearest_tone(printed, hz, turns)
-    return found | _modes()
+    return found
 
 
 def _nearest_tone(printed: float, hz: dict[str, float], turns: list[float]) -> float:
@@ -47,7 +45,9 @@ def _nearest_tone(printed: float, hz: dict[str, float], turns: list[float]) -> f
     return min((f + sign * turn for f in meshes for turn in turns for sign in (-1, 1)), key=lambda f: abs(f - printed))
 
 
-def _modes() -> dict[str, float | str]:
+@cache
+def values() -> dict[str, float | str]:
+    """Modes beside the printed frequencies and chance."""
     result = rg.modal(loaded(MODEL), fmax=RANGE)
     printed = printed_frequencies()
     lines = [rg.RigLine(f) for f in printed]
@@ -62,7 +62,8 @@ def _modes() -> dict[str, float | str]:
     near = [int(np.argmin(np.abs(result.frequency_hz - f))) for f in (368.7, 1818.0)]
     found |= {
         "modes": float(np.count_nonzero(elastic < RANGE)), "matched": float(len(beside.matches)),
-        "random": round(beside.chance.expected_random_matches, 1), "as_many": f"{100.0 * beside.chance.probability_as_many:.0f} %",
+        "random": round(beside.chance.expected_random_matches, 1),
+        "as_many": f"{100.0 * beside.chance.probability_as_many:.0f} %",
         "branches": _branches(result, near[0]),
         "output_share": round(100.0 * _share(result, near[1], "output"), 0),
     }  # fmt: skip
