@@ -15,6 +15,7 @@ from pydantic import BaseModel
 
 from rotorgear.model.bodies import Disk, PointMass
 from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, Unbalance
+from rotorgear.model.flank import Flank, ToothFeTable
 from rotorgear.model.gear import Gear, GearBody
 from rotorgear.model.mesh import Mesh
 from rotorgear.model.model import SCHEMA_VERSION, Model
@@ -40,7 +41,9 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("sections = [{ ... }] of a shaft", Section),
     ("[gears.NAME]", Gear),
     ("body = { ... } of a gear", GearBody),
+    ("flank = { ... } of a gear", Flank),
     ("[meshes.NAME]", Mesh),
+    ("tooth_fe = { ... } of a mesh", ToothFeTable),
     ("transmission_error = [{ ... }] of a mesh", ErrorHarmonic),
     ("stiffness_variation = [{ ... }] of a mesh", StiffnessHarmonic),
     ("corner_impact = { ... } of a mesh", CornerImpact),
@@ -81,6 +84,11 @@ RULES: dict[type[BaseModel], str] = {
         about the middle of the gear.""",
     GearBody: """
         Without a rim the blank is a solid ring from the bore to the reference circle. A rim needs a web.""",
+    Flank: """
+        For [loaded teeth](mesh.md) only. Amounts are depths of removed material along the flank normal; tip relief stands
+        in the gear. `z` is that of the gear's shaft, and of each helix by itself in a herringbone.""",
+    ToothFeTable: """
+        For `stiffness = "tooth_fe"` and [`rotorgear mesh`](mesh.md).""",
     Mesh: """
         Both gears need the same kind, normal module, pressure angle and helix angle, and opposite hands. Their axes must
         stand at the centre distance that teeth and profile shifts give, to a twentieth of the module. Signs:

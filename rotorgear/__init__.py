@@ -37,6 +37,8 @@ _HOMES = {
     "rotorgear.analysis.spectra": ("spectrum", "spectral_lines"),
     "rotorgear.analysis.rig_spectrum": ("compare_spectrum",),
     "rotorgear.analysis.gear_sheet": ("gear_sheet",),
+    "rotorgear.analysis.mesh_analysis": ("mesh_analysis",),
+    "rotorgear.analysis.mesh_ladder": ("mesh_ladder",),
     "rotorgear.analysis.compare": ("compare", "read_rig_lines"),
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
@@ -46,9 +48,11 @@ _HOMES = {
     "rotorgear.results.frequency_response": ("FrequencyResponse",),
     "rotorgear.results.accuracy": ("AccuracyLadder",),
     "rotorgear.results.gear_sheet": ("GearSheet",),
+    "rotorgear.results.mesh": ("MeshResult",),
     "rotorgear.results.comparison": ("Comparison", "RigLine"),
     "rotorgear.export.vtk": ("write_vtk",),
     "rotorgear.export.stream": ("stream",),
+    "rotorgear.export.vtk_motion": ("write_motion",),
     "rotorgear.export.vtk_deflection": ("write_deflections",),
     "rotorgear.export.hdf5": ("save", "read"),
     "rotorgear.errors": ("RotorgearError", "ModelError", "AnalysisError", "ConvergenceError"),
@@ -62,6 +66,8 @@ if TYPE_CHECKING:
     from rotorgear.analysis.describe_model import describe_model
     from rotorgear.analysis.frequency_response import frequency_response
     from rotorgear.analysis.gear_sheet import gear_sheet
+    from rotorgear.analysis.mesh_analysis import mesh_analysis
+    from rotorgear.analysis.mesh_ladder import mesh_ladder
     from rotorgear.analysis.modal import modal
     from rotorgear.analysis.response import response
     from rotorgear.analysis.rig_spectrum import compare_spectrum
@@ -74,6 +80,7 @@ if TYPE_CHECKING:
     from rotorgear.export.stream import stream
     from rotorgear.export.vtk import write_vtk
     from rotorgear.export.vtk_deflection import write_deflections
+    from rotorgear.export.vtk_motion import write_motion
     from rotorgear.model.bodies import Disk, PointMass
     from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic, Unbalance
     from rotorgear.model.gear import Gear, GearBody
@@ -95,6 +102,7 @@ if TYPE_CHECKING:
     from rotorgear.results.comparison import Comparison, RigLine
     from rotorgear.results.frequency_response import FrequencyResponse
     from rotorgear.results.gear_sheet import GearSheet
+    from rotorgear.results.mesh import MeshResult
     from rotorgear.results.modal import ModalResult
     from rotorgear.results.response import ResponseResult
     from rotorgear.results.static import StaticResult

@@ -8,7 +8,8 @@ Columns of expected.csv:
     accuracy        refine until every frequency is estimated to be within it, in place of elements
     mesh_stiffness  in N/m, in place of that of all meshes in the file; "1e11 > 1e12" as above; empty: as in the file
     quantity        what is compared: a name from `quantities.py`, or "order of" or "extrapolated" and such a name; or a name from
-                    `forced.py`; or "sheet" and a key of the gear sheet, "sheet gears.pinion.base_diameter_m", which has no mode
+                    `forced.py`; or "sheet" and a key of the gear sheet, "sheet gears.pinion.base_diameter_m", which has no mode;
+                    or "mesh" and a key of a mesh with loaded teeth, "mesh pair.ste_peak_to_peak_m" (see mesh.py)
     mode            number of the elastic mode, or of the order of a forced response; "1+2": a pair that must agree; "2-1": the
                     difference of two
     expected        a number as its source prints it, ">= 3.4", or a word

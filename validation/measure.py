@@ -22,6 +22,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.results.modal import ModalResult
 from validation.cases import Case, Expectation
 from validation.forced import FORCED
+from validation.mesh import is_of_mesh, measure_mesh
 from validation.quantities import elastic
 from validation.sheet import is_of_sheet, measure_sheet
 
@@ -57,6 +58,8 @@ class Solver:
         if is_of_sheet(line.quantity):
             got_from_sheet, time_taken = measure_sheet(self.case.folder, line.model, line.quantity)
             return Measured(got_from_sheet, 0, time_taken)
+        if is_of_mesh(line.quantity):
+            return Measured(*measure_mesh(self.case.folder, line.model, line.quantity))
         kind, name = _split(line.quantity)
         runs = [self._solve(key) for key in keys(line)]
         values = [_pick(elastic(result, name), line.mode) for result, _ in runs]

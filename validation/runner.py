@@ -13,6 +13,7 @@ from pathlib import Path
 from validation.cases import Case, Expectation, read_cases
 from validation.forced import FORCED
 from validation.measure import Solver
+from validation.mesh import is_of_mesh, mesh_words
 from validation.quantities import words
 from validation.sheet import is_of_sheet, sheet_words
 from validation.table import printed
@@ -85,6 +86,8 @@ def describe(line: Expectation) -> str:
     """Say in one phrase what a line compares."""
     if line.model.endswith(".py"):
         return ", ".join(part for part in (line.quantity, line.mode) if part)
+    if is_of_mesh(line.quantity):
+        return f"{Path(line.model).stem}, {mesh_words(line.quantity)}"
     if is_of_sheet(line.quantity):
         return f"{Path(line.model).stem}, {sheet_words(line.quantity)}"
     parts = [

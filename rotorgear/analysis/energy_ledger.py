@@ -16,6 +16,7 @@ from rotorgear.solvers.local_system import LocalSystem, Records, State, local_va
 
 # Records of a chunk at which stored energies are evaluated.
 _SAMPLES = 4
+_ROUNDING = 1e-9
 
 
 @dataclass
@@ -114,8 +115,8 @@ class LedgerBook:
         t, kinetic, strain, contact, work, excitation, dissipated = np.vstack(self.table).T
         stored = kinetic + strain + contact
         numerical = stored - self._stored_at_start - work - excitation + dissipated
-        scale = max(
-            float(np.abs(x).max()) for x in (work, excitation, dissipated, stored - self._stored_at_start, kinetic)
-        )
+        # Less than rounding of the energy that is stored is no exchange of energy.
+        terms = (work, excitation, dissipated, stored - self._stored_at_start, kinetic)
+        scale = max(_ROUNDING * float(np.abs(stored).max()), *(float(np.abs(x).max()) for x in terms))
         share = float(np.abs(numerical).max()) / scale if scale > 0.0 else 0.0
         return EnergyLedger(t, kinetic, strain, contact, work, excitation, dissipated, numerical, share)

@@ -63,7 +63,7 @@ def frequency_response(
     _check(hz, inputs, outputs, damping_ratio)
     places = {text: named_place(model, text) for text in (*inputs, *outputs)}
     zeta = damping_ratio + model.damping.modal_ratio
-    first = mean_state(System(model, direction=direction_of(turns)), turns)
+    first = mean_state(System(model, direction=direction_of(turns), mesh="static"), turns)
     limit = 2.0 * np.pi * DAMPED * float(hz[-1])
     progress(0.02, "discretisation")
     plan = plan_up_to(at_speed(model, turns), MARGIN * float(hz[-1]), elements, accuracy)

@@ -95,7 +95,7 @@ def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ..
     lines = contact_line_length(teeth, (np.arange(_POSITIONS) + 0.5) / _POSITIONS)
     iso = pair_iso_stiffness(teeth)
     force = sum(force.normal_force for force in forces) / len(forces)
-    curve = stiffness_of_mesh(model, name, force or None)
+    curve = stiffness_of_mesh(model, name, force or None, sense=forces[0].torque_sense).about_load
     base = math.cos(pair.base_helix_angle)
     dynamic = mesh_dynamic_factor(model, name, force * base or None)
     factor = dynamic if isinstance(dynamic, DynamicFactor) else None

@@ -8,7 +8,6 @@ import numpy as np
 
 from rotorgear.analysis.static_solve import equilibrate
 from rotorgear.errors import AnalysisError
-from rotorgear.model.torque_flow import TorqueFlow
 from rotorgear.system.contacts import ContactLines, contact_lines
 from rotorgear.system.system import System
 
@@ -48,12 +47,9 @@ def mean_state(system: System, speed: float) -> Setup:
             f"meshes.{name} carries nothing under the mean loads, so there is no linear response about them; give more torque or "
             "a smaller index error"
         )
-    flow = TorqueFlow(
-        found.system.flow.applied,
-        tuple(
-            replace(state, normal_force=float(force))
-            for state, force in zip(found.lines.states, found.force, strict=True)
-        ),
+    forces = tuple(
+        replace(state, normal_force=float(force)) for state, force in zip(found.lines.states, found.force, strict=True)
     )
-    settled = System(system.model, plan=system.plan, direction=system.direction, flow=flow)
+    flow = replace(found.system.flow, forces=forces)
+    settled = System(system.model, plan=system.plan, direction=system.direction, flow=flow, mesh=system.mesh)
     return Setup(settled, contact_lines(settled), found.force, ())

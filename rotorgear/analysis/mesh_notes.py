@@ -20,7 +20,7 @@ def mesh_stiffness_left_out(system: System) -> Iterator[str]:
             yield f"meshes.{name}: {ripple}; its mean {mean:.4g} N/m is taken"
         elif name in system.flow.stiffness:
             taken = sum(force.contact.stiffness for force in system.flow.of_mesh(name))
-            yield f"meshes.{name}: {_of_model(system.flow.stiffness[name], taken)}"
+            yield f"meshes.{name}: {_of_model(system.flow.stiffness[name].about_load, taken)}"
 
 
 def _of_model(curve: MeshStiffness, taken: float) -> str:

@@ -64,7 +64,7 @@ def response(
     chosen = _speeds(model, speeds)
     _check(method, damping_ratio, fmax, elements, accuracy)
     zeta = damping_ratio + model.damping.modal_ratio
-    first = mean_state(System(model, direction=direction_of(chosen[-1])), float(chosen[-1]))
+    first = mean_state(System(model, direction=direction_of(chosen[-1]), mesh="static"), float(chosen[-1]))
     orders, left = _within(orders_of(first.system, first.lines, first.mean_force), chosen, fmax)
     top = max(order.ratio for order in orders) * float(np.max(np.abs(chosen)))
     progress(0.02, "discretisation")

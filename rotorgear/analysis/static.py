@@ -53,7 +53,7 @@ def static(
     if elements is not None and elements < 1:
         raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
     plan = Plan(elements or DEFAULT_ELEMENTS)
-    system = System(model, plan=plan, direction=direction_of(given))
+    system = System(model, plan=plan, direction=direction_of(given), mesh="static")
     _check_loaded(system)
     progress(0.1, f"solving {system.n} dofs")
     found = equilibrate(system, given or 0.0)
@@ -85,6 +85,7 @@ def _estimate(found: Equilibrated, speed: float) -> float:
         plan=Plan(2 * found.system.plan.elements),
         direction=found.system.direction,
         flow=found.system.flow,
+        mesh="static",
     )
     other = equilibrate(finer, speed)
     here = np.concatenate([found.force, *bearing_forces(found).values(), *support_forces(found).values()])

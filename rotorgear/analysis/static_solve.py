@@ -13,7 +13,7 @@ import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
 from rotorgear.model.fields import DOF_NAMES
-from rotorgear.model.torque_flow import MeshForce, TorqueFlow
+from rotorgear.model.torque_flow import MeshForce
 from rotorgear.solvers.equilibrium import Equilibrium
 from rotorgear.solvers.static import UnbalancedLoadError
 from rotorgear.system.assembly import assemble
@@ -83,8 +83,8 @@ def _released(system: System, speed: float, closed: np.ndarray, worst: int) -> t
         mesh = system.flow.forces[worst].contact.mesh
         turned = tuple(_turned(force) if force.contact.mesh == mesh else force for force in system.flow.forces)
         opened[worst] = True
-        flow = TorqueFlow(system.flow.applied, turned)
-        return System(system.model, plan=system.plan, direction=system.direction, flow=flow), opened
+        flow = replace(system.flow, forces=turned)
+        return System(system.model, plan=system.plan, direction=system.direction, flow=flow, mesh=system.mesh), opened
     return system, opened
 
 

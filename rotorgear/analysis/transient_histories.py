@@ -38,6 +38,7 @@ class Histories:
     steps: int = 0
     parts: list[dict[str, np.ndarray]] = field(default_factory=list)
     ledger: EnergyLedger | None = None
+    motion: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
 
     def table(self, name: str) -> np.ndarray:
         """All records of "t", "d", "F" or "values"."""
@@ -54,12 +55,14 @@ def integrate(
     *,
     stream: Stream | None = None,
     settings: dict[str, str] | None = None,
+    frames: int = 0,
     tolerance: float = 1e-10,
     progress: Progress = silent,
 ) -> Histories:
     """Integrate from the start state; a run that stops early keeps what it has and says why in `status`.
 
     Args:
+        frames: so many records at the end keep all displacements.
         settled: records before the statistics count; contact events are counted anew from there.
     """
     state = start.copy()
@@ -73,6 +76,9 @@ def integrate(
         part = {
             "t": records.t, "d": records.d, "F": records.F, "values": wanted.values(records.fields, records.F),
         }  # fmt: skip
+        last = records.t > (schedule.steps - frames * schedule.every + 0.5) * schedule.h
+        if frames and last.any():
+            found.motion.append((records.t[last], records.fields.chosen(last).rows("q", np.eye(local.n))))
         before = len(book.table)
         book.add(records)
         found.parts.append(part)
@@ -96,7 +102,7 @@ def integrate(
         except KeyboardInterrupt:
             found.status = f"interrupted after {state.step} of {schedule.steps} steps"
             break
-    if not found.parts:
+    if not any(part["t"].size for part in found.parts):
         raise ConvergenceError(found.status)
     found.ledger = book.close()
     return found

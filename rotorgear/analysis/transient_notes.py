@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.model.model import Model
 from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.contact_equilibrium import Equilibrium
 from rotorgear.system.local import LocalModel
@@ -54,8 +55,22 @@ def transient_warnings(
             f"integration made or lost {100.0 * result.energy.share:.2g} % of the energy; "
             "take a smaller step or record more often"
         )
+    if not local.local.rotation.is_constant and _held(result.model):
+        rpm = float(np.abs(result.speed).max()) * 30.0 / np.pi
+        notes.append(
+            f"{_held(result.model)} are held at their values for the largest speed, {rpm:.6g} rpm, over the whole run-up"
+        )
     notes += [*_drifting(result), *_unsettled(result)]
     return tuple(notes)
+
+
+def _held(model: Model) -> str:
+    """What depends on speed beside the gyroscopic terms, in words; "" where nothing does."""
+    tables = [name for name, bearing in model.bearings.items() if bearing.table]
+    damped = [name for name, shaft in model.shafts.items() if shaft.internal_damping]
+    parts = [f"the tables of the bearings {', '.join(tables)}"] if tables else []
+    parts += [f"the internal damping of {', '.join(damped)}"] if damped else []
+    return " and ".join(parts)
 
 
 def _drifting(result: TransientResult) -> list[str]:

@@ -24,6 +24,7 @@ RECORDS, STEPS, CONTACT_STEPS = 40, 100, 20
 # Largest system whose complex modes are all found without being asked: dense matrices of 2n.
 _ALL_MODES = 900
 MOST_STEPS = 200_000_000
+_LEAST_RECORDS = 4
 
 
 @dataclass(frozen=True)
@@ -121,6 +122,11 @@ def grid_of(
     if steps and every * wanted < spacing * (1.0 - 1e-9):
         spacing = every * wanted  # so that the steps asked for are exact
     count = int(np.ceil(total / spacing - 1e-6))
+    if count < _LEAST_RECORDS:
+        raise AnalysisError(
+            f"{total:g} s gives only {count} records {spacing:.3g} s apart, at least {_LEAST_RECORDS} are needed: "
+            "ask for more time"
+        )
     if count * every > MOST_STEPS:
         raise AnalysisError(
             f"{total:g} s would take {count * every:.3g} steps of {spacing / every:.3g} s; ask for less time, or set the steps"
@@ -146,6 +152,9 @@ def integrator_of(
     """
     if method not in METHODS:
         raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
+    if modes is not None and modes < 1:
+        raise AnalysisError(f"modes: got {modes}, expected at least 1")
+    modes = None if modes is not None and modes >= local.n else modes
     reason = "as asked for"
     if method == "auto":
         method, reason = _chosen(local, steps, modal_ratio, modes)

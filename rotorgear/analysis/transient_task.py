@@ -10,8 +10,8 @@ import numpy as np
 from rotorgear.analysis.transient_channels import Channels, channels
 from rotorgear.analysis.transient_histories import Histories, Stream, integrate
 from rotorgear.analysis.transient_request import Grid, mesh_frequencies, rotation_of
-from rotorgear.analysis.transient_statistics import compared, statistics
-from rotorgear.errors import AnalysisError
+from rotorgear.analysis.transient_statistics import Statistics, compared, statistics
+from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress
 from rotorgear.solvers.contact_equilibrium import Equilibrium, equilibrium, still_forces
@@ -84,6 +84,7 @@ def run_task(
     stream: Stream | None = None,
     text: str = "",
     key: str = "",
+    frames: int = 0,
 ) -> Histories:
     """Integrate over a grid; `text` names a run that only serves another one, which an interruption ends for good."""
     h = grid.spacing / grid.every
@@ -99,7 +100,7 @@ def run_task(
 
     found = integrate(
         system, integrator, Schedule(h, grid.records * grid.every, grid.every), state_at_rest(system, h, task.rest.q),
-        task.channels, grid.settled, stream=stream, settings=settings, progress=told,
+        task.channels, grid.settled, stream=stream, settings=settings, frames=frames, progress=told,
     )  # fmt: skip
     if text and found.status.startswith("interrupted"):
         raise KeyboardInterrupt
@@ -115,14 +116,23 @@ def fine_enough(task: Task, integrator: Integrator, grid: Grid, accuracy: float,
     """Halve the step until the statistics of a run, or of its beginning, agree with those of twice the step."""
     records = min(grid.records, max(_PROBE // grid.every, 8))
     probe = replace(grid, records=records, settled=min(grid.settled, records // 2))
-    last = statistics(run_task(task, integrator, probe, progress, text="choosing the step"), task, probe.settled)
+    last = _probed(task, integrator, probe, progress)
     for _ in range(_HALVINGS):
         finer = replace(probe, every=2 * probe.every)
-        now = statistics(run_task(task, integrator, finer, progress, text="choosing the step"), task, probe.settled)
-        error = compared(now, last)[1]
+        now = _probed(task, integrator, finer, progress)
+        error = compared(now, last)[1] if now and last else np.inf
         # What the finer of the two was found to be good for.
         if error <= accuracy:
             # Second order: the coarser one is four times worse.
             return replace(grid, every=finer.every if 4.0 * error > accuracy else probe.every)
         probe, last = finer, now
     return replace(grid, every=probe.every)
+
+
+def _probed(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> Statistics | None:
+    """Statistics of a run that helps to choose the step; None where so large a step did not get through."""
+    try:
+        found = run_task(task, integrator, grid, progress, text="choosing the step")
+    except ConvergenceError:
+        return None
+    return statistics(found, task, grid.settled) if found.status == "success" else None

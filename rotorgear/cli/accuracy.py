@@ -16,7 +16,16 @@ if TYPE_CHECKING:
 
 def accuracy(
     model: ModelFile,
-    analysis: Annotated[str, typer.Option("--analysis", help="What is run: modal or transient.")] = "modal",
+    analysis: Annotated[
+        str, typer.Option("--analysis", help="What is run: modal, mesh (teeth in contact) or transient.")
+    ] = "modal",
+    mesh: Annotated[
+        str | None, typer.Option("--mesh", help="With --analysis mesh: name of the mesh.", show_default=False)
+    ] = None,
+    torque: Annotated[
+        str | None,
+        typer.Option("--torque", help="With --analysis mesh: torque on the pinion.", show_default=False),
+    ] = None,
     speed: SpeedOption = None,
     modes: Annotated[int, typer.Option("--modes", min=1, help="Number of modes that are compared.")] = 24,
     reference: Annotated[
@@ -40,8 +49,14 @@ def accuracy(
     """Error against run time and dofs over a ladder of discretisations, with the measured order."""
     import rotorgear as rg
 
+    if analysis == "mesh":
+        _refuse_modal_options(speed, reference)
+        _mesh(model, mesh, torque, plot, json)
+        return
     if analysis not in ("modal", "transient"):
-        raise AnalysisError(f"--analysis: got '{analysis}', expected modal or transient")
+        raise AnalysisError(f"--analysis: got '{analysis}', expected modal, mesh or transient")
+    if mesh is not None or torque is not None:
+        raise AnalysisError("--mesh and --torque belong to --analysis mesh.")
     if analysis == "modal" and (time or modal_damping is not None):
         raise AnalysisError("--time and --modal-damping belong to --analysis transient")
     if analysis == "transient" and reference:
@@ -63,6 +78,29 @@ def accuracy(
         from rotorgear.plots.accuracy import draw_accuracy
 
         typer.echo(f"wrote {draw_accuracy(ladder, plot)}")
+
+
+def _refuse_modal_options(speed: str | None, reference: Path | None) -> None:
+    if speed is not None or reference is not None:
+        raise AnalysisError("--speed and --reference belong to --analysis modal.")
+
+
+def _mesh(model: Path, mesh: str | None, torque: str | None, plot: Path | None, json: Path | None) -> None:
+    """The ladder of a mesh."""
+    import rotorgear as rg
+    from rotorgear.cli.mesh import parse_torque
+    from rotorgear.cli.tables_mesh import ladder_parts
+
+    pinion_torque = parse_torque(torque)
+    with progress_bar("accuracy") as progress:
+        ladder = rg.mesh_ladder(rg.load(model), mesh, torque=pinion_torque, progress=progress)
+    for part in ladder_parts(ladder):
+        console().print(part)
+    write_json(ladder.to_dict(), json)
+    if plot:
+        from rotorgear.plots.mesh_ladder import draw_mesh_ladder
+
+        typer.echo(f"wrote {draw_mesh_ladder(ladder, plot)}")
 
 
 def table(ladder: AccuracyLadder) -> list[Any]:

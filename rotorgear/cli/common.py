@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rotorgear.errors import AnalysisError
-from rotorgear.progress import Progress, silent
+from rotorgear.progress import Progress, listening, silent
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -107,4 +107,5 @@ def progress_bar(text: str) -> Iterator[Progress]:
         def report(fraction: float, step: str) -> None:
             bar.update(task, completed=fraction, description=f"{text}: {step}")
 
-        yield report
+        with listening(report):
+            yield report

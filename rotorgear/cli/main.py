@@ -13,6 +13,7 @@ from rotorgear.cli import (
     compare,
     frf,
     gear,
+    mesh,
     modal,
     response,
     schema,
@@ -38,6 +39,7 @@ app.command()(frf.frf)
 app.command()(transient.transient)
 app.command()(check.check)
 app.command()(gear.gear)
+app.command()(mesh.mesh)
 app.command()(accuracy.accuracy)
 app.command()(view.view)
 app.command()(schema.schema)

@@ -86,6 +86,11 @@ def transient(
         Path | None, typer.Option("--save", help="Save the result (HDF5), in chunks while it runs.", show_default=False)
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with an interrupted run of the same --save.")] = False,
+    vtk: Annotated[
+        Path | None,
+        typer.Option("--vtk", help="Write the motion at the end to this folder, for ParaView.", show_default=False),
+    ] = None,
+    frames: Annotated[int, typer.Option("--frames", min=2, help="Instants that --vtk writes.")] = 120,
     plot: Annotated[
         Path | None, typer.Option("--plot", help="Draw pictures of the result to this folder.", show_default=False)
     ] = None,
@@ -104,7 +109,7 @@ def transient(
             rg.load(model), speed=_speeds(rg.load(model), speed, speed_to, time, settle), time=time, settle=settle,
             accuracy=accuracy, steps=steps, records=records, method=method, rho_inf=rho_inf, modes=modes,
             modal_damping=modal_damping, elements=elements,
-            error_estimate=error_estimate, stream=stream, progress=progress,
+            error_estimate=error_estimate, frames=frames if vtk else 0, stream=stream, progress=progress,
         )  # fmt: skip
     out = console()
     out.print(transient_table(result))
@@ -122,7 +127,7 @@ def transient(
             out.print(rig_table(beside))
             data["rig"] = beside.to_dict()
     write_json(data, json)
-    _write(result, save, plot)
+    _write(result, save, plot, vtk)
     if result.status != "success":
         typer.echo("the run ended early: what it gave so far stands above", err=True)
         raise typer.Exit(1)
@@ -148,7 +153,7 @@ def _speeds(model: object, speed: str | None, speed_to: str | None, time: str | 
     return [(begin, first), (end, last)]
 
 
-def _write(result: TransientResult, save: Path | None, plot: Path | None) -> None:
+def _write(result: TransientResult, save: Path | None, plot: Path | None, vtk: Path | None) -> None:
     import rotorgear as rg
 
     if save and result.status == "success":
@@ -160,3 +165,6 @@ def _write(result: TransientResult, save: Path | None, plot: Path | None) -> Non
 
         paths = draw_transient(result, plot)
         typer.echo(f"wrote {len(paths)} pictures to {plot}")
+    if vtk:
+        paths = rg.write_motion(result, vtk)
+        typer.echo(f"wrote {len(paths)} files to {vtk}; open motion.pvd in ParaView")

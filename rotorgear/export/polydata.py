@@ -55,9 +55,9 @@ def save_mesh(mesh: Any, path: Path) -> None:
     Raises:
         OSError: the disk does not take it.
     """
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
-    writer = vtkXMLPolyDataWriter()
+    writer = vtkXMLPolyDataWriter() if mesh.IsA("vtkPolyData") else vtkXMLUnstructuredGridWriter()
     writer.SetInputData(mesh)
     writer.SetFileName(str(path))
     writer.SetDataModeToAppended()

@@ -21,11 +21,14 @@ from typing import Literal
 import numpy as np
 
 from rotorgear.errors import AnalysisError
+from rotorgear.gears.flank import FlankModification
 from rotorgear.gears.geometry import GearGeometry
 from rotorgear.gears.pair import PairGeometry
+from rotorgear.gears.tooth_fe import ToothFe
 from rotorgear.quantity import nearest
 
 Definition = Literal["secant", "tangent"]
+_EXACT, _DEFAULT_FE = FlankModification(), ToothFe()
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,8 @@ class ToothPair:
         pair: their geometry at the centre distance.
         width: common face width (m) of one helix.
         first_body, second_body: what the teeth stand on.
+        first_flank, second_flank: deviations of the flanks; misalignment: of the flanks over the whole face (m), positive
+            where they stand apart at larger z. Only the loaded contact takes them in, as it does `fe`, the FE settings.
     """
 
     first: GearGeometry
@@ -63,6 +68,10 @@ class ToothPair:
     width: float
     first_body: ToothBody = ToothBody()
     second_body: ToothBody = ToothBody()
+    first_flank: FlankModification = _EXACT
+    second_flank: FlankModification = _EXACT
+    misalignment: float = 0.0
+    fe: ToothFe = _DEFAULT_FE
 
     @property
     def base_pitch(self) -> float:
@@ -73,7 +82,10 @@ class ToothPair:
         """The same teeth with gear 2 as gear 1."""
         p = self.pair
         turned = replace(p, start_of_contact=-p.end_of_contact, end_of_contact=-p.start_of_contact)
-        return ToothPair(self.second, self.first, turned, self.width, self.second_body, self.first_body)
+        return ToothPair(
+            self.second, self.first, turned, self.width, self.second_body, self.first_body, self.second_flank,
+            self.first_flank, self.misalignment, self.fe,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -90,6 +102,7 @@ class MeshStiffness:
         body: what the teeth stand on, and against what the approach is measured.
         base_helix_angle: b_b (rad), for the stiffness along the flank normal.
         warnings: sentences.
+        tangent: dF_bt / d delta in N/m at the load, shape (n,), of a model whose stiffness depends on it; else None.
     """
 
     model: str
@@ -101,6 +114,7 @@ class MeshStiffness:
     body: str
     base_helix_angle: float
     warnings: tuple[str, ...] = ()
+    tangent: np.ndarray | None = None
 
     @property
     def normal(self) -> np.ndarray:
@@ -118,6 +132,23 @@ class MeshStiffness:
         return self.mean / math.cos(self.base_helix_angle) ** 2
 
     @property
+    def static_normal(self) -> float:
+        """Stiffness along the flank normal in N/m that gives the mean deflection of the period under the mean load."""
+        if self.tangent is None:
+            return self.mean_normal
+        return 1.0 / (float(np.mean(1.0 / self.transverse)) * math.cos(self.base_helix_angle) ** 2)
+
+    @property
+    def dynamic_normal(self) -> float:
+        """Mean stiffness along the flank normal in N/m against small motions about the mean load."""
+        return self.about_load.mean_normal
+
+    @property
+    def about_load(self) -> MeshStiffness:
+        """The curve that small motions about the load meet: the tangent one where there is one."""
+        return self if self.tangent is None else replace(self, transverse=self.tangent, definition="tangent")
+
+    @property
     def peak_to_peak(self) -> float:
         """Largest less smallest transverse stiffness in N/m."""
         return float(np.ptp(self.transverse))
@@ -133,14 +164,25 @@ class MeshStiffness:
             raise AnalysisError(f"{len(self.transverse)} positions give {most} harmonics, not {count}: ask for fewer.")
         return np.asarray(2.0 * np.fft.fft(self.transverse)[1 : count + 1] / len(self.transverse))
 
-    def of_both_helices(self, stagger: float = 0.0) -> MeshStiffness:
+    def of_both_helices(self, stagger: float = 0.0, second: MeshStiffness | None = None) -> MeshStiffness:
         """Two such helices in parallel, the second one ahead by `stagger` of a mesh period (0 or 0.5 as a rule).
 
-        Values between the positions are interpolated where the stagger is no multiple of their spacing.
+        Values between the positions are interpolated where the stagger is no multiple of their spacing. Helices whose
+        stiffness depends on the load share it evenly (the pinion floats), so their approaches are averaged.
         """
-        other = np.interp(self.position + stagger, self.position, self.transverse, period=1.0)
+        other = self if second is None else second
         load = None if self.load is None else 2.0 * self.load
-        return replace(self, transverse=self.transverse + other, helices=2 * self.helices, load=load)
+
+        def ahead(values: np.ndarray) -> np.ndarray:
+            return np.interp(self.position + stagger, self.position, values, period=1.0)
+
+        if self.tangent is None or other.tangent is None:
+            both = self.transverse + ahead(other.transverse)
+            return replace(self, transverse=both, helices=2 * self.helices, load=load)
+        secant = 4.0 / (1.0 / self.transverse + ahead(1.0 / other.transverse))
+        tangent = 4.0 / (1.0 / self.tangent + ahead(1.0 / other.tangent))
+        notes = tuple(dict.fromkeys(self.warnings + other.warnings))
+        return replace(self, transverse=secant, tangent=tangent, helices=2 * self.helices, load=load, warnings=notes)
 
 
 StiffnessModel = Callable[[ToothPair, float | None, int], MeshStiffness]
@@ -166,6 +208,9 @@ MODELS = {
     "potential_energy": Registered(
         "rotorgear.gears.stiffness_energy:potential_energy_stiffness", False,
         "tooth slices as beams on an elastic ring, with Hertz' contact",
+    ),
+    "tooth_fe": Registered(
+        "rotorgear.gears.stiffness_tooth_fe:tooth_fe_stiffness", True, "finite elements and loaded tooth contact"
     ),
 }  # fmt: skip
 

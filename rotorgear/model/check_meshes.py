@@ -19,6 +19,8 @@ from rotorgear.quantity import millimetres
 CENTRE_DISTANCE_TOLERANCE = 0.05
 # Lumped gears come with rounded radii and angles.
 LUMPED_TOLERANCE = 5e-3
+# Fewer pitches than these are no body for a tooth and its neighbours.
+_LEAST_PITCHES = 3
 
 
 def mesh_settings(model: Tables) -> Iterator[Problem]:
@@ -28,6 +30,10 @@ def mesh_settings(model: Tables) -> Iterator[Problem]:
         if mesh.damping is not None and mesh.damping_ratio:
             yield Problem(address, "damping and damping_ratio", "one of the two")
         yield from pressure_angle_problems(f"{address}.pressure_angle", mesh.pressure_angle)
+        if mesh.tooth_fe.pitches < _LEAST_PITCHES or mesh.tooth_fe.pitches % 2 == 0:
+            yield Problem(f"{address}.tooth_fe.pitches", f"{mesh.tooth_fe.pitches}", "an odd number of at least 3")
+        if mesh.stagger >= 1.0:
+            yield Problem(f"{address}.stagger", f"{mesh.stagger:g}", "a share of the mesh period, from 0 to below 1")
 
 
 def mesh_problems(model: Tables) -> Iterator[Problem]:
@@ -75,7 +81,11 @@ def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator
 
 
 def _teeth(address: str, mesh: Mesh, pinion: Gear) -> Iterator[Problem]:
-    """A stiffness model needs teeth."""
+    """A stiffness model needs teeth, and a stagger two helices."""
+    if mesh.stagger and pinion.kind != "herringbone":
+        yield Problem(
+            f"{address}.stagger", f"{mesh.stagger:g}", "0, or herringbone gears", "one helix has nothing to lead"
+        )
     if isinstance(mesh.stiffness, str) and pinion.lumped:
         wanted = "a stiffness such as '5e8 N/m' between gears that are given by their base radius"
         yield Problem(f"{address}.stiffness", f"'{mesh.stiffness}'", wanted, "a stiffness model needs teeth")

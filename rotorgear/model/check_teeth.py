@@ -8,6 +8,7 @@ from rotorgear.errors import Problem, RotorgearError
 from rotorgear.gears.geometry import GearGeometry
 from rotorgear.gears.measure import ball_contact_diameter, ideal_ball_diameter, with_allowance
 from rotorgear.gears.outline import ToothOutline, tooth_outline
+from rotorgear.model.check_flank import flank_problems
 from rotorgear.model.gear import Gear
 from rotorgear.model.pair_checks import allowance, ball_diameter
 from rotorgear.quantity import millimetres
@@ -24,6 +25,7 @@ def tooth_problems(address: str, gear: Gear, geometry: GearGeometry) -> Iterator
         return
     yield from _allowances(address, gear)
     yield from _relief(address, gear, outline)
+    yield from flank_problems(f"{address}.flank", gear.flank, outline, gear.width or 0.0)
     if gear.accuracy_grade is not None and gear.accuracy_grade > _LAST_GRADE:
         yield Problem(
             f"{address}.accuracy_grade", str(gear.accuracy_grade), f"a class from 1 to {_LAST_GRADE} of ISO 1328-1"

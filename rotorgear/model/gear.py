@@ -20,6 +20,7 @@ from rotorgear.model.fields import (
     Station,
     Whole,
 )
+from rotorgear.model.flank import Flank
 
 
 class GearBody(Part):
@@ -60,6 +61,7 @@ class Gear(Part):
         0.0, description="linear tip relief C_a at the tip circle, normal to the flank"
     )
     tip_relief_diameter: PositiveLength | None = Field(None, description="diameter at which the tip relief starts")
+    flank: Flank = Field(default_factory=Flank, description="further modifications and errors of the flanks")
     upper_thickness_allowance: Length = Field(
         0.0, description="upper allowance E_sns of the normal tooth thickness, 0 or negative, for the backlash"
     )

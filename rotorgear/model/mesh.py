@@ -8,6 +8,7 @@ from pydantic import Field
 
 from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
 from rotorgear.model.fields import Angle, Damping, Length, NonNegativeLength, Part, PositiveRatio, Ratio, Viscosity
+from rotorgear.model.flank import ToothFeTable
 from rotorgear.model.mesh_stiffness_field import StiffnessValue
 
 
@@ -32,6 +33,13 @@ class Mesh(Part):
         0.0, description="the centre distance may deviate by so much to both sides, for the backlash"
     )
     application_factor: PositiveRatio = Field(1.0, description="application factor K_A of ISO 6336, for K_v")
+    stagger: Ratio = Field(
+        0.0, description="herringbone: lead of the helix at larger z in mesh periods, 0 or 0.5 as a rule"
+    )
+    misalignment: Length = Field(
+        0.0, description="distance of the flanks at the end of larger z of the common face less that at its other end"
+    )
+    tooth_fe: ToothFeTable = Field(default_factory=ToothFeTable, description="settings of stiffness = 'tooth_fe'")
     contact_position: Length = Field(
         0.0, description="place of the contact along the line of action from the pitch point, positive towards recess"
     )

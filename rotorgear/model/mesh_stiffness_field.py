@@ -15,7 +15,7 @@ from rotorgear.model.fields import Unit, refuse
 from rotorgear.quantity import DIMENSIONS, nearest
 
 # Names of the stiffness models, as gears/mesh_stiffness.py has them; a test compares both, so that no numerics load here.
-STIFFNESS_MODELS = ("iso", "contact_line", "potential_energy")
+STIFFNESS_MODELS = ("iso", "contact_line", "potential_energy", "tooth_fe")
 _LEAST_VALUES = 3
 _MOST_HARMONICS, _VALUES_A_HARMONIC, _VALUES = 100, 8, 64
 _UNIT, _SHARE, _ANGLE = Unit("stiffness", "positive"), Unit("ratio"), Unit("angle")

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.model.applied_torques import AppliedTorque, applied_torques
@@ -56,6 +56,18 @@ class TorqueFlow:
     applied: tuple[AppliedTorque, ...]
     forces: tuple[MeshForce, ...]
     stiffness: dict[str, MeshStiffness] = field(default_factory=dict)
+
+    def with_stiffness(self, kind: Literal["dynamic", "static"]) -> TorqueFlow:
+        """The same state with the stiffness of each modelled mesh against small motions, or for the deflection at the load."""
+        forces = []
+        for force in self.forces:
+            curve = self.stiffness.get(force.contact.mesh)
+            if curve is not None:
+                normal = curve.dynamic_normal if kind == "dynamic" else curve.static_normal
+                own = replace(force.contact, stiffness=normal / curve.helices)
+                force = replace(force, contact=own)
+            forces.append(force)
+        return replace(self, forces=tuple(forces))
 
     def of_mesh(self, mesh: str) -> tuple[MeshForce, ...]:
         """The contacts of one mesh."""
@@ -111,7 +123,7 @@ def _solved(
     lines: list[Contact] = []
     for name in model.meshes:
         given = given_mean(model, name)
-        lines += contacts(model, name, curves[name].mean_normal if given is None else given)
+        lines += contacts(model, name, curves[name].static_normal if given is None else given)
     return lines, contact_forces(model, train, applied, lines) if applied and lines else [0.0] * len(lines)
 
 
@@ -121,9 +133,10 @@ def _loaded(model: Tables, lines: Sequence[Contact], squeeze: Sequence[float]) -
     found = {}
     for name in model.meshes:
         if is_modelled(model, name):
-            own = [abs(force) for line, force in zip(lines, squeeze, strict=True) if line.mesh == name]
+            own = [force for line, force in zip(lines, squeeze, strict=True) if line.mesh == name]
             mean = sum(own) / len(own)
-            found[name] = stiffness_of_mesh(model, name, mean if mean > UNLOADED * largest else None)
+            carries = abs(mean) > UNLOADED * largest
+            found[name] = stiffness_of_mesh(model, name, abs(mean) if carries else None, sense=1 if mean >= 0.0 else -1)
     return found
 
 

@@ -16,6 +16,7 @@ from rotorgear.results.transient import TransientResult
 _SHOWN_PERIODS = 6
 # Share of the largest line down to which a spectrum is shown.
 _SHOWN_SHARE = 1e-4
+_SHOWN_DB = 60.0
 
 
 def draw_transient(result: TransientResult, directory: str | Path) -> list[Path]:
@@ -159,13 +160,20 @@ def draw_spectrogram(result: TransientResult, figure: Any) -> None:
     values = result.history(name)[result.counted]
     size = int(min(max(values.size // 60, 64), 4096))
     f, t, power = spectrogram(
-        values - values.mean(), 1.0 / result.spacing, nperseg=size, noverlap=size // 2, scaling="spectrum"
+        values - values.mean(),
+        1.0 / result.spacing,
+        nperseg=size,
+        noverlap=size // 2,
+        window="hann",
+        scaling="spectrum",
     )
     axes = figure.subplots()
     speeds = np.interp(result.settle + t, result.time, result.speed) * 30.0 / np.pi
     level = 10.0 * np.log10(np.maximum(2.0 * power, 1e-12 * power.max()))
-    picture = axes.pcolormesh(speeds, f, level, vmin=level.max() - 80.0, shading="auto", rasterized=True)
+    picture = axes.pcolormesh(speeds, f, level, vmin=level.max() - _SHOWN_DB, shading="auto", rasterized=True)
     figure.colorbar(picture, label="dB of the amplitude squared")
+    seen = f[level.max(axis=1) > level.max() - _SHOWN_DB]
+    axes.set_ylim(0.0, 1.1 * float(seen.max(initial=f[1])))
     axes.set_xlabel("speed of the input shaft, rpm")
     axes.set_ylabel("frequency, Hz")
     axes.set_title(name, fontsize=9)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.model.model import Model
+from rotorgear.results.modal import NodeTable
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,8 @@ class TransientResult:
         quantity: names of the statistics with an error; quantity_value, quantity_error: (s,), the error absolute.
         energy: ledger. step: h in s; steps: of the run; every: of them one record.
         error_estimate: largest relative error of the quantities. dofs, seconds, method, reason of its choice.
+        nodes: where the motion is known; motion_time (w,), motion (p, 6, w): displacements of the nodes in m and rad at the
+            last w records, where frames were asked for.
         mesh_frequency: of each mesh in Hz at the first speed.
         status: "success", or why the run ended early; left_out, warnings: sentences.
     """
@@ -76,6 +79,9 @@ class TransientResult:
     method: str
     reason: str
     mesh_frequency: dict[str, float]
+    nodes: NodeTable
+    motion_time: np.ndarray
+    motion: np.ndarray
     status: str = "success"
     left_out: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()

@@ -91,13 +91,19 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     stiff = 0.5 * (stiff + stiff.T)
     ratio = np.diag(stiff) / np.diag(dense)
     sigma = 1e-3 * float(ratio[ratio > 0.0].min(initial=1.0)) if np.any(ratio > 0.0) else 1.0
-    mu, V = la.eigh(dense, stiff + sigma * dense)
+    try:
+        mu, V = la.eigh(dense, stiff + sigma * dense)
+    except la.LinAlgError:
+        raise ConvergenceError("stiffnesses too far apart for dense modes; use the newmark method") from None
     mu, V = mu[::-1], V[:, ::-1]
     V = V / np.sqrt(np.maximum(np.einsum("ij,ij->j", V, dense @ V), 1e-300))
     strain, noise = np.einsum("ij,ij->j", V, stiff @ V), np.einsum("ij,ij->j", np.abs(V), np.abs(stiff) @ np.abs(V))
     rigid = np.abs(strain) <= 1e3 * _EPS * noise
     rigid[noise == 0.0] = True
-    R, V, lam = V[:, rigid], V[:, ~rigid], (1.0 / mu - sigma)[~rigid]
+    lam = 1.0 / mu - sigma
+    if np.any(np.abs(lam[rigid]) > sigma):
+        raise ConvergenceError("stiffnesses too far apart for dense modes; use the newmark method")
+    R, V, lam = V[:, rigid], V[:, ~rigid], lam[~rigid]
     if modes is not None and modes < V.shape[1]:
         V = _with_residuals(dense, stiff, V, lam, B, modes)
     return V, R

@@ -235,3 +235,13 @@ def newton(quadratic: Quadratic, value: complex, vector: np.ndarray) -> tuple[co
         if abs(step) <= 1e-14 * abs(z):
             break
     return complex(z), v / np.linalg.norm(v) + 0j, spent
+
+
+def first_guess(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array) -> float:
+    """A frequency in rad/s below most of those of the matrices, to start the search from."""
+    for A, power in ((M, 0.5), (D, 1.0)):
+        inertia, stiffness = np.abs(A.diagonal()), np.abs(K.diagonal())
+        both = (inertia > 0.0) & (stiffness > 0.0)
+        if np.any(both):
+            return float((1e-8 * np.median(stiffness[both] / inertia[both])) ** power)
+    return 1.0

@@ -15,7 +15,7 @@ import scipy.sparse as sp
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.krylov import BlockKrylov
 from rotorgear.solvers.pencil import EPS
-from rotorgear.solvers.quadratic import InverseState, Quadratic, corrected, infinite_states, newton, scaled
+from rotorgear.solvers.quadratic import InverseState, Quadratic, corrected, first_guess, infinite_states, newton, scaled
 
 _DENSE_UP_TO = 80
 _BLOCK = 4
@@ -24,6 +24,7 @@ _SOUND = 1e-9  # backward error, and distance of two pairs, above and below whic
 # relative rounding of the smallest mu above which the upper spectrum is taken from the companion matrix
 _TOO_BLURRED = 1e-8
 _LARGEST_DENSE = 6000
+_SPARE = 8  # pairs beyond those that matter which are refined too, since refinement may change their order
 _SHIFT = 0.3  # sigma / w0, w0 being near the lowest |lambda|
 _BLUR = 1e-13  # relative error of 1/mu from rounding above which an eigenpair is refined on the pencil itself
 _BLUR_LARGE = 1e-12  # the same for a large pencil, where a refinement costs more
@@ -58,7 +59,7 @@ class Pairs:
 
 def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, frequency_scale: float | None) -> Search:
     """Choose w0 near the lowest frequencies: probe, and move there while the guess is off by more than a decade."""
-    w0 = _first_guess(M, D, K) if frequency_scale is None else frequency_scale
+    w0 = first_guess(M, D, K) if frequency_scale is None else frequency_scale
     best, off = None, np.inf
     for attempt in range(1, 12):
         quadratic = scaled(M, D, K, w0)
@@ -75,15 +76,6 @@ def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, f
             "The lowest frequencies could not be located: inertia, damping and stiffness lie too many decades apart."
         )
     return best  # a spectrum without a place near which its lowest eigenvalues gather: any scale will do
-
-
-def _first_guess(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array) -> float:
-    for A, power in ((M, 0.5), (D, 1.0)):
-        inertia, stiffness = np.abs(A.diagonal()), np.abs(K.diagonal())
-        both = (inertia > 0.0) & (stiffness > 0.0)
-        if np.any(both):
-            return float((1e-8 * np.median(stiffness[both] / inertia[both])) ** power)
-    return 1.0
 
 
 def _probe(search: Search) -> float | None:
@@ -116,7 +108,7 @@ def solve(search: Search, rows: int | None, below: float | None, dense: bool = F
                 return pairs
             break
         wanted += max(8, wanted // 4)
-    return _dense(search)
+    return _dense(search, rows)
 
 
 def _sound(quadratic: Quadratic, values: np.ndarray, V: np.ndarray) -> bool:
@@ -176,8 +168,8 @@ def _converged(search: Search, wanted: int) -> tuple[np.ndarray, np.ndarray]:
         goal = krylov.size + int(np.clip(np.log(_CONVERGED / worst) / slope, 1, wanted))
 
 
-def _dense(search: Search) -> Pairs:
-    """All finite eigenvalues: `eig` of the inverse on the complement of the zero and infinite states.
+def _dense(search: Search, rows: int | None) -> Pairs:
+    """All finite eigenvalues, of which the first `rows` matter: `eig` of the inverse off the zero and infinite states.
 
     Rounding goes with the largest mu, hence with the lowest eigenvalues; where it swamps the highest ones they are taken
     from the companion matrix itself, whose rounding goes with them. The two are equally good at the geometric mean.
@@ -198,7 +190,7 @@ def _dense(search: Search) -> Pairs:
     norm = float(np.linalg.norm(T, 1)) if T.size else 0.0
     if mu.size and EPS * norm > _TOO_BLURRED * np.abs(mu).min():
         mu, X = _with_direct(inverse, mu, X)
-    return _selected(search, mu, X, known, norm, reach=np.inf)
+    return _selected(search, mu, X, known, norm, reach=np.inf, rows=rows)
 
 
 def _with_direct(inverse: InverseState, mu: np.ndarray, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -226,7 +218,9 @@ def _with_direct(inverse: InverseState, mu: np.ndarray, X: np.ndarray) -> tuple[
             np.hstack([X[:, order[:cut]], Y[:, high]]))  # fmt: skip
 
 
-def _selected(search: Search, mu: np.ndarray, X: np.ndarray, known: np.ndarray, size: float, reach: float) -> Pairs:
+def _selected(
+    search: Search, mu: np.ndarray, X: np.ndarray, known: np.ndarray, size: float, reach: float, rows: int | None = None
+) -> Pairs:
     """One eigenpair a conjugate pair, refined, in ascending |lambda|; `size` is the norm of the matrix that gave mu.
 
     That norm, not the largest |mu|, is what rounding goes with: a fast spin makes the matrix far from normal.
@@ -237,7 +231,8 @@ def _selected(search: Search, mu: np.ndarray, X: np.ndarray, known: np.ndarray, 
     V = search.inverse.restored(mu, X[:, one].astype(complex), known)[: quadratic.n]
     values = sigma + 1.0 / mu
     rounding = EPS * np.abs(values - sigma) ** 2 * size / np.abs(values)
-    blurred = rounding > _BLUR
+    rank = np.argsort(np.argsort(np.abs(values), kind="stable"), kind="stable")
+    blurred = (rounding > _BLUR) & (rank < (values.size if rows is None else rows + _SPARE))
     if np.isfinite(reach):  # a large pencil: refinements cost, and a quotient does as well where little damps
         values = corrected(values, rounding, quadratic.forms(V))
         blurred = rounding * np.minimum(np.abs(values.real) / np.abs(values) + rounding, 1.0) > _BLUR_LARGE

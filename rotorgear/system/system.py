@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 import scipy.sparse as sp
@@ -43,6 +44,8 @@ class System:
         plan: how finely each piece is cut, in place of `elements`.
         direction: +1 or -1, sense in which the input shaft turns; it decides the driving flanks. None: as the operating speed.
         flow: mean mesh forces and driving flanks, where they are known better than from torsion alone.
+        mesh: which stiffness a loaded tooth contact has: "dynamic", its tangent at the mean load, for small motions; "static",
+            its secant, for the deflection under that load. The others have one only.
     """
 
     def __init__(
@@ -53,13 +56,15 @@ class System:
         plan: Plan | None = None,
         direction: int | None = None,
         flow: TorqueFlow | None = None,
+        mesh: Literal["dynamic", "static"] = "dynamic",
     ) -> None:
         self.model = model
         self.plan = plan or Plan(elements or 1)
         self.train: Train = walk(model)[0]
         speed = model.operation.speed if model.operation else None
         self.direction = direction or (-1 if speed is not None and speed < 0.0 else 1)
-        self.flow: TorqueFlow = flow or torque_flow(model, self.train, self.direction)
+        self.mesh: Literal["dynamic", "static"] = mesh
+        self.flow: TorqueFlow = (flow or torque_flow(model, self.train, self.direction)).with_stiffness(mesh)
         self.nodes: Nodes = discretise(model, self.plan)
         self.dofs: DofMap = map_dofs(model, self.nodes)
         self._last: tuple[float, Matrices] | None = None

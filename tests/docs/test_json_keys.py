@@ -13,6 +13,7 @@ from machinery.snippets import ROOT
 from typer.testing import CliRunner
 
 from rotorgear.cli.main import app
+from tests.unit.analysis.geared import pair_file
 
 MODEL = ROOT / "models" / "split_torque.toml"
 # Keys below these are names: of parts, motions, points, steps and tables.
@@ -25,6 +26,7 @@ NAMED = {
     "seconds_by_step": "STEP",
     "counts": "TABLE",
     "mesh_frequency_hz": "MESH",
+    "helix[].load_share": "PAIR",
     **dict.fromkeys(
         (
             "mesh_force_n",
@@ -125,6 +127,14 @@ def test_the_keys_of_gear_are_documented(tmp_path: Path) -> None:
 def test_the_keys_of_accuracy_are_documented(tmp_path: Path) -> None:
     chain = ROOT / "models" / "torsion_chain.toml"
     assert set(keys(written(tmp_path, "accuracy", str(chain)))) == documented("accuracy")
+
+
+def test_the_keys_of_mesh_are_documented(tmp_path: Path) -> None:
+    file = tmp_path / "pair.toml"
+    file.write_text(pair_file(mesh='stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'), encoding="utf-8")
+    assert set(keys(written(tmp_path, "mesh", str(file), "--loads", "0.5"))) == documented("mesh")
+    ladder = written(tmp_path, "accuracy", str(file), "--analysis", "mesh")
+    assert set(keys(ladder)) == documented("mesh accuracy")
 
 
 def test_the_keys_of_static_are_documented(tmp_path: Path) -> None:

@@ -125,3 +125,22 @@ def test_the_ladder_of_a_transient_shows_second_order(shaken: str, tmp_path: Pat
     assert last["order"] == pytest.approx(2.0, abs=0.15)
     assert last["error"] < 0.05
     assert (tmp_path / "l.png").stat().st_size > 10_000
+
+
+def test_the_motion_at_the_end_is_written_for_paraview_with_its_times(shaken: str, tmp_path: Path) -> None:
+    pv = pytest.importorskip("pyvista")
+    code, text = run(
+        shaken, *QUICK, "--vtk", str(tmp_path / "motion"), "--frames", "12", "--save", str(tmp_path / "run.h5")
+    )
+    assert code == 0, text
+    result = rg.read(tmp_path / "run.h5")
+    assert result.motion_time == pytest.approx(result.time[-12:])
+    folder = tmp_path / "motion"
+    reader = pv.PVDReader(folder / "motion.pvd")
+    assert reader.time_values == pytest.approx(result.motion_time)
+    mesh = pv.read(folder / "motion" / "instant_0012.vtp")
+    true, scaled = mesh.point_data["displacement_m"], mesh.point_data["displacement"]
+    assert scaled == pytest.approx(true * mesh.field_data["displacement_scale"][0], rel=1e-4, abs=1e-9)
+    node = 0  # the left end of the input shaft moves as its node does
+    about = result.motion[node, :3, -1] - result.motion[node, :3].mean(axis=1)
+    assert abs(true).max() >= abs(about).max() * 0.999

@@ -1,0 +1,44 @@
+"""Element matrices of isotropic linear elasticity from the gradients of scikit-fem's quadratic shape functions.
+
+With H_ab^ij = integral of (d_i N_a) (d_j N_b):  K_(ai)(bj) = lambda H_ab^ij + mu H_ab^ji + mu delta_ij sum_k H_ab^kk.
+Young's modulus is 1; two dimensions mean plane strain of unit thickness. Reference: any text on finite elements.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+
+def lame(poisson_ratio: float) -> tuple[float, float]:
+    """lambda and mu for a Young's modulus of 1."""
+    nu = poisson_ratio
+    return nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 / (1.0 + nu)
+
+
+def element_matrices(basis: Any, poisson_ratio: float) -> np.ndarray:
+    """Stiffness of all elements of a scalar basis, (e, n d, n d); the d components of a node follow each other."""
+    lam, mu = lame(poisson_ratio)
+    grads = np.stack([np.asarray(found[0].grad) for found in basis.basis])  # (n, d, e, q)
+    n, d, e, q = grads.shape
+    flat = np.ascontiguousarray(grads.transpose(2, 0, 1, 3)).reshape(e, n * d, q)
+    H = ((flat * basis.dx[:, None, :]) @ flat.transpose(0, 2, 1)).reshape(e, n, d, n, d)
+    trace = np.einsum("eaibi->eab", H)
+    K = lam * H + mu * H.transpose(0, 1, 4, 3, 2)
+    for i in range(d):
+        K[:, :, i, :, i] += mu * trace
+    return np.asarray(K.reshape(e, n * d, n * d))
+
+
+def component_dofs(cells: np.ndarray, dimension: int) -> np.ndarray:
+    """Degrees of freedom (e, n d) of elements with nodes (n, e): those of a node follow each other."""
+    return np.asarray((dimension * cells.T[:, :, None] + np.arange(dimension)).reshape(cells.shape[1], -1))
+
+
+def assembled(elements: np.ndarray, dofs: np.ndarray, size: int) -> sp.csc_array:
+    """Sum of element matrices (e, n, n) on their degrees of freedom (e, n), sparse (size, size)."""
+    n = dofs.shape[1]
+    rows, columns = np.repeat(dofs, n, axis=1).ravel(), np.tile(dofs, n).ravel()
+    return sp.csc_array(sp.coo_array((elements.ravel(), (rows, columns)), (size, size)))

@@ -1,0 +1,76 @@
+"""Where two involute flanks touch: along the line of action, and at a tip corner just before and after it.
+
+On the line of action xi_1 + xi_2 = T1T2. Beyond its ends a tip corner P of one gear touches the flank of its mate off the line:
+with t = sqrt(r_P^2 / r_b^2 - 1) and the angle of P about the mate's axis from the centre line, the mate's flank through P would
+cut the line of action at xi_eff = r_b (a_w - angle + t - atan t), so the gap there is xi_1 + xi_2,eff - T1T2.
+Reference: ISO 21771-1 for the line of action; the corner is plane kinematics. Lengths in m, angles in rad.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class LineOfAction:
+    """Line of action of a pair in the transverse plane; index 0 is the pinion, 1 the gear.
+
+    Attributes:
+        base_radius, form, tip: of both gears: base radius, roll length where the involute begins, and at the tip.
+        centre_distance, pressure_angle: a_w and the working transverse pressure angle.
+        base_pitch: transverse.
+        base_helix_angle: b_b.
+    """
+
+    base_radius: tuple[float, float]
+    form: tuple[float, float]
+    tip: tuple[float, float]
+    centre_distance: float
+    pressure_angle: float
+    base_pitch: float
+    base_helix_angle: float
+
+    @property
+    def length(self) -> float:
+        """T1T2, between the base tangent points."""
+        return self.centre_distance * math.sin(self.pressure_angle)
+
+    @property
+    def pitch_point(self) -> float:
+        """Roll length of the pinion at the pitch point."""
+        return self.base_radius[0] * math.tan(self.pressure_angle)
+
+    @property
+    def start(self) -> float:
+        """Roll length of the pinion where contact begins: at the gear's tip, or where its own involute begins."""
+        return max(self.length - self.tip[1], self.form[0])
+
+    @property
+    def end(self) -> float:
+        """Roll length of the pinion where contact ends: at its own tip, or where the gear's involute begins."""
+        return min(self.tip[0], self.length - self.form[1])
+
+    @property
+    def interference(self) -> bool:
+        """Whether a tip reaches below the involute of its mate."""
+        slack = 1e-9 * self.length
+        return self.length - self.tip[1] < self.form[0] - slack or self.length - self.form[1] < self.tip[0] - slack
+
+    def corner(self, gear: int, excess: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Gap along the line of action, and roll length on the mate, of the tip corner of a gear.
+
+        Args:
+            gear: whose tip it is; the pinion's leaves contact, the gear's comes into it.
+            excess: (k,) how far the nominal contact is beyond that tip on the line of action.
+        """
+        own, mate = self.base_radius[gear], self.base_radius[1 - gear]
+        tip, excess = self.tip[gear], np.asarray(excess, float)
+        angle = self.pressure_angle - math.atan(tip / own) - excess / own
+        radius = math.hypot(tip, own)
+        across, along = radius * np.sin(angle), self.centre_distance - radius * np.cos(angle)
+        t = np.sqrt(np.maximum((across**2 + along**2) / mate**2 - 1.0, 0.0))
+        effective = mate * (self.pressure_angle + np.arctan2(across, along) + t - np.arctan(t))
+        return tip + excess + effective - self.length, mate * t

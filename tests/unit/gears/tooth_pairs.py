@@ -1,0 +1,47 @@
+"""Pairs for the tests of loaded teeth: spur and helical 34/80, and small meshes of them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from rotorgear.gears.geometry import GearGeometry
+from rotorgear.gears.mesh_cycle import MeshCycle
+from rotorgear.gears.mesh_stiffness import ToothPair
+from rotorgear.gears.pair import pair_geometry
+from rotorgear.gears.stiffness_tooth_fe import loaded_cycle
+from rotorgear.gears.tooth_fe import ToothFe
+from rotorgear.gears.tooth_points import MeshSize
+
+WIDTH = 54e-3
+COARSE = MeshSize(5, 2, 4, 2, 3, 4)
+LOAD = 11_798.1
+
+
+def pair(helix: float = 0.0, fe: ToothFe | None = None, addendum: float = 1.0, **given: Any) -> ToothPair:
+    """Teeth 34/80, module 5 mm, 20 deg, face 54 mm, no shift, at the distance without backlash; helix in degrees."""
+    gears = [
+        GearGeometry(
+            teeth=z, normal_module=5e-3, normal_pressure_angle=math.radians(20.0), helix_angle=math.radians(helix),
+            addendum_factor=addendum,
+        )
+        for z in (34, 80)
+    ]  # fmt: skip
+    return ToothPair(gears[0], gears[1], pair_geometry(*gears, WIDTH), WIDTH, fe=fe or ToothFe(), **given)
+
+
+def spur(**given: Any) -> ToothPair:
+    """The spur pair with the default preset."""
+    return pair(**given)
+
+
+def helical(**given: Any) -> ToothPair:
+    """The helical pair, 20.86 deg, on a coarse mesh in space."""
+    return pair(20.86, ToothFe(size=COARSE), **given)
+
+
+def cycle(teeth: ToothPair, load: float = LOAD, positions: int = 16) -> MeshCycle:
+    """Loaded contact over one period."""
+    return loaded_cycle(teeth, load, np.arange(positions) / positions)[1]

@@ -1,0 +1,37 @@
+"""Flank modifications and settings of loaded teeth that can't be are reported with their address."""
+
+from __future__ import annotations
+
+import pytest
+
+import rotorgear as rg
+from tests.unit.analysis.geared import pair_file
+
+
+@pytest.mark.parametrize(
+    ("pinion", "mesh", "said"),
+    [
+        ('flank = { root_relief = "5 um" }', "", "flank.root_relief_diameter"),
+        ('flank = { root_relief_diameter = "165 mm" }', "", "flank.root_relief"),
+        ('flank = { root_relief = "5 um", root_relief_diameter = "300 mm" }', "", "a diameter on the involute"),
+        ('flank = { end_relief = "5 um" }', "", "flank.end_relief_length"),
+        ('flank = { end_relief = "5 um", end_relief_length = "40 mm" }', "", "up to half of the face, 27 mm"),
+        ('flank = { crowning = "2 mm" }', "", "up to 0.2 normal modules"),
+        ('flank = { helix_slope = "-2 mm" }', "", "up to 0.2 normal modules"),
+        ('flank = { pitch_errors = { "34" = "5 um" } }', "", "from '0' to '33'"),
+        ('flank = { pitch_errors = { "first" = "5 um" } }', "", "the number of a tooth"),
+        ("", "stagger = 0.5", "herringbone gears"),
+        ("", "tooth_fe = { pitches = 4 }", "an odd number"),
+        ("", 'tooth_fe = { preset = "finest" }', "preset"),
+    ],
+)
+def test_what_cannot_be_is_said_with_its_address(pinion: str, mesh: str, said: str) -> None:
+    text = pair_file(pinion=pinion, mesh=f'stiffness = "tooth_fe"\n{mesh}')
+    with pytest.raises(rg.ModelError) as error:
+        rg.loads(text)
+    assert said in str(error.value)
+
+
+def test_modifications_that_can_be_are_taken() -> None:
+    flank = 'flank = { root_relief = "5 um", root_relief_diameter = "168 mm", end_relief = "5 um", end_relief_length = "8 mm" }'
+    assert rg.loads(pair_file(pinion=flank)).gears["pinion"].flank.root_relief == pytest.approx(5e-6)
