@@ -173,11 +173,23 @@ def values() -> dict[str, float | str]:
     for name, (teeth, helix, impact) in PAIRS.items():
         samples[name] = spread(teeth, helix, impact)
         found |= {f"{key}_{name}": value for key, value in _of_pair(name, samples[name]).items()}
+    found |= _loaded_teeth()
     found["dynamic_drop"] = 100.0 * (1.0 - (float(found["kv_b"]) - 1.0) / (float(found["kv_a"]) - 1.0))
     found["share_lower"] = 100.0 * float(np.mean(samples["b"] < samples["a"]))
     for number, (helix, width, impact) in enumerate(CASES, 1):
         found[f"case{number}_kv"] = run(pair((34, 80), helix, 1e-3 * width, impact))[0]
     return found
+
+
+def _loaded_teeth() -> dict[str, float]:
+    """Mean and peak to peak of the stiffness of a helix along the flank normal (N/m), by finite elements."""
+    found = {}
+    for name, file in FILES.items():
+        teeth = rg.mesh_analysis(loaded(file), "left", stiffness="tooth_fe", torque=1000.0, estimate=False)
+        normal = 1.0 / math.cos(teeth.base_helix_angle) ** 2
+        found[f"fe_mean_{name}"] = normal * teeth.mean_stiffness
+        found[f"fe_pp_{name}"] = normal * teeth.peak_to_peak_stiffness
+    return found | {"fe_drop": 100.0 * (1.0 - found["fe_pp_b"] / found["fe_pp_a"])}
 
 
 def _of_pair(name: str, sample: np.ndarray) -> dict[str, float]:
