@@ -55,6 +55,11 @@ def test_all_bodies_of_the_marine_train_turn_together_in_its_rigid_mode() -> Non
         assert turns[name] / turns["wheel_hp"] == pytest.approx(value, rel=1e-9)
 
 
+def test_check_shows_a_given_damping_whatever_the_direction_of_the_line_of_action() -> None:
+    meshes = {row["name"]: row for row in rg.describe_model(loaded("marine_dual_turbine")).to_dict()["meshes"]}
+    assert meshes["first_lp"]["damping_n_s_per_m"] == pytest.approx(143457.3)
+
+
 def test_back_side_contact_falls_with_the_load_ratio_and_the_amplitude_bound_holds() -> None:
     found = {gamma: marine.contact(gamma, settle=50, count=50) for gamma in (0.3, 0.6, 1.0)}
     back = [found[gamma].back for gamma in (0.3, 0.6, 1.0)]

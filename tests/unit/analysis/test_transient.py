@@ -52,6 +52,17 @@ def test_without_excitation_the_static_forces_stay() -> None:
     assert any("neither transmission error" in note for note in result.left_out)
 
 
+def test_a_given_mesh_phase_turns_the_harmonics_by_so_much() -> None:
+    waves = [[{"harmonic": n, "amplitude": "1 um", "phase": angle} for n, angle in pair] for pair in (
+        ((1, 0.3), (2, 0.1)), ((1, 0.3 + 0.7), (2, 0.1 + 1.4)))]  # fmt: skip
+    found = [
+        transient(spur_pair(meshes__pair__transmission_error=w, meshes__pair__phase=p), time=0.01, steps=200)
+        for w, p in zip(waves, (0.7, 0.0), strict=True)
+    ]
+    assert found[0].mesh_force == pytest.approx(found[1].mesh_force, rel=1e-9)
+    assert np.ptp(found[0].mesh_force) > 100.0
+
+
 def test_bearing_forces_carry_the_mesh_force_in_the_mean() -> None:
     result = transient(spur_pair(), time=0.1, settle=0.2)
     force = {
@@ -73,6 +84,15 @@ def test_the_methods_agree_within_their_error_estimates_while_teeth_part() -> No
             assert abs(a - b) <= 5.0 * (ea + eb) + 5e-3 * abs(a), name
     assert all(result.energy.share < 0.01 for result in found)
     assert all(result.error_estimate < 4e-3 for result in found)
+
+
+def test_a_mesh_that_carries_next_to_nothing_rattles_without_a_tiny_step() -> None:
+    model = spur_pair(
+        meshes__pair__backlash="40 um", meshes__pair__contact_damping="unclamped", operation__torque="0.01 N m"
+    )
+    found = [transient(model, method=m, time=0.05, steps=80) for m in ("newmark", "exponential")]
+    assert [result.status for result in found] == ["success", "success"]
+    assert min(result.contact_losses[0] for result in found) > 5
 
 
 def test_contact_is_lost_only_if_there_is_backlash_and_the_response_does_not_depend_on_it_before() -> None:
