@@ -32,6 +32,11 @@ _HOMES = {
     "rotorgear.analysis.response": ("response",),
     "rotorgear.analysis.frequency_response": ("frequency_response",),
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
+    "rotorgear.analysis.campbell": ("campbell",),
+    "rotorgear.analysis.critical": ("critical_speeds",),
+    "rotorgear.analysis.critical_map": ("critical_map",),
+    "rotorgear.results.critical": ("CriticalResult", "CriticalMap"),
+    "rotorgear.results.campbell": ("CampbellResult",),
     "rotorgear.analysis.transient": ("transient",),
     "rotorgear.analysis.transient_ladder": ("transient_ladder",),
     "rotorgear.analysis.spectra": ("spectrum", "spectral_lines"),
@@ -62,7 +67,10 @@ __all__ = ["__version__", *_HOME]
 
 if TYPE_CHECKING:
     from rotorgear.analysis.accuracy import accuracy_ladder
+    from rotorgear.analysis.campbell import campbell
     from rotorgear.analysis.compare import compare, read_rig_lines
+    from rotorgear.analysis.critical import critical_speeds
+    from rotorgear.analysis.critical_map import critical_map
     from rotorgear.analysis.describe_model import describe_model
     from rotorgear.analysis.frequency_response import frequency_response
     from rotorgear.analysis.gear_sheet import gear_sheet
@@ -99,7 +107,9 @@ if TYPE_CHECKING:
         TableRow,
     )
     from rotorgear.results.accuracy import AccuracyLadder
+    from rotorgear.results.campbell import CampbellResult
     from rotorgear.results.comparison import Comparison, RigLine
+    from rotorgear.results.critical import CriticalMap, CriticalResult
     from rotorgear.results.frequency_response import FrequencyResponse
     from rotorgear.results.gear_sheet import GearSheet
     from rotorgear.results.mesh import MeshResult

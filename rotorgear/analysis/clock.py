@@ -17,3 +17,7 @@ class Clock:
         now = time.perf_counter()
         self.laps[name] = self.laps.get(name, 0.0) + now - self._last
         self._last = now
+
+    def total(self) -> dict[str, float]:
+        """Seconds by step, and their sum as "total"."""
+        return {**self.laps, "total": sum(self.laps.values())}

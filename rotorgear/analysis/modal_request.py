@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import overload
+
 import numpy as np
 
 from rotorgear.analysis.mode_count import expected_modes
@@ -15,6 +17,10 @@ FINEST = 1e-11
 MOST_MODES = 2000
 
 
+@overload
+def speed_in_si(given: float | str) -> float: ...
+@overload
+def speed_in_si(given: float | str | None) -> float | None: ...
 def speed_in_si(given: float | str | None) -> float | None:
     """Speed in rad/s from a number or a text with its unit."""
     if given is None:

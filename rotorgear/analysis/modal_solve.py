@@ -65,7 +65,7 @@ def solve(system: System, wanted: Wanted) -> Modes:
         found = [_solve_group(_part(whole, g, system.n), wanted, system) for g in chosen]
     except LooseDofError as error:
         raise _loose(system, whole) or AnalysisError(str(error)) from None
-    notes = _group_notes(motions, groups, chosen)
+    notes = group_notes(motions, groups, chosen)
     return _merged(system, chosen, found, wanted, speed, notes)
 
 
@@ -125,7 +125,7 @@ def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
         s, vectors, rigid, errors, available, method = _damped(problem, wanted)
     zeta = system.model.damping.modal_ratio
     if zeta and wanted.speed is not None:
-        s = _with_modal_damping(s, zeta)
+        s = with_modal_damping(s, zeta)
     return Modes(s, vectors, rigid, errors, method, available)
 
 
@@ -173,7 +173,7 @@ def _damped(
     )
 
 
-def _with_modal_damping(s: np.ndarray, zeta: float) -> np.ndarray:
+def with_modal_damping(s: np.ndarray, zeta: float) -> np.ndarray:
     """Add a damping ratio to every oscillating mode and keep |s|: what a modal damping ratio states."""
     size = np.abs(s)
     total = np.where(size > 0.0, -s.real / np.where(size > 0.0, size, 1.0), 0.0) + zeta
@@ -209,7 +209,7 @@ def _merged(
     return Modes(s[order], vectors, rigid[order], errors[order], method, available, notes)
 
 
-def _group_notes(motions: np.ndarray, groups: list[np.ndarray], chosen: list[np.ndarray]) -> tuple[str, ...]:
+def group_notes(motions: np.ndarray, groups: list[np.ndarray], chosen: list[np.ndarray]) -> tuple[str, ...]:
     """Say which groups of dofs were solved apart and which were left out."""
     notes = []
     kept = {int(group[0]) for group in chosen}

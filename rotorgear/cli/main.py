@@ -9,8 +9,10 @@ import typer
 
 from rotorgear.cli import (
     accuracy,
+    campbell,
     check,
     compare,
+    critical,
     frf,
     gear,
     mesh,
@@ -32,6 +34,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command()(modal.modal)
+app.command()(campbell.campbell)
+app.command()(critical.critical)
 app.command()(compare.compare)
 app.command()(static.static)
 app.command()(response.response)

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 from rotorgear.errors import MissingExtraError, ModelError, RotorgearError
 from rotorgear.export.files import replacing
 from rotorgear.export.hdf5_values import get_value, put_value
+from rotorgear.results.campbell import CampbellResult
+from rotorgear.results.critical import CriticalResult
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult
 from rotorgear.results.response import ResponseResult
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
 FORMAT, FORMAT_VERSION = "rotorgear result", 1
 _KINDS: dict[str, type[Any]] = {
     "modal": ModalResult,
+    "campbell": CampbellResult,
+    "critical": CriticalResult,
     "static": StaticResult,
     "response": ResponseResult,
     "frf": FrequencyResponse,

@@ -16,11 +16,27 @@ from typing import Any
 import numpy as np
 
 from rotorgear.model.model import Model
+from rotorgear.results.campbell import Crossing, ExcitationOrder, Margin, Onset
+from rotorgear.results.critical import CriticalSpeed
 from rotorgear.results.modal import NodeTable, Piece
 from rotorgear.results.static import LoopAssembly, Share
 from rotorgear.results.transient import EnergyLedger
 
-_RECORDS: dict[str, type] = {cls.__name__: cls for cls in (NodeTable, Piece, Share, LoopAssembly, EnergyLedger)}
+_RECORDS: dict[str, type] = {
+    cls.__name__: cls
+    for cls in (
+        NodeTable,
+        Piece,
+        ExcitationOrder,
+        Crossing,
+        Margin,
+        Onset,
+        CriticalSpeed,
+        Share,
+        LoopAssembly,
+        EnergyLedger,
+    )
+}
 
 
 def put_value(h5: ModuleType, parent: Any, name: str, value: Any) -> None:
@@ -77,7 +93,11 @@ def _put_records(h5: ModuleType, parent: Any, name: str, value: tuple[Any, ...])
     group.attrs["record"] = type(value[0]).__name__
     for item in fields(value[0]):
         column = tuple(getattr(record, item.name) for record in value)
-        put_value(h5, group, item.name, column if isinstance(column[0], str) else np.array(column))
+        put_value(h5, group, item.name, column if isinstance(column[0], str | tuple) else np.array(column))
+
+
+def _put_lists(h5: ModuleType, parent: Any, name: str, value: tuple[tuple[str, ...], ...]) -> None:
+    _put_texts(h5, parent, name, tuple(json.dumps(item) for item in value))
 
 
 def _get_texts(item: Any) -> tuple[str, ...]:
@@ -117,7 +137,9 @@ _WRITERS: tuple[_Writer, ...] = (
     ("records", lambda v: isinstance(v, tuple) and bool(v) and all(map(_is_record, v)), _put_records),
     ("text", lambda v: isinstance(v, str), _put_text),
     ("texts", lambda v: isinstance(v, tuple) and all(isinstance(x, str) for x in v), _put_texts),
+    ("lists", lambda v: isinstance(v, tuple) and all(isinstance(x, tuple) for x in v), _put_lists),
     ("array", lambda v: isinstance(v, np.ndarray), _put_array),
+    ("truth", lambda v: isinstance(v, bool), _put_array),
     ("numbers", lambda v: _is_table(v, (float, int)), _put_table),
     ("arrays", lambda v: _is_table(v, np.ndarray), _put_table),
     ("integer", lambda v: isinstance(v, int | np.integer), _put_array),
@@ -130,7 +152,9 @@ _READERS: dict[str, Callable[[Any], Any]] = {
     "records": _get_records,
     "text": lambda item: item.asstr()[()],
     "texts": _get_texts,
+    "lists": lambda item: tuple(tuple(json.loads(text)) for text in _get_texts(item)),
     "array": lambda item: item[()],
+    "truth": lambda item: bool(item[()]),
     "numbers": _table_of(float),
     "arrays": _table_of(np.asarray),
     "integer": lambda item: int(item[()]),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.model.model import Model
+from rotorgear.results.plain import plain
 
 
 @dataclass(frozen=True)
@@ -128,21 +129,21 @@ class ModalResult:
             "analysis": "modal",
             "title": self.model.title,
             "speed_rpm": None if self.speed is None else self.speed * 30.0 / np.pi,
-            "frequency_hz": _plain(self.frequency_hz),
-            "natural_frequency_hz": _plain(self.natural_frequency_hz),
-            "damping_ratio": _plain(self.damping_ratio),
+            "frequency_hz": plain(self.frequency_hz),
+            "natural_frequency_hz": plain(self.natural_frequency_hz),
+            "damping_ratio": plain(self.damping_ratio),
             "rigid": [bool(value) for value in self.rigid],
             "description": list(self.description),
             "whirl": list(self.whirl),
-            "error_estimate": _plain(self.error_estimate),
-            "eigenvalue_real_1_per_s": _plain(self.eigenvalues.real),
-            "eigenvalue_imag_1_per_s": _plain(self.eigenvalues.imag),
-            "kinetic_energy": {part: _plain(share) for part, share in self.kinetic_energy.items()},
-            "strain_energy": {part: _plain(share) for part, share in self.strain_energy.items()},
-            "kinetic_by_motion": {motion: _plain(share) for motion, share in self.kinetic_by_motion.items()},
-            "strain_by_motion": {motion: _plain(share) for motion, share in self.strain_by_motion.items()},
-            "point_amplitude": {name: _plain(np.abs(value)) for name, value in self.point_amplitudes.items()},
-            "backward_error": _plain(self.backward_error),
+            "error_estimate": plain(self.error_estimate),
+            "eigenvalue_real_1_per_s": plain(self.eigenvalues.real),
+            "eigenvalue_imag_1_per_s": plain(self.eigenvalues.imag),
+            "kinetic_energy": {part: plain(share) for part, share in self.kinetic_energy.items()},
+            "strain_energy": {part: plain(share) for part, share in self.strain_energy.items()},
+            "kinetic_by_motion": {motion: plain(share) for motion, share in self.kinetic_by_motion.items()},
+            "strain_by_motion": {motion: plain(share) for motion, share in self.strain_by_motion.items()},
+            "point_amplitude": {name: plain(np.abs(value)) for name, value in self.point_amplitudes.items()},
+            "backward_error": plain(self.backward_error),
             "dofs": self.dofs,
             "nodes": len(self.nodes.shaft),
             "discretisation": [asdict(piece) for piece in self.discretisation],
@@ -152,8 +153,3 @@ class ModalResult:
             "warnings": list(self.warnings),
             "method": self.method,
         }
-
-
-def _plain(values: np.ndarray) -> list[float | None]:
-    """Floats for JSON; what is not finite becomes null."""
-    return [float(value) if np.isfinite(value) else None for value in values]

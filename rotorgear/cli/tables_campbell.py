@@ -1,0 +1,114 @@
+"""The Campbell result as tables for the terminal."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rotorgear.results.campbell import CampbellResult
+
+_RPM = 30.0 / math.pi
+
+
+def campbell_table(result: CampbellResult, *, crossings: bool = False) -> RenderableType:
+    """Return branches, margins and, where asked for, crossings as one rich renderable that fits 80 columns."""
+    from rich.console import Group
+    from rich.text import Text
+
+    first, last = result.speed_rpm[0], result.speed_rpm[-1]
+    title = f"{result.model.title or 'Modes'}: {result.model.reference_shaft} at {first:.6g} to {last:.6g} rpm"
+    parts: list[RenderableType] = [Text(title, style="bold"), _branches(result)]
+    if result.margins:
+        parts.append(_margins(result))
+    if crossings:
+        parts.append(_crossings(result))
+    parts += [Text(line) for line in _notes(result, crossings)]
+    return Group(*parts, "")
+
+
+def plain_table(title: str = "") -> Any:
+    """An empty table without lines."""
+    from rich.table import Table
+
+    return Table(
+        box=None, pad_edge=False, title=f"\n{title}" if title else None, title_justify="left", title_style="bold",
+        header_style="bold",
+    )  # fmt: skip
+
+
+def _branches(result: CampbellResult) -> Any:
+    table = plain_table()
+    table.add_column("branch", justify="right")
+    for speed in (result.speed_rpm[0], result.speed_rpm[-1]):
+        table.add_column(f"Hz at {speed:.6g}", justify="right")
+    table.add_column("log dec.", justify="right")
+    table.add_column("whirl")
+    table.add_column("what moves", overflow="fold")
+    for b in range(len(result)):
+        hertz = result.frequency_hz[[0, -1], b]
+        table.add_row(
+            str(b + 1), *(_number(value, ".4f") for value in hertz), _number(result.log_decrement[-1, b], ".4f"),
+            result.whirl_word(-1, b), result.description[b],
+        )  # fmt: skip
+    return table
+
+
+def _margins(result: CampbellResult) -> Any:
+    assert result.operating_speed is not None
+    table = plain_table(f"Margins at {result.operating_speed * _RPM:.6g} rpm")
+    table.add_column("line", overflow="fold")
+    for name in ("Hz", "branch", "Hz", "margin %", "takes part %", "crossing rpm"):
+        table.add_column(name, justify="right")
+    for item in result.margins:
+        known = item.branch > 0
+        table.add_row(
+            item.line, f"{item.frequency_hz:.2f}", str(item.branch) if known else "-", _number(item.mode_hz, ".2f"),
+            _number(100.0 * item.margin, "+.2f"), _number(100.0 * item.participation, ".2f") if known else "-",
+            _number(item.crossing_speed * _RPM, ".1f"),
+        )  # fmt: skip
+    return table
+
+
+def _crossings(result: CampbellResult) -> Any:
+    table = plain_table("Crossings")
+    table.add_column("rpm", justify="right")
+    table.add_column("Hz", justify="right")
+    table.add_column("branch", justify="right")
+    table.add_column("line", overflow="fold")
+    table.add_column("whirl")
+    table.add_column("zeta %", justify="right")
+    table.add_column("takes part %", justify="right")
+    for item in result.crossings:
+        share = f"{100.0 * item.participation:.2f}" if item.excited else "not excited"
+        table.add_row(
+            f"{item.speed * _RPM:.2f}", f"{item.frequency_hz:.3f}", str(item.branch), item.line, item.whirl,
+            _number(100.0 * item.damping_ratio, ".3f"), share,
+        )  # fmt: skip
+    return table
+
+
+def _number(value: float, form: str) -> str:
+    return format(value + 0.0, form) if math.isfinite(value) else "-"
+
+
+def _notes(result: CampbellResult, crossings: bool) -> list[str]:
+    import numpy as np
+
+    lines = [""]
+    if any(not item.branch for item in result.margins):
+        lines.append("-: the line lies above all branches (--fmax follows more), or can't excite any")
+    excited = sum(item.excited for item in result.crossings)
+    if not crossings:
+        lines.append(
+            f"{len(result.crossings)} crossings, {excited} of them of modes that the line can excite; --crossings lists them"
+        )
+    estimates = result.error_estimate[np.isfinite(result.error_estimate)]
+    lines.append(f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}")
+    if estimates.size:
+        lines.append(f"error: estimated relative discretisation error of each frequency, largest {estimates.max():.1e}")
+    lines += [f"left out: {note}" for note in result.left_out]
+    lines += [f"Warning: {note}" for note in result.warnings]
+    return lines

@@ -1,0 +1,182 @@
+"""Draws a Campbell diagram: branches coloured by motion, mesh strain energy or damping, whirl by marker, lines and crossings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError
+from rotorgear.plots.figure import new_figure, write_figure
+from rotorgear.plots.labels import Labels, spread
+from rotorgear.results.campbell import RPM, WHIRL_WORDS, CampbellResult, Crossing, ExcitationOrder
+
+COLOURS = ("motion", "mesh", "damping")
+_MOTION = {"bending": (0.12, 0.37, 0.66), "axial": (0.18, 0.60, 0.25), "torsion": (0.80, 0.23, 0.13)}
+_MARKERS = {"forward": "^", "backward": "v", "mixed": "D", "planar": "_"}
+_LINES = {"shaft": "#555555", "mesh": "#7a3f9d", "sideband": "#b58ccb"}
+_MOST_LABELS = 14
+
+
+def draw_campbell(result: CampbellResult, path: str | Path, *, colour: str = "motion") -> Path:
+    """Write the diagram as PNG, SVG or PDF by the name's ending and return its path.
+
+    Args:
+        result: branches over speed.
+        path: file to write.
+        colour: "motion" (bending, axial, torsion, mixed by their shares of the kinetic energy), "mesh" (share of all meshes in
+            the strain energy) or "damping" (logarithmic decrement).
+
+    Raises:
+        AnalysisError: an unknown colour. MissingExtraError: matplotlib is not installed.
+    """
+    if colour not in COLOURS:
+        raise AnalysisError(f"colour: got '{colour}', expected {', '.join(COLOURS[:-1])} or {COLOURS[-1]}")
+    figure = new_figure((11.0, 7.0))
+    axis = figure.subplots()
+    top = 1.04 * float(np.nanmax(result.frequency_hz))
+    left, right = sorted((float(result.speed_rpm[0]), float(result.speed_rpm[-1])))
+    axis.set_xlim(left, right)
+    axis.set_ylim(0.0, top)
+    _branches(figure, axis, result, colour)
+    _whirl(axis, result)
+    _lines(axis, result, (left, right), top)
+    _crossings(axis, result, top)
+    if result.operating_speed is not None and left <= result.operating_speed * RPM <= right:
+        axis.axvline(result.operating_speed * RPM, color="black", lw=0.8)
+        axis.annotate(
+            "operating speed", (result.operating_speed * RPM, top), xytext=(0, 3), textcoords="offset points", fontsize=7,
+            ha="center",
+        )  # fmt: skip
+    axis.set_xlabel(f"speed of {result.model.reference_shaft}, rpm")
+    axis.set_ylabel("damped frequency, Hz")
+    figure.suptitle(result.model.title or "Campbell diagram", fontsize=11)
+    axis.grid(True, alpha=0.15)
+    _legend(axis, result, colour)
+    return write_figure(figure, path)
+
+
+def _branches(figure: Any, axis: Any, result: CampbellResult, colour: str) -> None:
+    from matplotlib.collections import LineCollection
+
+    points = np.stack(
+        [np.broadcast_to(result.speed_rpm[:, None], result.frequency_hz.shape), result.frequency_hz], axis=-1
+    )
+    segments = np.stack([points[:-1], points[1:]], axis=2).reshape(-1, 2, 2)
+    there = np.isfinite(segments).all(axis=(1, 2))
+    if colour == "motion":
+        shares = np.stack([_mean(result.kinetic_by_motion[name]) for name in result.kinetic_by_motion], axis=-1)
+        colours = np.clip(shares @ np.array([_MOTION[name] for name in result.kinetic_by_motion]), 0.0, 1.0)
+        axis.add_collection(LineCollection(segments[there], colors=colours.reshape(-1, 3)[there], lw=1.5, zorder=3))
+        return
+    if colour == "mesh":
+        total = sum(result.mesh_strain.values(), np.zeros(result.frequency_hz.shape))
+        values, label = 100.0 * _mean(total), "share of the meshes in the strain energy, %"
+    else:
+        values, label = _mean(result.log_decrement), "logarithmic decrement"
+    lines = LineCollection(segments[there], array=values.ravel()[there], cmap="viridis", lw=1.7, zorder=3)
+    axis.add_collection(lines)
+    figure.colorbar(lines, ax=axis, label=label, pad=0.06, fraction=0.03)
+
+
+def _mean(values: np.ndarray) -> np.ndarray:
+    return np.asarray(0.5 * (values[:-1] + values[1:]))
+
+
+def _whirl(axis: Any, result: CampbellResult) -> None:
+    """About eight markers a branch, each branch beginning elsewhere, so that close branches don't hide each other's."""
+    count = len(result.speeds)
+    step = max(1, count // 8)
+    for word, marker in _MARKERS.items():
+        x, y = [], []
+        for b in range(len(result)):
+            for k in range((b * step) // 3 % step + 1, count, step):
+                if WHIRL_WORDS[result.whirl[k, b]] == word and np.isfinite(result.frequency_hz[k, b]):
+                    x.append(result.speed_rpm[k])
+                    y.append(result.frequency_hz[k, b])
+        axis.plot(x, y, marker, color="#222222", ms=3.6, mfc="white", mew=0.7, ls="none", zorder=4)
+
+
+def _lines(axis: Any, result: CampbellResult, ends: tuple[float, float], top: float) -> None:
+    """Excitation lines, named where they leave the picture: at the right, or at its upper edge."""
+    side: list[tuple[float, ExcitationOrder]] = []
+    above: list[tuple[float, ExcitationOrder]] = []
+    far = max(ends, key=abs)
+    for line in result.lines:
+        axis.plot(ends, [line.order * abs(v) / 60.0 for v in ends], "--", color=_LINES[line.kind], lw=0.7, zorder=2)
+        height = line.order * abs(far) / 60.0
+        if height <= top:
+            side.append((height / top, line))
+        else:
+            above.append((60.0 * top / line.order / far, line))
+    edge = 1.005 if far == ends[1] else -0.06
+    for (height, line), place in zip(side, spread([h for h, _ in side], 0.021), strict=True):
+        axis.annotate(
+            _short(line), (far, height * top), xytext=(edge, place), textcoords="axes fraction", fontsize=7, va="center",
+            color=_LINES[line.kind], annotation_clip=False,
+        )  # fmt: skip
+    span = ends[1] - ends[0]
+    shares = [(far * share - ends[0]) / span for share, _ in above]
+    for (_, line), share, place in zip(above, shares, spread(shares, 0.014), strict=True):
+        if 0.0 <= share <= 1.0:
+            axis.annotate(
+                _short(line), (ends[0] + share * span, top), xytext=(place, 1.01), textcoords="axes fraction", fontsize=7,
+                rotation=50, va="bottom", ha="left", color=_LINES[line.kind], annotation_clip=False,
+            )  # fmt: skip
+
+
+def _short(line: ExcitationOrder) -> str:
+    """A line's name for the edge of the picture: the first of several parts."""
+    rest = f" +{len(line.parts) - 1}" if len(line.parts) > 1 else ""
+    return f"{line.parts[0]}{rest} {line.name.rpartition(', ')[2].partition(' ')[2] if rest else line.name.split(' ', 2)[2]}"
+
+
+def _crossings(axis: Any, result: CampbellResult, top: float) -> None:
+    """A ring at every crossing that is excited, as large as its participation; the speeds of the most telling ones beside it."""
+    met = [item for item in result.crossings if item.excited]
+    if not met:
+        return
+    x, y = np.array([item.speed * RPM for item in met]), np.array([item.frequency_hz for item in met])
+    size = 6.0 + 60.0 * np.sqrt([item.participation for item in met])
+    axis.scatter(x, y, s=size, facecolors="none", edgecolors="black", lw=0.7, zorder=5)
+    labels = Labels(axis.get_xlim(), (0.0, top))
+    labels.block(np.column_stack([x, y]))
+    for item in sorted(met, key=lambda item: -_telling(item, result)):
+        if labels.count >= _MOST_LABELS:
+            break
+        place = labels.place(item.speed * RPM, item.frequency_hz)
+        if place is not None:
+            axis.annotate(
+                f"{item.speed * RPM:.0f}", (item.speed * RPM, item.frequency_hz), xytext=place, fontsize=7, zorder=6,
+                va="center", ha="center", bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.6},
+            )  # fmt: skip
+
+
+def _telling(item: Crossing, result: CampbellResult) -> float:
+    """Participation, more the nearer to the operating speed."""
+    if not result.operating_speed:
+        return item.participation
+    away = abs(item.speed / result.operating_speed - 1.0)
+    return item.participation / (0.05 + away)
+
+
+def _legend(axis: Any, result: CampbellResult, colour: str) -> None:
+    from matplotlib.lines import Line2D
+
+    handles = []
+    if colour == "motion":
+        handles += [Line2D([], [], color=_MOTION[name], lw=1.8, label=name) for name in result.kinetic_by_motion]
+    used = {WHIRL_WORDS[number] for number in np.unique(result.whirl)}
+    handles += [
+        Line2D([], [], color="#222222", marker=marker, mfc="white", ms=4.5, mew=0.8, ls="none", label=f"{word} whirl")
+        for word, marker in _MARKERS.items()
+        if word in used
+    ]
+    kinds = {line.kind for line in result.lines}
+    handles += [Line2D([], [], color=_LINES[k], ls="--", lw=0.9, label=f"{k} orders") for k in _LINES if k in kinds]
+    if any(item.excited for item in result.crossings):
+        handles.append(
+            Line2D([], [], color="black", marker="o", mfc="none", ms=6, mew=0.7, ls="none", label="crossing, rpm")
+        )
+    axis.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=6, frameon=False, fontsize=8)

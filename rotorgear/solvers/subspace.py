@@ -1,0 +1,58 @@
+"""A real basis that grows by complex vectors, orthonormal in coordinates scaled to unit diagonals."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+class Subspace:
+    """Span of the real and imaginary parts of the vectors added so far.
+
+    Vectors are scaled by `weight` (n,), so that metres and radians, stiff and soft count alike. The first columns keep the
+    directions of the vectors that came first: a soft mode is not turned among stiff ones.
+    """
+
+    def __init__(self, weight: np.ndarray, tolerance: float) -> None:
+        self._weight, self._tolerance = weight, tolerance
+        self._scaled = np.zeros((len(weight), 0))
+
+    @property
+    def size(self) -> int:
+        """Number of columns."""
+        return int(self._scaled.shape[1])
+
+    @property
+    def basis(self) -> np.ndarray:
+        """(n, size), real, in the coordinates of the vectors."""
+        return np.asarray(self._scaled / self._weight[:, None])
+
+    def add(self, vectors: np.ndarray) -> int:
+        """Add what vectors (n, m) bring beside the span; return the number of new columns."""
+        scaled = vectors * self._weight[:, None]
+        scaled = scaled / np.maximum(np.linalg.norm(scaled, axis=0), np.finfo(float).tiny)
+        # The phase of a mode is free: turned so that its real part is as large as can be, little is left for the imaginary one.
+        turn = np.sum(scaled**2, axis=0)
+        scaled = scaled * np.exp(-0.5j * np.angle(turn))
+        new = 0
+        for part in (scaled.real, scaled.imag):
+            new += self._extend(part)
+        return new
+
+    def _extend(self, part: np.ndarray) -> int:
+        rest = part.copy()
+        for _ in range(2):
+            rest -= self._scaled @ (self._scaled.T @ rest)
+        if self.size == 0:
+            columns = _in_order(rest, self._tolerance)
+        else:
+            U, size, _ = np.linalg.svd(rest, full_matrices=False)
+            columns = U[:, size > self._tolerance]
+        columns = columns - self._scaled @ (self._scaled.T @ columns)
+        self._scaled = np.hstack([self._scaled, columns])
+        return int(columns.shape[1])
+
+
+def _in_order(vectors: np.ndarray, tolerance: float) -> np.ndarray:
+    """Orthonormal columns of the vectors, one after the other, without those that lie in the span of the ones before."""
+    Q, R = np.linalg.qr(vectors)
+    return np.asarray(Q[:, np.abs(np.diag(R)) > tolerance])
