@@ -48,7 +48,7 @@ def operating(gamma: float, total: float = 30e3, *, drag: float = DRAG, table_st
             keys |= {"stiffness": k, "damping": 0.14 * math.sqrt(k * m_e)}
     return changed(
         loaded(MODEL), meshes=meshes,
-        loads={"hp": {"torque": hp}, "lp": {"torque": gamma * hp}, "lp_drag": {"torque": drag}},
+        loads={"hp": {"torque": hp}, "propeller": {"torque": None}, "lp": {"torque": gamma * hp}, "lp_drag": {"torque": drag}},
     )  # fmt: skip
 
 
