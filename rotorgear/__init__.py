@@ -39,6 +39,7 @@ _HOMES = {
     "rotorgear.results.campbell": ("CampbellResult",),
     "rotorgear.analysis.transient": ("transient",),
     "rotorgear.analysis.transient_ladder": ("transient_ladder",),
+    "rotorgear.analysis.sweep": ("sweep",),
     "rotorgear.analysis.spectra": ("spectrum", "spectral_lines"),
     "rotorgear.analysis.rig_spectrum": ("compare_spectrum",),
     "rotorgear.analysis.gear_sheet": ("gear_sheet",),
@@ -48,6 +49,7 @@ _HOMES = {
     "rotorgear.analysis.describe_model": ("describe_model",),
     "rotorgear.results.modal": ("ModalResult",),
     "rotorgear.results.transient": ("TransientResult",),
+    "rotorgear.results.sweep": ("SweepResult",),
     "rotorgear.results.static": ("StaticResult",),
     "rotorgear.results.response": ("ResponseResult",),
     "rotorgear.results.frequency_response": ("FrequencyResponse",),
@@ -81,6 +83,7 @@ if TYPE_CHECKING:
     from rotorgear.analysis.rig_spectrum import compare_spectrum
     from rotorgear.analysis.spectra import spectral_lines, spectrum
     from rotorgear.analysis.static import static
+    from rotorgear.analysis.sweep import sweep
     from rotorgear.analysis.transient import transient
     from rotorgear.analysis.transient_ladder import transient_ladder
     from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
@@ -116,6 +119,7 @@ if TYPE_CHECKING:
     from rotorgear.results.modal import ModalResult
     from rotorgear.results.response import ResponseResult
     from rotorgear.results.static import StaticResult
+    from rotorgear.results.sweep import SweepResult
     from rotorgear.results.transient import TransientResult
     from rotorgear.system.system import System
 

@@ -20,6 +20,7 @@ from rotorgear.cli import (
     response,
     schema,
     static,
+    sweep,
     transient,
     validate,
     view,
@@ -41,6 +42,7 @@ app.command()(static.static)
 app.command()(response.response)
 app.command()(frf.frf)
 app.command()(transient.transient)
+app.command()(sweep.sweep)
 app.command()(check.check)
 app.command()(gear.gear)
 app.command()(mesh.mesh)

@@ -19,6 +19,7 @@ from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult
 from rotorgear.results.response import ResponseResult
 from rotorgear.results.static import StaticResult
+from rotorgear.results.sweep import SweepResult
 from rotorgear.results.transient import TransientResult
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ _KINDS: dict[str, type[Any]] = {
     "response": ResponseResult,
     "frf": FrequencyResponse,
     "transient": TransientResult,
+    "sweep": SweepResult,
 }
 # The package is loaded before its modules; importing it from here would turn the house upside down.
 _VERSION: str = sys.modules[__name__.partition(".")[0]].__version__

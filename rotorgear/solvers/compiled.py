@@ -28,14 +28,18 @@ SCHEDULE = numba.types.void(_number, _number, _number, _vector, _vector)
 FORCE = numba.types.void(*[_vector] * 8)
 
 
-def compiled(function: Callable[..., Any] | None = None, *, signature: Any = None, fast: bool = False) -> Any:
-    """Compile a function with numba and keep the result on disk.
+def compiled(
+    function: Callable[..., Any] | None = None, *, signature: Any = None, fast: bool = False, free: bool = False
+) -> Any:
+    """Compile a function with numba and keep the result on disk; a `free` one lets other threads run beside it.
 
     Where neither the package's nor the user's cache folder can be written, the cache goes to the temporary folder.
     """
     if function is None:
-        return lambda given: compiled(given, signature=signature, fast=fast)
+        return lambda given: compiled(given, signature=signature, fast=fast, free=free)
     options: dict[str, Any] = {"fastmath": FAST} if fast else {}
+    if free:
+        options["nogil"] = True
     arguments = (signature,) if signature is not None else ()
     try:
         return numba.njit(*arguments, cache=True, **options)(function)

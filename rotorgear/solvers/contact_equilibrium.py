@@ -19,6 +19,8 @@ from rotorgear.solvers.nullspace import SupportedSolver, left_null_space
 
 _ITERATIONS = 80
 _TOLERANCE = 1e-10
+# Iterations in a row that do not bring the residual down: all contacts are open, say, and nothing says where to go.
+_STUCK = 3
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,7 @@ def _local(system: LocalSystem, d0: np.ndarray, A: np.ndarray) -> tuple[np.ndarr
         return d - d0 + A @ (F - k @ d), F, Kd
 
     r, F, Kd = residual(d)
+    stuck = 0
     for _ in range(_ITERATIONS):
         size = np.abs(d0).max(initial=0.0) + np.abs(A @ F).max(initial=0.0)
         if not np.all(np.isfinite(r)):
@@ -101,5 +104,8 @@ def _local(system: LocalSystem, d0: np.ndarray, A: np.ndarray) -> tuple[np.ndarr
             if np.linalg.norm(r_new) < (1.0 - 1e-4 * share) * np.linalg.norm(r) or share < 1e-3:
                 break
             share *= 0.5
+        stuck = stuck + 1 if np.linalg.norm(r_new) > (1.0 - 1e-6) * np.linalg.norm(r) else 0
         d, r, F, Kd = trial, r_new, F_new, Kd_new
+        if stuck == _STUCK:
+            break
     return d0, local_tangent(system, d0, 0.0)[0], False

@@ -18,7 +18,7 @@ def test_a_shipped_model_loads_and_gives_its_modes_at_its_speed(file: Path) -> N
     model = rg.load(file)
     speed = model.operation.speed if model.operation else None
     result = rg.modal(model, speed=speed, modes=5)
-    assert len(result) == 5
+    assert len(result) == min(5, rg.System(model).n)
     assert np.all(result.damping_ratio > -1e-9)
     assert model.title
     assert "schema_version = 1" in file.read_text(encoding="utf-8")

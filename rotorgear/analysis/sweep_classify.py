@@ -1,0 +1,89 @@
+"""What kind of motion a Poincare section shows, and a largest Lyapunov exponent with its statistical uncertainty.
+
+With x the displacements of the contacts at the end of each common period T, p their peak to peak and L the exponent per period of
+the fastest mesh, the first of these that holds:
+
+    chaotic         L > chaos (0.02) and L > 2 standard errors
+    kT              all x that lie k T apart stay within tolerance (0.02) of max(p, 0.05 um), for the least k up to 32
+    quasi-periodic  |L| <= chaos, and the two halves of the section cover the same range to 10 %
+    not settled     anything else
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+LONGEST = 32
+TOLERANCE, CHAOS = 0.02, 0.02
+_SMALLEST = 0.05e-6  # m, peak to peak
+_SAME_RANGE = 0.1
+# Batches of consecutive periods whose means are taken as independent.
+_BATCHES = 16
+CHAOTIC, QUASI_PERIODIC, NOT_SETTLED, NOT_PERIODIC, FAILED = (
+    "chaotic", "quasi-periodic", "not settled", "not periodic", "failed",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Its kind, and its period in common periods; 0 where it has none."""
+
+    kind: str
+    period: int
+
+
+def exponents(growth: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Means and standard errors of growth (p, t) over a length each, from the scatter between batches of consecutive periods."""
+    count = len(growth)
+    mean = growth.mean(axis=0) / length
+    batches = min(_BATCHES, count // 2)
+    if batches < 2:
+        return mean, np.full(mean.shape, np.nan)
+    size = count // batches
+    means = growth[count - size * batches :].reshape(batches, size, -1).mean(axis=1) / length
+    return mean, means.std(axis=0, ddof=1) / np.sqrt(batches)
+
+
+def classify(
+    x: np.ndarray,
+    extent: np.ndarray,
+    exponent: float | None,
+    error: float,
+    tolerance: float = TOLERANCE,
+    chaos: float = CHAOS,
+) -> Motion:
+    """Return the kind of motion.
+
+    Args:
+        x: (p, c) displacements of the contacts at the section; extent: (c,) their peak to peak over time.
+        exponent, error: largest Lyapunov exponent per period of the fastest mesh; None where it is not known.
+        tolerance, chaos: of the criterion above.
+    """
+    if exponent is not None and exponent > max(chaos, 2.0 * error):
+        return Motion(CHAOTIC, 0)
+    period = period_of(x, extent, tolerance)
+    if period:
+        return Motion(f"{period}T", period)
+    if exponent is None:
+        return Motion(NOT_PERIODIC, 0)
+    if abs(exponent) <= chaos and _steady(x):
+        return Motion(QUASI_PERIODIC, 0)
+    return Motion(NOT_SETTLED, 0)
+
+
+def period_of(x: np.ndarray, extent: np.ndarray, tolerance: float = TOLERANCE) -> int:
+    """Least number of common periods after which x (p, c) repeats; 0 where it does not."""
+    allowed = tolerance * np.maximum(extent, _SMALLEST)
+    for k in range(1, min(LONGEST, len(x) // 3) + 1):
+        if all(np.all(np.ptp(x[j::k], axis=0) <= allowed) for j in range(k)):
+            return k
+    return 0
+
+
+def _steady(x: np.ndarray) -> bool:
+    """Whether both halves of a section cover the same range."""
+    half = len(x) // 2
+    first, second, all_of = (np.array([part.min(axis=0), part.max(axis=0)]) for part in (x[:half], x[half:], x))
+    return bool(np.all(np.abs(first - second) <= _SAME_RANGE * np.maximum(all_of[1] - all_of[0], 1e-300)))

@@ -1,0 +1,116 @@
+"""From the orbits of all points to the result of a sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rotorgear.analysis.sweep_axes import Axis
+from rotorgear.analysis.sweep_classify import FAILED, classify, exponents
+from rotorgear.analysis.sweep_point import Point
+from rotorgear.analysis.sweep_request import Request
+from rotorgear.model.model import Model
+from rotorgear.results.sweep import SweepResult
+from rotorgear.solvers.lanes import Orbit
+
+_TABLES = (
+    "peak_to_peak", "amplitude", "rms", "mean_force", "rms_force", "largest_force", "driving", "apart", "back", "losses",
+)  # fmt: skip
+
+
+def gathered(
+    model: Model,
+    axes: Sequence[Axis],
+    values: Sequence[tuple[float, ...]],
+    points: Sequence[Point | None],
+    failure: Sequence[str],
+    steps: np.ndarray,
+    request: Request,
+    orbits: dict[tuple[int, int], Orbit],
+    laps: dict[str, float],
+) -> SweepResult:
+    """Return the result."""
+    sound = [p for p in points if p is not None]
+    contact = sound[0].contact
+    p, r, c = len(points), len(request.runs), len(contact)
+    t = max((o.growth.shape[1] for o in orbits.values()), default=0)
+    section = np.full((p, r, request.count, c, 2), np.nan)
+    exponent, error = np.full((p, r, t), np.nan), np.full((p, r, t), np.nan)
+    tables = {name: np.full((p, r, c), np.nan) for name in _TABLES}
+    motion = [FAILED] * (p * r)
+    failed = list(failure)
+    for (i, run), orbit in orbits.items():
+        point = points[i]
+        assert point is not None
+        if point.contact != contact:
+            failed[i] = "its contacts are not those of the other points"
+            continue
+        if not orbit.finite:
+            failed[i] = (
+                failed[i] or f"the run '{request.runs[run]}' left all bounds: ask for more steps, or give more damping"
+            )
+            continue
+        mesh = point.system.columns.mesh
+        own = orbit.section[:, mesh]
+        section[i, run] = own
+        found = _indicators(orbit.sums[mesh], int(steps[i]))
+        for name, table in tables.items():
+            table[i, run] = found[name]
+        k = orbit.growth.shape[1]
+        exponent[i, run, :k], error[i, run, :k] = exponents(orbit.growth, float(point.system.turns))
+        largest = float(exponent[i, run, 0]) if k else None
+        kind = classify(
+            own[:, :, 0],
+            found["amplitude"],
+            largest,
+            float(error[i, run, 0]) if k else 0.0,
+            request.tolerance,
+            request.chaos,
+        )
+        motion[i * r + run] = kind.kind
+    static = np.array(
+        [q.static_force if q is not None and q.contact == contact else np.full(c, np.nan) for q in points]
+    )
+    stiffness = np.array(
+        [q.stiffness if q is not None and q.contact == contact else np.full(c, np.nan) for q in points]
+    )
+    return SweepResult(
+        model=model, address=tuple(axis.address for axis in axes), unit=tuple(axis.unit for axis in axes),
+        values=np.array(values, dtype=float), shape=np.array([len(axis.values) for axis in axes]), run=request.runs, contact=contact,
+        frequency=np.array([q.system.w / (2.0 * np.pi) if q else np.nan for q in points]),
+        turns=np.array([q.system.turns if q else 0 for q in points]), section=section, motion=tuple(motion),
+        lyapunov=exponent, lyapunov_error=error, static_force=static,
+        static_deflection=static / np.where(stiffness > 0.0, stiffness, np.nan), failure=tuple(failed), steps=steps,
+        settle=request.settle, count=request.count, tolerance=request.tolerance, chaos=request.chaos,
+        dofs=max(q.system.n for q in sound), seconds=laps, method="Runge-Kutta of order 4 in lanes of 32 points",
+        warnings=_warnings(points, failed, motion), **tables,
+    )  # fmt: skip
+
+
+def _indicators(sums: np.ndarray, steps: int) -> dict[str, np.ndarray]:
+    """Indicators of the contacts from their sums (c, 14)."""
+    from rotorgear.solvers import kernel_lanes as k
+
+    total = np.maximum(sums[:, [k.DRIVING, k.APART, k.BACK]].sum(axis=1), 1.0)
+    force, d = sums[:, k.F_SUM] / total, sums[:, k.D_SUM] / total
+    return {
+        "peak_to_peak": sums[:, k.X_MAX] - sums[:, k.X_MIN], "amplitude": sums[:, k.D_MAX] - sums[:, k.D_MIN],
+        "rms": np.sqrt(np.maximum(sums[:, k.D_SQUARES] / total - d**2, 0.0)), "mean_force": force,
+        "rms_force": np.sqrt(np.maximum(sums[:, k.F_SQUARES] / total - force**2, 0.0)), "largest_force": sums[:, k.F_MAX],
+        "driving": sums[:, k.DRIVING] / total, "apart": sums[:, k.APART] / total, "back": sums[:, k.BACK] / total,
+        "losses": sums[:, k.LOSSES] / total * steps,
+    }  # fmt: skip
+
+
+def _warnings(points: Sequence[Point | None], failed: Sequence[str], motion: Sequence[str]) -> tuple[str, ...]:
+    found = []
+    count = sum(map(bool, failed))
+    if count:
+        found.append(f"{count} of {len(points)} points failed; the first: {next(filter(None, failed))}")
+    if any(q.drift for q in points if q):
+        found.append("the torques do not balance at some points: the shafts drift off the prescribed rotation there")
+    unsettled = sum(kind == "not settled" for kind in motion)
+    if unsettled:
+        found.append(f"{unsettled} of {len(motion)} runs had not settled: ask for more periods of --settle or --count")
+    return tuple(found)

@@ -1,0 +1,256 @@
+"""One point of a sweep made ready: the model at its parameters as a small system, with tables of what depends on time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import gcd, lcm
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.solvers.contact_equilibrium import Equilibrium, equilibrium, still_forces
+from rotorgear.solvers.local_forces import LocalForces
+from rotorgear.solvers.local_system import LocalSystem
+from rotorgear.solvers.motion import Rotation
+from rotorgear.solvers.small_system import Columns, SmallSystem, refuse_large, small_system
+from rotorgear.system.local import local_model
+from rotorgear.system.system import System
+
+if TYPE_CHECKING:
+    from rotorgear.forces.law import ForceLaw
+
+# Periods of the fastest mesh in the common one, at most.
+MOST_TURNS = 1000
+_WHOLE = 1e-9  # relative error of a fraction that stands for a ratio of speeds
+# Places of MeshContact's parameters that don't shape its tables: k, c, backlash, gap, damping, ramp, impact.
+_NO_SHAPE = (0, 1, 2, 3, 4, 5, 12)
+
+
+@dataclass(frozen=True)
+class Point:
+    """A small system with what a sweep reads off it.
+
+    Attributes:
+        system: for the kernels. forces: its laws. order: radians of the fastest mesh for each of the reference, with the
+        sign of its speed.
+        contact: names of the mesh contacts; static_force: theirs without anything that varies, (c,) in N.
+        stiffness: their mean stiffness, (c,) in N/m. drift: whether the torques don't balance. shape: bytes that two points
+        share where their tables are the same.
+    """
+
+    system: SmallSystem
+    forces: LocalForces
+    order: float
+    contact: tuple[str, ...]
+    static_force: np.ndarray
+    stiffness: np.ndarray
+    drift: bool
+    shape: bytes
+
+    @property
+    def kind(self) -> tuple[object, ...]:
+        """What points in one block share."""
+        c = self.system.columns
+        return (self.system.n, c.gap.tobytes(), c.mode.tobytes(), c.mesh.tobytes(), len(self.system.rigid),
+                self.system.turns, self.contact)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Still:
+    """What of a point does not depend on its speed: the local system, orders, names of contacts, and the state at rest."""
+
+    local: LocalSystem
+    orders: list[Fraction]
+    contact: tuple[str, ...]
+    rest: Equilibrium
+    static: np.ndarray
+
+
+class PointMaker:
+    """Makes models ready, and keeps the last state at rest for the next model where only the speed is another."""
+
+    def __init__(self) -> None:
+        self._key = ""
+        self._still: Still | None = None
+
+    def __call__(self, model: Model) -> Point:
+        """Make a model ready at its own speed.
+
+        Raises:
+            AnalysisError: no speed, no mesh that turns, no common period, too many dofs, or forces that sweeps don't take.
+        """
+        speed = model.operation.speed if model.operation else None
+        if not model.operation or not speed:
+            raise AnalysisError("the model gives no speed of operation: set operation.speed, or sweep over it")
+        standing = model.operation.model_copy(update={"speed": 1.0 if speed > 0.0 else -1.0})
+        key = model.model_copy(update={"operation": standing}).model_dump_json(exclude_none=True)
+        if self._still is None or key != self._key or not _standing(model):
+            self._key, self._still = key, _still(model, speed)
+        return ready(self._still, speed, model.damping.modal_ratio)
+
+
+def _standing(model: Model) -> bool:
+    """Whether nothing but the rotation itself depends on the speed: no power, no tables, no internal damping, no torque over speed."""
+    operation = model.operation
+    assert operation is not None
+    powers = [operation.power, *(load.power for load in model.loads.values())]
+    varying = any(load.varies for load in model.loads.values())
+    tables = any(bearing.table for bearing in model.bearings.values())
+    inner = any(section for shaft in model.shafts.values() for section in shaft.sections)
+    return all(power is None for power in powers) and not (varying or tables or inner)
+
+
+def _still(model: Model, speed: float) -> Still:
+    system = System(model)
+    if system.n == 0:
+        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+    refuse_large(system.n)
+    found = local_model(system, Rotation.constant(speed), speed)
+    for part in found.parts:
+        column_of(part.law, part.part)
+    orders = [o for part in found.parts for o in _order(part.law, part.label)]
+    return still(found.local, orders, tuple(part.label for part in found.parts if part.is_mesh))
+
+
+def still(local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...]) -> Still:
+    """Find the state at rest of a system with local forces.
+
+    Args:
+        local: the system. orders: periods of what varies in a turn of the reference. contact: names of its mesh contacts.
+    """
+    rest = equilibrium(local)
+    static = still_forces(local, tuple(law.mean() for law in local.forces.laws))  # type: ignore[attr-defined]
+    if not np.all(np.isfinite(static)):
+        # Contacts that are open at rest: what the driving flanks alone would carry.
+        static = local.forces.reference_stiffness @ (local.B.T @ rest.q)
+    return Still(local, orders, contact, rest, static)
+
+
+def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
+    """Make a system ready at a speed of the reference in rad/s; `modal_ratio` is added to every mode with strain."""
+    local = replace(known.local, rotation=Rotation.constant(speed))
+    fastest, turns = common_period(known.orders)
+    laws = local.forces.laws
+    columns = _columns([column for law in laws for column in column_of(law, type(law).__name__, speed)])
+    system = small_system(local, known.rest, columns, float(fastest) * abs(speed), turns, modal_ratio)
+    drift = known.rest.drift
+    drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
+    shape, mesh = b"".join(_shape(law) for law in laws), columns.mesh
+    return Point(
+        system, local.forces, float(np.copysign(float(fastest), speed)), known.contact, known.static[mesh], columns.stiffness[mesh], drifts, shape
+    )
+
+
+def common_period(orders: list[Fraction]) -> tuple[Fraction, int]:
+    """The highest order, and how many of its periods everything that varies has in common.
+
+    Raises:
+        AnalysisError: nothing varies, or the common period is too long.
+    """
+    if not orders:
+        raise AnalysisError("nothing repeats: a sweep needs a mesh with teeth, or an unbalance, that turns")
+    fastest = max(orders)
+    base = Fraction(gcd(*(o.numerator for o in orders)), lcm(*(o.denominator for o in orders)))
+    turns = fastest / base
+    if turns > MOST_TURNS:
+        raise AnalysisError(
+            f"the meshes repeat together after {int(turns)} periods of the fastest only (at most {MOST_TURNS}); choose numbers of "
+            "teeth with common factors"
+        )
+    return fastest, int(turns)
+
+
+def _order(law: ForceLaw, label: str) -> list[Fraction]:
+    """Order of what varies in a law; none where it stays the same."""
+    value = abs(float(getattr(law, "order", 0.0)))
+    if not value:
+        return []
+    found = Fraction(value).limit_denominator(100000)
+    if abs(float(found) - value) > _WHOLE * value:
+        raise AnalysisError(
+            f"{label}: its order {value:.9g} of the input shaft is no ratio of whole numbers, so nothing repeats"
+        )
+    return [found]
+
+
+def column_of(law: object, place: str, speed: float = 1.0) -> list[tuple[float, ...]]:
+    """gap, mode, k, c, backlash, 1/ramp, prescribed force and whether it is a mesh, of each component.
+
+    Raises:
+        AnalysisError: the law is none that sweeps take.
+    """
+    from rotorgear.forces.mesh_contact import DAMPINGS, GAPS, MeshContact
+    from rotorgear.forces.rotating_force import RotatingForce
+    from rotorgear.forces.torque_curve import TorqueCurve
+    from rotorgear.solvers.kernel_lanes import LINE, NEVER_PARTS, ONE_SIDED, PRESCRIBED
+
+    if isinstance(law, MeshContact):
+        gap = {"line": LINE, "one-sided": ONE_SIDED, "none": NEVER_PARTS}[GAPS[GAPS.index(law.gap)]]
+        backlash = np.inf if law.gap == "one-sided" else law.backlash
+        mode = DAMPINGS.index(law.contact_damping)
+        mean = law.mean().stiffness
+        return [(gap, mode, mean, law.damping, backlash, 1.0 / law.ramp, law.impact, 1.0)]
+    if isinstance(law, RotatingForce):
+        size = law.amplitude * abs(law.order * speed) ** law.power
+        return [(PRESCRIBED, 0, 0.0, 0.0, 0.0, 1.0, size, 0.0)] * law.components
+    if isinstance(law, TorqueCurve) and law.power == 0.0 and law.step == 1.0 and law.damping == 0.0:
+        return [(PRESCRIBED, 0, 0.0, 0.0, 0.0, 1.0, law.torque, 0.0)]
+    reason = {
+        "TorqueCurve": "a torque that steps or depends on speed",
+        "MeshFriction": "friction between the flanks",
+        "BallBearing": "rolling elements in a bearing",
+        "RollerBearing": "rolling elements in a bearing",
+    }.get(type(law).__name__, type(law).__name__)
+    raise AnalysisError(
+        f"{place}: sweeps don't take {reason}; leave it out, or run single points by the transient analysis"
+    )
+
+
+def _columns(rows: list[tuple[float, ...]]) -> Columns:
+    gap, mode, k, c, backlash, ramp, push, mesh = np.array(rows, dtype=float).reshape(-1, 8).T.copy()
+    return Columns(gap.astype(np.int64), mode.astype(np.int64), k, c, backlash, ramp, push, mesh > 0.5)
+
+
+def _shape(law: object) -> bytes:
+    from rotorgear.forces.mesh_contact import MeshContact
+
+    values = law.parameters().copy()  # type: ignore[attr-defined]
+    if isinstance(law, MeshContact):
+        values[list(_NO_SHAPE)] = 0.0
+        return bytes(values.tobytes())
+    return bytes(values[1:3].tobytes())
+
+
+def table_of(point: Point, steps: int) -> np.ndarray:
+    """Tables of a point over its common period, (2 turns steps + 1, m, 4)."""
+    from rotorgear.forces.mesh_contact import MeshContact
+    from rotorgear.forces.torque_curve import TorqueCurve
+    from rotorgear.solvers.kernel_lanes import ERROR, PUSH, SLOPE, STIFFNESS, tabulate
+
+    rows = 2 * point.system.turns * steps + 1
+    angles = np.pi / steps / point.order * np.arange(rows)
+    forces = point.forces
+    states = np.zeros((rows, max(1, int(forces.state_first[-1]))))
+    tabulate(
+        forces.schedules, forces.kind, forces.parameters, forces.parameters_first, forces.state_first, angles, states
+    )
+    table = np.zeros((rows, forces.m, 4))
+    for i, law in enumerate(forces.laws):
+        state = states[:, forces.state_first[i] : forces.state_first[i + 1]]
+        at = int(forces.first[i])
+        if isinstance(law, MeshContact):
+            k, _, e, slope, push = state.T
+            mean = law.mean().stiffness
+            table[:, at, STIFFNESS] = k / mean if mean else 1.0
+            table[:, at, ERROR], table[:, at, SLOPE] = e, slope / point.order
+            table[:, at, PUSH] = push / law.impact if law.impact else 0.0
+        elif isinstance(law, TorqueCurve):
+            table[:, at, PUSH] = -state[:, 0] / law.torque if law.torque else 0.0
+        else:
+            phase = law.order * angles + law.phase  # type: ignore[attr-defined]
+            for k, values in enumerate((np.cos(phase), np.sin(phase))[: law.components]):
+                table[:, at + k, PUSH] = -values
+    return table

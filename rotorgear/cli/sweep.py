@@ -1,0 +1,91 @@
+"""rotorgear sweep: Poincare sections, Lyapunov exponents and kinds of motion over one or two parameters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rotorgear.cli.common import JsonOption, ModelFile, console, progress_bar, write_json
+from rotorgear.errors import AnalysisError
+
+if TYPE_CHECKING:
+    from rotorgear.results.sweep import SweepResult
+
+
+def sweep(
+    model: ModelFile,
+    over: Annotated[
+        list[str],
+        typer.Option(
+            "--over", help="ADDRESS=FROM:TO:COUNT or ADDRESS=VALUE,VALUE,...; once or twice.", show_default=False
+        ),
+    ],
+    direction: Annotated[
+        str, typer.Option("--direction", help="each (from its static state), up, down or both.")
+    ] = "each",
+    starts: Annotated[int, typer.Option("--starts", help="Runs of each point from different states.")] = 1,
+    settle: Annotated[int, typer.Option("--settle", help="Common mesh periods that do not count.")] = 300,
+    count: Annotated[int, typer.Option("--count", help="Common mesh periods that count.")] = 200,
+    exponents: Annotated[int, typer.Option("--exponents", help="Lyapunov exponents; 0 for none.")] = 1,
+    steps: Annotated[
+        int | None, typer.Option("--steps", help="Steps in a period of the fastest mesh.", show_default=False)
+    ] = None,
+    tolerance: Annotated[
+        float, typer.Option("--tolerance", help="Share of the peak to peak within which a motion repeats.")
+    ] = 0.02,
+    chaos: Annotated[
+        float, typer.Option("--chaos", help="Exponent per mesh period above which a motion is chaotic.")
+    ] = 0.02,
+    seed: Annotated[int, typer.Option("--seed", help="Of the random states of --starts.")] = 1,
+    workers: Annotated[
+        int | None, typer.Option("--workers", help="Threads (default: all cores).", show_default=False)
+    ] = None,
+    json: JsonOption = None,
+    save: Annotated[
+        Path | None, typer.Option("--save", help="Save the result (HDF5), in blocks while it runs.", show_default=False)
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with an interrupted sweep of the same --save.")
+    ] = False,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", help="Draw pictures of the result to this folder.", show_default=False)
+    ] = None,
+) -> None:
+    """Bifurcation diagram, Lyapunov exponents and kinds of motion of a small model over its parameters."""
+    import rotorgear as rg
+    from rotorgear.analysis.sweep_axes import axis_of_option
+    from rotorgear.cli.tables_sweep import sweep_table
+
+    if resume and save is None:
+        raise AnalysisError("--resume needs the --save of the sweep that was interrupted")
+    if workers is not None and workers < 1:
+        raise AnalysisError(f"--workers: got {workers}, expected 1 or more")
+    axes = [axis_of_option(text) for text in over]
+    if len({axis.address for axis in axes}) < len(axes):
+        raise AnalysisError(f"--over: '{axes[0].address}' is given twice")
+    with progress_bar("sweep") as progress:
+        result = rg.sweep(
+            rg.load(model), {axis.address: [axis.text(value) for value in axis.values] for axis in axes},
+            direction=direction, starts=starts, settle=settle, count=count, exponents=exponents, steps=steps,
+            tolerance=tolerance, chaos=chaos, seed=seed, workers=workers,
+            stream=rg.stream(save, resume=resume) if save else None, progress=progress,
+        )  # fmt: skip
+    console().print(sweep_table(result))
+    write_json(result.to_dict(), json)
+    _write(result, save, plot)
+
+
+def _write(result: SweepResult, save: Path | None, plot: Path | None) -> None:
+    import rotorgear as rg
+
+    if save:
+        rg.save(result, save)
+        rg.stream(save).close()
+        typer.echo(f"saved {save}")
+    if plot:
+        from rotorgear.plots.sweep import draw_sweep
+
+        paths = draw_sweep(result, plot)
+        typer.echo(f"wrote {len(paths)} picture{'s' if len(paths) > 1 else ''} to {plot}")

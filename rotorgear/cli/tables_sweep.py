@@ -1,0 +1,98 @@
+"""The result of a sweep as a table for the terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rotorgear.cli.common import table
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rotorgear.results.sweep import SweepResult
+
+# Lines that a table shows at most; the rest is in the files.
+_MOST = 60
+
+
+def sweep_table(result: SweepResult) -> RenderableType:
+    """Return the route, the points and the notes as one rich renderable that fits 80 columns."""
+    from rich.console import Group
+    from rich.text import Text
+
+    parts: list[RenderableType] = [Text(_title(result), style="bold"), Text("")]
+    if len(result.shape) == 1:
+        for r in range(len(result.run)):
+            parts.append(Text(_route(result, r)))
+        parts.append(Text(""))
+    rows = len(result.values) * len(result.run)
+    parts += [_points(result, range(min(rows, _MOST)))]
+    if rows > _MOST:
+        parts.append(Text(f"... {rows - _MOST} more lines: see --json, --save and --plot"))
+    parts += [Text(line) for line in _notes(result)]
+    return Group(*parts, "")
+
+
+def _title(result: SweepResult) -> str:
+    what = " and ".join(result.address)
+    return f"{result.model.title or 'Sweep'}: {len(result.values)} points over {what}"
+
+
+def _route(result: SweepResult, run: int) -> str:
+    """Kinds of motion along the parameter: "1T 4600 to 4900, chaotic from 4950"."""
+
+    def at(p: int) -> str:
+        return f"{result.values[p, 0]:.6g}"
+
+    parts = [f"{kind} {at(a)}" + (f" to {at(b)}" if b > a else "") for kind, a, b in result.route(run)]
+    label = f"route ({result.run[run]})" if len(result.run) > 1 else "route"
+    unit = f" {result.unit[0]}" if result.unit[0] else ""
+    return f"{label}: " + ", ".join(parts) + unit
+
+
+def _points(result: SweepResult, rows: range) -> Any:
+    several = len(result.run) > 1
+    names = [f"{a.rpartition('.')[2]} {u}".strip() for a, u in zip(result.address, result.unit, strict=True)]
+    names += ["start"] if several else []
+    names += ["motion"] + (["LE", "+-"] if result.lyapunov.shape[2] else [])
+    out = table(*names, "p-p um", "K_dyn", "apart %", "back %", left=0)
+    for row in rows:
+        p, r = divmod(row, len(result.run))
+        cells = [f"{x:.6g}" for x in result.values[p]] + ([result.run[r]] if several else [])
+        cells.append(result.motion_at(p, r))
+        if result.lyapunov.shape[2]:
+            cells += [_number(result.lyapunov[p, r, 0], "+.3f"), _number(result.lyapunov_error[p, r, 0], ".3f")]
+        out.add_row(
+            *cells, _largest(1e6 * result.peak_to_peak[p, r], ".2f"), _largest(result.dynamic_factor[p, r], ".2f"),
+            _largest(100.0 * result.apart[p, r], ".1f"), _largest(100.0 * result.back[p, r], ".1f"),
+        )  # fmt: skip
+    return out
+
+
+def _largest(values: Any, form: str) -> str:
+    sound = [x for x in values if x == x]
+    return _number(max(sound), form) if sound else "-"
+
+
+def _number(value: float, form: str) -> str:
+    return format(value, form) if value == value else "-"
+
+
+def _notes(result: SweepResult) -> list[str]:
+    first, last = int(result.steps.min()), int(result.steps.max())
+    turns = sorted({int(n) for n in result.turns if n})
+    period = (
+        "the mesh period"
+        if turns == [1]
+        else f"{turns[0] if len(turns) == 1 else f'{turns[0]} to {turns[-1]}'} periods of the fastest mesh"
+    )
+    lines = [
+        "",
+        "LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; p-p, K_dyn, apart and back: of the worst "
+        "contact" if result.lyapunov.shape[2] else "p-p, K_dyn, apart and back: of the worst contact",
+        f"T is {period}; {result.settle} settled, {result.count} counted; repeats within {100.0 * result.tolerance:g} % of the peak to "
+        f"peak; chaotic: LE > {result.chaos:g}",
+        f"{result.dofs} dofs, {first if first == last else f'{first} to {last}'} steps a mesh period, {result.seconds['total']:.2f} s; "
+        f"{result.method}",
+    ]  # fmt: skip
+    return lines + [f"Warning: {note}" for note in result.warnings]

@@ -1,0 +1,137 @@
+"""Pictures of a sweep: bifurcation diagram with Lyapunov exponent and indicators, or maps over two parameters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rotorgear.export.files import filling, publish
+from rotorgear.plots.colours import COLOURS
+from rotorgear.plots.figure import new_figure
+from rotorgear.results.sweep import SweepResult
+
+_KINDS = ("1T", "2T", "3T", "4T", "longer", "quasi-periodic", "chaotic", "not settled", "failed")
+_SHADES = ("#0072B2", "#56B4E9", "#009E73", "#9ad0a5", "#F0E442", "#E69F00", "#D55E00", "#bbbbbb", "#ffffff")
+
+
+def draw_sweep(result: SweepResult, directory: str | Path) -> list[Path]:
+    """Draw what the result has data for into a folder; returns the paths.
+
+    Raises:
+        MissingExtraError: matplotlib is missing. WriteError: the folder can't be written.
+    """
+    plans: dict[str, Any] = {}
+    if len(result.shape) == 1:
+        for number, name in enumerate(result.contact):
+            plans[f"bifurcation_{number + 1}.png"] = lambda figure, c=number: draw_bifurcation(result, figure, c)
+        plans["sections.png"] = lambda figure: draw_sections(result, figure)
+    else:
+        plans["map.png"] = lambda figure: draw_map(result, figure)
+    target, names = Path(directory), []
+    with filling(target) as scratch:
+        for name, draw in plans.items():
+            figure = new_figure((8.0, 6.0))
+            draw(figure)
+            figure.savefig(scratch / name, dpi=130)
+            names.append(name)
+        return publish(scratch, target, names)
+
+
+def _label(result: SweepResult, axis: int) -> str:
+    return f"{result.address[axis]}{', ' + result.unit[axis] if result.unit[axis] else ''}"
+
+
+def draw_bifurcation(result: SweepResult, figure: Any, contact: int = 0) -> None:
+    """Displacement of a contact at the sections over the parameter, the largest exponent, and shares of time below it."""
+    exponent = bool(result.lyapunov.shape[2])
+    rows = 3 if exponent else 2
+    axes = figure.subplots(rows, 1, sharex=True, height_ratios=(3, 1, 1)[: rows - 1] + (1,))
+    for r, name in enumerate(result.run):
+        x = np.repeat(result.values[:, 0], result.count)
+        y = 1e6 * result.section[:, r, :, contact, 0].ravel()
+        axes[0].plot(x, y, ",", ms=1, color=_colour(result, r), alpha=0.7, label=name, rasterized=True)
+        if exponent:
+            axes[1].errorbar(
+                result.values[:, 0], result.lyapunov[:, r, 0], result.lyapunov_error[:, r, 0], fmt=".-", ms=3, lw=0.7,
+                color=_colour(result, r),
+            )  # fmt: skip
+    axes[0].set_ylabel("displacement at the section, um")
+    axes[0].set_title(f"{result.contact[contact]}: Poincare section once each {_period(result)}", fontsize=9)
+    if len(result.run) > 1:
+        axes[0].legend(fontsize=7, markerscale=8, loc="best", ncols=2)
+    if exponent:
+        axes[1].axhline(0.0, color="k", lw=0.6)
+        axes[1].set_ylabel("LE per mesh\nperiod")
+    for values, name, colour in ((result.apart, "apart", 0), (result.back, "back flank", 1)):
+        axes[-1].plot(
+            result.values[:, 0], 100.0 * values[:, 0, contact], ".-", ms=3, lw=0.7, color=COLOURS[colour], label=name
+        )
+    axes[-1].set_ylabel("share of\ntime, %")
+    axes[-1].legend(fontsize=7)
+    axes[-1].set_xlabel(_label(result, 0))
+    for one in axes:
+        one.grid(alpha=0.25)
+
+
+def _period(result: SweepResult) -> str:
+    turns = sorted({int(n) for n in result.turns if n})
+    return "mesh period" if turns == [1] else f"{turns[-1]} periods of the fastest mesh"
+
+
+def _colour(result: SweepResult, run: int) -> str:
+    return "k" if len(result.run) == 1 else COLOURS[run % len(COLOURS)]
+
+
+def draw_sections(result: SweepResult, figure: Any) -> None:
+    """Poincare sections (displacement and velocity of the first contact) of up to nine points, spread over the sweep."""
+    sound = [p for p in range(len(result.values)) if not result.failure[p]]
+    chosen = [sound[i] for i in np.unique(np.linspace(0, len(sound) - 1, min(9, len(sound))).round().astype(int))]
+    columns = int(np.ceil(np.sqrt(len(chosen))))
+    grid = figure.subplots(int(np.ceil(len(chosen) / columns)), columns, squeeze=False)
+    for one in grid.flat[len(chosen) :]:
+        one.set_visible(False)
+    for one, p in zip(grid.flat, chosen, strict=False):
+        for r in range(len(result.run)):
+            x, v = 1e6 * result.section[p, r, :, 0, 0], 1e3 * result.section[p, r, :, 0, 1]
+            one.plot(x, v, ".", ms=2, color=_colour(result, r))
+        one.set_title(f"{result.values[p, 0]:.6g} {result.unit[0]}: {result.motion_at(p)}", fontsize=8)
+        one.tick_params(labelsize=7)
+        one.margins(0.15)
+        one.ticklabel_format(useOffset=False)
+    figure.supxlabel(f"displacement of {result.contact[0]}, um", fontsize=9)
+    figure.supylabel("velocity, mm/s", fontsize=9)
+
+
+def draw_map(result: SweepResult, figure: Any) -> None:
+    """Kinds of motion, and the largest exponent, over both parameters."""
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+
+    n1, n2 = (int(n) for n in result.shape)
+    x, y = result.values[::n2, 0], result.values[:n2, 1]
+    kinds = np.array([_class(result.motion_at(p)) for p in range(n1 * n2)], dtype=float).reshape(n1, n2).T
+    exponent = bool(result.lyapunov.shape[2])
+    axes = np.atleast_1d(figure.subplots(2 if exponent else 1, 1, sharex=True))
+    shades = ListedColormap(list(_SHADES))
+    picture = axes[0].pcolormesh(x, y, kinds, cmap=shades, norm=BoundaryNorm(np.arange(-0.5, len(_KINDS)), len(_KINDS)),
+                                 shading="nearest", rasterized=True)  # fmt: skip
+    bar = figure.colorbar(picture, ax=axes[0], ticks=range(len(_KINDS)))
+    bar.ax.set_yticklabels(_KINDS, fontsize=7)
+    if exponent:
+        values = result.lyapunov[:, 0, 0].reshape(n1, n2).T
+        reach = float(np.nanmax(np.abs(values), initial=1e-12))
+        picture = axes[1].pcolormesh(
+            x, y, values, cmap="RdBu_r", vmin=-reach, vmax=reach, shading="nearest", rasterized=True
+        )
+        figure.colorbar(picture, ax=axes[1], label="LE per mesh period")
+    for one in axes:
+        one.set_ylabel(_label(result, 1), fontsize=8)
+    axes[-1].set_xlabel(_label(result, 0))
+
+
+def _class(kind: str) -> int:
+    """Place of a kind among the shades."""
+    if kind in _KINDS:
+        return _KINDS.index(kind)
+    return _KINDS.index("longer") if kind.endswith("T") else _KINDS.index("not settled")

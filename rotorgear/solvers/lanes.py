@@ -1,0 +1,191 @@
+"""Blocks of up to 32 small systems that run side by side, and what a run leaves of each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.solvers.small_system import SmallSystem
+
+# Steps between two questions whether to go on: a fraction of a second.
+_SLICE = 50_000
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How long: steps in a period of the fastest mesh, common periods that settle and count, tangents to follow.
+
+    The tangents are followed over the last `warm` of the periods that settle, so that they find the direction of most growth.
+    """
+
+    steps: int
+    settle: int
+    count: int
+    tangents: int
+    warm: int = 40
+
+
+@dataclass(frozen=True)
+class Start:
+    """A state: z and z' (n,)."""
+
+    z: np.ndarray
+    dz: np.ndarray
+
+    def moved(self, old: SmallSystem, new: SmallSystem) -> Start:
+        """The same displacements and velocities in the coordinates of another system."""
+        if old is new:
+            return self
+        q, v = (np.linalg.solve(old.root.T, x) for x in (self.z, self.dz * old.w))
+        return Start(new.root.T @ q, new.root.T @ v / new.w)
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """What a run leaves of one system.
+
+    Attributes:
+        section: displacement and velocity (in m and m/s) of each local displacement at the end of each common period, (p, m, 2).
+        growth: (p, t) logarithm of the growth of each tangent in a common period.
+        sums: (m, 14) statistics, see kernel_lanes.py; forces in N.
+        end: state at the end. finite: whether everything stayed finite.
+    """
+
+    section: np.ndarray
+    growth: np.ndarray
+    sums: np.ndarray
+    end: Start
+    finite: bool
+
+
+def run_block(
+    systems: Sequence[SmallSystem],
+    starts: Sequence[Start],
+    tables: Sequence[np.ndarray],
+    plan: Plan,
+    go_on: Callable[[], bool] = lambda: True,
+) -> list[Orbit]:
+    """Run up to LANES systems of one kind side by side.
+
+    Args:
+        systems: of the same n, m, kinds of columns, rigid motions and common period.
+        starts: one a system. tables: one a system, or one for all, (2 turns steps + 1, m, 4).
+        plan: how long.
+        go_on: asked now and then; the run is given up with a KeyboardInterrupt where it says no.
+    """
+    from rotorgear.solvers.kernel_lanes import LANES, lanes_loop
+
+    count = len(systems)
+    if not 0 < count <= LANES:
+        raise ValueError(f"{count} systems in a block, expected 1 to {LANES}")
+    filled = [*systems, *[systems[-1]] * (LANES - count)]
+    first = systems[0]
+    (matrix, across), values = _matrices(filled), _values(filled)
+    mesh, kinds = first.columns.mesh, (first.columns.gap, first.columns.mode)
+    wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
+    pushed = any(np.any(s.columns.push) for s in systems)
+    table = np.ascontiguousarray(np.stack(wide, axis=-1)[:, :, : 4 if pushed else 3])
+    rigid = _stacked([s.rigid for s in filled])
+    begins = [*starts, *[starts[-1]] * (LANES - count)]
+    state = _stacked([np.concatenate([s.z, s.dz]) for s in begins])
+    tangents = _tangents(first, plan.tangents)
+    last, sums = np.zeros((mesh.size, LANES)), blank_sums(mesh.size)
+
+    def run(periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        growth = np.zeros((periods, len(followed), LANES))
+        section = np.zeros((periods, 2 * mesh.size, LANES))
+        stride = max(1, _SLICE // (first.turns * plan.steps))
+        for p in range(0, periods, stride):
+            if not go_on():
+                raise KeyboardInterrupt
+            lanes_loop(first.turns, plan.steps, counting, matrix, across, *kinds, values, mesh, table, rigid, state, followed,
+                       last, growth[p : p + stride], section[p : p + stride], sums)  # fmt: skip
+        return growth, section
+
+    warm = min(plan.warm, plan.settle) if plan.tangents else 0
+    with np.errstate(all="ignore"):
+        run(plan.settle - warm, False, tangents[:0])
+        run(warm, False, tangents)
+        growth, section = run(plan.count, True, tangents)
+    return [_orbit(filled[i], i, growth, section, sums, state) for i in range(count)]
+
+
+def _orbit(
+    system: SmallSystem, lane: int, growth: np.ndarray, section: np.ndarray, sums: np.ndarray, state: np.ndarray
+) -> Orbit:
+    """One lane, with forces in N and velocities in m/s."""
+    from rotorgear.solvers.kernel_lanes import F_MAX, F_MIN, F_SQUARES, F_SUM
+
+    found, n = sums[:, :, lane].copy(), system.n
+    moved = section[:, :, lane].reshape(len(section), len(sums), 2).copy()
+    for row in (F_MIN, F_MAX, F_SUM):
+        found[:, row] *= system.w**2
+    found[:, F_SQUARES] *= system.w**4
+    moved[:, :, 1] *= system.w
+    end = Start(state[:n, lane].copy(), state[n:, lane].copy())
+    finite = bool(np.all(np.isfinite(moved)) and np.all(np.isfinite(end.z)))
+    return Orbit(moved, growth[..., lane].copy(), found, end, finite)
+
+
+def blank_sums(m: int) -> np.ndarray:
+    """Statistics (m, 14, w) before anything was counted."""
+    from rotorgear.solvers.kernel_lanes import D_MAX, D_MIN, F_MAX, F_MIN, LANES, X_MAX, X_MIN
+
+    sums = np.zeros((m, 14, LANES))
+    sums[:, [D_MIN, X_MIN, F_MIN]], sums[:, [D_MAX, X_MAX, F_MAX]] = np.inf, -np.inf
+    return sums
+
+
+def _tangents(system: SmallSystem, count: int) -> np.ndarray:
+    """Random tangents (t, 2 n, w), the same for all lanes and runs."""
+    from rotorgear.solvers.kernel_lanes import LANES
+
+    drawn = np.random.default_rng(1).standard_normal((count, 2 * system.n))
+    return np.ascontiguousarray(np.repeat(drawn[:, :, None], LANES, axis=2))
+
+
+def _stacked(values: Sequence[np.ndarray]) -> np.ndarray:
+    return np.ascontiguousarray(np.stack(values, axis=-1), dtype=float)
+
+
+Sparse = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+def _matrices(systems: Sequence[SmallSystem]) -> tuple[Sparse, Sparse]:
+    """z'' from (z, z', F, 1), and d, d' from (z, z')."""
+    return (
+        _sparse([np.hstack([-s.K, -s.D, -s.B, s.load[:, None]]) for s in systems]),
+        # Displacement and velocity of a column lie side by side.
+        _sparse(
+            [
+                np.stack([np.kron([1.0, 0.0], s.B.T), np.kron([0.0, 1.0], s.B.T)], axis=1).reshape(-1, 2 * s.n)
+                for s in systems
+            ]
+        ),
+    )
+
+
+def _sparse(matrices: Sequence[np.ndarray]) -> Sparse:
+    """Row starts, columns and values by lane (p, w) of what is not zero in all lanes; rows of an odd length get a zero more."""
+    values = _stacked(matrices)
+    mask = np.any(values != 0.0, axis=2)
+    first, columns, kept = [0], [], []
+    for row, used in enumerate(mask):
+        own = np.flatnonzero(used)
+        odd = own.size % 2
+        columns += [own, own[:odd]]
+        kept += [values[row, own], np.zeros((odd, values.shape[2]))]
+        first.append(first[-1] + own.size + odd)
+    return (
+        np.array(first, dtype=np.int64),
+        np.concatenate(columns).astype(np.int64),
+        np.ascontiguousarray(np.concatenate(kept)),
+    )
+
+
+def _values(systems: Sequence[SmallSystem]) -> np.ndarray:
+    """Values of the columns (m, 5, w), as the kernel reads them."""
+    names = ("stiffness", "damping", "backlash", "ramp", "push")
+    return _stacked([np.stack([getattr(s.columns, name) for name in names], axis=1) for s in systems])

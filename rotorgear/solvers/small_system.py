@@ -1,0 +1,127 @@
+"""A small system with local forces as the lane kernels take it: mass one, time in radians of the fastest mesh.
+
+z = L^T q with M = L L^T, ' = d/d(w t):   z'' = f - K z - D z' - B F,   B^T z = B^T q
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError
+from rotorgear.solvers.contact_equilibrium import Equilibrium
+from rotorgear.solvers.local_system import LocalSystem
+
+# Dense matrices in the kernel: beyond this many, other methods are cheaper.
+MOST_DOFS = 80
+# The Runge-Kutta method of order 4 is stable along the imaginary axis up to 2.83, along the negative one up to 2.79.
+STABLE = 2.5
+# Products of a frequency and a step that leave errors of 1e-3 or so in a period.
+ACCURATE = 0.35
+
+
+@dataclass(frozen=True)
+class Columns:
+    """How each of m local displacements acts; arrays (m,), forces over (w^2) as the kernel wants them, see kernel_lanes.py."""
+
+    gap: np.ndarray
+    mode: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    backlash: np.ndarray
+    ramp: np.ndarray
+    push: np.ndarray
+    mesh: np.ndarray
+
+
+@dataclass(frozen=True)
+class SmallSystem:
+    """n degrees of freedom, m local displacements.
+
+    Attributes:
+        K, D: (n, n); load: (n,); B: (n, m); rigid: (r, n) orthonormal motions without strain; rest: z in equilibrium, (n,).
+        root: L, (n, n). columns: of the local forces. w: rad/s of the fastest mesh; turns: its periods in the common one.
+        fastest: largest |eigenvalue| of the linear system, in radians of the mesh.
+    """
+
+    K: np.ndarray
+    D: np.ndarray
+    load: np.ndarray
+    B: np.ndarray
+    rigid: np.ndarray
+    rest: np.ndarray
+    root: np.ndarray
+    columns: Columns
+    w: float
+    turns: int
+    fastest: float
+
+    @property
+    def n(self) -> int:
+        """Number of degrees of freedom."""
+        return int(self.load.size)
+
+
+def small_system(
+    local: LocalSystem, rest: Equilibrium, columns: Columns, w: float, turns: int, modal_ratio: float = 0.0
+) -> SmallSystem:
+    """Return a system at the speed of its rotation in the form of the kernels.
+
+    Args:
+        local: the system. rest: its equilibrium. columns: of its local forces, in SI.
+        w: rad/s of the fastest mesh. turns: its periods in the common one.
+        modal_ratio: damping ratio added to every mode with strain.
+
+    Raises:
+        AnalysisError: too many dofs, or one without inertia.
+    """
+    refuse_large(local.n)
+    try:
+        L = np.linalg.cholesky(local.M.toarray())
+    except np.linalg.LinAlgError:
+        raise AnalysisError("a degree of freedom has no inertia: a sweep needs mass on all of them") from None
+    inverse = np.linalg.inv(L)
+    B = inverse @ local.B.toarray()
+    K = inverse @ local.K.toarray() @ inverse.T
+    D = inverse @ local.velocity_terms(float(local.rotation.speeds[0])).toarray() @ inverse.T
+    about = inverse @ local.stiffness_about.toarray() @ inverse.T
+    if modal_ratio:
+        squares, modes = np.linalg.eigh(0.5 * (about + about.T))
+        D = D + (modes * (2.0 * modal_ratio * np.sqrt(np.maximum(squares, 0.0)))) @ modes.T
+    rigid = np.linalg.qr(L.T @ rest.free)[0].T if rest.free.size else np.zeros((0, local.n))
+    A = np.block([
+        [np.zeros_like(K), np.eye(local.n)],
+        [-about / w**2, -(D + B @ local.forces.reference_damping @ B.T) / w],
+    ])  # fmt: skip
+    return SmallSystem(
+        _clean(K) / w**2, _clean(D) / w, inverse @ local.load / w**2, _clean(B), rigid, L.T @ rest.q, L,
+        scaled(columns, w), w, turns, float(np.abs(np.linalg.eigvals(A)).max()),
+    )  # fmt: skip
+
+
+def refuse_large(n: int) -> None:
+    """AnalysisError where n dofs are too many."""
+    if n > MOST_DOFS:
+        raise AnalysisError(
+            f"{n} dofs are too many for a sweep (at most {MOST_DOFS}): lump the shafts (rigid gears on springs), or run single "
+            "points by the transient analysis"
+        )
+
+
+def scaled(columns: Columns, w: float) -> Columns:
+    """Forces over w^2, damping over w."""
+    return Columns(
+        columns.gap, columns.mode, columns.stiffness / w**2, columns.damping / w, columns.backlash, columns.ramp,
+        columns.push / w**2, columns.mesh,
+    )  # fmt: skip
+
+
+def _clean(A: np.ndarray) -> np.ndarray:
+    """A without the rounding that a change of coordinates leaves where nothing was."""
+    return np.where(np.abs(A) > 1e-14 * np.abs(A).max(initial=0.0), A, 0.0)
+
+
+def steps_needed(system: SmallSystem, share: float = ACCURATE) -> int:
+    """Steps in a period of the fastest mesh so that the highest frequency times the step stays below a share."""
+    return int(np.ceil(2.0 * np.pi * system.fastest / share))
