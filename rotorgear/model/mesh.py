@@ -7,7 +7,17 @@ from typing import Literal
 from pydantic import Field
 
 from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
-from rotorgear.model.fields import Angle, Damping, Length, NonNegativeLength, Part, PositiveRatio, Ratio, Viscosity
+from rotorgear.model.fields import (
+    Angle,
+    Damping,
+    Length,
+    NonNegativeLength,
+    Part,
+    PositiveLength,
+    PositiveRatio,
+    Ratio,
+    Viscosity,
+)
 from rotorgear.model.flank import ToothFeTable
 from rotorgear.model.mesh_stiffness_field import StiffnessValue
 
@@ -85,4 +95,9 @@ class Mesh(Part):
     contact_damping: Literal["clamped", "unclamped", "penetration"] = Field(
         "clamped",
         description="clamped: teeth never pull; unclamped: damping may pull; penetration: damping grows with the depth",
+    )
+    damping_depth: PositiveLength | None = Field(
+        None,
+        description="depth over which contact damping grows from zero to its value, so that the force has no jump; default: 2 % of "
+        "the mean deflection; with penetration: the depth at which it has its value, by default the mean deflection",
     )

@@ -42,8 +42,6 @@ if TYPE_CHECKING:
 
 # Depth over which damping grows from zero, and the reference depth of penetration damping, relative to the mean deflection.
 _RAMP = 0.02
-# A mesh that carries next to nothing swings through its backlash: the depth then counts as this share of it at least.
-_PLAY = 0.25
 # Mean deflection that is taken for a mesh without load.
 _UNLOADED = 1e-6
 
@@ -161,10 +159,10 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
 
 
 def _ramp(mesh: Mesh, deflection: float) -> float:
-    """Depth in m over which the damping grows, from the mean deflection; of penetration damping, that deflection itself."""
-    if mesh.contact_damping == "penetration":
-        return deflection
-    return _RAMP * max(deflection, _PLAY * (mesh.backlash or 0.0))
+    """Depth in m over which the damping grows: given, or from the mean deflection; of penetration damping, that deflection."""
+    if mesh.damping_depth is not None:
+        return mesh.damping_depth
+    return deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP)
 
 
 def _back(law: MeshContact) -> MeshContact:
