@@ -1,13 +1,15 @@
-"""The herringbone pair of 24 dofs: geometry, the route over the speed by Poincare points, and the sense of the trends.
+"""The herringbone pair of 24 dofs: geometry, the route over the speed, and the sense of the trends.
 
-A response counts as kT when points k mesh periods apart agree to 2 % of the largest of peak to peak and 0.05 um, and as
-irregular where no k up to 8 does. Exponents belong to the sweep of a parameter, not to this page.
+A response counts as kT when points k mesh periods apart agree to 2 % of the largest of peak to peak and 0.05 um, and as chaotic
+where the largest Lyapunov exponent is above 0.02 per mesh period, which is what `rotorgear sweep` does.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -17,46 +19,36 @@ from validation.seeds.rows import changed, loaded
 
 MODEL = "herringbone_pair_24dof"
 SECOND = "herringbone_pair_24dof_set2"
-STEPS, KEPT, LONGEST = 160, 64, 8
-IRREGULAR = "irregular"
+STEPS, KEPT, SETTLE = 160, 64, 250
 
 
-def poincare(model: rg.Model, rpm: float, settle: int) -> tuple[str, rg.TransientResult]:
-    """Period of the deflection of the left helix at a speed ("1T", ..., "irregular"), and the run."""
-    period = 60.0 / (rpm * 22.0)
-    result = rg.transient(
-        model, speed=rpm * math.pi / 30.0, method="newmark", steps=STEPS, records=40, settle=settle * period,
-        time=KEPT * period, error_estimate=False,
-    )  # fmt: skip
-    x = result.history("deflection left")[result.counted]
-    points, scale = x[::40], max(float(np.ptp(x)), 0.05e-6)
-    for k in range(1, LONGEST + 1):
-        if np.abs(points[k:] - points[:-k]).max() < 0.02 * scale:
-            return f"{k}T", result
-    return IRREGULAR, result
+def route(name: str, speeds: Sequence[float], settle: int = SETTLE) -> rg.SweepResult:
+    """Motions over speeds in rpm, each from its own static start."""
+    return rg.sweep(
+        loaded(name), {"operation.speed": [f"{rpm} rpm" for rpm in speeds]}, steps=STEPS, settle=settle, count=KEPT
+    )
 
 
-def route() -> dict[float, str]:
-    """Periods at 4600 to 6000 rpm in steps of 50, set 1, each from its own static start."""
-    return {rpm: poincare(loaded(MODEL), rpm, 250)[0] for rpm in np.arange(4600.0, 6001.0, 50.0)}
-
-
-def high_speeds() -> dict[float, str]:
-    """Periods of set 2 over 3000 to 40000 rpm in steps of 1000, and of 250 where it is not simple."""
-    speeds = np.union1d(np.arange(3e3, 40.5e3, 1e3), np.arange(8e3, 10.1e3, 250.0))
-    return {rpm: poincare(loaded(SECOND), rpm, 200)[0] for rpm in speeds}
-
-
-def apart(torque: float = 150.0, backlash: float = 40e-6, damping: float = 1.0, stiffness: float = 1.0) -> str:
-    """Period of set 1 at 6000 rpm and its share of the time apart to 5 %; damping and stiffness are factors."""
+def apart(
+    torques: Sequence[float] = (150.0,), backlash: Sequence[float] = (40e-6,), damping: Sequence[float] = (1.0,),
+    stiffness: Sequence[float] = (1.0,),
+) -> list[str]:  # fmt: skip
+    """Motion of set 1 at 6000 rpm and its share of the time apart to 5 %; damping and stiffness are factors."""
     base = loaded(MODEL)
     mean, c = float(base.meshes["left"].stiffness), base.meshes["left"].damping or 0.0  # type: ignore[arg-type]
-    out = 0.5 * torque * 41.0 / 22.0
-    loads: dict[str, Any] = {f"input_{side}": {"torque": 0.5 * torque} for side in ("left", "right")}
-    mesh = {"backlash": backlash, "stiffness": stiffness * mean, "damping": damping * c * math.sqrt(stiffness)}
-    model = changed(base, loads=loads | {"output_left": {"torque": out}}, meshes={"left": mesh, "right": mesh})
-    period, result = poincare(model, 6000.0, 250)
-    return f"{period} {5 * round(20.0 * float(result.contact_time[0, 1]))} %"
+
+    def changed_to(_: rg.Model, at: tuple[float, ...]) -> rg.Model:
+        torque, play, share, factor = points[round(at[0])]
+        loads: dict[str, Any] = {f"input_{side}": {"torque": 0.5 * torque} for side in ("left", "right")}
+        loads["output_left"] = {"torque": 0.5 * torque * 41.0 / 22.0}
+        mesh = {"backlash": play, "stiffness": factor * mean, "damping": share * c * math.sqrt(factor)}
+        return changed(base, loads=loads, meshes={"left": mesh, "right": mesh})
+
+    points = list(product(torques, backlash, damping, stiffness))
+    result = rg.sweep(
+        base, {"point": list(range(len(points)))}, steps=STEPS, settle=SETTLE, count=KEPT, change=changed_to
+    )
+    return [f"{result.motion_at(p)} {5 * round(20.0 * result.apart[p, 0, 0])} %" for p in range(len(points))]
 
 
 def _input(name: str) -> float:
@@ -64,11 +56,14 @@ def _input(name: str) -> float:
     return sum(load.torque or 0.0 for load in loaded(name).loads.values() if load.kind == "input")
 
 
-def summary(periods: dict[float, str]) -> str:
-    """Runs of equal periods: "1T to 4900, 2T to 5100, irregular to 6000 rpm"."""
-    speeds = list(periods)
-    ends = [i for i, rpm in enumerate(speeds) if i + 1 == len(speeds) or periods[speeds[i + 1]] != periods[rpm]]
-    return ", ".join(f"{periods[speeds[i]]} to {speeds[i]:.0f}" for i in ends) + " rpm"
+def summary(result: rg.SweepResult) -> str:
+    """Runs of equal motions: "1T to 4900, 2T to 5100, chaotic to 6000 rpm"; beyond 8T all counts are one."""
+    names = [
+        "many T or quasi-periodic" if kind not in ("1T", "2T", "3T", "4T", "chaotic") else kind
+        for kind in (result.motion_at(p) for p in range(len(result.values)))
+    ]
+    last = [i for i, name in enumerate(names) if i + 1 == len(names) or names[i + 1] != name]
+    return ", ".join(f"{names[i]} to {result.values[i, 0]:.0f}" for i in last) + " rpm"
 
 
 def quick() -> dict[str, float | str]:
@@ -89,18 +84,21 @@ def quick() -> dict[str, float | str]:
 @cache
 def values() -> dict[str, float | str]:
     """What takes runs."""
-    first = route()
-    irregular = [rpm for rpm, period in first.items() if period == IRREGULAR]
-    multi = [rpm for rpm, period in first.items() if period not in ("1T", IRREGULAR)]
+    first = route(MODEL, np.arange(4600.0, 6001.0, 50.0).tolist())
+    kinds = [first.motion_at(p) for p in range(len(first.values))]
+    speeds = first.values[:, 0]
     found: dict[str, float | str] = {
-        "route": summary(first), "high": summary(high_speeds()),
-        "first_multi": f"{min(multi):.0f}" if multi else "none",
-        "first_irregular": f"{min(irregular):.0f}" if irregular else "none",
+        "route": summary(first),
+        "high": summary(route(SECOND, np.arange(3e3, 40.1e3, 500.0).tolist(), 200)),
+        "first_multi": f"{next((rpm for rpm, kind in zip(speeds, kinds, strict=True) if kind != '1T'), math.nan):.0f}",
+        "first_chaotic": f"{next((rpm for rpm, kind in zip(speeds, kinds, strict=True) if kind == 'chaotic'), math.nan):.0f}",
+        "exponent_1t": round(float(first.lyapunov[0, 0, 0]), 2),
+        "exponent_chaos": round(float(first.lyapunov[kinds.index("chaotic") + 1, 0, 0]), 1),
     }  # fmt: skip
     trends = {
-        "torque": [apart(torque=t) for t in (75.0, 150.0, 300.0, 600.0, 1200.0)],
-        "damping": [apart(damping=c) for c in (0.5, 1.0, 2.0, 4.0, 8.0)],
-        "backlash": [apart(backlash=j) for j in (1e-6, 5e-6, 10e-6, 20e-6, 40e-6)],
-        "stiffness": [apart(stiffness=k) for k in (0.5, 0.7, 1.0, 1.4, 2.0)],
+        "torque": apart(torques=(75.0, 150.0, 300.0, 600.0, 1200.0)),
+        "damping": apart(damping=(0.5, 1.0, 2.0, 4.0, 8.0)),
+        "backlash": apart(backlash=(1e-6, 5e-6, 10e-6, 20e-6, 40e-6)),
+        "stiffness": apart(stiffness=(0.5, 0.7, 1.0, 1.4, 2.0)),
     }
-    return found | {f"apart_{name}": ", ".join(found) for name, found in trends.items()}
+    return found | {f"apart_{name}": ", ".join(entries) for name, entries in trends.items()}
