@@ -98,6 +98,6 @@ class Mesh(Part):
     )
     damping_depth: PositiveLength | None = Field(
         None,
-        description="depth over which contact damping grows from zero to its value, so that the force has no jump; default: 2 % of "
-        "the mean deflection; with penetration: the depth at which it has its value, by default the mean deflection",
+        description="depth over which contact damping grows from zero to its value, so that the force has no jump; default: 2 % "
+        "of the mean deflection; with penetration: the depth at which it has its value, by default the mean deflection",
     )
