@@ -43,8 +43,8 @@ time on the back side."""),
 [herringbone_pair_24dof.toml](../models/herringbone_pair_24dof.toml) (set 1) and
 [herringbone_pair_24dof_set2.toml](../models/herringbone_pair_24dof_set2.toml) (set 2). No stiffness, damping, inertia or
 clearance is given, so both sets are chosen ones. Each speed starts from its own static equilibrium; 250 (set 1) or 200 (set
-2) mesh periods settle and 64 count, 160 steps each. "kT" says that points k mesh periods apart agree to 2 % of the peak to
-peak deflection, "irregular" that no k up to 8 does."""),
+2) mesh periods settle and 64 count, 160 steps each. "kT" says that points k mesh periods apart agree to 2 % of the
+peak to peak deflection, "chaotic" that the largest Lyapunov exponent is above 0.02 per mesh period, as in `rotorgear sweep`."""),
     "split": ("Split-torque gearbox", """Model [split_torque.toml](../models/split_torque.toml). Shaft sizes, bearings and
 masses are not given; the file is one complete layout whose 25 free numbers were fitted to the 24 printed frequencies, and
 with its many modes any list of frequencies finds partners: see the rows on chance."""),

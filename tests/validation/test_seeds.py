@@ -60,9 +60,12 @@ def test_check_shows_a_given_damping_whatever_the_direction_of_the_line_of_actio
     assert meshes["first_lp"]["damping_n_s_per_m"] == pytest.approx(143457.3)
 
 
-def test_back_side_contact_falls_with_the_load_ratio_and_the_amplitude_bound_holds() -> None:
-    found = {gamma: marine.contact(gamma, settle=50, count=50) for gamma in (0.3, 0.6, 1.0)}
-    back = [found[gamma].back for gamma in (0.3, 0.6, 1.0)]
+def test_the_three_regions_of_the_marine_train() -> None:
+    ratios = (0.3, 0.6, 1.0)
+    found = dict(zip(ratios, marine.contact(ratios), strict=True))
+    assert found[0.6].exponent > 0.05 + 3.0 * found[0.6].exponent_error
+    assert max(abs(found[gamma].exponent) for gamma in (0.3, 1.0)) < 0.02
+    back = [found[gamma].back for gamma in ratios]
     assert back[0] > 0.5 > back[1] > 0.1 > back[2]
     for gamma in (0.6, 1.0):
         # While contact is lost at times, the mean force can't exceed the largest one times the share in contact.
@@ -91,14 +94,25 @@ def test_a_pair_made_by_the_rules_is_that_of_the_file() -> None:
     np.testing.assert_allclose(first.frequency_hz, second.frequency_hz, rtol=1e-4)
 
 
-def test_the_pair_of_24_dofs_goes_from_one_period_over_two_to_irregular() -> None:
-    model = loaded(pair24.MODEL)
-    assert [pair24.poincare(model, rpm, 250)[0] for rpm in (5000.0, 5800.0, 5950.0)] == ["1T", "2T", pair24.IRREGULAR]
+def test_the_pair_of_24_dofs_goes_from_one_period_over_two_to_chaos() -> None:
+    found = pair24.route(pair24.MODEL, (5000.0, 5800.0, 5950.0))
+    assert [found.motion_at(p) for p in range(3)] == ["1T", "2T", "chaotic"]
 
 
 def test_load_closes_the_gap_and_damping_calms() -> None:
-    assert pair24.apart(torque=300.0) == "1T 0 %"
-    assert pair24.apart(damping=4.0).startswith("1T")
+    assert pair24.apart(torques=(300.0,)) == ["1T 0 %"]
+    assert pair24.apart(damping=(4.0,))[0].startswith("1T")
+
+
+def test_transient_and_sweep_agree_on_a_motion_with_loss_of_contact() -> None:
+    model, period = loaded(pair24.MODEL), 60.0 / (5800.0 * 22.0)
+    sweep = pair24.route(pair24.MODEL, (5800.0,))
+    run = rg.transient(
+        model, speed=5800.0 * math.pi / 30.0, method="newmark", steps=640, settle=250 * period, time=64 * period,
+        error_estimate=False,
+    )  # fmt: skip
+    assert run.contact_time[0, 1] == pytest.approx(sweep.apart[0, 0, 0], abs=0.01)
+    assert run.mesh_force[run.counted, 0].max() == pytest.approx(sweep.largest_force[0, 0, 0], rel=0.02)
 
 
 def test_nothing_depends_on_the_backlash_while_contact_is_kept() -> None:

@@ -52,7 +52,12 @@ def operating(gamma: float, total: float = 30e3, *, drag: float = DRAG, table_st
 
 
 def contact(
-    gammas: Sequence[float], total: float = 30e3, *, settle: int = SETTLE, count: int = COUNT, table_stiffness: bool = False
+    gammas: Sequence[float],
+    total: float = 30e3,
+    *,
+    settle: int = SETTLE,
+    count: int = COUNT,
+    table_stiffness: bool = False,
 ) -> list[Contact]:
     """Run to steady motion at load ratios and count."""
     result = rg.sweep(
@@ -86,6 +91,7 @@ def values() -> dict[str, float | str]:
                 f"zeta_{name}{suffix}": round(run.back, digits[0]), f"am_{name}{suffix}": round(run.peak_to_peak / nominal, digits[1]),
                 f"le_{name}{suffix}": round(run.exponent, digits[0]) + 0.0,
             }  # fmt: skip
+        found[f"region{suffix}"] = _region(total)
     soft = contact(list(ratios.values()), table_stiffness=True)
     for name, run in zip(ratios, soft, strict=True):
         found |= {
@@ -93,6 +99,17 @@ def values() -> dict[str, float | str]:
             f"le_soft_{name}": round(run.exponent, 2) + 0.0,
         }  # fmt: skip
     return found
+
+
+def _region(total: float) -> str:
+    """Load ratios, in steps of 0.05 from 0.1 to 1.2, with chaos of an amplitude indicator above 3."""
+    ratios = [round(0.1 + 0.05 * i, 2) for i in range(23)]
+    nominal = 15e3 / PITCH_RADIUS / STIFFNESS
+    large = [
+        gamma for gamma, run in zip(ratios, contact(ratios, total), strict=True)
+        if run.peak_to_peak > 3.0 * nominal and run.exponent > 0.02
+    ]  # fmt: skip
+    return f"{large[0]:.2f} to {large[-1]:.2f}"
 
 
 def quick() -> dict[str, float | str]:
