@@ -46,8 +46,8 @@ clearance is given, so both sets are chosen ones. Each speed starts from its own
 2) mesh periods settle and 64 count, 160 steps each. "kT" says that points k mesh periods apart agree to 2 % of the
 peak to peak deflection, "chaotic" that the largest Lyapunov exponent is above 0.02 per mesh period, as in `rotorgear sweep`."""),
     "split": ("Split-torque gearbox", """Model [split_torque.toml](../models/split_torque.toml). Shaft sizes, bearings and
-masses are not given; the file is one complete layout whose 25 free numbers were fitted to the 24 printed frequencies, and
-with its many modes any list of frequencies finds partners: see the rows on chance."""),
+masses are not given; the file is one complete layout whose 25 free numbers were fitted to the 24 printed frequencies, so that
+finding them again says nothing; and with its 63 modes even a random list finds partners for most of its lines."""),
     "pair12": ("Herringbone pair of 12 degrees of freedom", """Model
 [herringbone_pair_12dof.toml](../models/herringbone_pair_12dof.toml), at the printed contact ratio 3.30. Rows at other ratios
 take mean and ripple of the stiffness from the contact lines at the printed ratio, and the printed impact. Supports,

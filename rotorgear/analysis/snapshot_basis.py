@@ -22,8 +22,8 @@ from rotorgear.system.components import dof_motions
 from rotorgear.system.system import System
 
 TOLERANCE = 1e-9
-# Part of a mode outside of the basis that is not worth a column: it moves the frequency by its square.
-_NEGLIGIBLE = 1e-6
+# Part of a mode outside of the basis that is not worth a column: with damping it moves the frequency in proportion.
+_NEGLIGIBLE = 1e-8
 _MOST_SNAPSHOTS = 65
 # More modes than asked for at every snapshot, so that those which come down with speed are known before they arrive.
 _SPARE, _SPARE_SHARE, _BEYOND_LIMIT = 6, 0.25, 1.15
