@@ -34,6 +34,8 @@ _HOMES = {
     "rotorgear.analysis.accuracy": ("accuracy_ladder",),
     "rotorgear.analysis.transient": ("transient",),
     "rotorgear.analysis.transient_ladder": ("transient_ladder",),
+    "rotorgear.analysis.sweep_ladder": ("sweep_ladder",),
+    "rotorgear.solvers.flow_exponents": ("flow_exponents",),
     "rotorgear.analysis.spectra": ("spectrum", "spectral_lines"),
     "rotorgear.analysis.rig_spectrum": ("compare_spectrum",),
     "rotorgear.analysis.campbell": ("campbell",),
@@ -50,6 +52,7 @@ _HOMES = {
     "rotorgear.results.modal": ("ModalResult",),
     "rotorgear.results.transient": ("TransientResult",),
     "rotorgear.results.sweep": ("SweepResult",),
+    "rotorgear.results.sweep_ladder": ("SweepLadder",),
     "rotorgear.results.static": ("StaticResult",),
     "rotorgear.results.response": ("ResponseResult",),
     "rotorgear.results.frequency_response": ("FrequencyResponse",),
@@ -84,6 +87,7 @@ if TYPE_CHECKING:
     from rotorgear.analysis.spectra import spectral_lines, spectrum
     from rotorgear.analysis.static import static
     from rotorgear.analysis.sweep import sweep
+    from rotorgear.analysis.sweep_ladder import sweep_ladder
     from rotorgear.analysis.transient import transient
     from rotorgear.analysis.transient_ladder import transient_ladder
     from rotorgear.errors import AnalysisError, ConvergenceError, ModelError, RotorgearError
@@ -120,7 +124,9 @@ if TYPE_CHECKING:
     from rotorgear.results.response import ResponseResult
     from rotorgear.results.static import StaticResult
     from rotorgear.results.sweep import SweepResult
+    from rotorgear.results.sweep_ladder import SweepLadder
     from rotorgear.results.transient import TransientResult
+    from rotorgear.solvers.flow_exponents import flow_exponents
     from rotorgear.system.system import System
 
 

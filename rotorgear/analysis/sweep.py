@@ -40,6 +40,7 @@ def sweep(
     tolerance: float = TOLERANCE,
     chaos: float = CHAOS,
     seed: int = 1,
+    throw: float = 1.0,
     workers: int | None = None,
     executor: Executor | None = None,
     stream: Stream | None = None,
@@ -59,7 +60,7 @@ def sweep(
         steps: of the Runge-Kutta method of order 4 in a period of the fastest mesh; where not given, the highest frequency of the
             model decides.
         tolerance, chaos: of the criterion that tells the kinds of motion apart (analysis/sweep_classify.py).
-        seed: of the random states.
+        seed: of the random states. throw: their size; at 1 contacts are thrown by up to some backlashes.
         workers: threads; all cores where not given. The result does not depend on it.
         executor: runs the blocks of points in place of threads, for other machines: an object with `submit`.
         stream: keeps blocks while the sweep goes on (`rotorgear.stream`), and starts an interrupted one again.
@@ -69,7 +70,7 @@ def sweep(
         AnalysisError: a request that makes no sense, or a model that sweeps don't take. Points that fail alone are kept as such.
     """
     begun = clock.perf_counter()
-    request = Request(direction, starts, settle, count, exponents, steps, tolerance, chaos, seed)
+    request = Request(direction, starts, settle, count, exponents, steps, tolerance, chaos, seed, throw)
     axes = [axis_of(address, values) for address, values in over.items()]
     values = points_of(axes)
     with single_thread(0):
@@ -175,4 +176,4 @@ def _start(
     old = points[after] if after is not None else None
     if before is not None and old is not None and before.finite and old.system.n == point.system.n:
         return before.end.moved(old.system, point.system)
-    return start_of(point.system, run % request.starts, request.seed)
+    return start_of(point.system, run % request.starts, request.seed, request.throw)

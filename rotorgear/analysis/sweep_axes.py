@@ -60,7 +60,8 @@ def axis_of_option(text: str) -> Axis:
     address, sign, values = text.partition("=")
     if not sign or not address.strip() or not values.strip():
         raise AnalysisError(
-            f"over: got '{text}', expected ADDRESS=FROM:TO:COUNT or ADDRESS=VALUE,VALUE,... such as 'operation.speed=3000 rpm:6000 rpm:31'"
+            f"over: got '{text}', expected ADDRESS=FROM:TO:COUNT or ADDRESS=VALUE,VALUE,... such as "
+            "'operation.speed=3000 rpm:6000 rpm:31'"
         )
     return axis_of(address.strip(), values.strip())
 

@@ -77,7 +77,8 @@ def gathered(
     )
     return SweepResult(
         model=model, address=tuple(axis.address for axis in axes), unit=tuple(axis.unit for axis in axes),
-        values=np.array(values, dtype=float), shape=np.array([len(axis.values) for axis in axes]), run=request.runs, contact=contact,
+        values=np.array(values, dtype=float), shape=np.array([len(axis.values) for axis in axes]), run=request.runs,
+        contact=contact,
         frequency=np.array([q.system.w / (2.0 * np.pi) if q else np.nan for q in points]),
         turns=np.array([q.system.turns if q else 0 for q in points]), section=section, motion=tuple(motion),
         lyapunov=exponent, lyapunov_error=error, static_force=static,
@@ -90,7 +91,7 @@ def gathered(
 
 def _indicators(sums: np.ndarray, steps: int) -> dict[str, np.ndarray]:
     """Indicators of the contacts from their sums (c, 14)."""
-    from rotorgear.solvers import kernel_lanes as k
+    from rotorgear.solvers import kernel_lane_parts as k
 
     total = np.maximum(sums[:, [k.DRIVING, k.APART, k.BACK]].sum(axis=1), 1.0)
     force, d = sums[:, k.F_SUM] / total, sums[:, k.D_SUM] / total

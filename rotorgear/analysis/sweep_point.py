@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 # Periods of the fastest mesh in the common one, at most.
 MOST_TURNS = 1000
+_KEPT = 1000  # states at rest
 _WHOLE = 1e-9  # relative error of a fraction that stands for a ratio of speeds
 # Places of MeshContact's parameters that don't shape its tables: k, c, backlash, gap, damping, ramp, impact.
 _NO_SHAPE = (0, 1, 2, 3, 4, 5, 12)
@@ -70,11 +71,10 @@ class Still:
 
 
 class PointMaker:
-    """Makes models ready, and keeps the last state at rest for the next model where only the speed is another."""
+    """Makes models ready, and keeps states at rest for models where only the speed is another."""
 
     def __init__(self) -> None:
-        self._key = ""
-        self._still: Still | None = None
+        self._known: dict[str, Still] = {}
 
     def __call__(self, model: Model) -> Point:
         """Make a model ready at its own speed.
@@ -87,13 +87,17 @@ class PointMaker:
             raise AnalysisError("the model gives no speed of operation: set operation.speed, or sweep over it")
         standing = model.operation.model_copy(update={"speed": 1.0 if speed > 0.0 else -1.0})
         key = model.model_copy(update={"operation": standing}).model_dump_json(exclude_none=True)
-        if self._still is None or key != self._key or not _standing(model):
-            self._key, self._still = key, _still(model, speed)
-        return ready(self._still, speed, model.damping.modal_ratio)
+        if not _standing(model):
+            return ready(_still(model, speed), speed, model.damping.modal_ratio)
+        if key not in self._known:
+            if len(self._known) >= _KEPT:
+                self._known.clear()
+            self._known[key] = _still(model, speed)
+        return ready(self._known[key], speed, model.damping.modal_ratio)
 
 
 def _standing(model: Model) -> bool:
-    """Whether nothing but the rotation itself depends on the speed: no power, no tables, no internal damping, no torque over speed."""
+    """Whether only the rotation depends on the speed: no power, no tables, no internal damping, no torque over speed."""
     operation = model.operation
     assert operation is not None
     powers = [operation.power, *(load.power for load in model.loads.values())]
@@ -140,7 +144,14 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
     shape, mesh = b"".join(_shape(law) for law in laws), columns.mesh
     return Point(
-        system, local.forces, float(np.copysign(float(fastest), speed)), known.contact, known.static[mesh], columns.stiffness[mesh], drifts, shape
+        system,
+        local.forces,
+        float(np.copysign(float(fastest), speed)),
+        known.contact,
+        known.static[mesh],
+        columns.stiffness[mesh],
+        drifts,
+        shape,
     )
 
 
@@ -157,8 +168,8 @@ def common_period(orders: list[Fraction]) -> tuple[Fraction, int]:
     turns = fastest / base
     if turns > MOST_TURNS:
         raise AnalysisError(
-            f"the meshes repeat together after {int(turns)} periods of the fastest only (at most {MOST_TURNS}); choose numbers of "
-            "teeth with common factors"
+            f"the meshes repeat together after {int(turns)} periods of the fastest only (at most {MOST_TURNS}); choose "
+            "numbers of teeth with common factors"
         )
     return fastest, int(turns)
 
@@ -185,7 +196,7 @@ def column_of(law: object, place: str, speed: float = 1.0) -> list[tuple[float, 
     from rotorgear.forces.mesh_contact import DAMPINGS, GAPS, MeshContact
     from rotorgear.forces.rotating_force import RotatingForce
     from rotorgear.forces.torque_curve import TorqueCurve
-    from rotorgear.solvers.kernel_lanes import LINE, NEVER_PARTS, ONE_SIDED, PRESCRIBED
+    from rotorgear.solvers.kernel_lane_parts import LINE, NEVER_PARTS, ONE_SIDED, PRESCRIBED
 
     if isinstance(law, MeshContact):
         gap = {"line": LINE, "one-sided": ONE_SIDED, "none": NEVER_PARTS}[GAPS[GAPS.index(law.gap)]]
@@ -228,7 +239,7 @@ def table_of(point: Point, steps: int) -> np.ndarray:
     """Tables of a point over its common period, (2 turns steps + 1, m, 4)."""
     from rotorgear.forces.mesh_contact import MeshContact
     from rotorgear.forces.torque_curve import TorqueCurve
-    from rotorgear.solvers.kernel_lanes import ERROR, PUSH, SLOPE, STIFFNESS, tabulate
+    from rotorgear.solvers.kernel_lane_parts import ERROR, PUSH, SLOPE, STIFFNESS, tabulate
 
     rows = 2 * point.system.turns * steps + 1
     angles = np.pi / steps / point.order * np.arange(rows)

@@ -31,6 +31,7 @@ class Request:
     tolerance: float
     chaos: float
     seed: int
+    throw: float = 1.0
 
     def __post_init__(self) -> None:
         if self.direction not in DIRECTIONS:
@@ -63,11 +64,11 @@ class Request:
         return tuple(name(direction, number) for direction in self.directions for number in range(self.starts))
 
 
-def start_of(system: SmallSystem, number: int, seed: int) -> Start:
+def start_of(system: SmallSystem, number: int, seed: int, throw: float = 1.0) -> Start:
     """State that a run starts from: the static one at rest, or for number > 0 one that is thrown off it at random.
 
-    The velocities are drawn in the directions of the contacts, so that contacts move by up to some deflections or backlashes in a
-    radian of the mesh.
+    The velocities are drawn in the directions of the contacts, so that contacts move by up to `throw` times twice their
+    deflection and backlash in a radian of the mesh.
     """
     if number == 0:
         return Start(system.rest.copy(), np.zeros(system.n))
@@ -76,7 +77,7 @@ def start_of(system: SmallSystem, number: int, seed: int) -> Start:
     reach = np.abs(system.B[:, mesh].T @ system.rest)
     backlash = np.where(np.isfinite(system.columns.backlash[mesh]), system.columns.backlash[mesh], 0.0)
     draw = np.random.default_rng([seed, number])
-    wanted = 2.0 * draw.uniform(-1.0, 1.0, B.shape[1]) * (reach + backlash)
+    wanted = 2.0 * throw * draw.uniform(-1.0, 1.0, B.shape[1]) * (reach + backlash)
     thrown = np.linalg.lstsq(B.T, wanted, rcond=1e-10)[0]
     return Start(system.rest.copy(), thrown - system.rigid.T @ (system.rigid @ thrown))
 
@@ -103,7 +104,7 @@ def steps_of(points: Sequence[Point | None], wanted: int | None) -> tuple[np.nda
         steps[i] = int(np.ceil(LEAST_STEPS * 2.0 ** (0.5 * classes)))
         if steps[i] > MOST_STEPS:
             refused[i] = (
-                f"the stiffest part needs {needed} steps in a period of the fastest mesh (at most {MOST_STEPS} are chosen): make it "
-                "rigid, or ask for the steps"
+                f"the stiffest part needs {needed} steps in a period of the fastest mesh (at most {MOST_STEPS} are chosen): "
+                "make it rigid, or ask for the steps"
             )
     return steps, refused

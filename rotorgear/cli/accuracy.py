@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def accuracy(
     model: ModelFile,
     analysis: Annotated[
-        str, typer.Option("--analysis", help="What is run: modal, mesh (teeth in contact) or transient.")
+        str, typer.Option("--analysis", help="What is run: modal, mesh (teeth in contact), transient or sweep.")
     ] = "modal",
     mesh: Annotated[
         str | None, typer.Option("--mesh", help="With --analysis mesh: name of the mesh.", show_default=False)
@@ -53,10 +53,14 @@ def accuracy(
         _refuse_modal_options(speed, reference)
         _mesh(model, mesh, torque, plot, json)
         return
-    if analysis not in ("modal", "transient"):
-        raise AnalysisError(f"--analysis: got '{analysis}', expected modal, mesh or transient")
+    if analysis not in ("modal", "transient", "sweep"):
+        raise AnalysisError(f"--analysis: got '{analysis}', expected modal, mesh, transient or sweep")
     if mesh is not None or torque is not None:
         raise AnalysisError("--mesh and --torque belong to --analysis mesh.")
+    if analysis == "sweep":
+        _refuse_others(time, modal_damping, reference, plot)
+        _sweep(model, speed, json)
+        return
     if analysis == "modal" and (time or modal_damping is not None):
         raise AnalysisError("--time and --modal-damping belong to --analysis transient")
     if analysis == "transient" and reference:
@@ -101,6 +105,22 @@ def _mesh(model: Path, mesh: str | None, torque: str | None, plot: Path | None, 
         from rotorgear.plots.mesh_ladder import draw_mesh_ladder
 
         typer.echo(f"wrote {draw_mesh_ladder(ladder, plot)}")
+
+
+def _refuse_others(time: str | None, modal_damping: float | None, reference: Path | None, plot: Path | None) -> None:
+    if time or modal_damping is not None or reference or plot:
+        raise AnalysisError("--analysis sweep takes --speed and --json, and no other option")
+
+
+def _sweep(model: Path, speed: str | None, json: Path | None) -> None:
+    """The ladder of a point of a sweep."""
+    import rotorgear as rg
+    from rotorgear.cli.tables_sweep import ladder_table
+
+    with progress_bar("accuracy") as progress:
+        ladder = rg.sweep_ladder(rg.load(model), speed=parse_speed(speed), progress=progress)
+    console().print(ladder_table(ladder))
+    write_json(ladder.to_dict(), json)
 
 
 def table(ladder: AccuracyLadder) -> list[Any]:

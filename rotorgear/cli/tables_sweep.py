@@ -10,9 +10,10 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from rotorgear.results.sweep import SweepResult
+    from rotorgear.results.sweep_ladder import SweepLadder
 
-# Lines that a table shows at most; the rest is in the files.
-_MOST = 60
+# Lines of a table and stretches of a route that are shown at most; the rest is in the files.
+_MOST, _STRETCHES = 60, 16
 
 
 def sweep_table(result: SweepResult) -> RenderableType:
@@ -22,8 +23,7 @@ def sweep_table(result: SweepResult) -> RenderableType:
 
     parts: list[RenderableType] = [Text(_title(result), style="bold"), Text("")]
     if len(result.shape) == 1:
-        for r in range(len(result.run)):
-            parts.append(Text(_route(result, r)))
+        parts += [Text(_route(result, r)) for r in range(len(result.run))]
         parts.append(Text(""))
     rows = len(result.values) * len(result.run)
     parts += [_points(result, range(min(rows, _MOST)))]
@@ -45,9 +45,11 @@ def _route(result: SweepResult, run: int) -> str:
         return f"{result.values[p, 0]:.6g}"
 
     parts = [f"{kind} {at(a)}" + (f" to {at(b)}" if b > a else "") for kind, a, b in result.route(run)]
+    if len(parts) > _STRETCHES:
+        parts = [*parts[:_STRETCHES], f"... and {len(parts) - _STRETCHES} more changes"]
     label = f"route ({result.run[run]})" if len(result.run) > 1 else "route"
-    unit = f" {result.unit[0]}" if result.unit[0] else ""
-    return f"{label}: " + ", ".join(parts) + unit
+    unit = f" ({result.unit[0]})" if result.unit[0] else ""
+    return f"{label}{unit}: " + ", ".join(parts)
 
 
 def _points(result: SweepResult, rows: range) -> Any:
@@ -79,20 +81,38 @@ def _number(value: float, form: str) -> str:
 
 
 def _notes(result: SweepResult) -> list[str]:
-    first, last = int(result.steps.min()), int(result.steps.max())
-    turns = sorted({int(n) for n in result.turns if n})
-    period = (
-        "the mesh period"
-        if turns == [1]
-        else f"{turns[0] if len(turns) == 1 else f'{turns[0]} to {turns[-1]}'} periods of the fastest mesh"
-    )
+    what = "p-p, K_dyn, apart and back: of the worst contact"
+    if result.lyapunov.shape[2]:
+        what = f"LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; {what}"
+    sound = result.steps[result.steps > 0]
+    first, last = int(sound.min()), int(sound.max())
+    steps = f"{first}" if first == last else f"{first} to {last}"
     lines = [
         "",
-        "LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; p-p, K_dyn, apart and back: of the worst "
-        "contact" if result.lyapunov.shape[2] else "p-p, K_dyn, apart and back: of the worst contact",
-        f"T is {period}; {result.settle} settled, {result.count} counted; repeats within {100.0 * result.tolerance:g} % of the peak to "
-        f"peak; chaotic: LE > {result.chaos:g}",
-        f"{result.dofs} dofs, {first if first == last else f'{first} to {last}'} steps a mesh period, {result.seconds['total']:.2f} s; "
-        f"{result.method}",
-    ]  # fmt: skip
+        what,
+        f"T is {result.period_words}; {result.settle} settled, {result.count} counted; repeats within "
+        f"{100.0 * result.tolerance:g} % of the peak to peak; chaotic: LE > {result.chaos:g}",
+        f"{result.dofs} dofs, {steps} steps a mesh period, {result.seconds['total']:.2f} s; {result.method}",
+    ]
     return lines + [f"Warning: {note}" for note in result.warnings]
+
+
+def ladder_table(ladder: SweepLadder) -> RenderableType:
+    """Return the ladder of a point: what it gives, its scatter and its cost."""
+    from rich.console import Group
+    from rich.text import Text
+
+    out = table("steps", "periods", "seconds", "LE", "scatter", "stated", "p-p um", "scatter", "K_dyn", left=0)
+    for rung in ladder.rungs:
+        out.add_row(
+            str(rung.steps), str(rung.count), f"{rung.seconds:.3f} s", f"{rung.exponent:+.3f}", f"{rung.scatter:.3f}",
+            f"{rung.stated:.3f}", f"{1e6 * rung.peak_to_peak:.2f}", f"{1e6 * rung.peak_to_peak_scatter:.2f}",
+            f"{rung.dynamic_factor:.2f}",
+        )  # fmt: skip
+    kinds = ", ".join(sorted({kind for rung in ladder.rungs for kind in rung.motion}))
+    head = f"{ladder.title}: one point from {ladder.runs} states ({kinds})"
+    notes = (
+        "LE: largest Lyapunov exponent per period of the fastest mesh; scatter: standard deviation over the states; stated: "
+        "standard error that one run states; seconds: of one run"
+    )
+    return Group(Text(head, style="bold"), Text(""), out, Text(""), Text(notes), "")

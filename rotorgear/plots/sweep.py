@@ -24,7 +24,7 @@ def draw_sweep(result: SweepResult, directory: str | Path) -> list[Path]:
     """
     plans: dict[str, Any] = {}
     if len(result.shape) == 1:
-        for number, name in enumerate(result.contact):
+        for number in range(len(result.contact)):
             plans[f"bifurcation_{number + 1}.png"] = lambda figure, c=number: draw_bifurcation(result, figure, c)
         plans["sections.png"] = lambda figure: draw_sections(result, figure)
     else:
@@ -47,20 +47,24 @@ def draw_bifurcation(result: SweepResult, figure: Any, contact: int = 0) -> None
     """Displacement of a contact at the sections over the parameter, the largest exponent, and shares of time below it."""
     exponent = bool(result.lyapunov.shape[2])
     rows = 3 if exponent else 2
-    axes = figure.subplots(rows, 1, sharex=True, height_ratios=(3, 1, 1)[: rows - 1] + (1,))
+    axes = figure.subplots(rows, 1, sharex=True, height_ratios=(3, 1, 1)[:rows])
     for r, name in enumerate(result.run):
         x = np.repeat(result.values[:, 0], result.count)
         y = 1e6 * result.section[:, r, :, contact, 0].ravel()
-        axes[0].plot(x, y, ",", ms=1, color=_colour(result, r), alpha=0.7, label=name, rasterized=True)
+        axes[0].plot(
+            x, y, ".", ms=_dot(result), mew=0, color=_colour(result, r), alpha=0.7, label=name, rasterized=True
+        )
         if exponent:
             axes[1].errorbar(
                 result.values[:, 0], result.lyapunov[:, r, 0], result.lyapunov_error[:, r, 0], fmt=".-", ms=3, lw=0.7,
                 color=_colour(result, r),
             )  # fmt: skip
     axes[0].set_ylabel("displacement at the section, um")
-    axes[0].set_title(f"{result.contact[contact]}: Poincare section once each {_period(result)}", fontsize=9)
+    axes[0].set_title(
+        f"{result.contact[contact]}: Poincare section once each {result.period_words.removeprefix('the ')}", fontsize=9
+    )
     if len(result.run) > 1:
-        axes[0].legend(fontsize=7, markerscale=8, loc="best", ncols=2)
+        axes[0].legend(fontsize=7, markerscale=4, loc="best", ncols=2)
     if exponent:
         axes[1].axhline(0.0, color="k", lw=0.6)
         axes[1].set_ylabel("LE per mesh\nperiod")
@@ -75,9 +79,9 @@ def draw_bifurcation(result: SweepResult, figure: Any, contact: int = 0) -> None
         one.grid(alpha=0.25)
 
 
-def _period(result: SweepResult) -> str:
-    turns = sorted({int(n) for n in result.turns if n})
-    return "mesh period" if turns == [1] else f"{turns[-1]} periods of the fastest mesh"
+def _dot(result: SweepResult) -> float:
+    """Size of a dot: the finer, the more points stand side by side."""
+    return float(np.clip(120.0 / len(result.values), 0.8, 3.0))
 
 
 def _colour(result: SweepResult, run: int) -> str:

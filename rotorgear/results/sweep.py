@@ -23,7 +23,7 @@ class SweepResult:
         section: displacement in m and velocity in m/s of the contacts along their normal (without the transmission error) at the
             end of each common period, (p, r, s, c, 2).
         motion: (p * r) kinds: "1T", "2T", ..., "quasi-periodic", "chaotic", "not settled", "not periodic", "failed".
-        lyapunov, lyapunov_error: (p, r, t) exponents and their standard errors, in units of one over a period of the fastest mesh.
+        lyapunov, lyapunov_error: (p, r, t) exponents and their standard errors, per period of the fastest mesh.
         peak_to_peak: of the approach d - e, amplitude: of d itself, rms: of d about its mean, (p, r, c) in m.
         mean_force, rms_force, largest_force: (p, r, c) in N, the rms about the mean; static_force: (p, c) in N;
             static_deflection: (p, c) in m.
@@ -75,6 +75,14 @@ class SweepResult:
         """(p, r, c) largest force over the static one; NaN where no load flows."""
         static = self.static_force[:, None, :]
         return np.where(static > 0.0, self.largest_force / np.where(static > 0.0, static, 1.0), np.nan)
+
+    @property
+    def period_words(self) -> str:
+        """The common period T in words."""
+        turns = sorted({int(n) for n in self.turns if n})
+        if turns == [1]:
+            return "the mesh period"
+        return f"{turns[0]}{f' to {turns[-1]}' if len(turns) > 1 else ''} periods of the fastest mesh"
 
     def motion_at(self, point: int, run: int = 0) -> str:
         """Kind of motion of a run."""

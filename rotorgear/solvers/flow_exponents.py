@@ -1,7 +1,7 @@
-"""Lyapunov exponents of equations of one's own, y' = f(y), from the tangent flow Y' = J(y) Y made orthonormal by QR again and again.
+"""Lyapunov exponents of equations of one's own, y' = f(y), from the tangent flow Y' = J(y) Y made orthonormal by QR.
 
-Many trajectories run side by side; the exponents are means over all of them, and their standard errors follow from the scatter between
-trajectories. Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15 (1980) 9.
+Many trajectories run side by side; the exponents are means over all of them, and their standard errors follow from the scatter
+between trajectories. Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15 (1980) 9.
 """
 
 from __future__ import annotations

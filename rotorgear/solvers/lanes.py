@@ -49,7 +49,7 @@ class Orbit:
     Attributes:
         section: displacement and velocity (in m and m/s) of each local displacement at the end of each common period, (p, m, 2).
         growth: (p, t) logarithm of the growth of each tangent in a common period.
-        sums: (m, 14) statistics, see kernel_lanes.py; forces in N.
+        sums: (m, 14) statistics, see kernel_lane_parts.py; forces in N.
         end: state at the end. finite: whether everything stayed finite.
     """
 
@@ -75,7 +75,8 @@ def run_block(
         plan: how long.
         go_on: asked now and then; the run is given up with a KeyboardInterrupt where it says no.
     """
-    from rotorgear.solvers.kernel_lanes import LANES, lanes_loop
+    from rotorgear.solvers.kernel_lane_parts import LANES
+    from rotorgear.solvers.kernel_lanes import lanes_loop
 
     count = len(systems)
     if not 0 < count <= LANES:
@@ -116,7 +117,7 @@ def _orbit(
     system: SmallSystem, lane: int, growth: np.ndarray, section: np.ndarray, sums: np.ndarray, state: np.ndarray
 ) -> Orbit:
     """One lane, with forces in N and velocities in m/s."""
-    from rotorgear.solvers.kernel_lanes import F_MAX, F_MIN, F_SQUARES, F_SUM
+    from rotorgear.solvers.kernel_lane_parts import F_MAX, F_MIN, F_SQUARES, F_SUM
 
     found, n = sums[:, :, lane].copy(), system.n
     moved = section[:, :, lane].reshape(len(section), len(sums), 2).copy()
@@ -131,7 +132,7 @@ def _orbit(
 
 def blank_sums(m: int) -> np.ndarray:
     """Statistics (m, 14, w) before anything was counted."""
-    from rotorgear.solvers.kernel_lanes import D_MAX, D_MIN, F_MAX, F_MIN, LANES, X_MAX, X_MIN
+    from rotorgear.solvers.kernel_lane_parts import D_MAX, D_MIN, F_MAX, F_MIN, LANES, X_MAX, X_MIN
 
     sums = np.zeros((m, 14, LANES))
     sums[:, [D_MIN, X_MIN, F_MIN]], sums[:, [D_MAX, X_MAX, F_MAX]] = np.inf, -np.inf
@@ -140,7 +141,7 @@ def blank_sums(m: int) -> np.ndarray:
 
 def _tangents(system: SmallSystem, count: int) -> np.ndarray:
     """Random tangents (t, 2 n, w), the same for all lanes and runs."""
-    from rotorgear.solvers.kernel_lanes import LANES
+    from rotorgear.solvers.kernel_lane_parts import LANES
 
     drawn = np.random.default_rng(1).standard_normal((count, 2 * system.n))
     return np.ascontiguousarray(np.repeat(drawn[:, :, None], LANES, axis=2))

@@ -23,7 +23,7 @@ ACCURATE = 0.35
 
 @dataclass(frozen=True)
 class Columns:
-    """How each of m local displacements acts; arrays (m,), forces over (w^2) as the kernel wants them, see kernel_lanes.py."""
+    """How each of m local displacements acts, arrays (m,): see kernel_lane_parts.py."""
 
     gap: np.ndarray
     mode: np.ndarray

@@ -2,9 +2,10 @@
 
     python -m validation.benchmarks.sweep_speed
 
-A chain of 7 bodies in torsion with 1 or 4 mesh contacts that part, and one of 24 with 8: k(t) +-25 %, e(t), 200 steps in a mesh period.
-Prints, in CPU seconds of one thread, point-steps in a second of each, their ratios, and how far lanes and scalar kernel are apart after
-20 periods. solve_ivp (DOP853, rtol 1e-8) is timed over mesh periods of one point, with a slope in numpy and with a compiled one.
+A chain of 7 bodies with 1 or 4 mesh contacts that part, and one of 24 with 8: k(t) +-25 %, e(t), 200 steps in a mesh period.
+Prints, in CPU seconds of one thread, point-steps in a second of each, their ratios, and how far lanes and scalar kernel are
+apart after 20 periods. solve_ivp (DOP853, rtol 1e-8) is timed over mesh periods of one point, with a slope in numpy and with a
+compiled one.
 """
 
 from __future__ import annotations

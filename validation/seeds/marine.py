@@ -86,9 +86,10 @@ def values() -> dict[str, float | str]:
     for total, suffix in ((30e3, ""), (35e3, "_35")):
         for name, run in zip(ratios, contact(list(ratios.values()), total), strict=True):
             # One digit where the motion is chaotic: the next one is another on every machine.
-            digits = (1, 0) if run.exponent > 0.05 else (2, 1)
+            digits = (1, 0) if run.exponent > 0.015 else (2, 1)
             found |= {
-                f"zeta_{name}{suffix}": round(run.back, digits[0]), f"am_{name}{suffix}": round(run.peak_to_peak / nominal, digits[1]),
+                f"zeta_{name}{suffix}": round(run.back, digits[0]),
+                f"am_{name}{suffix}": round(run.peak_to_peak / nominal, digits[1]),
                 f"le_{name}{suffix}": round(run.exponent, digits[0]) + 0.0,
             }  # fmt: skip
         found[f"region{suffix}"] = _region(total)

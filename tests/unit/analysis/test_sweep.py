@@ -1,4 +1,4 @@
-"""Sweeps: the kernel against an explicit reference, exponents against closed forms, the verb against the transient, and its data."""
+"""Sweeps: the kernel against other integrators, exponents against closed forms, the verb against the transient."""
 
 from __future__ import annotations
 
