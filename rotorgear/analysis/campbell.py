@@ -318,7 +318,8 @@ def _warnings(system: System, found: SpeedModes, tracks: list[Track], onsets: tu
 
 def _method(found: SpeedModes, tracks: list[Track], count: int) -> str:
     halvings = sum(track.halvings for track in tracks)
+    bound = 10.0 ** np.ceil(np.log10(max(found.error, 1e-10)))  # what is below is rounding
     return (
         f"basis of {found.size} columns from {len(found.snapshots)} true solutions, {len(found.checks)} more as a check: "
-        f"off by at most {found.error:.0e}; {count} speeds, {halvings} steps halved to follow the modes"
+        f"off by at most {bound:.0e}; {count} speeds, {halvings} steps halved to follow the modes"
     )

@@ -131,7 +131,7 @@ def _table(result: CriticalResult) -> Any:
     table.add_column("what moves", overflow="fold")
     for item in result.speeds:
         share = f"{100.0 * item.participation:.2f}" if item.excited else "none"
-        zeta = [f"{100.0 * item.damping_ratio:.3f}"] if result.damped else []
+        zeta = [f"{round(100.0 * item.damping_ratio, 3) + 0.0:.3f}"] if result.damped else []
         row = [
             f"{item.speed * _RPM:.2f}",
             f"{item.frequency_hz:.3f}",

@@ -38,7 +38,7 @@ def draw_critical_map(chart: CriticalMap, path: str | Path) -> Path:
     axis.set_title(f"{chart.model.title or 'Critical speeds'}\nundamped critical speeds of {chart.line}", fontsize=10)
     axis.set_xlim(chart.stiffness[0], chart.stiffness[-1])
     axis.grid(True, which="both", alpha=0.2)
-    axis.legend(frameon=False, loc="upper left")
+    axis.legend(frameon=False, loc="lower right")
     return write_figure(figure, path)
 
 

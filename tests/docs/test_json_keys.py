@@ -25,6 +25,9 @@ NAMED = {
     "point_amplitude": "POINT",
     "seconds_by_step": "STEP",
     "counts": "TABLE",
+    "mesh_strain": "MESH",
+    "whirl_by_shaft": "SHAFT",
+    "map.bearing_stiffness_n_per_m": "BEARING",
     "mesh_frequency_hz": "MESH",
     "helix[].load_share": "PAIR",
     **dict.fromkeys(
@@ -143,6 +146,20 @@ def test_the_keys_of_mesh_are_documented(tmp_path: Path) -> None:
     assert set(keys(written(tmp_path, "mesh", str(file), "--loads", "0.5"))) == documented("mesh")
     ladder = written(tmp_path, "accuracy", str(file), "--analysis", "mesh")
     assert set(keys(ladder)) == documented("mesh accuracy")
+
+
+def test_the_keys_of_campbell_are_documented(tmp_path: Path) -> None:
+    data = written(tmp_path, "campbell", str(MODEL), "--points", "3", "--elements", "1", "--modes", "8")
+    data["warnings"] = ["one"]  # this model has none
+    data["onsets"] = [{"branch": 1, "speed_rpm": 1.0, "frequency_hz": 1.0}]  # nothing in it is unstable
+    assert set(keys(data)) == documented("campbell")
+
+
+def test_the_keys_of_critical_are_documented(tmp_path: Path) -> None:
+    jeffcott = ROOT / "models" / "jeffcott.toml"
+    data = written(tmp_path, "critical", str(jeffcott), "--to", "3000 rpm", "--map", "--elements", "2")
+    data["warnings"], data["left_out"] = ["one"], ["one"]
+    assert set(keys(data)) == documented("critical")
 
 
 def test_the_keys_of_static_are_documented(tmp_path: Path) -> None:
