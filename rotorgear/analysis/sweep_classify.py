@@ -3,7 +3,7 @@
 With x the displacements of the contacts at the end of each common period T, p their peak to peak and L the exponent per period of
 the fastest mesh, the first of these that holds:
 
-    chaotic         L > chaos (0.02) and L > 2 standard errors
+    chaotic         L > chaos (0.02), L > 2 standard errors, and x does not grow from one half of the section to the other
     kT              all x that lie k T apart stay within tolerance (0.02) of max(p, 0.05 um), for the least k up to 32
     quasi-periodic  |L| <= chaos, and the two halves of the section cover the same range to 10 %
     not settled     anything else
@@ -19,6 +19,7 @@ LONGEST = 32
 TOLERANCE, CHAOS = 0.02, 0.02
 _SMALLEST = 0.05e-6  # m, peak to peak
 _SAME_RANGE = 0.1
+_GROWTH = 5.0
 # Batches of consecutive periods whose means are taken as independent.
 _BATCHES = 16
 CHAOTIC, QUASI_PERIODIC, NOT_SETTLED, NOT_PERIODIC, FAILED = (
@@ -62,7 +63,7 @@ def classify(
         tolerance, chaos: of the criterion above.
     """
     if exponent is not None and exponent > max(chaos, 2.0 * error):
-        return Motion(CHAOTIC, 0)
+        return Motion(NOT_SETTLED if _grows(x) else CHAOTIC, 0)
     period = period_of(x, extent, tolerance)
     if period:
         return Motion(f"{period}T", period)
@@ -80,6 +81,12 @@ def period_of(x: np.ndarray, extent: np.ndarray, tolerance: float = TOLERANCE) -
         if all(np.all(np.ptp(x[j::k], axis=0) <= allowed) for j in range(k)):
             return k
     return 0
+
+
+def _grows(x: np.ndarray) -> bool:
+    """Whether the second half of a section is far wider than the first: an unstable motion, which is no chaos."""
+    half = len(x) // 2
+    return bool(np.any(np.ptp(x[half:], axis=0) > _GROWTH * np.ptp(x[:half], axis=0)))
 
 
 def _steady(x: np.ndarray) -> bool:

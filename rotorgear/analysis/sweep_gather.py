@@ -18,6 +18,9 @@ _TABLES = (
     "peak_to_peak", "amplitude", "rms", "mean_force", "rms_force", "largest_force", "driving", "apart", "back", "losses",
 )  # fmt: skip
 
+# Sizes of a motion beyond which it counts as one without bounds.
+_FAR = 1e4
+
 
 def gathered(
     model: Model,
@@ -46,9 +49,10 @@ def gathered(
         if point.contact != contact:
             failed[i] = "its contacts are not those of the other points"
             continue
-        if not orbit.finite:
-            failed[i] = (
-                failed[i] or f"the run '{request.runs[run]}' left all bounds: ask for more steps, or give more damping"
+        if not orbit.finite or np.any(np.abs(orbit.section[:, point.system.columns.mesh, 0]) > _FAR * _size(point)):
+            failed[i] = failed[i] or (
+                f"the run '{request.runs[run]}' left all bounds: the motion is unstable; give more damping, or a backlash that "
+                "bounds it"
             )
             continue
         mesh = point.system.columns.mesh
@@ -87,6 +91,13 @@ def gathered(
         dofs=max(q.system.n for q in sound), seconds=laps, method="Runge-Kutta of order 4 in lanes of 32 points",
         warnings=_warnings(points, failed, motion), **tables,
     )  # fmt: skip
+
+
+def _size(point: Point) -> float:
+    """Displacement in m that motions are measured by: static deflection, backlash, and the smallest that counts."""
+    columns = point.system.columns
+    backlash = columns.backlash[columns.mesh & np.isfinite(columns.backlash)]
+    return float(max(np.abs(point.static_force / point.stiffness).max(), backlash.max(initial=0.0), 1e-6))
 
 
 def _indicators(sums: np.ndarray, steps: int) -> dict[str, np.ndarray]:

@@ -12,7 +12,7 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.sweep_ladder import SweepLadder, SweepRung
 
-STEPS, COUNTS = (50, 100, 200, 400), (100, 400, 1600)
+STEPS, COUNTS = (50, 100, 200, 400), (50, 200, 800)
 _SETTLE = 300
 # Far enough apart for chaos to forget, near enough to stay with one motion.
 _THROW = 1e-3

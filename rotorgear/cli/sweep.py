@@ -66,12 +66,17 @@ def sweep(
     if len({axis.address for axis in axes}) < len(axes):
         raise AnalysisError(f"--over: '{axes[0].address}' is given twice")
     with progress_bar("sweep") as progress:
-        result = rg.sweep(
-            rg.load(model), {axis.address: [axis.text(value) for value in axis.values] for axis in axes},
-            direction=direction, starts=starts, settle=settle, count=count, exponents=exponents, steps=steps,
-            tolerance=tolerance, chaos=chaos, seed=seed, workers=workers,
-            stream=rg.stream(save, resume=resume) if save else None, progress=progress,
-        )  # fmt: skip
+        try:
+            result = rg.sweep(
+                rg.load(model), {axis.address: [axis.text(value) for value in axis.values] for axis in axes},
+                direction=direction, starts=starts, settle=settle, count=count, exponents=exponents, steps=steps,
+                tolerance=tolerance, chaos=chaos, seed=seed, workers=workers,
+                stream=rg.stream(save, resume=resume) if save else None, progress=progress,
+            )  # fmt: skip
+        except KeyboardInterrupt:
+            if save:
+                typer.echo(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)
+            raise
     console().print(sweep_table(result))
     write_json(result.to_dict(), json)
     _write(result, save, plot)

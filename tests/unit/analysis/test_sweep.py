@@ -320,3 +320,123 @@ def test_the_family_of_a_model_keeps_everything_else() -> None:
 def test_the_pair_turns_backwards_as_it_does_forwards() -> None:
     result = rg.sweep(rg.load(PAIR), {"operation.speed": ["8000 rpm", "-8000 rpm"]}, **SHORT)
     assert result.section[1] == pytest.approx(result.section[0], rel=1e-6, abs=1e-12)
+
+
+TWO_STAGES = """
+schema_version = 1
+motions = ["torsion"]
+operation = { input_shaft = "a", output_shaft = "c", speed = "4000 rpm", torque = "12 N m" }
+[shafts.a]
+position = ["0 m", "0 m"]
+[shafts.b]
+position = ["87 mm", "0 m"]
+[shafts.c]
+position = ["87 mm", "96 mm"]
+start = "100 mm"
+[gears.g1]
+shaft = "a"
+at = "start"
+kind = "spur"
+teeth = 24
+normal_module = "3 mm"
+width = "20 mm"
+mass = "1 kg"
+polar_inertia = "8e-4 kg m^2"
+diametral_inertia = "1e-3 kg m^2"
+[gears.g2]
+shaft = "b"
+at = "start"
+kind = "spur"
+teeth = 34
+normal_module = "3 mm"
+width = "20 mm"
+mass = "1 kg"
+polar_inertia = "2e-3 kg m^2"
+diametral_inertia = "1e-3 kg m^2"
+[gears.g3]
+shaft = "b2"
+at = "start"
+kind = "spur"
+teeth = 20
+normal_module = "3 mm"
+width = "20 mm"
+mass = "1 kg"
+polar_inertia = "5e-4 kg m^2"
+diametral_inertia = "1e-3 kg m^2"
+[gears.g4]
+shaft = "c"
+at = "start"
+kind = "spur"
+teeth = 44
+normal_module = "3 mm"
+width = "20 mm"
+mass = "1 kg"
+polar_inertia = "9e-3 kg m^2"
+diametral_inertia = "1e-3 kg m^2"
+[shafts.b2]
+position = ["87 mm", "0 m"]
+start = "100 mm"
+[couplings.quill]
+from_shaft = "b"
+to_shaft = "b2"
+stiffness = { torsion = "5e4 N m/rad" }
+damping = { torsion = "3 N m s/rad" }
+[meshes.first]
+pinion = "g1"
+gear = "g2"
+stiffness = "3e8 N/m"
+damping_ratio = 0.06
+backlash = "60 um"
+transmission_error = [{ harmonic = 1, amplitude = "3 um" }, { harmonic = 2, amplitude = "1 um", phase = "40 deg" }]
+stiffness_variation = [{ harmonic = 1, amplitude = 0.15 }]
+[meshes.second]
+pinion = "g3"
+gear = "g4"
+stiffness = "3e8 N/m"
+damping_ratio = 0.06
+backlash = "60 um"
+transmission_error = [{ harmonic = 1, amplitude = "2 um" }]
+stiffness_variation = [{ harmonic = 1, amplitude = 0.15, phase = "60 deg" }]
+"""
+
+
+def test_two_stages_over_their_common_period_are_those_of_the_transient() -> None:
+    model = rg.loads(TWO_STAGES)
+    swept = rg.sweep(model, {"operation.speed": ["4000 rpm"]}, settle=30, count=2, steps=200)
+    # 24/34 of the first shaft's turns, 20 teeth: orders 24 and 240/17, together after 17 periods of the first mesh.
+    assert swept.turns.tolist() == [17]
+    period = 17 / swept.frequency[0]
+    run = rg.transient(model, settle=30 * period, time=2 * period, steps=400, method="newmark", error_estimate=False)
+    assert swept.apart[0, 0].max() > 0.01
+    for i, row in enumerate(run.to_dict()["contacts"]):
+        assert swept.contact[i] == row["name"]
+        assert swept.largest_force[0, 0, i] == pytest.approx(row["largest_force_n"], rel=5e-3)
+        assert swept.amplitude[0, 0, i] == pytest.approx(row["peak_to_peak_dte_m"], rel=5e-3)
+        assert swept.rms_force[0, 0, i] == pytest.approx(row["rms_force_n"], rel=1e-2)
+        end = run.deflection[-1, i]
+        assert swept.section[0, 0, -1, i, 0] == pytest.approx(end, abs=5e-3 * swept.amplitude[0, 0, i])
+
+
+def test_unstable_motions_are_no_chaos() -> None:
+    # Teeth that never part, the mesh at twice the natural frequency: Mathieu's instability.
+    model = rg.load(PAIR)
+    mesh = model.meshes["pair"].model_copy(update={"backlash": None})
+    linear = model.model_copy(update={"meshes": {"pair": mesh}})
+    with_bounds = rg.sweep(model, {"operation.speed": ["8500 rpm"]}, starts=2, **SHORT)
+    slow = rg.sweep(linear, {"operation.speed": ["8500 rpm"]}, settle=0, count=60)
+    long = rg.sweep(linear, {"operation.speed": ["8500 rpm", "12000 rpm"]}, settle=2000, count=60)
+    assert not any(with_bounds.failure)
+    assert slow.lyapunov[0, 0, 0] > 0.02
+    assert slow.motion == ("not settled",)
+    assert long.motion == ("failed", "1T")
+    assert "left all bounds" in long.failure[0]
+
+
+@pytest.mark.long
+def test_blocks_go_to_other_processes_as_well() -> None:
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    over = {"operation.speed": "3000 rpm:9000 rpm:70"}
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        assert same(rg.sweep(rg.load(PAIR), over, executor=pool, **SHORT), rg.sweep(rg.load(PAIR), over, **SHORT))

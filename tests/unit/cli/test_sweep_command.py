@@ -1,0 +1,103 @@
+"""The command `rotorgear sweep`: tables, files, pictures, refusals, and a sweep that is killed."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import rotorgear as rg
+from rotorgear.cli.main import app
+from rotorgear.errors import RotorgearError
+
+ROOT = Path(__file__).resolve().parents[3]
+PAIR = str(ROOT / "models" / "backlash_pair.toml")
+QUICK = ["--settle", "40", "--count", "40"]
+
+
+def run(*arguments: str) -> tuple[int, str]:
+    done = CliRunner().invoke(app, ["sweep", *arguments])
+    if isinstance(done.exception, RotorgearError):
+        return 2, str(done.exception)
+    assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
+    return done.exit_code, done.output
+
+
+def test_one_parameter_gives_route_table_files_and_pictures(tmp_path: Path) -> None:
+    files = [str(tmp_path / name) for name in ("s.json", "s.h5", "pictures")]
+    code, text = run(
+        PAIR, "--over", "operation.speed=3000 rpm:9000 rpm:70", *QUICK, "--json", files[0], "--save", files[1], "--plot", files[2]
+    )  # fmt: skip
+    assert code == 0
+    assert max(len(line) for line in text.splitlines() if str(tmp_path) not in line) <= 80
+    for words in ("route (rpm): ", "more lines: see --json", "more changes", "speed rpm", "LE", "wrote 2 pictures"):
+        assert words in text.replace("\n", " ")
+    data = json.loads(Path(files[0]).read_text(encoding="utf-8"))
+    read = rg.read(files[1])
+    assert len(data["points"]) == 70 == len(read.values)
+    assert [r["motion"] for p in data["points"] for r in p["runs"]] == list(read.motion)
+    assert not Path(f"{files[1]}.parts").exists()
+    assert all((Path(files[2]) / name).stat().st_size > 8000 for name in ("bifurcation_1.png", "sections.png"))
+
+
+def test_up_and_down_have_a_route_each() -> None:
+    code, text = run(PAIR, "--over", "operation.speed=7000 rpm:9000 rpm:3", "--direction", "both", *QUICK)
+    assert code == 0
+    assert "route (up) (rpm): " in text
+    assert "route (down) (rpm): " in text
+
+
+def test_two_parameters_give_a_map(tmp_path: Path) -> None:
+    over = ["--over", "operation.torque=5 N m,10 N m,20 N m", "--over", "operation.speed=5000 rpm:9000 rpm:4"]
+    code, text = run(PAIR, *over, *QUICK, "--exponents", "0", "--plot", str(tmp_path / "p"))
+    assert code == 0
+    assert "torque N m" in text
+    assert "LE" not in text.split("T is")[0].replace("p-p", "")
+    assert (tmp_path / "p" / "map.png").stat().st_size > 8000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--over", "operation.speed"], "expected ADDRESS="),
+        (["--over", "operation.speed=1 rpm,2 rpm", "--over", "operation.speed=3 rpm"], "given twice"),
+        (["--over", "meshes.pear.backlash=1 um"], "did you mean 'pair'"),
+        (["--over", "operation.speed=6000 rpm", "--resume"], "--resume needs the --save"),
+        (["--over", "operation.speed=6000 rpm", "--workers", "0"], "--workers"),
+        (["--over", "operation.speed=6000 rpm", "--count", "0"], "count: got 0"),
+        (["--over", "operation.speed=6000 mm"], "rotational speed"),
+    ],
+)
+def test_mistakes_are_named_in_a_sentence(arguments: list[str], words: str) -> None:
+    code, text = run(PAIR, *arguments)
+    assert (code, words in text) == (2, True), text
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_a_killed_sweep_goes_on_to_the_same_file(tmp_path: Path) -> None:
+    files = [tmp_path / "whole.h5", tmp_path / "killed.h5"]
+    command = [sys.executable, "-m", "rotorgear", "sweep", PAIR, "--over", "operation.speed=3000 rpm:9000 rpm:128",
+               "--settle", "200", "--count", "100", "--workers", "1"]  # fmt: skip
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    child = subprocess.Popen([*command, "--save", str(files[1])], env=environment, stdout=subprocess.DEVNULL)
+    for _ in range(600):
+        if len(list(Path(f"{files[1]}.parts").glob("chunk_*"))) >= 2 or child.poll() is not None:
+            break
+        time.sleep(0.02)
+    child.send_signal(signal.SIGKILL)
+    assert child.wait() == -signal.SIGKILL
+    arguments = command[4:]
+    assert run(*arguments, "--save", str(files[1]), "--resume")[0] == 0
+    assert run(*arguments, "--save", str(files[0]))[0] == 0
+    whole, killed = (rg.read(file) for file in files)
+    assert np.array_equal(whole.section, killed.section)
+    assert np.array_equal(whole.lyapunov, killed.lyapunov)
+    assert whole.motion == killed.motion
