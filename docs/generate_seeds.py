@@ -22,7 +22,6 @@ So every number of their tables stands here beside the computed one, with a verd
 | assumed | comes out with assumptions, stated in the row, above the table or in the model file; chosen values are no evidence |
 | trend | the direction agrees, not the number |
 | not reproducible | and why; shown, not tuned away |
-| not computed yet | belongs to an analysis that this version does not have |
 
 `python -m validation.seeds` prints these rows, `python -m validation.seeds marine` those of one system. Rows at "follows"
 are not printed in the account but follow from its data; rows at "equations" name misprints, each shown to fail by a test in

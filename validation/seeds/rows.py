@@ -9,7 +9,7 @@ Columns of NAME.csv:
     key       a value of NAME.py; or "@" and an address in the model file, "@gears.bull.teeth"; or "@file:address" for
               another file of the system; empty where nothing can be computed
     verdict   exact (follows from given data, or is given data that the model holds), assumed (comes out with stated assumptions),
-              trend (the direction agrees, not the number), not reproducible, or not computed yet
+              trend (the direction agrees, not the number), or not reproducible
     reason    why, in a sentence; must stand for every verdict but exact
 """
 
@@ -29,7 +29,7 @@ import rotorgear as rg
 FOLDER = Path(__file__).resolve().parent
 MODELS = FOLDER.parents[1] / "models"
 SYSTEMS = ("marine", "pair24", "split", "pair12", "pair16")
-VERDICTS = ("exact", "assumed", "trend", "not reproducible", "not computed yet")
+VERDICTS = ("exact", "assumed", "trend", "not reproducible")
 _SCALE = {
     "um": 1e-6, "mm": 1e-3, "kN m": 1e3, "kW": 1e3, "MW": 1e6, "deg": math.pi / 180.0, "rpm": math.pi / 30.0, "%": 1e-2,
 }  # fmt: skip
