@@ -37,13 +37,27 @@ are fitted to the three printed regions: that shows that they can be reached, an
 the flanks that carry; where the net torque of the LP turbine is negative (load ratio 0.3) those are the back flanks. 400
 periods of 8 first-stage mesh periods settle, 200 count, 40 steps a mesh period. The amplitude indicator is the peak to peak
 deflection of the LP first stage over 16.67 um, the static deflection at 15 kN m; the impact time ratio is the share of the
-time on the back side."""),
+time on the back side.
+
+```console
+$ rotorgear sweep models/marine_dual_turbine.toml --over "loads.lp.torque=11.3 kN m:16.3 kN m:51" \\
+    --settle 400 --count 200 --steps 40 --plot pictures
+```
+
+![LP first stage over the LP torque: chaos with back-side contact, then a quasi-periodic motion](pictures/seeds_marine.png)"""),
     "pair24": ("Herringbone pair of 24 degrees of freedom", """Models
 [herringbone_pair_24dof.toml](../models/herringbone_pair_24dof.toml) (set 1) and
 [herringbone_pair_24dof_set2.toml](../models/herringbone_pair_24dof_set2.toml) (set 2). No stiffness, damping, inertia or
 clearance is given, so both sets are chosen ones. Each speed starts from its own static equilibrium; 250 (set 1) or 200 (set
 2) mesh periods settle and 64 count, 160 steps each. "kT" says that points k mesh periods apart agree to 2 % of the
-peak to peak deflection, "chaotic" that the largest Lyapunov exponent is above 0.02 per mesh period, as in `rotorgear sweep`."""),
+peak to peak deflection, "chaotic" that the largest Lyapunov exponent is above 0.02 per mesh period, as in `rotorgear sweep`.
+
+```console
+$ rotorgear sweep models/herringbone_pair_24dof.toml --over "operation.speed=4600 rpm:6000 rpm:57" \\
+    --settle 250 --count 64 --steps 160 --plot pictures
+```
+
+![Set 1 over the speed: one period, two, chaos](pictures/seeds_pair24.png)"""),
     "split": ("Split-torque gearbox", """Model [split_torque.toml](../models/split_torque.toml). Shaft sizes, bearings and
 masses are not given; the file is one complete layout whose 25 free numbers were fitted to the 24 printed frequencies, so that
 finding them again says nothing; and with its 63 modes even a random list finds partners for most of its lines."""),
