@@ -44,41 +44,60 @@ def last_stage(weight, base, stage, a, total):
 
 
 @compiled(fast=True)
-def remove(part, along):
-    """Take away from `part` (k, w) what lies along the unit vectors `along` (k, w)."""
+def remove(part, along, measured, unit):
+    """Take away from `part` (k, w) as much of `along` (k, w) as the product of `measured` with the unit vector `unit` says."""
     total = np.zeros(LANES)
-    for i in range(part.shape[0]):
+    for i in range(measured.shape[0]):
         for w in range(LANES):
-            total[w] += part[i, w] * along[i, w]
+            total[w] += measured[i, w] * unit[i, w]
     for i in range(part.shape[0]):
         for w in range(LANES):
             part[i, w] -= total[w] * along[i, w]
 
 
 @compiled(fast=True)
-def orthonormal(tangents, rigid, growth):
-    """Free tangents (t, 2 n, w) of rigid motions (r, n, w), make them orthonormal, add the logarithms of their sizes."""
+def weigh(root, tangent, out):
+    """Root of the stiffness times displacements, and velocities as they are: the energy of a tangent is the square of it."""
+    n = root.shape[0]
+    for i in range(n):
+        for w in range(LANES):
+            out[i, w] = 0.0
+            out[n + i, w] = tangent[n + i, w]
+        for j in range(n):
+            for w in range(LANES):
+                out[i, w] += root[i, j, w] * tangent[j, w]
+
+
+@compiled(fast=True)
+def orthonormal(tangents, weighed, root, rigid, growth):
+    """Free tangents (t, 2 n, w) of rigid motions (r, n, w), make them orthonormal, add the logarithms of their sizes.
+
+    Sizes are energies, which vibrations in a linear system keep: slow motions would seem to grow in most other norms.
+    """
     n = tangents.shape[1] // 2
     for a in range(tangents.shape[0]):
         for r in range(rigid.shape[0]):
-            remove(tangents[a, :n], rigid[r])
-            remove(tangents[a, n:], rigid[r])
+            remove(tangents[a, :n], rigid[r], tangents[a, :n], rigid[r])
+            remove(tangents[a, n:], rigid[r], tangents[a, n:], rigid[r])
+        weigh(root, tangents[a], weighed[a])
         for b in range(a):
-            remove(tangents[a], tangents[b])
+            remove(tangents[a], tangents[b], weighed[a], weighed[b])
+            weigh(root, tangents[a], weighed[a])
         size = np.zeros(LANES)
         for i in range(2 * n):
             for w in range(LANES):
-                size[w] += tangents[a, i, w] ** 2
+                size[w] += weighed[a, i, w] ** 2
         for w in range(LANES):
             growth[a, w] += 0.5 * np.log(size[w])
             size[w] = 1.0 / np.sqrt(size[w])
         for i in range(2 * n):
             for w in range(LANES):
                 tangents[a, i, w] *= size[w]
+                weighed[a, i, w] *= size[w]
 
 
 @compiled(fast=True, free=True)
-def lanes_loop(turns, steps, counting, matrix, across, gap, mode, values, mesh, table, rigid, state, tangents, last,
+def lanes_loop(turns, steps, counting, matrix, across, gap, mode, values, mesh, table, rigid, root, state, tangents, last,
                growth, section, sums):  # fmt: skip
     """Advance all lanes in place by common periods and record a section at the end of each.
 
@@ -89,7 +108,7 @@ def lanes_loop(turns, steps, counting, matrix, across, gap, mode, values, mesh, 
         across: d and d' of each column from (z, z'), (2 m, 2 n).
         gap, mode, mesh: of the columns, (m,); values: theirs, (m, 5, w), see `contacts`.
         table: (2 turns steps + 1, m, 4, 1 or w), without its last row where no force is prescribed.
-        rigid: orthonormal motions without strain, (r, n, w).
+        rigid: orthonormal motions without strain, (r, n, w); root: S with S^T S the mean stiffness, (n, n, w).
         state: z and z', (2 n, w); tangents: (t, 2 n, w); last: (m, w) flanks that touched last.
         growth: (p, t, w), section: (p, 2 m, w), sums: (m, 14, w): what is found in p common periods.
     """
@@ -99,7 +118,7 @@ def lanes_loop(turns, steps, counting, matrix, across, gap, mode, values, mesh, 
     d, found = np.zeros((2 * m, LANES)), np.zeros((m, 3, LANES))
     y, a, total = np.ones((2 * n + m + 1, LANES)), np.empty((n, LANES)), np.zeros((2 * n, LANES))
     moved, ta, moved_total = np.zeros((t, 2 * n + m + 1, LANES)), np.empty((n, LANES)), np.zeros((t, 2 * n, LANES))
-    F = y[2 * n : 2 * n + m]
+    F, weighed = y[2 * n : 2 * n + m], np.empty((t, 2 * n, LANES))
     flat = (
         values.reshape(values.size),
         now.reshape(now.size),
@@ -137,6 +156,6 @@ def lanes_loop(turns, steps, counting, matrix, across, gap, mode, values, mesh, 
                     else:
                         last_stage(weight, tangents[k], moved[k], ta, moved_total[k])
             if t and (step + 1) % steps == 0:
-                orthonormal(tangents, rigid, growth[period])
+                orthonormal(tangents, weighed, root, rigid, growth[period])
                 moved[:, : 2 * n] = tangents
         product(*across, state, section[period])

@@ -88,7 +88,7 @@ def run_block(
     wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
     pushed = any(np.any(s.columns.push) for s in systems)
     table = np.ascontiguousarray(np.stack(wide, axis=-1)[:, :, : 4 if pushed else 3])
-    rigid = _stacked([s.rigid for s in filled])
+    rigid, energy = _stacked([s.rigid for s in filled]), _stacked([s.energy for s in filled])
     begins = [*starts, *[starts[-1]] * (LANES - count)]
     state = _stacked([np.concatenate([s.z, s.dz]) for s in begins])
     tangents = _tangents(first, plan.tangents)
@@ -101,8 +101,8 @@ def run_block(
         for p in range(0, periods, stride):
             if not go_on():
                 raise KeyboardInterrupt
-            lanes_loop(first.turns, plan.steps, counting, matrix, across, *kinds, values, mesh, table, rigid, state, followed,
-                       last, growth[p : p + stride], section[p : p + stride], sums)  # fmt: skip
+            lanes_loop(first.turns, plan.steps, counting, matrix, across, *kinds, values, mesh, table, rigid, energy, state,
+                       followed, last, growth[p : p + stride], section[p : p + stride], sums)  # fmt: skip
         return growth, section
 
     warm = min(plan.warm, plan.settle) if plan.tangents else 0

@@ -19,6 +19,8 @@ MOST_DOFS = 80
 STABLE = 2.5
 # Products of a frequency and a step that leave errors of 1e-3 or so in a period.
 ACCURATE = 0.35
+# Of the largest stiffness, that every direction gets in the size of a tangent.
+_FLOOR = 1e-12
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,8 @@ class SmallSystem:
 
     Attributes:
         K, D: (n, n); load: (n,); B: (n, m); rigid: (r, n) orthonormal motions without strain; rest: z in equilibrium, (n,).
-        root: L, (n, n). columns: of the local forces. w: rad/s of the fastest mesh; turns: its periods in the common one.
+        root: L, (n, n). energy: S with S^T S the stiffness with all contacts closed, (n, n).
+        columns: of the local forces. w: rad/s of the fastest mesh; turns: its periods in the common one.
         fastest: largest |eigenvalue| of the linear system, in radians of the mesh.
     """
 
@@ -52,6 +55,7 @@ class SmallSystem:
     rigid: np.ndarray
     rest: np.ndarray
     root: np.ndarray
+    energy: np.ndarray
     columns: Columns
     w: float
     turns: int
@@ -86,8 +90,9 @@ def small_system(
     K = inverse @ local.K.toarray() @ inverse.T
     D = inverse @ local.velocity_terms(float(local.rotation.speeds[0])).toarray() @ inverse.T
     about = inverse @ local.stiffness_about.toarray() @ inverse.T
+    squares, modes = np.linalg.eigh(0.5 * (about + about.T))
+    energy = np.sqrt(np.abs(squares) + _FLOOR * np.abs(squares).max())[:, None] * modes.T / w
     if modal_ratio:
-        squares, modes = np.linalg.eigh(0.5 * (about + about.T))
         D = D + (modes * (2.0 * modal_ratio * np.sqrt(np.maximum(squares, 0.0)))) @ modes.T
     rigid = np.linalg.qr(L.T @ rest.free)[0].T if rest.free.size else np.zeros((0, local.n))
     A = np.block([
@@ -95,7 +100,7 @@ def small_system(
         [-about / w**2, -(D + B @ local.forces.reference_damping @ B.T) / w],
     ])  # fmt: skip
     return SmallSystem(
-        _clean(K) / w**2, _clean(D) / w, inverse @ local.load / w**2, _clean(B), rigid, L.T @ rest.q, L,
+        _clean(K) / w**2, _clean(D) / w, inverse @ local.load / w**2, _clean(B), rigid, L.T @ rest.q, L, energy,
         scaled(columns, w), w, turns, float(np.abs(np.linalg.eigvals(A)).max()),
     )  # fmt: skip
 

@@ -440,3 +440,14 @@ def test_blocks_go_to_other_processes_as_well() -> None:
     over = {"operation.speed": "3000 rpm:9000 rpm:70"}
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         assert same(rg.sweep(rg.load(PAIR), over, executor=pool, **SHORT), rg.sweep(rg.load(PAIR), over, **SHORT))
+
+
+def test_a_slow_motion_does_not_look_like_growth() -> None:
+    # A soft spring to ground: one mode at a thousandth of the mesh frequency, almost undamped.
+    law = MeshContact(1.0, 0.1, gap="none", order=1.0, stiffness_cos=(0.2,), error_cos=(0.1,))
+    K = [[1e-6, 0.0], [0.0, 1e-6]]
+    local = local_system(np.diag([1.0, 1.0]), np.zeros((2, 2)), K, [0.1, -0.1], [(law, [[1.0], [-1.0]])], speed=1.0)
+    point = ready(still(local, [Fraction(1)], ("m",)), 1.0)
+    start = Start(point.system.rest, np.zeros(2))
+    orbit = run_block([point.system], [start], [table_of(point, 100)], Plan(100, 60, 60, 1))[0]
+    assert abs(exponents(orbit.growth, 1.0)[0][0]) < 1e-4
