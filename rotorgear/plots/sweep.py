@@ -68,9 +68,16 @@ def draw_bifurcation(result: SweepResult, figure: Any, contact: int = 0) -> None
     if exponent:
         axes[1].axhline(0.0, color="k", lw=0.6)
         axes[1].set_ylabel("LE per mesh\nperiod")
+    whose = f" ({result.run[0]})" if len(result.run) > 1 else ""
     for values, name, colour in ((result.apart, "apart", 0), (result.back, "back flank", 1)):
         axes[-1].plot(
-            result.values[:, 0], 100.0 * values[:, 0, contact], ".-", ms=3, lw=0.7, color=COLOURS[colour], label=name
+            result.values[:, 0],
+            100.0 * values[:, 0, contact],
+            ".-",
+            ms=3,
+            lw=0.7,
+            color=COLOURS[colour],
+            label=name + whose,
         )
     axes[-1].set_ylabel("share of\ntime, %")
     axes[-1].legend(fontsize=7)
