@@ -84,10 +84,8 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
     pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
     forces = system.flow.of_mesh(name)
     contact, line, pair = forces[0].contact, centre_line(model, name), mesh_pair(model, name)
-    damping = [float(group.matrices.damping[0, 0, 0] / group.matrices.strain[0, 0, 0] ** 2)
-               for group in system.groups if group.part == f"meshes.{name}"
-               and group.matrices.damping is not None and group.matrices.strain is not None
-               and group.matrices.strain[0, 0, 0] != 0.0]  # fmt: skip
+    damping = [float(group.matrices.viscosity[0, 0, 0]) for group in system.groups
+               if group.part == f"meshes.{name}" and group.matrices.viscosity is not None]  # fmt: skip
     teeth = pinion.teeth and gear.teeth
     return MeshRow(
         name=name,

@@ -7,7 +7,17 @@ from typing import Literal
 from pydantic import Field
 
 from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
-from rotorgear.model.fields import Angle, Damping, Length, NonNegativeLength, Part, PositiveRatio, Ratio, Viscosity
+from rotorgear.model.fields import (
+    Angle,
+    Damping,
+    Length,
+    NonNegativeLength,
+    Part,
+    PositiveLength,
+    PositiveRatio,
+    Ratio,
+    Viscosity,
+)
 from rotorgear.model.flank import ToothFeTable
 from rotorgear.model.mesh_stiffness_field import StiffnessValue
 
@@ -60,6 +70,11 @@ class Mesh(Part):
         0.0,
         description="herringbone: by how many pitches the teeth at the larger z are ahead; 0 in phase, 0.5 staggered",
     )
+    phase: Angle | None = Field(
+        None,
+        description="angle of the mesh at the time 0, counted from contact at the pitch point; default: what follows from "
+        "teeth, clocking and centre lines",
+    )
     transmission_error: tuple[ErrorHarmonic, ...] = Field(
         (), description="harmonics of the static transmission error, positive where it opens the gap"
     )
@@ -80,4 +95,9 @@ class Mesh(Part):
     contact_damping: Literal["clamped", "unclamped", "penetration"] = Field(
         "clamped",
         description="clamped: teeth never pull; unclamped: damping may pull; penetration: damping grows with the depth",
+    )
+    damping_depth: PositiveLength | None = Field(
+        None,
+        description="depth over which contact damping grows from zero to its value, so that the force has no jump; default: 2 % "
+        "of the mean deflection; with penetration: the depth at which it has its value, by default the mean deflection",
     )

@@ -67,6 +67,9 @@ def mesh_phases(model: Tables, train: Train, flow: TorqueFlow, direction: int = 
     phases: dict[str, float | None] = {}
     for name, mesh in model.meshes.items():
         pinion = model.gears[mesh.pinion]
+        if mesh.phase is not None:
+            phases[name] = mesh.phase % (2.0 * math.pi)
+            continue
         if not pinion.teeth or pinion.shaft not in done.shaft:
             phases[name] = None
             continue

@@ -42,7 +42,7 @@ class Load(Part):
     kind: Literal["input", "output"] = Field(description="input: drives; output: takes power")
     at: Station | None = Field(None, description="z of the place; default: start for an input, end for an output")
     torque: Torque | None = Field(
-        None, description="size of the torque; one output may leave it out and takes the rest"
+        None, description="size of the torque; one load, an output as a rule, may leave it out and takes the rest"
     )
     power: Power | None = Field(None, description="power, in place of the torque")
     speed_power: SignedRatio = Field(

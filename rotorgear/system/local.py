@@ -15,6 +15,7 @@ import scipy.sparse as sp
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector
 from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
 from rotorgear.model.inertia import node_bodies
+from rotorgear.model.mesh import Mesh
 from rotorgear.model.mesh_phases import mesh_phases
 from rotorgear.model.mesh_stiffness import stiffness_of_mesh
 from rotorgear.model.torque_flow import MeshForce
@@ -150,11 +151,18 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
     late = mesh.helix_stagger if contact.helix else 0.0
     return MeshContact(
         stiffness=contact.stiffness, damping=damping, backlash=mesh.backlash or 0.0, gap=gap,
-        contact_damping=mesh.contact_damping, ramp=deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP),
+        contact_damping=mesh.contact_damping, ramp=_ramp(mesh, deflection),
         order=order, phase=phase + 2.0 * np.pi * late, stiffness_cos=stiffness_cos, stiffness_sin=stiffness_sin,
         error_mean=mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0),
         error_cos=error_cos, error_sin=error_sin, pieces=_pieces(system, force), **_impact(mesh.corner_impact),
     )  # fmt: skip
+
+
+def _ramp(mesh: Mesh, deflection: float) -> float:
+    """Depth in m over which the damping grows: given, or from the mean deflection; of penetration damping, that deflection."""
+    if mesh.damping_depth is not None:
+        return mesh.damping_depth
+    return deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP)
 
 
 def _back(law: MeshContact) -> MeshContact:

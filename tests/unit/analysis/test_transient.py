@@ -52,6 +52,28 @@ def test_without_excitation_the_static_forces_stay() -> None:
     assert any("neither transmission error" in note for note in result.left_out)
 
 
+def test_a_given_mesh_phase_turns_the_harmonics_by_so_much() -> None:
+    waves = [[{"harmonic": n, "amplitude": "1 um", "phase": angle} for n, angle in pair] for pair in (
+        ((1, 0.3), (2, 0.1)), ((1, 0.3 + 0.7), (2, 0.1 + 1.4)))]  # fmt: skip
+    found = [
+        transient(spur_pair(meshes__pair__transmission_error=w, meshes__pair__phase=p), time=0.01, steps=200)
+        for w, p in zip(waves, (0.7, 0.0), strict=True)
+    ]
+    assert found[0].mesh_force == pytest.approx(found[1].mesh_force, rel=1e-9)
+    assert np.ptp(found[0].mesh_force) > 100.0
+
+
+@pytest.mark.parametrize("kind", ["clamped", "unclamped", "penetration"])
+def test_damping_sets_in_over_the_depth_that_is_given(kind: str) -> None:
+    model = spur_pair(
+        meshes__pair__backlash="40 um", meshes__pair__contact_damping=kind, meshes__pair__damping_depth="3 um",
+        meshes__pair__transmission_error=[],
+    )  # fmt: skip
+    law = local_model(System(model), Rotation.constant(1.0), 1.0).local.forces.laws[0]
+    shares = [law.evaluate(x, 1e-4).dissipated / law.evaluate(3e-6, 1e-4).dissipated for x in (1e-6, 1.5e-6)]
+    assert shares == pytest.approx([1.0 / 3.0, 0.5])
+
+
 def test_bearing_forces_carry_the_mesh_force_in_the_mean() -> None:
     result = transient(spur_pair(), time=0.1, settle=0.2)
     force = {

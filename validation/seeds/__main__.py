@@ -1,0 +1,18 @@
+"""python -m validation.seeds [NAME ...]: print the rows of the five published systems, all of them where none is named."""
+
+from __future__ import annotations
+
+import argparse
+
+from validation.seeds.rows import SYSTEMS, rows
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(
+        prog="python -m validation.seeds", description="Published numbers and computed ones."
+    )
+    parser.add_argument("systems", nargs="*", metavar="NAME", choices=[*SYSTEMS, []], help=", ".join(SYSTEMS))
+    for system in parser.parse_args().systems or SYSTEMS:
+        print(f"\n{system}")
+        for row in rows(system):
+            value = f"{row.shown} {row.unit}".strip()
+            print(f"  {row.where:10} {row.what:60} {row.printed or '-':>12} {value:>18}  {row.verdict}  {row.reason}")

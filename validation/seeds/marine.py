@@ -1,0 +1,131 @@
+"""The marine dual-turbine train: statics, modes, and contact statistics of the low-pressure branch over the load ratio.
+
+gamma = T_lp/T_hp at a total torque; a drag torque acts on the LP turbine. Where the net torque of that branch is negative its
+teeth carry on the other flanks, which the program calls the driving ones: its transmission error then opens them with the
+other sign.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import rotorgear as rg
+from validation.seeds.rows import changed, loaded
+
+MODEL = "marine_dual_turbine"
+DRAG, PITCH_RADIUS, STIFFNESS = 11.2e3, 0.075, 1.2e10
+# Super-periods of 8 periods of the first stage, after which both stages repeat.
+SETTLE, COUNT, STEPS = 400, 200, 40
+
+
+@dataclass(frozen=True)
+class Contact:
+    """LP first stage in steady motion: share of the time on the back side and apart; peak to peak (m) of the mesh deflection;
+    its net torque (N m); largest Lyapunov exponent with its standard error, over a period of the first stage."""
+
+    back: float
+    apart: float
+    peak_to_peak: float
+    net_torque: float
+    exponent: float
+    exponent_error: float
+
+
+def operating(gamma: float, total: float = 30e3, *, drag: float = DRAG, table_stiffness: bool = False) -> rg.Model:
+    """The model at a load ratio and a total torque (N m)."""
+    hp = total / (1.0 + gamma)
+    meshes: dict[str, dict[str, object]] = {name: {} for name in ("first_hp", "first_lp", "second_hp", "second_lp")}
+    if gamma * hp < drag:
+        for name, amplitude in (("first_lp", 4.09e-6), ("second_lp", 8.59e-6)):
+            meshes[name]["transmission_error"] = [{"harmonic": 1, "amplitude": amplitude, "phase": 0.5 * math.pi}]
+    if table_stiffness:
+        for name, keys in meshes.items():
+            k, m_e = (1.2e8, 87.5) if name.startswith("first") else (2.5e8, 280.0)
+            keys |= {"stiffness": k, "damping": 0.14 * math.sqrt(k * m_e)}
+    return changed(
+        loaded(MODEL), meshes=meshes,
+        loads={"hp": {"torque": hp}, "propeller": {"torque": None}, "lp": {"torque": gamma * hp}, "lp_drag": {"torque": drag}},
+    )  # fmt: skip
+
+
+def contact(
+    gammas: Sequence[float],
+    total: float = 30e3,
+    *,
+    settle: int = SETTLE,
+    count: int = COUNT,
+    table_stiffness: bool = False,
+) -> list[Contact]:
+    """Run to steady motion at load ratios and count."""
+    result = rg.sweep(
+        loaded(MODEL), {"load ratio": list(gammas)}, steps=STEPS, settle=settle, count=count,
+        change=lambda _, at: operating(at[0], total, table_stiffness=table_stiffness),
+    )  # fmt: skip
+    i, found = result.contact.index("first_lp"), []
+    for p, gamma in enumerate(gammas):
+        net = gamma * total / (1.0 + gamma) - DRAG
+        back = (result.back if net >= 0.0 else result.driving)[p, 0, i]
+        found.append(
+            Contact(
+                float(back), float(result.apart[p, 0, i]), float(result.peak_to_peak[p, 0, i]), net,
+                float(result.lyapunov[p, 0, 0]), float(result.lyapunov_error[p, 0, 0]),
+            )
+        )  # fmt: skip
+    return found
+
+
+@cache
+def values() -> dict[str, float | str]:
+    """What takes runs."""
+    found: dict[str, float | str] = {}
+    ratios = {"03": 0.3, "06": 0.6, "10": 1.0}
+    nominal = 15e3 / PITCH_RADIUS / STIFFNESS
+    for total, suffix in ((30e3, ""), (35e3, "_35")):
+        for name, run in zip(ratios, contact(list(ratios.values()), total), strict=True):
+            # One digit where the motion is chaotic: the next one is another on every machine.
+            digits = (1, 0) if run.exponent > 0.015 else (2, 1)
+            found |= {
+                f"zeta_{name}{suffix}": round(run.back, digits[0]),
+                f"am_{name}{suffix}": round(run.peak_to_peak / nominal, digits[1]),
+                f"le_{name}{suffix}": round(run.exponent, digits[0]) + 0.0,
+            }  # fmt: skip
+        found[f"region{suffix}"] = _region(total)
+    soft = contact(list(ratios.values()), table_stiffness=True)
+    for name, run in zip(ratios, soft, strict=True):
+        found |= {
+            f"zeta_soft_{name}": round(run.back, 1), f"am_soft_{name}": round(run.peak_to_peak / (100.0 * nominal), 2),
+            f"le_soft_{name}": round(run.exponent, 2) + 0.0,
+        }  # fmt: skip
+    return found
+
+
+def _region(total: float) -> str:
+    """Load ratios, in steps of 0.05 from 0.1 to 1.2, with chaos of an amplitude indicator above 3."""
+    ratios = [round(0.1 + 0.05 * i, 2) for i in range(23)]
+    nominal = 15e3 / PITCH_RADIUS / STIFFNESS
+    large = [
+        gamma for gamma, run in zip(ratios, contact(ratios, total), strict=True)
+        if run.peak_to_peak > 3.0 * nominal and run.exponent > 0.02
+    ]  # fmt: skip
+    return f"{large[0]:.2f} to {large[-1]:.2f}"
+
+
+def quick() -> dict[str, float | str]:
+    """What follows without a run."""
+    model = loaded(MODEL)
+    modes = rg.modal(model)
+    free = operating(0.6, drag=1e-9)
+    loads = rg.describe_model(free).to_dict()["torques"]
+    frequencies = rg.describe_model(model).to_dict()["meshes"]
+    hz = {row["name"]: row["mesh_frequency_hz"] for row in frequencies}
+    m_e = 1.0 / (0.075**2 / 15.8 + 0.240**2 / 5.2)
+    return {
+        "zeta_m": (model.meshes["first_hp"].damping or 0.0) / (2.0 * math.sqrt(STIFFNESS * m_e)),
+        "load_torque": abs(next(row["torque_n_m"] for row in loads if row["name"] == "loads.propeller")) / 1e3,
+        "rigid_modes": float(modes.rigid.sum()), "stage_ratio": hz["second_hp"] / hz["first_hp"],
+        "deflection_table": 1e3 * 15e3 / PITCH_RADIUS / 1.2e8, "deflection_set": 1e6 * 15e3 / PITCH_RADIUS / STIFFNESS,
+        "first_elastic": float(modes.frequency_hz[1]),
+    }  # fmt: skip
