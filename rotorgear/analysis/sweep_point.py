@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rotorgear.analysis.sweep_columns import column_of, columns_of, shape_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.solvers.contact_equilibrium import Equilibrium, equilibrium, still_forces
 from rotorgear.solvers.local_forces import LocalForces
 from rotorgear.solvers.local_system import LocalSystem
 from rotorgear.solvers.motion import Rotation
-from rotorgear.solvers.small_system import Columns, SmallSystem, refuse_large, small_system
+from rotorgear.solvers.small_system import SmallSystem, refuse_large, small_system
 from rotorgear.system.local import local_model
 from rotorgear.system.system import System
 
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 MOST_TURNS = 1000
 _KEPT = 1000  # states at rest
 _WHOLE = 1e-9  # relative error of a fraction that stands for a ratio of speeds
-# Places of MeshContact's parameters that don't shape its tables: k, c, backlash, gap, damping, ramp, impact.
-_NO_SHAPE = (0, 1, 2, 3, 4, 5, 12)
 
 
 @dataclass(frozen=True)
@@ -138,11 +137,11 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     local = replace(known.local, rotation=Rotation.constant(speed))
     fastest, turns = common_period(known.orders)
     laws = local.forces.laws
-    columns = _columns([column for law in laws for column in column_of(law, type(law).__name__, speed)])
+    columns = columns_of([column for law in laws for column in column_of(law, type(law).__name__, speed)])
     system = small_system(local, known.rest, columns, float(fastest) * abs(speed), turns, modal_ratio)
     drift = known.rest.drift
     drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
-    shape, mesh = b"".join(_shape(law) for law in laws), columns.mesh
+    shape, mesh = b"".join(shape_of(law) for law in laws), columns.mesh
     return Point(
         system,
         local.forces,
@@ -185,54 +184,6 @@ def _order(law: ForceLaw, label: str) -> list[Fraction]:
             f"{label}: its order {value:.9g} of the input shaft is no ratio of whole numbers, so nothing repeats"
         )
     return [found]
-
-
-def column_of(law: object, place: str, speed: float = 1.0) -> list[tuple[float, ...]]:
-    """gap, mode, k, c, backlash, 1/ramp, prescribed force and whether it is a mesh, of each component.
-
-    Raises:
-        AnalysisError: the law is none that sweeps take.
-    """
-    from rotorgear.forces.mesh_contact import DAMPINGS, GAPS, MeshContact
-    from rotorgear.forces.rotating_force import RotatingForce
-    from rotorgear.forces.torque_curve import TorqueCurve
-    from rotorgear.solvers.kernel_lane_parts import LINE, NEVER_PARTS, ONE_SIDED, PRESCRIBED
-
-    if isinstance(law, MeshContact):
-        gap = {"line": LINE, "one-sided": ONE_SIDED, "none": NEVER_PARTS}[GAPS[GAPS.index(law.gap)]]
-        backlash = np.inf if law.gap == "one-sided" else law.backlash
-        mode = DAMPINGS.index(law.contact_damping)
-        mean = law.mean().stiffness
-        return [(gap, mode, mean, law.damping, backlash, 1.0 / law.ramp, law.impact, 1.0)]
-    if isinstance(law, RotatingForce):
-        size = law.amplitude * abs(law.order * speed) ** law.power
-        return [(PRESCRIBED, 0, 0.0, 0.0, 0.0, 1.0, size, 0.0)] * law.components
-    if isinstance(law, TorqueCurve) and law.power == 0.0 and law.step == 1.0 and law.damping == 0.0:
-        return [(PRESCRIBED, 0, 0.0, 0.0, 0.0, 1.0, law.torque, 0.0)]
-    reason = {
-        "TorqueCurve": "a torque that steps or depends on speed",
-        "MeshFriction": "friction between the flanks",
-        "BallBearing": "rolling elements in a bearing",
-        "RollerBearing": "rolling elements in a bearing",
-    }.get(type(law).__name__, type(law).__name__)
-    raise AnalysisError(
-        f"{place}: sweeps don't take {reason}; leave it out, or run single points by the transient analysis"
-    )
-
-
-def _columns(rows: list[tuple[float, ...]]) -> Columns:
-    gap, mode, k, c, backlash, ramp, push, mesh = np.array(rows, dtype=float).reshape(-1, 8).T.copy()
-    return Columns(gap.astype(np.int64), mode.astype(np.int64), k, c, backlash, ramp, push, mesh > 0.5)
-
-
-def _shape(law: object) -> bytes:
-    from rotorgear.forces.mesh_contact import MeshContact
-
-    values = law.parameters().copy()  # type: ignore[attr-defined]
-    if isinstance(law, MeshContact):
-        values[list(_NO_SHAPE)] = 0.0
-        return bytes(values.tobytes())
-    return bytes(values[1:3].tobytes())
 
 
 def table_of(point: Point, steps: int) -> np.ndarray:
