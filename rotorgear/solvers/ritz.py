@@ -16,6 +16,7 @@ from rotorgear.solvers.pencil import EPS, Strain
 from rotorgear.solvers.shift_invert import Modes, ShiftInvert
 
 _SAFETY = 10.0  # between a rounding estimate and the most that rounding was taken to do
+_ROWS = 2048  # rows of a tall matrix that are taken at a time
 
 
 def orthonormalised(M: sp.csr_array, V: np.ndarray) -> np.ndarray:
@@ -49,8 +50,7 @@ def strain_ritz(strain: Strain, V: np.ndarray) -> Modes:
     short = V.shape[1] - stretched.shape[0]
     if short > 0:
         stretched = np.vstack([stretched, np.zeros((short, V.shape[1]))])
-    # Householder QR errs by eps times each column's own length, so it keeps the relative accuracy of short ones
-    stretched = la.qr(stretched, mode="r", check_finite=False)[0][: V.shape[1]]
+    stretched = _triangle(stretched)
     # joba=0: accuracy not degraded by column scaling; jobu=3: no left vectors; jobv=0: right vectors
     scaled, _, W, work, _, info = dgejsv(stretched, joba=0, jobu=3, jobv=0, jobr=0, jobt=0, jobp=1)
     if info != 0:
@@ -58,6 +58,18 @@ def strain_ritz(strain: Strain, V: np.ndarray) -> Modes:
     singular = scaled[: V.shape[1]] * (work[0] / work[1])
     order = np.argsort(singular)
     return singular[order] ** 2, V @ W[:, order]
+
+
+def _triangle(A: np.ndarray) -> np.ndarray:
+    """R (m, m) of A = Q R for a tall A (n, m), by stretches of rows that stay in the cache.
+
+    Householder QR errs by eps times each column's own length, so it keeps the relative accuracy of short ones.
+    """
+    m = A.shape[1]
+    rows = max(_ROWS, 4 * m)
+    while A.shape[0] > 2 * rows:
+        A = np.vstack([la.qr(A[k : k + rows], mode="r", check_finite=False)[0][:m] for k in range(0, A.shape[0], rows)])
+    return np.asarray(la.qr(A, mode="r", check_finite=False)[0][:m])
 
 
 def count_rigid(operator: ShiftInvert, values: np.ndarray, V: np.ndarray, noise: np.ndarray, with_strain: bool) -> int:

@@ -31,6 +31,7 @@ from rotorgear.system.system import System
 T = TypeVar("T")
 NAME = "validation.benchmarks.large_model"
 FILE = Path(__file__).resolve().parents[2] / "models" / "split_torque.toml"
+LOWEST = 27.1  # Hz, near the first mode
 MODES, AIM, GROWTH, AGREEMENT = 24, 20.0, 1.2, 1e-7
 SIZES = (232, 464, 927)
 
@@ -51,7 +52,8 @@ def one(elements: int) -> dict[str, float]:
     inverse = LinearOperator(K.shape, matvec=splu(shifted, **options).solve)
     before = megabytes() - start
     modes, result = timed(lambda: rg.modal(system, modes=MODES, error_estimate=False))
-    solver, _ = timed(lambda: lowest_modes(M, K, count=MODES, strain=system.strain_factor().__matmul__))
+    strain, guess = system.strain_factor().__matmul__, (2.0 * np.pi * LOWEST) ** 2  # as the analysis has them
+    solver, _ = timed(lambda: lowest_modes(M, K, count=MODES, strain=strain, guess=guess))
     memory = megabytes() - start
     arpack, pairs = timed(lambda: eigsh(K, MODES, M, sigma=-1e4, OPinv=inverse))
     theirs = np.sqrt(np.sort(pairs[0])[-3:]) / (2.0 * np.pi)
