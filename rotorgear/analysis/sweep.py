@@ -13,7 +13,9 @@ from rotorgear.analysis.sweep_blocks import Workers, blocks, packed, unpacked, w
 from rotorgear.analysis.sweep_classify import CHAOS, TOLERANCE
 from rotorgear.analysis.sweep_gather import gathered
 from rotorgear.analysis.sweep_point import Point, PointMaker
+from rotorgear.analysis.sweep_reduce import Large
 from rotorgear.analysis.sweep_request import Request, start_of, steps_of
+from rotorgear.analysis.sweep_shrink import shrunk
 from rotorgear.analysis.transient_histories import Stream
 from rotorgear.errors import RotorgearError
 from rotorgear.model.model import Model
@@ -41,6 +43,9 @@ def sweep(
     chaos: float = CHAOS,
     seed: int = 1,
     throw: float = 1.0,
+    modes: int | None = None,
+    reduction_error: float = 0.01,
+    elements: int | None = None,
     workers: int | None = None,
     executor: Executor | None = None,
     stream: Stream | None = None,
@@ -49,7 +54,7 @@ def sweep(
     """Return Poincare sections, Lyapunov exponents, kinds of motion and indicators over one or two parameters of a model.
 
     Args:
-        model: a model with few degrees of freedom and meshes with teeth.
+        model: a model with meshes that have teeth. Beyond 80 degrees of freedom it is reduced (analysis/sweep_reduce.py).
         over: address in the model file -> its values: numbers in SI, texts with units, or "FROM:TO:COUNT". A part "*" of an
             address means all names there.
         change: returns the model at a point from the model and the values, in place of the addresses, which are then only names.
@@ -61,6 +66,9 @@ def sweep(
             model decides.
         tolerance, chaos: of the criterion that tells the kinds of motion apart (analysis/sweep_classify.py).
         seed: of the random states. throw: their size; at 1 contacts are thrown by up to some backlashes.
+        modes: reduce the model to so many elastic modes and the static shapes of contacts and loads, whatever the error.
+        reduction_error: largest relative error of the receptances at the contacts that a reduction may make.
+        elements: basic elements in each piece of shaft; one where not given.
         workers: threads; all cores where not given. The result does not depend on it.
         executor: runs the blocks of points in place of threads, for other machines: an object with `submit`.
         stream: keeps blocks while the sweep goes on (`rotorgear.stream`), and starts an interrupted one again.
@@ -70,11 +78,13 @@ def sweep(
         AnalysisError: a request that makes no sense, or a model that sweeps don't take. Points that fail alone are kept as such.
     """
     begun = clock.perf_counter()
-    request = Request(direction, starts, settle, count, exponents, steps, tolerance, chaos, seed, throw)
+    request = Request(direction, starts, settle, count, exponents, steps, tolerance, chaos, seed, throw, modes,
+                      reduction_error, elements)  # fmt: skip
     axes = [axis_of(address, values) for address, values in over.items()]
     values = points_of(axes)
     with single_thread(0):
-        models, points, failure = _ready(model, axes, values, change, progress)
+        models, large, failure = _ready(model, axes, values, change, request, progress)
+        points, failure, reduction = shrunk(large, failure, request.reduction, progress, _READY)
         chosen, refused = steps_of(points, steps)
         for i, reason in refused.items():
             points[i], failure[i] = None, reason
@@ -88,7 +98,7 @@ def sweep(
     laps["integration"] = clock.perf_counter() - begun - laps["points"]
     laps["total"] = clock.perf_counter() - begun
     progress(1.0, "done")
-    return gathered(model, axes, values, points, failure, chosen, request, orbits, laps)
+    return gathered(model, axes, values, points, failure, chosen, request, orbits, laps, reduction)
 
 
 def _ready(
@@ -96,12 +106,15 @@ def _ready(
     axes: Sequence[Axis],
     values: Sequence[tuple[float, ...]],
     change: Callable[[Model, tuple[float, ...]], Model] | None,
+    request: Request,
     progress: Progress,
-) -> tuple[list[str], list[Point | None], list[str]]:
+) -> tuple[list[str], list[Point | Large | None], list[str]]:
     """Models as texts, the points made ready, and why a point failed."""
-    maker = PointMaker()
+    maker = PointMaker(request.reduction, request.elements)
     family = None if change else Family(model, axes)
-    texts, points, failure = [], [], []
+    texts: list[str] = []
+    points: list[Point | Large | None] = []
+    failure: list[str] = []
     for i, value in enumerate(values):
         progress(_READY * i / len(values), f"point {i + 1} of {len(values)}")
         point, reason, text = None, "", repr(value)
@@ -174,6 +187,6 @@ def _start(
     """Where a run starts: the end of the one before it, unless that failed."""
     before = found.get((after, run)) if after is not None else None
     old = points[after] if after is not None else None
-    if before is not None and old is not None and before.finite and old.system.n == point.system.n:
+    if before is not None and old is not None and before.finite and old.system.size == point.system.size:
         return before.end.moved(old.system, point.system)
     return start_of(point.system, run % request.starts, request.seed, request.throw)

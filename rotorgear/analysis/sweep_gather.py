@@ -11,6 +11,7 @@ from rotorgear.analysis.sweep_classify import FAILED, classify, exponents
 from rotorgear.analysis.sweep_point import Point
 from rotorgear.analysis.sweep_request import Request
 from rotorgear.model.model import Model
+from rotorgear.results.reduction import Reduction
 from rotorgear.results.sweep import SweepResult
 from rotorgear.solvers.lanes import Orbit
 
@@ -32,6 +33,7 @@ def gathered(
     request: Request,
     orbits: dict[tuple[int, int], Orbit],
     laps: dict[str, float],
+    reduction: Reduction | None = None,
 ) -> SweepResult:
     """Return the result."""
     sound = [p for p in points if p is not None]
@@ -89,7 +91,7 @@ def gathered(
         static_deflection=static / np.where(stiffness > 0.0, stiffness, np.nan), failure=tuple(failed), steps=steps,
         settle=request.settle, count=request.count, tolerance=request.tolerance, chaos=request.chaos,
         dofs=max(q.system.n for q in sound), seconds=laps, method="Runge-Kutta of order 4 in lanes of 32 points",
-        warnings=_warnings(points, failed, motion), **tables,
+        warnings=_warnings(points, failed, motion) + _reduction(reduction, request), reduction=reduction, **tables,
     )  # fmt: skip
 
 
@@ -126,3 +128,13 @@ def _warnings(points: Sequence[Point | None], failed: Sequence[str], motion: Seq
     if unsettled:
         found.append(f"{unsettled} of {len(motion)} runs had not settled: ask for more periods of --settle or --count")
     return tuple(found)
+
+
+def _reduction(found: Reduction | None, request: Request) -> tuple[str, ...]:
+    """What modes that were fixed by hand leave open."""
+    if found is None or found.error <= request.reduction_error:
+        return ()
+    return (
+        f"the reduction is {100.0 * found.error:.2g} % off, beyond {100.0 * request.reduction_error:.2g} %: ask for more modes, "
+        "or leave their number open",
+    )

@@ -10,14 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rotorgear.analysis.sweep_columns import column_of, columns_of, shape_of
+from rotorgear.analysis.sweep_reduce import Large, Reduced, Wanted
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.solvers.contact_equilibrium import Equilibrium, equilibrium, still_forces
 from rotorgear.solvers.local_forces import LocalForces
 from rotorgear.solvers.local_system import LocalSystem
 from rotorgear.solvers.motion import Rotation
-from rotorgear.solvers.small_system import SmallSystem, refuse_large, small_system
+from rotorgear.solvers.small_system import MOST_DOFS, Shapes, SmallSystem, small_system
 from rotorgear.system.local import local_model
+from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -67,16 +69,23 @@ class Still:
     contact: tuple[str, ...]
     rest: Equilibrium
     static: np.ndarray
+    shapes: Shapes | None = None
 
 
 class PointMaker:
-    """Makes models ready, and keeps states at rest for models where only the speed is another."""
+    """Makes models ready, and keeps states at rest for models where only the speed is another.
 
-    def __init__(self) -> None:
-        self._known: dict[str, Still] = {}
+    Args:
+        wanted: of reductions, which all models get where it asks for modes, and else those that are large or have dofs without
+            inertia. elements: in each piece of shaft.
+    """
 
-    def __call__(self, model: Model) -> Point:
-        """Make a model ready at its own speed.
+    def __init__(self, wanted: Wanted | None = None, elements: int | None = None) -> None:
+        self._wanted, self._elements = wanted or Wanted(), elements
+        self._known: dict[str, Still | Large] = {}
+
+    def __call__(self, model: Model) -> Point | Large:
+        """Make a model ready at its own speed; one that is to be reduced comes back as it is, for `sweep_reduce`.
 
         Raises:
             AnalysisError: no speed, no mesh that turns, no common period, too many dofs, or forces that sweeps don't take.
@@ -87,12 +96,29 @@ class PointMaker:
         standing = model.operation.model_copy(update={"speed": 1.0 if speed > 0.0 else -1.0})
         key = model.model_copy(update={"operation": standing}).model_dump_json(exclude_none=True)
         if not _standing(model):
-            return ready(_still(model, speed), speed, model.damping.modal_ratio)
+            return self._at(self._still(model, speed), speed, model.damping.modal_ratio)
         if key not in self._known:
             if len(self._known) >= _KEPT:
                 self._known.clear()
-            self._known[key] = _still(model, speed)
-        return ready(self._known[key], speed, model.damping.modal_ratio)
+            self._known[key] = self._still(model, speed)
+        return self._at(self._known[key], speed, model.damping.modal_ratio)
+
+    def _at(self, known: Still | Large, speed: float, modal_ratio: float) -> Point | Large:
+        return replace(known, speed=speed) if isinstance(known, Large) else ready(known, speed, modal_ratio)
+
+    def _still(self, model: Model, speed: float) -> Still | Large:
+        system = System(model, plan=Plan(self._elements) if self._elements else None)
+        if system.n == 0:
+            raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+        found = local_model(system, Rotation.constant(speed), speed)
+        for part in found.parts:
+            column_of(part.law, part.part)
+        orders = [o for part in found.parts for o in _order(part.law, part.label)]
+        contact = tuple(part.label for part in found.parts if part.is_mesh)
+        if self._wanted.modes is not None or system.n > MOST_DOFS or np.any(found.local.M.diagonal() <= 0.0):
+            common_period(orders)
+            return Large(found.local, orders, contact, speed, model.damping.modal_ratio)
+        return still(found.local, orders, contact)
 
 
 def _standing(model: Model) -> bool:
@@ -104,18 +130,6 @@ def _standing(model: Model) -> bool:
     tables = any(bearing.table for bearing in model.bearings.values())
     inner = any(section for shaft in model.shafts.values() for section in shaft.sections)
     return all(power is None for power in powers) and not (varying or tables or inner)
-
-
-def _still(model: Model, speed: float) -> Still:
-    system = System(model)
-    if system.n == 0:
-        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
-    refuse_large(system.n)
-    found = local_model(system, Rotation.constant(speed), speed)
-    for part in found.parts:
-        column_of(part.law, part.part)
-    orders = [o for part in found.parts for o in _order(part.law, part.label)]
-    return still(found.local, orders, tuple(part.label for part in found.parts if part.is_mesh))
 
 
 def still(local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...]) -> Still:
@@ -132,13 +146,19 @@ def still(local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...]) 
     return Still(local, orders, contact, rest, static)
 
 
+def ready_reduced(point: Large, found: Reduced) -> Point:
+    """Make a point ready that was reduced."""
+    known = replace(still(found.local, point.orders, point.contact), shapes=found.shapes)
+    return ready(known, point.speed, point.modal_ratio)
+
+
 def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     """Make a system ready at a speed of the reference in rad/s; `modal_ratio` is added to every mode with strain."""
     local = replace(known.local, rotation=Rotation.constant(speed))
     fastest, turns = common_period(known.orders)
     laws = local.forces.laws
     columns = columns_of([column for law in laws for column in column_of(law, type(law).__name__, speed)])
-    system = small_system(local, known.rest, columns, float(fastest) * abs(speed), turns, modal_ratio)
+    system = small_system(local, known.rest, columns, float(fastest) * abs(speed), turns, modal_ratio, known.shapes)
     drift = known.rest.drift
     drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
     shape, mesh = b"".join(shape_of(law) for law in laws), columns.mesh

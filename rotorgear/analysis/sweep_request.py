@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.analysis.sweep_point import Point
+from rotorgear.analysis.sweep_reduce import MOST_COORDINATES, Wanted
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.lanes import Start
-from rotorgear.solvers.small_system import STABLE, SmallSystem, steps_needed
+from rotorgear.solvers.small_system import SmallSystem, steps_needed, steps_stable
 
 DIRECTIONS = ("each", "up", "down", "both")
 MOST_STEPS = 5000
@@ -32,6 +33,9 @@ class Request:
     chaos: float
     seed: int
     throw: float = 1.0
+    modes: int | None = None
+    reduction_error: float = 0.01
+    elements: int | None = None
 
     def __post_init__(self) -> None:
         if self.direction not in DIRECTIONS:
@@ -43,9 +47,18 @@ class Request:
             raise AnalysisError(f"exponents: got {self.exponents}, expected 0 or more")
         if self.steps is not None and not 8 <= self.steps <= 100_000:
             raise AnalysisError(f"steps: got {self.steps}, expected 8 to 100000 in a period of the fastest mesh")
-        for name in ("tolerance", "chaos"):
+        for name, most in (("modes", MOST_COORDINATES), ("elements", 1000)):
+            value = getattr(self, name)
+            if value is not None and not 1 <= value <= most:
+                raise AnalysisError(f"{name}: got {value}, expected 1 to {most}")
+        for name in ("tolerance", "chaos", "reduction_error"):
             if not 0.0 < getattr(self, name) < 1.0:
                 raise AnalysisError(f"{name}: got {getattr(self, name):g}, expected a number between 0 and 1")
+
+    @property
+    def reduction(self) -> Wanted:
+        """What a reduction must reach."""
+        return Wanted(self.reduction_error, self.modes)
 
     @property
     def directions(self) -> tuple[str, ...]:
@@ -92,7 +105,7 @@ def steps_of(points: Sequence[Point | None], wanted: int | None) -> tuple[np.nda
     for i, point in enumerate(points):
         if point is None:
             continue
-        needed, least = steps_needed(point.system), steps_needed(point.system, STABLE)
+        needed, least = steps_needed(point.system), steps_stable(point.system)
         if wanted is not None:
             steps[i] = wanted
             if wanted < least:

@@ -39,6 +39,15 @@ def sweep(
         float, typer.Option("--chaos", help="Exponent per mesh period above which a motion is chaotic.")
     ] = 0.02,
     seed: Annotated[int, typer.Option("--seed", help="Of the random states of --starts.")] = 1,
+    modes: Annotated[
+        int | None, typer.Option("--modes", help="Reduce the model to so many modes.", show_default=False)
+    ] = None,
+    reduction_error: Annotated[
+        float, typer.Option("--reduction-error", help="Largest error of the reduction of a large model.")
+    ] = 0.01,
+    elements: Annotated[
+        int | None, typer.Option("--elements", help="Elements in each piece of shaft (default: 1).", show_default=False)
+    ] = None,
     workers: Annotated[
         int | None, typer.Option("--workers", help="Threads (default: all cores).", show_default=False)
     ] = None,
@@ -53,7 +62,7 @@ def sweep(
         Path | None, typer.Option("--plot", help="Draw pictures of the result to this folder.", show_default=False)
     ] = None,
 ) -> None:
-    """Bifurcation diagram, Lyapunov exponents and kinds of motion of a small model over its parameters."""
+    """Bifurcation diagram, Lyapunov exponents and kinds of motion of a model over its parameters."""
     import rotorgear as rg
     from rotorgear.analysis.sweep_axes import axis_of_option
     from rotorgear.cli.tables_sweep import sweep_table
@@ -70,7 +79,8 @@ def sweep(
             result = rg.sweep(
                 rg.load(model), {axis.address: [axis.text(value) for value in axis.values] for axis in axes},
                 direction=direction, starts=starts, settle=settle, count=count, exponents=exponents, steps=steps,
-                tolerance=tolerance, chaos=chaos, seed=seed, workers=workers,
+                tolerance=tolerance, chaos=chaos, seed=seed, modes=modes, reduction_error=reduction_error,
+                elements=elements, workers=workers,
                 stream=rg.stream(save, resume=resume) if save else None, progress=progress,
             )  # fmt: skip
         except KeyboardInterrupt:

@@ -94,6 +94,7 @@ def _notes(result: SweepResult) -> list[str]:
         f"{100.0 * result.tolerance:g} % of the peak to peak; chaotic: LE > {result.chaos:g}",
         f"{result.dofs} dofs, {steps} steps a mesh period, {result.seconds['total']:.2f} s; {result.method}",
     ]
+    lines += [result.reduction.sentence] if result.reduction else []
     return lines + [f"Warning: {note}" for note in result.warnings]
 
 

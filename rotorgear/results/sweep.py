@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.model.model import Model
+from rotorgear.results.reduction import Reduction
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class SweepResult:
         failure: (p,) why a point failed, "" where it did not.
         steps: (p,) in a period of the fastest mesh; settle, count: common periods that settled and counted.
         tolerance, chaos: of the criterion, see analysis/sweep_classify.py.
-        dofs, seconds, method, warnings: cost, and sentences.
+        dofs, seconds, method, warnings: cost, and sentences. reduction: how large systems were reduced; None where none was.
     """
 
     model: Model
@@ -69,6 +70,7 @@ class SweepResult:
     seconds: dict[str, float]
     method: str
     warnings: tuple[str, ...] = ()
+    reduction: Reduction | None = None
 
     @property
     def dynamic_factor(self) -> np.ndarray:
@@ -111,6 +113,7 @@ class SweepResult:
             "tolerance": self.tolerance,
             "chaos": self.chaos,
             "dofs": self.dofs,
+            "reduction": self.reduction.to_dict() if self.reduction else None,
             "seconds": float(self.seconds.get("total", 0.0)),
             "seconds_by_step": {name: float(value) for name, value in self.seconds.items() if name != "total"},
             "method": self.method,

@@ -15,6 +15,7 @@ import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.factor import single_thread
+from rotorgear.solvers.residual_vectors import ritz_residuals
 
 _EPS = float(np.finfo(float).eps)
 _WORST_CONDITION = 1e10
@@ -115,13 +116,7 @@ def _with_residuals(
     """The lowest modes and what the others give statically under unit local forces, as Ritz vectors with inertia."""
     high, low = V[:, modes:], V[:, :modes]
     residual = high @ ((high.T @ B) / lam[modes:, None])
-    size = np.sqrt(np.einsum("ij,ij->j", residual, M @ residual))
-    residual = residual[:, size > 0.0] / size[size > 0.0]
-    values, turned = la.eigh(residual.T @ (M @ residual))
-    kept = values > 1e-10 * values.max(initial=0.0)
-    residual = residual @ (turned[:, kept] / np.sqrt(values[kept]))
-    _, turned = la.eigh(residual.T @ (K @ residual))
-    return np.hstack([low, residual @ turned])
+    return np.hstack([low, ritz_residuals(M, K, residual)])
 
 
 def _pairs(K: np.ndarray, D: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:

@@ -39,6 +39,8 @@ class Start:
         if old is new:
             return self
         q, v = (np.linalg.solve(old.root.T, x) for x in (self.z, self.dz * old.w))
+        if old.shapes is not new.shapes and old.shapes and new.shapes:
+            q, v = (new.shapes.weighed.T @ (old.shapes.vectors @ x) for x in (q, v))
         return Start(new.root.T @ q, new.root.T @ v / new.w)
 
 

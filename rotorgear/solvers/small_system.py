@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.contact_equilibrium import Equilibrium
@@ -19,6 +20,8 @@ MOST_DOFS = 80
 STABLE = 2.5
 # Products of a frequency and a step that leave errors of 1e-3 or so in a period.
 ACCURATE = 0.35
+# The same above the frequencies that a reduced system follows: its stiffest shapes answer as if static.
+_STATIC = 1.5
 # Of the largest stiffness, that every direction gets in the size of a tangent.
 _FLOOR = 1e-12
 
@@ -38,6 +41,20 @@ class Columns:
 
 
 @dataclass(frozen=True)
+class Shapes:
+    """What n coordinates mean in a larger system: its motions (N, n), M-orthonormal, and these times M."""
+
+    vectors: np.ndarray
+    weighed: np.ndarray
+    up_to: float
+
+    @staticmethod
+    def of(vectors: np.ndarray, M: sp.csc_array, up_to: float) -> Shapes:
+        """Shapes of a system with mass M (N, N) that holds up to a frequency in rad/s."""
+        return Shapes(vectors, M @ vectors, up_to)
+
+
+@dataclass(frozen=True)
 class SmallSystem:
     """n degrees of freedom, m local displacements.
 
@@ -45,7 +62,8 @@ class SmallSystem:
         K, D: (n, n); load: (n,); B: (n, m); rigid: (r, n) orthonormal motions without strain; rest: z in equilibrium, (n,).
         root: L, (n, n). energy: S with S^T S the stiffness with all contacts closed, (n, n).
         columns: of the local forces. w: rad/s of the fastest mesh; turns: its periods in the common one.
-        fastest: largest |eigenvalue| of the linear system, in radians of the mesh.
+        fastest: largest |eigenvalue| of the linear system, in radians of the mesh; followed: of those that a reduced system
+        holds for. shapes: of a system that was reduced.
     """
 
     K: np.ndarray
@@ -60,6 +78,13 @@ class SmallSystem:
     w: float
     turns: int
     fastest: float
+    followed: float
+    shapes: Shapes | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of degrees of freedom before any reduction."""
+        return self.n if self.shapes is None else len(self.shapes.vectors)
 
     @property
     def n(self) -> int:
@@ -68,19 +93,21 @@ class SmallSystem:
 
 
 def small_system(
-    local: LocalSystem, rest: Equilibrium, columns: Columns, w: float, turns: int, modal_ratio: float = 0.0
-) -> SmallSystem:
+    local: LocalSystem, rest: Equilibrium, columns: Columns, w: float, turns: int, modal_ratio: float = 0.0,
+    shapes: Shapes | None = None,
+) -> SmallSystem:  # fmt: skip
     """Return a system at the speed of its rotation in the form of the kernels.
 
     Args:
         local: the system. rest: its equilibrium. columns: of its local forces, in SI.
         w: rad/s of the fastest mesh. turns: its periods in the common one.
-        modal_ratio: damping ratio added to every mode with strain.
+        modal_ratio: damping ratio added to every mode with strain. shapes: of a system that was reduced.
 
     Raises:
         AnalysisError: too many dofs, or one without inertia.
     """
-    refuse_large(local.n)
+    if shapes is None:
+        refuse_large(local.n)
     try:
         L = np.linalg.cholesky(local.M.toarray())
     except np.linalg.LinAlgError:
@@ -99,9 +126,11 @@ def small_system(
         [np.zeros_like(K), np.eye(local.n)],
         [-about / w**2, -(D + B @ local.forces.reference_damping @ B.T) / w],
     ])  # fmt: skip
+    rates = np.abs(np.linalg.eigvals(A))
+    followed = rates if shapes is None else rates[rates <= shapes.up_to / w]
     return SmallSystem(
         _clean(K) / w**2, _clean(D) / w, inverse @ local.load / w**2, _clean(B), rigid, L.T @ rest.q, L, energy,
-        scaled(columns, w), w, turns, float(np.abs(np.linalg.eigvals(A)).max()),
+        scaled(columns, w), w, turns, float(rates.max()), float(followed.max(initial=0.0)), shapes,
     )  # fmt: skip
 
 
@@ -127,6 +156,15 @@ def _clean(A: np.ndarray) -> np.ndarray:
     return np.where(np.abs(A) > 1e-14 * np.abs(A).max(initial=0.0), A, 0.0)
 
 
-def steps_needed(system: SmallSystem, share: float = ACCURATE) -> int:
-    """Steps in a period of the fastest mesh so that the highest frequency times the step stays below a share."""
-    return int(np.ceil(2.0 * np.pi * system.fastest / share))
+def steps_needed(system: SmallSystem) -> int:
+    """Steps in a period of the fastest mesh that follow all frequencies that the system holds for, and are stable for the rest."""
+    return max(_steps(system.followed, ACCURATE), _steps(system.fastest, ACCURATE if system.shapes is None else _STATIC))
+
+
+def steps_stable(system: SmallSystem) -> int:
+    """Least steps in a period of the fastest mesh that are stable."""
+    return _steps(system.fastest, STABLE)
+
+
+def _steps(fastest: float, share: float) -> int:
+    return int(np.ceil(2.0 * np.pi * fastest / share))
