@@ -162,7 +162,14 @@ def _run(
                     int(steps[block[0].point]), request.settle, request.count, min(request.exponents, _most(own[0]))
                 )
                 tasks.append((own, states, plan))
-            for block, orbits in zip(rest, pool.run(tasks), strict=True):
+            begun, runs = done, sum(map(len, rest))
+
+            def heard(share: float, begun: int = begun, runs: int = runs) -> None:
+                progress(
+                    _READY + (1.0 - _READY) * (begun + share * runs) / total, f"{done} of {total} runs, others under way"
+                )
+
+            for block, orbits in zip(rest, pool.run(tasks, heard), strict=True):
                 found.update(zip([job.key for job in block], orbits, strict=True))
                 if stream:
                     stream.write(packed(orbits))

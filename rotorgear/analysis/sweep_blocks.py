@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from functools import partial
 from threading import Event
@@ -17,6 +17,8 @@ from rotorgear.solvers.lanes import Orbit, Plan, Start, run_block
 
 # Largest tables of one block, in numbers; wider ones are cut into narrower blocks.
 _MOST_TABLE = 30_000_000
+# Seconds between two words on the progress of blocks that take long.
+_EVERY = 1.0
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,7 @@ class Workers:
     """Runs the blocks of a wave on all cores, or by an executor of the caller's; results come in the order of the blocks."""
 
     def __init__(self, workers: int | None, executor: Executor | None) -> None:
-        self._stop = Event()
+        self._stop, self._asked = Event(), 0
         self._own = None if executor else ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1)
         self._executor: Any = executor or self._own
 
@@ -103,14 +105,20 @@ class Workers:
             self._own.shutdown(wait=True, cancel_futures=True)
 
     def go_on(self) -> bool:
-        """Whether nobody has stopped the run."""
+        """Whether nobody has stopped the run; counts how often it was asked."""
+        self._asked += 1
         return not self._stop.is_set()
 
-    def run(self, tasks: Sequence[tuple[list[Point], list[Start], Plan]]) -> Iterator[list[Orbit]]:
-        """Yield the orbits of each block, in order."""
+    def run(
+        self, tasks: Sequence[tuple[list[Point], list[Start], Plan]], heard: Callable[[float], None] = lambda share: None
+    ) -> Iterator[list[Orbit]]:
+        """Yield the orbits of each block, in order; `heard` is told about which share of all is done, every second."""
+        self._asked, total = 0, sum(plan.questions(points[0].system.turns) for points, _, plan in tasks)
         work = partial(run_jobs, go_on=self.go_on) if self._own else run_jobs
         futures = [self._executor.submit(work, *task) for task in tasks]
         for future in futures:
+            while self._own and wait([future], timeout=_EVERY).not_done:
+                heard(min(1.0, self._asked / total))
             yield future.result()
 
 

@@ -113,10 +113,14 @@ class PointMaker:
         found = local_model(system, Rotation.constant(speed), speed)
         for part in found.parts:
             column_of(part.law, part.part)
-        orders = [o for part in found.parts for o in _order(part.law, part.label)]
+        meshes, others = (
+            [o for part in found.parts if part.is_mesh is is_mesh for o in _order(part.law, part.label)]
+            for is_mesh in (True, False)
+        )
+        orders = meshes + others
+        _refuse_long(meshes, orders)
         contact = tuple(part.label for part in found.parts if part.is_mesh)
         if self._wanted.modes is not None or system.n > MOST_DOFS or np.any(found.local.M.diagonal() <= 0.0):
-            common_period(orders)
             return Large(found.local, orders, contact, speed, model.damping.modal_ratio)
         return still(found.local, orders, contact)
 
@@ -193,9 +197,23 @@ def common_period(orders: list[Fraction]) -> tuple[Fraction, int]:
     return fastest, int(turns)
 
 
+def _refuse_long(meshes: list[Fraction], orders: list[Fraction]) -> None:
+    """AnalysisError where unbalances or torque ripples make the common period too long, and meshes alone don't."""
+    try:
+        common_period(orders)
+    except AnalysisError as error:
+        if not meshes or len(meshes) == len(orders):
+            raise
+        raise AnalysisError(
+            f"{error}; without unbalances and torque ripples the meshes repeat after {common_period(meshes)[1]}: leave these out, "
+            "as by --over 'unbalances.*.magnitude=0 kg m'"
+        ) from None
+
+
 def _order(law: ForceLaw, label: str) -> list[Fraction]:
     """Order of what varies in a law; none where it stays the same."""
-    value = abs(float(getattr(law, "order", 0.0)))
+    still = any(getattr(law, name, None) == 0.0 for name in ("amplitude", "ripple"))
+    value = 0.0 if still else abs(float(getattr(law, "order", 0.0)))
     if not value:
         return []
     found = Fraction(value).limit_denominator(100000)

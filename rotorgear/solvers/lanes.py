@@ -26,6 +26,14 @@ class Plan:
     tangents: int
     warm: int = 40
 
+    def stride(self, turns: int) -> int:
+        """Common periods of so many mesh periods from one question whether to go on to the next."""
+        return max(1, _SLICE // (turns * self.steps))
+
+    def questions(self, turns: int) -> int:
+        """How often a run asks whether to go on, at most."""
+        return 3 + (self.settle + self.count) // self.stride(turns)
+
 
 @dataclass(frozen=True)
 class Start:
@@ -99,7 +107,7 @@ def run_block(
     def run(periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         growth = np.zeros((periods, len(followed), LANES))
         section = np.zeros((periods, 2 * mesh.size, LANES))
-        stride = max(1, _SLICE // (first.turns * plan.steps))
+        stride = plan.stride(first.turns)
         for p in range(0, periods, stride):
             if not go_on():
                 raise KeyboardInterrupt
