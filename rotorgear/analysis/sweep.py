@@ -165,9 +165,8 @@ def _run(
             begun, runs = done, sum(map(len, rest))
 
             def heard(share: float, begun: int = begun, runs: int = runs) -> None:
-                progress(
-                    _READY + (1.0 - _READY) * (begun + share * runs) / total, f"{done} of {total} runs, others under way"
-                )
+                part = (begun + share * runs) / total
+                progress(_READY + (1.0 - _READY) * part, f"about {100.0 * part:.0f} %")
 
             for block, orbits in zip(rest, pool.run(tasks, heard), strict=True):
                 found.update(zip([job.key for job in block], orbits, strict=True))

@@ -110,7 +110,9 @@ class Workers:
         return not self._stop.is_set()
 
     def run(
-        self, tasks: Sequence[tuple[list[Point], list[Start], Plan]], heard: Callable[[float], None] = lambda share: None
+        self,
+        tasks: Sequence[tuple[list[Point], list[Start], Plan]],
+        heard: Callable[[float], None] = lambda share: None,
     ) -> Iterator[list[Orbit]]:
         """Yield the orbits of each block, in order; `heard` is told about which share of all is done, every second."""
         self._asked, total = 0, sum(plan.questions(points[0].system.turns) for points, _, plan in tasks)

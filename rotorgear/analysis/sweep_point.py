@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import gcd, lcm
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rotorgear.analysis.sweep_columns import column_of, columns_of, shape_of
+from rotorgear.analysis.sweep_period import common_period, order_of, refuse_long
 from rotorgear.analysis.sweep_reduce import Large, Reduced, Wanted
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -23,12 +23,9 @@ from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
-    from rotorgear.forces.law import ForceLaw
+    pass
 
-# Periods of the fastest mesh in the common one, at most.
-MOST_TURNS = 1000
 _KEPT = 1000  # states at rest
-_WHOLE = 1e-9  # relative error of a fraction that stands for a ratio of speeds
 
 
 @dataclass(frozen=True)
@@ -114,11 +111,11 @@ class PointMaker:
         for part in found.parts:
             column_of(part.law, part.part)
         meshes, others = (
-            [o for part in found.parts if part.is_mesh is is_mesh for o in _order(part.law, part.label)]
+            [o for part in found.parts if part.is_mesh is is_mesh for o in order_of(part.law, part.label)]
             for is_mesh in (True, False)
         )
         orders = meshes + others
-        _refuse_long(meshes, orders)
+        refuse_long(meshes, orders)
         contact = tuple(part.label for part in found.parts if part.is_mesh)
         if self._wanted.modes is not None or system.n > MOST_DOFS or np.any(found.local.M.diagonal() <= 0.0):
             return Large(found.local, orders, contact, speed, model.damping.modal_ratio)
@@ -176,52 +173,6 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
         drifts,
         shape,
     )
-
-
-def common_period(orders: list[Fraction]) -> tuple[Fraction, int]:
-    """The highest order, and how many of its periods everything that varies has in common.
-
-    Raises:
-        AnalysisError: nothing varies, or the common period is too long.
-    """
-    if not orders:
-        raise AnalysisError("nothing repeats: a sweep needs a mesh with teeth, or an unbalance, that turns")
-    fastest = max(orders)
-    base = Fraction(gcd(*(o.numerator for o in orders)), lcm(*(o.denominator for o in orders)))
-    turns = fastest / base
-    if turns > MOST_TURNS:
-        raise AnalysisError(
-            f"the meshes repeat together after {int(turns)} periods of the fastest only (at most {MOST_TURNS}); choose "
-            "numbers of teeth with common factors"
-        )
-    return fastest, int(turns)
-
-
-def _refuse_long(meshes: list[Fraction], orders: list[Fraction]) -> None:
-    """AnalysisError where unbalances or torque ripples make the common period too long, and meshes alone don't."""
-    try:
-        common_period(orders)
-    except AnalysisError as error:
-        if not meshes or len(meshes) == len(orders):
-            raise
-        raise AnalysisError(
-            f"{error}; without unbalances and torque ripples the meshes repeat after {common_period(meshes)[1]}: leave these out, "
-            "as by --over 'unbalances.*.magnitude=0 kg m'"
-        ) from None
-
-
-def _order(law: ForceLaw, label: str) -> list[Fraction]:
-    """Order of what varies in a law; none where it stays the same."""
-    still = any(getattr(law, name, None) == 0.0 for name in ("amplitude", "ripple"))
-    value = 0.0 if still else abs(float(getattr(law, "order", 0.0)))
-    if not value:
-        return []
-    found = Fraction(value).limit_denominator(100000)
-    if abs(float(found) - value) > _WHOLE * value:
-        raise AnalysisError(
-            f"{label}: its order {value:.9g} of the input shaft is no ratio of whole numbers, so nothing repeats"
-        )
-    return [found]
 
 
 def table_of(point: Point, steps: int) -> np.ndarray:

@@ -11,7 +11,6 @@ then, and the frequencies need not hit them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 
 import numpy as np
 

@@ -117,7 +117,18 @@ class Reducer:
             return None
         worst = {
             name: max(getattr(one, name) for one in self.found)
-            for name in ("dofs", "coordinates", "modes", "highest", "rigid", "static", "closed", "apart", "up_to", "frequencies")
+            for name in (
+                "dofs",
+                "coordinates",
+                "modes",
+                "highest",
+                "rigid",
+                "static",
+                "closed",
+                "apart",
+                "up_to",
+                "frequencies",
+            )
         }
         return Reduction(bases=len(self.found), seconds=sum(one.seconds for one in self.found), **worst)
 

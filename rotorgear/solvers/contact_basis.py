@@ -1,4 +1,4 @@
-"""A basis of few shapes in which contacts move as in the whole structure: chosen modes, and what loads and contacts do statically.
+"""A basis of few shapes in which contacts move as in the whole structure: chosen modes, and static shapes of loads and contacts.
 
 Candidates are the lowest modes with all contacts closed and the residual attachment vectors of all columns. Of the modes those
 are kept, a few at a time, that change the receptances at the contacts most. By the residual of the present basis a mode j that
@@ -172,9 +172,7 @@ def _worth(
     s, W = probes.s[:, None, None], probes.speed[:, None, None]
     K, D, G = among.K, among.D, among.G
     r = among.B[left] - ((K[left] @ Q) @ y + s * ((D[left] @ Q) @ y) + (s * W) * ((G[left] @ Q) @ y))
-    d = among.B[left] - (
-        (K.T[left] @ Q) @ dual + s * ((D.T[left] @ Q) @ dual) + (s * W) * ((G.T[left] @ Q) @ dual)
-    )
+    d = among.B[left] - ((K.T[left] @ Q) @ dual + s * ((D.T[left] @ Q) @ dual) + (s * W) * ((G.T[left] @ Q) @ dual))
     own = np.abs(np.diag(K)[left] + probes.s[:, None] * np.diag(D)[left] + probes.s[:, None] ** 2)
     before, after = around(H, probes.s, scale)
     closed = _share(r, d, own, H, scale)

@@ -12,10 +12,8 @@ import scipy.sparse as sp
 # Shapes that are so near to a sum of the others, in the square of their size, are left out.
 _DEPENDENT = 1e-10
 
-Matrix = np.ndarray | sp.csc_array
 
-
-def ritz_residuals(M: Matrix, K: Matrix, shapes: np.ndarray) -> np.ndarray:
+def ritz_residuals(M: np.ndarray | sp.csc_array, K: np.ndarray | sp.csc_array, shapes: np.ndarray) -> np.ndarray:
     """Return an M-orthonormal basis (n, r) of shapes (n, m), r <= m, in which K is diagonal, softest first.
 
     Args:

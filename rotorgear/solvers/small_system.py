@@ -157,8 +157,10 @@ def _clean(A: np.ndarray) -> np.ndarray:
 
 
 def steps_needed(system: SmallSystem) -> int:
-    """Steps in a period of the fastest mesh that follow all frequencies that the system holds for, and are stable for the rest."""
-    return max(_steps(system.followed, ACCURATE), _steps(system.fastest, ACCURATE if system.shapes is None else _STATIC))
+    """Steps in a period of the fastest mesh that follow all frequencies the system holds for, and are stable for the rest."""
+    return max(
+        _steps(system.followed, ACCURATE), _steps(system.fastest, ACCURATE if system.shapes is None else _STATIC)
+    )
 
 
 def steps_stable(system: SmallSystem) -> int:
