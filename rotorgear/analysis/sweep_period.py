@@ -6,6 +6,7 @@ from fractions import Fraction
 from math import gcd, lcm
 from typing import TYPE_CHECKING
 
+from rotorgear.analysis.sweep_columns import order_of
 from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
@@ -48,10 +49,9 @@ def refuse_long(meshes: list[Fraction], orders: list[Fraction]) -> None:
         ) from None
 
 
-def order_of(law: LocalLaw, label: str) -> list[Fraction]:
+def orders_of(law: LocalLaw, label: str) -> list[Fraction]:
     """Order of what varies in a law; none where it stays the same."""
-    still = any(getattr(law, name, None) == 0.0 for name in ("amplitude", "ripple"))
-    value = 0.0 if still else abs(float(getattr(law, "order", 0.0)))
+    value = order_of(law)
     if not value:
         return []
     found = Fraction(value).limit_denominator(100000)

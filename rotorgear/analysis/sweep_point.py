@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.analysis.sweep_columns import column_of, columns_of, shape_of
-from rotorgear.analysis.sweep_period import common_period, order_of, refuse_long
+from rotorgear.analysis.sweep_columns import column_of, columns_of, is_rolling, shape_of
+from rotorgear.analysis.sweep_period import common_period, orders_of, refuse_long
 from rotorgear.analysis.sweep_reduce import Large, Reduced, Wanted
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -17,6 +17,7 @@ from rotorgear.solvers.contact_equilibrium import Equilibrium, equilibrium, stil
 from rotorgear.solvers.local_forces import LocalForces
 from rotorgear.solvers.local_system import LocalSystem
 from rotorgear.solvers.motion import Rotation
+from rotorgear.solvers.own_laws import own_laws
 from rotorgear.solvers.small_system import MOST_DOFS, Shapes, SmallSystem, small_system
 from rotorgear.system.local import local_model
 from rotorgear.system.plan import Plan
@@ -36,8 +37,8 @@ class Point:
         system: for the kernels. forces: its laws. order: radians of the fastest mesh for each of the reference, with the
         sign of its speed.
         contact: names of the mesh contacts; static_force: theirs without anything that varies, (c,) in N.
-        stiffness: their mean stiffness, (c,) in N/m. drift: whether the torques don't balance. shape: bytes that two points
-        share where their tables are the same.
+        stiffness: their mean stiffness, (c,) in N/m. drift: whether the torques don't balance. rolling: whether rolling
+        elements pass beside the meshes. shape: bytes that two points share where their tables are the same.
     """
 
     system: SmallSystem
@@ -47,14 +48,17 @@ class Point:
     static_force: np.ndarray
     stiffness: np.ndarray
     drift: bool
+    rolling: bool
     shape: bytes
 
     @property
     def kind(self) -> tuple[object, ...]:
         """What points in one block share."""
         c = self.system.columns
+        own = self.system.own.forces
+        names = tuple(type(law).__name__ for law in own.laws)
         return (self.system.n, c.gap.tobytes(), c.mode.tobytes(), c.mesh.tobytes(), len(self.system.rigid),
-                self.system.turns, self.contact)  # fmt: skip
+                self.system.turns, self.contact, names, own.parameters_first.tobytes(), own.state_first.tobytes())  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -111,7 +115,7 @@ class PointMaker:
         for part in found.parts:
             column_of(part.law, part.part)
         meshes, others = (
-            [o for part in found.parts if part.is_mesh is is_mesh for o in order_of(part.law, part.label)]
+            [o for part in found.parts if part.is_mesh is is_mesh for o in orders_of(part.law, part.label)]
             for is_mesh in (True, False)
         )
         orders = meshes + others
@@ -155,22 +159,29 @@ def ready_reduced(point: Large, found: Reduced) -> Point:
 
 def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     """Make a system ready at a speed of the reference in rad/s; `modal_ratio` is added to every mode with strain."""
+    from rotorgear.solvers.kernel_lane_parts import OWN_LAW
+
     local = replace(known.local, rotation=Rotation.constant(speed))
     fastest, turns = common_period(known.orders)
     laws = local.forces.laws
     columns = columns_of([column for law in laws for column in column_of(law, type(law).__name__, speed)])
-    system = small_system(local, known.rest, columns, float(fastest) * abs(speed), turns, modal_ratio, known.shapes)
+    order = float(np.copysign(float(fastest), speed))
+    own = own_laws(local.forces, columns.gap == OWN_LAW, 1.0 / order)
+    system = small_system(
+        local, known.rest, columns, own, float(fastest) * abs(speed), turns, modal_ratio, known.shapes
+    )
     drift = known.rest.drift
     drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
     shape, mesh = b"".join(shape_of(law) for law in laws), columns.mesh
     return Point(
         system,
         local.forces,
-        float(np.copysign(float(fastest), speed)),
+        order,
         known.contact,
         known.static[mesh],
         columns.stiffness[mesh],
         drifts,
+        any(map(is_rolling, laws)),
         shape,
     )
 
@@ -178,6 +189,7 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
 def table_of(point: Point, steps: int) -> np.ndarray:
     """Tables of a point over its common period, (2 turns steps + 1, m, 4)."""
     from rotorgear.forces.mesh_contact import MeshContact
+    from rotorgear.forces.rotating_force import RotatingForce
     from rotorgear.forces.torque_curve import TorqueCurve
     from rotorgear.solvers.kernel_lane_parts import ERROR, PUSH, SLOPE, STIFFNESS, tabulate
 
@@ -200,8 +212,8 @@ def table_of(point: Point, steps: int) -> np.ndarray:
             table[:, at, PUSH] = push / law.impact if law.impact else 0.0
         elif isinstance(law, TorqueCurve):
             table[:, at, PUSH] = -state[:, 0] / law.torque if law.torque else 0.0
-        else:
-            phase = law.order * angles + law.phase  # type: ignore[attr-defined]
+        elif isinstance(law, RotatingForce):
+            phase = law.order * angles + law.phase
             for k, values in enumerate((np.cos(phase), np.sin(phase))[: law.components]):
                 table[:, at + k, PUSH] = -values
     return table

@@ -82,7 +82,7 @@ class Reducer:
         begun = time.perf_counter()
         first = max(points, key=lambda point: abs(point.speed))
         local, scale = first.local, scale_of(first.local)
-        among = candidates(local, _loads(points), scale.contacts, _CANDIDATES)
+        among = candidates(local, _loads(points), _acting(local), _CANDIDATES)
         top = float(rates(local.forces.laws, first.speed).max())
         probes = probes_for(local.forces.laws, [point.speed for point in points], among.w, first.modal_ratio)
         full = full_receptances(local, probes)
@@ -134,14 +134,24 @@ class Reducer:
 
 
 def scale_of(local: LocalSystem) -> Scale:
-    """What receptances of a system are measured by: the stiffness of its mesh contacts."""
+    """What receptances of a system are measured by: the stiffness of its mesh contacts, and of bearings with rolling elements."""
     from rotorgear.forces.mesh_contact import MeshContact
 
-    root = np.zeros(local.m)
+    k = local.forces.reference_stiffness
+    root = np.sqrt(np.maximum(np.diag(k), 0.0))
     for law, at in zip(local.forces.laws, local.forces.first, strict=False):
         if isinstance(law, MeshContact):
             root[at] = np.sqrt(law.mean().stiffness)
-    return Scale(local.forces.reference_stiffness, local.forces.reference_damping, root)
+    return Scale(k, local.forces.reference_damping, root)
+
+
+def _acting(local: LocalSystem) -> np.ndarray:
+    """Columns (a,) whose forces depend on the motion."""
+    from rotorgear.analysis.sweep_columns import column_of
+    from rotorgear.solvers.kernel_lane_parts import PRESCRIBED
+
+    gaps = [row[0] for law in local.forces.laws for row in column_of(law, type(law).__name__)]
+    return np.flatnonzero(np.array(gaps) != PRESCRIBED)
 
 
 def _loads(points: Sequence[Large]) -> np.ndarray:

@@ -71,12 +71,11 @@ class Choice:
         return max(self.closed, self.apart)
 
 
-def candidates(local: LocalSystem, loads: np.ndarray, contacts: np.ndarray, count: int) -> Candidates:
+def candidates(local: LocalSystem, loads: np.ndarray, acting: np.ndarray, count: int) -> Candidates:
     """Return the shapes to choose from.
 
     Args:
-        local: the system. loads: (n, l) that attachment vectors are kept of. contacts: columns with stiffness of their own.
-        count: modes.
+        local: the system. loads: (n, l), and acting: columns (a,), that attachment vectors are kept of. count: modes.
     """
     M, K = local.M, local.stiffness_about
     found = lowest_modes(M, sp.csc_array(0.5 * (K + K.T)), count=min(count, local.n))
@@ -91,12 +90,13 @@ def candidates(local: LocalSystem, loads: np.ndarray, contacts: np.ndarray, coun
     rest[:, np.sqrt(np.einsum("ij,ij->j", rest, M @ rest)) <= _IN_MODES * whole] = 0.0
     E = np.hstack([V, ritz_residuals(M, sp.csc_array(0.5 * (K + K.T)), rest)])
     Ke, Be = E.T @ (K @ E), E.T @ B
-    Ke[:rigid], Ke[:, :rigid], Be[:rigid, contacts] = 0.0, 0.0, 0.0
+    strained = np.diag(local.forces.reference_stiffness) > 0.0
+    Ke[:rigid], Ke[:, :rigid], Be[:rigid, strained] = 0.0, 0.0, 0.0
     size = E.shape[1]
     G = np.zeros((size, size)) if local.G is None else E.T @ (local.G @ E)
     statics = np.zeros((size, forces.shape[1]))
     statics[rigid:] = np.linalg.solve(Ke[rigid:, rigid:], (E.T @ forces)[rigid:])
-    kept = np.concatenate([contacts, B.shape[1] + np.arange(loads.shape[1])])
+    kept = np.concatenate([acting, B.shape[1] + np.arange(loads.shape[1])])
     return Candidates(
         E, rigid, V.shape[1] - rigid, np.sqrt(np.maximum(np.diag(Ke), 0.0)), Ke, E.T @ (local.damping_about @ E), G, Be,
         statics[:, kept],

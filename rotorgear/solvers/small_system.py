@@ -13,6 +13,7 @@ import scipy.sparse as sp
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.contact_equilibrium import Equilibrium
 from rotorgear.solvers.local_system import LocalSystem
+from rotorgear.solvers.own_laws import OwnLaws, not_held, steepest
 
 # Dense matrices in the kernel: beyond this many, other methods are cheaper.
 MOST_DOFS = 80
@@ -61,7 +62,8 @@ class SmallSystem:
     Attributes:
         K, D: (n, n); load: (n,); B: (n, m); rigid: (r, n) orthonormal motions without strain; rest: z in equilibrium, (n,).
         root: L, (n, n). energy: S with S^T S the stiffness with all contacts closed, (n, n).
-        columns: of the local forces. w: rad/s of the fastest mesh; turns: its periods in the common one.
+        columns: of the local forces; own: those that act by laws of their own.
+        w: rad/s of the fastest mesh; turns: its periods in the common one.
         fastest: largest |eigenvalue| of the linear system, in radians of the mesh; followed: of those that a reduced system
         holds for. shapes: of a system that was reduced.
     """
@@ -75,6 +77,7 @@ class SmallSystem:
     root: np.ndarray
     energy: np.ndarray
     columns: Columns
+    own: OwnLaws
     w: float
     turns: int
     fastest: float
@@ -93,13 +96,19 @@ class SmallSystem:
 
 
 def small_system(
-    local: LocalSystem, rest: Equilibrium, columns: Columns, w: float, turns: int, modal_ratio: float = 0.0,
+    local: LocalSystem,
+    rest: Equilibrium,
+    columns: Columns,
+    own: OwnLaws,
+    w: float,
+    turns: int,
+    modal_ratio: float = 0.0,
     shapes: Shapes | None = None,
-) -> SmallSystem:  # fmt: skip
+) -> SmallSystem:
     """Return a system at the speed of its rotation in the form of the kernels.
 
     Args:
-        local: the system. rest: its equilibrium. columns: of its local forces, in SI.
+        local: the system. rest: its equilibrium. columns: of its local forces, in SI. own: those with laws of their own.
         w: rad/s of the fastest mesh. turns: its periods in the common one.
         modal_ratio: damping ratio added to every mode with strain. shapes: of a system that was reduced.
 
@@ -117,21 +126,27 @@ def small_system(
     K = inverse @ local.K.toarray() @ inverse.T
     D = inverse @ local.velocity_terms(float(local.rotation.speeds[0])).toarray() @ inverse.T
     about = inverse @ local.stiffness_about.toarray() @ inverse.T
-    squares, modes = np.linalg.eigh(0.5 * (about + about.T))
+    damped = D + B @ local.forces.reference_damping @ B.T
+    steep = steepest(local, rest.q, own, 2.0 * np.pi / w)
+    linear = [(about, damped), *((about + B @ k @ B.T, damped + B @ c @ B.T) for k, c in steep)]
+    squares, modes = np.linalg.eigh(0.5 * (linear[-1][0] + linear[-1][0].T))
     energy = np.sqrt(np.abs(squares) + _FLOOR * np.abs(squares).max())[:, None] * modes.T / w
     if modal_ratio:
         D = D + (modes * (2.0 * modal_ratio * np.sqrt(np.maximum(squares, 0.0)))) @ modes.T
-    rigid = np.linalg.qr(L.T @ rest.free)[0].T if rest.free.size else np.zeros((0, local.n))
-    A = np.block([
-        [np.zeros_like(K), np.eye(local.n)],
-        [-about / w**2, -(D + B @ local.forces.reference_damping @ B.T) / w],
-    ])  # fmt: skip
-    rates = np.abs(np.linalg.eigvals(A))
+    free = not_held(local, rest.q, own, rest.free)
+    rigid = np.linalg.qr(L.T @ free)[0].T if free.size else np.zeros((0, local.n))
+    rates = np.concatenate([_rates(k / w**2, c / w) for k, c in linear])
     followed = rates if shapes is None else rates[rates <= shapes.up_to / w]
     return SmallSystem(
         _clean(K) / w**2, _clean(D) / w, inverse @ local.load / w**2, _clean(B), rigid, L.T @ rest.q, L, energy,
-        scaled(columns, w), w, turns, float(rates.max()), float(followed.max(initial=0.0)), shapes,
+        scaled(columns, w), own, w, turns, float(rates.max()), float(followed.max(initial=0.0)), shapes,
     )  # fmt: skip
+
+
+def _rates(K: np.ndarray, D: np.ndarray) -> np.ndarray:
+    """All |eigenvalues| of z'' = -K z - D z'."""
+    A = np.block([[np.zeros_like(K), np.eye(len(K))], [-K, -D]])
+    return np.abs(np.linalg.eigvals(A))
 
 
 def refuse_large(n: int) -> None:
