@@ -89,7 +89,8 @@ class Reducer:
         choice = self._chosen(among, lambda begin: choose(
             among, full, probes, scale, self._wanted.error, MOST_COORDINATES, begin, self._wanted.modes, heard
         ))  # fmt: skip
-        if self._wanted.modes is None and not choice.error <= self._wanted.error:
+        complete = choice.basis.shape[1] == local.n  # what is left then is rounding
+        if self._wanted.modes is None and not (complete or choice.error <= self._wanted.error):
             raise AnalysisError(_refusal(local.n, choice, self._wanted.error, top))
         own, V = reduced(local, among, choice.basis)
         shapes = Shapes.of(V, local.M, top)

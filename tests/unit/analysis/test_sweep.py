@@ -300,9 +300,7 @@ def test_addresses_lead_to_numbers_with_stars_and_places() -> None:
 
 
 def test_what_sweeps_do_not_take_is_refused_in_a_sentence() -> None:
-    with pytest.raises(
-        rg.RotorgearError, match="the meshes repeat after 113: leave these out"
-    ):
+    with pytest.raises(rg.RotorgearError, match="the meshes repeat after 113: leave these out"):
         rg.sweep(rg.load(ROOT / "models" / "split_torque.toml"), {"operation.speed": ["16350 rpm"]})
     model = rg.load(PAIR)
     with pytest.raises(rg.RotorgearError, match="unknown key"):

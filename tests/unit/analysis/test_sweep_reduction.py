@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.analysis import sweep_blocks
 from rotorgear.analysis.sweep_classify import exponents
 from rotorgear.analysis.sweep_point import Point, PointMaker, ready_reduced, table_of
 from rotorgear.analysis.sweep_probes import harmonics, probes_for, rates
@@ -21,6 +22,8 @@ from rotorgear.model.model import Model
 from rotorgear.solvers.lanes import Plan, Start, run_block
 from rotorgear.solvers.small_system import small_system
 from tests.unit.analysis.geared import pair_file
+from tests.unit.analysis.spur_pair import spur_pair
+from tests.unit.analysis.test_sweep_laws import ROLLING
 
 ROOT = Path(__file__).resolve().parents[3]
 FLEXIBLE = ROOT / "models" / "flexible_pair.toml"
@@ -199,7 +202,7 @@ def test_a_dof_without_inertia_is_reduced_away(tmp_path: Path) -> None:
     M[last, :], M[:, last] = 0.0, 0.0
     light = replace(own, local=replace(own.local, M=M.tocsc()))
     with pytest.raises(AnalysisError, match="no inertia"):
-        small_system(light.local, None, None, 1.0, 1)  # type: ignore[arg-type]
+        small_system(light.local, None, None, None, 1.0, 1)  # type: ignore[arg-type]
     found = Reducer(Wanted(0.01))([light], lambda size, error: None)[0]
     assert found.local.n < own.local.n
     assert ready_reduced(light, found).static_force == pytest.approx(ready_reduced(own, found).static_force, rel=1e-6)
@@ -219,3 +222,39 @@ def test_probes_hold_the_harmonics_of_all_meshes_up_to_the_highest_tabulated() -
     assert {(5.0, 10.0), (5.0, 30.0), (10.0, 60.0), (10.0, 33.0)} <= at
     assert (10.0, 70.0) not in at
     assert probes.s.real == pytest.approx(0.015 * probes.s.imag)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"bearings__a__rolling": ROLLING, "bearings__b__rolling": ROLLING}, {"meshes__pair__friction_coefficient": 0.06}],
+    ids=["rolling", "friction"],
+)
+def test_bearings_with_rolling_elements_and_friction_act_in_a_reduced_system(changes: dict[str, Any]) -> None:
+    model, over = spur_pair(meshes__pair__backlash="50 um", **changes), {"operation.speed": ["3000 rpm"]}
+    how: dict[str, Any] = {"settle": 15, "count": 5, "exponents": 0}
+    whole, part = rg.sweep(model, over, **how), rg.sweep(model, over, modes=10, **how)
+    assert part.dofs < whole.dofs
+    for name in ("peak_to_peak", "largest_force", "rms_force"):
+        assert getattr(part, name)[0, 0] == pytest.approx(getattr(whole, name)[0, 0], rel=2e-3)
+
+
+def test_a_long_block_tells_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sweep_blocks, "_EVERY", 1e-3)
+    told: list[tuple[float, str]] = []
+    rg.sweep(rg.load(ROOT / "models" / "backlash_pair.toml"), {"operation.speed": ["6000 rpm"]}, settle=9000, count=10,
+             progress=lambda share, text: told.append((share, text)))  # fmt: skip
+    inside = [share for share, text in told if text.startswith("about")]
+    assert any(0.15 < share < 1.0 for share in inside)
+    assert inside == sorted(inside)
+
+
+def test_a_basis_tells_how_far_it_is() -> None:
+    told: list[str] = []
+    rg.sweep(
+        rg.load(FLEXIBLE),
+        {"operation.speed": ["6000 rpm"]},
+        settle=1,
+        count=1,
+        progress=lambda _, text: told.append(text),
+    )
+    assert sum("coordinates" in text for text in told) > 5

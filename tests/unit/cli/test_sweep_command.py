@@ -103,3 +103,25 @@ def test_a_killed_sweep_goes_on_to_the_same_file(tmp_path: Path) -> None:
     assert np.array_equal(whole.section, killed.section)
     assert np.array_equal(whole.lyapunov, killed.lyapunov)
     assert whole.motion == killed.motion
+
+
+def test_a_large_model_says_what_it_was_reduced_to_and_keeps_that_in_files(tmp_path: Path) -> None:
+    flexible, files = str(ROOT / "models" / "flexible_pair.toml"), [str(tmp_path / name) for name in ("s.json", "s.h5")]
+    few = ["--over", "operation.speed=5000 rpm,6000 rpm", "--settle", "9", "--count", "9"]
+    code, text = run(flexible, *few, "--modes", "12", "--elements", "2", "--json", files[0], "--save", files[1])
+    assert code == 0
+    words = " ".join(text.split())
+    assert "156 dofs reduced to 15 (12 modes up to" in words
+    assert "1 rigid, 2 static shapes): receptances at the contacts within" in words
+    read = rg.read(files[1])
+    assert isinstance(read, rg.SweepResult)
+    assert read.reduction is not None
+    assert read.reduction.to_dict() == json.loads(Path(files[0]).read_text(encoding="utf-8"))["reduction"]
+    assert read.reduction.modes == 12
+    code, text = run(flexible, *few, "--elements", "6", "--reduction-error", "1e-13")
+    assert code == 2
+    assert "444 dofs can't be reduced" in text
+    assert run(flexible, *few, "--reduction-error", "2") == (
+        2,
+        "reduction_error: got 2, expected a number between 0 and 1",
+    )
