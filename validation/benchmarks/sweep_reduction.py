@@ -3,8 +3,8 @@
     python -m validation.benchmarks.sweep_reduction
 
 models/flexible_pair.toml, 84 degrees of freedom, at 16 speeds, in 4 of which its teeth part. Prints for several numbers of modes
-the error that the reduction states (receptances at the contacts); against all modes, the largest errors of peak to peak, force and
-share of time apart where the motion is periodic; and how many kinds of motion are the same.
+the error that the reduction states (receptances at the contacts); against all modes, largest errors of peak to peak, force, share
+of time apart where the motion is periodic; and how many kinds of motion are the same.
 """
 
 from __future__ import annotations
