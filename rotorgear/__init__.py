@@ -36,6 +36,7 @@ _HOMES = {
     "rotorgear.analysis.transient_ladder": ("transient_ladder",),
     "rotorgear.analysis.sweep": ("sweep",),
     "rotorgear.analysis.sweep_ladder": ("sweep_ladder",),
+    "rotorgear.analysis.cluster": ("cluster",),
     "rotorgear.solvers.flow_exponents": ("flow_exponents",),
     "rotorgear.analysis.spectra": ("spectrum", "spectral_lines"),
     "rotorgear.analysis.rig_spectrum": ("compare_spectrum",),
@@ -73,6 +74,7 @@ __all__ = ["__version__", *_HOME]
 if TYPE_CHECKING:
     from rotorgear.analysis.accuracy import accuracy_ladder
     from rotorgear.analysis.campbell import campbell
+    from rotorgear.analysis.cluster import cluster
     from rotorgear.analysis.compare import compare, read_rig_lines
     from rotorgear.analysis.critical import critical_speeds
     from rotorgear.analysis.critical_map import critical_map

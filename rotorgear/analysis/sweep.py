@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Executor
 
 import numpy as np
 
 from rotorgear.analysis.sweep_axes import Axis, Family, axis_of, points_of
-from rotorgear.analysis.sweep_blocks import Workers, blocks, packed, unpacked, waves
+from rotorgear.analysis.sweep_blocks import Pool, Workers, blocks, packed, unpacked, waves
 from rotorgear.analysis.sweep_classify import CHAOS, TOLERANCE
 from rotorgear.analysis.sweep_gather import gathered
 from rotorgear.analysis.sweep_point import Point, PointMaker
@@ -42,7 +41,7 @@ def sweep(
     seed: int = 1,
     throw: float = 1.0,
     workers: int | None = None,
-    executor: Executor | None = None,
+    executor: Pool | None = None,
     stream: Stream | None = None,
     progress: Progress = silent,
 ) -> SweepResult:
@@ -62,7 +61,7 @@ def sweep(
         tolerance, chaos: of the criterion that tells the kinds of motion apart (analysis/sweep_classify.py).
         seed: of the random states. throw: their size; at 1 contacts are thrown by up to some backlashes.
         workers: threads; all cores where not given. The result does not depend on it.
-        executor: runs the blocks of points in place of threads, for other machines: an object with `submit`.
+        executor: runs the blocks of points in place of threads: `rotorgear.cluster(address)`, or any object with `submit`.
         stream: keeps blocks while the sweep goes on (`rotorgear.stream`), and starts an interrupted one again.
         progress: callable that is told fraction and step.
 
