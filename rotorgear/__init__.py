@@ -54,6 +54,7 @@ _HOMES = {
     "rotorgear.results.transient": ("TransientResult",),
     "rotorgear.results.sweep": ("SweepResult",),
     "rotorgear.results.sweep_ladder": ("SweepLadder",),
+    "rotorgear.results.portrait": ("Portraits",),
     "rotorgear.results.static": ("StaticResult",),
     "rotorgear.results.response": ("ResponseResult",),
     "rotorgear.results.frequency_response": ("FrequencyResponse",),
@@ -123,6 +124,7 @@ if TYPE_CHECKING:
     from rotorgear.results.gear_sheet import GearSheet
     from rotorgear.results.mesh import MeshResult
     from rotorgear.results.modal import ModalResult
+    from rotorgear.results.portrait import Portraits
     from rotorgear.results.response import ResponseResult
     from rotorgear.results.static import StaticResult
     from rotorgear.results.sweep import SweepResult

@@ -14,6 +14,9 @@ from rotorgear.errors import AnalysisError, RotorgearError
 if TYPE_CHECKING:
     from rotorgear.results.sweep import SweepResult
 
+# Points that --plot draws portraits and spectra of.
+_PORTRAITS = 9
+
 
 def sweep(
     model: ModelFile,
@@ -40,6 +43,15 @@ def sweep(
         float, typer.Option("--chaos", help="Exponent per mesh period above which a motion is chaotic.")
     ] = 0.02,
     seed: Annotated[int, typer.Option("--seed", help="Of the random states of --starts.")] = 1,
+    portrait: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--portrait",
+            help="Keep the trajectory of the point next to this VALUE (VALUE,VALUE of two parameters); once or more. "
+            "With --plot nine points where not given.",
+            show_default=False,
+        ),
+    ] = None,
     workers: Annotated[
         int | None, typer.Option("--workers", help="Threads (default: all cores).", show_default=False)
     ] = None,
@@ -84,7 +96,8 @@ def sweep(
             result = rg.sweep(
                 read, {axis.address: [axis.text(value) for value in axis.values] for axis in axes},
                 direction=direction, starts=starts, settle=settle, count=count, exponents=exponents, steps=steps,
-                tolerance=tolerance, chaos=chaos, seed=seed, workers=workers, executor=elsewhere,
+                tolerance=tolerance, chaos=chaos, seed=seed,
+                portraits=portrait or (_PORTRAITS if plot else 0), workers=workers, executor=elsewhere,
                 stream=rg.stream(save, resume=resume) if save else None, progress=progress,
             )  # fmt: skip
         except (KeyboardInterrupt, RotorgearError):
