@@ -103,6 +103,7 @@ def portraits_of(
     )
     if not chosen:
         return None
+    begun = request.settle + request.count
     runs = list(range(0, len(request.runs), request.starts))
     kinds = [[result.motion_at(p, run) for run in runs] for p in chosen]
     sizes = [
@@ -120,6 +121,6 @@ def portraits_of(
         for j, run in enumerate(runs):
             if kinds[k][j] == FAILED:
                 continue
-            own = recorded(point.system, orbits[p, run].end, table, int(result.steps[p]), *map(int, sizes[k]))
+            own = recorded(point.system, orbits[p, run].end, table, int(result.steps[p]), *sizes[k], begun=begun)
             values[k, j, : len(own)] = own[:, point.system.columns.mesh]
     return Portraits(np.array(chosen), np.array(runs), result.turns[chosen], periods, records, values)

@@ -11,6 +11,7 @@ from rotorgear.solvers.compiled import compiled
 from rotorgear.solvers.kernel_lane_parts import (
     ERROR,
     NEVER_PARTS,
+    OWN_LAW,
     PENETRATION,
     PRESCRIBED,
     PUSH,
@@ -18,6 +19,8 @@ from rotorgear.solvers.kernel_lane_parts import (
     STIFFNESS,
     UNCLAMPED,
 )
+
+_MOST_COMPONENTS = 6
 
 
 @compiled
@@ -41,8 +44,43 @@ def force(gap, mode, values, now, d, v):
 
 
 @compiled
-def slopes(K, D, B, load, gap, mode, values, now, y, local, a):
-    """z'' (n,) of a state y = (z, z'), and d, d' and F of each column, local (m, 3)."""
+def own_schedules(laws, clock, time, condition):
+    """Fill the state (s,) of the laws at a time in radians of the fastest mesh."""
+    schedules, _, kind, _, parameters, parameters_first, state_first, _ = laws
+    for i in range(kind.size):
+        schedules[kind[i]](
+            time * clock[0], clock[1] * clock[0], time / clock[1],
+            parameters[parameters_first[i] : parameters_first[i + 1]], condition[state_first[i] : state_first[i + 1]],
+        )  # fmt: skip
+
+
+@compiled
+def own_forces(laws, clock, condition, space, local):
+    """Forces of the laws of kernel_lane_laws.py to local (m, 3), one system.
+
+    clock (2,): radians of the reference for one of the fastest mesh, and its rad/s; space: for the law with most components.
+    """
+    _, forces, kind, place, parameters, parameters_first, state_first, _ = laws
+    rate = clock[1]
+    for i in range(kind.size):
+        a, k = place[0, i], place[1, i]
+        d, v, F, rest = space[:k], space[k : 2 * k], space[2 * k : 3 * k], space[3 * k :]
+        for j in range(k):
+            d[j], v[j] = local[a + j, 0], rate * local[a + j, 1]
+        forces[kind[i]](
+            parameters[parameters_first[i] : parameters_first[i + 1]], condition[state_first[i] : state_first[i + 1]],
+            d, v, F, rest[: k * k], rest[k * k : 2 * k * k], rest[2 * k * k : 2 * k * k + 4],
+        )  # fmt: skip
+        for j in range(k):
+            local[a + j, 2] = F[j] / (rate * rate)
+
+
+@compiled
+def slopes(K, D, B, load, gap, mode, values, now, laws, clock, condition, space, y, local, a):
+    """z'' (n,) of a state y = (z, z'), and d, d' and F of each column, local (m, 3).
+
+    laws, clock, condition, space: of the columns that act by laws of their own, see `own_forces`.
+    """
     n, m = K.shape[0], B.shape[1]
     z, dz = y[:n], y[n:]
     for j in range(m):
@@ -51,7 +89,9 @@ def slopes(K, D, B, load, gap, mode, values, now, y, local, a):
             d += B[i, j] * z[i]
             v += B[i, j] * dz[i]
         local[j, 0], local[j, 1] = d, v
-        local[j, 2] = force(gap[j], mode[j], values[j], now[j], d, v)
+        if gap[j] != OWN_LAW:
+            local[j, 2] = force(gap[j], mode[j], values[j], now[j], d, v)
+    own_forces(laws, clock, condition, space, local)
     for i in range(n):
         total = load[i]
         for k in range(n):
@@ -62,20 +102,25 @@ def slopes(K, D, B, load, gap, mode, values, now, y, local, a):
 
 
 @compiled(free=True)
-def trajectory(steps, every, K, D, B, load, gap, mode, values, table, state, out):
+def trajectory(steps, every, begun, K, D, B, load, gap, mode, values, table, laws, clock, state, out):
     """Run on from a state (2 n,) in place; out (s, m, 3) gets d, d' and F once in `every` steps, beginning with the first state.
 
     Args:
-        steps: in a period of the fastest mesh. values: (m, 5). table: (2 steps in a common period + 1, m, 4).
+        steps: in a period of the fastest mesh; begun: steps before. values: (m, 5).
+        table: (2 steps in a common period + 1, m, 4). laws, clock: see `own_forces`.
     """
     n, h, period = K.shape[0], 2.0 * np.pi / steps, (table.shape[0] - 1) // 2
     y, total, a, local = np.empty(2 * n), np.empty(2 * n), np.empty(n), np.empty((B.shape[1], 3))
+    condition, space = np.zeros(laws[6][-1]), np.zeros(_MOST_COMPONENTS * (3 + 2 * _MOST_COMPONENTS) + 4)
     for step in range(out.shape[0] * every):
         y[:] = state
         total[:] = 0.0
         for stage in range(4):
-            now = table[2 * (step % period) + (stage + 1) // 2]
-            slopes(K, D, B, load, gap, mode, values, now, y, local, a)
+            half = (stage + 1) // 2
+            if stage != 2:
+                own_schedules(laws, clock, 0.5 * h * (2.0 * (begun + step) + half), condition)
+            now = table[2 * (step % period) + half]
+            slopes(K, D, B, load, gap, mode, values, now, laws, clock, condition, space, y, local, a)
             if stage == 0 and step % every == 0:
                 out[step // every] = local
             weight = (1.0 if stage in (0, 3) else 2.0) * h / 6.0

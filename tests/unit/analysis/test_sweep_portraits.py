@@ -16,11 +16,16 @@ from rotorgear.analysis.sweep_point import Point, PointMaker, ready, still, tabl
 from rotorgear.analysis.sweep_portrait import length_of, spread, wanted_points
 from rotorgear.analysis.sweep_request import start_of
 from rotorgear.errors import AnalysisError
+from rotorgear.forces.ball_bearing import BallBearing
+from rotorgear.forces.law import ForceLaw
 from rotorgear.forces.mesh_contact import MeshContact
+from rotorgear.forces.mesh_friction import MeshFriction
+from rotorgear.forces.torque_curve import TorqueCurve
 from rotorgear.results.portrait import DISPLACEMENT, FORCE, Portraits
 from rotorgear.solvers.lanes import Plan, run_block
 from rotorgear.solvers.trajectory import recorded
 from tests.unit.analysis.test_sweep import PAIR, TWO_STAGES
+from tests.unit.analysis.test_sweep_laws import MESH, with_law
 from validation.oscillators import local_system
 
 
@@ -44,26 +49,42 @@ LAWS = {
 }
 
 
-def check(point: Point, steps: int, periods: int, settle: int = 20) -> None:
+def check(point: Point, steps: int, periods: int, settle: int = 20, number: int = 1) -> None:
     """The trajectory begins with the last Poincare point and goes through those of the lanes, with their forces."""
     table, system = table_of(point, steps), point.system
-    settled = run_block([system], [start_of(system, 1, 3)], [table], Plan(steps, settle, 2, 0))[0]
-    onward = run_block([system], [settled.end], [table], Plan(steps, 0, periods, 0))[0]
-    path, mesh = recorded(system, settled.end, table, steps, periods + 1), system.columns.mesh
+    settled = run_block([system], [start_of(system, number, 3)], [table], Plan(steps, settle, 2, 0))[0]
+    whole = run_block([system], [start_of(system, number, 3)], [table], Plan(steps, settle + 2, periods, 0))[0]
+    path, mesh = recorded(system, settled.end, table, steps, periods + 1, begun=settle + 2), system.columns.mesh
     length = system.turns * steps
     size = np.abs(path[:, mesh]).max(axis=0)
     points = path[::length, mesh]
     assert points[0, :, :2] == pytest.approx(settled.section[-1, mesh], abs=1e-12 * size[:, :2].min())
-    assert np.abs((points[1:, :, :2] - onward.section[:, mesh]) / size[:, :2]).max() < 1e-12
-    counted, force = path[: periods * length, mesh], onward.sums[mesh]
+    assert np.abs((points[1:, :, :2] - whole.section[:, mesh]) / size[:, :2]).max() < 1e-12
+    counted, force = path[: periods * length, mesh], whole.sums[mesh]
     assert counted[:, :, FORCE].max(axis=0) == pytest.approx(force[:, 9], rel=1e-11)
     assert counted[:, :, FORCE].sum(axis=0) == pytest.approx(force[:, 10], rel=1e-11)
-    assert np.array_equal(recorded(system, settled.end, table, steps, 1, 10)[:, mesh], path[:length:10, mesh])
+    assert np.array_equal(
+        recorded(system, settled.end, table, steps, 1, 10, settle + 2)[:, mesh], path[:length:10, mesh]
+    )
 
 
 @pytest.mark.parametrize("name", LAWS)
 def test_the_trajectory_passes_through_the_poincare_points_of_the_lanes(name: str) -> None:
     check(point_of(LAWS[name]), 100, 6)
+
+
+@pytest.mark.parametrize(
+    ("law", "columns"),
+    [
+        (BallBearing(7, 0.3, 1.2, clearance=0.02, order=0.37, youngs_modulus=8.0), np.eye(5)),
+        (MeshFriction(MESH, 0.9, -0.7, 0.6, 1.5, 0.1, smooth=0.2), np.eye(5)[:, [0, 2, 4]]),
+        (TorqueCurve(0.2, 1.0, 2.0, 0.9, damping=0.02, ripple=0.3, order=1.0), np.eye(5)[:, [1]]),
+    ],
+    ids=["ball bearing", "friction", "torque over speed"],
+)
+def test_it_does_so_with_laws_that_lanes_run_one_at_a_time(law: ForceLaw, columns: np.ndarray) -> None:
+    # Rolling elements do not repeat with the mesh: what they do depends on the periods that went by.
+    check(ready(still(with_law(law, columns), [Fraction(1)], ("m",)), 0.9), 100, 4, settle=2, number=0)
 
 
 def test_it_does_so_over_a_common_period_of_two_meshes() -> None:
