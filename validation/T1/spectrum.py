@@ -18,14 +18,15 @@ _NAME = "points.output_bearing_y acceleration"
 
 def measure(quantity: str, mode: str) -> float:
     """Frequency of the line of a mesh order to a tenth of a hertz, or the number of rig lines that the spectrum has."""
-    lines, beside = _run()
+    lines, beside = run()
     if quantity == "line in Hz":
         return round(float(lines.frequency_hz[[source.startswith(f"mesh {mode}") for source in lines.source]][0]), 1)
     return float(np.isfinite(beside.frequency_hz).sum())
 
 
 @cache
-def _run() -> tuple[SpectralLines, RigSpectrum]:
+def run() -> tuple[SpectralLines, RigSpectrum]:
+    """Lines of the spectrum with the printed harmonics of the transmission error, and the rig lines beside them."""
     model = rg.load(_MODELS / "split_torque.toml")
     harmonics = tuple(ErrorHarmonic(harmonic=n + 1, amplitude=a) for n, a in enumerate(_HARMONICS))
     changed = {"stiffness": "potential_energy", "transmission_error": harmonics}
