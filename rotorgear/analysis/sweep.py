@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Executor
+from dataclasses import replace
 
 import numpy as np
 
 from rotorgear.analysis.sweep_axes import Axis, Family, axis_of, points_of
-from rotorgear.analysis.sweep_blocks import Workers, blocks, packed, unpacked, waves
+from rotorgear.analysis.sweep_blocks import Pool, Workers, blocks, packed, unpacked, waves
 from rotorgear.analysis.sweep_classify import CHAOS, TOLERANCE
 from rotorgear.analysis.sweep_gather import gathered
 from rotorgear.analysis.sweep_point import Point, PointMaker
+from rotorgear.analysis.sweep_portrait import Wanted, portraits_of, wanted_points
 from rotorgear.analysis.sweep_reduce import Large
 from rotorgear.analysis.sweep_request import Request, start_of, steps_of
 from rotorgear.analysis.sweep_shrink import shrunk
@@ -46,8 +47,9 @@ def sweep(
     modes: int | None = None,
     reduction_error: float = 0.01,
     elements: int | None = None,
+    portraits: Wanted = 0,
     workers: int | None = None,
-    executor: Executor | None = None,
+    executor: Pool | None = None,
     stream: Stream | None = None,
     progress: Progress = silent,
 ) -> SweepResult:
@@ -69,8 +71,10 @@ def sweep(
         modes: reduce the model to so many elastic modes and the static shapes of contacts and loads, whatever the error.
         reduction_error: largest relative error of the receptances at the contacts that a reduction may make.
         elements: basic elements in each piece of shaft; one where not given.
+        portraits: how many points, spread over the sweep, keep their trajectory over some periods more; or the values of the
+            parameters, in their units, next to which points do: 3250.0 or "3250 rpm", with two parameters (3250.0, 20.0).
         workers: threads; all cores where not given. The result does not depend on it.
-        executor: runs the blocks of points in place of threads, for other machines: an object with `submit`.
+        executor: runs the blocks of points in place of threads: `rotorgear.cluster(address)`, or any object with `submit`.
         stream: keeps blocks while the sweep goes on (`rotorgear.stream`), and starts an interrupted one again.
         progress: callable that is told fraction and step.
 
@@ -81,7 +85,7 @@ def sweep(
     request = Request(direction, starts, settle, count, exponents, steps, tolerance, chaos, seed, throw, modes,
                       reduction_error, elements)  # fmt: skip
     axes = [axis_of(address, values) for address, values in over.items()]
-    values = points_of(axes)
+    values, wanted = points_of(axes), wanted_points(portraits, axes)
     with single_thread(0):
         models, large, failure = _ready(model, axes, values, change, request, progress)
         points, failure, reduction = shrunk(large, failure, request.reduction, progress, _READY)
@@ -96,9 +100,13 @@ def sweep(
         shape = [len(axis.values) for axis in axes]
         orbits = _run(points, chosen, shape, request, Workers(workers, executor), stream, kept, progress)
     laps["integration"] = clock.perf_counter() - begun - laps["points"]
+    result = gathered(model, axes, values, points, failure, chosen, request, orbits, laps, reduction)
+    if wanted:
+        result = replace(result, portraits=portraits_of(result, wanted, points, request, orbits, progress))
+        laps["portraits"] = clock.perf_counter() - begun - laps["points"] - laps["integration"]
     laps["total"] = clock.perf_counter() - begun
     progress(1.0, "done")
-    return gathered(model, axes, values, points, failure, chosen, request, orbits, laps, reduction)
+    return result
 
 
 def _ready(

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 from threading import Event
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -88,19 +90,32 @@ def _always() -> bool:
     return True
 
 
+class Pool(Protocol):
+    """Where blocks may go: `submit` returns an object with `result()` and `cancel()`, as `concurrent.futures` have it.
+
+    Where it has a number `ahead`, no more blocks than that are handed over before the first of them is done.
+    """
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any) -> Any:
+        """Take a call."""
+
+
 class Workers:
     """Runs the blocks of a wave on all cores, or by an executor of the caller's; results come in the order of the blocks."""
 
-    def __init__(self, workers: int | None, executor: Executor | None) -> None:
+    def __init__(self, workers: int | None, executor: Pool | None) -> None:
         self._stop, self._asked = Event(), 0
         self._own = None if executor else ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1)
         self._executor: Any = executor or self._own
+        self._waiting: deque[Any] = deque()
 
     def __enter__(self) -> Workers:
         return self
 
     def __exit__(self, *_: object) -> None:
         self._stop.set()
+        for future in self._waiting:
+            future.cancel()
         if self._own:
             self._own.shutdown(wait=True, cancel_futures=True)
 
@@ -116,12 +131,22 @@ class Workers:
     ) -> Iterator[list[Orbit]]:
         """Yield the orbits of each block, in order; `heard` is told about which share of all is done, every second."""
         self._asked, total = 0, sum(plan.questions(points[0].system.turns) for points, _, plan in tasks)
-        work = partial(run_jobs, go_on=self.go_on) if self._own else run_jobs
-        futures = [self._executor.submit(work, *task) for task in tasks]
-        for future in futures:
-            while self._own and wait([future], timeout=_EVERY).not_done:
+        rest, waiting = iter(tasks), self._waiting
+        while True:
+            room = getattr(self._executor, "ahead", len(tasks)) - len(waiting)
+            waiting.extend(self._submitted(*task) for task in islice(rest, max(0, room)))
+            if not waiting:
+                return
+            while self._own and wait([waiting[0]], timeout=_EVERY).not_done:
                 heard(min(1.0, self._asked / total))
-            yield future.result()
+            yield waiting[0].result()
+            waiting.popleft()
+
+    def _submitted(self, points: list[Point], starts: list[Start], plan: Plan) -> Any:
+        """A block under way; what only the main process needs does not travel to other machines."""
+        if self._own:
+            return self._executor.submit(partial(run_jobs, go_on=self.go_on), points, starts, plan)
+        return self._executor.submit(run_jobs, [point.bare for point in points], starts, plan)
 
 
 def packed(orbits: Sequence[Orbit]) -> dict[str, np.ndarray]:

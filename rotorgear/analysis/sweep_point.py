@@ -52,6 +52,11 @@ class Point:
     shape: bytes
 
     @property
+    def bare(self) -> Point:
+        """The point without the shapes of its reduction, which its runs don't need."""
+        return self if self.system.shapes is None else replace(self, system=replace(self.system, shapes=None))
+
+    @property
     def kind(self) -> tuple[object, ...]:
         """What points in one block share."""
         c = self.system.columns
