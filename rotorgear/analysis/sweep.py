@@ -169,7 +169,7 @@ def _run(
                 plan = Plan(
                     int(steps[block[0].point]), request.settle, request.count, min(request.exponents, _most(own[0]))
                 )
-                tasks.append((own, states, plan))
+                tasks.append(([p.bare for p in own], states, plan))
             begun, runs = done, sum(map(len, rest))
 
             def heard(share: float, begun: int = begun, runs: int = runs) -> None:

@@ -130,23 +130,18 @@ class Workers:
         heard: Callable[[float], None] = lambda share: None,
     ) -> Iterator[list[Orbit]]:
         """Yield the orbits of each block, in order; `heard` is told about which share of all is done, every second."""
-        self._asked, total = 0, sum(plan.questions(points[0].system.turns) for points, _, plan in tasks)
+        work = partial(run_jobs, go_on=self.go_on) if self._own else run_jobs
+        self._asked, total = 0, sum(plan.questions(own[0].system.turns) for own, _, plan in tasks) if self._own else 0
         rest, waiting = iter(tasks), self._waiting
         while True:
             room = getattr(self._executor, "ahead", len(tasks)) - len(waiting)
-            waiting.extend(self._submitted(*task) for task in islice(rest, max(0, room)))
+            waiting.extend(self._executor.submit(work, *task) for task in islice(rest, max(0, room)))
             if not waiting:
                 return
             while self._own and wait([waiting[0]], timeout=_EVERY).not_done:
                 heard(min(1.0, self._asked / total))
             yield waiting[0].result()
             waiting.popleft()
-
-    def _submitted(self, points: list[Point], starts: list[Start], plan: Plan) -> Any:
-        """A block under way; what only the main process needs does not travel to other machines."""
-        if self._own:
-            return self._executor.submit(partial(run_jobs, go_on=self.go_on), points, starts, plan)
-        return self._executor.submit(run_jobs, [point.bare for point in points], starts, plan)
 
 
 def packed(orbits: Sequence[Orbit]) -> dict[str, np.ndarray]:
