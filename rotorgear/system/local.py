@@ -154,7 +154,7 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         contact_damping=mesh.contact_damping, ramp=_ramp(mesh, deflection),
         order=order, phase=phase + 2.0 * np.pi * late, stiffness_cos=stiffness_cos, stiffness_sin=stiffness_sin,
         error_mean=mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0),
-        error_cos=error_cos, error_sin=error_sin, pieces=_pieces(system, force), **_impact(mesh.corner_impact),
+        error_cos=error_cos, error_sin=error_sin, pieces=cycle_pieces(system, force), **_impact(mesh.corner_impact),
     )  # fmt: skip
 
 
@@ -177,7 +177,7 @@ def _back(law: MeshContact) -> MeshContact:
     )
 
 
-def _pieces(system: System, force: MeshForce) -> tuple[tuple[float, float, float], ...]:
+def cycle_pieces(system: System, force: MeshForce) -> tuple[tuple[float, float, float], ...]:
     """Straight pieces of k over its mean in a mesh cycle, where the file gives a curve or a stiffness model."""
     name = force.contact.mesh
     if isinstance(system.model.meshes[name].stiffness, int | float):
