@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.model.mesh_phases import MeshPhases, mesh_phases
+from rotorgear.model.torque_flow import about_nominal_flanks, carries_on_back_flanks
 from rotorgear.system.contacts import ContactLines
 from rotorgear.system.system import System
 
@@ -48,7 +49,8 @@ class Order:
 
 def orders_of(system: System, lines: ContactLines, mean_force: np.ndarray) -> list[Order]:
     """Return all orders of a system with the phases that follow from its teeth; `mean_force` (c,) in N."""
-    phases = mesh_phases(system.model, system.train, system.flow, system.direction)
+    flow = about_nominal_flanks(system.model, system.flow)
+    phases = mesh_phases(system.model, system.train, flow, system.direction)
     return excitation_orders(system, lines, mean_force, phases)
 
 
@@ -117,5 +119,7 @@ def _meshes(
                     if state.contact.mesh == name:
                         ahead = 2.0 * np.pi * mesh.helix_stagger if state.contact.helix else 0.0
                         turn = cmath.exp(1j * (item.harmonic * (phase + ahead) + item.phase))
-                        terms[row, k] = item.amplitude * turn * (mean_force[k] if row else 1.0)
+                        # What opens the nominal flanks closes the others.
+                        opens = -1.0 if carries_on_back_flanks(model, state) else 1.0
+                        terms[row, k] = item.amplitude * turn * (mean_force[k] if row else opens)
                 yield name, item.harmonic, item.harmonic * ratio, terms
