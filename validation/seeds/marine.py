@@ -86,7 +86,7 @@ def values() -> dict[str, float | str]:
             # One digit where the motion is chaotic: the next one is another on every machine.
             digits = (1, 0) if run.exponent > 0.015 else (2, 1)
             found |= {
-                f"zeta_{name}{suffix}": round(run.back, digits[0]),
+                f"zeta_{name}{suffix}": round(run.back, 3 if digits[0] > 1 else 1),
                 f"am_{name}{suffix}": round(run.peak_to_peak / nominal, digits[1]),
                 f"le_{name}{suffix}": round(run.exponent, digits[0]) + 0.0,
             }  # fmt: skip
