@@ -53,7 +53,7 @@ def waves(shape: Sequence[int], directions: Sequence[str], starts: int) -> list[
 
 def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarray) -> Iterator[list[Job]]:
     """Yield jobs that can run in one block."""
-    from rotorgear.solvers.kernel_lane_parts import LANES
+    from rotorgear.solvers.kernel_lane_vectors import LANES
 
     kinds: dict[Any, list[Job]] = {}
     for job in jobs:

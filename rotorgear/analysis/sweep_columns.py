@@ -1,4 +1,4 @@
-"""Force laws as the columns of the lane kernels: what sweeps take, and what they refuse."""
+"""Force laws as the columns of the lane kernels: what runs in vectors, what by its own law, and what sweeps refuse."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def column_of(law: object, place: str, speed: float = 1.0) -> list[tuple[float, 
     from rotorgear.forces.mesh_contact import DAMPINGS, GAPS, MeshContact
     from rotorgear.forces.rotating_force import RotatingForce
     from rotorgear.forces.torque_curve import TorqueCurve
-    from rotorgear.solvers.kernel_lane_parts import LINE, NEVER_PARTS, ONE_SIDED, PRESCRIBED
+    from rotorgear.solvers.kernel_lane_parts import LINE, NEVER_PARTS, ONE_SIDED, OWN_LAW, PRESCRIBED
 
     if isinstance(law, MeshContact):
         gap = {"line": LINE, "one-sided": ONE_SIDED, "none": NEVER_PARTS}[GAPS[GAPS.index(law.gap)]]
@@ -31,17 +31,14 @@ def column_of(law: object, place: str, speed: float = 1.0) -> list[tuple[float, 
     if isinstance(law, RotatingForce):
         size = law.amplitude * abs(law.order * speed) ** law.power
         return [(PRESCRIBED, 0, 0.0, 0.0, 0.0, 1.0, size, 0.0)] * law.components
-    if isinstance(law, TorqueCurve) and law.power == 0.0 and law.step == 1.0 and law.damping == 0.0:
+    if isinstance(law, TorqueCurve) and law.step != 1.0:
+        raise AnalysisError(
+            f"{place}: sweeps don't take a torque that steps at a time, which no settled motion shows; leave step_to out, or run "
+            "single points by the transient analysis"
+        )
+    if isinstance(law, TorqueCurve) and law.power == 0.0 and law.damping == 0.0:
         return [(PRESCRIBED, 0, 0.0, 0.0, 0.0, 1.0, law.torque, 0.0)]
-    reason = {
-        "TorqueCurve": "a torque that steps or depends on speed",
-        "MeshFriction": "friction between the flanks",
-        "BallBearing": "rolling elements in a bearing",
-        "RollerBearing": "rolling elements in a bearing",
-    }.get(type(law).__name__, type(law).__name__)
-    raise AnalysisError(
-        f"{place}: sweeps don't take {reason}; leave it out, or run single points by the transient analysis"
-    )
+    return [(OWN_LAW, 0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0)] * law.components  # type: ignore[attr-defined]
 
 
 def columns_of(rows: list[tuple[float, ...]]) -> Columns:
@@ -53,9 +50,32 @@ def columns_of(rows: list[tuple[float, ...]]) -> Columns:
 def shape_of(law: object) -> bytes:
     """Bytes that two laws share where their tables are the same."""
     from rotorgear.forces.mesh_contact import MeshContact
+    from rotorgear.forces.rotating_force import RotatingForce
+    from rotorgear.forces.torque_curve import TorqueCurve
 
-    values = law.parameters().copy()  # type: ignore[attr-defined]
     if isinstance(law, MeshContact):
+        values = law.parameters().copy()
         values[list(_NO_SHAPE)] = 0.0
         return bytes(values.tobytes())
-    return bytes(values[1:3].tobytes())
+    if isinstance(law, RotatingForce):
+        return np.array([law.order, law.phase]).tobytes()
+    if isinstance(law, TorqueCurve):
+        return np.array([law.ripple, law.order, law.phase]).tobytes()
+    return b""
+
+
+def order_of(law: object) -> float:
+    """Periods of what varies in a law in a turn of the reference; 0 where nothing does.
+
+    Rolling elements don't count: cages turn with slip-free kinematics that never repeat with teeth.
+    """
+    from rotorgear.forces.torque_curve import TorqueCurve
+
+    if is_rolling(law) or (isinstance(law, TorqueCurve) and not law.ripple):
+        return 0.0
+    return abs(float(getattr(law, "order", 0.0)))
+
+
+def is_rolling(law: object) -> bool:
+    """Whether a law is a bearing whose rolling elements turn."""
+    return type(law).__name__ in ("BallBearing", "RollerBearing") and bool(getattr(law, "order", 0.0))

@@ -122,6 +122,10 @@ def _warnings(points: Sequence[Point | None], failed: Sequence[str], motion: Seq
         found.append(f"{count} of {len(points)} points failed; the first: {next(filter(None, failed))}")
     if any(q.drift for q in points if q):
         found.append("the torques do not balance at some points: the shafts drift off the prescribed rotation there")
+    if any(q.rolling for q in points if q):
+        found.append(
+            "rolling elements pass beside the meshes and never repeat with them: a motion that they drive shows as quasi-periodic"
+        )
     unsettled = sum(kind == "not settled" for kind in motion)
     if unsettled:
         found.append(f"{unsettled} of {len(motion)} runs had not settled: ask for more periods of --settle or --count")

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.analysis.sweep_columns import column_of, columns_of, shape_of
+from rotorgear.analysis.sweep_columns import column_of, columns_of, is_rolling, order_of, shape_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.solvers.contact_equilibrium import Equilibrium, equilibrium, still_forces
 from rotorgear.solvers.local_forces import LocalForces
 from rotorgear.solvers.local_system import LocalSystem
 from rotorgear.solvers.motion import Rotation
+from rotorgear.solvers.own_laws import own_laws
 from rotorgear.solvers.small_system import SmallSystem, refuse_large, small_system
 from rotorgear.system.local import local_model
 from rotorgear.system.system import System
@@ -37,8 +38,8 @@ class Point:
         system: for the kernels. forces: its laws. order: radians of the fastest mesh for each of the reference, with the
         sign of its speed.
         contact: names of the mesh contacts; static_force: theirs without anything that varies, (c,) in N.
-        stiffness: their mean stiffness, (c,) in N/m. drift: whether the torques don't balance. shape: bytes that two points
-        share where their tables are the same.
+        stiffness: their mean stiffness, (c,) in N/m. drift: whether the torques don't balance. rolling: whether rolling
+        elements pass beside the meshes. shape: bytes that two points share where their tables are the same.
     """
 
     system: SmallSystem
@@ -48,14 +49,17 @@ class Point:
     static_force: np.ndarray
     stiffness: np.ndarray
     drift: bool
+    rolling: bool
     shape: bytes
 
     @property
     def kind(self) -> tuple[object, ...]:
         """What points in one block share."""
         c = self.system.columns
+        own = self.system.own.forces
+        names = tuple(type(law).__name__ for law in own.laws)
         return (self.system.n, c.gap.tobytes(), c.mode.tobytes(), c.mesh.tobytes(), len(self.system.rigid),
-                self.system.turns, self.contact)  # fmt: skip
+                self.system.turns, self.contact, names, own.parameters_first.tobytes(), own.state_first.tobytes())  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -134,22 +138,27 @@ def still(local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...]) 
 
 def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     """Make a system ready at a speed of the reference in rad/s; `modal_ratio` is added to every mode with strain."""
+    from rotorgear.solvers.kernel_lane_parts import OWN_LAW
+
     local = replace(known.local, rotation=Rotation.constant(speed))
     fastest, turns = common_period(known.orders)
     laws = local.forces.laws
     columns = columns_of([column for law in laws for column in column_of(law, type(law).__name__, speed)])
-    system = small_system(local, known.rest, columns, float(fastest) * abs(speed), turns, modal_ratio)
+    order = float(np.copysign(float(fastest), speed))
+    own = own_laws(local.forces, columns.gap == OWN_LAW, 1.0 / order)
+    system = small_system(local, known.rest, columns, own, float(fastest) * abs(speed), turns, modal_ratio)
     drift = known.rest.drift
     drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
     shape, mesh = b"".join(shape_of(law) for law in laws), columns.mesh
     return Point(
         system,
         local.forces,
-        float(np.copysign(float(fastest), speed)),
+        order,
         known.contact,
         known.static[mesh],
         columns.stiffness[mesh],
         drifts,
+        any(map(is_rolling, laws)),
         shape,
     )
 
@@ -175,7 +184,7 @@ def common_period(orders: list[Fraction]) -> tuple[Fraction, int]:
 
 def _order(law: ForceLaw, label: str) -> list[Fraction]:
     """Order of what varies in a law; none where it stays the same."""
-    value = abs(float(getattr(law, "order", 0.0)))
+    value = order_of(law)
     if not value:
         return []
     found = Fraction(value).limit_denominator(100000)
@@ -189,6 +198,7 @@ def _order(law: ForceLaw, label: str) -> list[Fraction]:
 def table_of(point: Point, steps: int) -> np.ndarray:
     """Tables of a point over its common period, (2 turns steps + 1, m, 4)."""
     from rotorgear.forces.mesh_contact import MeshContact
+    from rotorgear.forces.rotating_force import RotatingForce
     from rotorgear.forces.torque_curve import TorqueCurve
     from rotorgear.solvers.kernel_lane_parts import ERROR, PUSH, SLOPE, STIFFNESS, tabulate
 
@@ -211,8 +221,8 @@ def table_of(point: Point, steps: int) -> np.ndarray:
             table[:, at, PUSH] = push / law.impact if law.impact else 0.0
         elif isinstance(law, TorqueCurve):
             table[:, at, PUSH] = -state[:, 0] / law.torque if law.torque else 0.0
-        else:
-            phase = law.order * angles + law.phase  # type: ignore[attr-defined]
+        elif isinstance(law, RotatingForce):
+            phase = law.order * angles + law.phase
             for k, values in enumerate((np.cos(phase), np.sin(phase))[: law.components]):
                 table[:, at + k, PUSH] = -values
     return table

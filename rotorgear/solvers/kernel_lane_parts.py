@@ -1,22 +1,23 @@
 """Compiled: what the lanes of kernel_lanes.py do in one stage of a step: tables, sparse products, contacts, statistics.
 
-Every array has the systems as its last axis of LANES entries. Those with several rows for a column are flat, with offsets that
-the compiler knows, so that it can tell the rows apart and vectorise the loops over lanes.
+Every array has the systems as its last axis of LANES entries, and is read by rows of lanes (kernel_lane_vectors.py).
 """
 
 from __future__ import annotations
 
-import numpy as np
-
 from rotorgear.solvers.compiled import compiled
 from rotorgear.solvers.kernel_contact import schedule_all
+from rotorgear.solvers.kernel_lane_vectors import fill, get, larger, put, smaller, where_positive
 
-LANES = 32
-# How a column acts: as MeshContact.gap does, or as a force that is prescribed.
-LINE, ONE_SIDED, NEVER_PARTS, PRESCRIBED = 0, 1, 2, 3
+# How a column acts: as MeshContact.gap does, as a force that is prescribed, or by a law of its own (kernel_lane_laws.py).
+LINE, ONE_SIDED, NEVER_PARTS, PRESCRIBED, OWN_LAW = 0, 1, 2, 3, 4
 CLAMPED, UNCLAMPED, PENETRATION = 0, 1, 2
 # Rows of the tables: share of the mean stiffness, error, its slope, share of the prescribed force.
 STIFFNESS, ERROR, SLOPE, PUSH = 0, 1, 2, 3
+# Values of a column: k, c, backlash, 1/ramp, prescribed force.
+K, C, BACKLASH, RAMP, FORCE = 0, 1, 2, 3, 4
+# What a contact leaves: its tangents in displacement and velocity, and the flank that touches.
+IN_D, IN_V, FLANK = 0, 1, 2
 # Rows of the sums: steps on the driving flank, apart, on the back flank, losses of contact; least and largest of the displacement
 # d, of the approach d - e and of the force; sums of force, its square, displacement, its square.
 DRIVING, APART, BACK, LOSSES, D_MIN, D_MAX, X_MIN, X_MAX, F_MIN, F_MAX, F_SUM, F_SQUARES, D_SUM, D_SQUARES = range(14)
@@ -30,117 +31,88 @@ def tabulate(schedules, kind, parameters, parameters_first, state_first, angles,
 
 
 @compiled(fast=True)
-def read_table(table, row, out):
-    """One time of the tables, for all lanes; a table with one lane serves them all."""
+def read_table(table, at, out):
+    """One time of the tables for all lanes, out (m, 4, w); a table with one lane serves them all."""
     for j in range(out.shape[0]):
         for f in range(table.shape[2]):
             if table.shape[3] == 1:
-                value = table[row, j, f, 0]
-                for w in range(LANES):
-                    out[j, f, w] = value
+                put(out, 4 * j + f, fill(table[at, j, f, 0]))
             else:
-                for w in range(LANES):
-                    out[j, f, w] = table[row, j, f, w]
+                put(out, 4 * j + f, get(table, (at * out.shape[0] + j) * table.shape[2] + f))
 
 
 @compiled(fast=True)
 def product(first, column, value, x, out):
-    """out = A x for a sparse matrix with values by lane and rows of even length, up to six columns in one pass over the lanes."""
+    """out = A x for a sparse matrix with values by lane."""
     for i in range(out.shape[0]):
-        p, end = first[i], first[i + 1]
-        if p + 4 < end:
-            a, b, c = column[p], column[p + 1], column[p + 2]
-            d, e, f = column[p + 3], column[p + 4], column[p + 5]
-            for w in range(LANES):
-                out[i, w] = (value[p, w] * x[a, w] + value[p + 1, w] * x[b, w] + value[p + 2, w] * x[c, w]) + (
-                    value[p + 3, w] * x[d, w] + value[p + 4, w] * x[e, w] + value[p + 5, w] * x[f, w]
-                )
-            p += 6
-        elif p + 2 < end:
-            a, b, c, d = column[p], column[p + 1], column[p + 2], column[p + 3]
-            for w in range(LANES):
-                out[i, w] = (value[p, w] * x[a, w] + value[p + 1, w] * x[b, w]) + (
-                    value[p + 2, w] * x[c, w] + value[p + 3, w] * x[d, w]
-                )
-            p += 4
-        elif p < end:
-            a, b = column[p], column[p + 1]
-            for w in range(LANES):
-                out[i, w] = value[p, w] * x[a, w] + value[p + 1, w] * x[b, w]
-            p += 2
-        else:
-            for w in range(LANES):
-                out[i, w] = 0.0
-        while p < end:
-            a, b = column[p], column[p + 1]
-            for w in range(LANES):
-                out[i, w] += value[p, w] * x[a, w] + value[p + 1, w] * x[b, w]
-            p += 2
+        total = fill(0.0)
+        for p in range(first[i], first[i + 1]):
+            total += get(value, p) * get(x, column[p])
+        put(out, i, total)
 
 
 @compiled(fast=True)
 def contacts(gap, mode, values, table, d, F, found):
     """Forces (m, w) of forces/mesh_contact.py without branches over lanes, their tangents, and the flank that touches.
 
-    All arrays of lanes are flat, so that the compiler sees how far apart their rows are, and vectorises: values (m, 5, w): k, c,
-    backlash, 1/ramp, prescribed force; table (m, 4, w); d (m, 2, w): displacement and velocity; found (m, 3, w).
+    values (m, 5, w); table (m, 4, w); d (2 m, w): displacement and velocity; found (m, 3, w).
     """
+    one, none = fill(1.0), fill(0.0)
     for j in range(gap.size):
-        p, q, x0, r = 5 * LANES * j, 4 * LANES * j, 2 * LANES * j, 3 * LANES * j
+        if gap[j] == OWN_LAW:
+            continue
+        prescribed = get(values, 5 * j + FORCE) * get(table, 4 * j + PUSH)
         if gap[j] == PRESCRIBED:
-            for w in range(LANES):
-                F[LANES * j + w] = values[p + 4 * LANES + w] * table[q + PUSH * LANES + w]
-        elif gap[j] == NEVER_PARTS:
-            for w in range(LANES):
-                k, c = values[p + w] * table[q + w], values[p + LANES + w]
-                x, rate = d[x0 + w] - table[q + ERROR * LANES + w], d[x0 + LANES + w] - table[q + SLOPE * LANES + w]
-                F[LANES * j + w] = k * x + c * rate + values[p + 4 * LANES + w] * table[q + PUSH * LANES + w]
-                found[r + w], found[r + LANES + w], found[r + 2 * LANES + w] = k, c, 1.0
-        else:
-            most = np.inf if mode[j] == PENETRATION else 1.0
-            least = -np.inf if mode[j] == UNCLAMPED else 0.0
-            for w in range(LANES):
-                k, c = values[p + w] * table[q + w], values[p + LANES + w]
-                x, rate = d[x0 + w] - table[q + ERROR * LANES + w], d[x0 + LANES + w] - table[q + SLOPE * LANES + w]
-                behind, ramp = -x - values[p + 2 * LANES + w], values[p + 3 * LANES + w]
-                touch = 1.0 if x > 0.0 else (-1.0 if behind > 0.0 else 0.0)
-                depth = max(max(x, behind), 0.0)
-                closing = touch * rate
-                share = depth * ramp
-                grows = ramp if share < most else 0.0
-                share = min(share, most)
-                total = k * depth + c * share * closing
-                holds = touch * touch if total > least else 0.0
-                F[LANES * j + w] = touch * holds * total + values[p + 4 * LANES + w] * table[q + PUSH * LANES + w]
-                found[r + w] = holds * (k + c * grows * closing)
-                found[r + LANES + w] = holds * c * share
-                found[r + 2 * LANES + w] = touch
+            put(F, j, prescribed)
+            continue
+        k, c = get(values, 5 * j + K) * get(table, 4 * j + STIFFNESS), get(values, 5 * j + C)
+        x, rate = get(d, 2 * j) - get(table, 4 * j + ERROR), get(d, 2 * j + 1) - get(table, 4 * j + SLOPE)
+        if gap[j] == NEVER_PARTS:
+            put(F, j, k * x + c * rate + prescribed)
+            put(found, 3 * j + IN_D, k)
+            put(found, 3 * j + IN_V, c)
+            put(found, 3 * j + FLANK, one)
+            continue
+        behind, ramp = -1.0 * x - get(values, 5 * j + BACKLASH), get(values, 5 * j + RAMP)
+        touch = where_positive(x, one, where_positive(behind, fill(-1.0), none))
+        depth = larger(larger(x, behind), none)
+        closing, share = touch * rate, depth * ramp
+        if mode[j] != PENETRATION:
+            ramp = where_positive(one - share, ramp, none)
+            share = smaller(share, one)
+        total = k * depth + c * share * closing
+        holds = touch * touch
+        if mode[j] != UNCLAMPED:
+            holds = where_positive(total, holds, none)
+        put(F, j, touch * (holds * total) + prescribed)
+        put(found, 3 * j + IN_D, holds * (k + c * ramp * closing))
+        put(found, 3 * j + IN_V, holds * c * share)
+        put(found, 3 * j + FLANK, touch)
 
 
 @compiled(fast=True)
 def count(mesh, table, d, F, found, last, sums):
-    """Take a step into the statistics of the mesh contacts; flat arrays as in `contacts`, sums (m, 14, w)."""
+    """Take a step into the statistics of the mesh contacts; arrays as in `contacts`, sums (m, 14, w)."""
+    one, none = fill(1.0), fill(0.0)
     for j in range(mesh.size):
         if not mesh[j]:
             continue
-        s, f0, x0, e0 = 14 * LANES * j, LANES * j, 2 * LANES * j, (4 * j + ERROR) * LANES
-        for w in range(LANES):
-            now = found[(3 * j + 2) * LANES + w]
-            sums[s + w] += 1.0 if now > 0.0 else 0.0
-            sums[s + APART * LANES + w] += 1.0 if now == 0.0 else 0.0
-            sums[s + BACK * LANES + w] += 1.0 if now < 0.0 else 0.0
-            sums[s + LOSSES * LANES + w] += abs(last[f0 + w]) if now == 0.0 else 0.0
-            last[f0 + w] = now
-        for w in range(LANES):
-            f, x = F[f0 + w], d[x0 + w]
-            sums[s + F_SUM * LANES + w] += f
-            sums[s + F_SQUARES * LANES + w] += f * f
-            sums[s + D_SUM * LANES + w] += x
-            sums[s + D_SQUARES * LANES + w] += x * x
-            sums[s + D_MIN * LANES + w] = min(sums[s + D_MIN * LANES + w], x)
-            sums[s + D_MAX * LANES + w] = max(sums[s + D_MAX * LANES + w], x)
-            sums[s + F_MIN * LANES + w] = min(sums[s + F_MIN * LANES + w], f)
-            sums[s + F_MAX * LANES + w] = max(sums[s + F_MAX * LANES + w], f)
-            x -= table[e0 + w]
-            sums[s + X_MIN * LANES + w] = min(sums[s + X_MIN * LANES + w], x)
-            sums[s + X_MAX * LANES + w] = max(sums[s + X_MAX * LANES + w], x)
+        s, flank, before = 14 * j, get(found, 3 * j + FLANK), get(last, j)
+        touching = flank * flank
+        put(sums, s + DRIVING, get(sums, s + DRIVING) + where_positive(flank, one, none))
+        put(sums, s + APART, get(sums, s + APART) + (one - touching))
+        put(sums, s + BACK, get(sums, s + BACK) + where_positive(-1.0 * flank, one, none))
+        put(sums, s + LOSSES, get(sums, s + LOSSES) + (one - touching) * (before * before))
+        put(last, j, flank)
+        f, x = get(F, j), get(d, 2 * j)
+        put(sums, s + F_SUM, get(sums, s + F_SUM) + f)
+        put(sums, s + F_SQUARES, get(sums, s + F_SQUARES) + f * f)
+        put(sums, s + D_SUM, get(sums, s + D_SUM) + x)
+        put(sums, s + D_SQUARES, get(sums, s + D_SQUARES) + x * x)
+        put(sums, s + D_MIN, smaller(get(sums, s + D_MIN), x))
+        put(sums, s + D_MAX, larger(get(sums, s + D_MAX), x))
+        put(sums, s + F_MIN, smaller(get(sums, s + F_MIN), f))
+        put(sums, s + F_MAX, larger(get(sums, s + F_MAX), f))
+        x -= get(table, 4 * j + ERROR)
+        put(sums, s + X_MIN, smaller(get(sums, s + X_MIN), x))
+        put(sums, s + X_MAX, larger(get(sums, s + X_MAX), x))

@@ -2,11 +2,10 @@
 
     z'' = f - K z - D z' - B F(B^T z, B^T z', t),   M = 1,   time in radians of the fastest mesh
 
-Every array has the systems as its last axis of LANES entries, so that the innermost loops run over systems and vectorise. What
-depends on time only (k(t), e(t), prescribed forces) stands in tables over the common period, for the times at and between steps.
+Every array has the systems as its last axis of LANES entries, which move through vector registers together. What depends on
+time only (k(t), e(t), prescribed forces) stands in tables over the common period, for the times at and between steps.
 Tangents T obey T'' = -K T - D T' - B (Kd B^T T + Kv B^T T') along the trajectory; each mesh period they are freed of rigid
-motions and made orthonormal, and the logarithms of their growth sum up to Lyapunov exponents (Benettin et al., Meccanica 15
-(1980) 9).
+motions and made orthonormal, and the logarithms of their growth sum up to Lyapunov exponents.
 """
 
 from __future__ import annotations
@@ -14,148 +13,124 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.compiled import compiled
-from rotorgear.solvers.kernel_lane_parts import LANES, contacts, count, product, read_table
+from rotorgear.solvers.kernel_lane_laws import force_laws, laws_along, schedule_laws
+from rotorgear.solvers.kernel_lane_parts import IN_D, IN_V, contacts, count, product, read_table
+from rotorgear.solvers.kernel_lane_tangents import orthonormal
+from rotorgear.solvers.kernel_lane_vectors import LANES, fill, get, put, work
+
+_MOST_COMPONENTS = 6
 
 
 @compiled(fast=True)
-def next_stage(keep, weight, share, base, stage, a, total):
-    """Add a stage's slopes to those of the step (keep 1; 0: begin with them), and turn its state into that of the next one."""
-    n = a.shape[0]
-    for i in range(n):
-        for w in range(LANES):
-            total[i, w] = keep * total[i, w] + weight * stage[n + i, w]
-            stage[i, w] = base[i, w] + share * stage[n + i, w]
-        for w in range(LANES):
-            total[n + i, w] = keep * total[n + i, w] + weight * a[i, w]
-            stage[n + i, w] = base[n + i, w] + share * a[i, w]
+def slope_of(i, first, column, value, stage, at):
+    """z'' of a dof: row i of a sparse matrix times rows of a stage from `at` on."""
+    total = fill(0.0)
+    for p in range(first[i], first[i + 1]):
+        total += get(value, p) * get(stage, at + column[p])
+    return total
 
 
 @compiled(fast=True)
-def last_stage(weight, base, stage, a, total):
-    """Add the slopes of the last stage, and take the step: state and first stage of the next one."""
-    n = a.shape[0]
-    for i in range(n):
-        for w in range(LANES):
-            base[i, w] += total[i, w] + weight * stage[n + i, w]
-            stage[i, w] = base[i, w]
-        for w in range(LANES):
-            base[n + i, w] += total[n + i, w] + weight * a[i, w]
-            stage[n + i, w] = base[n + i, w]
+def advance(number, h, first, column, value, stage, ahead, at, base, base_at, total):
+    """Add a stage's slopes to those of the step, and write the state of the next stage; the last one writes the step's end, too.
 
-
-@compiled(fast=True)
-def remove(part, along, measured, unit):
-    """Take away from `part` (k, w) as much of `along` (k, w) as the product of `measured` with the unit vector `unit` says."""
-    total = np.zeros(LANES)
-    for i in range(measured.shape[0]):
-        for w in range(LANES):
-            total[w] += measured[i, w] * unit[i, w]
-    for i in range(part.shape[0]):
-        for w in range(LANES):
-            part[i, w] -= total[w] * along[i, w]
-
-
-@compiled(fast=True)
-def weigh(root, tangent, out):
-    """Root of the stiffness times displacements, and velocities as they are: the energy of a tangent is the square of it."""
-    n = root.shape[0]
-    for i in range(n):
-        for w in range(LANES):
-            out[i, w] = 0.0
-            out[n + i, w] = tangent[n + i, w]
-        for j in range(n):
-            for w in range(LANES):
-                out[i, w] += root[i, j, w] * tangent[j, w]
-
-
-@compiled(fast=True)
-def orthonormal(tangents, weighed, root, rigid, growth):
-    """Free tangents (t, 2 n, w) of rigid motions (r, n, w), make them orthonormal, add the logarithms of their sizes.
-
-    Sizes are energies, which vibrations in a linear system keep: slow motions would seem to grow in most other norms.
+    Args:
+        number: of the stage, 0 to 3. h: the step. first, column, value: z'' from (z, z', F, 1).
+        stage, ahead: rows of this stage and of the next one from `at` on. base: z and z' at the step's begin from `base_at` on.
+        total: sums of slopes so far, (2 n, w).
     """
-    n = tangents.shape[1] // 2
-    for a in range(tangents.shape[0]):
-        for r in range(rigid.shape[0]):
-            remove(tangents[a, :n], rigid[r], tangents[a, :n], rigid[r])
-            remove(tangents[a, n:], rigid[r], tangents[a, n:], rigid[r])
-        weigh(root, tangents[a], weighed[a])
-        for b in range(a):
-            remove(tangents[a], tangents[b], weighed[a], weighed[b])
-            weigh(root, tangents[a], weighed[a])
-        size = np.zeros(LANES)
-        for i in range(2 * n):
-            for w in range(LANES):
-                size[w] += weighed[a, i, w] ** 2
-        for w in range(LANES):
-            growth[a, w] += 0.5 * np.log(size[w])
-            size[w] = 1.0 / np.sqrt(size[w])
-        for i in range(2 * n):
-            for w in range(LANES):
-                tangents[a, i, w] *= size[w]
-                weighed[a, i, w] *= size[w]
+    n = total.shape[0] // 2
+    weight, share = 1.0 if number == 0 else 2.0, h if number == 2 else 0.5 * h
+    for i in range(n):
+        a, v = slope_of(i, first, column, value, stage, at), get(stage, at + n + i)
+        q0, v0 = get(base, base_at + i), get(base, base_at + n + i)
+        if number == 3:
+            q0 += h / 6.0 * (get(total, i) + v)
+            v0 += h / 6.0 * (get(total, n + i) + a)
+            put(base, base_at + i, q0)
+            put(base, base_at + n + i, v0)
+            put(ahead, at + i, q0)
+            put(ahead, at + n + i, v0)
+            continue
+        if number == 0:
+            put(total, i, v)
+            put(total, n + i, a)
+        else:
+            put(total, i, get(total, i) + weight * v)
+            put(total, n + i, get(total, n + i) + weight * a)
+        put(ahead, at + i, q0 + share * v)
+        put(ahead, at + n + i, v0 + share * a)
+
+
+@compiled(fast=True)
+def tangent_stage(number, h, across, matrix, found, own, laws, blocks, d, stage, ahead, base, totals):
+    """One stage of all tangents: (t, 2 n + m + 1, w) of this stage and the next, (t, 2 n, w) of the step's begin and sums."""
+    t, rows = stage.shape[0], stage.shape[1]
+    n, m = base.shape[1] // 2, found.shape[0]
+    for k in range(t):
+        at = k * rows
+        for j in range(2 * m):
+            put(d, j, slope_of(j, *across, stage, at))
+        for j in range(m):
+            along = get(found, 3 * j + IN_D) * get(d, 2 * j) + get(found, 3 * j + IN_V) * get(d, 2 * j + 1)
+            put(stage, at + 2 * n + j, along)
+        if own:
+            laws_along(laws, blocks, d, stage, at + 2 * n)
+        advance(number, h, *matrix, stage, ahead, at, base, 2 * n * k, totals[k])
 
 
 @compiled(fast=True, free=True)
-def lanes_loop(turns, steps, counting, matrix, across, gap, mode, values, mesh, table, rigid, root, state, tangents, last,
-               growth, section, sums):  # fmt: skip
+def lanes_loop(turns, steps, begun, counting, matrix, across, gap, mode, values, mesh, table, laws, clock, rigid, root, state,
+               tangents, last, growth, section, sums):  # fmt: skip
     """Advance all lanes in place by common periods and record a section at the end of each.
 
     Args:
-        turns: periods of the fastest mesh in a common one; steps: steps in one of those.
+        turns: periods of the fastest mesh in a common one; steps: steps in one of those; begun: common periods before.
         counting: whether the statistics count.
         matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1).
         across: d and d' of each column from (z, z'), (2 m, 2 n).
         gap, mode, mesh: of the columns, (m,); values: theirs, (m, 5, w), see `contacts`.
         table: (2 turns steps + 1, m, 4, 1 or w), without its last row where no force is prescribed.
+        laws: see kernel_lane_laws.py; clock (2, w): radians of the reference for one of the fastest mesh, and its rad/s.
         rigid: orthonormal motions without strain, (r, n, w); root: S with S^T S the mean stiffness, (n, n, w).
         state: z and z', (2 n, w); tangents: (t, 2 n, w); last: (m, w) flanks that touched last.
         growth: (p, t, w), section: (p, 2 m, w), sums: (m, 14, w): what is found in p common periods.
     """
     n, m, t = state.shape[0] // 2, mesh.size, tangents.shape[0]
+    rows, own = 2 * n + m + 1, laws[2].size > 0
     h = 2.0 * np.pi / steps
-    now = np.zeros((m, 4, LANES))
-    d, found = np.zeros((2 * m, LANES)), np.zeros((m, 3, LANES))
-    y, a, total = np.ones((2 * n + m + 1, LANES)), np.empty((n, LANES)), np.zeros((2 * n, LANES))
-    moved, ta, moved_total = np.zeros((t, 2 * n + m + 1, LANES)), np.empty((n, LANES)), np.zeros((t, 2 * n, LANES))
-    F, weighed = y[2 * n : 2 * n + m], np.empty((t, 2 * n, LANES))
-    flat = (
-        values.reshape(values.size),
-        now.reshape(now.size),
-        d.reshape(d.size),
-        F.reshape(F.size),
-        found.reshape(found.size),
-    )
-    flat_last, flat_sums = last.reshape(last.size), sums.reshape(sums.size)
-    y[: 2 * n], moved[:, : 2 * n] = state, tangents
+    now, found = work(4 * m).reshape(m, 4, LANES), work(3 * m).reshape(m, 3, LANES)
+    d, total = work(2 * m), work(2 * n)
+    stage, ahead = work(rows), work(rows)
+    stage[:], ahead[:] = 1.0, 1.0
+    moved, moved_ahead = work(t * rows).reshape(t, rows, LANES), work(t * rows).reshape(t, rows, LANES)
+    totals, weighed = work(t * 2 * n).reshape(t, 2 * n, LANES), work(t * 2 * n).reshape(t, 2 * n, LANES)
+    blocks = work(2 * laws[-1][-1]).reshape(2, laws[-1][-1], LANES)
+    condition, space = np.zeros((LANES, laws[-2][-1])), np.zeros(_MOST_COMPONENTS * (3 + 2 * _MOST_COMPONENTS) + 4)
+    F, F_ahead = stage[2 * n : 2 * n + m], ahead[2 * n : 2 * n + m]
+    stage[: 2 * n], moved[:, : 2 * n] = state, tangents
     for period in range(growth.shape[0]):
         for step in range(turns * steps):
-            for stage in range(4):
-                keep = 0.0 if stage == 0 else 1.0
-                weight = (1.0 if stage in (0, 3) else 2.0) * h / 6.0
-                share = h if stage == 2 else 0.5 * h
-                if stage != 2:
-                    read_table(table, 2 * step + (stage + 1) // 2, now)
-                product(*across, y, d)
-                contacts(gap, mode, *flat)
-                if stage == 0 and counting:
-                    count(mesh, *flat[1:], flat_last, flat_sums)
-                product(*matrix, y, a)
-                if stage < 3:
-                    next_stage(keep, weight, share, state, y, a, total)
-                else:
-                    last_stage(weight, state, y, a, total)
-                for k in range(t):
-                    product(*across, moved[k], d)
-                    for j in range(m):
-                        for w in range(LANES):
-                            moved[k, 2 * n + j, w] = found[j, 0, w] * d[2 * j, w] + found[j, 1, w] * d[2 * j + 1, w]
-                    product(*matrix, moved[k], ta)
-                    if stage < 3:
-                        next_stage(keep, weight, share, tangents[k], moved[k], ta, moved_total[k])
-                    else:
-                        last_stage(weight, tangents[k], moved[k], ta, moved_total[k])
+            for number in range(4):
+                if number != 2:
+                    at = 2 * step + (number + 1) // 2
+                    read_table(table, at, now)
+                    if own:
+                        schedule_laws(laws, clock, 0.5 * h * (2.0 * steps * turns * (begun + period) + at), condition)
+                product(*across, stage, d)
+                contacts(gap, mode, values, now, d, F, found)
+                if own:
+                    force_laws(laws, clock, condition, d, F, blocks, space)
+                if number == 0 and counting:
+                    count(mesh, now, d, F, found, last, sums)
+                advance(number, h, *matrix, stage, ahead, 0, state, 0, total)
+                if t:
+                    tangent_stage(
+                        number, h, across, matrix, found, own, laws, blocks, d, moved, moved_ahead, tangents, totals
+                    )
+                stage, ahead, moved, moved_ahead, F, F_ahead = ahead, stage, moved_ahead, moved, F_ahead, F
             if t and (step + 1) % steps == 0:
                 orthonormal(tangents, weighed, root, rigid, growth[period])
                 moved[:, : 2 * n] = tangents
-        product(*across, state, section[period])
+        for j in range(2 * m):
+            put(section, 2 * m * period + j, slope_of(j, *across, state, 0))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from rotorgear.solvers.small_system import SmallSystem
 
 # Steps between two questions whether to go on: a fraction of a second.
 _SLICE = 50_000
+_REGISTER = 64  # bytes of the widest vector registers
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,7 @@ def run_block(
         plan: how long.
         go_on: asked now and then; the run is given up with a KeyboardInterrupt where it says no.
     """
-    from rotorgear.solvers.kernel_lane_parts import LANES
+    from rotorgear.solvers.kernel_lane_vectors import LANES
     from rotorgear.solvers.kernel_lanes import lanes_loop
 
     count = len(systems)
@@ -87,29 +89,30 @@ def run_block(
     mesh, kinds = first.columns.mesh, (first.columns.gap, first.columns.mode)
     wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
     pushed = any(np.any(s.columns.push) for s in systems)
-    table = np.ascontiguousarray(np.stack(wide, axis=-1)[:, :, : 4 if pushed else 3])
+    table = _stacked([one[:, :, : 4 if pushed else 3] for one in wide])
+    laws, clock = own_laws(filled), _stacked([np.array([s.own.turn, s.w]) for s in filled])
     rigid, energy = _stacked([s.rigid for s in filled]), _stacked([s.energy for s in filled])
     begins = [*starts, *[starts[-1]] * (LANES - count)]
     state = _stacked([np.concatenate([s.z, s.dz]) for s in begins])
     tangents = _tangents(first, plan.tangents)
-    last, sums = np.zeros((mesh.size, LANES)), blank_sums(mesh.size)
+    last, sums = aligned((mesh.size, LANES)), blank_sums(mesh.size)
 
-    def run(periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        growth = np.zeros((periods, len(followed), LANES))
-        section = np.zeros((periods, 2 * mesh.size, LANES))
+    def run(begun: int, periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        growth = aligned((periods, len(followed), LANES))
+        section = aligned((periods, 2 * mesh.size, LANES))
         stride = max(1, _SLICE // (first.turns * plan.steps))
         for p in range(0, periods, stride):
             if not go_on():
                 raise KeyboardInterrupt
-            lanes_loop(first.turns, plan.steps, counting, matrix, across, *kinds, values, mesh, table, rigid, energy, state,
-                       followed, last, growth[p : p + stride], section[p : p + stride], sums)  # fmt: skip
+            lanes_loop(first.turns, plan.steps, begun + p, counting, matrix, across, *kinds, values, mesh, table, laws, clock,
+                       rigid, energy, state, followed, last, growth[p : p + stride], section[p : p + stride], sums)  # fmt: skip
         return growth, section
 
     warm = min(plan.warm, plan.settle) if plan.tangents else 0
     with np.errstate(all="ignore"):
-        run(plan.settle - warm, False, tangents[:0])
-        run(warm, False, tangents)
-        growth, section = run(plan.count, True, tangents)
+        run(0, plan.settle - warm, False, tangents[:0])
+        run(plan.settle - warm, warm, False, tangents)
+        growth, section = run(plan.settle, plan.count, True, tangents)
     return [_orbit(filled[i], i, growth, section, sums, state) for i in range(count)]
 
 
@@ -132,23 +135,45 @@ def _orbit(
 
 def blank_sums(m: int) -> np.ndarray:
     """Statistics (m, 14, w) before anything was counted."""
-    from rotorgear.solvers.kernel_lane_parts import D_MAX, D_MIN, F_MAX, F_MIN, LANES, X_MAX, X_MIN
+    from rotorgear.solvers.kernel_lane_parts import D_MAX, D_MIN, F_MAX, F_MIN, X_MAX, X_MIN
+    from rotorgear.solvers.kernel_lane_vectors import LANES
 
-    sums = np.zeros((m, 14, LANES))
+    sums = aligned((m, 14, LANES))
     sums[:, [D_MIN, X_MIN, F_MIN]], sums[:, [D_MAX, X_MAX, F_MAX]] = np.inf, -np.inf
     return sums
 
 
 def _tangents(system: SmallSystem, count: int) -> np.ndarray:
     """Random tangents (t, 2 n, w), the same for all lanes and runs."""
-    from rotorgear.solvers.kernel_lane_parts import LANES
+    from rotorgear.solvers.kernel_lane_vectors import LANES
 
     drawn = np.random.default_rng(1).standard_normal((count, 2 * system.n))
-    return np.ascontiguousarray(np.repeat(drawn[:, :, None], LANES, axis=2))
+    return _stacked([drawn] * LANES)
 
 
-def _stacked(values: Sequence[np.ndarray]) -> np.ndarray:
-    return np.ascontiguousarray(np.stack(values, axis=-1), dtype=float)
+def own_laws(systems: Sequence[SmallSystem]) -> tuple[Any, ...]:
+    """The laws that act by their own functions as kernel_lane_laws.py takes them; parameters and state by lane."""
+    first = systems[0].own
+    own = first.forces
+    parameters = np.ascontiguousarray(np.stack([s.own.forces.parameters for s in systems]))
+    return (
+        own.schedules, own.forces, own.kind, first.place, parameters, own.parameters_first, own.state_first, own.block_first,
+    )  # fmt: skip
+
+
+def aligned(shape: tuple[int, ...]) -> np.ndarray:
+    """Zeros whose rows of lanes begin where vector registers read best."""
+    size = int(np.prod(shape))
+    raw = np.zeros(size + _REGISTER // 8)
+    at = (-raw.ctypes.data) % _REGISTER // 8
+    return raw[at : at + size].reshape(shape)
+
+
+def _stacked(values: Sequence[Any]) -> np.ndarray:
+    """Arrays of the lanes as one with the lanes as its last axis."""
+    found = aligned((*np.shape(values[0]), len(values)))
+    np.stack(values, axis=-1, out=found)
+    return found
 
 
 Sparse = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -169,21 +194,10 @@ def _matrices(systems: Sequence[SmallSystem]) -> tuple[Sparse, Sparse]:
 
 
 def _sparse(matrices: Sequence[np.ndarray]) -> Sparse:
-    """Row starts, columns and values by lane (p, w) of what is not zero in all lanes; rows of an odd length get a zero more."""
-    values = _stacked(matrices)
-    mask = np.any(values != 0.0, axis=2)
-    first, columns, kept = [0], [], []
-    for row, used in enumerate(mask):
-        own = np.flatnonzero(used)
-        odd = own.size % 2
-        columns += [own, own[:odd]]
-        kept += [values[row, own], np.zeros((odd, values.shape[2]))]
-        first.append(first[-1] + own.size + odd)
-    return (
-        np.array(first, dtype=np.int64),
-        np.concatenate(columns).astype(np.int64),
-        np.ascontiguousarray(np.concatenate(kept)),
-    )
+    """Row starts, columns and values by lane (p, w) of what is not zero in all lanes."""
+    used = np.any([matrix != 0.0 for matrix in matrices], axis=0)
+    first = np.concatenate([[0], np.cumsum(used.sum(axis=1))]).astype(np.int64)
+    return first, np.nonzero(used)[1].astype(np.int64), _stacked([matrix[used] for matrix in matrices])
 
 
 def _values(systems: Sequence[SmallSystem]) -> np.ndarray:

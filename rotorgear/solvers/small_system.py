@@ -12,6 +12,7 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.contact_equilibrium import Equilibrium
 from rotorgear.solvers.local_system import LocalSystem
+from rotorgear.solvers.own_laws import OwnLaws, not_held, steepest
 
 # Dense matrices in the kernel: beyond this many, other methods are cheaper.
 MOST_DOFS = 80
@@ -44,7 +45,8 @@ class SmallSystem:
     Attributes:
         K, D: (n, n); load: (n,); B: (n, m); rigid: (r, n) orthonormal motions without strain; rest: z in equilibrium, (n,).
         root: L, (n, n). energy: S with S^T S the stiffness with all contacts closed, (n, n).
-        columns: of the local forces. w: rad/s of the fastest mesh; turns: its periods in the common one.
+        columns: of the local forces; own: those that act by laws of their own.
+        w: rad/s of the fastest mesh; turns: its periods in the common one.
         fastest: largest |eigenvalue| of the linear system, in radians of the mesh.
     """
 
@@ -57,6 +59,7 @@ class SmallSystem:
     root: np.ndarray
     energy: np.ndarray
     columns: Columns
+    own: OwnLaws
     w: float
     turns: int
     fastest: float
@@ -68,12 +71,18 @@ class SmallSystem:
 
 
 def small_system(
-    local: LocalSystem, rest: Equilibrium, columns: Columns, w: float, turns: int, modal_ratio: float = 0.0
+    local: LocalSystem,
+    rest: Equilibrium,
+    columns: Columns,
+    own: OwnLaws,
+    w: float,
+    turns: int,
+    modal_ratio: float = 0.0,
 ) -> SmallSystem:
     """Return a system at the speed of its rotation in the form of the kernels.
 
     Args:
-        local: the system. rest: its equilibrium. columns: of its local forces, in SI.
+        local: the system. rest: its equilibrium. columns: of its local forces, in SI. own: those with laws of their own.
         w: rad/s of the fastest mesh. turns: its periods in the common one.
         modal_ratio: damping ratio added to every mode with strain.
 
@@ -90,19 +99,26 @@ def small_system(
     K = inverse @ local.K.toarray() @ inverse.T
     D = inverse @ local.velocity_terms(float(local.rotation.speeds[0])).toarray() @ inverse.T
     about = inverse @ local.stiffness_about.toarray() @ inverse.T
-    squares, modes = np.linalg.eigh(0.5 * (about + about.T))
+    damped = D + B @ local.forces.reference_damping @ B.T
+    steep = steepest(local, rest.q, own, 2.0 * np.pi / w)
+    linear = [(about, damped), *((about + B @ k @ B.T, damped + B @ c @ B.T) for k, c in steep)]
+    squares, modes = np.linalg.eigh(0.5 * (linear[-1][0] + linear[-1][0].T))
     energy = np.sqrt(np.abs(squares) + _FLOOR * np.abs(squares).max())[:, None] * modes.T / w
     if modal_ratio:
         D = D + (modes * (2.0 * modal_ratio * np.sqrt(np.maximum(squares, 0.0)))) @ modes.T
-    rigid = np.linalg.qr(L.T @ rest.free)[0].T if rest.free.size else np.zeros((0, local.n))
-    A = np.block([
-        [np.zeros_like(K), np.eye(local.n)],
-        [-about / w**2, -(D + B @ local.forces.reference_damping @ B.T) / w],
-    ])  # fmt: skip
+    free = not_held(local, rest.q, own, rest.free)
+    rigid = np.linalg.qr(L.T @ free)[0].T if free.size else np.zeros((0, local.n))
+    fastest = max(_fastest(k / w**2, c / w) for k, c in linear)
     return SmallSystem(
         _clean(K) / w**2, _clean(D) / w, inverse @ local.load / w**2, _clean(B), rigid, L.T @ rest.q, L, energy,
-        scaled(columns, w), w, turns, float(np.abs(np.linalg.eigvals(A)).max()),
+        scaled(columns, w), own, w, turns, fastest,
     )  # fmt: skip
+
+
+def _fastest(K: np.ndarray, D: np.ndarray) -> float:
+    """Largest |eigenvalue| of z'' = -K z - D z'."""
+    A = np.block([[np.zeros_like(K), np.eye(len(K))], [-K, -D]])
+    return float(np.abs(np.linalg.eigvals(A)).max())
 
 
 def refuse_large(n: int) -> None:

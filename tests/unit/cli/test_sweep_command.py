@@ -33,8 +33,10 @@ def run(*arguments: str) -> tuple[int, str]:
 
 def test_one_parameter_gives_route_table_files_and_pictures(tmp_path: Path) -> None:
     files = [str(tmp_path / name) for name in ("s.json", "s.h5", "pictures")]
+    # Periodic and chaotic points in turn.
+    speeds = ",".join(f"{2300 + i} rpm,{3800 + 3 * i} rpm" for i in range(35))
     code, text = run(
-        PAIR, "--over", "operation.speed=3000 rpm:9000 rpm:70", *QUICK, "--json", files[0], "--save", files[1], "--plot", files[2]
+        PAIR, "--over", f"operation.speed={speeds}", *QUICK, "--json", files[0], "--save", files[1], "--plot", files[2]
     )  # fmt: skip
     assert code == 0
     assert max(len(line) for line in text.splitlines() if str(tmp_path) not in line) <= 80
