@@ -18,7 +18,7 @@ _NAME = "points.output_bearing_y acceleration"
 
 def measure(quantity: str, mode: str) -> float:
     """Frequency of the line of a mesh order to a tenth of a hertz, or the number of rig lines that the spectrum has."""
-    lines, beside = _run()
+    lines, beside = run()
     if quantity == "line in Hz":
         return round(float(lines.frequency_hz[[source.startswith(f"mesh {mode}") for source in lines.source]][0]), 1)
     return float(np.isfinite(beside.frequency_hz).sum())
@@ -36,7 +36,8 @@ def excited() -> rg.Model:
 
 
 @cache
-def _run() -> tuple[SpectralLines, RigSpectrum]:
+def run() -> tuple[SpectralLines, RigSpectrum]:
+    """Lines of the spectrum with the printed harmonics of the transmission error, and the rig lines beside them."""
     result = rg.transient(excited(), modal_damping=0.02, steps=80, settle="20 ms", time="60 ms", error_estimate=False)
     lines = rg.spectral_lines(result, _NAME)
     return lines, rg.compare_spectrum(result, lines, rg.read_rig_lines(_MODELS / "split_torque_rig.csv"))
