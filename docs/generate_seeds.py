@@ -52,7 +52,7 @@ $ rotorgear sweep models/marine_dual_turbine.toml --over "loads.lp.torque=11.3 k
     --settle 400 --count 200 --steps 40 --plot pictures
 ```
 
-![LP first stage over the LP torque: chaos with back-side contact, then a quasi-periodic motion](pictures/seeds_marine.png)
+![LP first stage over the LP torque: chaos with back-side contact, then order again](pictures/seeds_marine.png)
 
 Over the load ratio at both total torques, and the three regions with the fitted and with the printed stiffness
 (`python -m validation.seeds.pictures seeds_marine_ratio seeds_marine_regions`):

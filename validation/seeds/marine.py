@@ -84,13 +84,13 @@ def values() -> dict[str, float | str]:
     for total, suffix in ((30e3, ""), (35e3, "_35")):
         for name, run in zip(ratios, contact(list(ratios.values()), total), strict=True):
             # One digit where the motion is chaotic: the next one is another on every machine.
-            digits = (1, 0) if run.exponent > 0.015 else (2, 1)
+            digits = (1, 0) if run.exponent > 0.015 else (3, 1)
             found |= {
-                f"zeta_{name}{suffix}": round(run.back, 3 if digits[0] > 1 else 1),
+                f"zeta_{name}{suffix}": round(run.back, digits[0]),
                 f"am_{name}{suffix}": round(run.peak_to_peak / nominal, digits[1]),
                 f"le_{name}{suffix}": round(run.exponent, digits[0]) + 0.0,
             }  # fmt: skip
-        found[f"region{suffix}"] = _region(total)
+        found |= {f"region{suffix}": _region(total), f"way{suffix}": _way(total)}
     soft = contact(list(ratios.values()), table_stiffness=True)
     for name, run in zip(ratios, soft, strict=True):
         found |= {
@@ -98,6 +98,18 @@ def values() -> dict[str, float | str]:
             f"le_soft_{name}": round(run.exponent, 2) + 0.0,
         }  # fmt: skip
     return found
+
+
+def _way(total: float) -> str:
+    """Motions over the load ratio in steps of 0.02, periods counted in common ones of both stages."""
+    ratios = [round(0.1 + 0.02 * i, 2) for i in range(56)]
+    result = rg.sweep(
+        loaded(MODEL), {"load ratio": ratios}, steps=STEPS, settle=SETTLE, count=COUNT,
+        change=lambda _, at: operating(at[0], total),
+    )  # fmt: skip
+    names = [kind if kind in ("1T", "2T") else "others" for kind in (result.motion_at(p) for p in range(len(ratios)))]
+    last = [i for i, name in enumerate(names) if i + 1 == len(names) or names[i + 1] != name]
+    return ", ".join(f"{names[i]} to {ratios[i]:.2f}" for i in last)
 
 
 def _region(total: float) -> str:
