@@ -36,6 +36,7 @@ _HOMES = {
     "rotorgear.analysis.transient_ladder": ("transient_ladder",),
     "rotorgear.analysis.sweep": ("sweep",),
     "rotorgear.analysis.sweep_ladder": ("sweep_ladder",),
+    "rotorgear.analysis.cluster": ("cluster",),
     "rotorgear.solvers.flow_exponents": ("flow_exponents",),
     "rotorgear.analysis.spectra": ("spectrum", "spectral_lines"),
     "rotorgear.analysis.rig_spectrum": ("compare_spectrum",),
@@ -53,6 +54,7 @@ _HOMES = {
     "rotorgear.results.transient": ("TransientResult",),
     "rotorgear.results.sweep": ("SweepResult",),
     "rotorgear.results.sweep_ladder": ("SweepLadder",),
+    "rotorgear.results.portrait": ("Portraits",),
     "rotorgear.results.static": ("StaticResult",),
     "rotorgear.results.response": ("ResponseResult",),
     "rotorgear.results.frequency_response": ("FrequencyResponse",),
@@ -73,6 +75,7 @@ __all__ = ["__version__", *_HOME]
 if TYPE_CHECKING:
     from rotorgear.analysis.accuracy import accuracy_ladder
     from rotorgear.analysis.campbell import campbell
+    from rotorgear.analysis.cluster import cluster
     from rotorgear.analysis.compare import compare, read_rig_lines
     from rotorgear.analysis.critical import critical_speeds
     from rotorgear.analysis.critical_map import critical_map
@@ -121,6 +124,7 @@ if TYPE_CHECKING:
     from rotorgear.results.gear_sheet import GearSheet
     from rotorgear.results.mesh import MeshResult
     from rotorgear.results.modal import ModalResult
+    from rotorgear.results.portrait import Portraits
     from rotorgear.results.response import ResponseResult
     from rotorgear.results.static import StaticResult
     from rotorgear.results.sweep import SweepResult

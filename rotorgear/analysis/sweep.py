@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Executor
+from dataclasses import replace
 
 import numpy as np
 
 from rotorgear.analysis.sweep_axes import Axis, Family, axis_of, points_of
-from rotorgear.analysis.sweep_blocks import Workers, blocks, packed, unpacked, waves
+from rotorgear.analysis.sweep_blocks import Pool, Workers, blocks, packed, unpacked, waves
 from rotorgear.analysis.sweep_classify import CHAOS, TOLERANCE
 from rotorgear.analysis.sweep_gather import gathered
 from rotorgear.analysis.sweep_point import Point, PointMaker
+from rotorgear.analysis.sweep_portrait import Wanted, portraits_of, wanted_points
 from rotorgear.analysis.sweep_request import Request, start_of, steps_of
 from rotorgear.analysis.transient_histories import Stream
 from rotorgear.errors import RotorgearError
@@ -41,8 +42,9 @@ def sweep(
     chaos: float = CHAOS,
     seed: int = 1,
     throw: float = 1.0,
+    portraits: Wanted = 0,
     workers: int | None = None,
-    executor: Executor | None = None,
+    executor: Pool | None = None,
     stream: Stream | None = None,
     progress: Progress = silent,
 ) -> SweepResult:
@@ -61,8 +63,10 @@ def sweep(
             model decides.
         tolerance, chaos: of the criterion that tells the kinds of motion apart (analysis/sweep_classify.py).
         seed: of the random states. throw: their size; at 1 contacts are thrown by up to some backlashes.
+        portraits: how many points, spread over the sweep, keep their trajectory over some periods more; or the values of the
+            parameters, in their units, next to which points do: 3250.0 or "3250 rpm", with two parameters (3250.0, 20.0).
         workers: threads; all cores where not given. The result does not depend on it.
-        executor: runs the blocks of points in place of threads, for other machines: an object with `submit`.
+        executor: runs the blocks of points in place of threads: `rotorgear.cluster(address)`, or any object with `submit`.
         stream: keeps blocks while the sweep goes on (`rotorgear.stream`), and starts an interrupted one again.
         progress: callable that is told fraction and step.
 
@@ -72,7 +76,7 @@ def sweep(
     begun = clock.perf_counter()
     request = Request(direction, starts, settle, count, exponents, steps, tolerance, chaos, seed, throw)
     axes = [axis_of(address, values) for address, values in over.items()]
-    values = points_of(axes)
+    values, wanted = points_of(axes), wanted_points(portraits, axes)
     with single_thread(0):
         models, points, failure = _ready(model, axes, values, change, progress)
         chosen, refused = steps_of(points, steps)
@@ -86,9 +90,13 @@ def sweep(
         shape = [len(axis.values) for axis in axes]
         orbits = _run(points, chosen, shape, request, Workers(workers, executor), stream, kept, progress)
     laps["integration"] = clock.perf_counter() - begun - laps["points"]
+    result = gathered(model, axes, values, points, failure, chosen, request, orbits, laps)
+    if wanted:
+        result = replace(result, portraits=portraits_of(result, wanted, points, request, orbits, progress))
+        laps["portraits"] = clock.perf_counter() - begun - laps["points"] - laps["integration"]
     laps["total"] = clock.perf_counter() - begun
     progress(1.0, "done")
-    return gathered(model, axes, values, points, failure, chosen, request, orbits, laps)
+    return result
 
 
 def _ready(

@@ -66,6 +66,14 @@ def axis_of_option(text: str) -> Axis:
     return axis_of(address.strip(), values.strip())
 
 
+def number_in(axis: Axis, value: float | str, what: str) -> float:
+    """A number, or a text with one and at most the unit of an axis; AnalysisError about `what` for anything else."""
+    match = _NUMBER.match(str(value))
+    if not match or match[2] not in ("", axis.unit):
+        raise AnalysisError(f"{what}: got '{value}', expected a number {f'in {axis.unit}' if axis.unit else 'in SI'}")
+    return float(match[1])
+
+
 def _numbers(address: str, texts: Sequence[float | str]) -> tuple[list[float], str]:
     numbers, units = [], []
     for text in texts:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 from threading import Event
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -86,19 +88,32 @@ def _always() -> bool:
     return True
 
 
+class Pool(Protocol):
+    """Where blocks may go: `submit` returns an object with `result()` and `cancel()`, as `concurrent.futures` have it.
+
+    Where it has a number `ahead`, no more blocks than that are handed over before the first of them is done.
+    """
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any) -> Any:
+        """Take a call."""
+
+
 class Workers:
     """Runs the blocks of a wave on all cores, or by an executor of the caller's; results come in the order of the blocks."""
 
-    def __init__(self, workers: int | None, executor: Executor | None) -> None:
+    def __init__(self, workers: int | None, executor: Pool | None) -> None:
         self._stop = Event()
         self._own = None if executor else ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1)
         self._executor: Any = executor or self._own
+        self._waiting: deque[Any] = deque()
 
     def __enter__(self) -> Workers:
         return self
 
     def __exit__(self, *_: object) -> None:
         self._stop.set()
+        for future in self._waiting:
+            future.cancel()
         if self._own:
             self._own.shutdown(wait=True, cancel_futures=True)
 
@@ -109,9 +124,14 @@ class Workers:
     def run(self, tasks: Sequence[tuple[list[Point], list[Start], Plan]]) -> Iterator[list[Orbit]]:
         """Yield the orbits of each block, in order."""
         work = partial(run_jobs, go_on=self.go_on) if self._own else run_jobs
-        futures = [self._executor.submit(work, *task) for task in tasks]
-        for future in futures:
-            yield future.result()
+        rest, waiting = iter(tasks), self._waiting
+        while True:
+            room = getattr(self._executor, "ahead", len(tasks)) - len(waiting)
+            waiting.extend(self._executor.submit(work, *task) for task in islice(rest, max(0, room)))
+            if not waiting:
+                return
+            yield waiting[0].result()
+            waiting.popleft()
 
 
 def packed(orbits: Sequence[Orbit]) -> dict[str, np.ndarray]:

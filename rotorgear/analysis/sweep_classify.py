@@ -86,6 +86,11 @@ def period_of(x: np.ndarray, extent: np.ndarray, tolerance: float = TOLERANCE) -
     return 0
 
 
+def period_in(kind: str) -> int:
+    """Common periods after which a kind of motion repeats; 1 where it does not."""
+    return int(kind[:-1]) if kind.endswith("T") else 1
+
+
 def _grows(x: np.ndarray) -> bool:
     """Whether the second half of a section is far wider than the first: an unstable motion, which is no chaos."""
     half = len(x) // 2

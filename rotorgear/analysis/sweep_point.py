@@ -129,7 +129,8 @@ def still(local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...]) 
         local: the system. orders: periods of what varies in a turn of the reference. contact: names of its mesh contacts.
     """
     rest = equilibrium(local)
-    static = still_forces(local, tuple(law.mean() for law in local.forces.laws))  # type: ignore[attr-defined]
+    mean = tuple(law.mean() for law in local.forces.laws)  # type: ignore[attr-defined]
+    static = still_forces(local, mean, rest.free)
     if not np.all(np.isfinite(static)):
         # Contacts that are open at rest: what the driving flanks alone would carry.
         static = local.forces.reference_stiffness @ (local.B.T @ rest.q)

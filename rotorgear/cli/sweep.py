@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from rotorgear.cli.common import JsonOption, ModelFile, console, progress_bar, write_json
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, RotorgearError
 
 if TYPE_CHECKING:
     from rotorgear.results.sweep import SweepResult
+
+# Points that --plot draws portraits and spectra of.
+_PORTRAITS = 9
 
 
 def sweep(
@@ -39,8 +43,25 @@ def sweep(
         float, typer.Option("--chaos", help="Exponent per mesh period above which a motion is chaotic.")
     ] = 0.02,
     seed: Annotated[int, typer.Option("--seed", help="Of the random states of --starts.")] = 1,
+    portrait: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--portrait",
+            help="Keep the trajectory of the point next to this VALUE (VALUE,VALUE of two parameters); once or more. "
+            "With --plot nine points where not given.",
+            show_default=False,
+        ),
+    ] = None,
     workers: Annotated[
         int | None, typer.Option("--workers", help="Threads (default: all cores).", show_default=False)
+    ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            "--cluster",
+            help="Workers elsewhere: a dask scheduler such as tcp://host:8786, or local:N processes here.",
+            show_default=False,
+        ),
     ] = None,
     json: JsonOption = None,
     save: Annotated[
@@ -62,19 +83,25 @@ def sweep(
         raise AnalysisError("--resume needs the --save of the sweep that was interrupted")
     if workers is not None and workers < 1:
         raise AnalysisError(f"--workers: got {workers}, expected 1 or more")
+    if workers is not None and cluster is not None:
+        raise AnalysisError("--workers are threads on this machine, --cluster are workers elsewhere: give one of them")
     axes = [axis_of_option(text) for text in over]
     if len({axis.address for axis in axes}) < len(axes):
         raise AnalysisError(f"--over: '{axes[0].address}' is given twice")
-    with progress_bar("sweep") as progress:
+    with ExitStack() as stack:
+        progress = stack.enter_context(progress_bar("sweep"))
+        read = rg.load(model)
+        elsewhere = stack.enter_context(rg.cluster(cluster)) if cluster is not None else None
         try:
             result = rg.sweep(
-                rg.load(model), {axis.address: [axis.text(value) for value in axis.values] for axis in axes},
+                read, {axis.address: [axis.text(value) for value in axis.values] for axis in axes},
                 direction=direction, starts=starts, settle=settle, count=count, exponents=exponents, steps=steps,
-                tolerance=tolerance, chaos=chaos, seed=seed, workers=workers,
+                tolerance=tolerance, chaos=chaos, seed=seed,
+                portraits=portrait or (_PORTRAITS if plot else 0), workers=workers, executor=elsewhere,
                 stream=rg.stream(save, resume=resume) if save else None, progress=progress,
             )  # fmt: skip
-        except KeyboardInterrupt:
-            if save:
+        except (KeyboardInterrupt, RotorgearError):
+            if save and any(Path(f"{save}.parts").glob("chunk_*")):
                 typer.echo(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)
             raise
     console().print(sweep_table(result))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rotorgear.cli.common import table
 
 if TYPE_CHECKING:
@@ -12,6 +14,8 @@ if TYPE_CHECKING:
     from rotorgear.results.sweep import SweepResult
     from rotorgear.results.sweep_ladder import SweepLadder
 
+# Lines of a spectrum in a row, with the columns before them.
+_LINES = 5
 # Lines of a table and stretches of a route that are shown at most; the rest is in the files.
 _MOST, _STRETCHES = 60, 16
 
@@ -29,6 +33,7 @@ def sweep_table(result: SweepResult) -> RenderableType:
     parts += [_points(result, range(min(rows, _MOST)))]
     if rows > _MOST:
         parts.append(Text(f"... {rows - _MOST} more lines: see --json, --save and --plot"))
+    parts += _portraits(result)
     parts += [Text(line) for line in _notes(result)]
     return Group(*parts, "")
 
@@ -69,6 +74,27 @@ def _points(result: SweepResult, rows: range) -> Any:
             _largest(100.0 * result.apart[p, r], ".1f"), _largest(100.0 * result.back[p, r], ".1f"),
         )  # fmt: skip
     return out
+
+
+def _portraits(result: SweepResult) -> list[Any]:
+    """The strongest lines in the spectra of the points that keep their trajectory."""
+    from rich.text import Text
+
+    own = result.portraits
+    if own is None:
+        return []
+    several = len(own.run) > 1
+    names = [f"{a.rpartition('.')[2]} {u}".strip() for a, u in zip(result.address, result.unit, strict=True)]
+    most = _LINES - len(names) - several
+    out = table(*names, *(["start"] if several else []), "motion", *["f: um"] * most, left=0)
+    for k, p in enumerate(own.point.tolist()):
+        for j, r in enumerate(own.run.tolist()):
+            worst = int(np.nanargmax(np.nan_to_num(result.peak_to_peak[p, r])))
+            lines = [f"{f:.3g}: {1e6 * a:.3g}" for f, a in own.lines(k, j, worst)[:most]]
+            cells = [f"{x:.6g}" for x in result.values[p]] + ([result.run[r]] if several else [])
+            out.add_row(*cells, result.motion_at(p, r), *(lines or ["-"]))
+    head = "Strongest lines of the displacement: f over the mesh frequency, amplitude"
+    return [Text(""), Text(head, style="bold"), out]
 
 
 def _largest(values: Any, form: str) -> str:

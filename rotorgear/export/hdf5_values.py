@@ -19,6 +19,7 @@ from rotorgear.model.model import Model
 from rotorgear.results.campbell import Crossing, ExcitationOrder, Margin, Onset
 from rotorgear.results.critical import CriticalSpeed
 from rotorgear.results.modal import NodeTable, Piece
+from rotorgear.results.portrait import Portraits
 from rotorgear.results.static import LoopAssembly, Share
 from rotorgear.results.transient import EnergyLedger
 
@@ -35,6 +36,7 @@ _RECORDS: dict[str, type] = {
         Share,
         LoopAssembly,
         EnergyLedger,
+        Portraits,
     )
 }
 

@@ -10,6 +10,7 @@ import numpy as np
 from rotorgear.export.files import filling, publish
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import new_figure
+from rotorgear.plots.sweep_portraits import draw_portraits, draw_spectra, portrait_size
 from rotorgear.results.sweep import SweepResult
 
 _KINDS = ("1T", "2T", "3T", "4T", "longer", "quasi-periodic", "chaotic", "not settled", "failed")
@@ -29,10 +30,13 @@ def draw_sweep(result: SweepResult, directory: str | Path) -> list[Path]:
         plans["sections.png"] = lambda figure: draw_sections(result, figure)
     else:
         plans["map.png"] = lambda figure: draw_map(result, figure)
+    for number in range(len(result.contact) if result.portraits else 0):
+        plans[f"portraits_{number + 1}.png"] = lambda figure, c=number: draw_portraits(result, figure, c)
+        plans[f"spectra_{number + 1}.png"] = lambda figure, c=number: draw_spectra(result, figure, c)
     target, names = Path(directory), []
     with filling(target) as scratch:
         for name, draw in plans.items():
-            figure = new_figure((8.0, 6.0))
+            figure = new_figure(portrait_size(result) if name.startswith(("portraits", "spectra")) else (8.0, 6.0))
             draw(figure)
             figure.savefig(scratch / name, dpi=130)
             names.append(name)

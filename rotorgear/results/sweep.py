@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.model.model import Model
+from rotorgear.results.portrait import Portraits, portrait_dict
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,7 @@ class SweepResult:
         steps: (p,) in a period of the fastest mesh; settle, count: common periods that settled and counted.
         tolerance, chaos: of the criterion, see analysis/sweep_classify.py.
         dofs, seconds, method, warnings: cost, and sentences.
+        portraits: trajectories of some points, where they were asked for.
     """
 
     model: Model
@@ -69,6 +71,7 @@ class SweepResult:
     seconds: dict[str, float]
     method: str
     warnings: tuple[str, ...] = ()
+    portraits: Portraits | None = None
 
     @property
     def dynamic_factor(self) -> np.ndarray:
@@ -106,6 +109,7 @@ class SweepResult:
             "title": self.model.title,
             "parameters": [{"address": a, "unit": u} for a, u in zip(self.address, self.unit, strict=True)],
             "points": [self._point(p) for p in range(len(self.values))],
+            "portraits": self._portraits(),
             "settle_periods": self.settle,
             "counted_periods": self.count,
             "tolerance": self.tolerance,
@@ -126,6 +130,20 @@ class SweepResult:
             "failure": self.failure[p],
             "runs": [self._run(p, r) for r in range(len(self.run))],
         }
+
+    def _portraits(self) -> list[dict[str, Any]]:
+        own = self.portraits
+        if own is None:
+            return []
+        return [
+            {
+                "values": [float(x) for x in self.values[p]],
+                "start": self.run[r],
+                **portrait_dict(own, k, j, self.contact),
+            }
+            for k, p in enumerate(own.point.tolist())
+            for j, r in enumerate(own.run.tolist())
+        ]
 
     def _run(self, p: int, r: int) -> dict[str, Any]:
         return {

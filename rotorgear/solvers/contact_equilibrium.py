@@ -51,10 +51,10 @@ def free_motions(M: sp.csc_array, K: sp.csc_array) -> np.ndarray:
         count = min(2 * count, M.shape[0])
 
 
-def equilibrium(system: LocalSystem) -> Equilibrium:
-    """Return the static state at t = 0, at rest relative to the prescribed rotation."""
+def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibrium:
+    """Return the static state at t = 0, at rest relative to the prescribed rotation; `free`: its free motions, where known."""
     K, M = system.stiffness_about, system.M
-    R = free_motions(M, K)
+    R = free_motions(M, K) if free is None else free
     B = system.B.toarray()
     solver = SupportedSolver(K, R * np.sqrt(np.maximum(K.diagonal(), 1e-300))[:, None], left_null_space(K, M, R))
 
@@ -73,10 +73,14 @@ def equilibrium(system: LocalSystem) -> Equilibrium:
     return Equilibrium(q0 + X @ pushed, True, R, R.T @ (system.load - B @ F))
 
 
-def still_forces(system: LocalSystem, laws: tuple[LocalLaw, ...]) -> np.ndarray:
-    """Local forces (m,) in the equilibrium with laws in place of the system's own; NaN where there is none."""
+def still_forces(system: LocalSystem, laws: tuple[LocalLaw, ...], free: np.ndarray | None = None) -> np.ndarray:
+    """Local forces (m,) in the equilibrium with laws in place of the system's own; NaN where there is none.
+
+    The free motions of the system serve where they are known and the laws have its reference stiffness.
+    """
     still = replace(system, forces=gather(laws))
-    rest = equilibrium(still)
+    same = np.array_equal(still.forces.reference_stiffness, system.forces.reference_stiffness)
+    rest = equilibrium(still, free if same else None)
     if not rest.converged:
         return np.full(system.m, np.nan)
     return local_values(still, rest.q, np.zeros(still.n), 0.0)[0]

@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-HEAVY = {"numpy", "scipy", "numba", "h5py", "pyvista", "skfem", "matplotlib"}
-GRAPHICS = {"pyvista", "vtk", "vtkmodules", "matplotlib", "numba", "skfem"}
+HEAVY = {"numpy", "scipy", "numba", "h5py", "pyvista", "skfem", "matplotlib", "distributed", "dask"}
+GRAPHICS = {"pyvista", "vtk", "vtkmodules", "matplotlib", "numba", "skfem", "distributed"}
 
 # Runs the program text argv[1] with the arguments argv[3:], then writes which modules are loaded to the file argv[2].
 WATCH = """

@@ -125,7 +125,8 @@ def test_the_keys_of_transient_are_documented(tmp_path: Path, rig: str) -> None:
 
 def test_the_keys_of_sweep_and_of_its_ladder_are_documented(tmp_path: Path) -> None:
     pair = str(ROOT / "models" / "backlash_pair.toml")
-    data = written(tmp_path, "sweep", pair, "--over", "operation.speed=8000 rpm", "--settle", "20", "--count", "20")
+    data = written(tmp_path, "sweep", pair, "--over", "operation.speed=8000 rpm", "--settle", "20", "--count", "20",
+                   "--portrait", "8000")  # fmt: skip
     data["warnings"] = ["one"]  # this sweep has none, or one
     assert set(keys(data)) == documented("sweep")
     assert set(keys(written(tmp_path, "accuracy", pair, "--analysis", "sweep"))) == documented("sweep accuracy")

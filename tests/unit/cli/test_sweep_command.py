@@ -20,6 +20,7 @@ from rotorgear.errors import RotorgearError
 
 ROOT = Path(__file__).resolve().parents[3]
 PAIR = str(ROOT / "models" / "backlash_pair.toml")
+_DRAWN = ("bifurcation_1.png", "sections.png", "portraits_1.png", "spectra_1.png")
 QUICK = ["--settle", "40", "--count", "40"]
 
 
@@ -40,14 +41,15 @@ def test_one_parameter_gives_route_table_files_and_pictures(tmp_path: Path) -> N
     )  # fmt: skip
     assert code == 0
     assert max(len(line) for line in text.splitlines() if str(tmp_path) not in line) <= 80
-    for words in ("route (rpm): ", "more lines: see --json", "more changes", "speed rpm", "LE", "wrote 2 pictures"):
+    for words in ("route (rpm): ", "more lines: see --json", "more changes", "speed rpm", "LE", "wrote 4 pictures"):
         assert words in text.replace("\n", " ")
     data = json.loads(Path(files[0]).read_text(encoding="utf-8"))
     read = rg.read(files[1])
     assert len(data["points"]) == 70 == len(read.values)
     assert [r["motion"] for p in data["points"] for r in p["runs"]] == list(read.motion)
     assert not Path(f"{files[1]}.parts").exists()
-    assert all((Path(files[2]) / name).stat().st_size > 8000 for name in ("bifurcation_1.png", "sections.png"))
+    assert all((Path(files[2]) / name).stat().st_size > 8000 for name in _DRAWN)
+    assert read.portraits.point.tolist() == [0, 9, 17, 26, 34, 43, 52, 60, 69]
 
 
 def test_up_and_down_have_a_route_each() -> None:
@@ -63,7 +65,19 @@ def test_two_parameters_give_a_map(tmp_path: Path) -> None:
     assert code == 0
     assert "torque N m" in text
     assert "LE" not in text.split("T is")[0].replace("p-p", "")
-    assert (tmp_path / "p" / "map.png").stat().st_size > 8000
+    assert all((tmp_path / "p" / f"{name}.png").stat().st_size > 8000 for name in ("map", "portraits_1", "spectra_1"))
+
+
+def test_portraits_of_chosen_points_are_listed_by_their_lines(tmp_path: Path) -> None:
+    over = ["--over", "operation.speed=3000 rpm:4000 rpm:5", "--settle", "300", "--count", "60"]
+    code, text = run(PAIR, *over, "--portrait", "3250", "--portrait", "3490 rpm", "--json", str(tmp_path / "s.json"))
+    assert code == 0
+    table = text.split("Strongest lines")[1]
+    assert max(len(line) for line in text.splitlines()) <= 80
+    assert [line.split()[:3] for line in table.splitlines()[2:4]] == [["3250", "2T", "0.5:"], ["3500", "4T", "0.5:"]]
+    data = json.loads((tmp_path / "s.json").read_text(encoding="utf-8"))
+    assert [p["values"] for p in data["portraits"]] == [[3250.0], [3500.0]]
+    assert data["portraits"][0]["contacts"][0]["lines"][0]["order"] == pytest.approx(0.5, abs=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -76,6 +90,9 @@ def test_two_parameters_give_a_map(tmp_path: Path) -> None:
         (["--over", "operation.speed=6000 rpm", "--workers", "0"], "--workers"),
         (["--over", "operation.speed=6000 rpm", "--count", "0"], "count: got 0"),
         (["--over", "operation.speed=6000 mm"], "rotational speed"),
+        (["--over", "operation.speed=1 rpm:9 rpm:3", "--portrait", "10"], "from 1 to 9 rpm"),
+        (["--over", "operation.speed=1 rpm:9 rpm:3", "--portrait", "x"], "portrait: got 'x', expected a number in rpm"),
+        (["--over", "operation.speed=1 rpm:9 rpm:3", "--portrait", "3,4"], "expected a value of operation.speed"),
     ],
 )
 def test_mistakes_are_named_in_a_sentence(arguments: list[str], words: str) -> None:

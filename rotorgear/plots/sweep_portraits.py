@@ -1,0 +1,102 @@
+"""Phase portraits and spectra of chosen points of a sweep, as the literature on nonlinear gear dynamics shows them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rotorgear.plots.colours import COLOURS
+from rotorgear.results.portrait import DISPLACEMENT, VELOCITY, Portraits
+from rotorgear.results.sweep import SweepResult
+
+# Mesh orders that a spectrum shows, and decades below its largest line.
+_ORDERS, _DECADES = 4.0, 5
+
+
+def portrait_size(result: SweepResult) -> tuple[float, float]:
+    """Inches of a figure with all portraits."""
+    count = len(result.portraits.point) if result.portraits else 0
+    return (5.0, 4.0) if count == 1 else (8.0, 6.0) if count <= 9 else (10.5, 8.0)
+
+
+def draw_portraits(result: SweepResult, figure: Any, contact: int = 0) -> None:
+    """Velocity over displacement of a contact through some periods, with the Poincare points on top."""
+    own, panels = _panels(result, figure)
+    for k, one in enumerate(panels):
+        for j in range(len(own.run)):
+            path, points = (1e6 * own.trajectory(k, j)[:, contact], 1e6 * own.section(k, j)[:, contact])
+            line, dot = _colours(own, j)
+            one.plot(
+                path[:, DISPLACEMENT],
+                1e-3 * path[:, VELOCITY],
+                lw=0.4,
+                color=line,
+                label=_name(result, k, j),
+                rasterized=True,
+            )
+            one.plot(points[:, DISPLACEMENT], 1e-3 * points[:, VELOCITY], ".", ms=4, mew=0, color=dot, zorder=3)
+        _legend(result, k, one)
+        one.margins(0.08)
+        one.ticklabel_format(useOffset=False)
+    figure.supxlabel(f"displacement of {result.contact[contact]}, um", fontsize=9)
+    figure.supylabel("velocity, mm/s", fontsize=9)
+
+
+def draw_spectra(result: SweepResult, figure: Any, contact: int = 0) -> None:
+    """Amplitudes of the displacement of a contact over the frequency as a multiple of the mesh frequency."""
+    own, panels = _panels(result, figure)
+    for k, one in enumerate(panels):
+        largest = 0.0
+        for j in range(len(own.run)):
+            order, amplitude = own.spectrum(k, j, contact)
+            shown = (order > 0.0) & (order <= _ORDERS + 0.2)
+            one.semilogy(
+                order[shown], 1e6 * amplitude[shown], lw=0.6, color=_colours(own, j)[1], label=_name(result, k, j)
+            )
+            largest = max(largest, float(np.nanmax(1e6 * amplitude[shown], initial=0.0)))
+        one.set_xlim(0.0, _ORDERS + 0.2)
+        _legend(result, k, one)
+        if largest > 0.0:
+            one.set_ylim(10.0**-_DECADES * largest, 3.0 * largest)
+        one.set_xticks(np.arange(0.0, _ORDERS + 0.5))
+        one.set_xticks(np.arange(0.5, _ORDERS, 1.0), minor=True)
+        one.grid(which="both", axis="x", lw=0.4, alpha=0.35)
+    which = "that of the fastest mesh" if own.turns.max() > 1 else "the mesh frequency"
+    figure.supxlabel(f"frequency over {which}", fontsize=9)
+    figure.supylabel(f"amplitude of the displacement of {result.contact[contact]}, um", fontsize=9)
+
+
+def _panels(result: SweepResult, figure: Any) -> tuple[Portraits, list[Any]]:
+    """One pair of axes for each point, named by its values and kinds of motion."""
+    own = result.portraits
+    assert own is not None
+    count = len(own.point)
+    columns = int(np.ceil(np.sqrt(count)))
+    grid = list(figure.subplots(int(np.ceil(count / columns)), columns, squeeze=False).flat)
+    for one in grid[count:]:
+        one.set_visible(False)
+    for one, p in zip(grid, own.point.tolist(), strict=False):
+        values = ", ".join(f"{x:.6g} {unit}".strip() for x, unit in zip(result.values[p], result.unit, strict=True))
+        kinds = [result.motion_at(p, r) for r in own.run.tolist()]
+        if len(kinds) > 1:
+            kinds = [f"{result.run[r]} {kind}" for r, kind in zip(own.run.tolist(), kinds, strict=True)]
+        one.set_title(f"{values}: {', '.join(kinds)}", fontsize=8)
+        one.tick_params(labelsize=7)
+    return own, grid[:count]
+
+
+def _name(result: SweepResult, k: int, j: int) -> str | None:
+    """Name of a run where the legend of the first panel tells several apart."""
+    own = result.portraits
+    return result.run[own.run[j]] if own is not None and k == 0 and len(own.run) > 1 else None
+
+
+def _legend(result: SweepResult, k: int, one: Any) -> None:
+    if _name(result, k, 0):
+        one.legend(fontsize=6, loc="best", frameon=False)
+
+
+def _colours(own: Portraits, j: int) -> tuple[str, str]:
+    """Of the trajectory of a run, and of its Poincare points."""
+    return ("#888888", "k") if len(own.run) == 1 else (COLOURS[j % len(COLOURS)], COLOURS[j % len(COLOURS)])

@@ -1,0 +1,107 @@
+"""Trajectories of some points of a sweep: phase portraits, and the spectra in which subharmonics are seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError
+
+# What a record holds of each contact.
+DISPLACEMENT, VELOCITY, FORCE = 0, 1, 2
+_NAMES = ("displacement", "velocity", "force")
+# A line is a maximum that stands so much above the median of so many bins on both sides, and above that share of the largest.
+_ABOVE, _SIDE, _SHARE = 10.0, 16, 1e-3
+_MOST_LINES = 8
+
+
+@dataclass(frozen=True)
+class Portraits:
+    """k points with j runs each, c contacts, s records at most.
+
+    Attributes:
+        point: (k,) numbers of the points. run: (j,) numbers of the runs.
+        turns: (k,) periods of the fastest mesh in a common period T. periods: (k,) common periods that were recorded.
+        records: (k,) records in one of them, at even times; the first is a Poincare point.
+        values: displacement in m and velocity in m/s of the contacts along their normal (without the transmission error), and
+            force in N, (k, j, s, c, 3); NaN behind the last record of a point, and where a run failed.
+    """
+
+    point: np.ndarray
+    run: np.ndarray
+    turns: np.ndarray
+    periods: np.ndarray
+    records: np.ndarray
+    values: np.ndarray
+
+    def trajectory(self, k: int, run: int = 0) -> np.ndarray:
+        """Records of a run, (s, c, 3)."""
+        found: np.ndarray = self.values[k, run, : self.periods[k] * self.records[k]]
+        return found
+
+    def section(self, k: int, run: int = 0) -> np.ndarray:
+        """Its Poincare points, (periods, c, 3)."""
+        return self.trajectory(k, run)[:: self.records[k]]
+
+    def spectrum(
+        self, k: int, run: int = 0, contact: int = 0, what: str = "displacement"
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Frequency over that of the fastest mesh, and amplitude without the mean, by Hann's window, each (b,).
+
+        Args:
+            what: "displacement", "velocity" or "force".
+
+        Raises:
+            AnalysisError: `what` is none of them.
+        """
+        if what not in _NAMES:
+            raise AnalysisError(f"what: got '{what}', expected one of {', '.join(_NAMES)}")
+        values = self.trajectory(k, run)[:, contact, _NAMES.index(what)]
+        window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(values.size) / values.size)
+        amplitude = 2.0 * np.abs(np.fft.rfft((values - values.mean()) * window)) / window.sum()
+        return np.arange(amplitude.size) / (self.periods[k] * self.turns[k]), amplitude
+
+    def lines(self, k: int, run: int = 0, contact: int = 0, what: str = "displacement") -> list[tuple[float, float]]:
+        """The strongest lines of a spectrum, largest first: frequency over that of the fastest mesh, and amplitude."""
+        order, a = self.spectrum(k, run, contact, what)
+        if not np.all(np.isfinite(a)):
+            return []
+        inner = np.flatnonzero((a[1:-1] >= a[:-2]) & (a[1:-1] > a[2:])) + 1
+        found = [
+            _between(order, a, i) for i in inner.tolist() if a[i] > max(_SHARE * a.max(), _ABOVE * _surroundings(a, i))
+        ]
+        return sorted(found, key=lambda line: -line[1])[:_MOST_LINES]
+
+
+def _surroundings(a: np.ndarray, i: int) -> float:
+    """Median of the bins on both sides of a line."""
+    return float(np.median(np.concatenate([a[max(0, i - _SIDE) : i - 1], a[i + 2 : i + 2 + _SIDE]])))
+
+
+def _between(order: np.ndarray, a: np.ndarray, i: int) -> tuple[float, float]:
+    """Place and height of a lone line near bin i by Hann's two largest bins; Harris, Proc. IEEE 66 (1978) 51.
+
+    With the ratio r of the smaller to the larger it lies x = (2 r - 1)/(r + 1) of a bin off, and is higher by the factor
+    pi x (1 - x^2)/sin(pi x).
+    """
+    side = 1 if a[i + 1] >= a[i - 1] else -1
+    r = a[i + side] / a[i]
+    x = max(0.0, (2.0 * r - 1.0) / (r + 1.0))
+    return float(order[i] + side * x * order[1]), float(a[i] * (1.0 - x**2) / np.sinc(x))
+
+
+def portrait_dict(portraits: Portraits, k: int, j: int, contact: tuple[str, ...]) -> dict[str, Any]:
+    """Length and lines of a trajectory as plain values for JSON."""
+    return {
+        "periods": int(portraits.periods[k]),
+        "records_per_period": int(portraits.records[k]),
+        "contacts": [
+            {
+                "name": name,
+                "lines": [{"order": f, "displacement_m": a} for f, a in portraits.lines(k, j, c)],
+            }
+            for c, name in enumerate(contact)
+        ],
+    }
