@@ -19,7 +19,7 @@ import numpy as np
 from rotorgear.analysis.cycle_harmonics import harmonics_of_pieces, harmonics_of_pulse, strong
 from rotorgear.model.mesh import Mesh
 from rotorgear.model.mesh_phases import MeshPhases, mesh_phases
-from rotorgear.model.torque_flow import MeshForce
+from rotorgear.model.torque_flow import MeshForce, about_nominal_flanks, carries_on_back_flanks
 from rotorgear.system.contacts import ContactLines
 from rotorgear.system.local import cycle_pieces
 from rotorgear.system.system import System
@@ -53,7 +53,8 @@ class Order:
 
 def orders_of(system: System, lines: ContactLines, mean_force: np.ndarray) -> list[Order]:
     """Return all orders of a system with the phases that follow from its teeth; `mean_force` (c,) in N."""
-    phases = mesh_phases(system.model, system.train, system.flow, system.direction)
+    flow = about_nominal_flanks(system.model, system.flow)
+    phases = mesh_phases(system.model, system.train, flow, system.direction)
     return excitation_orders(system, lines, mean_force, phases)
 
 
@@ -127,8 +128,10 @@ def _meshes(
 
 def _harmonics(system: System, mesh: Mesh, state: MeshForce, mean_force: float) -> Iterable[tuple[int, int, complex]]:
     """(0: error in m, 1: force in N; harmonic; amplitude) of everything that varies in a contact over the mesh cycle."""
+    # What opens the nominal flanks closes the others.
+    opens = -1.0 if carries_on_back_flanks(system.model, state) else 1.0
     for item in mesh.transmission_error:
-        yield 0, item.harmonic, item.amplitude * cmath.exp(1j * item.phase)
+        yield 0, item.harmonic, opens * item.amplitude * cmath.exp(1j * item.phase)
     for share in mesh.stiffness_variation:
         yield 1, share.harmonic, mean_force * share.amplitude * cmath.exp(1j * share.phase)
     pieces = cycle_pieces(system, state) if mean_force else ()
@@ -136,4 +139,4 @@ def _harmonics(system: System, mesh: Mesh, state: MeshForce, mean_force: float) 
         yield from ((1, n, mean_force * c) for n, c in strong(harmonics_of_pieces(pieces)))
     if mesh.corner_impact is not None:
         pulse = mesh.corner_impact
-        yield from ((1, n, pulse.force * c) for n, c in strong(harmonics_of_pulse(pulse.duration, pulse.at)))
+        yield from ((1, n, opens * pulse.force * c) for n, c in strong(harmonics_of_pulse(pulse.duration, pulse.at)))

@@ -18,7 +18,7 @@ from rotorgear.model.inertia import node_bodies
 from rotorgear.model.mesh import Mesh
 from rotorgear.model.mesh_phases import mesh_phases
 from rotorgear.model.mesh_stiffness import stiffness_of_mesh
-from rotorgear.model.torque_flow import MeshForce
+from rotorgear.model.torque_flow import MeshForce, about_nominal_flanks
 from rotorgear.solvers.local_system import LocalSystem
 from rotorgear.solvers.motion import Rotation
 from rotorgear.system.assembly import assemble
@@ -108,12 +108,13 @@ def _weight(system: System) -> np.ndarray:
 
 
 def _mesh_parts(system: System) -> list[LocalPart]:
-    phases = mesh_phases(system.model, system.train, system.flow, system.direction).phase
+    flow = about_nominal_flanks(system.model, system.flow)
+    phases = mesh_phases(system.model, system.train, flow, system.direction).phase
     found = []
-    for force in system.flow.forces:
+    for force in flow.forces:
         geometry = contact_geometry(system.model, force)
         label = f"{force.contact.mesh} helix {force.contact.helix + 1}"
-        if len(system.flow.of_mesh(force.contact.mesh)) == 1:
+        if len(flow.of_mesh(force.contact.mesh)) == 1:
             label = force.contact.mesh
         law = _mesh_law(system, force, geometry, phases[force.contact.mesh] or 0.0)
         part, dofs = f"meshes.{force.contact.mesh}", _dofs(system, force)

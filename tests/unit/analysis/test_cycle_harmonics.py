@@ -54,7 +54,9 @@ def test_the_response_is_that_of_the_transient(mesh: dict[str, Any], pinion_driv
         changes |= {"operation__input_shaft": "two", "operation__output_shaft": "one", "operation__speed": "1000 rpm",
                     "operation__torque": "300 N m"}  # fmt: skip
     model = spur_pair(meshes__pair__transmission_error=[], **changes)
-    run = rg.transient(model, method="exponential", settle=0.3, time=0.05, steps=1200, records=240, error_estimate=False)
+    run = rg.transient(
+        model, method="exponential", settle=0.3, time=0.05, steps=1200, records=240, error_estimate=False
+    )
     lines = 2.0 * np.fft.rfft(run.mesh_force[-7200:, 0]) / 7200.0  # 30 whole periods
     found = rg.response(model, speeds=["1500 rpm" if pinion_drives else "1000 rpm"])
     for number in (1, 2, 3):
