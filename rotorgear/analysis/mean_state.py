@@ -33,7 +33,8 @@ def mean_state(system: System, speed: float) -> Setup:
     weight = bool(operation and operation.gravity and any(operation.gravity))
     if not system.flow.forces or not (system.flow.applied or index or weight):
         lines = contact_lines(system)
-        varied = [name for name, mesh in system.model.meshes.items() if mesh.stiffness_variation]
+        meshes = system.model.meshes.items()
+        varied = [name for name, m in meshes if m.stiffness_variation or not isinstance(m.stiffness, int | float)]
         notes = (
             (f"stiffness variation of {', '.join(varied)}: no torque, so no mean force that it acts on",)
             if varied

@@ -4,7 +4,8 @@ An unbalance U at phase a on a shaft that turns with W_i puts m e W_i^2 (cos(W_i
 Re(f e^{i w t}) with w = |W_i| that is f_x = U W_i^2 e^{i s a}, f_y = -i s U W_i^2 e^{i s a}, s the sign of W_i.
 
 A transmission error e(t) and a stiffness k (1 + a(t)) turn the force of a contact under the mean force F_0 into
-F = k (v.q - e) + c (v.q' - e') + F_0 a to first order. Mesh phases: model/mesh_phases.py.
+F = k (v.q - e) + c (v.q' - e') + F_0 a to first order; a may follow from a model of the teeth, and an impact adds to the last
+term. Mesh phases: model/mesh_phases.py.
 """
 
 from __future__ import annotations
@@ -15,8 +16,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.analysis.cycle_harmonics import harmonics_of_pieces, harmonics_of_pulse, strong
+from rotorgear.model.mesh import Mesh
 from rotorgear.model.mesh_phases import MeshPhases, mesh_phases
+from rotorgear.model.torque_flow import MeshForce, about_nominal_flanks, carries_on_back_flanks
 from rotorgear.system.contacts import ContactLines
+from rotorgear.system.local import cycle_pieces
 from rotorgear.system.system import System
 
 
@@ -28,7 +33,7 @@ class Order:
         name: "shaft input 1x" or "mesh stage_1a, stage_1b 2x".
         ratio: frequency in rad/s over the size of the reference speed.
         unbalance: force per square of the reference speed at the free dofs, (n,).
-        error: transmission error of each contact, (c,) m; force: F_0 times the stiffness variation, (c,) N.
+        error: transmission error of each contact, (c,) m; force: F_0 times the stiffness variation, and impacts, (c,) N.
     """
 
     name: str
@@ -48,7 +53,8 @@ class Order:
 
 def orders_of(system: System, lines: ContactLines, mean_force: np.ndarray) -> list[Order]:
     """Return all orders of a system with the phases that follow from its teeth; `mean_force` (c,) in N."""
-    phases = mesh_phases(system.model, system.train, system.flow, system.direction)
+    flow = about_nominal_flanks(system.model, system.flow)
+    phases = mesh_phases(system.model, system.train, flow, system.direction)
     return excitation_orders(system, lines, mean_force, phases)
 
 
@@ -110,12 +116,27 @@ def _meshes(
         if phase is None or not pinion.teeth or system.train.ratio(pinion.shaft) == 0.0:
             continue
         ratio = abs(system.train.ratio(pinion.shaft)) * pinion.teeth
-        for row, harmonics in ((0, mesh.transmission_error), (1, mesh.stiffness_variation)):
-            for item in harmonics:
+        for k, state in enumerate(lines.states):
+            if state.contact.mesh != name:
+                continue
+            ahead = 2.0 * np.pi * mesh.helix_stagger if state.contact.helix else 0.0
+            for row, harmonic, amplitude in _harmonics(system, mesh, state, float(mean_force[k])):
                 terms = np.zeros((2, len(lines.states)), complex)
-                for k, state in enumerate(lines.states):
-                    if state.contact.mesh == name:
-                        ahead = 2.0 * np.pi * mesh.helix_stagger if state.contact.helix else 0.0
-                        turn = cmath.exp(1j * (item.harmonic * (phase + ahead) + item.phase))
-                        terms[row, k] = item.amplitude * turn * (mean_force[k] if row else 1.0)
-                yield name, item.harmonic, item.harmonic * ratio, terms
+                terms[row, k] = amplitude * cmath.exp(1j * harmonic * (phase + ahead))
+                yield name, harmonic, harmonic * ratio, terms
+
+
+def _harmonics(system: System, mesh: Mesh, state: MeshForce, mean_force: float) -> Iterable[tuple[int, int, complex]]:
+    """(0: error in m, 1: force in N; harmonic; amplitude) of everything that varies in a contact over the mesh cycle."""
+    # What opens the nominal flanks closes the others.
+    opens = -1.0 if carries_on_back_flanks(system.model, state) else 1.0
+    for item in mesh.transmission_error:
+        yield 0, item.harmonic, opens * item.amplitude * cmath.exp(1j * item.phase)
+    for share in mesh.stiffness_variation:
+        yield 1, share.harmonic, mean_force * share.amplitude * cmath.exp(1j * share.phase)
+    pieces = cycle_pieces(system, state) if mean_force else ()
+    if pieces:
+        yield from ((1, n, mean_force * c) for n, c in strong(harmonics_of_pieces(pieces)))
+    if mesh.corner_impact is not None:
+        pulse = mesh.corner_impact
+        yield from ((1, n, opens * pulse.force * c) for n, c in strong(harmonics_of_pulse(pulse.duration, pulse.at)))

@@ -1,10 +1,11 @@
 """What kind of motion a Poincare section shows, and a largest Lyapunov exponent with its statistical uncertainty.
 
-With x the displacements of the contacts at the end of each common period T, p their peak to peak and L the exponent per period of
-the fastest mesh, the first of these that holds:
+With x the displacements of the contacts at the end of each common period T, p their peak to peak (with or without the
+transmission error, whichever is larger) and L the exponent per period of the fastest mesh, the first of these that holds:
 
     chaotic         L > chaos (0.02), L > 2 standard errors, and x does not grow from one half of the section to the other
     kT              all x that lie k T apart stay within tolerance (0.02) of max(p, 0.05 um), for the least k up to 32
+    chaotic         as above, but L > 1 standard error: what does not repeat needs less evidence
     quasi-periodic  |L| <= chaos, and the two halves of the section cover the same range to 10 %
     not settled     anything else
 """
@@ -58,7 +59,7 @@ def classify(
     """Return the kind of motion.
 
     Args:
-        x: (p, c) displacements of the contacts at the section; extent: (c,) their peak to peak over time.
+        x: (p, c) displacements of the contacts at the section; extent: (c,) their peak to peak p over time.
         exponent, error: largest Lyapunov exponent per period of the fastest mesh; None where it is not known.
         tolerance, chaos: of the criterion above.
     """
@@ -69,6 +70,8 @@ def classify(
         return Motion(f"{period}T", period)
     if exponent is None:
         return Motion(NOT_PERIODIC, 0)
+    if exponent > max(chaos, error) and not _grows(x):
+        return Motion(CHAOTIC, 0)
     if abs(exponent) <= chaos and _steady(x):
         return Motion(QUASI_PERIODIC, 0)
     return Motion(NOT_SETTLED, 0)

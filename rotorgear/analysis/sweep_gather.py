@@ -68,7 +68,7 @@ def gathered(
         largest = float(exponent[i, run, 0]) if k else None
         kind = classify(
             own[:, :, 0],
-            found["amplitude"],
+            np.maximum(found["amplitude"], found["peak_to_peak"]),
             largest,
             float(error[i, run, 0]) if k else 0.0,
             request.tolerance,

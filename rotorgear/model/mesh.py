@@ -92,6 +92,11 @@ class Mesh(Part):
     back_flank: Literal["line", "own normals"] = Field(
         "line", description="the back flank pushes along the line of the driving flank, or along its own normal"
     )
+    nominal_driver: Literal["pinion", "gear"] | None = Field(
+        None,
+        description="which of the two drives on the flanks that responses, transients and sweeps call the driving ones, "
+        "also where the loads press the others; default: the one that the mean torques make drive",
+    )
     contact_damping: Literal["clamped", "unclamped", "penetration"] = Field(
         "clamped",
         description="clamped: teeth never pull; unclamped: damping may pull; penetration: damping grows with the depth",

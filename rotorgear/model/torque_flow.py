@@ -74,6 +74,22 @@ class TorqueFlow:
         return tuple(force for force in self.forces if force.contact.mesh == mesh)
 
 
+def carries_on_back_flanks(model: Tables, force: MeshForce) -> bool:
+    """Whether the mean load presses the flanks that the file does not call the driving ones (nominal_driver)."""
+    return model.meshes[force.contact.mesh].nominal_driver == ("gear" if force.pinion_drives else "pinion")
+
+
+def about_nominal_flanks(model: Tables, flow: TorqueFlow) -> TorqueFlow:
+    """The same state told from the flanks that the file calls the driving ones, which may not be those that carry."""
+    forces = (
+        replace(force, torque_sense=-force.torque_sense, pinion_drives=not force.pinion_drives)
+        if carries_on_back_flanks(model, force)
+        else force
+        for force in flow.forces
+    )
+    return replace(flow, forces=tuple(forces))
+
+
 def torque_flow(model: Tables, train: Train, direction: int = 1) -> TorqueFlow:
     """Solve for the mean mesh forces of a checked model and decide the driving flanks.
 

@@ -63,7 +63,10 @@ def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibr
         return np.asarray(q - R @ (R.T @ (M @ q)))
 
     q0, X = settled(system.load), settled(B) if system.m else np.zeros((system.n, 0))
-    d, F, converged = _local(system, B.T @ q0, B.T @ X)
+    linear, A = np.asarray(B.T @ q0), B.T @ X
+    d, F, converged = _local(system, linear, A, linear)
+    if not converged:  # within a gap nothing says where to go
+        d, F, converged = _local(system, linear, A, _beyond_gaps(system, linear))
     if not converged:
         return Equilibrium(q0, False, R, R.T @ system.load)
     pushed = system.forces.reference_stiffness @ d - F
@@ -83,10 +86,21 @@ def still_forces(system: LocalSystem, laws: tuple[LocalLaw, ...], free: np.ndarr
     return local_values(still, rest.q, np.zeros(still.n), 0.0)[0]
 
 
-def _local(system: LocalSystem, d0: np.ndarray, A: np.ndarray) -> tuple[np.ndarray, np.ndarray, bool]:
+def _beyond_gaps(system: LocalSystem, d0: np.ndarray) -> np.ndarray:
+    """Displacements (m,) with the contacts that the loads open on their back flanks."""
+    d = d0.copy()
+    for law, at in zip(system.forces.laws, system.forces.first, strict=False):
+        if getattr(law, "gap", "") == "line" and d0[at] < 0.0:
+            d[at] -= law.backlash  # type: ignore[attr-defined]
+    return d
+
+
+def _local(
+    system: LocalSystem, d0: np.ndarray, A: np.ndarray, start: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, bool]:
     """Newton's method for d - d0 + A (F(d) - k d) = 0 with a shortened step where a full one does not bring it down."""
     k = system.forces.reference_stiffness
-    d = d0.copy()
+    d = start.copy()
 
     def residual(d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         F, Kd = local_tangent(system, d, 0.0)

@@ -18,7 +18,7 @@ from rotorgear.model.inertia import node_bodies
 from rotorgear.model.mesh import Mesh
 from rotorgear.model.mesh_phases import mesh_phases
 from rotorgear.model.mesh_stiffness import stiffness_of_mesh
-from rotorgear.model.torque_flow import MeshForce
+from rotorgear.model.torque_flow import MeshForce, about_nominal_flanks
 from rotorgear.solvers.local_system import LocalSystem
 from rotorgear.solvers.motion import Rotation
 from rotorgear.system.assembly import assemble
@@ -108,12 +108,13 @@ def _weight(system: System) -> np.ndarray:
 
 
 def _mesh_parts(system: System) -> list[LocalPart]:
-    phases = mesh_phases(system.model, system.train, system.flow, system.direction).phase
+    flow = about_nominal_flanks(system.model, system.flow)
+    phases = mesh_phases(system.model, system.train, flow, system.direction).phase
     found = []
-    for force in system.flow.forces:
+    for force in flow.forces:
         geometry = contact_geometry(system.model, force)
         label = f"{force.contact.mesh} helix {force.contact.helix + 1}"
-        if len(system.flow.of_mesh(force.contact.mesh)) == 1:
+        if len(flow.of_mesh(force.contact.mesh)) == 1:
             label = force.contact.mesh
         law = _mesh_law(system, force, geometry, phases[force.contact.mesh] or 0.0)
         part, dofs = f"meshes.{force.contact.mesh}", _dofs(system, force)
@@ -154,7 +155,7 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         contact_damping=mesh.contact_damping, ramp=_ramp(mesh, deflection),
         order=order, phase=phase + 2.0 * np.pi * late, stiffness_cos=stiffness_cos, stiffness_sin=stiffness_sin,
         error_mean=mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0),
-        error_cos=error_cos, error_sin=error_sin, pieces=_pieces(system, force), **_impact(mesh.corner_impact),
+        error_cos=error_cos, error_sin=error_sin, pieces=cycle_pieces(system, force), **_impact(mesh.corner_impact),
     )  # fmt: skip
 
 
@@ -177,7 +178,7 @@ def _back(law: MeshContact) -> MeshContact:
     )
 
 
-def _pieces(system: System, force: MeshForce) -> tuple[tuple[float, float, float], ...]:
+def cycle_pieces(system: System, force: MeshForce) -> tuple[tuple[float, float, float], ...]:
     """Straight pieces of k over its mean in a mesh cycle, where the file gives a curve or a stiffness model."""
     name = force.contact.mesh
     if isinstance(system.model.meshes[name].stiffness, int | float):

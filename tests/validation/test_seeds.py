@@ -75,6 +75,13 @@ def test_the_three_regions_of_the_marine_train() -> None:
         assert amplitude * (1.0 + 0.12) * (1.0 - run.back - run.apart) >= 1.0
 
 
+def test_the_file_of_the_marine_train_gives_the_impact_time_ratio_over_the_torque_as_it_is() -> None:
+    over = {"loads.lp.torque": [30e3 * gamma / (1.0 + gamma) for gamma in (0.3, 0.6, 1.0)]}
+    found = rg.sweep(loaded(marine.MODEL), over, steps=marine.STEPS, settle=400, count=200)
+    back = found.back[:, 0, found.contact.index("first_lp")]
+    assert back[0] > 0.5 > back[1] > 0.1 > back[2]
+
+
 def test_the_branch_below_its_drag_carries_on_the_other_flanks() -> None:
     sheet = rg.describe_model(marine.operating(0.3)).to_dict()
     torques = {row["name"]: row["torque_n_m"] for row in sheet["torques"]}
@@ -97,6 +104,11 @@ def test_a_pair_made_by_the_rules_is_that_of_the_file() -> None:
 def test_the_pair_of_24_dofs_goes_from_one_period_over_two_to_chaos() -> None:
     found = pair24.route(pair24.MODEL, (5000.0, 5800.0, 5950.0))
     assert [found.motion_at(p) for p in range(3)] == ["1T", "2T", "chaotic"]
+
+
+def test_set_2_is_of_one_period_again_at_high_speed() -> None:
+    found = pair24.route(pair24.SECOND, (8000.0, 9000.0, 20000.0, 35000.0), 200)
+    assert [found.motion_at(p) == "1T" for p in range(4)] == [True, False, True, True]
 
 
 def test_load_closes_the_gap_and_damping_calms() -> None:

@@ -90,6 +90,12 @@ def sample(count: int = _SETS) -> np.ndarray:
     return np.array(found)
 
 
+def _density(name: str, teeth: GearGeometry) -> float:
+    """g/cm3 of a half gear of the file as a solid disc of its reference diameter."""
+    volume = 0.25 * math.pi * teeth.reference_diameter**2 * 0.075
+    return 1e-3 * (loaded(MODEL).gears[name].mass or 0.0) / volume
+
+
 def quick() -> dict[str, float | str]:
     """What follows without a run."""
     one, two, mesh = geometry()
@@ -102,6 +108,7 @@ def quick() -> dict[str, float | str]:
         "eps_alpha": mesh.transverse_contact_ratio, "eps_beta": mesh.overlap_ratio,
         "alpha_t": math.degrees(one.transverse_pressure_angle), "rb1": 1e3 * one.base_radius,
         "rb2": 1e3 * two.base_radius, "speed_2": 2000.0 * 17.0 / 44.0, "rigid_modes": float(rg.modal(base).rigid.sum()),
+        "density_pinion": _density("pinion_left", one), "density_gear": _density("gear_left", two),
         "normal_force": 400.0 / (one.base_radius * math.cos(one.base_helix_angle)),
     }  # fmt: skip
     for i, (shift, _, reference, proposed) in enumerate(TABLE, 1):

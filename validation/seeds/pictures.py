@@ -52,7 +52,7 @@ def draw_marine_ratio(figure: Any) -> None:
         dots(column[0], ratios, result, i, 0.6)
         column[1].plot(ratios, result.lyapunov[:, 0, 0], color=COLOURS[0], lw=0.8)
         column[1].axhline(0.0, color="k", lw=0.5)
-        back = np.where(ratios * total / (1.0 + ratios) >= marine.DRAG, result.back[:, 0, i], result.driving[:, 0, i])
+        back = result.back[:, 0, i]
         column[2].plot(ratios, back, color=COLOURS[1], lw=0.8, label="back side")
         column[2].plot(ratios, result.apart[:, 0, i], color=COLOURS[2], lw=0.8, label="apart")
         column[2].set_xlabel(r"load ratio $T_\mathrm{LP}/T_\mathrm{HP}$")

@@ -9,6 +9,7 @@ import numpy as np
 
 import rotorgear as rg
 from validation.seeds.rows import entries, loaded
+from validation.T1.spectrum import excited
 
 MODEL = "split_torque"
 TOLERANCE, RANGE = 0.07, 5000.0
@@ -34,6 +35,8 @@ def quick() -> dict[str, float | str]:
     for name, printed in (("97.8", 97.8), ("285.1", 285.1)):
         nearest = min((n * f for f in turns for n in range(1, 21)), key=lambda f: abs(f - printed))
         found[f"shaft_{name}"] = nearest
+    for item in excited().meshes["stage_2a"].transmission_error:
+        found[f"ste_{item.harmonic}"] = 1e6 * item.amplitude
     for name, printed in (("4883", 4883.0), ("5356", 5356.0)):
         found[f"tone_{name}"] = _nearest_tone(printed, hz, turns)
     return found

@@ -239,7 +239,9 @@ def test_kinds_of_motion_by_the_stated_criterion() -> None:
     assert classify(two, extent, -0.1, 0.01).kind == "2T"
     assert classify(torus, extent, 0.001, 0.01).kind == "quasi-periodic"
     assert classify(torus, extent, 0.5, 0.01).kind == "chaotic"
-    assert classify(torus, extent, 0.5, 0.4).kind == "not settled"
+    assert classify(torus, extent, 0.5, 0.4).kind == "chaotic"
+    assert classify(one, extent, 0.5, 0.4).kind == "1T"
+    assert classify(torus, extent, 0.5, 0.6).kind == "not settled"
     assert classify(torus * np.exp(-k / 50.0)[:, None], extent, -0.01, 0.01).kind == "not settled"
     assert classify(torus, extent, None, 0.0).kind == "not periodic"
     assert period_of(np.tile(torus[:7], (20, 1)), extent) == 7
