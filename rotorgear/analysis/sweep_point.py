@@ -13,7 +13,7 @@ from rotorgear.analysis.sweep_period import common_period, orders_of, refuse_lon
 from rotorgear.analysis.sweep_reduce import Large, Reduced, Wanted
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
-from rotorgear.solvers.contact_equilibrium import Equilibrium, equilibrium, still_forces
+from rotorgear.solvers.contact_equilibrium import Equilibrium, equilibrium, free_motions, still_forces
 from rotorgear.solvers.local_forces import LocalForces
 from rotorgear.solvers.local_system import LocalSystem
 from rotorgear.solvers.motion import Rotation
@@ -89,6 +89,7 @@ class PointMaker:
     def __init__(self, wanted: Wanted | None = None, elements: int | None = None) -> None:
         self._wanted, self._elements = wanted or Wanted(), elements
         self._known: dict[str, Still | Large] = {}
+        self._free: tuple[bytes, np.ndarray] = (b"", np.zeros((0, 0)))
 
     def __call__(self, model: Model) -> Point | Large:
         """Make a model ready at its own speed; one that is to be reduced comes back as it is, for `sweep_reduce`.
@@ -128,7 +129,15 @@ class PointMaker:
         contact = tuple(part.label for part in found.parts if part.is_mesh)
         if self._wanted.modes is not None or system.n > MOST_DOFS or np.any(found.local.M.diagonal() <= 0.0):
             return Large(found.local, orders, contact, speed, model.damping.modal_ratio)
-        return still(found.local, orders, contact)
+        return still(found.local, orders, contact, self._free_of(found.local))
+
+    def _free_of(self, local: LocalSystem) -> np.ndarray:
+        """Motions without strain; those of the point before where inertia and stiffness are the same to the last bit."""
+        about = local.stiffness_about
+        key = b"".join(x.tobytes() for A in (local.M, about) for x in (A.data, A.indices, A.indptr))
+        if key != self._free[0]:
+            self._free = key, free_motions(local.M, about)
+        return self._free[1]
 
 
 def _standing(model: Model) -> bool:
@@ -142,13 +151,16 @@ def _standing(model: Model) -> bool:
     return all(power is None for power in powers) and not (varying or tables or inner)
 
 
-def still(local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...]) -> Still:
+def still(
+    local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...], free: np.ndarray | None = None
+) -> Still:
     """Find the state at rest of a system with local forces.
 
     Args:
         local: the system. orders: periods of what varies in a turn of the reference. contact: names of its mesh contacts.
+        free: its motions without strain, where they are known.
     """
-    rest = equilibrium(local)
+    rest = equilibrium(local, free)
     mean = tuple(law.mean() for law in local.forces.laws)  # type: ignore[attr-defined]
     static = still_forces(local, mean, rest.free)
     if not np.all(np.isfinite(static)):
