@@ -12,12 +12,15 @@ from rotorgear.solvers.kernel_lane_vectors import fill, get, larger, put, smalle
 # How a column acts: as MeshContact.gap does, as a force that is prescribed, or by a law of its own (kernel_lane_laws.py).
 LINE, ONE_SIDED, NEVER_PARTS, PRESCRIBED, OWN_LAW = 0, 1, 2, 3, 4
 CLAMPED, UNCLAMPED, PENETRATION = 0, 1, 2
+# When the damping of a column jumps, or nearly does: never, as flanks close, or as they close and as they part.
+NEVER, CLOSING, ALWAYS = 0, 1, 2
 # Rows of the tables: share of the mean stiffness, error, its slope, share of the prescribed force.
 STIFFNESS, ERROR, SLOPE, PUSH = 0, 1, 2, 3
-# Values of a column: k, c, backlash, 1/ramp, prescribed force.
-K, C, BACKLASH, RAMP, FORCE = 0, 1, 2, 3, 4
-# What a contact leaves: its tangents in displacement and velocity, and the flank that touches.
-IN_D, IN_V, FLANK = 0, 1, 2
+# Values of a column: k, c, backlash, 1/ramp, prescribed force, ramp.
+K, C, BACKLASH, RAMP, FORCE, REACH, VALUES = 0, 1, 2, 3, 4, 5, 6
+# What a contact leaves: its tangents in displacement and velocity, the flank that touches, and the part of the tangent in
+# displacement that comes from the ramp.
+IN_D, IN_V, FLANK, GROWTH, FOUND = 0, 1, 2, 3, 4
 # Rows of the sums: steps on the driving flank, apart, on the back flank, losses of contact; least and largest of the displacement
 # d, of the approach d - e and of the force; sums of force, its square, displacement, its square.
 DRIVING, APART, BACK, LOSSES, D_MIN, D_MAX, X_MIN, X_MAX, F_MIN, F_MAX, F_SUM, F_SQUARES, D_SUM, D_SQUARES = range(14)
@@ -52,28 +55,29 @@ def product(first, column, value, x, out):
 
 
 @compiled(fast=True)
-def contacts(gap, mode, values, table, d, F, found):
+def contacts(gap, mode, values, table, weight, d, F, found, used):
     """Forces (m, w) of forces/mesh_contact.py without branches over lanes, their tangents, and the flank that touches.
 
-    values (m, 5, w); table (m, 4, w); d (2 m, w): displacement and velocity; found (m, 3, w).
+    values (m, 6, w); table (m, 4, w); d (2 m, w): displacement and velocity; found (m, 4, w);
+    used (m, w): impulses of the damping, to which this one is added with its weight.
     """
     one, none = fill(1.0), fill(0.0)
     for j in range(gap.size):
         if gap[j] == OWN_LAW:
             continue
-        prescribed = get(values, 5 * j + FORCE) * get(table, 4 * j + PUSH)
+        prescribed = get(values, VALUES * j + FORCE) * get(table, 4 * j + PUSH)
         if gap[j] == PRESCRIBED:
             put(F, j, prescribed)
             continue
-        k, c = get(values, 5 * j + K) * get(table, 4 * j + STIFFNESS), get(values, 5 * j + C)
+        k, c = get(values, VALUES * j + K) * get(table, 4 * j + STIFFNESS), get(values, VALUES * j + C)
         x, rate = get(d, 2 * j) - get(table, 4 * j + ERROR), get(d, 2 * j + 1) - get(table, 4 * j + SLOPE)
         if gap[j] == NEVER_PARTS:
             put(F, j, k * x + c * rate + prescribed)
-            put(found, 3 * j + IN_D, k)
-            put(found, 3 * j + IN_V, c)
-            put(found, 3 * j + FLANK, one)
+            put(found, FOUND * j + IN_D, k)
+            put(found, FOUND * j + IN_V, c)
+            put(found, FOUND * j + FLANK, one)
             continue
-        behind, ramp = -1.0 * x - get(values, 5 * j + BACKLASH), get(values, 5 * j + RAMP)
+        behind, ramp = -1.0 * x - get(values, VALUES * j + BACKLASH), get(values, VALUES * j + RAMP)
         touch = where_positive(x, one, where_positive(behind, fill(-1.0), none))
         depth = larger(larger(x, behind), none)
         closing, share = touch * rate, depth * ramp
@@ -85,9 +89,12 @@ def contacts(gap, mode, values, table, d, F, found):
         if mode[j] != UNCLAMPED:
             holds = where_positive(total, holds, none)
         put(F, j, touch * (holds * total) + prescribed)
-        put(found, 3 * j + IN_D, holds * (k + c * ramp * closing))
-        put(found, 3 * j + IN_V, holds * c * share)
-        put(found, 3 * j + FLANK, touch)
+        damping, growth = holds * c * share, holds * (c * ramp * closing)
+        put(found, FOUND * j + IN_D, holds * k + growth)
+        put(found, FOUND * j + IN_V, damping)
+        put(found, FOUND * j + GROWTH, growth)
+        put(used, j, get(used, j) + weight * (damping * rate))
+        put(found, FOUND * j + FLANK, touch)
 
 
 @compiled(fast=True)
@@ -97,7 +104,7 @@ def count(mesh, table, d, F, found, last, sums):
     for j in range(mesh.size):
         if not mesh[j]:
             continue
-        s, flank, before = 14 * j, get(found, 3 * j + FLANK), get(last, j)
+        s, flank, before = 14 * j, get(found, FOUND * j + FLANK), get(last, j)
         touching = flank * flank
         put(sums, s + DRIVING, get(sums, s + DRIVING) + where_positive(flank, one, none))
         put(sums, s + APART, get(sums, s + APART) + (one - touching))

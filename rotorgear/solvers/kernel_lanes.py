@@ -13,8 +13,9 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.compiled import compiled
+from rotorgear.solvers.kernel_lane_jumps import add_used_along, missing, missing_along, push
 from rotorgear.solvers.kernel_lane_laws import force_laws, laws_along, schedule_laws
-from rotorgear.solvers.kernel_lane_parts import IN_D, IN_V, contacts, count, product, read_table
+from rotorgear.solvers.kernel_lane_parts import FOUND, IN_D, IN_V, NEVER, contacts, count, product, read_table
 from rotorgear.solvers.kernel_lane_tangents import orthonormal
 from rotorgear.solvers.kernel_lane_vectors import LANES, fill, get, put, work
 
@@ -63,7 +64,8 @@ def advance(number, h, first, column, value, stage, ahead, at, base, base_at, to
 
 
 @compiled(fast=True)
-def tangent_stage(number, h, across, matrix, found, own, laws, blocks, d, stage, ahead, base, totals):
+def tangent_stage(number, h, across, matrix, found, jumping, jumps, kept, used, start, own, laws, blocks, d, stage, ahead,
+                  base, totals):  # fmt: skip
     """One stage of all tangents: (t, 2 n + m + 1, w) of this stage and the next, (t, 2 n, w) of the step's begin and sums."""
     t, rows = stage.shape[0], stage.shape[1]
     n, m = base.shape[1] // 2, found.shape[0]
@@ -72,34 +74,55 @@ def tangent_stage(number, h, across, matrix, found, own, laws, blocks, d, stage,
         for j in range(2 * m):
             put(d, j, slope_of(j, *across, stage, at))
         for j in range(m):
-            along = get(found, 3 * j + IN_D) * get(d, 2 * j) + get(found, 3 * j + IN_V) * get(d, 2 * j + 1)
+            along = get(found, FOUND * j + IN_D) * get(d, 2 * j) + get(found, FOUND * j + IN_V) * get(d, 2 * j + 1)
             put(stage, at + 2 * n + j, along)
         if own:
             laws_along(laws, blocks, d, stage, at + 2 * n)
+        if jumping:
+            add_used_along(jumps, weight_of(number, h), found, kept, d, used, start, m * k, number == 0)
         advance(number, h, *matrix, stage, ahead, at, base, 2 * n * k, totals[k])
 
 
+@compiled
+def weight_of(number, h):
+    """Weight of a stage in a step."""
+    return (h / 6.0) if number in (0, 3) else (h / 3.0)
+
+
+@compiled(fast=True)
+def end_tangents(jumps, values, kept, across, pushes, d, moved, tangents, used, start, impulse):
+    """Put the impulses of the damping right along all tangents."""
+    t, rows = moved.shape[0], moved.shape[1]
+    n, m = tangents.shape[1] // 2, jumps.size
+    for k in range(t):
+        for j in range(2 * m):
+            put(d, j, slope_of(j, *across, moved, k * rows))
+        missing_along(jumps, values, kept, d, used, start, m * k, impulse)
+        push(*pushes, impulse, moved, k * rows, tangents, 2 * n * k)
+
+
 @compiled(fast=True, free=True)
-def lanes_loop(turns, steps, begun, counting, matrix, across, gap, mode, values, mesh, table, laws, clock, rigid, root, state,
-               tangents, last, growth, section, sums):  # fmt: skip
+def lanes_loop(turns, steps, begun, counting, matrix, across, pushes, gap, mode, jumps, values, mesh, table, laws, clock, rigid,
+               root, state, kept, tangents, last, growth, section, sums):  # fmt: skip
     """Advance all lanes in place by common periods and record a section at the end of each.
 
     Args:
         turns: periods of the fastest mesh in a common one; steps: steps in one of those; begun: common periods before.
         counting: whether the statistics count.
         matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1).
-        across: d and d' of each column from (z, z'), (2 m, 2 n).
-        gap, mode, mesh: of the columns, (m,); values: theirs, (m, 5, w), see `contacts`.
+        across: d and d' of each column from (z, z'), (2 m, 2 n). pushes: -B, (n, m).
+        gap, mode, jumps, mesh: of the columns, (m,); values: theirs, (m, 6, w), see `contacts`.
         table: (2 turns steps + 1, m, 4, 1 or w), without its last row where no force is prescribed.
         laws: see kernel_lane_laws.py; clock (2, w): radians of the reference for one of the fastest mesh, and its rad/s.
         rigid: orthonormal motions without strain, (r, n, w); root: S with S^T S the mean stiffness, (n, n, w).
-        state: z and z', (2 n, w); tangents: (t, 2 n, w); last: (m, w) flanks that touched last.
+        state: z and z', (2 n, w); kept: of the end of the last step, see kernel_lane_jumps.py.
+        tangents: (t, 2 n, w); last: (m, w) flanks that touched last.
         growth: (p, t, w), section: (p, 2 m, w), sums: (m, 14, w): what is found in p common periods.
     """
     n, m, t = state.shape[0] // 2, mesh.size, tangents.shape[0]
     rows, own = 2 * n + m + 1, laws[2].size > 0
     h = 2.0 * np.pi / steps
-    now, found = work(4 * m).reshape(m, 4, LANES), work(3 * m).reshape(m, 3, LANES)
+    now, found = work(4 * m).reshape(m, 4, LANES), work(FOUND * m).reshape(m, FOUND, LANES)
     d, total = work(2 * m), work(2 * n)
     stage, ahead = work(rows), work(rows)
     stage[:], ahead[:] = 1.0, 1.0
@@ -107,6 +130,8 @@ def lanes_loop(turns, steps, begun, counting, matrix, across, gap, mode, values,
     totals, weighed = work(t * 2 * n).reshape(t, 2 * n, LANES), work(t * 2 * n).reshape(t, 2 * n, LANES)
     blocks = work(2 * laws[-1][-1]).reshape(2, laws[-1][-1], LANES)
     condition, space = np.zeros((LANES, laws[-2][-1])), np.zeros(_MOST_COMPONENTS * (3 + 2 * _MOST_COMPONENTS) + 4)
+    jumping = np.any(jumps != NEVER)
+    used, impulse, used_along, start = work(m), work(m), work(t * m), work(t * m)
     F, F_ahead = stage[2 * n : 2 * n + m], ahead[2 * n : 2 * n + m]
     stage[: 2 * n], moved[:, : 2 * n] = state, tangents
     for period in range(growth.shape[0]):
@@ -118,17 +143,22 @@ def lanes_loop(turns, steps, begun, counting, matrix, across, gap, mode, values,
                     if own:
                         schedule_laws(laws, clock, 0.5 * h * (2.0 * steps * turns * (begun + period) + at), condition)
                 product(*across, stage, d)
-                contacts(gap, mode, values, now, d, F, found)
+                contacts(gap, mode, values, now, weight_of(number, h), d, F, found, used)
                 if own:
                     force_laws(laws, clock, condition, d, F, blocks, space)
                 if number == 0 and counting:
                     count(mesh, now, d, F, found, last, sums)
                 advance(number, h, *matrix, stage, ahead, 0, state, 0, total)
                 if t:
-                    tangent_stage(
-                        number, h, across, matrix, found, own, laws, blocks, d, moved, moved_ahead, tangents, totals
-                    )
+                    tangent_stage(number, h, across, matrix, found, jumping, jumps, kept, used_along, start, own, laws, blocks,
+                                  d, moved, moved_ahead, tangents, totals)  # fmt: skip
                 stage, ahead, moved, moved_ahead, F, F_ahead = ahead, stage, moved_ahead, moved, F_ahead, F
+            if jumping:
+                product(*across, stage, d)
+                missing(jumps, values, now, d, used, kept, impulse)
+                push(*pushes, impulse, stage, 0, state, 0)
+                if t:
+                    end_tangents(jumps, values, kept, across, pushes, d, moved, tangents, used_along, start, impulse)
             if t and (step + 1) % steps == 0:
                 orthonormal(tangents, weighed, root, rigid, growth[period])
                 moved[:, : 2 * n] = tangents

@@ -9,6 +9,7 @@ import numpy as np
 
 from rotorgear.solvers.compiled import compiled
 from rotorgear.solvers.kernel_lane_parts import (
+    ALWAYS,
     ERROR,
     NEVER_PARTS,
     OWN_LAW,
@@ -25,13 +26,16 @@ _MOST_COMPONENTS = 6
 
 @compiled
 def force(gap, mode, values, now, d, v):
-    """Force of one column: values (5,) k, c, backlash, 1/ramp, prescribed force; now (4,) of its table; see `contacts`."""
+    """Force of one column, and the share of its damping that can jump.
+
+    values (5,): k, c, backlash, 1/ramp, prescribed force; now (4,) of its table; see `contacts`.
+    """
     push = values[4] * now[PUSH]
     if gap == PRESCRIBED:
-        return push
+        return push, 0.0
     k, c, x, rate = values[0] * now[STIFFNESS], values[1], d - now[ERROR], v - now[SLOPE]
     if gap == NEVER_PARTS:
-        return k * x + c * rate + push
+        return k * x + c * rate + push, 0.0
     behind = -x - values[2]
     depth, touch = (x, 1.0) if x > 0.0 else ((behind, -1.0) if behind > 0.0 else (0.0, 0.0))
     share = depth * values[3]
@@ -39,8 +43,18 @@ def force(gap, mode, values, now, d, v):
         share = min(share, 1.0)
     total = k * depth + c * share * touch * rate
     if total <= 0.0 and mode != UNCLAMPED:
-        return push
-    return touch * total + push
+        return push, 0.0
+    return touch * total + push, c * share * rate
+
+
+@compiled
+def momentum(values, now, d):
+    """Integral of the damping's share over the approach d - e, and the flank that touches; see `edges`."""
+    x = d - now[ERROR]
+    behind = -x - values[2]
+    depth, touch = (x, 1.0) if x > 0.0 else ((behind, -1.0) if behind > 0.0 else (0.0, 0.0))
+    share = min(depth * values[3], 1.0)
+    return touch * share * (depth - 0.5 * share / values[3]), touch
 
 
 @compiled
@@ -77,7 +91,7 @@ def own_forces(laws, clock, condition, space, local):
 
 @compiled
 def slopes(K, D, B, load, gap, mode, values, now, laws, clock, condition, space, y, local, a):
-    """z'' (n,) of a state y = (z, z'), and d, d' and F of each column, local (m, 3).
+    """z'' (n,) of a state y = (z, z'), and d, d', F and its damping of each column, local (m, 4).
 
     laws, clock, condition, space: of the columns that act by laws of their own, see `own_forces`.
     """
@@ -90,7 +104,7 @@ def slopes(K, D, B, load, gap, mode, values, now, laws, clock, condition, space,
             v += B[i, j] * dz[i]
         local[j, 0], local[j, 1] = d, v
         if gap[j] != OWN_LAW:
-            local[j, 2] = force(gap[j], mode[j], values[j], now[j], d, v)
+            local[j, 2], local[j, 3] = force(gap[j], mode[j], values[j], now[j], d, v)
     own_forces(laws, clock, condition, space, local)
     for i in range(n):
         total = load[i]
@@ -102,19 +116,21 @@ def slopes(K, D, B, load, gap, mode, values, now, laws, clock, condition, space,
 
 
 @compiled(free=True)
-def trajectory(steps, every, begun, K, D, B, load, gap, mode, values, table, laws, clock, state, out):
+def trajectory(steps, every, begun, K, D, B, load, gap, mode, jumps, values, table, laws, clock, state, out):
     """Run on from a state (2 n,) in place; out (s, m, 3) gets d, d' and F once in `every` steps, beginning with the first state.
 
     Args:
-        steps: in a period of the fastest mesh; begun: steps before. values: (m, 5).
+        steps: in a period of the fastest mesh; begun: steps before. jumps, values: (m,), (m, 5).
         table: (2 steps in a common period + 1, m, 4). laws, clock: see `own_forces`.
     """
     n, h, period = K.shape[0], 2.0 * np.pi / steps, (table.shape[0] - 1) // 2
-    y, total, a, local = np.empty(2 * n), np.empty(2 * n), np.empty(n), np.empty((B.shape[1], 3))
+    m = B.shape[1]
+    y, total, a, local = np.empty(2 * n), np.empty(2 * n), np.empty(n), np.zeros((m, 4))
+    used, edge = np.empty(m), np.empty((m, 2))
     condition, space = np.zeros(laws[6][-1]), np.zeros(_MOST_COMPONENTS * (3 + 2 * _MOST_COMPONENTS) + 4)
     for step in range(out.shape[0] * every):
         y[:] = state
-        total[:] = 0.0
+        total[:], used[:] = 0.0, 0.0
         for stage in range(4):
             half = (stage + 1) // 2
             if stage != 2:
@@ -122,8 +138,12 @@ def trajectory(steps, every, begun, K, D, B, load, gap, mode, values, table, law
             now = table[2 * (step % period) + half]
             slopes(K, D, B, load, gap, mode, values, now, laws, clock, condition, space, y, local, a)
             if stage == 0 and step % every == 0:
-                out[step // every] = local
+                out[step // every] = local[:, :3]
             weight = (1.0 if stage in (0, 3) else 2.0) * h / 6.0
+            for j in range(m):
+                used[j] += weight * local[j, 3]
+                if stage == 0 and jumps[j]:
+                    edge[j] = momentum(values[j], now[j], local[j, 0])
             share = h if stage == 2 else 0.5 * h
             for i in range(n):
                 total[i] += weight * y[n + i]
@@ -132,3 +152,13 @@ def trajectory(steps, every, begun, K, D, B, load, gap, mode, values, table, law
             for i in range(n):
                 y[n + i] = state[n + i] + share * a[i]
         state += total
+        for j in range(m):
+            if jumps[j]:
+                d = 0.0
+                for i in range(n):
+                    d += B[i, j] * state[i]
+                gamma, touch = momentum(values[j], now[j], d)
+                if jumps[j] == ALWAYS or (touch != 0.0 and touch != edge[j, 1]):
+                    rest = values[j, 1] * (gamma - edge[j, 0]) - used[j]
+                    for i in range(n):
+                        state[n + i] -= B[i, j] * rest

@@ -97,6 +97,7 @@ def run_block(
     first = systems[0]
     (matrix, across), values = _matrices(filled), _values(filled)
     mesh, kinds = first.columns.mesh, (first.columns.gap, first.columns.mode)
+    jumps, pushes = np.max([s.columns.jumps for s in filled], axis=0), _sparse([-s.B for s in filled])
     wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
     pushed = any(np.any(s.columns.push) for s in systems)
     table = _stacked([one[:, :, : 4 if pushed else 3] for one in wide])
@@ -104,7 +105,7 @@ def run_block(
     rigid, energy = _stacked([s.rigid for s in filled]), _stacked([s.energy for s in filled])
     begins = [*starts, *[starts[-1]] * (LANES - count)]
     state = _stacked([np.concatenate([s.z, s.dz]) for s in begins])
-    tangents = _tangents(first, plan.tangents)
+    tangents, kept = _tangents(first, plan.tangents), _kept(filled, begins, wide)
     last, sums = aligned((mesh.size, LANES)), blank_sums(mesh.size)
 
     def run(begun: int, periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -114,8 +115,9 @@ def run_block(
         for p in range(0, periods, stride):
             if not go_on():
                 raise KeyboardInterrupt
-            lanes_loop(first.turns, plan.steps, begun + p, counting, matrix, across, *kinds, values, mesh, table, laws, clock,
-                       rigid, energy, state, followed, last, growth[p : p + stride], section[p : p + stride], sums)  # fmt: skip
+            lanes_loop(first.turns, plan.steps, begun + p, counting, matrix, across, pushes, *kinds, jumps, values, mesh, table,
+                       laws, clock, rigid, energy, state, kept, followed, last, growth[p : p + stride],
+                       section[p : p + stride], sums)  # fmt: skip
         return growth, section
 
     warm = min(plan.warm, plan.settle) if plan.tangents else 0
@@ -210,7 +212,25 @@ def _sparse(matrices: Sequence[np.ndarray]) -> Sparse:
     return first, np.nonzero(used)[1].astype(np.int64), _stacked([matrix[used] for matrix in matrices])
 
 
+def _kept(systems: Sequence[SmallSystem], starts: Sequence[Start], tables: Sequence[np.ndarray]) -> np.ndarray:
+    """What the kernel keeps of the end of a step (m, 4, w), at the start: see kernel_lane_jumps.py."""
+    from rotorgear.solvers.kernel_lane_parts import ERROR
+
+    found = []
+    for i, (system, start) in enumerate(zip(systems, starts, strict=True)):
+        c = system.columns
+        x = system.B.T @ start.z - tables[i % len(tables)][0, :, ERROR]
+        behind = -x - c.backlash
+        touch = np.where(x > 0.0, 1.0, np.where(behind > 0.0, -1.0, 0.0))
+        depth = np.maximum(np.maximum(x, behind), 0.0)
+        share = np.minimum(depth * c.ramp, 1.0)
+        found.append(np.stack([touch * share * (depth - 0.5 * share / c.ramp), share, touch, touch], axis=1))
+    return _stacked(found)
+
+
 def _values(systems: Sequence[SmallSystem]) -> np.ndarray:
-    """Values of the columns (m, 5, w), as the kernel reads them."""
+    """Values of the columns (m, 6, w), as the kernel reads them."""
     names = ("stiffness", "damping", "backlash", "ramp", "push")
-    return _stacked([np.stack([getattr(s.columns, name) for name in names], axis=1) for s in systems])
+    return _stacked(
+        [np.stack([*(getattr(s.columns, name) for name in names), 1.0 / s.columns.ramp], axis=1) for s in systems]
+    )

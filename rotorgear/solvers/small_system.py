@@ -40,6 +40,14 @@ class Columns:
     push: np.ndarray
     mesh: np.ndarray
 
+    @property
+    def jumps(self) -> np.ndarray:
+        """(m,) whether the damping sets in where flanks meet: NEVER, only as they CLOSE, or ALWAYS, as they part as well."""
+        from rotorgear.solvers.kernel_lane_parts import ALWAYS, CLOSING, LINE, NEVER, ONE_SIDED, PENETRATION, UNCLAMPED
+
+        parts = ((self.gap == LINE) | (self.gap == ONE_SIDED)) & (self.mode != PENETRATION) & (self.damping > 0.0)
+        return np.where(parts, np.where(self.mode == UNCLAMPED, ALWAYS, CLOSING), NEVER).astype(np.int64)
+
 
 @dataclass(frozen=True)
 class Shapes:

@@ -43,6 +43,18 @@ def recorded(
     clock = np.array([system.own.turn, system.w])
     before = begun * system.turns * steps
     trajectory(
-        steps, every, before, *matrices, c.gap, c.mode, values, np.ascontiguousarray(table), laws, clock, state, out
+        steps,
+        every,
+        before,
+        *matrices,
+        c.gap,
+        c.mode,
+        c.jumps,
+        values,
+        np.ascontiguousarray(table),
+        laws,
+        clock,
+        state,
+        out,
     )
     return out * np.array([1.0, system.w, system.w**2])

@@ -52,6 +52,7 @@ def scalar_loop(periods, steps, n, first, column, K, D, load, bfirst, bcolumn, b
     h = 2.0 * np.pi / steps
     m = k.size
     F, qs, vs, a, dq, dv = np.empty(m), np.empty(n), np.empty(n), np.zeros(n), np.empty(n), np.empty(n)
+    before, used = np.empty(m), np.empty(m)
     for period in range(periods):
         for step in range(steps):
             dq[:], dv[:] = 0.0, 0.0
@@ -76,7 +77,11 @@ def scalar_loop(periods, steps, n, first, column, K, D, load, bfirst, bcolumn, b
                         side, depth = 1.0, x
                     elif x < -backlash[j]:
                         side, depth = -1.0, -x - backlash[j]
-                    F[j] = side * (k[j] * table[row, j, 0] * depth + c[j] * min(depth * ramp[j], 1.0) * side * rate)
+                    on = min(depth * ramp[j], 1.0)
+                    F[j] = side * (k[j] * table[row, j, 0] * depth + c[j] * on * side * rate)
+                    if stage == 0:
+                        before[j], used[j] = side * on * (depth - 0.5 * on / ramp[j]), 0.0
+                    used[j] += weight * c[j] * on * rate
                 for i in range(n):
                     total = load[i]
                     for p in range(first[i], first[i + 1]):
@@ -89,6 +94,19 @@ def scalar_loop(periods, steps, n, first, column, K, D, load, bfirst, bcolumn, b
             for i in range(n):
                 q[i] += dq[i]
                 v[i] += dv[i]
+            for j in range(m):
+                x = -table[2 * step + 2, j, 1]
+                for p in range(bfirst[j], bfirst[j + 1]):
+                    x += bvalue[p] * q[bcolumn[p]]
+                side, depth = 0.0, 0.0
+                if x > 0.0:
+                    side, depth = 1.0, x
+                elif x < -backlash[j]:
+                    side, depth = -1.0, -x - backlash[j]
+                share = min(depth * ramp[j], 1.0)
+                rest = c[j] * (side * share * (depth - 0.5 * share / ramp[j]) - before[j]) - used[j]
+                for p in range(bfirst[j], bfirst[j + 1]):
+                    v[bcolumn[p]] -= bvalue[p] * rest
         for j in range(m):
             section[period, j] = 0.0
             for p in range(bfirst[j], bfirst[j + 1]):

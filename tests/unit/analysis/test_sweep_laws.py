@@ -32,12 +32,12 @@ ROLLING = {
 }  # fmt: skip
 
 
-def with_law(law: ForceLaw, columns: Any, speed: float = 0.9) -> LocalSystem:
+def with_law(law: ForceLaw, columns: Any, speed: float = 0.9, contact: MeshContact = MESH) -> LocalSystem:
     """Five masses on springs with a mesh between the first two, and a law."""
     K = 0.3 * np.eye(5) + 0.1 * (np.eye(5, k=1) + np.eye(5, k=-1))
     mesh = np.array([[1.0], [-1.0], [0.0], [0.0], [0.2]])
     return local_system(
-        np.eye(5), 0.05 * np.eye(5), K, [0.2, -0.1, 0.0, 0.05, 0.0], [(MESH, mesh), (law, columns)], speed=speed
+        np.eye(5), 0.05 * np.eye(5), K, [0.2, -0.1, 0.0, 0.05, 0.0], [(contact, mesh), (law, columns)], speed=speed
     )
 
 
@@ -67,7 +67,9 @@ def test_laws_follow_newmark_in_small_steps(law: ForceLaw, columns: np.ndarray) 
 
 
 def test_one_at_a_time_and_in_vectors_are_the_same_to_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
-    local = with_law(MESH, np.array([[0.0], [1.0], [0.0], [-1.0], [0.0]]))
+    # Damping that grows with the depth: what jumps is put right in vectors only.
+    smooth = replace(MESH, contact_damping="penetration")
+    local = with_law(smooth, np.array([[0.0], [1.0], [0.0], [-1.0], [0.0]]), contact=smooth)
 
     def orbit(own: bool) -> Any:
         known = still(local, [Fraction(1)], ("m", "n"))
