@@ -21,6 +21,8 @@ _EPS = float(np.finfo(float).eps)
 _WORST_CONDITION = 1e10
 # A rate on a free motion below this share of the largest one is rounding.
 _NOISE = 1e-10
+# Squares of frequencies within a factor of the lowest that one eigensolution gives M-orthogonal to rounding.
+_STEP = 1e4
 
 
 @dataclass(frozen=True)
@@ -104,10 +106,32 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     lam = 1.0 / mu - sigma
     if np.any(np.abs(lam[rigid]) > sigma):
         raise ConvergenceError("stiffnesses too far apart for dense modes; use the newmark method")
-    R, V, lam = V[:, rigid], V[:, ~rigid], lam[~rigid]
+    R, V = V[:, rigid], V[:, ~rigid]
+    V, lam = _freed_of_slower(dense, stiff, R, V)
     if modes is not None and modes < V.shape[1]:
         V = _with_residuals(dense, stiff, V, lam, B, modes)
     return V, R
+
+
+def _freed_of_slower(M: np.ndarray, K: np.ndarray, R: np.ndarray, V: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """M-orthonormal modes and their squares from vectors (n, b) in rising order that the eigensolver made orthogonal in K.
+
+    Slow motions hardly show in K, so fast vectors carry shares of them. Freed of all that is slower they are solved anew, and
+    those within a step of the lowest are taken.
+    """
+    slower, squares = R, [np.zeros(0)]
+    while V.shape[1]:
+        for _ in range(2):
+            V = V - slower @ (slower.T @ (M @ V))
+        V = V / np.sqrt(np.einsum("ij,ij->j", V, K @ V))
+        mass, strain = V.T @ (M @ V), V.T @ (K @ V)
+        mu, turned = la.eigh(0.5 * (mass + mass.T), 0.5 * (strain + strain.T))
+        V, lam = V @ turned[:, ::-1], 1.0 / mu[::-1]
+        V = V / np.sqrt(np.einsum("ij,ij->j", V, M @ V))
+        count = max(1, int(np.searchsorted(lam, _STEP * lam[0])))
+        slower, V = np.hstack([slower, V[:, :count]]), V[:, count:]
+        squares.append(lam[:count])
+    return slower[:, R.shape[1] :], np.concatenate(squares)
 
 
 def _with_residuals(

@@ -38,6 +38,10 @@ accuracy. *Error* is the largest relative error of the first modes that are not 
 carries over its true error, smallest and largest over the modes whose true error is above 1e-9: 1 is a perfect estimate, and
 an estimate of `inf` (the mesh can't follow that mode) is left out of it. Times are medians of three whole analyses, assembly
 to energies, on one thread of the machine that made this page.
+
+Other methods have their ladders beside them: [loaded teeth](mesh.md#accuracy), [integrators of the transient](transient.md),
+[exponents and indicators of sweeps](sweep.md#what-the-numbers-are-worth) and
+[their reductions](sweep.md#models-with-flexible-shafts).
 """
 
 
