@@ -8,12 +8,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from rotorgear.analysis.sweep_axes import Axis
+from rotorgear.analysis.sweep_classify import period_in
 from rotorgear.analysis.sweep_point import Point
 from rotorgear.solvers.lanes import Orbit
 
 # Depths over which damping sets in that flanks may pass in a step: measured on models/backlash_pair.toml at 3560 rpm, where at 12
 # periodic motions turn into chaos that more steps don't show, and at 6 they don't.
 _PASSED = 5.0
+# Logarithm by which the start of a run must have decayed: 5 % of it.
+_FORGOTTEN = 3.0
 
 
 def notes(
@@ -22,6 +25,7 @@ def notes(
     failed: Sequence[str],
     motion: Sequence[str],
     steps: np.ndarray,
+    settle: int,
     orbits: dict[tuple[int, int], Orbit],
 ) -> tuple[str, ...]:
     """Return the warnings as sentences."""
@@ -41,7 +45,11 @@ def notes(
     found += [
         f"{axis.address} changes nothing in this model: its points are all the same" for axis in idle(axes, points)
     ]
-    return (*found, *_thin_ramps(points, steps, orbits))
+    return (
+        *found,
+        *_slow(motion, settle, orbits, len(motion) // max(1, len(points))),
+        *_thin_ramps(points, steps, orbits),
+    )
 
 
 def idle(axes: Sequence[Axis], points: Sequence[Point | None]) -> list[Axis]:
@@ -64,6 +72,20 @@ def _digest(point: Point) -> bytes:
         columns.backlash, columns.ramp, columns.push, system.own.forces.parameters, np.array([system.w, system.turns]),
     )  # fmt: skip
     return hashlib.blake2b(b"".join([*(np.ascontiguousarray(part).tobytes() for part in parts), point.shape])).digest()
+
+
+def _slow(motion: Sequence[str], settle: int, orbits: dict[tuple[int, int], Orbit], runs: int) -> tuple[str, ...]:
+    """A warning where what a run started with is still there when it counts, and may be why it repeats after several periods."""
+    several = {
+        key: o for key, o in orbits.items() if period_in(motion[key[0] * runs + key[1]]) > 1 and o.growth.shape[1]
+    }
+    slow = sum(float(o.growth[:, 0].mean()) * settle > -_FORGOTTEN for o in several.values())
+    if not slow:
+        return ()
+    return (
+        f"{slow} of {len(several)} runs with 2T or longer forget their start more slowly than the {settle} periods that settled: "
+        "their period may change with more --settle",
+    )
 
 
 def _thin_ramps(

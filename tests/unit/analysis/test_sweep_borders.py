@@ -50,6 +50,17 @@ def test_damping_that_sets_in_within_a_step_is_warned_about_until_the_steps_foll
         assert found.warnings == ()
 
 
+def test_runs_that_still_remember_their_start_are_warned_about() -> None:
+    marine = rg.load(PAIR.with_name("marine_dual_turbine.toml"))  # decays by 5e-4 a period
+    over = {"loads.lp.torque": "15.1 kN m,15.4 kN m"}
+    early = rg.sweep(marine, over, settle=400, steps=40)
+    assert early.motion != ("2T", "2T")
+    assert any("forget their start" in note for note in early.warnings)
+    late = rg.sweep(marine, over, settle=20000, steps=40)
+    assert late.motion == ("2T", "2T")
+    assert not any("forget their start" in note for note in late.warnings)
+
+
 def test_scatter_is_no_period() -> None:
     draw = np.random.default_rng(2).uniform(-1.0, 1.0, (200, 1))
     assert period_of(1.03e-8 * draw, np.array([1e-6])) == 0  # 2.06 % of the peak to peak, in no order
