@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -42,11 +43,12 @@ def axis_of(address: str, values: str | Sequence[float | str]) -> Axis:
     """
     if isinstance(values, str) and ":" in values:
         parts = values.split(":")
-        if len(parts) != 3 or not parts[2].strip().isdigit() or int(parts[2]) < 2:
+        if len(parts) != 3 or not parts[2].strip().isdecimal() or int(parts[2]) < 2:
             raise AnalysisError(
                 f"over {address}: got '{values}', expected FROM:TO:COUNT such as '3000 rpm:6000 rpm:31'"
             )
         ends, unit = _numbers(address, parts[:2])
+        _refuse_many(int(parts[2]))
         return Axis(address, tuple(float(x) for x in np.linspace(ends[0], ends[1], int(parts[2]))), unit)
     listed = values.split(",") if isinstance(values, str) else list(values)
     numbers, unit = _numbers(address, listed)
@@ -98,10 +100,13 @@ def points_of(axes: Sequence[Axis]) -> list[tuple[float, ...]]:
         raise AnalysisError(f"over: got {len(axes)} parameters, expected one or two")
     if len({axis.address for axis in axes}) < len(axes):
         raise AnalysisError(f"over: '{axes[0].address}' is given twice")
-    found = list(product(*(axis.values for axis in axes)))
-    if len(found) > MOST_POINTS:
-        raise AnalysisError(f"over: {len(found)} points are too many (at most {MOST_POINTS})")
-    return found
+    _refuse_many(prod(len(axis.values) for axis in axes))
+    return list(product(*(axis.values for axis in axes)))
+
+
+def _refuse_many(count: int) -> None:
+    if count > MOST_POINTS:
+        raise AnalysisError(f"over: {count} points are too many (at most {MOST_POINTS})")
 
 
 class Family:
@@ -124,8 +129,15 @@ class Family:
                 owner: Any = data
                 for key in place[:-1]:
                     owner = owner[key]
-                owner[place[-1]] = axis.text(value)
+                owner[place[-1]] = _as_before(owner, place[-1], axis.text(value))
         return Model(**data)
+
+
+def _as_before(owner: Any, key: Any, value: float | str) -> float | str:
+    """A value, as a whole number where one stands: teeth, harmonics."""
+    old = owner[key] if isinstance(owner, list) else owner.get(key)
+    whole = isinstance(old, int) and isinstance(value, float) and value.is_integer()
+    return int(value) if whole else value
 
 
 def places_of(data: dict[str, Any], address: str) -> list[tuple[str | int, ...]]:
@@ -161,7 +173,7 @@ def _keys(value: Any, part: str, address: str, *, last: bool) -> list[str | int]
     if isinstance(value, list):
         if part == "*":
             return list(range(len(value)))
-        if part.isdigit() and int(part) < len(value):
+        if part.isdecimal() and int(part) < len(value):
             return [int(part)]
         raise AnalysisError(f"over {address}: '{part}' is no place in a list of {len(value)} (the first is 0)")
     if isinstance(value, dict):

@@ -4,7 +4,8 @@ With x the displacements of the contacts at the end of each common period T, p t
 transmission error, whichever is larger) and L the exponent per period of the fastest mesh, the first of these that holds:
 
     chaotic         L > chaos (0.02), L > 2 standard errors, and x does not grow from one half of the section to the other
-    kT              all x that lie k T apart stay within tolerance (0.02) of max(p, 0.05 um), for the least k up to 32
+    kT              all x that lie k T apart stay within tolerance (0.02) of max(p, 0.05 um), for the least k up to 32;
+                    contacts that spread wider than that as a whole, within half of their spread at most
     chaotic         as above, but L > 1 standard error: what does not repeat needs less evidence
     quasi-periodic  |L| <= chaos, and the two halves of the section cover the same range to 10 %
     not settled     anything else
@@ -20,6 +21,8 @@ LONGEST = 32
 TOLERANCE, CHAOS = 0.02, 0.02
 _SMALLEST = 0.05e-6  # m, peak to peak
 _SAME_RANGE = 0.1
+# Of the spread of all x: scatter is no wider among every k-th of few than among all of them, periods are.
+_APART = 0.5
 _GROWTH = 5.0
 # Batches of consecutive periods whose means are taken as independent.
 _BATCHES = 16
@@ -79,7 +82,8 @@ def classify(
 
 def period_of(x: np.ndarray, extent: np.ndarray, tolerance: float = TOLERANCE) -> int:
     """Least number of common periods after which x (p, c) repeats; 0 where it does not."""
-    allowed = tolerance * np.maximum(extent, _SMALLEST)
+    allowed, spread = tolerance * np.maximum(extent, _SMALLEST), np.ptp(x, axis=0)
+    allowed = np.where(spread > allowed, np.minimum(allowed, _APART * spread), allowed)
     for k in range(1, min(LONGEST, len(x) // 3) + 1):
         if all(np.all(np.ptp(x[j::k], axis=0) <= allowed) for j in range(k)):
             return k

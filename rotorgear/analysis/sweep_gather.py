@@ -8,6 +8,7 @@ import numpy as np
 
 from rotorgear.analysis.sweep_axes import Axis
 from rotorgear.analysis.sweep_classify import FAILED, classify, exponents
+from rotorgear.analysis.sweep_notes import notes
 from rotorgear.analysis.sweep_point import Point
 from rotorgear.analysis.sweep_request import Request
 from rotorgear.model.model import Model
@@ -91,7 +92,8 @@ def gathered(
         static_deflection=static / np.where(stiffness > 0.0, stiffness, np.nan), failure=tuple(failed), steps=steps,
         settle=request.settle, count=request.count, tolerance=request.tolerance, chaos=request.chaos,
         dofs=max(q.system.n for q in sound), seconds=laps, method="Runge-Kutta of order 4 in lanes of 32 points",
-        warnings=_warnings(points, failed, motion) + _reduction(reduction, request), portraits=None, reduction=reduction,
+        warnings=notes(axes, points, failed, motion, steps, request.settle, orbits) + _reduction(reduction, request),
+        portraits=None, reduction=reduction,
         **tables,
     )  # fmt: skip
 
@@ -116,23 +118,6 @@ def _indicators(sums: np.ndarray, steps: int) -> dict[str, np.ndarray]:
         "driving": sums[:, k.DRIVING] / total, "apart": sums[:, k.APART] / total, "back": sums[:, k.BACK] / total,
         "losses": sums[:, k.LOSSES] / total * steps,
     }  # fmt: skip
-
-
-def _warnings(points: Sequence[Point | None], failed: Sequence[str], motion: Sequence[str]) -> tuple[str, ...]:
-    found = []
-    count = sum(map(bool, failed))
-    if count:
-        found.append(f"{count} of {len(points)} points failed; the first: {next(filter(None, failed))}")
-    if any(q.drift for q in points if q):
-        found.append("the torques do not balance at some points: the shafts drift off the prescribed rotation there")
-    if any(q.rolling for q in points if q):
-        found.append(
-            "rolling elements pass beside the meshes and never repeat with them: a motion that they drive shows as quasi-periodic"
-        )
-    unsettled = sum(kind == "not settled" for kind in motion)
-    if unsettled:
-        found.append(f"{unsettled} of {len(motion)} runs had not settled: ask for more periods of --settle or --count")
-    return tuple(found)
 
 
 def _reduction(found: Reduction | None, request: Request) -> tuple[str, ...]:

@@ -41,10 +41,14 @@ class Request:
         if self.direction not in DIRECTIONS:
             raise AnalysisError(f"direction: got '{self.direction}', expected one of {', '.join(DIRECTIONS)}")
         for name, most in _NUMBERS.items():
-            if not (0 if name == "settle" else 1) <= getattr(self, name) <= most:
-                raise AnalysisError(f"{name}: got {getattr(self, name)}, expected 1 to {most}")
-        if self.exponents < 0:
-            raise AnalysisError(f"exponents: got {self.exponents}, expected 0 or more")
+            least = 0 if name == "settle" else 1
+            if not least <= getattr(self, name) <= most:
+                raise AnalysisError(f"{name}: got {getattr(self, name)}, expected {least} to {most}")
+        for name in ("exponents", "seed"):
+            if getattr(self, name) < 0:
+                raise AnalysisError(f"{name}: got {getattr(self, name)}, expected 0 or more")
+        if not 0.0 <= self.throw < np.inf:
+            raise AnalysisError(f"throw: got {self.throw:g}, expected a number that is not negative")
         if self.steps is not None and not 8 <= self.steps <= 100_000:
             raise AnalysisError(f"steps: got {self.steps}, expected 8 to 100000 in a period of the fastest mesh")
         for name, most in (("modes", MOST_COORDINATES), ("elements", 1000)):

@@ -114,17 +114,18 @@ def sweep(
                 typer.echo(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)
             raise
     console().print(sweep_table(result))
-    write_json(result.to_dict(), json)
-    _write(result, save, plot)
+    _write(result, save, plot, json)
 
 
-def _write(result: SweepResult, save: Path | None, plot: Path | None) -> None:
+def _write(result: SweepResult, save: Path | None, plot: Path | None, json: Path | None) -> None:
+    """Write the files, first the one that holds everything."""
     import rotorgear as rg
 
     if save:
         rg.save(result, save)
         rg.stream(save).close()
         typer.echo(f"saved {save}")
+    write_json(result.to_dict(), json)
     if plot:
         from rotorgear.plots.sweep import draw_sweep
 

@@ -29,8 +29,10 @@ class ChunkStream:
 
         Raises:
             RotorgearError: chunks of another run are there, or of this one and it was not asked to go on.
-            WriteError: the folder can't be made.
+            WriteError: the folder can't be made, or the result would go to the name of a folder.
         """
+        if self.path.is_dir():
+            raise WriteError(self.path, "it is a folder; give the name of a file")
         mark = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in settings.items()}
         note = self.folder / "settings.json"
         if self._resume and note.is_file():

@@ -131,7 +131,7 @@ def test_statistics_of_a_sweep_are_those_of_the_transient() -> None:
 
 def test_the_pair_goes_from_one_period_to_two_and_chaos() -> None:
     result = rg.sweep(
-        rg.load(PAIR), {"operation.speed": "2600 rpm,3100 rpm,3500 rpm,3900 rpm,4000 rpm"}, settle=1000, count=200
+        rg.load(PAIR), {"operation.speed": "2600 rpm,3300 rpm,3500 rpm,3900 rpm,4000 rpm"}, settle=1000, count=200
     )
     assert result.motion == ("1T", "2T", "4T", "chaotic", "chaotic")
     assert np.all(result.lyapunov[:3, 0, 0] < -0.03)

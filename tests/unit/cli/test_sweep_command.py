@@ -69,7 +69,7 @@ def test_two_parameters_give_a_map(tmp_path: Path) -> None:
 
 
 def test_portraits_of_chosen_points_are_listed_by_their_lines(tmp_path: Path) -> None:
-    over = ["--over", "operation.speed=3000 rpm:4000 rpm:5", "--settle", "300", "--count", "60"]
+    over = ["--over", "operation.speed=3000 rpm:4000 rpm:5", "--settle", "300", "--count", "60", "--steps", "400"]
     code, text = run(PAIR, *over, "--portrait", "3250", "--portrait", "3490 rpm", "--json", str(tmp_path / "s.json"))
     assert code == 0
     table = text.split("Strongest lines")[1]
