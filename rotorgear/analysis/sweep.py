@@ -8,10 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.cluster import versions
 from rotorgear.analysis.sweep_axes import Axis, Family, axis_of, points_of
 from rotorgear.analysis.sweep_blocks import Pool, Workers, blocks, packed, unpacked, waves
 from rotorgear.analysis.sweep_classify import CHAOS, TOLERANCE
 from rotorgear.analysis.sweep_gather import gathered
+from rotorgear.analysis.sweep_notes import coarse_shafts
 from rotorgear.analysis.sweep_point import Point, PointMaker
 from rotorgear.analysis.sweep_portrait import Wanted, portraits_of, wanted_points
 from rotorgear.analysis.sweep_reduce import Large
@@ -96,11 +98,13 @@ def sweep(
             raise RotorgearError(next(filter(None, failure)))
         laps = {"points": clock.perf_counter() - begun}
         settings = {"models": "".join(models), "run": f"{request} {[axis.address for axis in axes]} {chosen.tolist()}"}
-        kept = stream.begin(settings) if stream else []
+        # What another version of the program kept would be no part of this sweep.
+        kept = stream.begin({"program": str(versions()), **settings}) if stream else []
         shape = [len(axis.values) for axis in axes]
         orbits = _run(points, chosen, shape, request, Workers(workers, executor), stream, kept, progress)
     laps["integration"] = clock.perf_counter() - begun - laps["points"]
     result = gathered(model, axes, values, points, failure, chosen, request, orbits, laps, reduction)
+    result = replace(result, warnings=(*result.warnings, *coarse_shafts(model, elements)))
     if wanted:
         result = replace(result, portraits=portraits_of(result, wanted, points, request, orbits, progress))
         laps["portraits"] = clock.perf_counter() - begun - laps["points"] - laps["integration"]

@@ -92,7 +92,7 @@ def gathered(
         static_deflection=static / np.where(stiffness > 0.0, stiffness, np.nan), failure=tuple(failed), steps=steps,
         settle=request.settle, count=request.count, tolerance=request.tolerance, chaos=request.chaos,
         dofs=max(q.system.n for q in sound), seconds=laps, method="Runge-Kutta of order 4 in lanes of 32 points",
-        warnings=notes(axes, points, failed, motion, steps, request.settle, orbits) + _reduction(reduction, request),
+        warnings=notes(axes, points, failed, motion, request.settle, orbits) + _reduction(reduction, request),
         portraits=None, reduction=reduction,
         **tables,
     )  # fmt: skip

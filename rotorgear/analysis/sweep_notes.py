@@ -1,4 +1,4 @@
-"""Warnings of a sweep: what failed or had not settled, what the steps don't follow, and parameters that change nothing."""
+"""Warnings of a sweep: what failed or had not settled, and parameters that change nothing."""
 
 from __future__ import annotations
 
@@ -10,11 +10,9 @@ import numpy as np
 from rotorgear.analysis.sweep_axes import Axis
 from rotorgear.analysis.sweep_classify import period_in
 from rotorgear.analysis.sweep_point import Point
+from rotorgear.model.model import Model
 from rotorgear.solvers.lanes import Orbit
 
-# Depths over which damping sets in that flanks may pass in a step: measured on models/backlash_pair.toml at 3560 rpm, where at 12
-# periodic motions turn into chaos that more steps don't show, and at 6 they don't.
-_PASSED = 5.0
 # Logarithm by which the start of a run must have decayed: 5 % of it.
 _FORGOTTEN = 3.0
 
@@ -24,7 +22,6 @@ def notes(
     points: Sequence[Point | None],
     failed: Sequence[str],
     motion: Sequence[str],
-    steps: np.ndarray,
     settle: int,
     orbits: dict[tuple[int, int], Orbit],
 ) -> tuple[str, ...]:
@@ -45,11 +42,14 @@ def notes(
     found += [
         f"{axis.address} changes nothing in this model: its points are all the same" for axis in idle(axes, points)
     ]
-    return (
-        *found,
-        *_slow(motion, settle, orbits, len(motion) // max(1, len(points))),
-        *_thin_ramps(points, steps, orbits),
-    )
+    return (*found, *_slow(motion, settle, orbits, len(motion) // max(1, len(points))))
+
+
+def coarse_shafts(model: Model, elements: int | None) -> tuple[str, ...]:
+    """A sentence where shafts have one element in each piece because nothing else was asked for."""
+    if elements is not None or not any(shaft.sections for shaft in model.shafts.values()):
+        return ()
+    return ("the shafts have one element in each piece: --elements 4, say, shows what that changes",)
 
 
 def idle(axes: Sequence[Axis], points: Sequence[Point | None]) -> list[Axis]:
@@ -85,30 +85,4 @@ def _slow(motion: Sequence[str], settle: int, orbits: dict[tuple[int, int], Orbi
     return (
         f"{slow} of {len(several)} runs with 2T or longer forget their start more slowly than the {settle} periods that settled: "
         "their period may change with more --settle",
-    )
-
-
-def _thin_ramps(
-    points: Sequence[Point | None], steps: np.ndarray, orbits: dict[tuple[int, int], Orbit]
-) -> tuple[str, ...]:
-    """A warning where flanks that meet again pass the depth over which their damping sets in within a fraction of a step."""
-    from rotorgear.solvers.kernel_lane_parts import APART, X_MAX, X_MIN
-
-    passed = []
-    for (i, _), orbit in orbits.items():
-        point = points[i]
-        if point is None or not orbit.finite:
-            continue
-        columns, sums = point.system.columns, orbit.sums
-        met = columns.mesh & (columns.damping > 0.0) & (sums[:, APART] > 0.0) & (sums[:, X_MAX] > 0.0)
-        # Of a swing from one end to the other in a mesh period, the largest way in a step.
-        way = np.pi / steps[i] * (sums[:, X_MAX] - sums[:, X_MIN])
-        passed.append(float((way * columns.ramp)[met].max(initial=0.0)))
-    thin = [x for x in passed if x > _PASSED]
-    if not thin:
-        return ()
-    return (
-        f"in {len(thin)} of {len(passed)} runs flanks that meet pass up to {max(thin):.0f} times the depth over which damping "
-        "sets in within one step: the kind of motion may come from the step; compare with more --steps, or give the meshes a "
-        "larger damping_depth",
     )
