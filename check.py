@@ -145,31 +145,31 @@ def run_steps(steps: tuple[Step, ...], venv: Path, fix: bool, keep_going: bool) 
     environment.pop("PYTHONPATH", None)
     lines: list[str] = []
     failed = False
-
-    def report(step: Step, code: int, start: float) -> None:
-        nonlocal failed
-        lines.append(f"{step.name:8s} {'passed' if code == 0 else 'FAILED'} {time.perf_counter() - start:8.1f} s")
-        failed |= code != 0
-
     rest = list(steps)
     while rest and (keep_going or not failed):
-        step = rest.pop(0)
         # The docs take one core for minutes: the tests run beside them on the other.
-        beside = rest.pop(0) if (step, rest[:1]) == (DOCS, [TESTS]) else None
+        count = 2 if rest[:2] == [DOCS, TESTS] else 1
+        side_by_side, rest = rest[:count], rest[count:]
         start = time.perf_counter()
         with tempfile.TemporaryFile() as kept:
-            first = start_step(step, venv, fix, environment, kept if beside else None)
+            running = {
+                s: start_step(s, venv, fix, environment, kept if s != side_by_side[-1] else None) for s in side_by_side
+            }
             try:
-                if beside:
-                    report(beside, start_step(beside, venv, fix, environment).wait(), start)
-                code = first.wait()
+                while running:
+                    for step in [s for s, process in running.items() if process.poll() is not None]:
+                        code = running.pop(step).returncode
+                        took = time.perf_counter() - start
+                        lines.append(f"{step.name:8s} {'passed' if code == 0 else 'FAILED'} {took:8.1f} s")
+                        failed |= code != 0
+                    time.sleep(0.05)
             finally:
-                first.kill()
-            if beside:
-                say(f"what {step.name} printed")
+                for process in running.values():
+                    process.kill()
+            if count > 1:
+                say(f"what {side_by_side[0].name} printed")
                 kept.seek(0)
                 print(kept.read().decode(errors="replace"), flush=True)
-        report(step, code, start)
     lines += [f"{step.name:8s} not run" for step in rest]
     say("summary")
     print("\n".join(lines), flush=True)

@@ -9,6 +9,10 @@ from __future__ import annotations
 from rotorgear.solvers.compiled import compiled
 from rotorgear.solvers.kernel_lane_vectors import LANES, fill, get, put
 
+_MOST_COMPONENTS = 6
+# Numbers that a law with so many components c needs beside its state: d, v, F, both tangents and four energies.
+SPACE = 3 * _MOST_COMPONENTS + 2 * _MOST_COMPONENTS**2 + 4
+
 
 @compiled
 def schedule_laws(laws, clock, time, state):
@@ -27,7 +31,7 @@ def schedule_laws(laws, clock, time, state):
 def force_laws(laws, clock, state, d, F, tangents, work):
     """Forces of the laws to F (m, w), their tangents in displacement and velocity to tangents (2, b, w).
 
-    work (2 c + c + 2 c c + 4,): space for the law with most components c.
+    work: SPACE numbers.
     """
     _, forces, kind, place, parameters, parameters_first, state_first, block_first = laws
     for i in range(kind.size):

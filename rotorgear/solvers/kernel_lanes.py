@@ -14,12 +14,10 @@ import numpy as np
 
 from rotorgear.solvers.compiled import compiled
 from rotorgear.solvers.kernel_lane_jumps import add_used_along, missing, missing_along, push
-from rotorgear.solvers.kernel_lane_laws import force_laws, laws_along, schedule_laws
+from rotorgear.solvers.kernel_lane_laws import SPACE, force_laws, laws_along, schedule_laws
 from rotorgear.solvers.kernel_lane_parts import FOUND, IN_D, IN_V, NEVER, contacts, count, product, read_table
 from rotorgear.solvers.kernel_lane_tangents import orthonormal
 from rotorgear.solvers.kernel_lane_vectors import LANES, fill, get, put, work
-
-_MOST_COMPONENTS = 6
 
 
 @compiled(fast=True)
@@ -129,7 +127,7 @@ def lanes_loop(turns, steps, begun, counting, matrix, across, pushes, gap, mode,
     moved, moved_ahead = work(t * rows).reshape(t, rows, LANES), work(t * rows).reshape(t, rows, LANES)
     totals, weighed = work(t * 2 * n).reshape(t, 2 * n, LANES), work(t * 2 * n).reshape(t, 2 * n, LANES)
     blocks = work(2 * laws[-1][-1]).reshape(2, laws[-1][-1], LANES)
-    condition, space = np.zeros((LANES, laws[-2][-1])), np.zeros(_MOST_COMPONENTS * (3 + 2 * _MOST_COMPONENTS) + 4)
+    condition, space = np.zeros((LANES, laws[-2][-1])), np.zeros(SPACE)
     jumping = np.any(jumps != NEVER)
     used, impulse, used_along, start = work(m), work(m), work(t * m), work(t * m)
     F, F_ahead = stage[2 * n : 2 * n + m], ahead[2 * n : 2 * n + m]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.compiled import compiled
+from rotorgear.solvers.kernel_lane_laws import SPACE
 from rotorgear.solvers.kernel_lane_parts import (
     ALWAYS,
     ERROR,
@@ -20,8 +21,6 @@ from rotorgear.solvers.kernel_lane_parts import (
     STIFFNESS,
     UNCLAMPED,
 )
-
-_MOST_COMPONENTS = 6
 
 
 @compiled
@@ -72,7 +71,7 @@ def own_schedules(laws, clock, time, condition):
 def own_forces(laws, clock, condition, space, local):
     """Forces of the laws of kernel_lane_laws.py to local (m, 3), one system.
 
-    clock (2,): radians of the reference for one of the fastest mesh, and its rad/s; space: for the law with most components.
+    clock (2,): radians of the reference for one of the fastest mesh, and its rad/s; space: SPACE numbers.
     """
     _, forces, kind, place, parameters, parameters_first, state_first, _ = laws
     rate = clock[1]
@@ -127,7 +126,7 @@ def trajectory(steps, every, begun, K, D, B, load, gap, mode, jumps, values, tab
     m = B.shape[1]
     y, total, a, local = np.empty(2 * n), np.empty(2 * n), np.empty(n), np.zeros((m, 4))
     used, edge = np.empty(m), np.empty((m, 2))
-    condition, space = np.zeros(laws[6][-1]), np.zeros(_MOST_COMPONENTS * (3 + 2 * _MOST_COMPONENTS) + 4)
+    condition, space = np.zeros(laws[6][-1]), np.zeros(SPACE)
     for step in range(out.shape[0] * every):
         y[:] = state
         total[:], used[:] = 0.0, 0.0

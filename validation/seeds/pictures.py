@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +28,6 @@ def dots(axes: Any, x: np.ndarray, result: rg.SweepResult, contact: int, size: f
     axes.margins(x=0.01)
 
 
-@cache
 def marine_ratio() -> tuple[np.ndarray, dict[float, rg.SweepResult]]:
     """The set R000 over the load ratio at both total torques."""
     ratios = np.linspace(0.1, 1.2, 221)
@@ -155,22 +153,12 @@ def draw_split_spectrum(figure: Any) -> None:
     )
     axes.set_yscale("log")
     axes.set_ylim(1e-4 * lines.amplitude[keep].max(), 3.0 * lines.amplitude[keep].max())
-    for number in range(1, 6):
-        axes.axvline(
-            1818.27 * number,
-            color=COLOURS[1],
-            lw=0.5,
-            ls=":",
-            label="stage 2 and its harmonics" if number == 1 else None,
-        )
-    for number in (1, 2):
-        axes.axvline(
-            7902.5 * number,
-            color=COLOURS[2],
-            lw=0.5,
-            ls="--",
-            label="stage 1 and its harmonics" if number == 1 else None,
-        )
+    meshes = rg.describe_model(loaded("split_torque")).to_dict()["meshes"]
+    hz = {row["name"]: row["mesh_frequency_hz"] for row in meshes}
+    for stage, mesh, count, style in ((2, "stage_2a", 5, ":"), (1, "stage_1a", 2, "--")):
+        for number in range(1, count + 1):
+            label = f"stage {stage} and its harmonics" if number == 1 else None
+            axes.axvline(hz[mesh] * number, color=COLOURS[3 - stage], lw=0.5, ls=style, label=label)
     axes.set_xlabel("frequency, Hz")
     axes.set_ylabel("acceleration at the output bearing, m/s$^2$")
     axes.legend(fontsize=7)
