@@ -3,8 +3,8 @@
     python -m validation.frozen keep FOLDER
     python -m validation.frozen compare FOLDER [--tolerance 1e-10]
 
-Each command of COMMANDS runs for each shipped model with --json. `compare` runs them again, and says every value that moved by more
-than the tolerance, relative to the largest value of its array, and every sentence that changed. Seconds are not compared.
+Each command of COMMANDS runs for each shipped model with --json. `compare` runs them again, and says every value that moved by
+more than the tolerance, relative to the largest value of its array, and every sentence that changed. Seconds are not compared.
 A refusal is kept as its sentence: a model that is refused must go on being refused with the same words.
 """
 

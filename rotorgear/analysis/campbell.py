@@ -16,8 +16,8 @@ from rotorgear.analysis.clock import Clock
 from rotorgear.analysis.crossings import Chain, crossings, margins, roots
 from rotorgear.analysis.discretise import system_for_speeds
 from rotorgear.analysis.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
-from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.notes import left_out
+from rotorgear.analysis.pieces import pieces
 from rotorgear.analysis.refine import errors_of, total_error
 from rotorgear.analysis.snapshot_basis import Request, Snapshot, SpeedModes
 from rotorgear.analysis.speed_family import merged

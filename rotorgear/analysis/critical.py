@@ -13,8 +13,8 @@ from rotorgear.analysis.clock import Clock
 from rotorgear.analysis.crossings import EXCITED, participation
 from rotorgear.analysis.discretise import system_for_speeds
 from rotorgear.analysis.excitation import excitation_orders
-from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.notes import left_out
+from rotorgear.analysis.pieces import pieces
 from rotorgear.analysis.speed_family import SpeedFamily
 from rotorgear.analysis.speeds import highest_speed
 from rotorgear.errors import AnalysisError

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rotorgear.analysis.common_request import check_request, direction_of, speed_in_si
 from rotorgear.analysis.mean_state import mean_state
-from rotorgear.analysis.modal_request import check_request, direction_of, speed_in_si
-from rotorgear.analysis.modal_result import pieces
+from rotorgear.analysis.pieces import pieces
 from rotorgear.analysis.plant import Plant, dof_row
 from rotorgear.analysis.points import named_place
 from rotorgear.analysis.refine import all_finer

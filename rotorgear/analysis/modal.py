@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from rotorgear.analysis.clock import Clock
+from rotorgear.analysis.common_request import check_request, direction_of, speed_in_si
 from rotorgear.analysis.enriched_error import enriched_errors
-from rotorgear.analysis.modal_request import MOST_MODES, check_count, check_request, direction_of, speed_in_si
+from rotorgear.analysis.modal_request import MOST_MODES, check_count
 from rotorgear.analysis.modal_result import modal_result
 from rotorgear.analysis.modal_solve import solve
 from rotorgear.analysis.modes import Modes, Wanted

@@ -10,10 +10,11 @@ from rotorgear.analysis.describe import describe
 from rotorgear.analysis.energies import mode_energies
 from rotorgear.analysis.modes import Modes
 from rotorgear.analysis.notes import left_out, mode_warnings
+from rotorgear.analysis.pieces import pieces
 from rotorgear.analysis.points import point_amplitudes
 from rotorgear.analysis.stations import shapes_at_stations
 from rotorgear.analysis.whirl import whirl_by_shaft, whirl_words
-from rotorgear.results.modal import ModalResult, Piece
+from rotorgear.results.modal import ModalResult
 from rotorgear.system.system import System
 
 
@@ -64,17 +65,6 @@ def modal_result(
         method=found.method,
         point_amplitudes=point_amplitudes(system, shapes),
     )
-
-
-def pieces(system: System) -> tuple[Piece, ...]:
-    """Say how each piece of shaft was cut."""
-    found = []
-    for shaft, elements in system.nodes.elements.items():
-        for number in sorted({element.piece for element in elements}):
-            own = [element for element in elements if element.piece == number]
-            start, end = system.nodes.z[own[0].left], system.nodes.z[own[-1].right]
-            found.append(Piece(shaft, start, end, len(own), own[0].order))
-    return tuple(found)
 
 
 def _turned(shapes: np.ndarray) -> np.ndarray:

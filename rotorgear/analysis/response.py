@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.common_request import check_request, direction_of, speed_in_si
 from rotorgear.analysis.mean_state import Setup, mean_state
-from rotorgear.analysis.modal_request import check_request, direction_of, speed_in_si
-from rotorgear.analysis.modal_result import pieces
 from rotorgear.analysis.orders import Order, orders_of
+from rotorgear.analysis.pieces import pieces
 from rotorgear.analysis.plant import Plant, Readings
 from rotorgear.analysis.response_error import mesh_error, parting, speed_warnings
 from rotorgear.analysis.response_mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rotorgear.analysis.modal_request import speed_in_si
+from rotorgear.analysis.common_request import speed_in_si
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 

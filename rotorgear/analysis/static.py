@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 
-from rotorgear.analysis.modal_request import direction_of, speed_in_si
+from rotorgear.analysis.common_request import direction_of, speed_in_si
 from rotorgear.analysis.places import displacement_places
 from rotorgear.analysis.points import point_amplitudes
 from rotorgear.analysis.static_forces import bearing_forces, forces_on_gears, imbalance, support_forces

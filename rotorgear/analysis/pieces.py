@@ -1,0 +1,17 @@
+"""How the shafts were cut into elements, as results tell it."""
+
+from __future__ import annotations
+
+from rotorgear.results.modal import Piece
+from rotorgear.system.system import System
+
+
+def pieces(system: System) -> tuple[Piece, ...]:
+    """Say how each piece of shaft was cut."""
+    found = []
+    for shaft, elements in system.nodes.elements.items():
+        for number in sorted({element.piece for element in elements}):
+            own = [element for element in elements if element.piece == number]
+            start, end = system.nodes.z[own[0].left], system.nodes.z[own[-1].right]
+            found.append(Piece(shaft, start, end, len(own), own[0].order))
+    return tuple(found)
