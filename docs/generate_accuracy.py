@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import rotorgear as rg
-from rotorgear.analysis.accuracy import REFERENCE
-from rotorgear.analysis.refine import DEFAULT_ACCURACY
+from rotorgear.analysis.modal.accuracy import REFERENCE
+from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY
 
 ROOT = Path(__file__).resolve().parents[1]
 MODES = 24

@@ -13,15 +13,15 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from rotorgear.model.bodies import Disk, PointMass
-from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, Unbalance
-from rotorgear.model.flank import Flank, ToothFeTable
-from rotorgear.model.gear import Gear, GearBody
-from rotorgear.model.mesh import Mesh
 from rotorgear.model.model import SCHEMA_VERSION, Model
-from rotorgear.model.operation import Load, ModelDamping, Operation, Point
-from rotorgear.model.shaft import LIBRARY, Material, Section, Shaft
-from rotorgear.model.supports import (
+from rotorgear.model.parts.bodies import Disk, PointMass
+from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, Unbalance
+from rotorgear.model.parts.flank import Flank, ToothFeTable
+from rotorgear.model.parts.gear import Gear, GearBody
+from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.operation import Load, ModelDamping, Operation, Point
+from rotorgear.model.parts.shaft import LIBRARY, Material, Section, Shaft
+from rotorgear.model.parts.supports import (
     Bearing,
     Coupling,
     DampingMatrix,

@@ -10,13 +10,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.forces.law import ForceLaw
-from rotorgear.solvers.explicit import Explicit
-from rotorgear.solvers.exponential import Exponential
-from rotorgear.solvers.local_forces import gather
-from rotorgear.solvers.local_system import Integrator, LocalSystem, Records, State, local_values, state_at_rest
-from rotorgear.solvers.motion import Rotation
-from rotorgear.solvers.newmark import Newmark
-from rotorgear.solvers.run import Schedule, run
+from rotorgear.solvers.time.explicit import Explicit
+from rotorgear.solvers.time.exponential import Exponential
+from rotorgear.solvers.time.local_forces import gather
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Records, State, local_values, state_at_rest
+from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.newmark import Newmark
+from rotorgear.solvers.time.run import Schedule, run
 
 METHODS: dict[str, Integrator] = {
     "average acceleration": Newmark(), "linear acceleration": Newmark(1.0 / 6.0, 0.5), "exponential": Exponential(),

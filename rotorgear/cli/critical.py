@@ -21,7 +21,7 @@ from rotorgear.cli.common import (
     write_json,
 )
 from rotorgear.cli.speed_options import ToOption, parse_orders
-from rotorgear.cli.tables_campbell import plain_table
+from rotorgear.cli.tables.campbell import plain_table
 from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def critical(
 ) -> None:
     """Critical speeds, damped or undamped, of every shaft and mesh order; with --map over support stiffness."""
     import rotorgear as rg
-    from rotorgear.analysis.critical import SHAFT_ORDERS
+    from rotorgear.analysis.campbell.critical import SHAFT_ORDERS
 
     if (plot or shaft) and not stiffness_map:
         raise AnalysisError("--plot and --map-shaft belong to --map; rotorgear campbell --plot draws modes over speed")

@@ -48,7 +48,7 @@ def frf(
     import numpy as np
 
     import rotorgear as rg
-    from rotorgear.cli.tables_response import frf_tables
+    from rotorgear.cli.tables.response import frf_tables
     from rotorgear.results.frequency_response import QUANTITIES
 
     if quantity not in QUANTITIES:

@@ -27,7 +27,7 @@ def gear(
 ) -> None:
     """Print the gear sheet: geometry, measures, contact ratios, backlash and stiffness of all teeth."""
     import rotorgear as rg
-    from rotorgear.cli.tables_gear import sheet_parts
+    from rotorgear.cli.tables.gear import sheet_parts
     from rotorgear.plots.gear_mesh import draw_mesh, require_picture_name
 
     if picture is not None:

@@ -70,7 +70,7 @@ def mesh(
 ) -> None:  # fmt: skip
     """Print stiffness, transmission error, load sharing and pressure of one mesh over its cycle."""
     import rotorgear as rg
-    from rotorgear.cli.tables_mesh import mesh_parts
+    from rotorgear.cli.tables.mesh import mesh_parts
 
     checked = rg.load(model)
     pinion_torque = parse_torque(torque)
@@ -87,7 +87,7 @@ def mesh(
 
         console().print(f"drawn: {draw_mesh_cycle(found, plot)}")
     if vtk:
-        from rotorgear.analysis.tooth_field import tooth_fields
+        from rotorgear.analysis.teeth.tooth_field import tooth_fields
         from rotorgear.export.tooth_vtk import write_tooth_vtk
 
         with progress_bar("vtk") as progress:

@@ -76,7 +76,7 @@ def modal(
 ) -> None:
     """Natural frequencies and mode shapes; undamped at standstill, or damped and gyroscopic at a --speed."""
     import rotorgear as rg
-    from rotorgear.cli.tables_modal import modal_table
+    from rotorgear.cli.tables.modal import modal_table
 
     rig = rg.read_rig_lines(compare) if compare else ()
     chosen = _numbers(shapes)
@@ -92,7 +92,7 @@ def modal(
     out.print(modal_table(result, energies=energies))
     comparison = compare_with_rig(result, rig, tolerance, None if modes else fmax) if rig else None
     if comparison:
-        from rotorgear.cli.tables_comparison import comparison_table
+        from rotorgear.cli.tables.comparison import comparison_table
 
         out.print(comparison_table(comparison))
     data = result.to_dict()
@@ -106,8 +106,8 @@ def compare_with_rig(
     result: ModalResult, rig: tuple[RigLine, ...], tolerance: float, known_to_hz: float | None = None
 ) -> Comparison:
     """Compare modes with rig lines; excitation lines are those at the analysis' speed, else at the operating point."""
-    from rotorgear.analysis.compare import compare
-    from rotorgear.analysis.excitation import excitation_lines
+    from rotorgear.analysis.common.excitation import excitation_lines
+    from rotorgear.analysis.rig.compare import compare
 
     operation = result.model.operation
     speed = result.speed if result.speed is not None else (operation.speed if operation else None)

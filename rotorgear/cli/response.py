@@ -73,7 +73,7 @@ def response(
 ) -> None:  # fmt: skip
     """Run-up: response to unbalances, transmission errors and stiffness variation, by order and speed."""
     import rotorgear as rg
-    from rotorgear.cli.tables_response import response_tables
+    from rotorgear.cli.tables.response import response_tables
 
     built = rg.load(model)
     with progress_bar("response") as progress:
@@ -105,7 +105,7 @@ def _speeds(model: Model, start: str | None, stop: str | None, points: int) -> l
     """Evenly spaced speeds in rad/s."""
     import numpy as np
 
-    from rotorgear.analysis.response import HIGHEST, LOWEST
+    from rotorgear.analysis.response.response import HIGHEST, LOWEST
 
     operating = model.operation.speed if model.operation else None
     low, high = parse_speed(start, "--from"), parse_speed(stop, "--to")

@@ -23,7 +23,7 @@ ToOption = Annotated[
 
 def speeds_between(model: Model, start: str, stop: str | None, points: int) -> np.ndarray:
     """Evenly spaced speeds in rad/s."""
-    from rotorgear.analysis.speeds import highest_speed, speed_range
+    from rotorgear.analysis.campbell.speeds import highest_speed, speed_range
 
     low = parse_speed(start)
     assert low is not None

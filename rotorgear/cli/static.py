@@ -40,7 +40,7 @@ def static(
 ) -> None:  # fmt: skip
     """Deflections, bearing and mesh forces, load sharing of branches and helices, assembly condition of loops."""
     import rotorgear as rg
-    from rotorgear.cli.tables_static import static_tables
+    from rotorgear.cli.tables.static import static_tables
 
     with progress_bar("static") as progress:
         result = rg.static(rg.load(model), speed=parse_speed(speed), elements=elements, progress=progress)

@@ -21,7 +21,7 @@ import numpy as np
 
 from rotorgear.elements.shaft import cowper
 from rotorgear.model.model import Model
-from rotorgear.model.shaft import Section
+from rotorgear.model.parts.shaft import Section
 from rotorgear.results.modal import NodeTable
 
 

@@ -12,10 +12,10 @@ from rotorgear.export.attachment import Attachment, Skeleton
 from rotorgear.export.sizes import ball_radius, disk_size, helix_width, hidden_hole, pitch_radius
 from rotorgear.export.surface import Surface, ball, hollow_cylinder, join, make_surface, revolve, twisted_prism
 from rotorgear.export.teeth import DISK_GROOVES, contour_of, grooved_contour, tooth_phases, twist_rates
-from rotorgear.model.gear import Gear
-from rotorgear.model.mesh_geometry import gear_geometry, helix_planes, node_positions
+from rotorgear.model.layout.mesh_geometry import gear_geometry, helix_planes, node_positions
 from rotorgear.model.model import Model
-from rotorgear.model.shaft import Shaft
+from rotorgear.model.parts.gear import Gear
+from rotorgear.model.parts.shaft import Shaft
 
 # Stripes along a shaft, by which its twist is seen: how many, half their width in rad, and their height relative to the radius.
 _STRIPES, _STRIPE_HALF, _STRIPE_HEIGHT = 4, math.radians(3.0), 0.015

@@ -11,7 +11,7 @@ from rotorgear.export.parts import Detail, Piece
 from rotorgear.export.sizes import shaft_diameter
 from rotorgear.export.surface import Surface, beam, hollow_cylinder, join, wedge
 from rotorgear.model.model import Model
-from rotorgear.model.supports import Coupling
+from rotorgear.model.parts.supports import Coupling
 
 # Sizes relative to the shaft's radius there: outer radius and half width of a bearing's ring, height and half width of its foot.
 _RING, _RING_HALF = 1.55, 0.28

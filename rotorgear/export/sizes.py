@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from rotorgear.model.bodies import Disk
-from rotorgear.model.mesh_geometry import base_radius, gear_geometry, helix_planes, pressure_angle
+from rotorgear.model.layout.mesh_geometry import base_radius, gear_geometry, helix_planes, pressure_angle
 from rotorgear.model.model import Model
+from rotorgear.model.parts.bodies import Disk
 
 # A shaft without sections has no diameter: parts that need one take this share of its largest body, or this many m.
 NOMINAL_SHARE, NOMINAL_DIAMETER = 0.2, 0.02

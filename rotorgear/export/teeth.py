@@ -10,8 +10,15 @@ import math
 
 import numpy as np
 
-from rotorgear.gears.geometry import GearGeometry
-from rotorgear.model.mesh_geometry import Contact, base_helix_angle, base_radius, contacts, gear_geometry, helix_planes
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.model.layout.mesh_geometry import (
+    Contact,
+    base_helix_angle,
+    base_radius,
+    contacts,
+    gear_geometry,
+    helix_planes,
+)
 from rotorgear.model.model import Model
 
 # Grooves of a plain cylinder, and their width in rad and depth relative to the radius, by which its rotation is seen.

@@ -21,7 +21,7 @@ import numpy as np
 
 from rotorgear.forces.hertz import point_contact
 from rotorgear.forces.law import ForceLaw, parameter, refuse
-from rotorgear.solvers.compiled import force_function, schedule_function
+from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 _COMPONENTS = 5
 

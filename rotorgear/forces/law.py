@@ -1,7 +1,7 @@
 """What every force law is: declared parameters, and compiled functions of relative displacements d and velocities v.
 
 A law is a frozen dataclass; each field is declared by `parameter(unit, meaning)`. Its module names two compiled functions,
-`schedule` and `force`, as solvers/local_forces.py describes them.
+`schedule` and `force`, as solvers/time/local_forces.py describes them.
 """
 
 from __future__ import annotations

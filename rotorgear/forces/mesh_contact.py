@@ -20,7 +20,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, parameter, refuse
-from rotorgear.solvers.compiled import force_function, schedule_function
+from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 GAPS = ("line", "one-sided", "none")
 DAMPINGS = ("clamped", "unclamped", "penetration")

@@ -21,7 +21,7 @@ import numpy as np
 from rotorgear.forces import mesh_contact
 from rotorgear.forces.law import ForceLaw, parameter, refuse
 from rotorgear.forces.mesh_contact import MeshContact
-from rotorgear.solvers.compiled import force_function, schedule_function
+from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 _HEAD, _SLICES, _STATE = 16, 9, 5
 _normal_schedule, _normal_force = mesh_contact.schedule, mesh_contact.force

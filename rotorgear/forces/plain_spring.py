@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, parameter
-from rotorgear.solvers.compiled import force_function
-from rotorgear.solvers.kernel_contact import no_schedule
+from rotorgear.solvers.time.compiled import force_function
+from rotorgear.solvers.time.kernel_contact import no_schedule
 
 
 @force_function

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, parameter
-from rotorgear.solvers.compiled import force_function, schedule_function
+from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 
 @schedule_function

@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, parameter, refuse
-from rotorgear.solvers.compiled import force_function, schedule_function
+from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 _SLOWEST = 1e-3  # of w0, below which a power law is held
 

@@ -7,11 +7,11 @@ from typing import Any
 from pydantic import BaseModel, Field, ValidationError
 
 from rotorgear.errors import ModelError
-from rotorgear.model.check import find_problems
-from rotorgear.model.fields import MOTIONS, Name
-from rotorgear.model.repair import repaired
-from rotorgear.model.shaft import Shaft
-from rotorgear.model.tables import Tables
+from rotorgear.model.checks.check import find_problems
+from rotorgear.model.checks.repair import repaired
+from rotorgear.model.parts.fields import MOTIONS, Name
+from rotorgear.model.parts.shaft import Shaft
+from rotorgear.model.parts.tables import Tables
 
 SCHEMA_VERSION = 1
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError, MissingExtraError
 from rotorgear.export.files import replacing
-from rotorgear.gears.mesh_stiffness import ToothPair
-from rotorgear.gears.outline import tooth_outline
+from rotorgear.gears.geometry.outline import tooth_outline
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.results.gear_sheet import GearSheet
 
 _COLOURS = ("#1f5fa8", "#b3541e")

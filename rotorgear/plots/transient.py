@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.analysis.spectra import spectrum
+from rotorgear.analysis.transient.spectra import spectrum
 from rotorgear.errors import MissingExtraError
 from rotorgear.export.files import filling, publish
 from rotorgear.results.transient import TransientResult

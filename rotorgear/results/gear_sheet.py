@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rotorgear.gears.mesh_stiffness import ToothPair
+    from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ class Reduction:
         dofs: before. coordinates: after. modes: elastic modes among them; highest: frequency of the highest of these in Hz.
         rigid: rigid motions. static: static shapes of contacts and loads.
         closed, apart: largest relative differences of the receptances at the contacts from those of the whole system, with all
-            contacts closed and with all of them apart; see solvers/receptance.py.
+            contacts closed and with all of them apart; see solvers/frequency/receptance.py.
         up_to: Hz up to which they were compared. frequencies: how many. bases: how many bases there are.
         seconds: to find and check them.
     """

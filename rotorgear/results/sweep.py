@@ -32,7 +32,7 @@ class SweepResult:
         driving, apart, back: (p, r, c) shares of the time; losses: (p, r, c) losses of contact in a period of the fastest mesh.
         failure: (p,) why a point failed, "" where it did not.
         steps: (p,) in a period of the fastest mesh; settle, count: common periods that settled and counted.
-        tolerance, chaos: of the criterion, see analysis/sweep_classify.py.
+        tolerance, chaos: of the criterion, see analysis/sweep/classify.py.
         dofs, seconds, method, warnings: cost, and sentences. reduction: how large systems were reduced; None where none was.
         portraits: trajectories of some points, where they were asked for.
     """

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.model.torque_flow import MeshForce
+from rotorgear.model.layout.torque_flow import MeshForce
 from rotorgear.system.system import System
 
 

@@ -19,11 +19,11 @@ from rotorgear.elements.shaft import ShaftElements, shaft_elements, strain_motio
 from rotorgear.elements.shaft_bubbles import bubble_motions
 from rotorgear.elements.spring import grounded_spring, linking_spring
 from rotorgear.errors import AnalysisError
-from rotorgear.model.inertia import NodeBody, node_bodies
+from rotorgear.model.layout.inertia import NodeBody, node_bodies
+from rotorgear.model.layout.torque_flow import MeshForce, TorqueFlow
+from rotorgear.model.layout.train import Train
 from rotorgear.model.model import Model
-from rotorgear.model.supports import Bearing, DampingMatrix, StiffnessMatrix
-from rotorgear.model.torque_flow import MeshForce, TorqueFlow
-from rotorgear.model.train import Train
+from rotorgear.model.parts.supports import Bearing, DampingMatrix, StiffnessMatrix
 from rotorgear.system.nodes import Element, Nodes
 
 # Motion of the six dofs of a node.

@@ -11,7 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
-from rotorgear.solvers.factor import factor_general
+from rotorgear.solvers.sparse.factor import factor_general
 from rotorgear.system.system import System
 
 _LIGHT = 0.03  # damping ratio up to which x does for an estimate

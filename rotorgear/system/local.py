@@ -1,7 +1,7 @@
 """The system as time integrators take it: the linear structure without its meshes, and each tooth contact as a local law.
 
 Per flank and helix one relative displacement d = v^T q (elements/gear_mesh.py); phases of k(t) and e(t) follow from tooth
-numbers and centre lines (model/mesh_phases.py). Nothing here becomes a sign that elements/gear_mesh.py does not give.
+numbers and centre lines (model/layout/mesh_phases.py). Nothing here becomes a sign that elements/gear_mesh.py does not give.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector
-from rotorgear.model.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
-from rotorgear.model.inertia import node_bodies
-from rotorgear.model.mesh import Mesh
-from rotorgear.model.mesh_phases import mesh_phases
-from rotorgear.model.mesh_stiffness import stiffness_of_mesh
-from rotorgear.model.torque_flow import MeshForce, about_nominal_flanks
-from rotorgear.solvers.local_system import LocalSystem
-from rotorgear.solvers.motion import Rotation
+from rotorgear.model.layout.inertia import node_bodies
+from rotorgear.model.layout.mesh_phases import mesh_phases
+from rotorgear.model.layout.mesh_stiffness import stiffness_of_mesh
+from rotorgear.model.layout.torque_flow import MeshForce, about_nominal_flanks
+from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
+from rotorgear.model.parts.mesh import Mesh
+from rotorgear.solvers.time.local_system import LocalSystem
+from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.assembly import assemble
 from rotorgear.system.groups import ElementGroup, contact_geometry, mesh_damping, node_dofs
 from rotorgear.system.loads import weight_loads
@@ -64,7 +64,7 @@ def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
         rotation: speed of the reference over time.
         speed: at which bearings with tables and internal damping are taken, in rad/s.
     """
-    from rotorgear.solvers.local_forces import gather
+    from rotorgear.solvers.time.local_forces import gather
 
     groups = tuple(
         without_stiffness(group) if is_rolling(system, group) else group

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rotorgear.elements.gear_mesh import ContactGeometry, sliding_vectors
-from rotorgear.model.mesh_geometry import gear_geometry, mesh_pair
-from rotorgear.model.operation import Load
-from rotorgear.model.supports import Bearing
-from rotorgear.model.torque_flow import MeshForce
+from rotorgear.model.layout.mesh_geometry import gear_geometry, mesh_pair
+from rotorgear.model.layout.torque_flow import MeshForce
+from rotorgear.model.parts.operation import Load
+from rotorgear.model.parts.supports import Bearing
 from rotorgear.system.groups import ElementGroup, node_dofs
 from rotorgear.system.system import System
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from rotorgear.elements.shaft_bubbles import bubble_motions
 from rotorgear.errors import AnalysisError
-from rotorgear.model.mesh_geometry import node_positions
+from rotorgear.model.layout.mesh_geometry import node_positions
 from rotorgear.model.model import Model
 from rotorgear.system.plan import Plan
 

@@ -10,9 +10,9 @@ from typing import Literal
 import numpy as np
 import scipy.sparse as sp
 
+from rotorgear.model.layout.torque_flow import TorqueFlow, torque_flow
+from rotorgear.model.layout.train import Train, walk
 from rotorgear.model.model import Model
-from rotorgear.model.torque_flow import TorqueFlow, torque_flow
-from rotorgear.model.train import Train, walk
 from rotorgear.system.assembly import assemble, strain_factor
 from rotorgear.system.dofs import DofMap, map_dofs, rigid_groups
 from rotorgear.system.groups import ElementGroup, constant_groups, table_groups

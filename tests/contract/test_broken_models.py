@@ -15,8 +15,8 @@ import pytest
 
 from rotorgear.errors import ModelError
 from rotorgear.model.load import load
+from tests.paths import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 BROKEN = ROOT / "tests" / "broken"
 FILES = sorted(path.name for path in BROKEN.glob("*.toml"))
 

@@ -34,8 +34,8 @@ from tests.contract.small_models import (
     rigid_motions,
     static,
 )
+from tests.paths import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 SPLIT_TORQUE = ROOT / "models" / "split_torque.toml"
 
 

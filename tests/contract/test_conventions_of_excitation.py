@@ -5,15 +5,13 @@ from __future__ import annotations
 import cmath
 import math
 import tomllib
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import rotorgear as rg
-
-ROOT = Path(__file__).resolve().parents[2]
+from tests.paths import ROOT
 
 
 @pytest.mark.parametrize("speed", [120.0, -120.0])

@@ -13,7 +13,7 @@ import scipy.optimize as optimize
 
 import rotorgear as rg
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, flank_normal, gear_mesh
-from rotorgear.model.mesh_geometry import contacts
+from rotorgear.model.layout.mesh_geometry import contacts
 from rotorgear.system.system import System
 from tests.contract.small_models import (
     STEEL,

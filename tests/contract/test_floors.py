@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+from tests.paths import ROOT
 
 # The face (rotorgear/__init__.py) stands just below the command line, which uses it as any user does; __main__ stands above
 # all; single modules at the top level are the ground.
@@ -184,11 +184,11 @@ def test_the_walk_catches_an_import_that_goes_up(tmp_path: Path, statement: str)
         "system/__init__.py": "",
         "system/dofs.py": "DofMap = dict",
         "solvers/__init__.py": "",
-        "solvers/eigen.py": statement,
+        "solvers/eigen/eigen.py": statement,
     }
     found = upward_arrows(build(tmp_path, parts))
     assert len(found) == 1
-    assert found[0].startswith("rotorgear.solvers.eigen:")
+    assert found[0].startswith("rotorgear.solvers.eigen.eigen:")
 
 
 def test_the_walk_allows_imports_that_go_down_or_leave_the_house(tmp_path: Path) -> None:
@@ -200,11 +200,11 @@ def test_the_walk_allows_imports_that_go_down_or_leave_the_house(tmp_path: Path)
             "errors.py": "import numpy",
             "cli/main.py": "from rotorgear.errors import RotorgearError\nfrom rotorgear.solvers import eigen",
             "solvers/__init__.py": "from rotorgear.solvers.eigen import modes",
-            "solvers/eigen.py": "from rotorgear import errors\nimport rotorgears_cousin.cli",
+            "solvers/eigen/eigen.py": "from rotorgear import errors\nimport rotorgears_cousin.cli",
         },
     )
-    assert graph["rotorgear.solvers.eigen"] == {"rotorgear.errors": 1}
-    assert graph["rotorgear.cli.main"] == {"rotorgear.errors": 1, "rotorgear.solvers.eigen": 2}
+    assert graph["rotorgear.solvers.eigen.eigen"] == {"rotorgear.errors": 1}
+    assert graph["rotorgear.cli.main"] == {"rotorgear.errors": 1, "rotorgear.solvers.eigen.eigen": 2}
     assert (unknown_modules(graph), upward_arrows(graph), module_cycle(graph)) == ([], [], [])
 
 
@@ -219,7 +219,7 @@ def test_the_walk_catches_a_circle_between_rooms_that_is_none_between_modules(tm
         tmp_path,
         {
             "gears/tooth.py": "from rotorgear.forces import law",
-            "gears/geometry.py": "",
+            "gears/geometry/geometry.py": "",
             "forces/law.py": "",
             "forces/oil.py": "from rotorgear.gears import geometry",
             "cli/main.py": "import rotorgear.gears.tooth, rotorgear.forces.oil",

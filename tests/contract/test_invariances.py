@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import rotorgear as rg
+from tests.paths import MODELS
 
-MODELS = Path(__file__).parents[2] / "models"
 Table = dict[str, Any]
 OTHER = {"right": "left", "left": "right"}
 

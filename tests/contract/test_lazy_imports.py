@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+from tests.paths import ROOT
+
 HEAVY = {"numpy", "scipy", "numba", "h5py", "pyvista", "skfem", "matplotlib", "distributed", "dask"}
 GRAPHICS = {"pyvista", "vtk", "vtkmodules", "matplotlib", "numba", "skfem", "distributed"}
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from tests import paths
 
-MODELS = sorted((Path(__file__).parents[2] / "models").glob("*.toml"))
+MODELS = sorted(paths.MODELS.glob("*.toml"))
 
 
 @pytest.mark.parametrize("speed", [None, 0.0, 100.0])

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import rotorgear as rg
+from tests.paths import VALIDATION
 from validation.cases import Expectation, read_case
 
-VALIDATION = Path(__file__).resolve().parents[2] / "validation"
 ENDS = ("pinned_pinned", "clamped_free", "free_free", "clamped_clamped", "clamped_pinned")
 
 

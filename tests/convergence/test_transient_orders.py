@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rotorgear.solvers.contact_equilibrium import equilibrium
-from rotorgear.solvers.explicit import Explicit
-from rotorgear.solvers.exponential import Exponential
-from rotorgear.solvers.local_system import Integrator, LocalSystem, state_at_rest
-from rotorgear.solvers.newmark import Newmark
+from rotorgear.solvers.time.contact_equilibrium import equilibrium
+from rotorgear.solvers.time.explicit import Explicit
+from rotorgear.solvers.time.exponential import Exponential
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, state_at_rest
+from rotorgear.solvers.time.newmark import Newmark
 from validation.benchmarks.transient_speed import parting_gearbox, step_of
 from validation.oscillators import order
 

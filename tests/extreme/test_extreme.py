@@ -57,7 +57,7 @@ def test_large_and_small_groups_of_soft_damped_modes_agree(monkeypatch):
     springs = {0: Spring(1e-3, damping=1e3), 4: Spring(1e3, damping=10.0)}
     model = rotor_model(Rotor([Segment(0.1, 0.05)] * 4, springs), motions=("bending",))
     part = rg.modal(model, elements=12, modes=12, speed=1e3, error_estimate=False)
-    monkeypatch.setattr("rotorgear.analysis.damped_solve._ALL_UP_TO", 10_000)
+    monkeypatch.setattr("rotorgear.analysis.modal.damped_solve._ALL_UP_TO", 10_000)
     whole = rg.modal(model, elements=12, modes=12, speed=1e3, error_estimate=False)
     assert "modal coordinates" in part.method
     assert part.eigenvalues == pytest.approx(whole.eigenvalues, rel=1e-11)

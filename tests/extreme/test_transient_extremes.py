@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.transient import transient
+from rotorgear.analysis.transient.transient import transient
 from rotorgear.errors import ModelError
 from tests.unit.analysis.spur_pair import spur_pair
 

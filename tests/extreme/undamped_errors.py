@@ -6,7 +6,7 @@ import mpmath as mp
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.solvers.eigen import lowest_modes
+from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.system.system import System
 from tests.extreme.gearbox import gearbox, helical_box
 from tests.extreme.models import elastic, frequency_error, points, rotor_model

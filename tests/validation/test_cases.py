@@ -11,11 +11,10 @@ from pathlib import Path
 import pytest
 
 from rotorgear.errors import AnalysisError
+from tests.paths import ROOT
 from validation.cases import Case, names, read_case, read_cases
 from validation.runner import main, run
 from validation.table import printed
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.mark.parametrize("name", names())

@@ -9,8 +9,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.system.system import System
-
-MODELS = Path(__file__).resolve().parents[2] / "models"
+from tests.paths import MODELS
 
 
 @pytest.mark.parametrize("file", sorted(MODELS.glob("*.toml")), ids=lambda file: file.stem)

@@ -7,12 +7,12 @@ from functools import cache
 
 import numpy as np
 
-from rotorgear.analysis.sweep_classify import exponents
-from rotorgear.analysis.sweep_point import ready, still, table_of
+from rotorgear.analysis.sweep.classify import exponents
+from rotorgear.analysis.sweep.point import ready, still, table_of
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.rotating_force import RotatingForce
-from rotorgear.solvers.flow_exponents import flow_exponents
-from rotorgear.solvers.lanes import Plan, Start, run_block
+from rotorgear.solvers.lanes.flow_exponents import flow_exponents
+from rotorgear.solvers.lanes.lanes import Plan, Start, run_block
 from validation.oscillators import local_system
 
 # zeta, mean force, its amplitude, frequency, backlash, state at phase 0, steps a period, periods that settle and count.

@@ -25,7 +25,7 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 import rotorgear as rg
-from rotorgear.solvers.eigen import lowest_modes
+from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.system.system import System
 
 T = TypeVar("T")

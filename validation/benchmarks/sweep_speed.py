@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.analysis.sweep_point import Point, ready, still, table_of
+from rotorgear.analysis.sweep.point import Point, ready, still, table_of
 from rotorgear.forces.mesh_contact import MeshContact
-from rotorgear.solvers.compiled import compiled
-from rotorgear.solvers.lanes import Plan, Start, run_block
-from rotorgear.solvers.local_system import LocalSystem
+from rotorgear.solvers.lanes.lanes import Plan, Start, run_block
+from rotorgear.solvers.time.compiled import compiled
+from rotorgear.solvers.time.local_system import LocalSystem
 from validation.oscillators import local_system
 
 STEPS, LANES = 200, 32
@@ -233,7 +233,7 @@ def _solve_ivp(point: Point, start: Start, right: Any, periods: int) -> float:
 
 def main() -> None:
     """Print the table."""
-    from rotorgear.solvers.factor import single_thread
+    from rotorgear.solvers.sparse.factor import single_thread
 
     with single_thread(0):
         print("M point-steps in a CPU second; ratios to the lanes")

@@ -13,12 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.gears.compliance_model import compliance_key, gear_compliance
-from rotorgear.gears.contact_points import Slices, patch_loads
-from rotorgear.gears.gear_compliance import GearCompliance
-from rotorgear.gears.geometry import GearGeometry
-from rotorgear.gears.tooth_fe import PRESETS, ToothFe
-from rotorgear.gears.tooth_points import MeshSize
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.loaded.contact_points import Slices, patch_loads
+from rotorgear.gears.tooth_fe.compliance_model import compliance_key, gear_compliance
+from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
+from rotorgear.gears.tooth_fe.points import MeshSize
+from rotorgear.gears.tooth_fe.settings import PRESETS, ToothFe
 
 STRIP, LEAST_PATCH, NU = 0.02, 0.08, 0.3
 POINTS = np.linspace(0.1, 0.9, 7)

@@ -19,12 +19,12 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 import rotorgear as rg
-from rotorgear.model.excitation import ErrorHarmonic, StiffnessHarmonic
-from rotorgear.solvers.contact_equilibrium import equilibrium
-from rotorgear.solvers.exponential import Exponential
-from rotorgear.solvers.local_system import LocalSystem, State, evaluated, local_values, state_at_rest
-from rotorgear.solvers.motion import Rotation
-from rotorgear.solvers.newmark import Newmark
+from rotorgear.model.parts.excitation import ErrorHarmonic, StiffnessHarmonic
+from rotorgear.solvers.time.contact_equilibrium import equilibrium
+from rotorgear.solvers.time.exponential import Exponential
+from rotorgear.solvers.time.local_system import LocalSystem, State, evaluated, local_values, state_at_rest
+from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.system.local import local_model
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
@@ -118,7 +118,7 @@ def cache_bandwidth(n: int = 240) -> float:
 
 def main() -> None:
     """Print the table."""
-    from rotorgear.solvers.factor import single_thread
+    from rotorgear.solvers.sparse.factor import single_thread
 
     with single_thread(0):
         system = parting_gearbox()

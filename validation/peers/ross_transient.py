@@ -8,10 +8,10 @@ import time
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.model.excitation import Unbalance
-from rotorgear.solvers.local_system import state_at_rest
-from rotorgear.solvers.motion import Rotation
-from rotorgear.solvers.newmark import Newmark
+from rotorgear.model.parts.excitation import Unbalance
+from rotorgear.solvers.time.local_system import state_at_rest
+from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.system.local import local_model
 from rotorgear.system.system import System
 from validation.peers.comparison import ross

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.gears.geometry import GearGeometry
-from rotorgear.gears.pair import PairGeometry, pair_geometry
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.geometry.pair import PairGeometry, pair_geometry
 from validation.seeds.rows import changed, loaded
 
 MODEL = "herringbone_pair_12dof"

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.gears.dynamic_factor import simple_dynamic_factor
-from rotorgear.gears.geometry import GearGeometry
-from rotorgear.gears.pair import PairGeometry, pair_geometry
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.geometry.pair import PairGeometry, pair_geometry
+from rotorgear.gears.stiffness.dynamic_factor import simple_dynamic_factor
 from validation.seeds.rows import loaded
 
 MODEL = "herringbone_pair_16dof"

@@ -17,8 +17,8 @@ from typer.testing import CliRunner
 import rotorgear as rg
 from rotorgear.cli.main import app
 from rotorgear.errors import RotorgearError
+from tests.paths import ROOT
 
-ROOT = Path(__file__).resolve().parents[3]
 PAIR = str(ROOT / "models" / "backlash_pair.toml")
 _DRAWN = ("bifurcation_1.png", "sections.png", "portraits_1.png", "spectra_1.png")
 QUICK = ["--settle", "40", "--count", "40"]

@@ -8,8 +8,8 @@ import sys
 
 from rich.console import Console
 
-from rotorgear.analysis.compare import compare
-from rotorgear.cli.tables_comparison import comparison_table
+from rotorgear.analysis.rig.compare import compare
+from rotorgear.cli.tables.comparison import comparison_table
 from rotorgear.results.comparison import ExcitationLine, RigLine
 
 
@@ -56,5 +56,5 @@ def test_a_comparison_without_matches_has_no_empty_table():
 
 
 def test_the_module_imports_without_rich_or_numpy():
-    code = "import sys, rotorgear.cli.tables_comparison; sys.exit(any(n in sys.modules for n in ('rich', 'numpy')))"
+    code = "import sys, rotorgear.cli.tables.comparison; sys.exit(any(n in sys.modules for n in ('rich', 'numpy')))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -11,8 +11,9 @@ from typer.testing import CliRunner
 import rotorgear as rg
 from rotorgear.cli.main import app
 from rotorgear.errors import RotorgearError
+from tests.paths import MODELS
 
-MODEL = Path(__file__).resolve().parents[3] / "models" / "helical_pair.toml"
+MODEL = MODELS / "helical_pair.toml"
 QUICK = ["--time", "5 ms", "--steps", "40"]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from rotorgear.analysis.modal import modal
+from rotorgear.analysis.modal.modal import modal
 from rotorgear.model.load import loads
 from rotorgear.model.model import Model
 from rotorgear.results.modal import ModalResult

@@ -8,8 +8,8 @@ from rotorgear.export.parts import FINE, LIGHT, Detail
 from rotorgear.export.solids import KINDS, LARGEST_TURN, Solids, build_solids
 from rotorgear.export.surface import make_surface
 from rotorgear.export.teeth import contour_of, tooth_phases, twist_rates
+from rotorgear.model.layout.mesh_geometry import contacts, gear_geometry, helix_planes
 from rotorgear.model.load import loads
-from rotorgear.model.mesh_geometry import contacts, gear_geometry, helix_planes
 from rotorgear.results.modal import NodeTable
 from tests.unit.export.small_models import CHAIN, HERRINGBONE, PAIR, model_of, modes_of
 

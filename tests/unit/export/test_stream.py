@@ -85,14 +85,14 @@ def test_a_full_disk_ends_the_run_with_a_sentence_and_keeps_the_chunks_before(
 
 
 def test_what_kill_leaves_is_readable_and_goes_on(tmp_path: Path) -> None:
-    root = Path(__file__).resolve().parents[3]
+
     program = (
         "import rotorgear as rg\nfrom tests.unit.analysis.spur_pair import spur_pair\n"
         f"rg.transient(spur_pair(), time=20.0, settle=0.0, steps=160, error_estimate=False, method='newmark', "
         f"stream=rg.stream({str(tmp_path / 'run.h5')!r}))\n"
     )
-    environment = {**os.environ, "PYTHONPATH": str(root)}
-    process = subprocess.Popen([sys.executable, "-c", program], env=environment, cwd=root)
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    process = subprocess.Popen([sys.executable, "-c", program], env=environment, cwd=ROOT)
     parts = tmp_path / "run.h5.parts"
     until = time.monotonic() + 60.0
     while len(list(parts.glob("chunk_*.h5"))) < 3 and time.monotonic() < until:

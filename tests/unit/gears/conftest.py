@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from rotorgear.gears.geometry import GearGeometry
+from rotorgear.gears.geometry.geometry import GearGeometry
 
 MM = 1e-3
 deg = math.radians

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.gears.geometry import GearGeometry
-from rotorgear.gears.mesh_cycle import MeshCycle
-from rotorgear.gears.mesh_stiffness import ToothPair
-from rotorgear.gears.pair import pair_geometry
-from rotorgear.gears.stiffness_tooth_fe import loaded_cycle
-from rotorgear.gears.tooth_fe import ToothFe
-from rotorgear.gears.tooth_points import MeshSize
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.geometry.pair import pair_geometry
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle
+from rotorgear.gears.loaded.stiffness import loaded_cycle
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.tooth_fe.points import MeshSize
+from rotorgear.gears.tooth_fe.settings import ToothFe
 
 WIDTH = 54e-3
 COARSE = MeshSize(5, 2, 4, 2, 3, 4)

@@ -5,15 +5,14 @@ from __future__ import annotations
 import copy
 import tomllib
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from rotorgear.errors import ModelError
 from rotorgear.model.model import Model
+from tests.paths import SOUND
 
-SOUND = Path(__file__).resolve().parents[2] / "sound"
 _DATA = {path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in SOUND.glob("*.toml")}
 
 

@@ -8,13 +8,13 @@ from typing import Any
 import pytest
 
 from rotorgear.errors import ModelError
-from rotorgear.model.bodies import Disk
-from rotorgear.model.gear import Gear
-from rotorgear.model.mesh import Mesh
 from rotorgear.model.model import Model
-from rotorgear.model.operation import Operation
-from rotorgear.model.shaft import Section, Shaft
-from rotorgear.model.supports import Bearing, StiffnessMatrix
+from rotorgear.model.parts.bodies import Disk
+from rotorgear.model.parts.gear import Gear
+from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.operation import Operation
+from rotorgear.model.parts.shaft import Section, Shaft
+from rotorgear.model.parts.supports import Bearing, StiffnessMatrix
 
 Data = dict[str, Any]
 Find = Callable[[Data], list[str]]

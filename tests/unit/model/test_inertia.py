@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from rotorgear.errors import ModelError
-from rotorgear.gears.blank import RigidBody, hollow_cylinder
-from rotorgear.model.inertia import gear_body, node_bodies
-from rotorgear.model.mesh_geometry import gear_geometry
+from rotorgear.gears.geometry.blank import RigidBody, hollow_cylinder
+from rotorgear.model.layout.inertia import gear_body, node_bodies
+from rotorgear.model.layout.mesh_geometry import gear_geometry
 from rotorgear.model.model import Model
 
 Data = dict[str, Any]

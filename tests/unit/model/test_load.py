@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 from rotorgear.errors import ModelError
 from rotorgear.model.load import json_schema, load, loads
 from rotorgear.model.model import Model
+from tests import paths
 
-SOUND = sorted((Path(__file__).resolve().parents[2] / "sound").glob("*.toml"))
+SOUND = sorted(paths.SOUND.glob("*.toml"))
 TEXTS = [path.read_text(encoding="utf-8") for path in SOUND]
 
 

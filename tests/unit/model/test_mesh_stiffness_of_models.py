@@ -11,10 +11,10 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import ModelError
-from rotorgear.model.mesh_stiffness import stiffness_of_mesh, tooth_pair
+from rotorgear.model.layout.mesh_stiffness import stiffness_of_mesh, tooth_pair
+from rotorgear.model.layout.torque_flow import torque_flow
+from rotorgear.model.layout.train import walk
 from rotorgear.model.model import Model
-from rotorgear.model.torque_flow import torque_flow
-from rotorgear.model.train import walk
 
 
 def with_stiffness(data: dict[str, Any], value: Any) -> Model:

@@ -8,14 +8,14 @@ from typing import Any
 import pytest
 
 from rotorgear.errors import ModelError
-from rotorgear.model.gear import Gear
-from rotorgear.model.mesh import Mesh
+from rotorgear.model.layout.torque_flow import TorqueFlow, torque_flow
+from rotorgear.model.layout.train import walk
 from rotorgear.model.model import Model
-from rotorgear.model.operation import Load, Operation
-from rotorgear.model.shaft import Section, Shaft
-from rotorgear.model.supports import Coupling, StiffnessMatrix
-from rotorgear.model.torque_flow import TorqueFlow, torque_flow
-from rotorgear.model.train import walk
+from rotorgear.model.parts.gear import Gear
+from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.operation import Load, Operation
+from rotorgear.model.parts.shaft import Section, Shaft
+from rotorgear.model.parts.supports import Coupling, StiffnessMatrix
 
 Data = dict[str, Any]
 

@@ -11,14 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rotorgear.errors import ModelError
-from rotorgear.model.bodies import Disk
-from rotorgear.model.gear import Gear
-from rotorgear.model.mesh import Mesh
+from rotorgear.model.layout.train import Train, links, mesh_frequency, walk
 from rotorgear.model.model import Model
-from rotorgear.model.operation import Operation
-from rotorgear.model.shaft import Shaft
-from rotorgear.model.supports import Coupling, StiffnessMatrix
-from rotorgear.model.train import Train, links, mesh_frequency, walk
+from rotorgear.model.parts.bodies import Disk
+from rotorgear.model.parts.gear import Gear
+from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.operation import Operation
+from rotorgear.model.parts.shaft import Shaft
+from rotorgear.model.parts.supports import Coupling, StiffnessMatrix
 
 Data = dict[str, Any]
 

@@ -15,8 +15,8 @@ from rotorgear.plots.frf import draw_frf
 from rotorgear.plots.run_up import draw_run_up
 from rotorgear.plots.static import draw_static
 from rotorgear.plots.waterfall import draw_waterfall, waterfall_of
+from tests.paths import ROOT
 
-ROOT = Path(__file__).resolve().parents[3]
 GEARBOX = ROOT / "models" / "split_torque.toml"
 
 

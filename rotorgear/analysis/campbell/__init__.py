@@ -1,0 +1,1 @@
+"""Modes over speed: Campbell diagrams, crossings, critical speeds."""

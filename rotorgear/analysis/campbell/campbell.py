@@ -1,0 +1,325 @@
+"""Campbell diagram: the modes of a gearbox over the speed of its input shaft, followed as branches, with excitation lines.
+
+Every shaft turns at its own ratio. Modes come from a certified basis (`snapshot_basis`), are followed by `branches`, and
+are damped and gyroscopic as in `modal` at a speed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rotorgear.analysis.campbell.branches import Track, track
+from rotorgear.analysis.campbell.crossings import Chain, crossings, margins, roots
+from rotorgear.analysis.campbell.discretise import system_for_speeds
+from rotorgear.analysis.campbell.snapshot_basis import Request, Snapshot, SpeedModes
+from rotorgear.analysis.campbell.speed_family import merged
+from rotorgear.analysis.campbell.speeds import chosen_speeds, operating_speed
+from rotorgear.analysis.common.clock import Clock
+from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
+from rotorgear.analysis.common.notes import left_out
+from rotorgear.analysis.common.pieces import pieces
+from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits, whirl_numbers
+from rotorgear.analysis.modal.refine import errors_of, total_error
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, silent
+from rotorgear.results.campbell import CampbellResult, Crossing, ExcitationOrder, Margin, Onset
+from rotorgear.system.system import System
+
+DEFAULT_MODES = 24
+
+
+def campbell(
+    model: Model | System,
+    *,
+    speeds: Sequence[float | str] | None = None,
+    modes: int | None = None,
+    fmax: float | None = None,
+    elements: int | None = None,
+    accuracy: float | None = None,
+    only: Sequence[str] = (),
+    shaft_orders: Sequence[float] = SHAFT_ORDERS,
+    mesh_orders: Sequence[int] = MESH_ORDERS,
+    sidebands: int = 0,
+    error_estimate: bool = True,
+    progress: Progress = silent,
+) -> CampbellResult:
+    """Return the modes of a model over a range of speeds, as branches.
+
+    Args:
+        model: a model, or its assembled system, which is then taken as it is.
+        speeds: of the input shaft, all of one sense; numbers are rad/s, texts carry their unit. None: 51 speeds from 0 to
+            1.25 times the operating speed.
+        modes: a branch is returned when it is among the lowest so many oscillating modes at one of the speeds; 24 where neither
+            `modes` nor `fmax` is given.
+        fmax: the same for all modes up to this many Hz.
+        elements, accuracy, only: as in `modal`; an accuracy is met at both ends of the range.
+        shaft_orders, mesh_orders, sidebands: excitation lines, as in `excitation_orders`.
+        error_estimate: False leaves the estimate of the discretisation error out, for timing.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: no speeds, speeds of both senses, a speed outside of a bearing's table, nothing that oscillates.
+        ConvergenceError: a guard of a solver was not met.
+    """
+    asked = chosen_speeds(model.model if isinstance(model, System) else model, speeds)
+    if modes is None and fmax is None:
+        modes = DEFAULT_MODES
+    _check(modes, fmax, sidebands)
+    clock = Clock()
+    ends = [float(asked[0]), float(asked[-1])]
+    system = system_for_speeds(
+        model, ends, modes=modes, fmax=fmax, elements=elements, accuracy=accuracy, only=tuple(only), progress=progress
+    )
+    clock.lap("mesh")
+    request = Request(modes, None if fmax is None else 2.0 * np.pi * fmax, tuple(only))
+    found = SpeedModes(system, min(ends), max(ends), request, progress)
+    clock.lap("basis")
+    operating = operating_speed(system.model)
+    grid = _grid(found, asked, operating)
+    chains, tracks = _chains(found, grid, asked, request, progress)
+    if not chains:
+        raise AnalysisError("no mode oscillates in this range of speeds, so there is nothing to draw")
+    clock.lap("modes over speed")
+    estimate = _error_estimate(system, found, chains, grid, error_estimate)
+    clock.lap("error estimate")
+    lines = excitation_orders(system.model, shaft_orders, mesh_orders, sidebands)
+    return _result(system, found, (asked, grid, operating), chains, tracks, estimate, lines, clock, progress)
+
+
+def _check(modes: int | None, fmax: float | None, sidebands: int) -> None:
+    if modes is not None and modes < 1:
+        raise AnalysisError(f"the number of modes must be at least 1, got {modes}")
+    if fmax is not None and not (np.isfinite(fmax) and fmax > 0.0):
+        raise AnalysisError(f"the highest frequency must be positive, got {fmax} Hz")
+    if sidebands < 0:
+        raise AnalysisError(f"the number of sidebands can't be negative, got {sidebands}")
+
+
+def _grid(found: SpeedModes, asked: np.ndarray, operating: float | None) -> np.ndarray:
+    """Speeds of the track: those asked for, the operating speed, and those where a bearing's table has a row."""
+    low, high = float(asked.min()), float(asked.max())
+    extra = [*found.family.knots] + ([operating] if operating is not None and low < operating < high else [])
+    new = [speed for speed in extra if np.min(np.abs(asked - speed)) > 1e-9 * max(high - low, 1e-300)]
+    grid = merged(sorted([*map(float, asked), *map(float, new)]), high - low)
+    return grid if abs(asked[-1]) >= abs(asked[0]) and asked[-1] >= 0.0 else grid[::-1]
+
+
+def _chains(
+    found: SpeedModes, grid: np.ndarray, asked: np.ndarray, request: Request, progress: Progress
+) -> tuple[list[Chain], list[Track]]:
+    """Branches that are asked for at one of the speeds asked for at least, lowest first."""
+    for k, speed in enumerate(grid):
+        progress(0.5 + 0.3 * k / len(grid), f"speed {k + 1} of {len(grid)}")
+        parts = found.at(speed)
+    wanted = [_wanted(found, speed, request) for speed in grid]
+    of_interest = np.isin(grid, asked)
+    chains, tracks = [], []
+    for group in range(len(parts)):
+        watched = max((own[group] for own in wanted), default=0)
+        if not watched:
+            continue
+        tracks.append(track(lambda speed, group=group: found.at(speed)[group], grid, watched + 1))  # type: ignore[misc]
+        number = tracks[-1].number
+        limit = np.array([own[group] for own in wanted])[:, None]
+        kept = np.any((number >= 0) & (number < limit) & of_interest[:, None], axis=0)
+        chains += [_chain(found, grid, group, number[:, k]) for k in np.flatnonzero(kept)]
+    return sorted(chains, key=_place), tracks
+
+
+def _wanted(found: SpeedModes, speed: float, request: Request) -> list[int]:
+    """How many of the lowest modes of each group are asked for at a speed."""
+    size = [np.abs(found.damped(part.s)) for part in found.at(speed)]
+    together = np.sort(np.concatenate(size))
+    count = request.asked(together)
+    if count == 0:
+        return [0] * len(size)
+    return [int(np.sum(own <= together[count - 1] * (1.0 + 1e-12))) for own in size]
+
+
+def _chain(found: SpeedModes, grid: np.ndarray, group: int, number: np.ndarray) -> Chain:
+    r = found.at(grid[0])[group].q.shape[0]
+    s, q = np.full(len(grid), np.nan + 0j), np.full((len(grid), r), np.nan + 0j)
+    for k, place in enumerate(number):
+        if place >= 0:
+            part = found.at(grid[k])[group]
+            s[k], q[k] = part.s[place], part.q[:, place]
+    return Chain(group, s, q)
+
+
+def _place(chain: Chain) -> tuple[int, float]:
+    first = int(np.argmax(np.isfinite(chain.s)))
+    return first, float(np.abs(chain.s[first]))
+
+
+def _error_estimate(
+    system: System, found: SpeedModes, chains: list[Chain], grid: np.ndarray, wanted: bool
+) -> np.ndarray:
+    """Estimated relative discretisation error of each branch (b,), the larger of both ends of the range."""
+    estimate = np.full(len(chains), np.nan)
+    if not wanted:
+        return estimate
+    for snapshot in found.snapshots[:2]:
+        k = int(np.argmin(np.abs(grid - snapshot.speed)))
+        error = _at_snapshot(system, snapshot)
+        for b, chain in enumerate(chains):
+            if np.isfinite(chain.s[k]):
+                distance = np.abs(snapshot.s - chain.s[k])
+                near = int(np.argmin(distance))
+                if distance[near] <= 1e-6 * abs(chain.s[k]):
+                    estimate[b] = np.fmax(estimate[b], error[near])
+    return estimate
+
+
+def _at_snapshot(system: System, snapshot: Snapshot) -> np.ndarray:
+    parts = errors_of(system, snapshot.speed, snapshot.s, snapshot.vectors, np.zeros(len(snapshot.s), bool))
+    return total_error(parts, len(snapshot.s))
+
+
+def _onsets(found: SpeedModes, chains: list[Chain], grid: np.ndarray) -> tuple[Onset, ...]:
+    """Where branches start to grow with speed, and where a motion that doesn't oscillate does."""
+    onsets: list[Onset] = []
+    if found.family.is_conservative:
+        return ()
+    for b, chain in enumerate(chains):
+        first = chain.s[0]
+        if np.isfinite(first) and first.real > 1e-9 * abs(first):
+            onsets.append(Onset(b + 1, float(grid[0]), float(first.imag) / (2.0 * np.pi)))
+        for root in roots(found, chains, grid, b, _growth):
+            k = int(np.searchsorted(np.abs(grid), abs(root.speed)))
+            if chain.s[min(k, len(grid) - 1)].real > 0.0:
+                onsets.append(Onset(b + 1, root.speed, float(root.s.imag) / (2.0 * np.pi)))
+    for speed in grid:
+        if any(np.any(part.real > 0.0) for part in found.at(speed)):
+            onsets.append(Onset(0, float(speed), 0.0))
+            break
+    return tuple(sorted(onsets, key=lambda onset: abs(onset.speed)))
+
+
+def _growth(s: complex, speed: float) -> float:
+    """Real part of s; what is rounding counts as decay."""
+    return s.real - 1e-10 * abs(s)
+
+
+def _result(
+    system: System,
+    found: SpeedModes,
+    speeds: tuple[np.ndarray, np.ndarray, float | None],
+    chains: list[Chain],
+    tracks: list[Track],
+    estimate: np.ndarray,
+    lines: tuple[ExcitationOrder, ...],
+    clock: Clock,
+    progress: Progress,
+) -> CampbellResult:
+    asked, grid, operating = speeds
+    progress(0.85, "crossings")
+    shapes = BasisShapes(system, found.basis())
+    met = crossings(found, shapes, chains, grid, lines)
+    onsets = _onsets(found, chains, grid)
+    clock.lap("crossings")
+    progress(0.92, "energies")
+    kept = np.flatnonzero(np.isin(grid, asked))
+    s = found.damped(np.array([chain.s for chain in chains]).T)
+    coordinates, seen = _looks(shapes, chains, grid, kept)
+    margin = _margins(shapes, chains, grid, s, lines, met, operating)
+    clock.lap("energies")
+    k, b = len(kept), len(chains)
+    there = np.isfinite(s[kept]).ravel()
+
+    def spread(values: np.ndarray, empty: float = np.nan) -> np.ndarray:
+        whole = np.full(k * b, empty, dtype=values.dtype)
+        whole[there] = values
+        return whole.reshape(k, b)
+
+    def every(shares: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        return {name: spread(values) for name, values in shares.items()}
+
+    strain = {name: v for name, v in seen.energies.strain.items() if name.startswith("meshes.")}
+    result = CampbellResult(
+        model=system.model, speeds=grid[kept], eigenvalues=s[kept], whirl=spread(whirl_numbers(seen.whirl), 0),
+        whirl_by_shaft=every(seen.whirl_by_shaft), kinetic_by_motion=every(seen.energies.kinetic_by_motion),
+        strain_by_motion=every(seen.energies.strain_by_motion),
+        mesh_strain={name.removeprefix("meshes."): v for name, v in every(strain).items()},
+        description=_descriptions(shapes, chains, grid), error_estimate=estimate, basis_error=found.error,
+        basis=shapes.stations, coordinates=coordinates, nodes=shapes.nodes, lines=lines, crossings=met, margins=margin,
+        onsets=onsets, operating_speed=operating, dofs=system.n, discretisation=pieces(system), seconds=clock.total(),
+        left_out=_left_out(system, found, grid, operating), warnings=_warnings(system, found, tracks, onsets),
+        method=_method(found, tracks, len(grid)),
+    )  # fmt: skip
+    progress(1.0, "done")
+    return result
+
+
+def _looks(
+    shapes: BasisShapes, chains: list[Chain], grid: np.ndarray, kept: np.ndarray
+) -> tuple[np.ndarray, Portraits]:
+    """Coordinates (k, r, b) of all branches, and their portraits at all speeds where they exist, speed by speed."""
+    r = int(shapes.offsets[-1])
+    coordinates = np.zeros((len(kept), r, len(chains)), complex)
+    for b, chain in enumerate(chains):
+        whole = shapes.coordinates(chain.group, chain.q[kept].T)
+        coordinates[:, :, b] = np.nan_to_num(whole.T)
+    there = np.isfinite(np.array([chain.s[kept] for chain in chains]).T)
+    flat = np.moveaxis(coordinates, 1, 0)[:, there]
+    speeds = np.broadcast_to(grid[kept][:, None], there.shape)[there]
+    return coordinates, shapes.portraits(flat, speeds)
+
+
+def _margins(
+    shapes: BasisShapes, chains: list[Chain], grid: np.ndarray, s: np.ndarray, lines: tuple[ExcitationOrder, ...],
+    met: tuple[Crossing, ...], operating: float | None,
+) -> tuple[Margin, ...]:  # fmt: skip
+    if operating is None or operating not in grid:
+        return ()
+    place = int(np.flatnonzero(grid == operating)[0])
+    known = [chain for chain in chains if np.isfinite(chain.s[place])]
+    if not known:
+        return ()
+    columns = np.hstack([shapes.coordinates(chain.group, chain.q[place][:, None]) for chain in known])
+    seen = shapes.portraits(columns, np.full(len(known), operating))
+    return margins(lines, met, operating, s[place], seen)
+
+
+def _descriptions(shapes: BasisShapes, chains: list[Chain], grid: np.ndarray) -> tuple[str, ...]:
+    first = [int(np.argmax(np.isfinite(chain.s))) for chain in chains]
+    columns = [shapes.coordinates(c.group, c.q[k][:, None]) for c, k in zip(chains, first, strict=True)]
+    return shapes.descriptions(np.hstack(columns), grid[first])
+
+
+def _left_out(system: System, found: SpeedModes, grid: np.ndarray, operating: float | None) -> tuple[str, ...]:
+    notes = list(left_out(system, float(grid[-1])))
+    rigid = found.snapshots[0].rigid.shape[1]
+    if rigid:
+        notes.append(f"{rigid} rigid-body mode{'s'[: rigid != 1]} at 0 Hz")
+    still = max(sum(len(part.real) for part in found.at(speed)) for speed in grid)
+    if still:
+        notes.append("motions that do not oscillate (overdamped): they have no frequency to draw")
+    if operating is None:
+        notes.append("margins: the model has no operating speed")
+    elif operating not in grid:
+        notes.append("margins: the operating speed lies outside of the range")
+    return (*notes, *found.notes)
+
+
+def _warnings(system: System, found: SpeedModes, tracks: list[Track], onsets: tuple[Onset, ...]) -> tuple[str, ...]:
+    notes = list(system.nodes.merged)
+    for onset in onsets[:3]:
+        what = f"branch {onset.branch}" if onset.branch else "a motion that does not oscillate"
+        notes.append(f"{what} is unstable from {onset.speed * 30.0 / np.pi:.6g} rpm on: the motion grows")
+    unsure = [speed for track in tracks for speed in track.unsure]
+    if unsure:
+        places = ", ".join(f"{speed * 30.0 / np.pi:.6g}" for speed in unsure[:3])
+        notes.append(f"two branches can't be told apart near {places} rpm: they meet or part there in a point")
+    return tuple(notes)
+
+
+def _method(found: SpeedModes, tracks: list[Track], count: int) -> str:
+    halvings = sum(track.halvings for track in tracks)
+    bound = 10.0 ** np.ceil(np.log10(max(found.error, 1e-10)))  # what is below is rounding
+    return (
+        f"basis of {found.size} columns from {len(found.snapshots)} true solutions, {len(found.checks)} more as a check: "
+        f"off by at most {bound:.0e}; {count} speeds, {halvings} steps halved to follow the modes"
+    )

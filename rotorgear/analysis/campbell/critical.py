@@ -1,0 +1,174 @@
+"""Critical speeds, directly: speeds at which an order of a shaft or a mesh meets a natural frequency."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.analysis.campbell.crossings import EXCITED, participation
+from rotorgear.analysis.campbell.discretise import system_for_speeds
+from rotorgear.analysis.campbell.speed_family import SpeedFamily
+from rotorgear.analysis.campbell.speeds import highest_speed
+from rotorgear.analysis.common.clock import Clock
+from rotorgear.analysis.common.excitation import excitation_orders
+from rotorgear.analysis.common.notes import left_out
+from rotorgear.analysis.common.pieces import pieces
+from rotorgear.analysis.modal.branch_shapes import BasisShapes
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, silent
+from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.critical import CriticalResult, CriticalSpeed
+from rotorgear.solvers.eigen.synchronous import Affine, Synchronous, synchronous_speeds
+from rotorgear.system.system import System
+
+SHAFT_ORDERS = (1.0,)
+
+
+def critical_speeds(
+    model: Model | System,
+    *,
+    top_speed: float | str | None = None,
+    shaft_orders: Sequence[float] = SHAFT_ORDERS,
+    mesh_orders: Sequence[int] = (),
+    damped: bool = True,
+    fmax: float | None = None,
+    elements: int | None = None,
+    accuracy: float | None = None,
+    progress: Progress = silent,
+) -> CriticalResult:
+    """Return all speeds of the input shaft up to `top_speed` at which a line meets a mode.
+
+    Args:
+        model: a model, or its assembled system, which is then taken as it is.
+        top_speed: rad/s, or a text with its unit; negative turns the other way. None: 1.25 times the operating speed.
+        shaft_orders, mesh_orders: multiples of the speed of every shaft, and of the frequency of every mesh.
+        damped: with all damping and circulatory terms, where the damped frequency has to meet the line; or without.
+        fmax: only those with a frequency up to this many Hz.
+        elements, accuracy: as in `modal`; an accuracy is met at the highest speed.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: no speed range, no line, a speed outside of a bearing's table.
+        ConvergenceError: a root doesn't settle, or is missing by count.
+    """
+    parts = model.model if isinstance(model, System) else model
+    top = highest_speed(parts, top_speed)
+    lines = excitation_orders(parts, shaft_orders, mesh_orders)
+    if not lines or top == 0.0:
+        raise AnalysisError(
+            "no line of excitation: give a speed above 0 and an order of a shaft, or of a mesh with numbers of teeth"
+        )
+    if fmax is not None and not (np.isfinite(fmax) and fmax > 0.0):
+        raise AnalysisError(f"the highest frequency must be positive, got {fmax} Hz")
+    clock = Clock()
+    highest = max(line.frequency_hz(top) for line in lines)
+    system = system_for_speeds(
+        model,
+        [top],
+        modes=None,
+        fmax=min(highest, fmax or np.inf),
+        elements=elements,
+        accuracy=accuracy,
+        progress=progress,
+    )
+    clock.lap("mesh")
+    family = SpeedFamily(system, *sorted((0.0, top)))
+    found: list[tuple[ExcitationOrder, Synchronous]] = []
+    for k, line in enumerate(lines):
+        progress(0.3 + 0.6 * k / len(lines), line.name)
+        limit = abs(top) if fmax is None else min(abs(top), 2.0 * np.pi * fmax / line.order)
+        found += [(line, root) for root in roots_of(system, family, line.order, np.copysign(limit, top), damped)]
+    clock.lap("critical speeds")
+    found.sort(key=lambda item: item[1].speed)
+    return _result(system, found, lines, top, damped, clock)
+
+
+def roots_of(system: System, family: SpeedFamily, order: float, top: float, damped: bool) -> list[Synchronous]:
+    """Synchronous speeds of all groups of dofs from 0 to `top` (rad/s, its sign is that of the rotation), as positive speeds."""
+    groups = family.groups
+    found = []
+    for whole in affine_pieces(system, family, top, damped):
+        for dofs in groups:
+            for root in synchronous_speeds(_cut(whole, dofs), order):
+                vector = np.zeros(system.n, complex)
+                vector[dofs] = root.vector
+                found.append(Synchronous(root.speed, root.eigenvalue, vector, root.residual))
+    return found
+
+
+def affine_pieces(system: System, family: SpeedFamily, top: float, damped: bool) -> Iterator[Affine]:
+    """The matrices between two rows of any bearing's table, as functions of the size of the speed."""
+    sign, end = float(np.sign(top)), abs(top)
+    inner = sorted(abs(float(speed)) for speed in family.knots if 0.0 < abs(speed) < end * (1.0 - 1e-12))
+    edges = [min((abs(float(w)) for w in family.knots), default=0.0), *inner, end]
+    edges = sorted(set(edges))
+    for low, high in itertools.pairwise(edges):
+        (D_a, K_a), (D_b, K_b) = (_matrices(system, sign * speed, damped) for speed in (low, high))
+        D1, K1 = (D_b - D_a) / (high - low), (K_b - K_a) / (high - low)
+        D0, K0 = D_a - low * D1, K_a - low * K1
+        parts = ((D0, D_a), (D1, D_b / high), (K0, K_a), (K1, K_b / high))
+        D0, D1, K0, K1 = (_clean(A, scale) for A, scale in parts)
+        yield Affine(system.mass, D0, D1, K0, K1, low, high)
+
+
+def _clean(A: sp.csc_array, scale: sp.csc_array) -> sp.csc_array:
+    """A without entries that are rounding of the differences it was made of."""
+    A = sp.csc_array(A)
+    largest = abs(scale).max() if scale.nnz else 0.0
+    A.data[np.abs(A.data) <= 1e-14 * largest] = 0.0
+    A.eliminate_zeros()
+    return A
+
+
+def _matrices(system: System, speed: float, damped: bool) -> tuple[sp.csc_array, sp.csc_array]:
+    gyroscopic = speed * system.gyroscopic
+    if not damped:
+        return sp.csc_array(gyroscopic), system.stiffness(speed)
+    stiffness = system.stiffness(speed) + system.circulatory(speed)
+    return sp.csc_array(system.damping(speed) + gyroscopic), sp.csc_array(stiffness)
+
+
+def _cut(whole: Affine, dofs: np.ndarray) -> Affine:
+    M, D0, D1, K0, K1 = (sp.csc_array(A[:, dofs][dofs]) for A in (whole.M, whole.D0, whole.D1, whole.K0, whole.K1))
+    return Affine(M, D0, D1, K0, K1, whole.low, whole.high)
+
+
+def _result(
+    system: System, found: list[tuple[ExcitationOrder, Synchronous]], lines: tuple[ExcitationOrder, ...], top: float,
+    damped: bool, clock: Clock,
+) -> CriticalResult:  # fmt: skip
+    count = len(found)
+    X = np.column_stack([root.vector for _, root in found]) if found else np.zeros((system.n, 0), complex)
+    shapes = BasisShapes(system, [np.hstack([X.real, X.imag])])
+    coordinates = shapes.coordinates(0, np.vstack([np.eye(count), 1j * np.eye(count)]))
+    speeds = np.copysign(np.array([root.speed for _, root in found]), top)
+    seen = shapes.portraits(coordinates, speeds)
+    words = shapes.descriptions(coordinates, speeds)
+    zeta = system.model.damping.modal_ratio if damped else 0.0
+    damps = damped and not SpeedFamily(system, *sorted((0.0, top))).is_conservative
+    table = []
+    for k, (line, root) in enumerate(found):
+        share = participation(line, seen, k)
+        value = root.eigenvalue
+        table.append(
+            CriticalSpeed(
+                line.name, float(speeds[k]), float(value.imag / (2.0 * np.pi)),
+                (float(-value.real / abs(value)) if damps else 0.0) + zeta, seen.whirl[k], share, share >= EXCITED, words[k],
+                root.residual,
+            )
+        )  # fmt: skip
+    clock.lap("energies")
+    notes = list(left_out(system, top if damped else None))
+    if not damped:
+        notes = [note for note in notes if not note.startswith(("gyroscopic", "damping"))]
+        notes.append("damping and circulatory terms: an undamped analysis")
+    return CriticalResult(
+        model=system.model, damped=damped, top_speed=top, lines=lines, speeds=tuple(table),
+        shapes=shapes.stations @ coordinates, nodes=shapes.nodes, dofs=system.n, discretisation=pieces(system),
+        seconds=clock.total(), left_out=tuple(notes), warnings=tuple(system.nodes.merged),
+        method="eigenproblem in the speed, " + ("damped, root of Im s = p W" if damped else "undamped, counted by pivot signs"),
+    )  # fmt: skip

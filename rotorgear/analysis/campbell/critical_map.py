@@ -1,0 +1,155 @@
+"""Undamped critical speed map: critical speeds over one radial stiffness that stands for that of all bearings.
+
+Rieger, Vibrations of Rotating Machinery; Vance, Rotordynamics of Turbomachinery, chapter 3: where the stiffness of a real bearing
+cuts the curves, its undamped critical speeds are read off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rotorgear.analysis.campbell.critical import roots_of
+from rotorgear.analysis.campbell.discretise import system_for_speeds
+from rotorgear.analysis.campbell.speed_family import SpeedFamily
+from rotorgear.analysis.campbell.speeds import highest_speed
+from rotorgear.analysis.common.clock import Clock
+from rotorgear.analysis.common.excitation import excitation_orders
+from rotorgear.analysis.modal.branch_shapes import BasisShapes
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.model.parts.supports import Bearing
+from rotorgear.progress import Progress, silent
+from rotorgear.results.critical import CriticalMap
+from rotorgear.system.system import System
+
+# Decades below the softest and above the stiffest bearing of the model that the map covers.
+_DECADES, _POINTS = 2.0, 33
+
+
+def critical_map(
+    model: Model,
+    *,
+    stiffness: Sequence[float] | None = None,
+    shaft: str | None = None,
+    order: float = 1.0,
+    top_speed: float | str | None = None,
+    elements: int | None = None,
+    accuracy: float | None = None,
+    progress: Progress = silent,
+) -> CriticalMap:
+    """Return undamped critical speeds of one order of one shaft over the radial stiffness of all bearings.
+
+    Every bearing keeps its axial, tilting and torsional stiffness and its pedestal; its stiffness along x and y, cross terms and
+    table give way to the one value.
+
+    Args:
+        model: a model with at least one bearing.
+        stiffness: in N/m, positive; None: 33 values from two decades below the softest bearing to two above the stiffest.
+        shaft: whose order excites, the input shaft for None; order: its multiple.
+        top_speed, elements, accuracy, progress: as in `critical_speeds`.
+
+    Raises:
+        AnalysisError: no bearings, no such shaft, a stiffness that is not positive.
+    """
+    if not model.bearings:
+        raise AnalysisError("the model has no bearings, so there is no support stiffness to vary")
+    shaft = shaft or model.reference_shaft
+    lines = excitation_orders(model, (order,), ())
+    line = next((item for item in lines if shaft in item.parts), None)
+    if line is None:
+        raise AnalysisError(f"there is no turning shaft '{shaft}'; there are {', '.join(model.shafts)}")
+    own = {name: radial_stiffness(bearing) for name, bearing in model.bearings.items()}
+    values = np.sort(np.asarray(stiffness if stiffness is not None else _default(own), float))
+    if not values.size or not np.all(np.isfinite(values) & (values > 0.0)):
+        raise AnalysisError("the support stiffness must be positive, in N/m")
+    top, clock = highest_speed(model, top_speed), Clock()
+    stiffest = system_for_speeds(
+        with_radial_stiffness(model, float(values[-1])), [top], modes=None, fmax=line.frequency_hz(top), elements=elements,
+        accuracy=accuracy, progress=progress,
+    )  # fmt: skip
+    clock.lap("mesh")
+    rows: list[dict[str, list[float]]] = []
+    for k, value in enumerate(values):
+        progress(0.1 + 0.9 * k / len(values), f"{value:.3g} N/m")
+        system = System(with_radial_stiffness(model, float(value)), plan=stiffest.plan, direction=stiffest.direction)
+        rows.append(_by_whirl(system, line.order, top))
+    clock.lap("critical speeds")
+    tables = {kind: _padded([row[kind] for row in rows]) for kind in ("forward", "backward", "other")}
+    return CriticalMap(
+        model=model,
+        line=line.name,
+        stiffness=values,
+        **tables,
+        bearings=own,
+        top_speed=top,
+        dofs=stiffest.n,
+        seconds=clock.total(),
+    )
+
+
+def _by_whirl(system: System, order: float, top: float) -> dict[str, list[float]]:
+    """Critical speeds by sense of whirl of the mode."""
+    found = roots_of(system, SpeedFamily(system, *sorted((0.0, top))), order, top, damped=False)
+    table: dict[str, list[float]] = {"forward": [], "backward": [], "other": []}
+    if not found:
+        return table
+    X = np.column_stack([root.vector for root in found])
+    shapes = BasisShapes(system, [np.hstack([X.real, X.imag])])
+    one = np.eye(len(found))
+    speeds = np.copysign(np.array([root.speed for root in found]), top)
+    seen = shapes.portraits(shapes.coordinates(0, np.vstack([one, 1j * one])), speeds)
+    bending = seen.energies.kinetic_by_motion.get("bending", np.zeros(len(found)))
+    for k, speed in enumerate(speeds):
+        net = sum(
+            float(v[k]) * _share(seen.energies.kinetic_by_shaft, name, k) for name, v in seen.whirl_by_shaft.items()
+        )
+        kind = "other" if bending[k] < 0.5 else ("forward" if net > 0.0 else "backward")
+        table[kind].append(float(speed))
+    return {kind: sorted(values, key=abs) for kind, values in table.items()}
+
+
+def _share(shares: dict[tuple[str, str], np.ndarray], shaft: str, k: int) -> float:
+    own = shares.get((shaft, "bending"))
+    return 0.0 if own is None else float(own[k])
+
+
+def _padded(rows: list[list[float]]) -> np.ndarray:
+    width = max(map(len, rows), default=0)
+    return np.array([row + [np.nan] * (width - len(row)) for row in rows]).reshape(len(rows), width)
+
+
+def radial_stiffness(bearing: Bearing) -> np.ndarray:
+    """Stiffness along x and y in N/m, (2,); of a table that in the middle row."""
+    given = bearing.table[len(bearing.table) // 2].stiffness if bearing.table else bearing.stiffness
+    rows = given.as_rows() if given else ((0.0,) * 6,) * 6
+    return np.array([rows[0][0], rows[1][1]])
+
+
+def with_radial_stiffness(model: Model, value: float) -> Model:
+    """The model with one radial stiffness in N/m in all bearings that have a radial one, and no damping in them."""
+    data: dict[str, Any] = model.model_dump(exclude_none=True)
+    for name, bearing in model.bearings.items():
+        if not np.any(radial_stiffness(bearing)):
+            continue
+        given = bearing.table[len(bearing.table) // 2].stiffness if bearing.table else bearing.stiffness
+        assert given is not None
+        rows = np.array(given.as_rows())
+        rows[:2, :], rows[:, :2] = 0.0, 0.0
+        rows[0, 0] = rows[1, 1] = value
+        own = data["bearings"][name]
+        own.pop("table", None)
+        own.pop("damping", None)
+        own["stiffness"] = {"matrix": rows.tolist()}
+    return Model(**data)
+
+
+def _default(own: dict[str, np.ndarray]) -> np.ndarray:
+    present = np.concatenate(list(own.values()))
+    present = present[present > 0.0]
+    if not present.size:
+        raise AnalysisError("no bearing has a radial stiffness, so there is none to vary")
+    low, high = np.log10(present.min()) - _DECADES, np.log10(present.max()) + _DECADES
+    return np.logspace(low, high, _POINTS)

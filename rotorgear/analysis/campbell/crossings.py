@@ -1,0 +1,187 @@
+"""Where branches meet excitation lines, where they turn unstable, and how far the operating speed is from that.
+
+A root of a function of an eigenvalue over speed is bracketed by two speeds of the track and found by a safeguarded secant; at
+every trial the eigenpair is refined in the reduced problem from the cubic through both ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.analysis.campbell.snapshot_basis import SpeedModes
+from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits
+from rotorgear.results.campbell import Crossing, ExcitationOrder, Margin
+from rotorgear.solvers.eigen.reduced_pencil import Pencil
+
+# Below this participation a line can't excite a mode.
+EXCITED = 1e-4
+_CLOSE = 1e-13
+
+
+@dataclass(frozen=True)
+class Chain:
+    """One branch: its group, and s and coordinates q in the group's basis at each speed; NaN where it doesn't oscillate."""
+
+    group: int
+    s: np.ndarray
+    q: np.ndarray
+
+
+@dataclass(frozen=True)
+class Root:
+    """Where a function of a branch is zero: branch (from 0), speed, eigenvalue, coordinates in the group's basis."""
+
+    branch: int
+    speed: float
+    s: complex
+    q: np.ndarray
+
+
+Measure = Callable[[complex, float], float]
+
+
+def roots(modes: SpeedModes, chains: Sequence[Chain], speeds: np.ndarray, branch: int, measure: Measure) -> list[Root]:
+    """Speeds at which `measure(s, speed)` of a branch changes sign, and where it is zero at a speed of the track above 0."""
+    chain = chains[branch]
+    values = np.array([measure(s, w) if np.isfinite(s) else np.nan for s, w in zip(chain.s, speeds, strict=True)])
+    found = []
+    for k in range(len(speeds) - 1):
+        low, high = values[k], values[k + 1]
+        if low * high < 0.0 or (high == 0.0 and low != 0.0):
+            found.append(_root(modes, chain, branch, speeds[k : k + 2], (low, high), measure, k))
+    return found
+
+
+def _root(
+    modes: SpeedModes,
+    chain: Chain,
+    branch: int,
+    ends: np.ndarray,
+    values: tuple[float, float],
+    measure: Measure,
+    k: int,
+) -> Root:
+    (a, b), (fa, fb) = (float(ends[0]), float(ends[1])), values
+    s, q = chain.s[k], chain.q[k]
+    for _ in range(60):
+        w = b - fb * (b - a) / (fb - fa) if fb != fa else 0.5 * (a + b)
+        share = (w - ends[0]) / (ends[1] - ends[0])
+        guess = (1.0 - share) * chain.s[k] + share * chain.s[k + 1]
+        s, q = _nearest(modes, chain, w, guess, k, share)
+        f = measure(s, w)
+        if f == 0.0 or abs(b - a) <= _CLOSE * max(abs(a), abs(b)) or abs(f) <= _CLOSE * abs(s):
+            break
+        if f * fb < 0.0:
+            a, fa, b, fb = b, fb, w, f
+        else:  # Illinois: the end that stays counts half
+            b, fb, fa = w, f, 0.5 * fa
+    return Root(branch, float(w), s, q)
+
+
+def _nearest(
+    modes: SpeedModes, chain: Chain, speed: float, guess: complex, k: int, share: float
+) -> tuple[complex, np.ndarray]:
+    """The branch at a speed between two of the track: refined from the nearer end's vector, or searched among all modes there."""
+    pencil = modes.pencil(chain.group, speed)
+    start = chain.q[k] if share < 0.5 else chain.q[k + 1]
+    s, q = refined(pencil, guess, start)
+    gap = abs(chain.s[k + 1] - chain.s[k]) + 1e-6 * abs(guess)
+    if abs(s - guess) <= gap:
+        return s, q
+    found = modes.at(speed)[chain.group]
+    best = int(np.argmin(np.abs(found.s - guess)))
+    return complex(found.s[best]), found.q[:, best]
+
+
+def refined(pencil: Pencil, s: complex, q: np.ndarray) -> tuple[complex, np.ndarray]:
+    """Inverse iteration with the derivative, Q(s) u = Q'(s) q, s <- s - (q^H q)/(q^H u)."""
+    for _ in range(8):
+        right = 2.0 * s * (pencil.M @ q) + pencil.D @ q
+        try:
+            u = np.linalg.solve(pencil.at(s), right)
+        except np.linalg.LinAlgError:
+            break
+        change = np.vdot(q, q) / np.vdot(q, u)
+        s, q = s - change, u / np.linalg.norm(u)
+        if abs(change) <= 1e-14 * abs(s):
+            break
+    return complex(s), q
+
+
+def participation(line: ExcitationOrder, seen: Portraits, k: int) -> float:
+    """Share of the exciting meshes in the strain energy of mode k, or of the exciting shafts in its kinetic energy.
+
+    First order of a shaft is unbalance: a force that turns with the shaft drives the forward part of its bending only, of which a
+    net sense w leaves (1 + w)/2. Other orders of a shaft may act in any motion.
+    """
+    energies = seen.energies
+    if line.kind != "shaft":
+        return sum(
+            float(energies.strain[f"meshes.{name}"][k]) for name in line.parts if f"meshes.{name}" in energies.strain
+        )
+    total = 0.0
+    for name in line.parts:
+        if line.name.endswith(" 1x"):
+            share = energies.kinetic_by_shaft.get((name, "bending"))
+            total += 0.0 if share is None else float(share[k] * 0.5 * (1.0 + seen.whirl_by_shaft[name][k]))
+        else:
+            total += sum(float(v[k]) for (shaft, _), v in energies.kinetic_by_shaft.items() if shaft == name)
+    return total
+
+
+def crossings(
+    modes: SpeedModes,
+    shapes: BasisShapes,
+    chains: Sequence[Chain],
+    speeds: np.ndarray,
+    lines: Sequence[ExcitationOrder],
+) -> tuple[Crossing, ...]:
+    """All crossings of branches and lines, by speed."""
+    hits: list[tuple[ExcitationOrder, Root]] = []
+    for line in lines:
+        for branch in range(len(chains)):
+            order = line.order
+
+            def measure(s: complex, speed: float, order: float = order) -> float:
+                return float(modes.damped(np.array([s]))[0].imag - order * abs(speed))
+
+            hits += [(line, root) for root in roots(modes, chains, speeds, branch, measure)]
+    if not hits:
+        return ()
+    at = np.array([root.speed for _, root in hits])
+    coordinates = np.hstack([shapes.coordinates(chains[root.branch].group, root.q[:, None]) for _, root in hits])
+    seen = shapes.portraits(coordinates, at)
+    found = []
+    for place, (line, root) in enumerate(hits):
+        s = modes.damped(np.array([root.s]))[0]
+        share = participation(line, seen, place)
+        found.append(
+            Crossing(line.name, root.branch + 1, root.speed, float(s.imag) / (2.0 * np.pi), float(-s.real / abs(s)) + 0.0,
+                     seen.whirl[place], share, share >= EXCITED)
+        )  # fmt: skip
+    return tuple(sorted(found, key=lambda item: (abs(item.speed), item.frequency_hz)))
+
+
+def margins(
+    lines: Sequence[ExcitationOrder], found: Sequence[Crossing], speed: float, s: np.ndarray, seen: Portraits
+) -> tuple[Margin, ...]:
+    """The mode next to each line at the operating speed; s (b,) are the branches there, NaN where one has none."""
+    table = []
+    known = np.flatnonzero(np.isfinite(s))
+    top = float(s[known].imag.max(initial=0.0)) / (2.0 * np.pi)
+    for line in lines:
+        frequency = line.frequency_hz(speed)
+        shares = {int(b): participation(line, seen, place) for place, b in enumerate(known)}
+        able = [b for b, share in shares.items() if share >= EXCITED]
+        speeds = [item.speed for item in found if item.line == line.name and item.excited]
+        nearest = min(speeds, key=lambda value: abs(value - speed), default=float("nan"))
+        if not able or frequency > top:
+            table.append(Margin(line.name, frequency, 0, float("nan"), float("nan"), 0.0, nearest))
+            continue
+        best = min(able, key=lambda b: abs(s[b].imag / (2.0 * np.pi) - frequency))
+        mode = float(s[best].imag / (2.0 * np.pi))
+        table.append(Margin(line.name, frequency, best + 1, mode, mode / frequency - 1.0, shares[best], nearest))
+    return tuple(table)

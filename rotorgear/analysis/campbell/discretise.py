@@ -1,0 +1,56 @@
+"""The mesh for an analysis over a range of speeds: what the modes at both ends need for an accuracy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from rotorgear.analysis.modal.modal import modal
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, silent
+from rotorgear.results.modal import Piece
+from rotorgear.system.plan import PieceKey, Plan
+from rotorgear.system.system import System
+
+
+def system_for_speeds(
+    model: Model | System,
+    speeds: Sequence[float],
+    *,
+    modes: int | None,
+    fmax: float | None,
+    elements: int | None,
+    accuracy: float | None,
+    only: tuple[str, ...] = (),
+    progress: Progress = silent,
+) -> System:
+    """Return a system whose lowest modes are estimated to be within the accuracy at each of some speeds in rad/s.
+
+    A system is taken as it is, and `elements` fixes the mesh. Errors are those of `modal`.
+    """
+    if isinstance(model, System):
+        return model
+    if elements is not None and accuracy is not None:
+        raise AnalysisError("elements and accuracy: give one of the two; elements fixes the mesh, accuracy refines it")
+    turning = [speed for speed in speeds if speed]
+    direction = -1 if turning and turning[0] < 0.0 else 1
+    if elements is not None:
+        if elements < 1:
+            raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
+        return System(model, plan=Plan(elements), direction=direction)
+    cuts: list[dict[PieceKey, tuple[int, int]]] = []
+    for k, speed in enumerate(dict.fromkeys(speeds)):
+        progress(0.1 * k, "refining the mesh")
+        found = modal(model, speed=speed, modes=modes, fmax=fmax, accuracy=accuracy, only=only)
+        cuts.append(cut_of(found.discretisation))
+    finest = {key: max(cut[key] for cut in cuts) for key in cuts[0]}
+    return System(model, plan=Plan(cut=finest), direction=direction)
+
+
+def cut_of(pieces: Iterable[Piece]) -> dict[PieceKey, tuple[int, int]]:
+    """Elements and order of every piece, by shaft and number from the left."""
+    found: dict[PieceKey, tuple[int, int]] = {}
+    for piece in pieces:
+        number = sum(shaft == piece.shaft for shaft, _ in found)
+        found[piece.shaft, number] = (piece.elements, piece.order)
+    return found

@@ -1,0 +1,231 @@
+"""Modes at any speed from a small basis: the lowest modes at a few speeds, with a certificate by true solutions at others.
+
+Snapshots are taken at both ends of the speed range. In the middle between two snapshots the true sparse solution is compared with
+the projected one; where a frequency is off by more than `TOLERANCE` the true modes join the basis and both halves are checked in
+turn. Projection: Galerkin on real and imaginary parts of the modes, each independent group of dofs by itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.analysis.campbell.speed_family import ReducedFamily, SpeedFamily
+from rotorgear.analysis.modal.modes import Modes, Wanted
+from rotorgear.analysis.modal.solve import group_notes, solve, with_modal_damping
+from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.progress import Progress, silent
+from rotorgear.solvers.eigen.reduced_pencil import Eigen, Pencil, eigen
+from rotorgear.solvers.eigen.subspace import Subspace
+from rotorgear.system.components import dof_motions
+from rotorgear.system.system import System
+
+TOLERANCE = 1e-9
+# Part of a mode outside of the basis that is not worth a column: with damping it moves the frequency in proportion.
+_NEGLIGIBLE = 1e-8
+_MOST_SNAPSHOTS = 65
+# More modes than asked for at every snapshot, so that those which come down with speed are known before they arrive.
+_SPARE, _SPARE_SHARE, _BEYOND_LIMIT = 6, 0.25, 1.15
+_STILL = 1e-5
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is asked for: so many oscillating modes, or all up to a limit of |s| in rad/s, or both; and which motions."""
+
+    modes: int | None
+    limit: float | None
+    only: tuple[str, ...] = ()
+
+    def asked(self, size: np.ndarray) -> int:
+        """How many of the ascending |s| (m,) are asked for."""
+        inside = len(size) if self.limit is None else int(np.sum(size <= self.limit * (1.0 + 1e-9)))
+        return inside if self.modes is None else min(inside, self.modes)
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """True modes at a speed: those that oscillate, lowest |s| first, s (m,) and free shapes (n, m); rigid shapes (n, r)."""
+
+    speed: float
+    s: np.ndarray
+    vectors: np.ndarray
+    rigid: np.ndarray
+
+
+@dataclass
+class _Group:
+    """One independent group of dofs: its basis, its projected matrices and what to look for."""
+
+    dofs: np.ndarray
+    space: Subspace
+    family: ReducedFamily | None = None
+    shift: float = 1.0
+    smallest: float = 0.0
+    count: int = 0
+
+
+class SpeedModes:
+    """Modes of a system at any speed from `low` to `high`, from a certified basis.
+
+    Attributes:
+        snapshots: the true solutions in the basis; checks: (speed, largest relative error) of true solutions that are not.
+
+    Raises:
+        ConvergenceError: the basis doesn't reach the tolerance.
+    """
+
+    def __init__(self, system: System, low: float, high: float, request: Request, progress: Progress = silent) -> None:
+        self.system, self.request = system, request
+        self.family = SpeedFamily(system, low, high)
+        self._conservative = self.family.is_conservative
+        self.snapshots: list[Snapshot] = []
+        self.checks: list[tuple[float, float]] = []
+        weight = np.sqrt(_size(system, low))
+        self._parts = [_Group(dofs, Subspace(weight[dofs], _NEGLIGIBLE)) for dofs in self.family.groups]
+        self._known: dict[float, list[Eigen]] = {}
+        self._build(low, high, progress)
+
+    @property
+    def error(self) -> float:
+        """Largest relative error of an eigenvalue against the true solutions that are not in the basis."""
+        return max((error for _, error in self.checks), default=0.0)
+
+    @property
+    def size(self) -> int:
+        """Number of columns of the basis."""
+        return sum(part.space.size for part in self._parts)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences about groups of dofs that were solved apart or left out."""
+        motions, groups = dof_motions(self.system), [part.dofs for part in self._parts]
+        chosen = [part.dofs for part in self._parts if part.space.size]
+        return group_notes(motions, groups, chosen)
+
+    def basis(self) -> list[np.ndarray]:
+        """The basis of each group over all free dofs, (n, r_g)."""
+        found = []
+        for part in self._parts:
+            whole = np.zeros((self.system.n, part.space.size))
+            whole[part.dofs] = part.space.basis
+            found.append(whole)
+        return found
+
+    def at(self, speed: float) -> list[Eigen]:
+        """Oscillating modes of each group at a speed, in coordinates of its basis; without the model's modal damping ratio."""
+        speed = float(speed)
+        if speed not in self._known:
+            self._known[speed] = [
+                eigen(part.family.at(speed), part.shift, part.smallest, part.count)
+                for part in self._parts
+                if part.family is not None
+            ]
+        return self._known[speed]
+
+    def pencil(self, group: int, speed: float) -> Pencil:
+        """Projected matrices of a group at a speed."""
+        family = self._parts[group].family
+        assert family is not None
+        return family.at(speed)
+
+    def damped(self, s: np.ndarray) -> np.ndarray:
+        """Eigenvalues with the modal damping ratio of the model added, and without rounding where nothing else damps."""
+        if self._conservative:
+            s = 1j * s.imag
+        zeta = self.system.model.damping.modal_ratio
+        return with_modal_damping(s, zeta) if zeta else s
+
+    def _build(self, low: float, high: float, progress: Progress) -> None:
+        ends = [low] if low == high else [low, high]
+        for k, speed in enumerate(ends):
+            progress(0.3 * k / len(ends), f"true modes, {self.system.n} dofs")
+            self._add(self._true(speed))
+        self._project()
+        waiting = [(low, high)] if low != high else []
+        while waiting:
+            a, b = waiting.pop(0)
+            middle = self._true(0.5 * (a + b))
+            error = self._error(middle)
+            progress(0.5, f"checked at {len(self.checks) + 1} speeds")
+            if error <= TOLERANCE:
+                self.checks.append((middle.speed, error))
+                continue
+            if len(self.snapshots) >= _MOST_SNAPSHOTS or not self._add(middle):
+                raise ConvergenceError(
+                    f"modes from a basis of {self.size} columns are {error:.1e} off at {middle.speed * 30 / np.pi:.6g} rpm, "
+                    f"above {TOLERANCE:g}; ask for fewer modes or a narrower range of speeds, or use modal at single speeds"
+                )
+            self._project()
+            waiting += [(a, middle.speed), (middle.speed, b)]
+
+    def _true(self, speed: float) -> Snapshot:
+        """The modes at a speed by the sparse solver, with spare ones."""
+        wish = self.request
+        spare = max(_SPARE, int(_SPARE_SHARE * (wish.modes or 0)))
+        count = None if wish.modes is None else wish.modes + spare
+        limit = None if wish.limit is None else wish.limit * _BEYOND_LIMIT
+        ask = count
+        while True:
+            found: Modes = solve(self.system, Wanted(speed, ask, limit, wish.only))
+            s = found.eigenvalues
+            moving = np.flatnonzero(~found.rigid & (s.imag > 1e-9 * np.abs(s)))
+            if count is None or ask is None or len(moving) >= count or len(s) < ask:
+                break
+            ask += count - len(moving)
+        kept = moving[:count]
+        return Snapshot(speed, s[kept], found.vectors[:, kept], found.vectors[:, found.rigid].real)
+
+    def _add(self, snapshot: Snapshot) -> int:
+        """Put a true solution into the basis; return the number of new columns."""
+        self.snapshots.append(snapshot)
+        new = 0
+        for part in self._parts:
+            for vectors in (snapshot.rigid, snapshot.vectors):
+                own = vectors[part.dofs]
+                own = own[:, np.abs(own).max(axis=0, initial=0.0) > 0.0]
+                new += part.space.add(own) if own.shape[1] else 0
+        return new
+
+    def _project(self) -> None:
+        self._known.clear()
+        for part, V in zip(self._parts, self.basis(), strict=True):
+            counts, sizes = [0], []
+            for snapshot in self.snapshots:
+                own = np.abs(snapshot.vectors[part.dofs]).max(axis=0, initial=0.0) > 0.0
+                counts.append(int(own.sum()))
+                sizes += [np.abs(snapshot.s[own])]
+            size = np.concatenate(sizes) if sizes else np.zeros(0)
+            if not part.space.size or not size.size:
+                part.family, part.count = self.family.reduced(V[:, :0]), 0
+                continue
+            part.family = self.family.reduced(V)
+            part.shift, part.smallest = float(np.sqrt(size.min() * size.max())), _STILL * float(size.min())
+            part.count = max(counts) + _SPARE
+
+    def _error(self, true: Snapshot) -> float:
+        """Largest relative error of the asked eigenvalues at a speed, each with a partner of its own."""
+        from scipy.optimize import linear_sum_assignment
+
+        parts = self.at(true.speed)
+        found = self.damped(np.concatenate([part.s for part in parts])) if parts else np.zeros(0)
+        asked = true.s[: max(self.request.asked(np.abs(true.s)), 1)]
+        if len(found) < len(asked):
+            return float("inf")
+        if not len(asked):
+            return 0.0
+        distance = np.abs(found - asked[:, None]) / np.abs(asked)[:, None]
+        rows, columns = linear_sum_assignment(np.minimum(distance, 1.0))
+        return float(distance[rows, columns].max(initial=0.0))
+
+
+def _size(system: System, speed: float) -> np.ndarray:
+    """Weights of the dofs (n,): stiffness and inertia of each, the latter at a typical dof's own frequency."""
+    K, M = system.stiffness(speed).diagonal(), system.mass.diagonal()
+    both = (K > 0.0) & (M > 0.0)
+    if not both.any():
+        raise AnalysisError("nothing in the model has both stiffness and inertia: there is no vibration to follow")
+    typical = float(np.median(K[both] / M[both]))
+    size = K + 1e-4 * typical * M
+    return np.where(size > 0.0, size, size[size > 0.0].min())

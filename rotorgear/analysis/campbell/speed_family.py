@@ -1,0 +1,139 @@
+"""The matrices of a system as functions of speed, projected on a basis: M, D0 + W G, K0 + W K1, and tables of bearings.
+
+Between two rows of any bearing's table everything is affine in the speed, so linear interpolation between the projected matrices
+at these rows is exact. Stiffness is projected through its strains, so that soft modes keep their digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.solvers.eigen.reduced_pencil import Pencil
+from rotorgear.system.assembly import assemble
+from rotorgear.system.components import independent_groups
+from rotorgear.system.groups import ElementGroup, table_groups
+from rotorgear.system.strain_forms import StrainForms, strain_forms
+from rotorgear.system.system import System
+
+
+@dataclass(frozen=True)
+class ReducedFamily:
+    """Dense matrices (r, r) over speed; `table_damping` and `table_stiffness` (k, r, r) at the speeds `knots` (k,)."""
+
+    mass: np.ndarray
+    damping: np.ndarray
+    gyroscopic: np.ndarray
+    stiffness: np.ndarray
+    per_speed: np.ndarray
+    knots: np.ndarray
+    table_damping: np.ndarray
+    table_stiffness: np.ndarray
+
+    def at(self, speed: float) -> Pencil:
+        """M, D and K at a speed in rad/s."""
+        D, K = self.damping + speed * self.gyroscopic, self.stiffness + speed * self.per_speed
+        if len(self.knots):
+            right = int(np.clip(np.searchsorted(self.knots, speed), 1, len(self.knots) - 1))
+            left = right - 1
+            share = (speed - self.knots[left]) / (self.knots[right] - self.knots[left])
+            D = D + (1.0 - share) * self.table_damping[left] + share * self.table_damping[right]
+            K = K + (1.0 - share) * self.table_stiffness[left] + share * self.table_stiffness[right]
+        return Pencil(self.mass, D, K)
+
+
+class SpeedFamily:
+    """The matrices of a system from the lowest to the highest speed of interest (rad/s, of one sign).
+
+    Raises:
+        AnalysisError: a speed outside a bearing's table.
+    """
+
+    def __init__(self, system: System, low: float, high: float) -> None:
+        self.system = system
+        self.mass, self.gyroscopic = system.mass, system.gyroscopic
+        beta = system.model.damping.rayleigh_beta
+        self._constant = strain_forms(system.groups, system.dofs, 0.0, beta)
+        self._per_speed = strain_forms(system.groups, system.dofs, 1.0, beta).circulation - self._constant.circulation
+        self.knots = table_speeds(system, low, high)
+        self._tables = [self._table(speed) for speed in self.knots]
+
+    def _table(self, speed: float) -> tuple[sp.csc_array, sp.csc_array]:
+        """Damping and stiffness of the bearings with tables at a speed, sparse (n, n)."""
+        own = table_groups(self.system.model, self.system.train, self.system.nodes, float(speed))
+        K = assemble(own, self.system.dofs, _whole_stiffness)
+        C = assemble(own, self.system.dofs, lambda g: g.matrices.damping)
+        beta = self.system.model.damping.rayleigh_beta
+        symmetric = assemble(own, self.system.dofs, lambda g: g.matrices.stiffness)
+        return sp.csc_array(C + beta * symmetric), K
+
+    @property
+    def is_conservative(self) -> bool:
+        """Whether nothing takes energy out or brings it in (no damping, cross-coupled or indefinite spring): s is imaginary."""
+        forms = self._constant
+        quiet = not (forms.viscosity.nnz or forms.circulation.nnz or self._per_speed.nnz)
+        tables = all(not C.nnz and abs(K - K.T).max() == 0.0 for C, K in self._tables)
+        alpha = self.system.model.damping.rayleigh_alpha
+        speeds = [float(speed) for speed in self.knots] or [0.0]
+        return quiet and tables and not alpha and all(self.system.strain_factor(w) is not None for w in speeds)
+
+    @property
+    def groups(self) -> list[np.ndarray]:
+        """Dofs that act on each other at no speed, largest group first."""
+        forms = self._constant
+        sizes = [abs(A) for A in (forms.modulus, forms.viscosity, forms.circulation, self._per_speed)]
+        B = abs(forms.strain)
+        strained = [sp.csc_array(B.T @ A @ B) for A in sizes if A.nnz]
+        return independent_groups([self.mass, self.gyroscopic, *strained, *(A for pair in self._tables for A in pair)])
+
+    def reduced(self, V: np.ndarray) -> ReducedFamily:
+        """Matrices in the coordinates of a basis V (n, r), real."""
+        forms: StrainForms = self._constant
+        strained = forms.strain @ V
+        mass = V.T @ (self.mass @ V)
+        gyroscopic = V.T @ (self.gyroscopic @ V)
+        alpha = self.system.model.damping.rayleigh_alpha
+        r = V.shape[1]
+        tables = [[V.T @ (A @ V) for A in pair] for pair in self._tables]
+        return ReducedFamily(
+            mass=0.5 * (mass + mass.T),
+            damping=strained.T @ (forms.viscosity @ strained) + alpha * mass,
+            gyroscopic=0.5 * (gyroscopic - gyroscopic.T),
+            stiffness=strained.T @ (forms.modulus @ strained) + strained.T @ (forms.circulation @ strained),
+            per_speed=strained.T @ (self._per_speed @ strained),
+            knots=self.knots,
+            table_damping=np.array([pair[0] for pair in tables]).reshape(len(tables), r, r),
+            table_stiffness=np.array([pair[1] for pair in tables]).reshape(len(tables), r, r),
+        )
+
+
+def _whole_stiffness(group: ElementGroup) -> np.ndarray | None:
+    K, N = group.matrices.stiffness, group.matrices.circulatory
+    return K if N is None else (N if K is None else K + N)
+
+
+def table_speeds(system: System, low: float, high: float) -> np.ndarray:
+    """Reference speeds (k,) from `low` to `high` at which a table of a bearing has a kink; none without tables."""
+    found: set[float] = set()
+    sign = -1.0 if min(low, high) < 0.0 else 1.0
+    for bearing in system.model.bearings.values():
+        ratio = abs(system.train.ratio(bearing.shaft))
+        if bearing.table:
+            found |= {low, high}
+        for row in bearing.table if ratio else ():
+            speed = sign * row.speed / ratio
+            if low < speed < high:
+                found.add(float(speed))
+    return merged(sorted(found), high - low)
+
+
+def merged(speeds: Sequence[float], span: float) -> np.ndarray:
+    """Ascending speeds without those that are the same but for rounding."""
+    kept: list[float] = []
+    for speed in speeds:
+        if not kept or speed - kept[-1] > 1e-9 * abs(span):
+            kept.append(speed)
+    return np.array(kept)

@@ -1,0 +1,61 @@
+"""Speeds of the input shaft that an analysis is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rotorgear.analysis.common.request import speed_in_si
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+
+DEFAULT_SPEEDS = 51
+_BEYOND = 1.25
+
+
+def operating_speed(model: Model) -> float | None:
+    """Speed of the input shaft at the operating point in rad/s; None without one."""
+    return model.operation.speed if model.operation else None
+
+
+def highest_speed(model: Model, given: float | str | None = None) -> float:
+    """The end of a speed range in rad/s: what is given, else 1.25 times the operating speed.
+
+    Raises:
+        AnalysisError: neither is known.
+    """
+    if given is not None:
+        return speed_in_si(given)
+    operating = operating_speed(model)
+    if not operating:
+        raise AnalysisError(
+            "the model has no operating speed, so say up to which speed to look (--to, such as '12000 rpm')"
+        )
+    return _BEYOND * operating
+
+
+def speed_range(start: float, stop: float, points: int = DEFAULT_SPEEDS) -> np.ndarray:
+    """Evenly spaced speeds (k,) in rad/s."""
+    if points < 2:
+        raise AnalysisError(f"a range of speeds needs at least 2 points, got {points}")
+    return np.linspace(start, stop, points)
+
+
+def chosen_speeds(model: Model, given: Sequence[float | str] | None) -> np.ndarray:
+    """Speeds in rad/s (k,), ascending in size, each once; None gives 51 from 0 to 1.25 times the operating speed.
+
+    Raises:
+        AnalysisError: fewer than two different speeds, or speeds of both senses.
+    """
+    speeds = (
+        speed_range(0.0, highest_speed(model)) if given is None else np.array([speed_in_si(v) for v in given], float)
+    )
+    if speeds.size and (speeds.min() < 0.0 < speeds.max()):
+        raise AnalysisError(
+            "the speeds go through zero into the other sense of rotation, which loads other flanks: analyse each sense by itself"
+        )
+    unique = np.array(sorted(set(speeds.tolist()), key=abs))
+    if len(unique) < 2:
+        raise AnalysisError(f"a diagram over speed needs at least 2 different speeds, got {len(unique)}")
+    return unique

@@ -1,0 +1,115 @@
+"""Says what a model describes before anything is solved: the verb behind `rotorgear check`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from rotorgear.analysis.common.model_warnings import model_warnings
+from rotorgear.analysis.common.notes import left_out
+from rotorgear.model.layout.mesh_geometry import base_radius, centre_line, mesh_pair
+from rotorgear.model.layout.train import mesh_frequency
+from rotorgear.model.model import Model
+from rotorgear.results.description import MeshRow, ModelDescription, ShaftRow, TorqueRow
+from rotorgear.system.system import System
+
+_RPM = 30.0 / math.pi
+_COUNTED = (
+    "shafts",
+    "gears",
+    "meshes",
+    "disks",
+    "point_masses",
+    "bearings",
+    "supports",
+    "couplings",
+    "unbalances",
+    "points",
+)
+
+
+def describe_model(model: Model, *, elements: int | None = None) -> ModelDescription:
+    """Return speeds, mesh frequencies, torques, contact ratios, masses, dofs and warnings of a model.
+
+    Args:
+        model: a checked model.
+        elements: basic elements in each piece of shaft, for the number of dofs; 1 where it is not given.
+    """
+    system = System(model, elements)
+    speed = model.operation.speed if model.operation else None
+    return ModelDescription(
+        title=model.title,
+        reference_shaft=model.reference_shaft,
+        speed_rpm=None if speed is None else speed * _RPM,
+        shafts=tuple(_shaft(system, name, speed) for name in model.shafts),
+        meshes=tuple(_mesh(system, name, speed) for name in model.meshes),
+        torques=_torques(system, speed),
+        total_mass_kg=sum(sum(_mass(system, name)[:2]) for name in model.shafts),
+        counts={table: len(getattr(model, table)) for table in _COUNTED if getattr(model, table)},
+        nodes=len(system.nodes),
+        dofs=system.n,
+        mesh=f"{elements or 1} basic element{'s'[: (elements or 1) != 1]} a piece of shaft, before any refinement",
+        left_out=left_out(system, speed),
+        warnings=(*system.nodes.merged, *model_warnings(system)),
+    )
+
+
+def _mass(system: System, shaft: str) -> tuple[float, float, float]:
+    """Mass of a shaft, mass of the bodies on it (kg), and the polar inertia of both (kg m^2)."""
+    own = bodies = polar = 0.0
+    for group in system.groups:
+        M = group.matrices.mass
+        if M is None or group.shaft != shaft:
+            continue
+        x, tz = np.arange(0, M.shape[1], 6), np.arange(5, M.shape[1], 6)
+        mass = float(M[:, x][:, :, x].sum())
+        polar += float(M[:, tz][:, :, tz].sum())
+        if group.part == f"shafts.{shaft}":
+            own += mass
+        else:
+            bodies += mass
+    return own, bodies, polar
+
+
+def _shaft(system: System, name: str, speed: float | None) -> ShaftRow:
+    ratio = system.train.ratio(name)
+    own, bodies, polar = _mass(system, name)
+    rpm = None if speed is None else ratio * speed * _RPM
+    return ShaftRow(name, ratio, rpm, system.model.shafts[name].length, own, bodies, polar)
+
+
+def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
+    model, mesh = system.model, system.model.meshes[name]
+    pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
+    forces = system.flow.of_mesh(name)
+    contact, line, pair = forces[0].contact, centre_line(model, name), mesh_pair(model, name)
+    damping = [float(group.matrices.viscosity[0, 0, 0]) for group in system.groups
+               if group.part == f"meshes.{name}" and group.matrices.viscosity is not None]  # fmt: skip
+    teeth = pinion.teeth and gear.teeth
+    return MeshRow(
+        name=name,
+        pinion=mesh.pinion,
+        gear=mesh.gear,
+        ratio=gear.teeth / pinion.teeth if teeth else base_radius(gear) / base_radius(pinion),  # type: ignore[operator]
+        centre_distance_m=line[0] if line else (pair.centre_distance if pair else None),
+        centre_line_deg=math.degrees(contact.psi),
+        pressure_angle_deg=math.degrees(contact.pressure_angle),
+        base_helix_angle_deg=math.degrees(contact.base_helix_angle),
+        transverse_contact_ratio=pair.transverse_contact_ratio if pair else None,
+        overlap_ratio=pair.overlap_ratio if pair else None,
+        mesh_frequency_hz=None if speed is None else mesh_frequency(model, system.train, name, speed),
+        normal_force_n=tuple(force.normal_force for force in forces),
+        driver=mesh.pinion if forces[0].pinion_drives else mesh.gear,
+        flank_assumed=any(force.assumed for force in forces),
+        stiffness_n_per_m=sum(force.contact.stiffness for force in forces),
+        damping_n_s_per_m=sum(damping),
+    )
+
+
+def _torques(system: System, speed: float | None) -> tuple[TorqueRow, ...]:
+    rows = []
+    for item in system.flow.applied:
+        power = None if speed is None else item.torque * system.train.ratio(item.shaft) * speed
+        rows.append(TorqueRow(item.name, item.shaft, item.torque, power))
+    return tuple(rows)

@@ -1,0 +1,68 @@
+"""Excitation lines: orders of every shaft and of every mesh, and the sidebands of a mesh."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from rotorgear.model.layout.train import Train, mesh_frequency, walk
+from rotorgear.model.model import Model
+from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.comparison import ExcitationLine
+
+# Unbalance and misalignment of shafts; the first harmonics of a mesh carry most of its transmission error.
+SHAFT_ORDERS = (1, 2)
+MESH_ORDERS = (1, 2, 3)
+
+
+def excitation_lines(model: Model, speed: float) -> tuple[ExcitationLine, ...]:
+    """Return the lines at a speed of the input shaft in rad/s, equal ones of several shafts or meshes joined in one name."""
+    turns = abs(speed) / (2.0 * math.pi)
+    return tuple(ExcitationLine(line.name, line.order * turns) for line in excitation_orders(model)) if turns else ()
+
+
+def excitation_orders(
+    model: Model,
+    shaft_orders: Sequence[float] = SHAFT_ORDERS,
+    mesh_orders: Sequence[int] = MESH_ORDERS,
+    sidebands: int = 0,
+) -> tuple[ExcitationOrder, ...]:
+    """Return all lines as multiples of the speed of the input shaft, equal ones of several shafts or meshes joined in one.
+
+    Args:
+        model: the model. Meshes of gears without numbers of teeth have no line.
+        shaft_orders, mesh_orders: multiples of the speed of each shaft, of the frequency of each mesh.
+        sidebands: so many at each side of every mesh order, at the distance of the speed of both shafts of the mesh.
+    """
+    train, _ = walk(model)
+    found: dict[tuple[str, str, float], list[str]] = {}
+
+    def add(kind: str, label: str, order: float, name: str) -> None:
+        if order > 0.0 and name not in (names := found.setdefault((kind, label, round(order, 9)), [])):
+            names.append(name)
+
+    for name in model.shafts:
+        for order in shaft_orders:
+            add("shaft", f"{order:g}x", order * abs(train.ratio(name)), name)
+    for name in model.meshes:
+        once = mesh_frequency(model, train, name, 2.0 * math.pi) or 0.0
+        for order in mesh_orders:
+            add("mesh", f"{order:g}x", order * once, name)
+            for label, distance in _sidebands(model, train, name, sidebands) if once else ():
+                add("sideband", f"{order:g}x {label}", order * once + distance, name)
+    return tuple(
+        ExcitationOrder(
+            f"{'shaft' if kind == 'shaft' else 'mesh'} {', '.join(names)} {label}", kind, tuple(names), order
+        )
+        for (kind, label, order), names in found.items()
+    )
+
+
+def _sidebands(model: Model, train: Train, mesh: str, count: int) -> list[tuple[str, float]]:
+    found = []
+    for gear in (model.meshes[mesh].pinion, model.meshes[mesh].gear):
+        shaft = model.gears[gear].shaft
+        for k in range(1, count + 1):
+            step = k * abs(train.ratio(shaft))
+            found += [(f"+ {k}x {shaft}", step), (f"- {k}x {shaft}", -step)]
+    return found

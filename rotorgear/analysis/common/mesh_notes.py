@@ -1,0 +1,42 @@
+"""What a linear analysis says of the stiffness of its meshes: which mean it takes, at which load, and what that leaves out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness
+from rotorgear.system.system import System
+
+
+def mesh_stiffness_left_out(system: System) -> Iterator[str]:
+    """Yield a sentence for each mesh whose stiffness is a model's or a list, because its mean over the period is taken."""
+    for name, mesh in system.model.meshes.items():
+        if isinstance(mesh.stiffness, tuple):
+            mean = sum(mesh.stiffness) / len(mesh.stiffness)
+            share = (max(mesh.stiffness) - min(mesh.stiffness)) / mean
+            ripple = f"ripple of the given stiffness, {100.0 * share:.3g} % peak to peak"
+            yield f"meshes.{name}: {ripple}; its mean {mean:.4g} N/m is taken"
+        elif name in system.flow.stiffness:
+            taken = sum(force.contact.stiffness for force in system.flow.of_mesh(name))
+            yield f"meshes.{name}: {_of_model(system.flow.stiffness[name].about_load, taken)}"
+
+
+def _of_model(curve: MeshStiffness, taken: float) -> str:
+    share = float(np.ptp(curve.transverse)) / curve.mean
+    ripple = (
+        f"ripple of {100.0 * share:.3g} % peak to peak" if share else f"ripple, which '{curve.model}' does not know"
+    )
+    load = "without a load" if not curve.load else f"at F_bt = {curve.load:.4g} N"
+    helices = "" if curve.helices == 1 else " of both helices"
+    return (
+        f"{ripple}; the mean stiffness of '{curve.model}', {taken:.4g} N/m along the flank normal "
+        f"({curve.definition}, {load}{helices}), is taken"
+    )
+
+
+def mesh_stiffness_warnings(system: System) -> Iterator[str]:
+    """Yield what the stiffness models themselves warn about."""
+    for name, curve in system.flow.stiffness.items():
+        yield from (f"meshes.{name}: {sentence}" for sentence in curve.warnings)

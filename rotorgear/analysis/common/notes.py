@@ -1,0 +1,61 @@
+"""What an analysis says beside its numbers: what was left out and why, and warnings."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out, mesh_stiffness_warnings
+from rotorgear.system.system import System
+
+
+def left_out(system: System, speed: float | None) -> tuple[str, ...]:
+    """Say what this analysis did not build or solve, and why."""
+    notes = []
+    absent = [motion for motion in ("bending", "axial", "torsion") if not system.model.has(motion)]
+    if absent:
+        notes.append(f"{' and '.join(absent)}: {system.dofs.held['motions']} dofs, not among the motions of the model")
+    if system.dofs.held["supports"]:
+        notes.append(f"{system.dofs.held['supports']} dofs held fixed by supports")
+    if system.dofs.held["rigid sections"]:
+        notes.append(f"{system.dofs.held['rigid sections']} dofs tied by rigid sections")
+    if speed is None:
+        notes.append("gyroscopic matrix: standstill")
+        notes.append("damping matrix: an undamped analysis (a --speed, even of 0, takes it in)")
+    else:
+        if speed == 0.0:
+            notes.append("gyroscopic matrix: standstill")
+        elif not system.gyroscopic.nnz:
+            notes.append("gyroscopic matrix: nothing that turns can tilt")
+        if system.velocity_terms(0.0) is None and not system.model.damping.modal_ratio:
+            notes.append("damping matrix: nothing damps")
+    return (*notes, *mesh_stiffness_left_out(system))
+
+
+def mode_warnings(
+    system: System, asked: int | None, eigenvalues: np.ndarray, fmax: float | None = None
+) -> tuple[str, ...]:
+    """Say what is odd about a set of modes: merged nodes, fewer modes than asked for, unstable ones."""
+    notes = [*system.nodes.merged, *mesh_stiffness_warnings(system)]
+    if not len(eigenvalues) and fmax is not None:
+        notes.append(f"no mode lies at or below {fmax:g} Hz")
+    elif asked is not None and fmax is None and len(eigenvalues) < asked:
+        notes.append(
+            f"asked for {asked} modes, but this model has only {len(eigenvalues)} with inertia; all are listed"
+        )
+    unstable = int(np.sum(eigenvalues.real > 1e-9 * np.abs(eigenvalues)))
+    if unstable:
+        notes.append(f"{unstable} unstable mode{'s' if unstable > 1 else ''}: negative damping ratio, the motion grows")
+    gathers = gathering(system)
+    if gathers is not None and np.any((eigenvalues.imag == 0.0) & (np.abs(eigenvalues) >= gathers)):
+        notes.append(
+            f"damping in proportion to the stiffness gathers overdamped modes without end at {gathers / (2.0 * np.pi):.4g} Hz: "
+            "those from there on are not all that there are"
+        )
+    return tuple(notes)
+
+
+def gathering(system: System) -> float | None:
+    """Lowest |s| in rad/s, 1/b, at which overdamped modes gather where damping b K goes with the stiffness; None without."""
+    given = [shaft.internal_damping for shaft in system.model.shafts.values()]
+    b = system.model.damping.rayleigh_beta + max(given, default=0.0)
+    return 1.0 / b if b > 0.0 else None

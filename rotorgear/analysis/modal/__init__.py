@@ -1,0 +1,1 @@
+"""Natural frequencies and mode shapes, with what moves and how accurate they are."""

@@ -1,0 +1,109 @@
+"""What modes of a reduced basis look like: coordinates of modal mass 1, energy shares, whirl, for many modes at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.modal.describe import describe
+from rotorgear.analysis.modal.energies import Energies, mode_energies
+from rotorgear.analysis.modal.whirl import whirl_by_shaft, whirl_words
+from rotorgear.results.campbell import WHIRL_WORDS
+from rotorgear.results.modal import NodeTable
+from rotorgear.system.system import System
+
+# So many numbers of shapes are held at once.
+_CHUNK = 4_000_000
+
+
+@dataclass(frozen=True)
+class Portraits:
+    """Energies and whirl of m modes: whirl words and net sense by shaft, as in a modal result."""
+
+    energies: Energies
+    whirl: tuple[str, ...]
+    whirl_by_shaft: dict[str, np.ndarray]
+
+
+class BasisShapes:
+    """The basis of a system at all its dofs, nodes and stations.
+
+    Args:
+        system: the system; parts: basis of each group over the free dofs, (n, r_g).
+    """
+
+    def __init__(self, system: System, parts: list[np.ndarray]) -> None:
+        self.system = system
+        self.offsets = np.cumsum([0, *(V.shape[1] for V in parts)])
+        whole = np.hstack(parts)
+        self.mass = whole.T @ (system.mass @ whole)
+        self.everything = np.asarray(system.dofs.expand(whole))
+        self.nodes: NodeTable
+        self.nodes, self.stations = shapes_at_stations(system, self.everything)
+
+    def coordinates(self, group: int, q: np.ndarray) -> np.ndarray:
+        """Coordinates (r, m) in the whole basis of modes q (r_g, m) of one group, of modal mass 1."""
+        first, last = self.offsets[group], self.offsets[group + 1]
+        own = self.mass[first:last, first:last]
+        norm = np.sqrt(np.abs(np.einsum("rm,rm->m", q.conj(), own @ q)))
+        whole = np.zeros((int(self.offsets[-1]), q.shape[1]), complex)
+        whole[first:last] = q / np.where(norm > 0.0, norm, 1.0)
+        return whole
+
+    def portraits(self, coordinates: np.ndarray, speeds: np.ndarray) -> Portraits:
+        """Energies and whirl of modes (r, m) at speeds (m,) in rad/s."""
+        batches = self._batches(speeds)
+        if not batches:
+            return self._portraits(coordinates, speeds)
+        back = np.argsort(np.concatenate(batches), kind="stable")
+        return _joined([self._portraits(coordinates[:, own], speeds[own]) for own in batches], back)
+
+    def descriptions(self, coordinates: np.ndarray, speeds: np.ndarray) -> tuple[str, ...]:
+        """One line for each mode."""
+        lines: list[str] = []
+        for k in range(coordinates.shape[1]):
+            one = coordinates[:, [k]]
+            seen = self._portraits(one, speeds[[k]])
+            nothing = np.zeros(1, bool)
+            lines += describe(self.system, self._at_nodes(one), seen.energies, nothing, nothing)
+        return tuple(lines)
+
+    def _at_nodes(self, coordinates: np.ndarray) -> np.ndarray:
+        return np.asarray(self.stations[: len(self.system.nodes)] @ coordinates)
+
+    def _batches(self, speeds: np.ndarray) -> list[np.ndarray]:
+        """Numbers of modes that are looked at together: of one speed where bearings depend on it."""
+        order = np.arange(len(speeds))
+        if any(bearing.table for bearing in self.system.model.bearings.values()):
+            return [order[speeds == speed] for speed in dict.fromkeys(speeds.tolist())]
+        width = max(1, _CHUNK // max(self.everything.shape[0], 1))
+        still = speeds == 0.0  # at standstill nothing whirls
+        groups = [order[still], order[~still]]
+        return [own[k : k + width] for own in groups for k in range(0, len(own), width)]
+
+    def _portraits(self, coordinates: np.ndarray, speeds: np.ndarray) -> Portraits:
+        speed = float(speeds[0]) if len(speeds) else 0.0
+        modes = coordinates.shape[1]
+        energies = mode_energies(self.system, speed, self.everything @ coordinates, np.zeros(modes, bool))
+        shapes = self._at_nodes(coordinates)
+        by_shaft = whirl_by_shaft(self.system, shapes, speed)
+        words = whirl_words(self.system, shapes, by_shaft, energies) if speed else ("",) * modes
+        return Portraits(energies, words, by_shaft)
+
+
+def _joined(found: list[Portraits], order: np.ndarray) -> Portraits:
+    def join(tables: list[dict[Any, np.ndarray]]) -> dict[Any, np.ndarray]:
+        return {key: np.concatenate([table[key] for table in tables])[order] for key in tables[0]}
+
+    names = ("kinetic", "strain", "kinetic_by_motion", "strain_by_motion", "kinetic_by_shaft")
+    energies = Energies(*(join([getattr(part.energies, name) for part in found]) for name in names))
+    words = [word for part in found for word in part.whirl]
+    return Portraits(energies, tuple(words[k] for k in order), join([part.whirl_by_shaft for part in found]))
+
+
+def whirl_numbers(words: tuple[str, ...]) -> np.ndarray:
+    """Numbers into `WHIRL_WORDS`, (m,)."""
+    return np.array([WHIRL_WORDS.index(word) for word in words], dtype=np.int8)

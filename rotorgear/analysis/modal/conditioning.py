@@ -1,0 +1,79 @@
+"""How far apart the stiffest and the softest of a model lie, and which parts they are.
+
+The largest diagonal ratio k_ii / m_ii is a lower bound of the largest omega^2, of its order for shafts and springs (Parlett, The
+Symmetric Eigenvalue Problem, section 10.2). An assembled stiffness of doubles resolves omega^2 to about 1e-16 of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from rotorgear.quantity import millimetres
+from rotorgear.solvers.sparse.pencil import EPS
+from rotorgear.system.groups import ElementGroup
+from rotorgear.system.system import System
+
+WARN_ABOVE = 1e12
+
+
+def conditioning_warnings(
+    system: System, speed: float | None, s: np.ndarray, rigid: np.ndarray, strain_energy: Mapping[str, np.ndarray]
+) -> tuple[str, ...]:
+    """Say where omega^2 spans more than `WARN_ABOVE`, from which part to which, and what that means for the modes.
+
+    Args:
+        system, speed: what was analysed; s, rigid: its modes (m,).
+        strain_energy: share of each part in the strain energy of each mode, part -> (m,).
+    """
+    elastic = np.flatnonzero(~rigid & (np.abs(s) > 0.0))
+    K, M = system.stiffness(speed or 0.0).diagonal(), system.mass.diagonal()
+    ratio = np.where(M > 0.0, K / np.where(M > 0.0, M, 1.0), 0.0)
+    if not elastic.size or not ratio.size:
+        return ()
+    # Damping moves |s| away from omega; the undamped scale of a mode is not below the lower of the two.
+    softest = elastic[np.argmin(np.abs(s[elastic]))]
+    span = float(ratio.max() / np.abs(s[softest]) ** 2)
+    if span < WARN_ABOVE:
+        return ()
+    stiff = stiffest_part(system, speed or 0.0, int(np.argmax(ratio)))
+    soft = max(strain_energy, key=lambda part: float(strain_energy[part][softest]), default="")
+    where = f" (mostly {soft})" if soft else ""
+    hertz = float(np.abs(s[softest])) / (2.0 * np.pi)
+    verdict = "frequencies come from the strains of each element and keep their digits"
+    if system.strain_factor(speed or 0.0) is None:
+        verdict = f"a 6 x 6 stiffness is indefinite, so that the softest are good to {EPS * span:.0e} only"
+    return (f"stiffnesses are {span:.0e} apart in omega^2: {stiff}, against {hertz:.3g} Hz{where}; {verdict}",)
+
+
+def stiffest_part(system: System, speed: float, dof: int) -> str:
+    """Name the element that gives a free dof the most of its stiffness."""
+    column = system.dofs.transform[:, [dof]].toarray()[:, 0]
+    best, words = 0.0, ""
+    for group in system.groups_at(speed):
+        K = group.matrices.stiffness
+        if K is None:
+            continue
+        share = np.diagonal(K, axis1=1, axis2=2) * column[group.dofs] ** 2
+        k, local = np.unravel_index(np.argmax(share), share.shape)
+        if share[k, local] > best:
+            best, words = float(share[k, local]), _described(system, group, int(k), int(local))
+    return words
+
+
+def _described(system: System, group: ElementGroup, element: int, local: int) -> str:
+    kind, _, name = group.part.partition(".")
+    if kind != "shafts":
+        assert group.matrices.modulus is not None
+        unit = "N/m" if kind == "meshes" or local % 6 < 3 else "N m/rad"
+        return f"{group.part} has {float(np.max(np.abs(group.matrices.modulus[element]))):.3g} {unit}"
+    ends = [int(dof) // 6 for dof in group.dofs[element, [0, 6]]]
+    own = next(item for item in system.nodes.elements[name] if [item.left, item.right] == ends)
+    number, count = own.section + 1, sum(item.piece == own.piece for item in system.nodes.elements[name])
+    section = system.model.shafts[name].sections[own.section]
+    whole = abs(own.length * count - section.length) <= 1e-9 * section.length
+    z = system.nodes.z[own.left]
+    what = f"section {number} of shaft {name}" if whole else f"a piece of shaft {name} at z = {millimetres(z)}"
+    cut = "" if count == 1 else f" in {count} elements"
+    return f"{what} is {millimetres(own.length * count)} long{cut}"

@@ -1,0 +1,204 @@
+"""Damped and gyroscopic modes of one group of dofs, in modal coordinates where the assembled stiffness is too coarse for them.
+
+A mode so soft that K q is mostly rounding (a bearing of 1 N/m on a shaft of 1e10 N/m) is lost to any solver that is given K.
+The undamped modes X are not, thanks to their strains. In q = X u the problem is (s^2 I + s X^T (C + W G) X + L) u = 0, with
+L = omega^2 to full precision, and C and the circulatory terms taken through strains. A large group takes the lowest undamped
+modes and a first round of damped ones as its basis; a small one takes all modes, which is no approximation.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.analysis.modal.damped_problem import DampedProblem, by_strains, relative_noise
+from rotorgear.solvers.eigen.damped import DampedModes, damped_modes
+from rotorgear.solvers.eigen.eigen import UndampedModes
+from rotorgear.solvers.eigen.quadratic import newton, scaled
+from rotorgear.solvers.eigen.ritz import strain_ritz
+from rotorgear.system.strain_forms import StrainForms
+
+_CLEAN = 1e-10  # rounding of K relative to omega^2 (a bound, rarely met) up to which the assembled matrices do
+_CLEAN_LARGE = (
+    1e-8  # the same for a large group, whose modal coordinates cost more: strains then correct the eigenvalues
+)
+_AS_RIGID = 1e-6  # rounding above which a first round takes a mode as a rigid motion
+_ALL_UP_TO = 120
+_POLISH = 1e-14  # residual in the dofs above which a mode that the matrices do resolve is refined on them
+_NEAR = 1e-6  # a refinement that moves s by more than this share of it has gone to another mode
+_ZERO = 1e-9  # a strain, or a gyroscopic term, of a rigid motion this much smaller than its parts is none
+
+
+def damped_group(problem: DampedProblem, count: int | None, below: float | None) -> tuple[DampedModes, str]:
+    """Return the damped modes of lowest |s|, and a word on the coordinates they were found in."""
+    undamped = _undamped(problem, None, None)  # the softest modes suffer most
+    rigid, elastic = undamped.vectors[:, : undamped.rigid_count], undamped.eigenvalues[undamped.rigid_count :]
+    noise = relative_noise(problem, np.sqrt(elastic), undamped.vectors[:, undamped.rigid_count :])
+    scale = float(np.sqrt(elastic[0])) if len(elastic) else None
+    drift = _drift_noise(problem, rigid)
+    clean = _CLEAN if problem.K.shape[0] <= _ALL_UP_TO else _CLEAN_LARGE
+    if problem.strain is None or max(noise.max(initial=0.0), drift) <= clean:
+        found = damped_modes(
+            problem.M, problem.D, problem.K, count=count, below=below, rigid_vectors=rigid, frequency_scale=scale
+        )
+        return by_strains(problem, found), ""
+    undamped = _undamped(problem, count, below)
+    noise = relative_noise(
+        problem, np.sqrt(undamped.eigenvalues[undamped.rigid_count :]), undamped.vectors[:, undamped.rigid_count :]
+    )
+    if problem.K.shape[0] <= _ALL_UP_TO:
+        undamped = problem.lowest(None, None)
+        basis = undamped.vectors[:, undamped.rigid_count :]
+    else:
+        basis = _enriched(problem, undamped, noise, count, below)
+    return _in_coordinates(problem, rigid, basis, count, below), " in modal coordinates"
+
+
+def _drift_noise(problem: DampedProblem, rigid: np.ndarray) -> float:
+    """The same for the motions that a damper or a spin gives to bodies which no spring holds: s of R^T D R, of lowest |s|."""
+    if not rigid.shape[1]:
+        return 0.0
+    strained = _without_rounding(problem.forms, rigid, rigid.shape[1])
+    drag = _inertial(problem.inertial, rigid, rigid.shape[1]) + strained.T @ (problem.forms.viscosity @ strained)
+    size = np.abs(np.linalg.eigvals(drag))
+    moving = size > 1e-14 * size.max(initial=0.0)
+    if not moving.any():
+        return 0.0
+    return float(relative_noise(problem, np.full(rigid.shape[1], size[moving].min()), rigid).max())
+
+
+def _undamped(problem: DampedProblem, count: int | None, below: float | None) -> UndampedModes:
+    """The rigid modes and enough elastic ones to see which of those asked for suffer from rounding: at least one."""
+    if count is None and below is not None:
+        found = problem.lowest(None, below)
+        if found.rigid_count < len(found.eigenvalues):
+            return found
+    number = 6 if count is None else max(6, count)  # a shaft free along and about its axis, twice over
+    while True:
+        found = problem.lowest(number, None)
+        if found.rigid_count < len(found.eigenvalues) or found.complete:
+            return found
+        number = 4 * number + 3
+
+
+def _enriched(
+    problem: DampedProblem, undamped: UndampedModes, noise: np.ndarray, count: int | None, below: float | None
+) -> np.ndarray:
+    """Elastic undamped modes and the damped ones of a first round, which takes the softest modes as rigid: (n, m)."""
+    first = undamped.rigid_count
+    lost = int(np.count_nonzero(noise > _AS_RIGID))
+    held = undamped.vectors[:, : first + lost]
+    rest = undamped.eigenvalues[first + lost :]
+    scale = float(np.sqrt(rest[0])) if len(rest) else None
+    more = None if count is None else count + lost
+    found = damped_modes(
+        problem.M, problem.D, problem.K, count=more, below=below, rigid_vectors=held, frequency_scale=scale
+    )
+    V = found.vectors[:, ~found.rigid]
+    return np.hstack([undamped.vectors[:, first:], V.real, V.imag])
+
+
+def _in_coordinates(
+    problem: DampedProblem, rigid: np.ndarray, basis: np.ndarray, count: int | None, below: float | None
+) -> DampedModes:
+    assert problem.strain is not None
+    S, M, r = problem.strain, problem.M, rigid.shape[1]
+    squares, X = strain_ritz(lambda V: S @ V, _independent(M, rigid, basis))
+    massless = np.flatnonzero(M.diagonal() <= 0.0)
+    N = np.zeros((M.shape[0], massless.size))
+    N[massless, np.arange(massless.size)] = 1.0
+    whole = np.hstack([_by_damping(problem.forms, rigid), X, N])
+    inertia = np.concatenate([np.ones(r + len(squares)), np.zeros(massless.size)])
+    stiffness = np.diag(np.concatenate([np.zeros(r), squares, np.zeros(massless.size)]))
+    if massless.size:
+        strained = S @ whole[:, r:]
+        block = strained.T @ (S @ N)
+        stiffness[r:, r + len(squares) :] = block
+        stiffness[r + len(squares) :, r:] = block.T
+    strained = _without_rounding(problem.forms, whole, r)
+    D = strained.T @ (problem.forms.viscosity @ strained) + _inertial(problem.inertial, whole, r)
+    K = stiffness + strained.T @ (problem.forms.circulation @ strained)
+    lowest = float(np.sqrt(squares[0])) if len(squares) else None
+    found = damped_modes(
+        sp.csc_array(np.diag(inertia)), sp.csc_array(D), sp.csc_array(K), count=count, below=below,
+        rigid_vectors=np.eye(len(inertia))[:, :r], frequency_scale=lowest, dense=True,
+    )  # fmt: skip
+    return _restored(problem, whole, found, lowest or 1.0)
+
+
+def _independent(M: sp.csc_array, rigid: np.ndarray, basis: np.ndarray) -> np.ndarray:
+    """Columns (n, k) that span the basis beside the rigid motions, M-orthonormal, without directions that are there already.
+
+    One column after the other: a soft mode that was turned among stiff ones would lose the accuracy of its small strains.
+    """
+    mass, first = sp.csr_array(M), rigid.shape[1]
+    kept = np.zeros((M.shape[0], first + basis.shape[1]), order="F")
+    kept[:, :first], k = rigid, first
+    for column in basis.T:
+        x, size = column, np.sqrt(max(column @ (mass @ column), 0.0))
+        for _ in range(3):
+            if size == 0.0:
+                break
+            x = x / size
+            x = x - kept[:, :k] @ (kept[:, :k].T @ (mass @ x))
+            size = np.sqrt(max(x @ (mass @ x), 0.0))
+            size = size if size > _ZERO else 0.0
+        if size > 0.0:
+            kept[:, k] = x / size
+            k += 1
+    return kept[:, first:k]
+
+
+def _by_damping(forms: StrainForms, rigid: np.ndarray) -> np.ndarray:
+    """The rigid motions turned so that those which hardly move a strong damper stand apart from those which do."""
+    V = sp.coo_array(forms.viscosity)
+    if not rigid.shape[1] or not V.nnz or np.any(V.row != V.col):
+        return rigid
+    drag = np.sqrt(np.maximum(forms.viscosity.diagonal(), 0.0))[:, None]
+    strained = drag * _without_rounding(forms, rigid, rigid.shape[1])
+    return strain_ritz(lambda _: strained, rigid)[1] if strained.any() else rigid
+
+
+def _without_rounding(forms: StrainForms, whole: np.ndarray, rigid: int) -> np.ndarray:
+    """Strains of the basis; what rounding leaves in the first `rigid` columns is zero.
+
+    A rigid motion has no strain that meets a stiffness by itself. Of other strains, those of dampers or of full 6 x 6 matrices,
+    the ones far below their parts are taken for rounding.
+    """
+    strained = forms.strain @ whole
+    size = abs(forms.strain) @ np.abs(whole[:, :rigid])
+    alone = (np.diff(forms.modulus.indptr) == 1) & (forms.modulus.diagonal() > 0.0)
+    far_below = np.where(forms.modulus.diagonal() > 0.0, 1e3 * _ZERO, _ZERO)
+    real = (np.abs(strained[:, :rigid]) > far_below[:, None] * size) & ~alone[:, None]
+    strained[:, :rigid] = np.where(real, strained[:, :rigid], 0.0)
+    return np.asarray(strained)
+
+
+def _inertial(A: sp.csc_array, whole: np.ndarray, rigid: int) -> np.ndarray:
+    product, R = whole.T @ (A @ whole), whole[:, :rigid]
+    size = np.abs(R).T @ (abs(A) @ np.abs(R))
+    product[:rigid, :rigid] = np.where(np.abs(product[:rigid, :rigid]) > _ZERO * size, product[:rigid, :rigid], 0.0)
+    return np.asarray(product)
+
+
+def _restored(problem: DampedProblem, whole: np.ndarray, found: DampedModes, scale: float) -> DampedModes:
+    """The modes in the coordinates of the dofs, with the residuals that they leave there."""
+    V = whole @ found.vectors
+    V, values = V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])], found.eigenvalues.copy()
+    quadratic = scaled(problem.M, problem.D, problem.K, scale)
+    size = np.sqrt(np.maximum(np.real(np.einsum("ij,ij->j", V.conj(), problem.M @ V)), 1e-300))
+    clean = ~found.rigid & (relative_noise(problem, np.abs(values), V / size) <= _CLEAN)
+    errors = quadratic.residuals(values / quadratic.w0, V / quadratic.scale[:, None])
+    for k in np.flatnonzero(clean & (errors > _POLISH)):
+        z, v, _ = newton(quadratic, values[k] / quadratic.w0, V[:, k] / quadratic.scale)
+        if abs(z * quadratic.w0 - values[k]) <= _NEAR * abs(values[k]):
+            up = z.imag >= 0.0  # of a pair next to the real axis the other one may be found
+            values[k] = (z if up else np.conj(z)) * quadratic.w0
+            V[:, k] = (v if up else np.conj(v)) * quadratic.scale
+    V = V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])]
+    errors = quadratic.residuals(values / quadratic.w0, V / quadratic.scale[:, None])
+    return DampedModes(
+        eigenvalues=values, vectors=V, rigid=found.rigid, backward_error=errors, zero_count=found.zero_count,
+        complete=found.complete and whole.shape[1] == problem.K.shape[0], method=found.method, shift=found.shift,
+        factorisations=found.factorisations,
+    )  # fmt: skip

@@ -1,0 +1,149 @@
+"""Natural frequencies and mode shapes: undamped at standstill, or damped and gyroscopic at a speed of the input shaft."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rotorgear.analysis.common.clock import Clock
+from rotorgear.analysis.common.notes import gathering
+from rotorgear.analysis.common.request import check_request, direction_of, speed_in_si
+from rotorgear.analysis.modal.enriched_error import enriched_errors
+from rotorgear.analysis.modal.modes import Modes, Wanted
+from rotorgear.analysis.modal.reach import Reach
+from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, all_finer, errors_of, refined, total_error
+from rotorgear.analysis.modal.request import MOST_MODES, check_count
+from rotorgear.analysis.modal.result import modal_result
+from rotorgear.analysis.modal.solve import solve
+from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.model.model import Model
+from rotorgear.model.parts.fields import MOTIONS
+from rotorgear.progress import Progress, silent
+from rotorgear.results.modal import ModalResult
+from rotorgear.system.plan import PieceKey, Plan
+from rotorgear.system.system import System
+
+DEFAULT_MODES = 24
+_ROUNDS = 30
+
+
+def modal(
+    model: Model | System,
+    *,
+    speed: float | str | None = None,
+    modes: int | None = None,
+    fmax: float | None = None,
+    elements: int | None = None,
+    accuracy: float | None = None,
+    only: Sequence[str] = (),
+    pruning: bool = True,
+    error_estimate: bool = True,
+    progress: Progress = silent,
+) -> ModalResult:
+    """Return the lowest modes of a model.
+
+    Args:
+        model: a model, or its assembled system, which is then taken as it is.
+        speed: speed of the input shaft in rad/s, or a text such as "16350 rpm": damped modes with gyroscopic terms.
+            None: undamped at standstill.
+        modes: how many; 24 where neither `modes` nor `fmax` is given.
+        fmax: all modes with a natural frequency |s|/2 pi up to this many Hz.
+        elements: so many basic elements in each piece of a section, and no refinement.
+        accuracy: refine until every frequency is estimated to be within this relative error; 1e-3 where neither this nor
+            `elements` is given.
+        only: motions among bending, axial and torsion; groups of dofs that no such motion reaches are left out.
+        pruning: False solves all dofs as one group, for comparison.
+        error_estimate: False leaves the estimate out, for timing; only with `elements` or a system.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: nothing to solve, a dof with neither inertia nor stiffness, a speed outside a bearing's table.
+        ConvergenceError: a guard of the solver was not met, or the accuracy can't be reached; never a silent loss.
+    """
+    speed = speed_in_si(speed)
+    check_request(speed, modes, fmax, elements, accuracy)
+    unknown = set(only) - set(MOTIONS)
+    if unknown:
+        raise AnalysisError(f"only: got {', '.join(sorted(unknown))}, expected motions among {', '.join(MOTIONS)}")
+    clock = Clock()
+    if modes is None and fmax is None:
+        modes = DEFAULT_MODES
+    fixed = isinstance(model, System) or elements is not None
+    system = _system(model, speed, Plan(elements) if elements else (Plan() if fixed else START))
+    if not (fixed or error_estimate):
+        raise AnalysisError(
+            "a mesh that is refined to an accuracy needs the error estimate; give elements to do without"
+        )
+    target = np.inf if fixed else accuracy or DEFAULT_ACCURACY
+    if not fixed and modes is None and fmax is not None:
+        check_count(system.model, fmax)
+    reach = Reach(modes, None if fmax is None else 2.0 * np.pi * fmax, *((0, 1.0) if fixed else ()))
+    for round_number in range(_ROUNDS):
+        progress(min(0.1 + 0.15 * round_number, 0.8), f"solving {system.n} dofs")
+        found = _solved(system, Wanted(speed, *reach.solver_request(), tuple(only), pruning))
+        clock.lap("modes")
+        q = system.dofs.expand(found.vectors)
+        parts = errors_of(system, speed, found.eigenvalues, found.vectors, found.rigid) if error_estimate else {}
+        estimate = (
+            total_error(parts, len(found.eigenvalues)) if error_estimate else np.full(len(found.eigenvalues), np.nan)
+        )
+        clock.lap("error estimate")
+        if fixed:
+            if error_estimate:
+                estimate = enriched_errors(system, Wanted(speed, None, None, tuple(only), pruning), found, estimate)
+            break
+        plan = _next_plan(system, reach, found, parts, estimate, target)
+        if plan is not None:
+            system = _system(system.model, speed, plan)
+        elif reach.is_certain(np.abs(found.eigenvalues), estimate, found.is_complete):
+            break
+        else:
+            reach = reach.further()
+        clock.lap("refinement")
+    else:
+        raise ConvergenceError(
+            f"the accuracy of {target:g} was not reached within {_ROUNDS} refinements; ask for less, or for fewer modes"
+        )
+    kept = reach.inside(np.abs(found.eigenvalues))
+    progress(0.9, "energies")
+    result = modal_result(system, speed, (modes, fmax), found.first(kept), q[:, :kept], estimate[:kept], clock)
+    progress(1.0, "done")
+    return result
+
+
+def _solved(system: System, wanted: Wanted) -> Modes:
+    """Solve, and say why where damping in proportion to the stiffness b makes overdamped modes without end gather at 1/b."""
+    try:
+        return solve(system, wanted)
+    except ConvergenceError as error:
+        gathers = gathering(system)
+        if wanted.speed is None or gathers is None:
+            raise
+        raise ConvergenceError(
+            f"{str(error).rstrip('.')}: damping in proportion to the stiffness (internal_damping, rayleigh_beta) "
+            f"gathers overdamped modes without end at {gathers / (2.0 * np.pi):.4g} Hz; ask for modes below (--fmax, --modes)",
+            error.partial,
+        ) from error
+
+
+def _next_plan(
+    system: System, reach: Reach, found: Modes, parts: dict[PieceKey, np.ndarray], estimate: np.ndarray, target: float
+) -> Plan | None:
+    """Return a finer plan while some watched mode is not within the target, or the mesh has fewer modes than asked for."""
+    size = np.abs(found.eigenvalues)
+    if reach.modes is not None and len(size) < reach.modes and parts:
+        if reach.modes > 2 * MOST_MODES:
+            raise AnalysisError(
+                f"a flexible shaft has modes without end, and more than {MOST_MODES} are not sought: ask for fewer (--modes)"
+            )
+        return all_finer(system)
+    watched = reach.watched(size, estimate)
+    return refined(system, {piece: part[watched] for piece, part in parts.items()}, target)
+
+
+def _system(model: Model | System, speed: float | None, plan: Plan) -> System:
+    system = model if isinstance(model, System) else System(model, plan=plan, direction=direction_of(speed))
+    if system.n == 0:
+        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+    return system

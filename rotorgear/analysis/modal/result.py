@@ -1,0 +1,80 @@
+"""Makes the result of a modal analysis of eigenvalues and shapes: energies, whirl, words, warnings."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.analysis.common.clock import Clock
+from rotorgear.analysis.common.notes import left_out, mode_warnings
+from rotorgear.analysis.common.pieces import pieces
+from rotorgear.analysis.common.points import point_amplitudes
+from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.modal.conditioning import conditioning_warnings
+from rotorgear.analysis.modal.describe import describe
+from rotorgear.analysis.modal.energies import mode_energies
+from rotorgear.analysis.modal.modes import Modes
+from rotorgear.analysis.modal.whirl import whirl_by_shaft, whirl_words
+from rotorgear.results.modal import ModalResult
+from rotorgear.system.system import System
+
+
+def modal_result(
+    system: System,
+    speed: float | None,
+    wanted: tuple[int | None, float | None],
+    found: Modes,
+    q: np.ndarray,
+    estimate: np.ndarray,
+    clock: Clock,
+) -> ModalResult:
+    """Return the result of the modes `found` with all displacements q (a, m); `wanted` is modes and highest frequency in Hz."""
+    asked, fmax = wanted
+    nodes, displaced = shapes_at_stations(system, q)
+    everywhere = _turned(displaced.astype(complex))
+    shapes = everywhere[: len(system.nodes)]
+    energies = mode_energies(system, speed or 0.0, q, found.rigid)
+    whirl = whirl_by_shaft(system, shapes, speed or 0.0)
+    words = whirl_words(system, shapes, whirl, energies) if speed else tuple("" for _ in found.eigenvalues)
+    real_root = (found.eigenvalues.imag == 0.0) & ~found.rigid
+    lines = describe(system, shapes, energies, found.rigid, real_root)
+    clock.lap("energies")
+    return ModalResult(
+        model=system.model,
+        speed=speed,
+        eigenvalues=found.eigenvalues,
+        rigid=found.rigid,
+        shapes=everywhere,
+        nodes=nodes,
+        error_estimate=estimate,
+        kinetic_energy=energies.kinetic,
+        strain_energy=energies.strain,
+        kinetic_by_motion=energies.kinetic_by_motion,
+        strain_by_motion=energies.strain_by_motion,
+        whirl=words,
+        whirl_by_shaft=whirl,
+        description=lines,
+        backward_error=found.backward_error,
+        dofs=system.n,
+        discretisation=pieces(system),
+        seconds=clock.total(),
+        left_out=(*left_out(system, speed), *found.groups),
+        warnings=(
+            *mode_warnings(system, asked, found.eigenvalues, fmax),
+            *conditioning_warnings(system, speed, found.eigenvalues, found.rigid, energies.strain),
+        ),
+        method=found.method,
+        point_amplitudes=point_amplitudes(system, shapes),
+    )
+
+
+def _turned(shapes: np.ndarray) -> np.ndarray:
+    """Turn each mode's phase so that its largest displacement is real and positive."""
+    if shapes.shape[2] == 0:
+        return shapes
+    mode = np.arange(shapes.shape[2])
+    everything, rows = shapes.reshape(-1, len(mode)), shapes[:, :3].reshape(-1, len(mode))
+    size, along = np.abs(everything), np.abs(rows)
+    moving = along.max(axis=0, initial=0.0) > 1e-9 * size.max(axis=0, initial=0.0)
+    peak = np.where(moving, rows[along.argmax(axis=0), mode], everything[size.argmax(axis=0), mode])
+    shapes *= np.where(peak != 0.0, np.conj(peak) / np.where(peak != 0.0, np.abs(peak), 1.0), 1.0)
+    return shapes

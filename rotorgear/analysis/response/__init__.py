@@ -1,0 +1,1 @@
+"""Forced response over speed and over frequency."""

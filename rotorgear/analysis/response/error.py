@@ -1,0 +1,109 @@
+"""What a finer mesh says about the largest forces of a response, and whether its speeds are dense enough to see the peaks."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.analysis.modal.refine import all_finer
+from rotorgear.analysis.response.mesh import damped_modes
+from rotorgear.analysis.response.orders import Order, orders_of
+from rotorgear.analysis.response.plant import Plant, Readings
+from rotorgear.analysis.response.run_up import solve_orders
+from rotorgear.analysis.static.mean_state import Setup
+from rotorgear.system.contacts import contact_lines
+from rotorgear.system.system import System
+
+_CHECKED_ON_FINER = 4
+# A resonance shows its height to this share when its half-power width spans so many speeds.
+_SPEEDS_A_PEAK = 2.0
+
+
+def mesh_error(
+    plant: Plant,
+    orders: list[Order],
+    speeds: np.ndarray,
+    readings: list[Readings],
+    damping: tuple[float, float],
+    mean: np.ndarray,
+) -> float:
+    """Relative change of the forces on a mesh that is two orders richer, at the peaks of the strongest orders."""
+    system = plant.system
+    if not system.nodes.elements or not any(system.nodes.elements.values()):
+        return 0.0
+    finer = System(system.model, plan=all_finer(system), direction=system.direction, flow=system.flow)
+    lines = contact_lines(finer)
+    zeta, limit = damping
+    rich = Plant(finer, lines, (*damped_modes(finer, limit, float(speeds[-1])), zeta) if zeta else None)
+    forces = np.array([item.stacked for item in readings])  # (s, o, ...)
+    size = np.abs(forces).max(axis=2, initial=0.0)
+    worst = 0.0
+    wanted = {order.name: order for order in orders_of(finer, lines, mean)}
+    for o in np.argsort(-size.max(axis=0))[:_CHECKED_ON_FINER]:
+        s = int(np.argmax(size[:, o]))
+        own = [wanted[orders[o].name]]
+        w, f = rich.loads(own, float(speeds[s]))
+        q = solve_orders(rich, rich.dynamics(float(speeds[s])), w, f)
+        there = rich.read(own, float(speeds[s]), w, q).stacked[0]
+        largest = float(np.abs(there).max(initial=0.0))
+        if largest:
+            worst = max(worst, float(np.abs(there - forces[s, o]).max()) / largest)
+    return worst
+
+
+def speed_warnings(
+    plant: Plant, orders: list[Order], speeds: np.ndarray, modes: tuple[np.ndarray, np.ndarray, float]
+) -> list[str]:
+    """Sentences on damping that is missing, and on speeds too far apart for the sharpest resonance of the run-up."""
+    shapes, w, zeta = modes
+    elastic = w > 0.0
+    if not elastic.any():
+        return []
+    C = (
+        plant.system.damping(float(np.max(np.abs(speeds))))
+        if not plant.has_tables
+        else plant.system.damping(float(speeds[-1]))
+    )
+    own = np.einsum("nm,nm->m", shapes, C @ shapes)[elastic] / (2.0 * w[elastic]) + zeta
+    if float(own.max()) <= 0.0:
+        return [
+            "nothing damps the model: amplitudes near a resonance are as high as the nearest speed happens to be; give a damping"
+        ]
+    if len(speeds) < 2:
+        return []
+    step = float(np.max(np.diff(np.sort(np.abs(speeds)))))
+    top = float(np.max(np.abs(speeds)))
+    width = np.inf
+    for order in orders:
+        met = (w[elastic] >= order.ratio * float(np.min(np.abs(speeds)))) & (w[elastic] <= order.ratio * top)
+        if met.any():
+            width = min(width, float(np.min(2.0 * own[met] * w[elastic][met])) / order.ratio)
+    if width >= _SPEEDS_A_PEAK * step:
+        return []
+    rpm = 30.0 / np.pi
+    return [
+        f"speeds are {step * rpm:.4g} rpm apart, but the sharpest resonance met is {width * rpm:.2g} rpm wide at half power: "
+        "its peak may be higher than shown; more points or a narrower range show it"
+    ]
+
+
+def parting(setup: Setup, force: np.ndarray, speeds: np.ndarray) -> list[str]:
+    """A sentence for each mesh whose teeth would part: dynamic force (o, s, c) of one order above the mean force."""
+    found = []
+    lines = setup.lines
+    for mesh in dict.fromkeys(lines.names):
+        own = [k for k, name in enumerate(lines.names) if name == mesh]
+        share = np.abs(force[:, :, own]).max(axis=0) / np.maximum(setup.mean_force[own], 1e-300)  # (s, own)
+        over = np.flatnonzero(share.max(axis=1) > 1.0)
+        if not over.size:
+            continue
+        if not np.any(setup.mean_force[own] > 0.0):
+            found.append(
+                f"meshes.{mesh} carries no mean force: its teeth part, and the linear answer takes them as joined"
+            )
+            continue
+        rpm = np.abs(speeds[over]) * 30.0 / np.pi
+        found.append(
+            f"meshes.{mesh}: its dynamic force exceeds the mean force at {len(over)} of {len(speeds)} speeds, between "
+            f"{rpm.min():.6g} and {rpm.max():.6g} rpm; there the teeth part, and the linear answer ends"
+        )
+    return found

@@ -1,0 +1,140 @@
+"""Frequency responses between places: H(w) = P_o^T (K + i w C - w^2 M)^-1 P_i, each frequency factored and solved directly.
+
+Ewins, Modal Testing, 2nd ed., chapter 2 (Research Studies Press 2000).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from rotorgear.analysis.common.pieces import pieces
+from rotorgear.analysis.common.points import named_place
+from rotorgear.analysis.common.request import check_request, direction_of, speed_in_si
+from rotorgear.analysis.modal.refine import all_finer
+from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.plant import Plant, dof_row
+from rotorgear.analysis.static.mean_state import mean_state
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, silent
+from rotorgear.results.frequency_response import FrequencyResponse
+from rotorgear.solvers.sparse.factor import single_thread
+from rotorgear.system.contacts import contact_lines
+from rotorgear.system.system import System
+
+_CHECKED_ON_FINER = 8
+
+
+def frequency_response(
+    model: Model,
+    frequencies: Sequence[float] | np.ndarray,
+    *,
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    speed: float | str | None = None,
+    damping_ratio: float = 0.0,
+    elements: int | None = None,
+    accuracy: float | None = None,
+    progress: Progress = silent,
+) -> FrequencyResponse:
+    """Return receptances between places, with the model's damping and, at a speed, its gyroscopic moments.
+
+    Args:
+        model: any model; contacts are closed, on the flanks that its loads choose.
+        frequencies: in Hz, positive, (f,).
+        inputs, outputs: names of points, or a part and a direction such as "bearings.left:x".
+        speed: of the input shaft in rad/s or with its unit; None: standstill.
+        damping_ratio: added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
+        elements: so many basic elements in each piece of shaft. None: refined as for modes up to the highest frequency.
+        accuracy: relative error of the frequencies of these modes; 1e-3 where neither this nor `elements` is given.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: a place that the model has not, a frequency that is not positive.
+        ConvergenceError: an undamped resonance is hit exactly.
+    """
+    clock = time.perf_counter()
+    turns = speed_in_si(speed) or 0.0
+    hz = np.sort(np.asarray(frequencies, float).ravel())
+    check_request(turns, None, None, elements, accuracy)
+    _check(hz, inputs, outputs, damping_ratio)
+    places = {text: named_place(model, text) for text in (*inputs, *outputs)}
+    zeta = damping_ratio + model.damping.modal_ratio
+    first = mean_state(System(model, direction=direction_of(turns), mesh="static"), turns)
+    limit = 2.0 * np.pi * DAMPED * float(hz[-1])
+    progress(0.02, "discretisation")
+    plan = plan_up_to(at_speed(model, turns), MARGIN * float(hz[-1]), elements, accuracy)
+    system = System(model, plan=plan, direction=first.system.direction, flow=first.system.flow)
+
+    def solve(system: System, hz: np.ndarray, progress: Progress) -> tuple[np.ndarray, float]:
+        modes = (*damped_modes(system, limit, turns), zeta) if zeta else None
+        plant = Plant(system, contact_lines(system), modes)
+        rows = {text: _row(system, text, place) for text, place in places.items()}
+        return _solved(plant, turns, hz, [rows[t] for t in inputs], [rows[t] for t in outputs], progress)
+
+    receptance, residual = solve(system, hz, progress)
+    progress(0.96, "error estimate")
+    estimate = 0.0
+    if any(system.nodes.elements.values()):
+        at = _strongest(receptance)
+        finer = System(model, plan=all_finer(system), direction=system.direction, flow=system.flow)
+        there, _ = solve(finer, hz[at], silent)
+        largest = np.abs(there).max(axis=0)
+        estimate = float(np.max(np.abs(there - receptance[at]) / np.where(largest > 0.0, largest, 1.0)))
+    progress(1.0, "done")
+    return FrequencyResponse(
+        model=model, speed=turns, frequency_hz=hz, inputs=tuple(inputs), outputs=tuple(outputs), receptance=receptance,
+        damping_ratio=zeta, residual=residual, error_estimate=estimate, dofs=system.n, discretisation=pieces(system),
+        seconds={"total": time.perf_counter() - clock}, left_out=first.notes,
+        warnings=() if zeta or _is_damped(system, turns) else
+        ("nothing damps the model: heights near a resonance are those of the nearest frequency; give a damping",),
+        method="direct sparse LU at every frequency",
+    )  # fmt: skip
+
+
+def _check(hz: np.ndarray, inputs: Sequence[str], outputs: Sequence[str], damping_ratio: float) -> None:
+    if not hz.size or not np.all(np.isfinite(hz)) or hz[0] <= 0.0:
+        raise AnalysisError("frequencies: expected at least one, all of them positive, in Hz")
+    if not inputs or not outputs:
+        raise AnalysisError("a frequency response needs at least one place of the force and one of the response")
+    if not 0.0 <= damping_ratio < 1.0:
+        raise AnalysisError(f"damping_ratio: got {damping_ratio:g}, expected 0 to less than 1")
+
+
+def _row(system: System, text: str, place: tuple[str, float, str]) -> np.ndarray:
+    row = dof_row(system, *place)
+    if not row.any():
+        raise AnalysisError(f"'{text}' can't move: a support or the motions of the model hold it")
+    return row
+
+
+def _solved(
+    plant: Plant, speed: float, hz: np.ndarray, inputs: list[np.ndarray], outputs: list[np.ndarray], progress: Progress
+) -> tuple[np.ndarray, float]:
+    """Receptances (f, o, i) and the largest relative residual."""
+    f, read = np.array(inputs).T, np.array(outputs)
+    dynamics = plant.dynamics(speed)
+    rows, worst = [], 0.0
+    with single_thread(plant.system.n):
+        for k, value in enumerate(hz):
+            if k % 10 == 0:
+                progress(0.05 + 0.9 * k / len(hz), f"{value:.5g} Hz")
+            w = 2.0 * np.pi * float(value)
+            q = dynamics.solve(w, f)
+            worst = max(worst, dynamics.relative_residual(w, f, q))
+            rows.append(read @ q)
+    return np.array(rows), worst
+
+
+def _strongest(receptance: np.ndarray) -> np.ndarray:
+    """Numbers of the frequencies where single responses are largest."""
+    flat = np.abs(receptance).reshape(len(receptance), -1)
+    order = np.argsort(-(flat / np.where(flat.max(axis=0) > 0.0, flat.max(axis=0), 1.0)).max(axis=1))
+    return np.unique(np.concatenate([flat.argmax(axis=0), order[:_CHECKED_ON_FINER]]))
+
+
+def _is_damped(system: System, speed: float) -> bool:
+    return bool(system.damping(speed).nnz)

@@ -1,0 +1,80 @@
+"""How finely a forced response is meshed, and the modes that carry modal damping: both up to a frequency."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rotorgear.analysis.modal.modal import modal
+from rotorgear.analysis.modal.modes import Wanted
+from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START
+from rotorgear.analysis.modal.solve import solve
+from rotorgear.model.layout.train import walk
+from rotorgear.model.model import Model
+from rotorgear.model.parts.supports import StiffnessMatrix
+from rotorgear.results.modal import ModalResult
+from rotorgear.system.groups import table_values
+from rotorgear.system.plan import Plan
+from rotorgear.system.system import System
+
+# Up to this much above the highest excited frequency the mesh is refined, and modes get their damping ratio.
+MARGIN, DAMPED = 1.25, 1.5
+
+
+def plan_up_to(model: Model, fmax: float, elements: int | None, accuracy: float | None) -> Plan:
+    """The mesh that modes up to a frequency in Hz need, or a fixed one."""
+    if elements is not None:
+        return Plan(elements)
+    if not any(shaft.sections for shaft in model.shafts.values()):
+        return Plan()
+    found = modal(model, fmax=fmax, accuracy=accuracy or DEFAULT_ACCURACY)
+    return plan_of(found)
+
+
+def plan_of(result: ModalResult) -> Plan:
+    """The plan that a modal result was refined to."""
+    number: dict[str, int] = {}
+    cut = {}
+    for piece in result.discretisation:
+        k = number[piece.shaft] = number.get(piece.shaft, -1) + 1
+        cut[piece.shaft, k] = (piece.elements, piece.order)
+    return Plan(START.elements, START.order, cut)
+
+
+def at_speed(model: Model, speed: float) -> Model:
+    """The conservative part of a model: bearings with tables as at a speed of the reference shaft in rad/s, no skew stiffness.
+
+    Modes of this are real, so that a damping ratio can be given to each.
+
+    Raises:
+        AnalysisError: the speed lies outside a table.
+    """
+    train = walk(model)[0]
+    changed: dict[str, dict[str, Any]] = {}
+    for table in ("bearings", "supports", "couplings"):
+        for name, part in getattr(model, table).items():
+            if getattr(part, "table", ()):
+                rows = table_values(name, part, abs(train.ratio(part.shaft) * speed))[0]
+            elif part.stiffness is not None:
+                rows = np.array(part.stiffness.as_rows())
+            else:
+                continue
+            if getattr(part, "table", ()) or not np.array_equal(rows, rows.T):
+                even = StiffnessMatrix(matrix=tuple(tuple(row) for row in 0.5 * (rows + rows.T)))
+                update = {"stiffness": even, "damping": None, **({"table": ()} if table == "bearings" else {})}
+                changed.setdefault(table, dict(getattr(model, table)))[name] = part.model_copy(update=update)
+    return model.model_copy(update=changed) if changed else model
+
+
+def damped_modes(system: System, limit: float, speed: float) -> tuple[np.ndarray, np.ndarray]:
+    """Undamped modes up to a frequency in rad/s: shapes (n, m) of modal mass 1, and w (m,), 0 where rigid.
+
+    They are those of the conservative part of the model at standstill, with bearings as at a speed of the reference shaft.
+    """
+    model = at_speed(system.model, speed)
+    if model is not system.model:
+        system = System(model, plan=system.plan, direction=system.direction, flow=system.flow)
+    found = solve(system, Wanted(None, None, limit))
+    keep = np.flatnonzero(found.vectors.any(axis=0))
+    return np.real(found.vectors[:, keep]), np.where(found.rigid, 0.0, np.abs(found.eigenvalues))[keep]

@@ -1,0 +1,140 @@
+"""A gearbox as a linear plant: its dynamic stiffness at every speed, and what is read off a displacement."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.analysis.common.places import part_nodes
+from rotorgear.analysis.common.points import point_place
+from rotorgear.analysis.response.orders import Order
+from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.solvers.frequency.harmonic import Dynamics, LowRankDamping
+from rotorgear.system.contacts import ContactLines
+from rotorgear.system.system import System
+
+
+@dataclass(frozen=True)
+class Readings:
+    """Amplitudes at one speed.
+
+    Attributes:
+        mesh_force, transmission_error: (o, c); bearing_force: (o, b, 3); acceleration: of the named points, (o, k).
+        displacement: x y z tx ty tz at gears, disks and bearings, (o, d, 6).
+    """
+
+    mesh_force: np.ndarray
+    transmission_error: np.ndarray
+    bearing_force: np.ndarray
+    acceleration: np.ndarray
+    displacement: np.ndarray
+
+    @property
+    def stacked(self) -> np.ndarray:
+        """All forces, (o, c + 3 b); where a model has neither mesh nor bearing, the displacements, (o, 3 d)."""
+        orders = len(self.mesh_force)
+        forces = np.hstack([self.mesh_force, self.bearing_force.reshape(orders, -1)])
+        return forces if forces.size else self.displacement[:, :, :3].reshape(orders, -1)
+
+
+def joined(parts: Sequence[Readings]) -> Readings:
+    """Readings of several lists of orders at one speed as those of all of them."""
+    names = [item.name for item in fields(Readings)]
+    return Readings(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+
+
+class Plant:
+    """Matrices of a system over speed, with the modal damping that was asked for.
+
+    Args:
+        system: the system about its mean state; lines: its contacts.
+        damping: modes (n, m), mass-normalised, their frequencies w (m,) in rad/s and the damping ratio they get.
+    """
+
+    def __init__(
+        self, system: System, lines: ContactLines, damping: tuple[np.ndarray, np.ndarray, float] | None = None
+    ) -> None:
+        beta = system.model.damping.rayleigh_beta
+        self.system = system
+        self.lines = replace(lines, damping=lines.damping + beta * lines.stiffness)
+        self.low_rank = None
+        if damping is not None and damping[2] > 0.0 and damping[1].size:
+            modes, w, zeta = damping
+            self.low_rank = LowRankDamping(np.asarray(system.mass @ modes), 2.0 * zeta * w)
+        self.has_tables = any(bearing.table for bearing in system.model.bearings.values())
+        self.places = part_nodes(system)
+        rows = [6 * node + dof for node in self.places.values() for dof in range(6)]
+        self._place_rows = sp.csr_array(system.dofs.transform)[rows, :]
+        self._points = [_row(system, name) for name in system.model.points]
+        self._parts: tuple[sp.csc_array, ...] | None = None
+        self._read: tuple[np.ndarray, np.ndarray] | None = None
+
+    def dynamics(self, speed: float) -> Dynamics:
+        """M, D and K at a reference speed in rad/s."""
+        system = self.system
+        if self.has_tables:
+            K = sp.csc_array(system.stiffness(speed) + system.circulatory(speed))
+            D = sp.csc_array(system.damping(speed) + speed * system.gyroscopic)
+            return Dynamics(system.mass, D, K, self.low_rank)
+        if self._parts is None:
+            still = system.circulatory(0.0)
+            turning = sp.csc_array(system.circulatory(1.0) - still)
+            self._parts = sp.csc_array(system.stiffness(0.0) + still), turning, system.damping(0.0)
+        K0, turning, C = self._parts
+        K = sp.csc_array(K0 + speed * turning) if turning.nnz else K0
+        return Dynamics(system.mass, sp.csc_array(C + speed * system.gyroscopic), K, self.low_rank)
+
+    def loads(self, orders: list[Order], speed: float) -> tuple[np.ndarray, np.ndarray]:
+        """Frequencies (o,) in rad/s and loads (n, o) of all orders at a reference speed."""
+        w = np.array([order.ratio for order in orders]) * abs(speed)
+        return w, np.array([order.load(self.lines, speed) for order in orders]).T
+
+    def read(self, orders: list[Order], speed: float, w: np.ndarray, q: np.ndarray) -> Readings:
+        """What the displacements q (n, o) of the orders mean."""
+        lines = self.lines
+        error = np.array([order.error for order in orders])
+        varied = np.array([order.force for order in orders])
+        impedance = lines.stiffness + 1j * w[:, None] * lines.damping
+        force = impedance * ((lines.vectors.T @ q).T - error) + varied
+        K, C = self._bearings(speed)
+        held = -((K @ q) + (C @ q) * (1j * w)).T.reshape(len(w), -1, 3)
+        moved = (np.reshape(self._points, (len(self._points), len(q))) @ q).T
+        there = (self._place_rows @ q).T.reshape(len(w), len(self.places), 6)
+        return Readings(force, (lines.rotation.T @ q).T, held, -(w**2)[:, None] * moved, there)
+
+    def _bearings(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
+        """Rows that give the force on each bearing's node along x y z from displacements and velocities, (3 b, n) each."""
+        if self._read is not None and not self.has_tables:
+            return self._read
+        system = self.system
+        own = {g.part: g for g in system.groups_at(speed) if g.part.startswith("bearings.")}
+        K, C = (np.zeros((3 * len(system.model.bearings), system.dofs.transform.shape[0])) for _ in "KC")
+        beta = system.model.damping.rayleigh_beta
+        for k, name in enumerate(system.model.bearings):
+            group = own[f"bearings.{name}"]
+            m, columns = group.matrices, group.dofs[0]
+            for term in (m.stiffness, m.circulatory):
+                if term is not None:
+                    K[3 * k : 3 * k + 3, columns] += term[0][-6:-3]
+            if m.damping is not None:
+                C[3 * k : 3 * k + 3, columns] += m.damping[0][-6:-3]
+            if beta and m.stiffness is not None:
+                C[3 * k : 3 * k + 3, columns] += beta * m.stiffness[0][-6:-3]
+        T = system.dofs.transform
+        self._read = np.asarray((T.T @ K.T).T), np.asarray((T.T @ C.T).T)
+        return self._read
+
+
+def _row(system: System, name: str) -> np.ndarray:
+    """Row that gives the displacement of a named point along its direction, (n,)."""
+    shaft, z = point_place(system.model, name)
+    return dof_row(system, shaft, z, system.model.points[name].direction)
+
+
+def dof_row(system: System, shaft: str, z: float, direction: str) -> np.ndarray:
+    """Row of the map from the free dofs to one displacement of the node at a place, (n,)."""
+    row = 6 * system.nodes.at(shaft, z) + DOF_NAMES.index(direction)
+    return np.asarray(system.dofs.transform[[row], :].toarray()[0])

@@ -1,0 +1,170 @@
+"""Forced response of a gearbox over speed: unbalances, transmission errors and stiffness variation, by order."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rotorgear.analysis.common.pieces import pieces
+from rotorgear.analysis.common.request import check_request, direction_of, speed_in_si
+from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.response.error import mesh_error, parting, speed_warnings
+from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.orders import Order, orders_of
+from rotorgear.analysis.response.plant import Plant, Readings
+from rotorgear.analysis.response.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
+from rotorgear.analysis.static.mean_state import Setup, mean_state
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, silent
+from rotorgear.results.modal import NodeTable
+from rotorgear.results.response import ResponseResult
+from rotorgear.system.contacts import contact_lines
+from rotorgear.system.plan import Plan
+from rotorgear.system.system import System
+
+METHODS = ("auto", "modal", "direct")
+# A run-up without speeds goes from a tenth of the operating speed to a fifth above it.
+LOWEST, HIGHEST, _POINTS = 0.1, 1.2, 221
+
+
+def response(
+    model: Model,
+    *,
+    speeds: Sequence[float] | Sequence[str] | None = None,
+    fmax: float | None = None,
+    damping_ratio: float = 0.0,
+    method: str = "auto",
+    elements: int | None = None,
+    accuracy: float | None = None,
+    shape_speed: float | str | None = None,
+    progress: Progress = silent,
+) -> ResponseResult:
+    """Return the linear response to all excitations of a model, by order and speed.
+
+    Args:
+        model: a model with unbalances, or meshes with harmonics of transmission error or stiffness.
+        speeds: of the input shaft, in rad/s or with units; None: 221 from 10 to 120 % of the operating speed.
+        fmax: orders above this frequency in Hz at the highest speed are left out; None: none is.
+        damping_ratio: added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
+        method: "modal", "direct" or "auto".
+        elements: so many basic elements in each piece of shaft. None: refined as for modes up to the highest frequency.
+        accuracy: relative error of the frequencies of these modes; 1e-3 where neither this nor `elements` is given.
+        shape_speed: where the deflection shapes are kept; None: the operating speed, else the speed of the largest force.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: nothing excites the model, speeds of both senses, a contact that is open in the mean state.
+        ConvergenceError: the modal solution does not reach its tolerance, or an undamped resonance is hit exactly.
+    """
+    clock = time.perf_counter()
+    chosen = _speeds(model, speeds)
+    _check(method, damping_ratio, fmax, elements, accuracy)
+    zeta = damping_ratio + model.damping.modal_ratio
+    first = mean_state(System(model, direction=direction_of(chosen[-1]), mesh="static"), float(chosen[-1]))
+    orders, left = _within(orders_of(first.system, first.lines, first.mean_force), chosen, fmax)
+    top = max(order.ratio for order in orders) * float(np.max(np.abs(chosen)))
+    progress(0.02, "discretisation")
+    plan = plan_up_to(at_speed(model, float(chosen[-1])), MARGIN * top / (2.0 * np.pi), elements, accuracy)
+    setup, orders = _discretised(first, plan, orders)
+    system = setup.system
+    modes, w = damped_modes(system, DAMPED * top, float(chosen[-1]))
+    plant = Plant(system, setup.lines, (modes, w, zeta))
+    how, why = choose_method(method, len(chosen) * len(orders), system.n)
+    run = (
+        direct_sweep(plant, orders, chosen, progress)
+        if how == "direct"
+        else modal_sweep(plant, orders, chosen, (modes, w), progress)
+    )
+    progress(0.96, "error estimate")
+    estimate = mesh_error(plant, orders, chosen, run.readings, (zeta, DAMPED * top), setup.mean_force)
+    at = _shape_speed(model, shape_speed, chosen, run.readings)
+    nodes, shapes = _shapes(plant, orders, at)
+    stacked = _stacked(run.readings)
+    progress(1.0, "done")
+    return ResponseResult(
+        model=model, speeds=chosen, orders=tuple(order.name for order in orders),
+        ratio=np.array([order.ratio for order in orders]), contact_mesh=setup.lines.names,
+        contact_helix=np.array([state.contact.helix for state in setup.lines.states], dtype=int),
+        mean_force=setup.mean_force, mesh_force=stacked[0], transmission_error=stacked[1],
+        bearings=tuple(model.bearings), bearing_force=stacked[2], points=tuple(model.points), acceleration=stacked[3],
+        places=tuple(plant.places), displacement=stacked[4],
+        shape_speed=at, shapes=shapes, nodes=nodes, damping_ratio=zeta, solver_error=run.solver_error, checked=run.checked,
+        error_estimate=estimate, dofs=system.n, discretisation=pieces(system),
+        seconds={"total": time.perf_counter() - clock}, left_out=(*left, *setup.notes),
+        warnings=(*speed_warnings(plant, orders, chosen, (modes, w, zeta)), *parting(setup, stacked[0], chosen)),
+        method=f"{run.method} ({how}: {why})",
+    )  # fmt: skip
+
+
+def _discretised(first: Setup, plan: Plan, orders: list[Order]) -> tuple[Setup, list[Order]]:
+    """The same state on another mesh, with the orders of the same names."""
+    system = System(first.system.model, plan=plan, direction=first.system.direction, flow=first.system.flow)
+    setup = replace(first, system=system, lines=contact_lines(system))
+    names = {order.name for order in orders}
+    return setup, [o for o in orders_of(system, setup.lines, setup.mean_force) if o.name in names]
+
+
+def _within(orders: list[Order], speeds: np.ndarray, fmax: float | None) -> tuple[list[Order], list[str]]:
+    """The orders up to a frequency at the highest speed, and sentences about the others."""
+    if not orders:
+        raise AnalysisError(
+            "nothing excites the model: give [unbalances], or a mesh its transmission_error or stiffness_variation"
+        )
+    limit = np.inf if fmax is None else 2.0 * np.pi * fmax / float(np.max(np.abs(speeds)))
+    kept = [order for order in orders if order.ratio <= limit]
+    if not kept:
+        lowest = orders[0].ratio * float(np.max(np.abs(speeds))) / (2.0 * np.pi)
+        raise AnalysisError(f"fmax: no order is as low as {fmax:g} Hz, the lowest comes to {lowest:.6g} Hz")
+    return kept, [f"{order.name}: above {fmax:g} Hz at the highest speed" for order in orders if order.ratio > limit]
+
+
+def _stacked(readings: list[Readings]) -> list[np.ndarray]:
+    names = ("mesh_force", "transmission_error", "bearing_force", "acceleration", "displacement")
+    return [np.stack([getattr(item, name) for item in readings], axis=1) for name in names]
+
+
+def _speeds(model: Model, given: Sequence[float] | Sequence[str] | None) -> np.ndarray:
+    """Speeds in rad/s, in rising order of size, all of one sense."""
+    if given is None:
+        operating = model.operation.speed if model.operation else None
+        if not operating:
+            raise AnalysisError("no speeds: give them, or [operation] a speed, and the run-up goes to a fifth above it")
+        return operating * np.linspace(LOWEST, HIGHEST, _POINTS)
+    found = np.array([speed_in_si(speed) for speed in given], float)
+    if not found.size or not np.all(np.isfinite(found)):
+        raise AnalysisError("speeds: got none, expected at least one rotational speed")
+    if np.any(found == 0.0) or np.any(np.sign(found) != np.sign(found[0])):
+        raise AnalysisError("speeds: all of one sense and none of them 0; at standstill nothing excites the model")
+    return found[np.argsort(np.abs(found), kind="stable")]
+
+
+def _check(method: str, damping_ratio: float, fmax: float | None, elements: int | None, accuracy: float | None) -> None:
+    if method not in METHODS:
+        raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
+    if not 0.0 <= damping_ratio < 1.0:
+        raise AnalysisError(f"the damping ratio must lie between 0 and 1, got {damping_ratio:g}")
+    check_request(None, None, fmax, elements, accuracy)
+
+
+def _shape_speed(model: Model, given: float | str | None, speeds: np.ndarray, readings: list[Readings]) -> float:
+    """Speed of the deflection shapes: as asked for, the operating one if it is in the range, else that of the largest force."""
+    asked = speed_in_si(given)
+    if asked is not None:
+        if asked == 0.0 or np.sign(asked) != np.sign(speeds[0]):
+            raise AnalysisError("the speed of the deflection shapes must have the sense of the run-up and not be 0")
+        return asked
+    operating = model.operation.speed if model.operation else None
+    if operating and np.sign(operating) == np.sign(speeds[0]) and abs(speeds[0]) <= abs(operating) <= abs(speeds[-1]):
+        return operating
+    largest = [float(np.abs(item.stacked).max(initial=0.0)) for item in readings]
+    return float(speeds[int(np.argmax(largest))])
+
+
+def _shapes(plant: Plant, orders: list[Order], speed: float) -> tuple[NodeTable, np.ndarray]:
+    w, f = plant.loads(orders, speed)
+    q = solve_orders(plant, plant.dynamics(speed), w, f)
+    return shapes_at_stations(plant.system, plant.system.dofs.expand(q))

@@ -1,0 +1,202 @@
+"""Solves a plant for all orders at all speeds: direct, or in a basis of modes and solutions that proves its own error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.analysis.response.orders import Order
+from rotorgear.analysis.response.plant import Plant, Readings, joined
+from rotorgear.errors import ConvergenceError
+from rotorgear.progress import Progress
+from rotorgear.solvers.frequency.harmonic import Dynamics, Projected, orthonormal, projected
+from rotorgear.solvers.sparse.factor import factor_symmetric, single_thread
+
+# The basis grows until its error against direct solutions is below this, at the points where its residual is largest.
+TOLERANCE = 1e-6
+# Above so many unknowns in all, the basis is cheaper than direct solutions.
+_DIRECT_UP_TO = 100_000
+_ROUNDS, _PER_ROUND, _SPEEDS_WHILE_GROWING = 40, 6, 24
+# Modes up to this much above the highest frequency of an order are in its basis.
+_MODES_UP_TO = 1.5
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Readings at every speed, the error of the solver, how many points were checked, and words on the method."""
+
+    readings: list[Readings]
+    solver_error: float
+    checked: int
+    method: str
+
+
+def choose_method(asked: str, points: int, n: int) -> tuple[str, str]:
+    """Return "direct" or "modal" and the reason."""
+    if asked != "auto":
+        return asked, "as asked for"
+    size = f"{points} solutions of {n} dofs"
+    if points * n <= _DIRECT_UP_TO:
+        return "direct", f"only {size}"
+    return "modal", f"{size}, more than direct solutions are worth"
+
+
+def direct_sweep(plant: Plant, orders: list[Order], speeds: np.ndarray, progress: Progress) -> Sweep:
+    """Factor the dynamic stiffness for every order at every speed."""
+    readings = []
+    worst = 0.0
+    for k, speed in enumerate(speeds):
+        progress(k / len(speeds), f"speed {k + 1} of {len(speeds)}")
+        dynamics = plant.dynamics(speed)
+        w, f = plant.loads(orders, speed)
+        q = solve_orders(plant, dynamics, w, f)
+        worst = max(worst, dynamics.relative_residual(w, f, q))
+        readings.append(plant.read(orders, speed, w, q))
+    return Sweep(
+        readings, worst, len(speeds) * len(orders), "direct sparse LU; largest residual relative to the forces inside"
+    )
+
+
+def solve_orders(plant: Plant, dynamics: Dynamics, w: np.ndarray, f: np.ndarray) -> np.ndarray:
+    """Direct solution of every order, (n, o), each distinct frequency factored once."""
+    q = np.zeros(f.shape, complex)
+    for value in np.unique(w):
+        own = np.flatnonzero(w == value)
+        q[:, own] = dynamics.solve(float(value), f[:, own])
+    return q
+
+
+class ModalSweep:
+    """The reduced plant: modes and static responses first, then direct solutions where the residual is largest."""
+
+    def __init__(self, plant: Plant, orders: list[Order], speeds: np.ndarray, modes: np.ndarray) -> None:
+        self.plant, self.orders, self.speeds = plant, orders, np.asarray(speeds, float)
+        top = max(order.ratio for order in orders) * float(np.max(np.abs(self.speeds)))
+        M, K = plant.system.mass, plant.system.stiffness(float(self.speeds[-1]))
+        self.scale = np.sqrt(np.abs(K.diagonal()) + (0.1 * top) ** 2 * np.abs(M.diagonal()))
+        shifted = factor_symmetric((K + (0.3 * top) ** 2 * M).tocsc())
+        loads = np.hstack([plant.loads(orders, float(self.speeds[-1]))[1]])
+        patterns = np.hstack([loads.real, loads.imag, plant.lines.vectors])
+        self.basis = orthonormal(np.zeros((plant.system.n, 0)), np.hstack([modes, shifted.solve(patterns)]), self.scale)
+        self._projection: tuple[Projected, Projected] | None = None
+        self.modes = modes.shape[1]
+        self.checked, self.error = 0, np.inf
+
+    def reduced(self, dynamics: Dynamics, speed: float) -> Projected:
+        """The projection at a speed: put together from two speeds where nothing but W G and W K changes."""
+        if self.plant.has_tables:
+            return projected(dynamics, self.basis)
+        if self._projection is None:
+            still, turning = (projected(self.plant.dynamics(x), self.basis) for x in (0.0, 1.0))
+            self._projection = still, turning
+        return self._projection[0].between(self._projection[1], speed)
+
+    def solve(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Frequencies (o,), displacements (n, o) and relative residuals (o,) at a speed."""
+        w, f = self.plant.loads(self.orders, speed)
+        dynamics = self.plant.dynamics(speed)
+        q = self.basis @ self.reduced(dynamics, speed).solve(w, self.basis.T @ f)
+        rest = (f - dynamics.apply(w, q)) / self.scale[:, None]
+        size = np.linalg.norm(f / self.scale[:, None], axis=0)
+        return w, q, np.linalg.norm(rest, axis=0) / np.where(size > 0.0, size, 1.0)
+
+    def grow(self, progress: Progress) -> None:
+        """Add direct solutions until the largest error against them is below the tolerance, at every point tried."""
+        thinned = self.speeds[
+            np.unique(np.linspace(0, len(self.speeds) - 1, _SPEEDS_WHILE_GROWING).round().astype(int))
+        ]
+        for number in range(_ROUNDS):
+            progress(0.05 + 0.3 * number / _ROUNDS, f"basis of {self.basis.shape[1]}")
+            error = self._improve(thinned)
+            if error <= TOLERANCE:
+                return
+        raise ConvergenceError(
+            f"the modal solution still differs by {error:.1e} from direct ones with {self.basis.shape[1]} vectors; "
+            "use --method direct"
+        )
+
+    def _improve(self, speeds: np.ndarray) -> float:
+        residuals = np.array([self.solve(float(speed))[2] for speed in speeds])  # (s, o)
+        return self.check([(float(speeds[s]), o) for s, o in _worst(residuals)])
+
+    def check(self, points: list[tuple[float, int]]) -> float:
+        """Largest relative error at some (speed, order) against direct solutions, which join the basis where it is too large."""
+        new, error = [], 0.0
+        for speed, order in points:
+            w, q, _ = self.solve(speed)
+            f = self.plant.loads(self.orders, speed)[1][:, [order]]
+            exact = self.plant.dynamics(speed).solve(float(w[order]), f)[:, 0]
+            size = float(np.linalg.norm(self.scale * exact))
+            off = float(np.linalg.norm(self.scale * (exact - q[:, order]))) / size if size else 0.0
+            error = max(error, off)
+            self.checked += 1
+            if off > 0.1 * TOLERANCE:
+                new += [exact.real, exact.imag]
+        if error > TOLERANCE:
+            self.basis = orthonormal(self.basis, np.array(new).T, self.scale)
+            self._projection = None
+        self.error = error
+        return error
+
+
+def _worst(residuals: np.ndarray) -> list[tuple[int, int]]:
+    """(speed, order) where the residual of an order is larger than at the speeds beside it, the largest of these first."""
+    padded = np.pad(residuals, ((1, 1), (0, 0)), constant_values=-1.0)
+    peaks = np.argwhere((residuals >= padded[:-2]) & (residuals > padded[2:]))
+    ranked = sorted(peaks.tolist(), key=lambda at: -residuals[at[0], at[1]])
+    return [(s, o) for s, o in ranked[:_PER_ROUND]]
+
+
+def modal_sweep(
+    plant: Plant, orders: list[Order], speeds: np.ndarray, modes: tuple[np.ndarray, np.ndarray], progress: Progress
+) -> Sweep:
+    """Solve each order in a basis of its own, grown until it is proved good, then at every speed.
+
+    `modes` are shapes (n, m) and w (m,) in rad/s. Slow orders get along with few of them.
+    """
+    shapes, w = modes
+    readings, error, checked, sizes = [], 0.0, 0, []
+    with single_thread(plant.system.n):
+        for number, order in enumerate(orders):
+            top = _MODES_UP_TO * order.ratio * float(np.max(np.abs(speeds)))
+            sweep = ModalSweep(plant, [order], speeds, shapes[:, w <= top])
+            share = _Share(progress, number, len(orders), order.name)
+            readings.append(_swept(sweep, order.name, share))
+            error, checked = max(error, sweep.error), checked + sweep.checked
+            sizes.append((sweep.modes, sweep.basis.shape[1] - sweep.modes))
+    most, added = max(sizes)
+    method = f"modal, up to {most} modes and {added} static and direct solutions as basis of an order"
+    return Sweep([joined(parts) for parts in zip(*readings, strict=True)], error, checked, method)
+
+
+@dataclass(frozen=True)
+class _Share:
+    """Progress of one of several parts."""
+
+    whole: Progress
+    number: int
+    count: int
+    name: str
+
+    def __call__(self, done: float) -> None:
+        self.whole((self.number + done) / self.count, self.name)
+
+
+def _swept(sweep: ModalSweep, name: str, progress: Callable[[float], None]) -> list[Readings]:
+    """Readings of one order at every speed, when the basis has been proved where its residual is largest."""
+    plant, orders, speeds = sweep.plant, sweep.orders, sweep.speeds
+    sweep.grow(lambda fraction, _: progress(fraction))
+    for _ in range(_ROUNDS):
+        readings, residuals = [], []
+        for k, speed in enumerate(speeds):
+            if k % 10 == 0:
+                progress(0.35 + 0.6 * k / len(speeds))
+            w, q, rest = sweep.solve(float(speed))
+            readings.append(plant.read(orders, float(speed), w, q))
+            residuals.append(rest)
+        points = [(float(speeds[s]), o) for s, o in _worst(np.array(residuals))]
+        if sweep.check(points) <= TOLERANCE:
+            return readings
+    raise ConvergenceError(f"the modal solution of {name} does not come near direct ones; use --method direct")

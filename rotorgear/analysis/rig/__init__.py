@@ -1,0 +1,1 @@
+"""Comparison with frequencies measured on a test rig."""

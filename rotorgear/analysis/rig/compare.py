@@ -1,0 +1,237 @@
+"""Compare natural frequencies with the lines of a test rig: one-to-one on log frequency, beside what chance gives.
+
+The assignment is globally optimal (`solvers/eigen/assignment.py`): first as many lines as possible within the tolerance, then
+the least sum of |ln(f_mode / f_rig)|. A pair outside the tolerance is no match; both sides are then listed as
+unmatched. Rigid modes take no part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rotorgear.analysis.rig.chance import estimate_chance
+from rotorgear.analysis.rig.rig_file import read_rig_lines
+from rotorgear.errors import AnalysisError
+from rotorgear.results.comparison import (
+    Candidate,
+    Comparison,
+    ExcitationLine,
+    Match,
+    RigLine,
+    UnmatchedMode,
+    UnmatchedRigLine,
+)
+from rotorgear.solvers.eigen.assignment import ROUNDING, assign
+
+__all__ = ["compare", "read_rig_lines"]
+
+# A rig line that states no uncertainty is not trusted beyond this when two modes compete for it.
+READING_ACCURACY = 1e-3
+
+
+def compare(
+    frequency_hz: ArrayLike,
+    descriptions: Sequence[str],
+    rig_lines: Sequence[RigLine],
+    *,
+    rigid: ArrayLike | None = None,
+    damping_ratio: ArrayLike | None = None,
+    excitations: Sequence[ExcitationLine] = (),
+    tolerance: float = 0.05,
+    excitation_tolerance: float = 0.005,
+    band: tuple[float, float] | None = None,
+    known_to_hz: float | None = None,
+    seed: int = 0,
+    samples: int = 2000,
+) -> Comparison:
+    """Assign rig lines to modes and say what the agreement is worth.
+
+    Args:
+        frequency_hz: natural frequencies in Hz (m,), in any order; modes are numbered from 1 in this order.
+        descriptions: one line a mode (m).
+        rig_lines: the measured lines, in any order.
+        rigid: True for rigid-body modes (m,); they, and modes at 0 Hz, are never matched.
+        damping_ratio: of the modes, as fractions (m,); NaN where unknown.
+        excitations: shaft and mesh orders. One coincides with a rig line within `excitation_tolerance` or the line's
+            own uncertainty, whichever is larger, and with a mode within `excitation_tolerance`.
+        tolerance: largest |f_mode / f_rig - 1| of a match.
+        band: the frequency range in Hz that the rig looked at, for the chance; default: from the lowest to the highest
+            rig line, widened by the tolerance at both ends.
+        known_to_hz: frequency up to which all modes are given, where it is above the last one.
+        seed, samples: of the random lists.
+
+    Raises:
+        AnalysisError: no rig lines, the same line twice, arrays of different length, tolerances, band or samples that
+            make no sense.
+    """
+    modes = _Modes.of(frequency_hz, descriptions, rigid, damping_ratio)
+    lines = sorted(rig_lines, key=lambda line: line.frequency_hz)
+    rig_hz = np.array([line.frequency_hz for line in lines])
+    _check_lines(rig_hz)
+    _check_settings(tolerance, excitation_tolerance, samples)
+    limits = _band(rig_hz, tolerance, band)
+    pairs = {row: int(modes.elastic[column]) for row, column in assign(rig_hz, modes.elastic_hz, tolerance)}
+    near = _Neighbourhood(modes, tuple(excitations), frozenset(pairs.values()), tolerance, excitation_tolerance)
+    return Comparison(
+        matches=tuple(near.match(lines[row], mode) for row, mode in pairs.items()),
+        unmatched_rig=tuple(near.unmatched(line) for row, line in enumerate(lines) if row not in pairs),
+        unmatched_modes=near.unmatched_modes(limits),
+        tolerance=tolerance,
+        excitation_tolerance=excitation_tolerance,
+        chance=estimate_chance(rig_hz, modes.elastic_hz, tolerance, limits, samples=samples, seed=seed),
+        warnings=tuple(_warnings(rig_hz, modes.elastic_hz, limits, band, known_to_hz)),
+    )
+
+
+@dataclass(frozen=True)
+class _Modes:
+    """The modes by index; `elastic` are the indices that may be matched, ascending in frequency."""
+
+    frequency_hz: NDArray[np.float64]
+    descriptions: Sequence[str]
+    damping_ratio: NDArray[np.float64]
+    elastic: NDArray[np.intp]
+
+    @classmethod
+    def of(
+        cls,
+        frequency_hz: ArrayLike,
+        descriptions: Sequence[str],
+        rigid: ArrayLike | None,
+        damping_ratio: ArrayLike | None,
+    ) -> _Modes:
+        frequency = np.asarray(frequency_hz, dtype=float)
+        is_rigid = np.zeros(frequency.shape, dtype=bool) if rigid is None else np.asarray(rigid, dtype=bool)
+        damping = np.full(frequency.shape, np.nan) if damping_ratio is None else np.asarray(damping_ratio, dtype=float)
+        sizes = {"frequency_hz": frequency.shape, "descriptions": (len(descriptions),)}
+        sizes |= {"rigid": is_rigid.shape, "damping_ratio": damping.shape}
+        if frequency.ndim != 1 or len(set(sizes.values())) > 1:
+            raise AnalysisError(f"the modes to compare need one entry a mode in every list, got shapes {sizes}")
+        if not np.all(np.isfinite(frequency) & (frequency >= 0.0)):
+            raise AnalysisError("the natural frequencies to compare must be finite and not negative")
+        usable = np.flatnonzero(~is_rigid & (frequency > 0.0))
+        return cls(frequency, descriptions, damping, usable[np.argsort(frequency[usable], kind="stable")])
+
+    @property
+    def elastic_hz(self) -> NDArray[np.float64]:
+        return self.frequency_hz[self.elastic]
+
+
+@dataclass(frozen=True)
+class _Neighbourhood:
+    """What lies near a rig line or a mode."""
+
+    modes: _Modes
+    excitations: tuple[ExcitationLine, ...]
+    taken: frozenset[int]
+    tolerance: float
+    excitation_tolerance: float
+
+    def match(self, line: RigLine, mode: int) -> Match:
+        frequency, damping = float(self.modes.frequency_hz[mode]), float(self.modes.damping_ratio[mode])
+        miss, uncertainty = abs(frequency - line.frequency_hz), line.uncertainty_hz
+        return Match(
+            rig=line,
+            mode_number=mode + 1,
+            mode_frequency_hz=frequency,
+            mode_description=self.modes.descriptions[mode],
+            error_percent=100.0 * (frequency / line.frequency_hz - 1.0),
+            within_uncertainty=None if uncertainty is None else miss <= uncertainty + ROUNDING * frequency,
+            runner_up=self._runner_up(line, mode),
+            mode_damping_ratio=None if np.isnan(damping) else damping,
+            excitations=self._driving(line.frequency_hz, uncertainty or 0.0),
+            mode_excitations=self._driving(frequency),
+        )
+
+    def unmatched(self, line: RigLine) -> UnmatchedRigLine:
+        return UnmatchedRigLine(line, self._nearest(line), self._driving(line.frequency_hz, line.uncertainty_hz or 0.0))
+
+    def unmatched_modes(self, band: tuple[float, float]) -> tuple[UnmatchedMode, ...]:
+        free = [int(mode) for mode in self.modes.elastic if mode not in self.taken]
+        found = [(mode, float(self.modes.frequency_hz[mode])) for mode in free]
+        return tuple(
+            UnmatchedMode(mode + 1, frequency, self.modes.descriptions[mode], self._driving(frequency))
+            for mode, frequency in found
+            if band[0] <= frequency <= band[1]
+        )
+
+    def _runner_up(self, line: RigLine, chosen: int) -> Candidate | None:
+        """Return the next mode where it could as well be the partner (the criterion is stated in `Match`)."""
+        other = self._nearest(line, without=chosen)
+        if other is None or abs(other.error_percent) > 100.0 * (self.tolerance + ROUNDING):
+            return None
+        accuracy = READING_ACCURACY * line.frequency_hz if line.uncertainty_hz is None else line.uncertainty_hz
+        twice = 2.0 * abs(float(self.modes.frequency_hz[chosen]) - line.frequency_hz)
+        return other if abs(other.frequency_hz - line.frequency_hz) <= max(twice, accuracy) else None
+
+    def _nearest(self, line: RigLine, without: int = -1) -> Candidate | None:
+        others = self.modes.elastic[self.modes.elastic != without]
+        if others.size == 0:
+            return None
+        mode = int(others[np.argmin(np.abs(np.log(self.modes.frequency_hz[others] / line.frequency_hz)))])
+        frequency = float(self.modes.frequency_hz[mode])
+        return Candidate(mode + 1, frequency, 100.0 * (frequency / line.frequency_hz - 1.0), mode in self.taken)
+
+    def _driving(self, frequency: float, uncertainty: float = 0.0) -> tuple[ExcitationLine, ...]:
+        reach = max(self.excitation_tolerance * frequency, uncertainty) + ROUNDING * frequency
+        return tuple(line for line in self.excitations if abs(line.frequency_hz - frequency) <= reach)
+
+
+def _check_lines(rig_hz: NDArray[np.float64]) -> None:
+    if rig_hz.size == 0:
+        raise AnalysisError("there are no rig lines to compare with: give at least one measured frequency")
+    repeated = rig_hz[1:][np.diff(rig_hz) == 0.0]
+    if repeated.size:
+        raise AnalysisError(f"the rig line {repeated[0]:g} Hz is given twice: keep one of them")
+
+
+def _check_settings(tolerance: float, excitation_tolerance: float, samples: int) -> None:
+    if not 0.0 < tolerance < 1.0:
+        raise AnalysisError(
+            f"the tolerance of the rig comparison must lie between 0 and 1 (0.05 is 5 %), got {tolerance:g}"
+        )
+    if not 0.0 <= excitation_tolerance < 1.0:
+        raise AnalysisError(
+            f"the excitation tolerance must lie between 0 and 1 (0.005 is 0.5 %), got {excitation_tolerance:g}"
+        )
+    if samples < 1:
+        raise AnalysisError(f"the chance needs at least one random list, got samples = {samples}")
+
+
+def _band(rig_hz: NDArray[np.float64], tolerance: float, band: tuple[float, float] | None) -> tuple[float, float]:
+    if band is None:
+        return float(rig_hz[0]) / (1.0 + tolerance), float(rig_hz[-1]) * (1.0 + tolerance)
+    low, high = float(band[0]), float(band[1])
+    if not (0.0 < low < high < np.inf and low <= rig_hz[0] and rig_hz[-1] <= high):
+        lines = f"{rig_hz[0]:g} to {rig_hz[-1]:g} Hz"
+        raise AnalysisError(
+            f"the band must be positive and contain the rig lines ({lines}), got {low:g} to {high:g} Hz"
+        )
+    return low, high
+
+
+def _warnings(
+    rig_hz: NDArray[np.float64],
+    mode_hz: NDArray[np.float64],
+    limits: tuple[float, float],
+    band: tuple[float, float] | None,
+    known_to: float | None,
+) -> list[str]:
+    """Return sentences on what weakens the comparison."""
+    found = []
+    if mode_hz.size == 0:
+        found.append("there are no elastic modes to compare with")
+    elif max(mode_hz[-1], known_to or 0.0) < limits[1]:
+        found.append(
+            f"the elastic modes given end at {mode_hz[-1]:.1f} Hz: if the model has more, compute them up to "
+            f"{limits[1]:.1f} Hz, so that every rig line meets all its candidates and the chance is not underestimated"
+        )
+    if rig_hz.size == 1 and band is None:
+        found.append(
+            "a single rig line spans no band of its own: give the band that was measured to make the chance meaningful"
+        )
+    return found

@@ -1,0 +1,1 @@
+"""Equilibrium under constant loads: deflections, forces, load sharing."""

@@ -1,0 +1,90 @@
+"""Forces that follow from displacements: of meshes on gears, of bearings and supports on shafts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.analysis.static.solve import Equilibrated
+from rotorgear.elements.spring import rigid_transfer
+from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.system.groups import ElementGroup
+from rotorgear.system.nodes import Nodes
+
+
+def forces_on_gears(found: Equilibrated) -> np.ndarray:
+    """Force of the pinion on the gear at each contact, (c, 3): the normal force along v's own direction."""
+    groups = [group for group in found.system.groups if group.part.startswith("meshes.")]
+    rows = []
+    for group, force in zip(groups, found.force, strict=True):
+        assert group.matrices.strain is not None
+        rows.append(force * group.matrices.strain[0, 0, :3])
+    return np.array(rows).reshape(-1, 3)
+
+
+def _inner(group: ElementGroup, q: np.ndarray) -> np.ndarray:
+    """Force that an element's own strains put on its dofs, (e, d)."""
+    B, D, Z = group.matrices.strain, group.matrices.modulus, group.matrices.circulation
+    parts = [part for part in (D, Z) if part is not None]
+    if B is None or not parts:
+        return np.zeros(group.dofs.shape)
+    total = sum(parts[1:], parts[0])
+    return np.asarray(np.einsum("esd,est,etf,ef->ed", B, total, B, q[group.dofs]))
+
+
+def bearing_forces(found: Equilibrated) -> dict[str, np.ndarray]:
+    """Force and moment of each bearing on its shaft, (6,)."""
+    q = found.system.dofs.expand(found.q)
+    return {
+        group.part.removeprefix("bearings."): -_inner(group, q)[0, -6:]
+        for group in found.groups
+        if group.part.startswith("bearings.") and not group.part.endswith(".pedestal")
+    }
+
+
+def support_forces(found: Equilibrated) -> dict[str, np.ndarray]:
+    """Force and moment of each support on its shaft, (6,): of its springs, and what it holds fixed."""
+    system = found.system
+    q = system.dofs.expand(found.q)
+    rest = inner_forces(found) - found.loads
+    forces = {}
+    for group in found.groups:
+        if group.part.startswith("supports."):
+            forces[group.part.removeprefix("supports.")] = -_inner(group, q)[0, -6:]
+    for name, support in system.model.supports.items():
+        node = system.nodes.at(support.shaft, system.model.shafts[support.shaft].station(support.at))
+        held = [k for k, dof in enumerate(DOF_NAMES) if dof in support.fixed or "all" in support.fixed]
+        if held:
+            wrench = _at_node(system.nodes, found, rest, node)
+            forces[name][held] += wrench[held]
+    return forces
+
+
+def _at_node(nodes: Nodes, found: Equilibrated, rest: np.ndarray, node: int) -> np.ndarray:
+    """What is missing for equilibrium at a node, with that of the nodes which rigid sections tie to it."""
+    own = np.zeros(6)
+    for other in found.system.rigid_with(node):
+        arm = rigid_transfer(np.array([0.0, 0.0, nodes.z[other] - nodes.z[node]]))
+        own += arm.T @ rest[6 * other : 6 * other + 6]
+    return own
+
+
+def inner_forces(found: Equilibrated) -> np.ndarray:
+    """Sum of the forces of all elements on all dofs, (a,), contacts with their gaps closed first."""
+    q = found.system.dofs.expand(found.q)
+    total = np.zeros_like(q)
+    meshes = iter(found.force[found.closed])
+    for group in found.groups:
+        if group.part.startswith("meshes."):
+            assert group.matrices.strain is not None
+            np.add.at(total, group.dofs, next(meshes) * group.matrices.strain[:, 0, :])
+        else:
+            np.add.at(total, group.dofs, _inner(group, q))
+    return total
+
+
+def imbalance(found: Equilibrated) -> float:
+    """Largest force that is missing at a free dof, relative to the largest force there is."""
+    inner = inner_forces(found)
+    rest = found.system.dofs.transform.T @ (inner - found.loads)
+    size = max(float(np.max(np.abs(inner), initial=0.0)), float(np.max(np.abs(found.loads), initial=0.0)))
+    return float(np.max(np.abs(rest), initial=0.0) / size) if size else 0.0

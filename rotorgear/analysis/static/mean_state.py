@@ -1,0 +1,56 @@
+"""The state that a linear response is about: flanks and mean forces from statics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotorgear.analysis.static.solve import equilibrate
+from rotorgear.errors import AnalysisError
+from rotorgear.system.contacts import ContactLines, contact_lines
+from rotorgear.system.system import System
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A system about its mean state, with its contacts, and their mean forces."""
+
+    system: System
+    lines: ContactLines
+    mean_force: np.ndarray
+    notes: tuple[str, ...]
+
+
+def mean_state(system: System, speed: float) -> Setup:
+    """Flanks and mean forces from statics; without loads, the flanks are assumed and the mean forces are zero.
+
+    Raises:
+        AnalysisError: some contact is open under the mean loads, so that there is no linear response about it.
+    """
+    index = any(mesh.index_error or mesh.helix_index_error for mesh in system.model.meshes.values())
+    operation = system.model.operation
+    weight = bool(operation and operation.gravity and any(operation.gravity))
+    if not system.flow.forces or not (system.flow.applied or index or weight):
+        lines = contact_lines(system)
+        meshes = system.model.meshes.items()
+        varied = [name for name, m in meshes if m.stiffness_variation or not isinstance(m.stiffness, int | float)]
+        notes = (
+            (f"stiffness variation of {', '.join(varied)}: no torque, so no mean force that it acts on",)
+            if varied
+            else ()
+        )
+        return Setup(system, lines, np.zeros(len(lines.states)), notes)
+    found = equilibrate(system, speed)
+    if not found.closed.all():
+        name = found.lines.names[int(np.flatnonzero(~found.closed)[0])]
+        raise AnalysisError(
+            f"meshes.{name} carries nothing under the mean loads, so there is no linear response about them; give more torque or "
+            "a smaller index error"
+        )
+    forces = tuple(
+        replace(state, normal_force=float(force)) for state, force in zip(found.lines.states, found.force, strict=True)
+    )
+    flow = replace(found.system.flow, forces=forces)
+    settled = System(system.model, plan=system.plan, direction=system.direction, flow=flow, mesh=system.mesh)
+    return Setup(settled, contact_lines(settled), found.force, ())

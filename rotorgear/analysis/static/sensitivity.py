@@ -1,0 +1,98 @@
+"""How contact forces change with index errors, stiffnesses and centre lines, by direct differentiation of K q = f.
+
+    K dq = df - dK q,    dF_i = k_i (v_i . dq + dv_i . q - de_i) + dk_i (v_i . q - e_i)
+
+for every parameter at once, with the factors of K that are there. Stiffnesses are scaled as a whole: the derivative is that
+for 100 % of it. Haftka and Gurdal, Elements of Structural Optimization, 3rd ed., chapter 7 (Kluwer 1992).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.analysis.static.solve import Equilibrated
+from rotorgear.errors import AnalysisError
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """Names and units of k parameters and the derivative of the c contact forces, (k, c); `left_out` says what is missing."""
+
+    name: tuple[str, ...]
+    unit: tuple[str, ...]
+    force: np.ndarray
+    left_out: tuple[str, ...] = ()
+
+
+def sensitivities(found: Equilibrated) -> Sensitivity:
+    """Return the derivatives of all contact forces."""
+    lines, active = found.lines, np.where(found.closed, found.lines.stiffness, 0.0)
+    approach = lines.vectors.T @ found.q
+    count = len(active)
+    names: list[str] = []
+    units: list[str] = []
+    rights: list[np.ndarray] = []  # df - dK q
+    own: list[np.ndarray] = []  # the part of dF that does not go through dq
+
+    def add(name: str, unit: str, right: np.ndarray, direct: np.ndarray) -> None:
+        names.append(name)
+        units.append(unit)
+        rights.append(right)
+        own.append(direct)
+
+    meshes = list(dict.fromkeys(lines.names))
+    for mesh in meshes:
+        mine = np.array([name == mesh for name in lines.names]) * active
+        add(f"meshes.{mesh}.index_error", "N/m", lines.vectors @ mine, -mine)
+    for mesh in meshes:
+        second = [s.contact.mesh == mesh and s.contact.helix == 1 for s in lines.states]
+        if any(second):
+            mine = np.array(second) * active
+            add(f"meshes.{mesh}.helix_index_error", "N/m", lines.vectors @ mine, -mine)
+    for mesh in meshes:
+        mine = np.array([name == mesh for name in lines.names]) * found.force
+        add(f"meshes.{mesh}.stiffness", "N", -lines.vectors @ mine, mine)
+    for part, right in _stiffness_terms(found).items():
+        add(part, "N", right, np.zeros(count))
+    for mesh in meshes:
+        mine = np.array([name == mesh for name in lines.names], float)
+        turning = lines.turned.T @ found.q
+        right = -(lines.turned @ (mine * found.force) + lines.vectors @ (mine * active * turning))
+        add(f"meshes.{mesh}.centre_line_angle", "N/rad", right, mine * active * turning)
+    return _solved(found, names, units, np.array(rights).T, np.array(own), approach)
+
+
+def _solved(
+    found: Equilibrated, names: list[str], units: list[str], rights: np.ndarray, own: np.ndarray, approach: np.ndarray
+) -> Sensitivity:
+    active = np.where(found.closed, found.lines.stiffness, 0.0)
+    # Round-off of a stiffness term on the free motions is no load; a term that really pushes one has no derivative.
+    kept, dropped, columns = [], [], []
+    for k, right in enumerate(rights.T):
+        try:
+            columns.append(found.solver.solve(right[:, None])[:, 0])
+            kept.append(k)
+        except AnalysisError:
+            dropped.append(names[k])
+    dq = np.array(columns).T if columns else np.zeros((len(found.q), 0))
+    force = (active[:, None] * (found.lines.vectors.T @ dq)).T + own[kept]
+    left = (f"no derivative by {', '.join(dropped)}: it would set the free motions going",) if dropped else ()
+    return Sensitivity(tuple(names[k] for k in kept), tuple(units[k] for k in kept), force, left)
+
+
+def _stiffness_terms(found: Equilibrated) -> dict[str, np.ndarray]:
+    """-K_part q of every shaft, bearing, support and coupling: part.stiffness -> (n,)."""
+    system = found.system
+    q = system.dofs.expand(found.q)
+    terms: dict[str, np.ndarray] = {}
+    for group in found.groups:
+        K = group.matrices.stiffness
+        if K is None or group.part.startswith("meshes."):
+            continue
+        inner = np.zeros_like(q)
+        np.add.at(inner, group.dofs, np.einsum("eij,ej->ei", K, q[group.dofs]))
+        name = f"{group.part}.stiffness"
+        terms[name] = terms.get(name, 0.0) - system.dofs.transform.T @ inner
+    return {name: term for name, term in terms.items() if np.any(term)}

@@ -1,0 +1,71 @@
+"""How several meshes of one gear, and the two helices of a herringbone, share the load.
+
+Meshes share where one gear drives them all, or is driven by all. With normal forces F_i at one base radius, the share of a
+mesh is F_i / sum F, and the sharing factor of n meshes is K_gamma = n max F_i / sum F (ISO 6336-1, for planets).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.analysis.static.solve import Equilibrated
+from rotorgear.results.static import Share
+
+# A share moves with an index error in a loop; a derivative below this share of the mesh stiffness is rounding.
+_DECIDED = 1e-7
+
+
+def share_rows(found: Equilibrated, derivative: np.ndarray) -> tuple[tuple[Share, ...], np.ndarray]:
+    """Return the shares of all groups of meshes, and their derivatives (k, g) from those of the contact forces (k, c)."""
+    rows: list[Share] = []
+    changes: list[np.ndarray] = []
+    indexes = _index_derivatives(found)
+    for gear, meshes in _groups(found).items():
+        mine = [np.array([name == mesh for name in found.lines.names]) for mesh in meshes]
+        force = np.array([found.force[own].sum() for own in mine])
+        total = force.sum()
+        if not total:
+            continue
+        change = np.array([derivative[:, own].sum(axis=1) for own in mine])  # (meshes, k)
+        share = force / total
+        moved = (change - share[:, None] * change.sum(axis=0)) / total
+        stiff = np.array([indexes[np.ix_(own, own)].max() for own in mine]).max()
+        loop = stiff > _DECIDED * float(found.lines.stiffness.max())
+        for mesh, part, row in zip(meshes, share, moved, strict=True):
+            rows.append(Share(gear, mesh, float(part), float(len(meshes) * part), "stiffness" if loop else "loads"))
+            changes.append(row)
+    return tuple(rows), np.array(changes).T.reshape(len(derivative), len(rows))
+
+
+def _index_derivatives(found: Equilibrated) -> np.ndarray:
+    """|dF_i / de_j| of whole meshes' index errors, (c, c)."""
+    active = np.where(found.closed, found.lines.stiffness, 0.0)
+    names = np.array(found.lines.names)
+    out = np.zeros((len(active), len(active)))
+    for mesh in dict.fromkeys(found.lines.names):
+        mine = np.where(names == mesh, active, 0.0)
+        dq = found.solver.solve((found.lines.vectors @ mine)[:, None])[:, 0]
+        change = active * (found.lines.vectors.T @ dq) - mine
+        # A gap in both helices moves their sum in a loop only; between the helices alone it is no matter of the branch.
+        total = sum(abs(change[names == other].sum()) for other in dict.fromkeys(found.lines.names))
+        out[:, names == mesh] = total
+    return out
+
+
+def _groups(found: Equilibrated) -> dict[str, list[str]]:
+    """Gear -> its meshes on the driving side, or on the driven side, where there are several."""
+    sides: dict[tuple[str, bool], list[str]] = {}
+    for state in found.lines.states:
+        contact = state.contact
+        for gear, drives in ((contact.pinion, state.pinion_drives), (contact.gear, not state.pinion_drives)):
+            own = sides.setdefault((gear, drives), [])
+            if contact.mesh not in own:
+                own.append(contact.mesh)
+    return {gear: meshes for (gear, _), meshes in sides.items() if len(meshes) > 1}
+
+
+def helix_shares(found: Equilibrated) -> np.ndarray:
+    """Share of each contact in the force of its mesh, (c,); 0 where the mesh carries nothing."""
+    names = np.array(found.lines.names)
+    total = np.array([found.force[names == name].sum() for name in names])
+    return np.where(total > 0.0, found.force / np.where(total > 0.0, total, 1.0), 0.0)

@@ -1,0 +1,189 @@
+"""Solves a model in statics and settles which contacts carry, and on which flank.
+
+Contacts are springs that only push: one that would pull is opened; where the loads need it, it carries on its other flank
+instead, and the torque flow is turned there. That is repeated until every contact carries or is open with a gap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.errors import AnalysisError
+from rotorgear.model.layout.torque_flow import MeshForce
+from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.solvers.sparse.equilibrium import Equilibrium
+from rotorgear.solvers.sparse.static import UnbalancedLoadError
+from rotorgear.system.assembly import assemble
+from rotorgear.system.contacts import ContactLines, contact_lines
+from rotorgear.system.groups import ElementGroup
+from rotorgear.system.loads import torque_loads, weight_loads
+from rotorgear.system.rigid_motions import rigid_motions
+from rotorgear.system.system import System
+
+# A contact pulls where its force is below minus this share of the largest one.
+_PULLS = 1e-9
+
+
+@dataclass(frozen=True)
+class Equilibrated:
+    """A solved system: q (n,), forces of the c contacts (0 where open), and what derivatives need."""
+
+    system: System
+    groups: list[ElementGroup]
+    lines: ContactLines
+    closed: np.ndarray
+    solver: Equilibrium
+    motions: np.ndarray
+    loads: np.ndarray
+    q: np.ndarray
+    force: np.ndarray
+    notes: tuple[str, ...]
+
+
+def equilibrate(system: System, speed: float) -> Equilibrated:
+    """Return the equilibrium under torques, weight and index errors.
+
+    Raises:
+        AnalysisError: no loads, a motion that nothing holds and the loads push, or flanks that can't be settled.
+    """
+    closed = np.ones(len(system.flow.forces), bool)
+    tried: set[tuple[object, ...]] = set()
+    while True:
+        state = (tuple(force.torque_sense for force in system.flow.forces), tuple(closed))
+        if state in tried:
+            names = ", ".join(dict.fromkeys(force.contact.mesh for force in system.flow.forces))
+            raise AnalysisError(
+                f"no set of flanks carries the loads: meshes {names} open and close in turn; check index errors and loads"
+            )
+        tried.add(state)
+        found = _solve(system, speed, closed)
+        size = _PULLS * float(np.max(np.abs(found.force), initial=0.0))
+        gap = found.lines.vectors.T @ found.q - found.lines.gap
+        worst = int(np.argmin(found.force)) if found.force.size else -1
+        through = np.flatnonzero(~closed & (found.lines.stiffness * gap > size))
+        if through.size:
+            closed = closed.copy()
+            closed[through[0]] = True
+        elif worst >= 0 and found.force[worst] < -size:
+            system, closed = _released(system, speed, closed, worst)
+        else:
+            return found
+
+
+def _released(system: System, speed: float, closed: np.ndarray, worst: int) -> tuple[System, np.ndarray]:
+    """Open a contact that pulls, or let its mesh carry on the other flank where the loads can't do without it."""
+    opened = closed.copy()
+    opened[worst] = False
+    try:
+        _solve(system, speed, opened)
+    except _PushedMotionError:
+        mesh = system.flow.forces[worst].contact.mesh
+        turned = tuple(_turned(force) if force.contact.mesh == mesh else force for force in system.flow.forces)
+        opened[worst] = True
+        flow = replace(system.flow, forces=turned)
+        return System(system.model, plan=system.plan, direction=system.direction, flow=flow, mesh=system.mesh), opened
+    return system, opened
+
+
+def _turned(force: MeshForce) -> MeshForce:
+    return replace(force, torque_sense=-force.torque_sense, pinion_drives=not force.pinion_drives)
+
+
+class _PushedMotionError(AnalysisError):
+    """The loads push a motion that nothing holds."""
+
+
+def _solve(system: System, speed: float, closed: np.ndarray) -> Equilibrated:
+    lines = contact_lines(system)
+    meshes = iter(closed)
+    groups = [g for g in system.groups_at(speed) if not g.part.startswith("meshes.") or next(meshes)]
+    groups, notes = without_torsion_to_ground(system, groups)
+    K = assemble(groups, system.dofs, lambda g: g.matrices.stiffness)
+    N = assemble(groups, system.dofs, lambda g: _circulatory(g, speed))
+    if N.nnz:
+        K = sp.csc_array(K + N)
+    R = rigid_motions(system, groups)
+    active = np.where(closed, lines.stiffness, 0.0)
+    loads = outer_loads(system)
+    f = system.dofs.transform.T @ loads + lines.vectors @ (active * lines.gap)
+    solver = Equilibrium(K, R)
+    try:
+        q = solver.solve(f[:, None])[:, 0]
+    except UnbalancedLoadError:
+        raise _PushedMotionError(_mechanism(system, R, f)) from None
+    q = _placed(system, R, q)
+    force = active * (lines.vectors.T @ q - lines.gap)
+    return Equilibrated(system, groups, lines, closed, solver, R, loads, q, force, notes)
+
+
+def outer_loads(system: System) -> np.ndarray:
+    """Torques and weight over all dofs, (a,)."""
+    operation = system.model.operation
+    loads = torque_loads(system)
+    if operation and operation.gravity:
+        loads = loads + weight_loads(system, operation.gravity)
+    return loads
+
+
+def _circulatory(group: ElementGroup, speed: float) -> np.ndarray | None:
+    plain, turning = group.matrices.circulatory, group.matrices.circulatory_per_speed
+    if turning is None or not group.spin * speed:
+        return plain
+    return group.spin * speed * turning if plain is None else plain + group.spin * speed * turning
+
+
+def without_torsion_to_ground(system: System, groups: list[ElementGroup]) -> tuple[list[ElementGroup], tuple[str, ...]]:
+    """Leave torsional springs between turning shafts and the ground out: what turns can't wind them up.
+
+    They stand for machines that turn as well, whose torque is among the loads. Where a support holds a shaft of the same
+    part of the train fixed in torsion, nothing turns, and they stay.
+    """
+    train, model = system.train, system.model
+    held = {train.group[s.shaft] for s in model.supports.values() if {"torsion", "all"} & set(s.fixed)}
+    kept, notes = [], []
+    for group in groups:
+        table = group.part.partition(".")[0]
+        B, D = group.matrices.strain, group.matrices.modulus
+        turns = bool(group.shaft) and train.ratios.get(group.shaft, 0) != 0 and train.group[group.shaft] not in held
+        if table not in ("bearings", "supports") or not turns or B is None or D is None:
+            kept.append(group)
+            continue
+        twist = np.any(B[0][:, 5::6] != 0.0, axis=1)
+        if not np.any(D[0][twist]):
+            kept.append(group)
+            continue
+        cut = D.copy()
+        cut[:, twist, :], cut[:, :, twist] = 0.0, 0.0
+        kept.append(replace(group, matrices=replace(group.matrices, modulus=cut)))
+        notes.append(f"{group.part}: its torsional stiffness to ground; the shaft turns, and the loads hold its torque")
+    return kept, tuple(notes)
+
+
+def _placed(system: System, R: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Choose what is left open: the free motions that make the displacements of the reference shaft's first node smallest."""
+    if R.shape[1] == 0:
+        return q
+    node = int(system.nodes.on_shaft(system.model.reference_shaft)[0])
+    rows = 6 * node + np.arange(6)
+    move, here = system.dofs.expand(R)[rows], system.dofs.expand(q)[rows]
+    return np.asarray(q - R @ np.linalg.lstsq(move, here, rcond=1e-9)[0])
+
+
+def _mechanism(system: System, R: np.ndarray, f: np.ndarray) -> str:
+    """One sentence about the free motion that the loads push most."""
+    pushed = R @ (R.T @ f)
+    moved = np.abs(system.dofs.expand(pushed)[: 6 * len(system.nodes)]).reshape(-1, 6)
+    held = moved.copy()
+    held[:, 5] = 0.0  # a train may turn; what lets it turn without its loads in balance is the other motion
+    if held.max() > 1e-6 * moved.max():
+        moved = held
+    node, dof = np.unravel_index(int(np.argmax(moved)), moved.shape)
+    shaft, name = system.nodes.shaft[int(node)], DOF_NAMES[int(dof)]
+    remedy = {"z": "an axial bearing or a fixed support", "torsion": "loads that balance, or a mesh or coupling"}
+    return (
+        f"the model is a mechanism in statics: nothing holds shaft '{shaft}' in {name}, and the loads push it; "
+        f"give it {remedy.get(name, 'a bearing or a support')}"
+    )

@@ -1,0 +1,193 @@
+"""Static deflections, forces and load sharing of a gearbox under torques, weight and index errors."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+
+from rotorgear.analysis.common.places import displacement_places
+from rotorgear.analysis.common.points import point_amplitudes
+from rotorgear.analysis.common.request import direction_of, speed_in_si
+from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.static.forces import bearing_forces, forces_on_gears, imbalance, support_forces
+from rotorgear.analysis.static.sensitivity import Sensitivity, sensitivities
+from rotorgear.analysis.static.shares import helix_shares, share_rows
+from rotorgear.analysis.static.solve import Equilibrated, equilibrate
+from rotorgear.errors import AnalysisError
+from rotorgear.model.layout.mesh_phases import MeshPhases, mesh_phases
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, silent
+from rotorgear.results.static import LoopAssembly, StaticResult
+from rotorgear.system.plan import Plan
+from rotorgear.system.system import System
+
+# Enough for a smooth line of deflection; the forces do not depend on it.
+DEFAULT_ELEMENTS = 4
+
+
+def static(
+    model: Model,
+    *,
+    speed: float | str | None = None,
+    elements: int | None = None,
+    progress: Progress = silent,
+) -> StaticResult:
+    """Return deflections, forces, load sharing and its sensitivities.
+
+    Args:
+        model: a model with torques, gravity or index errors.
+        speed: of the input shaft in rad/s or with its unit; it chooses the driving flanks and the values of bearings with
+            tables. None: the operating speed.
+        elements: basic elements in each piece of shaft; 4 where it is not given. They are exact in statics.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: nothing loads the model, it is a mechanism that the loads push, or no set of flanks carries them.
+    """
+    start = time.perf_counter()
+    given = speed_in_si(speed)
+    if given is None and model.operation:
+        given = model.operation.speed
+    if elements is not None and elements < 1:
+        raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
+    plan = Plan(elements or DEFAULT_ELEMENTS)
+    system = System(model, plan=plan, direction=direction_of(given), mesh="static")
+    _check_loaded(system)
+    progress(0.1, f"solving {system.n} dofs")
+    found = equilibrate(system, given or 0.0)
+    progress(0.5, "sensitivities")
+    change = sensitivities(found)
+    progress(0.8, "error estimate")
+    estimate = _estimate(found, given or 0.0)
+    result = _result(found, given, change, estimate, start)
+    progress(1.0, "done")
+    return result
+
+
+def _check_loaded(system: System) -> None:
+    model = system.model
+    if system.n == 0:
+        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+    gravity = model.operation.gravity if model.operation else None
+    index = any(mesh.index_error or mesh.helix_index_error for mesh in model.meshes.values())
+    if not system.flow.applied and not (gravity and any(gravity)) and not index:
+        raise AnalysisError(
+            "nothing loads the model in statics: give [operation] a power or torque with its output_shaft, [loads], or gravity"
+        )
+
+
+def _estimate(found: Equilibrated, speed: float) -> float:
+    """Relative change of all forces when every element is halved."""
+    finer = System(
+        found.system.model,
+        plan=Plan(2 * found.system.plan.elements),
+        direction=found.system.direction,
+        flow=found.system.flow,
+        mesh="static",
+    )
+    other = equilibrate(finer, speed)
+    here = np.concatenate([found.force, *bearing_forces(found).values(), *support_forces(found).values()])
+    there = np.concatenate([other.force, *bearing_forces(other).values(), *support_forces(other).values()])
+    size = float(np.max(np.abs(there), initial=0.0))
+    return float(np.max(np.abs(here - there), initial=0.0) / size) if size else 0.0
+
+
+def _result(
+    found: Equilibrated, speed: float | None, change: Sensitivity, estimate: float, start: float
+) -> StaticResult:
+    system, states = found.system, found.lines.states
+    q = system.dofs.expand(found.q)
+    nodes, moved = shapes_at_stations(system, q[:, None])
+    phases = mesh_phases(system.model, system.train, system.flow, system.direction)
+    shares, share_change = share_rows(found, change.force)
+    approach = found.lines.vectors.T @ found.q - found.lines.gap
+    return StaticResult(
+        model=system.model,
+        speed=speed,
+        nodes=nodes,
+        displacement=moved[:, :, 0],
+        contact_mesh=found.lines.names,
+        contact_helix=np.array([state.contact.helix for state in states], dtype=int),
+        driver=tuple(state.contact.pinion if state.pinion_drives else state.contact.gear for state in states),
+        carries=found.closed,
+        mesh_force=found.force,
+        mesh_force_on_gear=forces_on_gears(found),
+        mesh_deflection=np.where(found.closed, approach, 0.0),
+        bearing_force=bearing_forces(found),
+        support_force=support_forces(found),
+        shares=shares,
+        helix_share=helix_shares(found),
+        parameter=change.name,
+        parameter_unit=change.unit,
+        force_derivative=change.force,
+        share_derivative=share_change,
+        mesh_phase=phases_in_pitches(phases),
+        assembly=_assembly(phases),
+        torque={item.name: item.torque for item in system.flow.applied},
+        point_displacement={n: float(v[0]) for n, v in point_amplitudes(system, moved).items()},
+        imbalance=imbalance(found),
+        error_estimate=estimate,
+        dofs=system.n,
+        seconds={"total": time.perf_counter() - start},
+        left_out=(*_left_out(found), *change.left_out),
+        warnings=(*system.nodes.merged, *_warnings(found, phases)),
+        method=f"direct, sparse LU; {_free(found)}",
+        place_displacement=displacement_places(system, moved[:, :, 0]),
+    )
+
+
+def _free(found: Equilibrated) -> str:
+    count = found.motions.shape[1]
+    return (
+        f"{count} free motion{'s'[: count != 1]} handled exactly, on a determinate support"
+        if count
+        else "all motions held"
+    )
+
+
+def phases_in_pitches(phases: MeshPhases) -> dict[str, float]:
+    """Phase of each mesh in pitches, 0 to 1; NaN where teeth are missing."""
+    return {name: math.nan if phi is None else phi / (2.0 * math.pi) for name, phi in phases.phase.items()}
+
+
+def _assembly(phases: MeshPhases) -> tuple[LoopAssembly, ...]:
+    return tuple(LoopAssembly(loop.mesh, loop.gear, math.degrees(loop.clocking), loop.rest) for loop in phases.loops)
+
+
+def _left_out(found: Equilibrated) -> tuple[str, ...]:
+    model = found.system.model
+    notes = list(found.notes)
+    absent = [motion for motion in ("bending", "axial", "torsion") if not model.has(motion)]
+    if absent:
+        notes.append(f"{' and '.join(absent)}: not among the motions of the model")
+    gravity = model.operation.gravity if model.operation else None
+    if not (gravity and any(gravity)):
+        notes.append("weight: no gravity given under [operation]")
+    return tuple(notes)
+
+
+def _warnings(found: Equilibrated, phases: MeshPhases) -> list[str]:
+    notes = []
+    flow = {
+        (force.contact.mesh, force.contact.helix): force.torque_sense
+        for force in System(found.system.model, direction=found.system.direction).flow.forces
+    }
+    for state, closed in zip(found.lines.states, found.closed, strict=True):
+        contact = state.contact
+        which = f"meshes.{contact.mesh}" + (f" helix {contact.helix + 1}" if _has_two(found, contact.mesh) else "")
+        if not closed:
+            notes.append(f"{which} carries nothing: its flanks stand apart under these loads and index errors")
+        elif state.torque_sense != flow[contact.mesh, contact.helix]:
+            notes.append(f"{which} carries on the other flank than the torque flow in torsion says")
+    open_loops = [loop for loop in phases.loops if not loop.gear and abs(loop.rest) > 1e-6]
+    return notes + [
+        f"meshes.{loop.mesh} closes a loop that can't be put together: {loop.rest:+.4f} pitches are missing with the clockings "
+        "given; leave out the clocking of one of its gears and it closes the loop"
+        for loop in open_loops
+    ]
+
+
+def _has_two(found: Equilibrated, mesh: str) -> bool:
+    return found.lines.names.count(mesh) == 2

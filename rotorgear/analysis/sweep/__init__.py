@@ -1,0 +1,1 @@
+"""Parameter sweeps: bifurcation diagrams, Lyapunov exponents, response types."""

@@ -1,0 +1,160 @@
+"""The runs of a sweep in waves of blocks: what may run side by side, in an order that does not depend on the workers."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from functools import partial
+from itertools import islice
+from threading import Event
+from typing import Any, Protocol
+
+import numpy as np
+
+from rotorgear.analysis.sweep.point import Point, table_of
+from rotorgear.solvers.lanes.lanes import Orbit, Plan, Start, run_block
+
+# Largest tables of one block, in numbers; wider ones are cut into narrower blocks.
+_MOST_TABLE = 30_000_000
+# Seconds between two words on the progress of blocks that take long.
+_EVERY = 1.0
+
+
+@dataclass(frozen=True)
+class Job:
+    """A run: its point and number, and the (point, run) whose end it starts from; None for a start of its own."""
+
+    point: int
+    run: int
+    after: int | None = None
+
+    @property
+    def key(self) -> tuple[int, int]:
+        """Point and run."""
+        return self.point, self.run
+
+
+def waves(shape: Sequence[int], directions: Sequence[str], starts: int) -> list[list[Job]]:
+    """Jobs by wave: all at once for runs from states of their own; along the first parameter for "up" and "down"."""
+    first, rest = shape[0], int(np.prod(shape[1:], dtype=int))
+    found: list[list[Job]] = [[] for _ in range(first if set(directions) & {"up", "down"} else 1)]
+    run = 0
+    for direction in directions:
+        for _ in range(starts):
+            if direction == "each":
+                found[0] += [Job(point, run) for point in range(first * rest)]
+            else:
+                places = range(first) if direction == "up" else range(first - 1, -1, -1)
+                step = -rest if direction == "up" else rest
+                for wave, i in enumerate(places):
+                    found[wave] += [Job(i * rest + k, run, i * rest + k + step if wave else None) for k in range(rest)]
+            run += 1
+    return found
+
+
+def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarray) -> Iterator[list[Job]]:
+    """Yield jobs that can run in one block."""
+    from rotorgear.solvers.lanes.kernel_vectors import LANES
+
+    kinds: dict[Any, list[Job]] = {}
+    for job in jobs:
+        point = points[job.point]
+        if point is not None:
+            kinds.setdefault((point.kind, int(steps[job.point])), []).append(job)
+    for (_, count), members in kinds.items():
+        own = [points[job.point] for job in members]
+        assert own[0] is not None
+        size = (2 * own[0].system.turns * count + 1) * len(own[0].system.columns.gap) * 4
+        same = len({p.shape for p in own if p}) == 1
+        width = LANES if same else int(np.clip(_MOST_TABLE // size, 1, LANES))
+        for at in range(0, len(members), width):
+            yield members[at : at + width]
+
+
+def run_jobs(
+    points: Sequence[Point], starts: Sequence[Start], plan: Plan, go_on: Callable[[], bool] | None = None
+) -> list[Orbit]:
+    """Run the jobs of one block."""
+    tables: dict[bytes, np.ndarray] = {}
+    for point in points:
+        if point.shape not in tables:
+            tables[point.shape] = table_of(point, plan.steps)
+    wide = [tables[point.shape] for point in points]
+    return run_block([p.system for p in points], starts, wide[:1] if len(tables) == 1 else wide, plan, go_on or _always)
+
+
+def _always() -> bool:
+    return True
+
+
+class Pool(Protocol):
+    """Where blocks may go: `submit` returns an object with `result()` and `cancel()`, as `concurrent.futures` have it.
+
+    Where it has a number `ahead`, no more blocks than that are handed over before the first of them is done.
+    """
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any) -> Any:
+        """Take a call."""
+
+
+class Workers:
+    """Runs the blocks of a wave on all cores, or by an executor of the caller's; results come in the order of the blocks."""
+
+    def __init__(self, workers: int | None, executor: Pool | None) -> None:
+        self._stop, self._asked = Event(), 0
+        self._own = None if executor else ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1)
+        self._executor: Any = executor or self._own
+        self._waiting: deque[Any] = deque()
+
+    def __enter__(self) -> Workers:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stop.set()
+        for future in self._waiting:
+            future.cancel()
+        if self._own:
+            self._own.shutdown(wait=True, cancel_futures=True)
+
+    def go_on(self) -> bool:
+        """Whether nobody has stopped the run; counts how often it was asked."""
+        self._asked += 1
+        return not self._stop.is_set()
+
+    def run(
+        self,
+        tasks: Sequence[tuple[list[Point], list[Start], Plan]],
+        heard: Callable[[float], None] = lambda share: None,
+    ) -> Iterator[list[Orbit]]:
+        """Yield the orbits of each block, in order; `heard` is told about which share of all is done, every second."""
+        work = partial(run_jobs, go_on=self.go_on) if self._own else run_jobs
+        self._asked, total = 0, sum(plan.questions(own[0].system.turns) for own, _, plan in tasks) if self._own else 0
+        rest, waiting = iter(tasks), self._waiting
+        while True:
+            room = getattr(self._executor, "ahead", len(tasks)) - len(waiting)
+            waiting.extend(self._executor.submit(work, *task) for task in islice(rest, max(0, room)))
+            if not waiting:
+                return
+            while self._own and wait([waiting[0]], timeout=_EVERY).not_done:
+                heard(min(1.0, self._asked / total))
+            yield waiting[0].result()
+            waiting.popleft()
+
+
+def packed(orbits: Sequence[Orbit]) -> dict[str, np.ndarray]:
+    """Orbits of a block as arrays, for a stream."""
+    fields = {name: np.stack([getattr(o, name) for o in orbits]) for name in ("section", "growth", "sums", "finite")}
+    return {**fields, "z": np.stack([o.end.z for o in orbits]), "dz": np.stack([o.end.dz for o in orbits])}
+
+
+def unpacked(chunk: dict[str, np.ndarray]) -> list[Orbit]:
+    """The orbits back."""
+    return [
+        Orbit(section, growth, sums, Start(z, dz), bool(finite))
+        for section, growth, sums, z, dz, finite in zip(
+            *(chunk[name] for name in ("section", "growth", "sums", "z", "dz", "finite")), strict=True
+        )
+    ]

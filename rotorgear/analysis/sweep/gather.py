@@ -1,0 +1,130 @@
+"""From the orbits of all points to the result of a sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rotorgear.analysis.sweep.axes import Axis
+from rotorgear.analysis.sweep.classify import FAILED, classify, exponents
+from rotorgear.analysis.sweep.notes import notes
+from rotorgear.analysis.sweep.point import Point
+from rotorgear.analysis.sweep.request import Request
+from rotorgear.model.model import Model
+from rotorgear.results.reduction import Reduction
+from rotorgear.results.sweep import SweepResult
+from rotorgear.solvers.lanes.lanes import Orbit
+
+_TABLES = (
+    "peak_to_peak", "amplitude", "rms", "mean_force", "rms_force", "largest_force", "driving", "apart", "back", "losses",
+)  # fmt: skip
+
+# Sizes of a motion beyond which it counts as one without bounds.
+_FAR = 1e4
+
+
+def gathered(
+    model: Model,
+    axes: Sequence[Axis],
+    values: Sequence[tuple[float, ...]],
+    points: Sequence[Point | None],
+    failure: Sequence[str],
+    steps: np.ndarray,
+    request: Request,
+    orbits: dict[tuple[int, int], Orbit],
+    laps: dict[str, float],
+    reduction: Reduction | None = None,
+) -> SweepResult:
+    """Return the result."""
+    sound = [p for p in points if p is not None]
+    contact = sound[0].contact
+    p, r, c = len(points), len(request.runs), len(contact)
+    t = max((o.growth.shape[1] for o in orbits.values()), default=0)
+    section = np.full((p, r, request.count, c, 2), np.nan)
+    exponent, error = np.full((p, r, t), np.nan), np.full((p, r, t), np.nan)
+    tables = {name: np.full((p, r, c), np.nan) for name in _TABLES}
+    motion = [FAILED] * (p * r)
+    failed = list(failure)
+    for (i, run), orbit in orbits.items():
+        point = points[i]
+        assert point is not None
+        if point.contact != contact:
+            failed[i] = "its contacts are not those of the other points"
+            continue
+        if not orbit.finite or np.any(np.abs(orbit.section[:, point.system.columns.mesh, 0]) > _FAR * _size(point)):
+            failed[i] = failed[i] or (
+                f"the run '{request.runs[run]}' left all bounds: the motion is unstable; give more damping, or a backlash that "
+                "bounds it"
+            )
+            continue
+        mesh = point.system.columns.mesh
+        own = orbit.section[:, mesh]
+        section[i, run] = own
+        found = _indicators(orbit.sums[mesh], int(steps[i]))
+        for name, table in tables.items():
+            table[i, run] = found[name]
+        k = orbit.growth.shape[1]
+        exponent[i, run, :k], error[i, run, :k] = exponents(orbit.growth, float(point.system.turns))
+        largest = float(exponent[i, run, 0]) if k else None
+        kind = classify(
+            own[:, :, 0],
+            np.maximum(found["amplitude"], found["peak_to_peak"]),
+            largest,
+            float(error[i, run, 0]) if k else 0.0,
+            request.tolerance,
+            request.chaos,
+        )
+        motion[i * r + run] = kind.kind
+    static = np.array(
+        [q.static_force if q is not None and q.contact == contact else np.full(c, np.nan) for q in points]
+    )
+    stiffness = np.array(
+        [q.stiffness if q is not None and q.contact == contact else np.full(c, np.nan) for q in points]
+    )
+    return SweepResult(
+        model=model, address=tuple(axis.address for axis in axes), unit=tuple(axis.unit for axis in axes),
+        values=np.array(values, dtype=float), shape=np.array([len(axis.values) for axis in axes]), run=request.runs,
+        contact=contact,
+        frequency=np.array([q.system.w / (2.0 * np.pi) if q else np.nan for q in points]),
+        turns=np.array([q.system.turns if q else 0 for q in points]), section=section, motion=tuple(motion),
+        lyapunov=exponent, lyapunov_error=error, static_force=static,
+        static_deflection=static / np.where(stiffness > 0.0, stiffness, np.nan), failure=tuple(failed), steps=steps,
+        settle=request.settle, count=request.count, tolerance=request.tolerance, chaos=request.chaos,
+        dofs=max(q.system.n for q in sound), seconds=laps, method="Runge-Kutta of order 4 in lanes of 32 points",
+        warnings=notes(axes, points, failed, motion, request.settle, orbits) + _reduction(reduction, request),
+        portraits=None, reduction=reduction,
+        **tables,
+    )  # fmt: skip
+
+
+def _size(point: Point) -> float:
+    """Displacement in m that motions are measured by: static deflection, backlash, and the smallest that counts."""
+    columns = point.system.columns
+    backlash = columns.backlash[columns.mesh & np.isfinite(columns.backlash)]
+    return float(max(np.abs(point.static_force / point.stiffness).max(), backlash.max(initial=0.0), 1e-6))
+
+
+def _indicators(sums: np.ndarray, steps: int) -> dict[str, np.ndarray]:
+    """Indicators of the contacts from their sums (c, 14)."""
+    from rotorgear.solvers.lanes import kernel_parts as k
+
+    total = np.maximum(sums[:, [k.DRIVING, k.APART, k.BACK]].sum(axis=1), 1.0)
+    force, d = sums[:, k.F_SUM] / total, sums[:, k.D_SUM] / total
+    return {
+        "peak_to_peak": sums[:, k.X_MAX] - sums[:, k.X_MIN], "amplitude": sums[:, k.D_MAX] - sums[:, k.D_MIN],
+        "rms": np.sqrt(np.maximum(sums[:, k.D_SQUARES] / total - d**2, 0.0)), "mean_force": force,
+        "rms_force": np.sqrt(np.maximum(sums[:, k.F_SQUARES] / total - force**2, 0.0)), "largest_force": sums[:, k.F_MAX],
+        "driving": sums[:, k.DRIVING] / total, "apart": sums[:, k.APART] / total, "back": sums[:, k.BACK] / total,
+        "losses": sums[:, k.LOSSES] / total * steps,
+    }  # fmt: skip
+
+
+def _reduction(found: Reduction | None, request: Request) -> tuple[str, ...]:
+    """What modes that were fixed by hand leave open."""
+    if found is None or found.error <= request.reduction_error:
+        return ()
+    return (
+        f"the reduction is {100.0 * found.error:.2g} % off, beyond {100.0 * request.reduction_error:.2g} %: ask for more modes, "
+        "or leave their number open",
+    )

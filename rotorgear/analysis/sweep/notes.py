@@ -1,0 +1,88 @@
+"""Warnings of a sweep: what failed or had not settled, and parameters that change nothing."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+
+import numpy as np
+
+from rotorgear.analysis.sweep.axes import Axis
+from rotorgear.analysis.sweep.classify import period_in
+from rotorgear.analysis.sweep.point import Point
+from rotorgear.model.model import Model
+from rotorgear.solvers.lanes.lanes import Orbit
+
+# Logarithm by which the start of a run must have decayed: 5 % of it.
+_FORGOTTEN = 3.0
+
+
+def notes(
+    axes: Sequence[Axis],
+    points: Sequence[Point | None],
+    failed: Sequence[str],
+    motion: Sequence[str],
+    settle: int,
+    orbits: dict[tuple[int, int], Orbit],
+) -> tuple[str, ...]:
+    """Return the warnings as sentences."""
+    found = []
+    count = sum(map(bool, failed))
+    if count:
+        found.append(f"{count} of {len(points)} points failed; the first: {next(filter(None, failed))}")
+    if any(q.drift for q in points if q):
+        found.append("the torques do not balance at some points: the shafts drift off the prescribed rotation there")
+    if any(q.rolling for q in points if q):
+        found.append(
+            "rolling elements pass beside the meshes and never repeat with them: a motion that they drive shows as quasi-periodic"
+        )
+    unsettled = sum(kind == "not settled" for kind in motion)
+    if unsettled:
+        found.append(f"{unsettled} of {len(motion)} runs had not settled: ask for more periods of --settle or --count")
+    found += [
+        f"{axis.address} changes nothing in this model: its points are all the same" for axis in idle(axes, points)
+    ]
+    return (*found, *_slow(motion, settle, orbits, len(motion) // max(1, len(points))))
+
+
+def coarse_shafts(model: Model, elements: int | None) -> tuple[str, ...]:
+    """A sentence where shafts have one element in each piece because nothing else was asked for."""
+    if elements is not None or not any(shaft.sections for shaft in model.shafts.values()):
+        return ()
+    return ("the shafts have one element in each piece: --elements 4, say, shows what that changes",)
+
+
+def idle(axes: Sequence[Axis], points: Sequence[Point | None]) -> list[Axis]:
+    """Axes along which all systems are the same to the last bit."""
+    seen: dict[bytes, int] = {}
+    own = [-1 if q is None else seen.setdefault(_digest(q), len(seen)) for q in points]
+    table = np.array(own).reshape([len(axis.values) for axis in axes])
+    return [
+        axis
+        for at, axis in enumerate(axes)
+        if len(set(axis.values)) > 1 and np.all(table == np.take(table, [0], axis=at))
+    ]
+
+
+def _digest(point: Point) -> bytes:
+    """All that a point's motion depends on."""
+    system, columns = point.system, point.system.columns
+    parts = (
+        system.K, system.D, system.load, system.B, system.rest, columns.gap, columns.mode, columns.stiffness, columns.damping,
+        columns.backlash, columns.ramp, columns.push, system.own.forces.parameters, np.array([system.w, system.turns]),
+    )  # fmt: skip
+    return hashlib.blake2b(b"".join([*(np.ascontiguousarray(part).tobytes() for part in parts), point.shape])).digest()
+
+
+def _slow(motion: Sequence[str], settle: int, orbits: dict[tuple[int, int], Orbit], runs: int) -> tuple[str, ...]:
+    """A warning where what a run started with is still there when it counts, and may be why it repeats after several periods."""
+    several = {
+        key: o for key, o in orbits.items() if period_in(motion[key[0] * runs + key[1]]) > 1 and o.growth.shape[1]
+    }
+    slow = sum(float(o.growth[:, 0].mean()) * settle > -_FORGOTTEN for o in several.values())
+    if not slow:
+        return ()
+    return (
+        f"{slow} of {len(several)} runs with 2T or longer forget their start more slowly than the {settle} periods that settled: "
+        "their period may change with more --settle",
+    )

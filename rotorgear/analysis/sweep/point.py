@@ -1,0 +1,239 @@
+"""One point of a sweep made ready: the model at its parameters as a small system, with tables of what depends on time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rotorgear.analysis.sweep.columns import column_of, columns_of, is_rolling, shape_of
+from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
+from rotorgear.analysis.sweep.reduce import Large, Reduced, Wanted
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.solvers.lanes.own_laws import own_laws
+from rotorgear.solvers.lanes.small_system import MOST_DOFS, Shapes, SmallSystem, small_system
+from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, free_motions, still_forces
+from rotorgear.solvers.time.local_forces import LocalForces
+from rotorgear.solvers.time.local_system import LocalSystem
+from rotorgear.solvers.time.motion import Rotation
+from rotorgear.system.local import local_model
+from rotorgear.system.plan import Plan
+from rotorgear.system.system import System
+
+if TYPE_CHECKING:
+    pass
+
+_KEPT = 1000  # states at rest
+
+
+@dataclass(frozen=True)
+class Point:
+    """A small system with what a sweep reads off it.
+
+    Attributes:
+        system: for the kernels. forces: its laws. order: radians of the fastest mesh for each of the reference, with the
+        sign of its speed.
+        contact: names of the mesh contacts; static_force: theirs without anything that varies, (c,) in N.
+        stiffness: their mean stiffness, (c,) in N/m. drift: whether the torques don't balance. rolling: whether rolling
+        elements pass beside the meshes. shape: bytes that two points share where their tables are the same.
+    """
+
+    system: SmallSystem
+    forces: LocalForces
+    order: float
+    contact: tuple[str, ...]
+    static_force: np.ndarray
+    stiffness: np.ndarray
+    drift: bool
+    rolling: bool
+    shape: bytes
+
+    @property
+    def bare(self) -> Point:
+        """The point without the shapes of its reduction, which its runs don't need."""
+        return self if self.system.shapes is None else replace(self, system=replace(self.system, shapes=None))
+
+    @property
+    def kind(self) -> tuple[object, ...]:
+        """What points in one block share."""
+        c = self.system.columns
+        own = self.system.own.forces
+        names = tuple(type(law).__name__ for law in own.laws)
+        return (self.system.n, c.gap.tobytes(), c.mode.tobytes(), c.mesh.tobytes(), len(self.system.rigid),
+                self.system.turns, self.contact, names, own.parameters_first.tobytes(), own.state_first.tobytes())  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Still:
+    """What of a point does not depend on its speed: the local system, orders, names of contacts, and the state at rest."""
+
+    local: LocalSystem
+    orders: list[Fraction]
+    contact: tuple[str, ...]
+    rest: Equilibrium
+    static: np.ndarray
+    shapes: Shapes | None = None
+
+
+class PointMaker:
+    """Makes models ready, and keeps states at rest for models where only the speed is another.
+
+    Args:
+        wanted: of reductions, which all models get where it asks for modes, and else those that are large or have dofs without
+            inertia. elements: in each piece of shaft.
+    """
+
+    def __init__(self, wanted: Wanted | None = None, elements: int | None = None) -> None:
+        self._wanted, self._elements = wanted or Wanted(), elements
+        self._known: dict[str, Still | Large] = {}
+        self._free: tuple[bytes, np.ndarray] = (b"", np.zeros((0, 0)))
+
+    def __call__(self, model: Model) -> Point | Large:
+        """Make a model ready at its own speed; one that is to be reduced comes back as it is, for `sweep_reduce`.
+
+        Raises:
+            AnalysisError: no speed, no mesh that turns, no common period, too many dofs, or forces that sweeps don't take.
+        """
+        speed = model.operation.speed if model.operation else None
+        if not model.operation or not speed:
+            raise AnalysisError("the model gives no speed of operation: set operation.speed, or sweep over it")
+        slow = 1.0 if speed > 0.0 else -1.0
+        standing = model.operation.model_copy(update={"speed": slow})
+        key = model.model_copy(update={"operation": standing}).model_dump_json(exclude_none=True)
+        if not _standing(model):
+            return self._at(self._still(model, speed), speed, model.damping.modal_ratio)
+        if key not in self._known:
+            if len(self._known) >= _KEPT:
+                self._known.clear()
+            # At one speed for all: errors that move push on dampers at rest, and no point may depend on the first one.
+            self._known[key] = self._still(model, slow)
+        return self._at(self._known[key], speed, model.damping.modal_ratio)
+
+    def _at(self, known: Still | Large, speed: float, modal_ratio: float) -> Point | Large:
+        return replace(known, speed=speed) if isinstance(known, Large) else ready(known, speed, modal_ratio)
+
+    def _still(self, model: Model, speed: float) -> Still | Large:
+        system = System(model, plan=Plan(self._elements) if self._elements else None)
+        if system.n == 0:
+            raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+        found = local_model(system, Rotation.constant(speed), speed)
+        for part in found.parts:
+            column_of(part.law, part.part)
+        meshes, others = (
+            [o for part in found.parts if part.is_mesh is is_mesh for o in orders_of(part.law, part.label)]
+            for is_mesh in (True, False)
+        )
+        orders = meshes + others
+        refuse_long(meshes, orders)
+        contact = tuple(part.label for part in found.parts if part.is_mesh)
+        if self._wanted.modes is not None or system.n > MOST_DOFS or np.any(found.local.M.diagonal() <= 0.0):
+            return Large(found.local, orders, contact, speed, model.damping.modal_ratio)
+        return still(found.local, orders, contact, self._free_of(found.local))
+
+    def _free_of(self, local: LocalSystem) -> np.ndarray:
+        """Motions without strain; those of the point before where inertia and stiffness are the same to the last bit."""
+        about = local.stiffness_about
+        key = b"".join(x.tobytes() for A in (local.M, about) for x in (A.data, A.indices, A.indptr))
+        if key != self._free[0]:
+            self._free = key, free_motions(local.M, about)
+        return self._free[1]
+
+
+def _standing(model: Model) -> bool:
+    """Whether only the rotation depends on the speed: no power, no tables, no internal damping, no torque over speed."""
+    operation = model.operation
+    assert operation is not None
+    powers = [operation.power, *(load.power for load in model.loads.values())]
+    varying = any(load.varies for load in model.loads.values())
+    tables = any(bearing.table for bearing in model.bearings.values())
+    inner = any(section for shaft in model.shafts.values() for section in shaft.sections)
+    return all(power is None for power in powers) and not (varying or tables or inner)
+
+
+def still(
+    local: LocalSystem, orders: list[Fraction], contact: tuple[str, ...], free: np.ndarray | None = None
+) -> Still:
+    """Find the state at rest of a system with local forces.
+
+    Args:
+        local: the system. orders: periods of what varies in a turn of the reference. contact: names of its mesh contacts.
+        free: its motions without strain, where they are known.
+    """
+    rest = equilibrium(local, free)
+    mean = tuple(law.mean() for law in local.forces.laws)  # type: ignore[attr-defined]
+    static = still_forces(local, mean, rest.free)
+    if not np.all(np.isfinite(static)):
+        # Contacts that are open at rest: what the driving flanks alone would carry.
+        static = local.forces.reference_stiffness @ (local.B.T @ rest.q)
+    return Still(local, orders, contact, rest, static)
+
+
+def ready_reduced(point: Large, found: Reduced) -> Point:
+    """Make a point ready that was reduced."""
+    known = replace(still(found.local, point.orders, point.contact), shapes=found.shapes)
+    return ready(known, point.speed, point.modal_ratio)
+
+
+def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
+    """Make a system ready at a speed of the reference in rad/s; `modal_ratio` is added to every mode with strain."""
+    from rotorgear.solvers.lanes.kernel_parts import OWN_LAW
+
+    local = replace(known.local, rotation=Rotation.constant(speed))
+    fastest, turns = common_period(known.orders)
+    laws = local.forces.laws
+    columns = columns_of([column for law in laws for column in column_of(law, type(law).__name__, speed)])
+    order = float(np.copysign(float(fastest), speed))
+    own = own_laws(local.forces, columns.gap == OWN_LAW, 1.0 / order)
+    system = small_system(
+        local, known.rest, columns, own, float(fastest) * abs(speed), turns, modal_ratio, known.shapes
+    )
+    drift = known.rest.drift
+    drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
+    shape, mesh = b"".join(shape_of(law) for law in laws), columns.mesh
+    return Point(
+        system,
+        local.forces,
+        order,
+        known.contact,
+        known.static[mesh],
+        columns.stiffness[mesh],
+        drifts,
+        any(map(is_rolling, laws)),
+        shape,
+    )
+
+
+def table_of(point: Point, steps: int) -> np.ndarray:
+    """Tables of a point over its common period, (2 turns steps + 1, m, 4)."""
+    from rotorgear.forces.mesh_contact import MeshContact
+    from rotorgear.forces.rotating_force import RotatingForce
+    from rotorgear.forces.torque_curve import TorqueCurve
+    from rotorgear.solvers.lanes.kernel_parts import ERROR, PUSH, SLOPE, STIFFNESS, tabulate
+
+    rows = 2 * point.system.turns * steps + 1
+    angles = np.pi / steps / point.order * np.arange(rows)
+    forces = point.forces
+    states = np.zeros((rows, max(1, int(forces.state_first[-1]))))
+    tabulate(
+        forces.schedules, forces.kind, forces.parameters, forces.parameters_first, forces.state_first, angles, states
+    )
+    table = np.zeros((rows, forces.m, 4))
+    for i, law in enumerate(forces.laws):
+        state = states[:, forces.state_first[i] : forces.state_first[i + 1]]
+        at = int(forces.first[i])
+        if isinstance(law, MeshContact):
+            k, _, e, slope, push = state.T
+            mean = law.mean().stiffness
+            table[:, at, STIFFNESS] = k / mean if mean else 1.0
+            table[:, at, ERROR], table[:, at, SLOPE] = e, slope / point.order
+            table[:, at, PUSH] = push / law.impact if law.impact else 0.0
+        elif isinstance(law, TorqueCurve):
+            table[:, at, PUSH] = -state[:, 0] / law.torque if law.torque else 0.0
+        elif isinstance(law, RotatingForce):
+            phase = law.order * angles + law.phase
+            for k, values in enumerate((np.cos(phase), np.sin(phase))[: law.components]):
+                table[:, at + k, PUSH] = -values
+    return table

@@ -1,0 +1,174 @@
+"""Large systems of a sweep reduced to few coordinates: one basis for all points that differ in speed and load only."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+
+from rotorgear.analysis.sweep.probes import probes_for, rates
+from rotorgear.errors import AnalysisError
+from rotorgear.results.reduction import Reduction
+from rotorgear.solvers.frequency.contact_basis import Candidates, Choice, candidates, choose, reduced
+from rotorgear.solvers.frequency.receptance import Scale, full_receptances
+from rotorgear.solvers.lanes.small_system import Shapes
+from rotorgear.solvers.time.local_system import LocalSystem
+
+# Coordinates of a reduced system at most: its cost grows with the square of them.
+MOST_COORDINATES = 160
+# Modes that are chosen from.
+_CANDIDATES = 300
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a reduction must reach: a largest relative difference of receptances, or so many modes whatever that gives."""
+
+    error: float = 0.01
+    modes: int | None = None
+
+
+@dataclass(frozen=True)
+class Large:
+    """A point before its reduction: the whole system, orders of what varies, names of contacts, speed in rad/s, added damping."""
+
+    local: LocalSystem
+    orders: list[Fraction]
+    contact: tuple[str, ...]
+    speed: float
+    modal_ratio: float
+
+    @property
+    def key(self) -> bytes:
+        """Bytes that points share which may share a basis."""
+        found = hashlib.blake2b(repr((self.orders, self.modal_ratio)).encode())
+        for A in (self.local.M, self.local.D, self.local.K, self.local.B, self.local.G):
+            for part in () if A is None else (A.data, A.indices, A.indptr):
+                found.update(np.ascontiguousarray(part).tobytes())
+        for B in (self.local.forces.reference_stiffness, self.local.forces.reference_damping):
+            found.update(B.tobytes())
+        return found.digest()
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """The system of a point in its basis, and the shapes of that."""
+
+    local: LocalSystem
+    shapes: Shapes
+
+
+class Reducer:
+    """Reduces points of a sweep; modes that have served one model are tried first for the next one."""
+
+    def __init__(self, wanted: Wanted) -> None:
+        self._wanted = wanted
+        self._modes: np.ndarray | None = None
+        self.found: list[Reduction] = []
+
+    def __call__(self, points: Sequence[Large], heard: Callable[[int, float], None]) -> list[Reduced]:
+        """Reduce points with the same `key`.
+
+        Args:
+            points: at least one. heard: is told the size of the basis and its error while it grows.
+
+        Raises:
+            AnalysisError: no basis reaches the wanted error.
+        """
+        begun = time.perf_counter()
+        first = max(points, key=lambda point: abs(point.speed))
+        local, scale = first.local, scale_of(first.local)
+        among = candidates(local, _loads(points), _acting(local), _CANDIDATES)
+        top = float(rates(local.forces.laws, first.speed).max())
+        probes = probes_for(local.forces.laws, [point.speed for point in points], among.w, first.modal_ratio)
+        full = full_receptances(local, probes)
+        choice = self._chosen(among, lambda begin: choose(
+            among, full, probes, scale, self._wanted.error, MOST_COORDINATES, begin, self._wanted.modes, heard
+        ))  # fmt: skip
+        complete = choice.basis.shape[1] == local.n  # what is left then is rounding
+        if self._wanted.modes is None and not (complete or choice.error <= self._wanted.error):
+            raise AnalysisError(_refusal(local.n, choice, self._wanted.error, top))
+        own, V = reduced(local, among, choice.basis)
+        shapes = Shapes.of(V, local.M, top)
+        self._modes = choice.modes
+        self.found.append(Reduction(
+            local.n, own.n, len(choice.modes), float(among.w[choice.modes].max(initial=0.0)) / (2.0 * np.pi), among.rigid,
+            own.n - len(choice.modes) - among.rigid, choice.closed, choice.apart, top / (2.0 * np.pi), probes.count, 1,
+            time.perf_counter() - begun,
+        ))  # fmt: skip
+        return [
+            Reduced(replace(own, load=V.T @ point.local.load, forces=point.local.forces), shapes) for point in points
+        ]
+
+    def _chosen(self, among: Candidates, grown: Callable[[np.ndarray | None], Choice]) -> Choice:
+        """The modes of the last model where they do; else chosen anew."""
+        old = self._modes
+        if old is not None and np.all(old < among.rigid + among.modes) and np.all(old >= among.rigid):
+            return grown(old)
+        return grown(None)
+
+    @property
+    def summary(self) -> Reduction | None:
+        """All bases as one: the largest values."""
+        if not self.found:
+            return None
+        worst = {
+            name: max(getattr(one, name) for one in self.found)
+            for name in (
+                "dofs",
+                "coordinates",
+                "modes",
+                "highest",
+                "rigid",
+                "static",
+                "closed",
+                "apart",
+                "up_to",
+                "frequencies",
+            )
+        }
+        return Reduction(bases=len(self.found), seconds=sum(one.seconds for one in self.found), **worst)
+
+
+def scale_of(local: LocalSystem) -> Scale:
+    """What receptances of a system are measured by: the stiffness of its mesh contacts, and of bearings with rolling elements."""
+    from rotorgear.forces.mesh_contact import MeshContact
+
+    k = local.forces.reference_stiffness
+    root = np.sqrt(np.maximum(np.diag(k), 0.0))
+    for law, at in zip(local.forces.laws, local.forces.first, strict=False):
+        if isinstance(law, MeshContact):
+            root[at] = np.sqrt(law.mean().stiffness)
+    return Scale(k, local.forces.reference_damping, root)
+
+
+def _acting(local: LocalSystem) -> np.ndarray:
+    """Columns (a,) whose forces depend on the motion."""
+    from rotorgear.analysis.sweep.columns import column_of
+    from rotorgear.solvers.lanes.kernel_parts import PRESCRIBED
+
+    gaps = [row[0] for law in local.forces.laws for row in column_of(law, type(law).__name__)]
+    return np.flatnonzero(np.array(gaps) != PRESCRIBED)
+
+
+def _loads(points: Sequence[Large]) -> np.ndarray:
+    """Independent directions (n, l) of the loads of points."""
+    loads = np.unique(np.array([point.local.load for point in points]), axis=0).T
+    loads = loads[:, np.any(loads != 0.0, axis=0)]
+    if not loads.shape[1]:
+        return loads
+    U, sizes, _ = np.linalg.svd(loads, full_matrices=False)
+    return np.asarray(U[:, sizes > 1e-10 * sizes[0]])
+
+
+def _refusal(n: int, choice: Choice, wanted: float, top: float) -> str:
+    return (
+        f"{n} dofs can't be reduced: with {choice.basis.shape[1]} coordinates (at most {MOST_COORDINATES}) the receptances at "
+        f"the contacts are {100.0 * choice.error:.2g} % off up to {top / 2.0 / np.pi:.6g} Hz, expected "
+        f"{100.0 * wanted:.2g} %; lower the speed, lump the shafts (rigid gears on springs), or allow more (reduction_error, "
+        "--reduction-error)"
+    )

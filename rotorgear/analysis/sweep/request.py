@@ -1,0 +1,127 @@
+"""What a sweep was asked for: runs of each point, their states to start from, and the steps of each point."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.analysis.sweep.point import Point
+from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, Wanted
+from rotorgear.errors import AnalysisError
+from rotorgear.solvers.lanes.lanes import Start
+from rotorgear.solvers.lanes.small_system import SmallSystem, steps_needed, steps_stable
+
+DIRECTIONS = ("each", "up", "down", "both")
+MOST_STEPS = 5000
+LEAST_STEPS = 200
+_NUMBERS = {"starts": 1000, "settle": 10_000_000, "count": 10_000_000}
+
+
+@dataclass(frozen=True)
+class Request:
+    """What every point of a sweep gets; see `sweep`."""
+
+    direction: str
+    starts: int
+    settle: int
+    count: int
+    exponents: int
+    steps: int | None
+    tolerance: float
+    chaos: float
+    seed: int
+    throw: float = 1.0
+    modes: int | None = None
+    reduction_error: float = 0.01
+    elements: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.direction not in DIRECTIONS:
+            raise AnalysisError(f"direction: got '{self.direction}', expected one of {', '.join(DIRECTIONS)}")
+        for name, most in _NUMBERS.items():
+            least = 0 if name == "settle" else 1
+            if not least <= getattr(self, name) <= most:
+                raise AnalysisError(f"{name}: got {getattr(self, name)}, expected {least} to {most}")
+        for name in ("exponents", "seed"):
+            if getattr(self, name) < 0:
+                raise AnalysisError(f"{name}: got {getattr(self, name)}, expected 0 or more")
+        if not 0.0 <= self.throw < np.inf:
+            raise AnalysisError(f"throw: got {self.throw:g}, expected a number that is not negative")
+        if self.steps is not None and not 8 <= self.steps <= 100_000:
+            raise AnalysisError(f"steps: got {self.steps}, expected 8 to 100000 in a period of the fastest mesh")
+        for name, most in (("modes", MOST_COORDINATES), ("elements", 1000)):
+            value = getattr(self, name)
+            if value is not None and not 1 <= value <= most:
+                raise AnalysisError(f"{name}: got {value}, expected 1 to {most}")
+        for name in ("tolerance", "chaos", "reduction_error"):
+            if not 0.0 < getattr(self, name) < 1.0:
+                raise AnalysisError(f"{name}: got {getattr(self, name):g}, expected a number between 0 and 1")
+
+    @property
+    def reduction(self) -> Wanted:
+        """What a reduction must reach."""
+        return Wanted(self.reduction_error, self.modes)
+
+    @property
+    def directions(self) -> tuple[str, ...]:
+        """The directions that runs go."""
+        return ("up", "down") if self.direction == "both" else (self.direction,)
+
+    @property
+    def runs(self) -> tuple[str, ...]:
+        """Names of the runs of each point."""
+
+        def name(direction: str, number: int) -> str:
+            words = [] if direction == "each" else [direction]
+            words += ["static" if direction == "each" else ""] if number == 0 else [f"start {number + 1}"]
+            return " ".join(filter(None, words))
+
+        return tuple(name(direction, number) for direction in self.directions for number in range(self.starts))
+
+
+def start_of(system: SmallSystem, number: int, seed: int, throw: float = 1.0) -> Start:
+    """State that a run starts from: the static one at rest, or for number > 0 one that is thrown off it at random.
+
+    The velocities are drawn in the directions of the contacts, so that contacts move by up to `throw` times twice their
+    deflection and backlash in a radian of the mesh.
+    """
+    if number == 0:
+        return Start(system.rest.copy(), np.zeros(system.n))
+    mesh = system.columns.mesh
+    B = system.B[:, mesh]
+    reach = np.abs(system.B[:, mesh].T @ system.rest)
+    backlash = np.where(np.isfinite(system.columns.backlash[mesh]), system.columns.backlash[mesh], 0.0)
+    draw = np.random.default_rng([seed, number])
+    wanted = 2.0 * throw * draw.uniform(-1.0, 1.0, B.shape[1]) * (reach + backlash)
+    thrown = np.linalg.lstsq(B.T, wanted, rcond=1e-10)[0]
+    return Start(system.rest.copy(), thrown - system.rigid.T @ (system.rigid @ thrown))
+
+
+def steps_of(points: Sequence[Point | None], wanted: int | None) -> tuple[np.ndarray, dict[int, str]]:
+    """Steps of each point in a period of its fastest mesh, and why a point can't be run with them.
+
+    Without a wanted number: so many that the highest frequency is followed, from 200 on, in classes 2^(1/2) apart, so that few
+    different numbers occur.
+    """
+    steps, refused = np.zeros(len(points), dtype=np.int64), {}
+    for i, point in enumerate(points):
+        if point is None:
+            continue
+        needed, least = steps_needed(point.system), steps_stable(point.system)
+        if wanted is not None:
+            steps[i] = wanted
+            if wanted < least:
+                refused[i] = (
+                    f"{wanted} steps are unstable: the stiffest part needs at least {least} in a period of the fastest mesh"
+                )
+            continue
+        classes = max(0, int(np.ceil(2.0 * np.log2(max(needed, LEAST_STEPS) / LEAST_STEPS) - 1e-9)))
+        steps[i] = int(np.ceil(LEAST_STEPS * 2.0 ** (0.5 * classes)))
+        if steps[i] > MOST_STEPS:
+            refused[i] = (
+                f"the stiffest part needs {needed} steps in a period of the fastest mesh (at most {MOST_STEPS} are chosen): "
+                "make it rigid, or ask for the steps"
+            )
+    return steps, refused

@@ -1,0 +1,1 @@
+"""Gear sheets and loaded teeth over the mesh cycle."""

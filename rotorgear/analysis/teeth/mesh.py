@@ -1,0 +1,226 @@
+"""The verb behind `rotorgear mesh`: stiffness, transmission error and load distribution of one mesh of a model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotorgear.analysis.common.clock import Clock
+from rotorgear.analysis.teeth.errors import coarser, estimated
+from rotorgear.analysis.teeth.request import MeshRequest, mesh_request
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle
+from rotorgear.gears.loaded.stiffness import loaded_cycle
+from rotorgear.gears.loaded.tooth_contact import ContactProblem
+from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
+from rotorgear.gears.tooth_fe.settings import PRESETS
+from rotorgear.model.layout.mesh_stiffness import mirrored, stiffness_of_mesh
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, part_of, silent
+from rotorgear.results.mesh import HelixContact, LoadPoint, MeshErrors, MeshResult
+
+POSITIONS = 64
+# More positions or periods than these are a slip of the keyboard.
+_MOST_POSITIONS, _MOST_PERIODS = 4096, 256
+
+
+@dataclass(frozen=True)
+class _Solved:
+    """All helices of one request at one load and setting."""
+
+    problem: ContactProblem
+    cycles: tuple[MeshCycle, ...]
+    stiffness: np.ndarray
+    tangent: np.ndarray
+    error: np.ndarray
+    no_load: np.ndarray
+
+
+def mesh_analysis(
+    model: Model,
+    mesh: str | None = None,
+    *,
+    stiffness: str | None = None,
+    torque: float | None = None,
+    preset: str | None = None,
+    body: str | None = None,
+    accuracy: float | None = None,
+    positions: int = POSITIONS,
+    periods: int | None = None,
+    load_factors: Sequence[float] = (),
+    estimate: bool = True,
+    progress: Progress = silent,
+) -> MeshResult:
+    """Solve one mesh over its mesh cycle at the mean load of the torque flow.
+
+    Args:
+        model: a checked model.
+        mesh: name of the mesh; None where there is only one.
+        stiffness: a stiffness model in place of the file's, or "given"; a mesh with a number in the file takes "tooth_fe".
+        torque: N m on the pinion in place of the torque flow's.
+        preset, body: of the finite elements, in place of the file's.
+        accuracy: take the cheapest preset whose estimated relative errors are within it.
+        positions: in one mesh period; periods: how many (default 1, or enough for all teeth with pitch errors).
+        load_factors: also solve at these multiples of the load.
+        estimate: whether a coarser mesh is solved too, for the error estimates.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: a mesh, load or setting that can't be; an accuracy that no preset reaches.
+        ConvergenceError: contact that does not come to rest.
+        MissingExtraError: scikit-fem is not installed.
+    """
+    if not 8 <= positions <= _MOST_POSITIONS:
+        raise AnalysisError(f"--positions: got {positions}, expected 8 to {_MOST_POSITIONS} in a mesh period")
+    if accuracy is not None and (preset is not None or not 0.0 < accuracy < 1.0):
+        raise AnalysisError("Give an accuracy between 0 and 1, or a preset, not both.")
+    if any(not factor > 0.0 for factor in load_factors):
+        raise AnalysisError("Load factors must be positive.")
+    clock = Clock()
+    request = mesh_request(model, mesh, stiffness, torque, {"preset": preset, "body": body})
+    if request.model != "tooth_fe":
+        return _other(model, request, positions, clock)
+    assert request.teeth is not None
+    u = np.arange(positions * _periods(request.teeth, periods)) / positions
+    stagger = model.meshes[request.name].stagger
+    if accuracy is None:
+        teeth = request.teeth
+        found, errors = _with_errors(request, teeth, u, stagger, estimate, progress)
+    else:
+        teeth, found, errors = _refined(request, u, stagger, accuracy, progress)
+    clock.lap("teeth and contact")
+    loads = tuple(_load_point(request, teeth, factor, u, stagger) for factor in load_factors)
+    if loads:
+        clock.lap("other loads")
+    return _result(model, request, teeth, u, found, errors, loads, clock)
+
+
+def _periods(teeth: ToothPair, wanted: int | None) -> int:
+    if wanted is not None:
+        if not 1 <= wanted <= _MOST_PERIODS:
+            raise AnalysisError(f"--periods: got {wanted}, expected 1 to {_MOST_PERIODS}")
+        return wanted
+    wrong = [tooth for flank in (teeth.first_flank, teeth.second_flank) for tooth, error in flank.pitch_error if error]
+    return min(max(wrong) + 2, _MOST_PERIODS) if wrong else 1
+
+
+def _solve(
+    request: MeshRequest,
+    teeth: ToothPair,
+    base_force: float,
+    u: np.ndarray,
+    stagger: float,
+    progress: Progress = silent,
+) -> _Solved:
+    """All helices at one load; they share it evenly, and the mesh approaches by their mean."""
+    cycles: list[MeshCycle] = []
+    kinds = [teeth if ahead > 0 else mirrored(teeth) for ahead in request.senses]
+    for helix, own in enumerate(kinds):
+        if helix and own == kinds[0] and stagger == 0.0:
+            cycles.append(cycles[0])
+            continue
+        told = part_of(progress, helix / request.helices, (helix + 1) / request.helices)
+        problem, cycle = loaded_cycle(own, base_force, u + helix * stagger, told)
+        cycles.append(cycle)
+    error = np.mean([cycle.deflection for cycle in cycles], axis=0)
+    no_load = np.mean([cycle.no_load for cycle in cycles], axis=0)
+    total = base_force * request.helices
+    tangent = request.helices / np.mean([1.0 / cycle.tangent for cycle in cycles], axis=0)
+    return _Solved(problem, tuple(cycles), total / (error - no_load), tangent, error, no_load)
+
+
+def _with_errors(
+    request: MeshRequest, teeth: ToothPair, u: np.ndarray, stagger: float, estimate: bool, progress: Progress
+) -> tuple[_Solved, MeshErrors | None]:
+    rough = coarser(teeth) if estimate else None
+    share = 0.25 if rough is not None else 0.0
+    found = _solve(request, teeth, request.base_force, u, stagger, part_of(progress, share, 1.0))
+    if rough is None:
+        return found, None
+    other = _solve(request, rough, request.base_force, u, stagger, part_of(progress, 0.0, share))
+    return found, estimated(teeth, found.stiffness, found.error, other.stiffness, other.error)
+
+
+def _refined(
+    request: MeshRequest, u: np.ndarray, stagger: float, accuracy: float, progress: Progress
+) -> tuple[ToothPair, _Solved, MeshErrors | None]:
+    """The cheapest preset whose estimates are within an accuracy."""
+    assert request.teeth is not None
+    said = []
+    for preset in PRESETS:
+        teeth = _preset(request.teeth, preset)
+        if coarser(teeth) is None:
+            continue  # uncoupled slices can't know their error
+        found, errors = _with_errors(request, teeth, u, stagger, True, progress)
+        assert errors is not None
+        if errors.worst <= accuracy:
+            return teeth, found, errors
+        said.append(f"{preset} {errors.worst:.1e}")
+    raise AnalysisError(
+        f"No preset reaches a relative accuracy of {accuracy:g} of stiffness, its ripple and the transmission error's ripple: "
+        f"the estimates are {', '.join(said)}. Ask for less, or take --preset fine with its estimate."
+    )
+
+
+def _preset(teeth: ToothPair, preset: str) -> ToothPair:
+    return replace(teeth, fe=replace(teeth.fe, preset=preset, size=None))  # type: ignore[arg-type]
+
+
+def _load_point(request: MeshRequest, teeth: ToothPair, factor: float, u: np.ndarray, stagger: float) -> LoadPoint:
+    found = _solve(request, teeth, factor * request.base_force, u, stagger)
+    ratio = float(np.mean([cycle.contact_ratio for cycle in found.cycles]))
+    k = found.stiffness
+    return LoadPoint(factor, float(k.mean()), float(np.ptp(k)), float(np.ptp(found.error)), ratio)
+
+
+def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> MeshResult:
+    """A mesh with another stiffness model: its curve, and the transmission error that follows from it at the load."""
+    normal = request.load.normal_force_n / request.helices if request.load else None
+    name = None if request.model == "given" else request.model
+    curve: MeshStiffness = stiffness_of_mesh(model, request.name, normal, positions, name=name, sense=request.senses[0])
+    error = None if request.load is None else request.load.base_force_n / curve.transverse
+    clock.lap("stiffness")
+    width = request.teeth.width if request.teeth else model.gears[model.meshes[request.name].pinion].width or 0.0
+    return MeshResult(
+        model.title, request.name, model.meshes[request.name].pinion, model.meshes[request.name].gear, curve.model, None,
+        curve.definition, curve.body, request.helices, width, curve.base_helix_angle, model.meshes[request.name].stagger,
+        request.load, curve.position, curve.transverse, curve.tangent, error, None if error is None else np.zeros(len(error)),
+        (), None, 0, sum(clock.laps.values()), clock.laps, (), curve.warnings,
+    )  # fmt: skip
+
+
+def _result(
+    model: Model,
+    request: MeshRequest,
+    teeth: ToothPair,
+    u: np.ndarray,
+    found: _Solved,
+    errors: MeshErrors | None,
+    loads: tuple[LoadPoint, ...],
+    clock: Clock,
+) -> MeshResult:
+    mesh = model.meshes[request.name]
+    notes = [*found.problem.warnings]
+    for cycle in found.cycles:
+        notes += cycle.warnings
+    if found.problem.uncoupled:
+        notes.append(
+            "preview: slices along the face do not feel each other, which is tens of percent off in the ripple of a helical pair"
+        )
+    return MeshResult(
+        model.title, request.name, mesh.pinion, mesh.gear, "tooth_fe", teeth.fe.preset, "secant", found.problem.body,
+        request.helices, teeth.width, teeth.pair.base_helix_angle, mesh.stagger, request.load, u, found.stiffness, found.tangent,
+        found.error, found.no_load, tuple(_helix(cycle, teeth) for cycle in found.cycles), errors, found.problem.unknowns,
+        sum(clock.laps.values()), clock.laps, loads, tuple(dict.fromkeys(notes)),
+    )  # fmt: skip
+
+
+def _helix(cycle: MeshCycle, teeth: ToothPair) -> HelixContact:
+    s = cycle.slices
+    return HelixContact(
+        cycle.secant, cycle.tangent, cycle.deflection, cycle.no_load, cycle.share_by_pair(), cycle.contact_ratio,
+        teeth.pair.total_contact_ratio, s.position, s.pair, s.z @ s.weight, s.length / np.cos(teeth.pair.base_helix_angle),
+        np.stack([roll @ s.weight for roll in s.roll], axis=-1), cycle.force, cycle.strip, cycle.pressure,
+    )  # fmt: skip

@@ -1,0 +1,117 @@
+"""What a mesh analysis works on: the teeth of a mesh with chosen settings, their load, and the sense of each helix."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.stiffness.mesh_stiffness import MODELS, ToothPair
+from rotorgear.gears.tooth_fe.settings import ToothFe
+from rotorgear.model.layout.applied_torques import applied_torques
+from rotorgear.model.layout.mesh_geometry import base_helix_angle, base_radius
+from rotorgear.model.layout.mesh_stiffness import helix_count, helix_senses, tooth_pair
+from rotorgear.model.layout.torque_flow import torque_flow
+from rotorgear.model.layout.train import walk
+from rotorgear.model.model import Model
+from rotorgear.quantity import nearest
+from rotorgear.results.mesh import MeshLoad
+
+
+@dataclass(frozen=True)
+class MeshRequest:
+    """A mesh of a model, ready to be solved.
+
+    Attributes:
+        name: of the mesh; model: its stiffness model, "given" for numbers of the file.
+        teeth: one helix; None for gears without teeth. helices: 1 or 2.
+        senses: for each helix, +1 where the contact runs ahead at larger z, -1 where it runs behind.
+        load: what it carries; None where nothing flows.
+    """
+
+    name: str
+    model: str
+    teeth: ToothPair | None
+    helices: int
+    senses: tuple[int, ...]
+    load: MeshLoad | None
+
+    @property
+    def base_force(self) -> float:
+        """F_bt (N) of one helix."""
+        return self.load.base_force_n / self.helices if self.load else 0.0
+
+
+def mesh_request(
+    model: Model, name: str | None, stiffness: str | None, torque: float | None, fe: dict[str, object]
+) -> MeshRequest:
+    """Look up a mesh, its stiffness model and its load.
+
+    Args:
+        name: of the mesh; None where the model has only one.
+        stiffness: a stiffness model in place of the file's; a number in the file makes it "tooth_fe".
+        torque: N m on the pinion, positive about +z, in place of the torque flow's.
+        fe: settings of `ToothFe` in place of the file's.
+
+    Raises:
+        AnalysisError: no such mesh or model, no teeth, or no load where one is needed.
+    """
+    name = _mesh_name(model, name)
+    given = model.meshes[name].stiffness
+    chosen = stiffness or (given if isinstance(given, str) else "tooth_fe")
+    if chosen not in (*MODELS, "given"):
+        guess = nearest(chosen, [*MODELS, "given"])
+        hint = f"did you mean '{guess}'?" if guess else "there are " + ", ".join((*MODELS, "given"))
+        raise AnalysisError(f"--stiffness: there is no stiffness model '{chosen}': {hint}.")
+    if chosen == "given" and isinstance(given, str):
+        raise AnalysisError(f"--stiffness given: meshes.{name} names the model '{given}' and gives no numbers.")
+    teeth = None if chosen == "given" else _with(tooth_pair(model, name), fe)
+    load, sense = _load(model, name, torque)
+    if load is None and chosen in MODELS and MODELS[chosen].needs_load:
+        raise AnalysisError(
+            f"meshes.{name} carries no torque, and the stiffness of loaded teeth needs one: give --torque, or power or loads in "
+            "the model."
+        )
+    return MeshRequest(name, chosen, teeth, helix_count(model, name), helix_senses(model, name, sense), load)
+
+
+def _mesh_name(model: Model, name: str | None) -> str:
+    names = list(model.meshes)
+    if not names:
+        raise AnalysisError("The model has no meshes.")
+    if name is None:
+        if len(names) > 1:
+            raise AnalysisError(f"Which mesh? Give --mesh with one of {', '.join(names)}.")
+        return names[0]
+    if name not in names:
+        guess = nearest(name, names)
+        hint = f"did you mean '{guess}'?" if guess else f"there are {', '.join(names)}."
+        raise AnalysisError(f"There is no mesh '{name}': {hint}")
+    return name
+
+
+def _with(teeth: ToothPair, fe: dict[str, object]) -> ToothPair:
+    wanted = {key: value for key, value in fe.items() if value is not None}
+    settings: ToothFe = replace(teeth.fe, **wanted)  # type: ignore[arg-type]
+    return replace(teeth, fe=settings)
+
+
+def _load(model: Model, name: str, torque: float | None) -> tuple[MeshLoad | None, int]:
+    """Load and sense of the torque on the pinion."""
+    pinion = model.gears[model.meshes[name].pinion]
+    lever, cosine = base_radius(pinion), math.cos(base_helix_angle(pinion))
+    if torque is not None:
+        if torque == 0.0 or not math.isfinite(torque):
+            raise AnalysisError(f"--torque: got {torque:g} N m, expected one that is not zero")
+        force = abs(torque) / lever
+        return MeshLoad(torque, force, force / cosine, "given"), 1 if torque > 0.0 else -1
+    train = walk(model)[0]
+    if not applied_torques(model, train)[0]:
+        return None, 1
+    speed = model.operation.speed if model.operation else None
+    forces = torque_flow(model, train, -1 if speed is not None and speed < 0.0 else 1).of_mesh(name)
+    normal, sense = sum(force.normal_force for force in forces), forces[0].torque_sense
+    if not normal:
+        return None, sense
+    base = normal * cosine
+    return MeshLoad(sense * base * lever, base, normal, "mean torque flow of the model"), sense

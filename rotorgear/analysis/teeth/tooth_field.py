@@ -1,0 +1,157 @@
+"""Displacement, stress and pressure of loaded teeth at one position, in the place where they mesh.
+
+The pinion's axis is the z axis, the gear's stands on +y. The pinion pushes clockwise, and contact runs ahead at larger z; the
+other hand and the other flanks are the mirror image. With roll length xi of pair k in the middle of the face, the tooth is turned
+by xi/r_b - (half angle at the base circle) - a_w from +y.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.analysis.teeth.request import mesh_request
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.outline import tooth_outline
+from rotorgear.gears.loaded.contact_points import patch_loads
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle
+from rotorgear.gears.loaded.stiffness import loaded_cycle
+from rotorgear.gears.loaded.tooth_contact import ContactProblem, in_space
+from rotorgear.gears.loaded.tooth_solution import TeethSolution, solve_teeth
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, compliance_key
+from rotorgear.gears.tooth_fe.sector import clockwise
+from rotorgear.model.layout.mesh_stiffness import mirrored
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, part_of, silent
+from rotorgear.results.tooth_field import ContactField, ToothField, ToothFields
+
+
+def tooth_fields(
+    model: Model,
+    mesh: str | None = None,
+    *,
+    torque: float | None = None,
+    preset: str | None = None,
+    body: str | None = None,
+    at: float = 0.0,
+    progress: Progress = silent,
+) -> ToothFields:
+    """Solve the inside of the teeth of the first helix of a mesh at one position.
+
+    Args:
+        model, mesh, torque, preset, body: as for `mesh_analysis`.
+        at: position in mesh periods.
+
+    Raises:
+        AnalysisError: a mesh or load that can't be, or the preview of a helical pair, whose slices are no body.
+    """
+    request = mesh_request(model, mesh, "tooth_fe", torque, {"preset": preset, "body": body})
+    assert request.teeth is not None
+    teeth = request.teeth if request.senses[0] > 0 else mirrored(request.teeth)
+    if in_space(teeth)[1]:
+        raise AnalysisError(
+            "The preview of a pair that changes along the face has no body to show: take --preset default."
+        )
+    problem, cycle = loaded_cycle(teeth, request.base_force, np.array([at]), part_of(progress, 0.0, 0.4))
+    names = (model.meshes[request.name].pinion, model.meshes[request.name].gear)
+    found = [
+        _gear(names[i], teeth, problem, cycle, at, i, part_of(progress, 0.4 + 0.3 * i, 0.7 + 0.3 * i)) for i in (0, 1)
+    ]
+    progress(1.0, "done")
+    return ToothFields(request.name, at, (found[0], found[1]), _contact(problem, cycle, at))
+
+
+def _key(teeth: ToothPair, gear: int) -> ComplianceKey:
+    g, body = ((teeth.first, teeth.first_body), (teeth.second, teeth.second_body))[gear]
+    return compliance_key(g, teeth.fe, body.poisson_ratio, teeth.width, body.inner_radius, space=in_space(teeth)[0])
+
+
+def _gear(
+    name: str, teeth: ToothPair, problem: ContactProblem, cycle: MeshCycle, at: float, gear: int, progress: Progress
+) -> ToothField:
+    key = _key(teeth, gear)
+    solution = solve_teeth(key, _loads(problem, cycle, gear), progress)
+    module, E = problem.module, (teeth.first_body, teeth.second_body)[gear].youngs_modulus
+    # A plane model carries the force of a unit width.
+    thickness = module if key.width else teeth.width
+    stretch, strength = 1.0 / (E * thickness), 1.0 / (thickness * module)
+    stress = [solution.pitch.stress(u) for u in solution.displacement]
+    mises, largest = (strength * np.concatenate([part[i] for part in stress]) for i in (0, 1))
+    fillet = np.concatenate([part[1][solution.pitch.fillet] for part in stress])
+    points, moved = _placed(solution, problem, teeth, at, gear)
+    cells, n = _vtk_cells(solution, flipped=gear == 0 and bool(key.width)), len(solution.pitch.points)
+    return ToothField(
+        name, module * points, np.concatenate([cells + i * n for i in range(len(solution.teeth))]),
+        np.repeat(solution.teeth, n), stretch * moved, mises, largest, strength * float(fillet.max()),
+    )  # fmt: skip
+
+
+def _loads(problem: ContactProblem, cycle: MeshCycle, gear: int) -> dict[int, np.ndarray]:
+    """Forces along the outward normals at the flank nodes by tooth, counted clockwise in the gear's own frame (N)."""
+    slices = cycle.slices
+    place = problem.place(gear, slices.z)
+    spread = patch_loads(slices, gear, problem.compliance[gear], problem.module, place, cycle.patch)
+    side = 1 if gear == 0 else -1
+    found = {}
+    for pair in np.unique(slices.pair[cycle.force > 0.0]):
+        own = slices.pair == pair
+        found[side * int(pair)] = -np.asarray(spread.loads[own].T @ cycle.force[own])
+    return found
+
+
+def _placed(
+    solution: TeethSolution, problem: ContactProblem, teeth: ToothPair, at: float, gear: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points in normal modules and displacements, both in space and in the place of the mesh."""
+    line, g = problem.line, (teeth.first, teeth.second)[gear]
+    outline, pitch = tooth_outline(g), solution.pitch
+    first = line.pitch_point + at * line.base_pitch
+    roll = first if gear == 0 else line.length - first
+    start = roll / g.base_radius - outline.base_half_angle - line.pressure_angle
+    points, moved = [], []
+    for tooth, u in zip(solution.teeth, solution.displacement, strict=True):
+        R = clockwise(start + 2.0 * np.pi * tooth / g.teeth, pitch.dimension)
+        points.append(pitch.points @ R.T)
+        moved.append(u @ R.T)
+    x, u = np.concatenate(points), np.concatenate(moved)
+    if gear == 1:  # the gear is the pinion's kind of body, seen through the middle of the face
+        x, u = -x, -u
+        x[:, 1] += line.centre_distance / problem.module
+    if pitch.dimension == 2:
+        x, u = (np.pad(values, ((0, 0), (0, 1))) for values in (x, u))
+    return x, u
+
+
+def _vtk_cells(solution: TeethSolution, *, flipped: bool) -> np.ndarray:
+    """Nodes of the elements of one pitch in VTK's order; `flipped`: of the mirror image."""
+    places = np.array(solution.pitch.basis.elem.doflocs, float)
+    wanted = _VTK_QUAD if places.shape[1] == 2 else _VTK_HEX
+    if flipped:
+        wanted = wanted * np.array([1, 1, -1]) + np.array([0, 0, 1])
+    order = [int(np.argmin(np.abs(places - place).sum(axis=1))) for place in wanted]
+    cells = solution.pitch.cells.reshape(-1, len(places))
+    return np.asarray(cells[:, order])
+
+
+def _contact(problem: ContactProblem, cycle: MeshCycle, at: float) -> ContactField:
+    """The loaded slices as pieces of contact lines on the plane of action."""
+    line, slices = problem.line, cycle.slices
+    own = cycle.force > 0.0
+    z = (slices.z @ slices.weight)[own, None] + 0.5 * slices.length[own, None] * np.array([-1.0, 1.0])
+    roll = line.pitch_point + (at + slices.pair[own, None]) * line.base_pitch + z * np.tan(line.base_helix_angle)
+    c, s = np.cos(line.pressure_angle), np.sin(line.pressure_angle)
+    x, y = roll * c - line.base_radius[0] * s, roll * s + line.base_radius[0] * c
+    length = slices.length[own] / np.cos(line.base_helix_angle)
+    return ContactField(
+        np.stack([x, y, z], -1), cycle.force[own] / length, cycle.strip[own], cycle.pressure[own], slices.pair[own]
+    )
+
+
+_VTK_QUAD = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]])
+_FACE = [[0, 0], [1, 0], [1, 1], [0, 1]]
+_EDGE = [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5]]
+_VTK_HEX = np.array(
+    [[*p, 0] for p in _FACE] + [[*p, 1] for p in _FACE] + [[*p, 0] for p in _EDGE] + [[*p, 1] for p in _EDGE]
+    + [[*p, 0.5] for p in _FACE]
+    + [[0, 0.5, 0.5], [1, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 1, 0.5], [0.5, 0.5, 0], [0.5, 0.5, 1], [0.5, 0.5, 0.5]], float
+)  # fmt: skip

@@ -1,0 +1,111 @@
+"""What a transient records beside its contacts: bearing forces, motions of points, bearings and gears, as rows on q, v and a."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.analysis.common.points import point_place
+from rotorgear.model.layout.mesh_geometry import node_positions
+from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.solvers.time.local_system import Fields
+from rotorgear.system.local import LocalModel
+
+_AXES = ("x", "y", "z")
+
+
+@dataclass(frozen=True)
+class Channels:
+    """p channels: value = Y_q q + Y_v v + Y_a a + Y_F F, with rows (p, n) and (p, m) by kind for those that have any."""
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    rows: dict[str, tuple[np.ndarray, np.ndarray]]
+
+    def values(self, fields: Fields, F: np.ndarray) -> np.ndarray:
+        """Values (r, p) at the recorded steps with the local forces F (r, m)."""
+        found = np.zeros((len(F), len(self.names)))
+        for kind, (which, Y) in self.rows.items():
+            found[:, which] += F @ Y.T if kind == "F" else fields.rows(kind, Y)
+        return found
+
+
+def channels(local: LocalModel) -> Channels:
+    """Return the channels of a model."""
+    found: list[tuple[str, str, dict[str, np.ndarray]]] = []
+    found += _bearing_forces(local)
+    found += _points(local)
+    found += _orbits(local)
+    found += _rotations(local)
+    names, units = tuple(item[0] for item in found), tuple(item[1] for item in found)
+    rows = {}
+    for kind in "qvaF":
+        which = np.array([i for i, item in enumerate(found) if kind in item[2]], dtype=int)
+        if which.size:
+            rows[kind] = (which, np.array([found[i][2][kind] for i in which]))
+    return Channels(names, units, rows)
+
+
+def _row(local: LocalModel, node: int, dof: int) -> np.ndarray:
+    return np.asarray(local.system.dofs.transform[[6 * node + dof], :].toarray()[0])
+
+
+def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
+    """Force of the shaft on each bearing, by its springs and dampers or its rolling elements."""
+    found = []
+    T = local.system.dofs.transform
+    firsts = local.local.forces.first
+    rolling = {part.part: (int(first), part.law.components)
+               for part, first in zip(local.parts, firsts, strict=False) if part.part.startswith("bearings.")}  # fmt: skip
+    for group in local.groups:
+        if not group.part.startswith("bearings.") or group.part.endswith(".pedestal"):
+            continue
+        own = T[group.dofs[0], :].toarray()
+        matrices = group.matrices
+        stiffness = sum(
+            (A[0] for A in (matrices.stiffness, matrices.circulatory) if A is not None), np.zeros((own.shape[0],) * 2)
+        )
+        for k, axis in enumerate(_AXES):
+            rows = {} if group.part in rolling else {"q": stiffness[-6 + k] @ own}
+            if group.part in rolling and k < rolling[group.part][1]:
+                rows["F"] = np.eye(local.local.m)[rolling[group.part][0] + k]
+            if matrices.damping is not None:
+                rows["v"] = matrices.damping[0][-6 + k] @ own
+            if any(row.any() for row in rows.values()):
+                found.append((f"{group.part} force {axis}", "N", rows))
+    return found
+
+
+def _points(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
+    """Displacement, velocity and acceleration of each named point in its direction."""
+    found = []
+    for name, point in local.system.model.points.items():
+        dof = DOF_NAMES.index(point.direction)
+        row = _row(local, local.system.nodes.at(*point_place(local.system.model, name)), dof)
+        unit = "m" if dof < 3 else "rad"
+        for kind, what, per in (("q", "displacement", ""), ("v", "velocity", "/s"), ("a", "acceleration", "/s^2")):
+            found.append((f"points.{name} {what}", unit + per, {kind: row}))
+    return found
+
+
+def _orbits(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
+    """x and y of the shaft in each bearing."""
+    model, found = local.system.model, []
+    for name, bearing in model.bearings.items():
+        node = local.system.nodes.at(bearing.shaft, model.shafts[bearing.shaft].station(bearing.at))
+        for dof, axis in ((0, "x"), (1, "y")):
+            row = _row(local, node, dof)
+            if row.any():
+                found.append((f"bearings.{name} displacement {axis}", "m", {"q": row}))
+    return found
+
+
+def _rotations(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
+    """Fluctuation of the speed of each gear."""
+    model, found = local.system.model, []
+    for name, gear in model.gears.items():
+        row = _row(local, local.system.nodes.at(gear.shaft, node_positions(model, name)[0]), 5)
+        if row.any():
+            found.append((f"gears.{name} speed fluctuation", "rad/s", {"v": row}))
+    return found

@@ -1,0 +1,111 @@
+"""What a transient says beside its numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.model.model import Model
+from rotorgear.results.transient import TransientResult
+from rotorgear.solvers.time.contact_equilibrium import Equilibrium
+from rotorgear.system.local import LocalModel
+
+# Numerical share of the energy above which a run is warned about.
+ENERGY_BOUND = 0.05
+_UNSETTLED = 0.1
+# Share of the prescribed speed by which a gear may be off at the end.
+_DRIFT = 0.01
+
+
+def transient_left_out(local: LocalModel) -> tuple[str, ...]:
+    """What the model does not need."""
+    meshes = local.system.model.meshes
+    open_ended = [name for name, mesh in meshes.items() if mesh.backlash is None]
+    notes = []
+    if open_ended:
+        notes.append(f"loss of contact in {', '.join(open_ended)}: no backlash is given, so their teeth never part")
+    still = [name for name, mesh in meshes.items() if not mesh.transmission_error and not mesh.stiffness_variation]
+    if still:
+        notes.append(f"excitation by {', '.join(still)}: neither transmission error nor stiffness variation is given")
+    return tuple(notes)
+
+
+def transient_warnings(
+    result: TransientResult, rest: Equilibrium, local: LocalModel, *, estimated: bool
+) -> tuple[str, ...]:
+    """What the reader should know before using the numbers."""
+    notes = list(local.system.nodes.merged)
+    if result.status != "success":
+        notes.append(f"the run ended early at t = {result.time[-1]:.6g} s: {result.status}")
+    if not rest.converged:
+        notes.append("no static equilibrium was found; the run starts from that with linear contacts and has to settle")
+    if rest.free.shape[1] and np.any(np.abs(rest.drift) > 1e-9 * max(float(np.linalg.norm(local.local.load)), 1e-300)):
+        notes.append(
+            "the loads do not balance on a free motion: it is carried along and drifts with constant acceleration"
+        )
+    if any(note.startswith("damping matrix") for note in result.left_out) and not np.any(
+        local.local.forces.reference_damping
+    ):
+        notes.append(
+            "nothing damps: what the start sets swinging never dies out; give damping, or a modal damping ratio"
+        )
+    if estimated and result.status == "success" and not np.isfinite(result.error_estimate):
+        notes.append("there is no error estimate: the run with twice the step, or with more modes, did not end well")
+    if result.energy.share > ENERGY_BOUND:
+        notes.append(
+            f"integration made or lost {100.0 * result.energy.share:.2g} % of the energy; "
+            "take a smaller step or record more often"
+        )
+    if not local.local.rotation.is_constant and _held(result.model):
+        rpm = float(np.abs(result.speed).max()) * 30.0 / np.pi
+        notes.append(
+            f"{_held(result.model)} are held at their values for the largest speed, {rpm:.6g} rpm, over the whole run-up"
+        )
+    notes += [*_drifting(result), *_unsettled(result)]
+    return tuple(notes)
+
+
+def _held(model: Model) -> str:
+    """What depends on speed beside the gyroscopic terms, in words; "" where nothing does."""
+    tables = [name for name, bearing in model.bearings.items() if bearing.table]
+    damped = [name for name, shaft in model.shafts.items() if shaft.internal_damping]
+    parts = [f"the tables of the bearings {', '.join(tables)}"] if tables else []
+    parts += [f"the internal damping of {', '.join(damped)}"] if damped else []
+    return " and ".join(parts)
+
+
+def _drifting(result: TransientResult) -> list[str]:
+    """Compare the speed of each gear at the end with the prescribed one."""
+    from rotorgear.model.layout.train import walk
+
+    train, _ = walk(result.model)
+    worst, name = 0.0, ""
+    for gear, part in result.model.gears.items():
+        history, own = f"gears.{gear} speed fluctuation", abs(float(train.ratio(part.shaft)) * result.speed[-1])
+        if history not in result.channel or own == 0.0:
+            continue
+        values = result.history(history)
+        share = abs(float(values[-max(len(values) // 10, 1) :].mean())) / own
+        if share > worst:
+            worst, name = share, gear
+    if worst <= _DRIFT:
+        return []
+    return [
+        f"at the end {name} turns {100.0 * worst:.2g} % off its prescribed speed: the torques do not balance "
+        "there; mesh phases and gyroscopic terms keep to the prescribed speed"
+    ]
+
+
+def _unsettled(result: TransientResult) -> list[str]:
+    """Compare the two halves of what counts."""
+    force = result.mesh_force[result.counted]
+    if len(force) < 16 or not force.any() or np.ptp(result.speed) > 0.0:
+        return []
+    half = len(force) // 2
+    rms = np.sqrt(np.mean(force**2))
+    change = float(np.abs(force[:half].std(axis=0) - force[half:].std(axis=0)).max() / rms)
+    if change <= _UNSETTLED:
+        return []
+    return [
+        f"the root mean squares of the two halves differ by {100.0 * change:.2g} % of the force: not settled, or not periodic; "
+        "settle longer or run longer"
+    ]

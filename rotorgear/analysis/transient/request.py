@@ -1,0 +1,201 @@
+"""What a transient was asked for, with its defaults: speed over time, duration, first step, method and the reason for it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.model.layout.train import mesh_frequency
+from rotorgear.quantity import QuantityError, parse_quantity
+from rotorgear.solvers.time.exponential import Exponential
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem
+from rotorgear.solvers.time.motion import Rotation
+from rotorgear.solvers.time.newmark import Newmark
+from rotorgear.system.system import System
+
+METHODS = ("auto", "newmark", "hht", "generalised-alpha", "exponential", "explicit")
+# Periods of the slowest mesh that settle, and as many that count.
+PERIODS = 30
+# Records and first steps in a period of the fastest mesh, first steps in a period of the contact resonance.
+RECORDS, STEPS, CONTACT_STEPS = 40, 100, 20
+# Largest system whose complex modes are all found without being asked: dense matrices of 2n.
+_ALL_MODES = 900
+MOST_STEPS = 200_000_000
+_LEAST_RECORDS = 4
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Times of a run: spacing of the records in s, their number, the first that counts, and steps in a spacing at first."""
+
+    spacing: float
+    records: int
+    settled: int
+    every: int
+
+
+def quantity(value: float | str, dimension: str, name: str) -> float:
+    """Parse an argument; AnalysisError with its name where it is none."""
+    try:
+        return parse_quantity(value, dimension)
+    except QuantityError as error:
+        raise AnalysisError(f"{name}: got {value!r}, expected {error}") from None
+
+
+def rotation_of(system: System, speed: float | str | Sequence[tuple[float, float | str]] | None) -> Rotation:
+    """Speed of the reference over time from a number, a text, or pairs of time and speed."""
+    if speed is None:
+        given = system.model.operation.speed if system.model.operation else None
+        if given is None:
+            raise AnalysisError("the model gives no speed of operation: ask for one (speed, or --speed)")
+        return Rotation.constant(given)
+    if isinstance(speed, int | float | str):
+        return Rotation.constant(quantity(speed, "speed", "speed"))
+    pairs = [(quantity(t, "time", "speed"), quantity(w, "speed", "speed")) for t, w in speed]
+    return Rotation(np.array([t for t, _ in pairs]), np.array([w for _, w in pairs]))
+
+
+def mesh_frequencies(system: System, speed: float) -> dict[str, float]:
+    """Mesh frequency in Hz of every mesh whose teeth are known."""
+    found = {name: mesh_frequency(system.model, system.train, name, speed) for name in system.model.meshes}
+    return {name: value for name, value in found.items() if value}
+
+
+def base_frequencies(system: System, speed: float) -> dict[str, float]:
+    """Frequencies in Hz that lay the times out: those of the meshes, else of bearings' elements, else of the shafts."""
+    found = mesh_frequencies(system, speed)
+    if found:
+        return found
+    turns = {name: abs(float(system.train.ratio(name)) * speed) / (2.0 * np.pi) for name in system.model.shafts}
+    rolling = {
+        name: bearing.rolling.elements * turns[bearing.shaft]
+        for name, bearing in system.model.bearings.items()
+        if bearing.rolling
+    }
+    return {name: value for name, value in (rolling or turns).items() if value}
+
+
+def contact_frequency(local: LocalSystem) -> float:
+    """Highest frequency in Hz at which a contact alone would vibrate on the inertia it meets: sqrt(k b^T M^-1 b)."""
+    from rotorgear.solvers.time.local_system import acceleration
+
+    k = np.diag(local.forces.reference_stiffness)
+    squares = [
+        k[j] * float(column @ acceleration(local.M, column))
+        for j, column in enumerate(local.B.toarray().T)
+        if k[j] > 0.0
+    ]
+    return float(np.sqrt(max(squares, default=0.0))) / (2.0 * np.pi)
+
+
+def grid_of(
+    local: LocalSystem,
+    frequencies: dict[str, float],
+    time: float | None,
+    settle: float | None,
+    steps: int | None,
+    records: int | None,
+) -> Grid:
+    """Lay the times out.
+
+    Raises:
+        AnalysisError: nothing says how long to run, or the run would have too many steps.
+    """
+    for name, given in (("time", time), ("steps", steps), ("records", records)):
+        if given is not None and not given > 0:
+            raise AnalysisError(f"{name}: got {given}, expected more than 0")
+    contact = contact_frequency(local)
+    fastest, slowest = max(frequencies.values(), default=0.0), min(frequencies.values(), default=0.0)
+    if fastest == 0.0 and (time is None or contact == 0.0):
+        raise AnalysisError(
+            "nothing turns that says how long to run and in what steps: give a time, and a speed or meshes"
+        )
+    base = fastest or contact
+    settle = settle if settle is not None else (0.0 if time is not None else PERIODS / slowest)
+    total = settle + (time if time is not None else PERIODS / slowest)
+    spacing = 1.0 / (base * (records or RECORDS))
+    wanted = 1.0 / (base * steps) if steps else min(1.0 / (base * STEPS), 1.0 / (max(contact, 1e-300) * CONTACT_STEPS))
+    every = max(1, int(np.ceil(spacing / wanted * (1.0 - 1e-9))))
+    if steps and every * wanted < spacing * (1.0 - 1e-9):
+        spacing = every * wanted  # so that the steps asked for are exact
+    count = int(np.ceil(total / spacing - 1e-6))
+    if count < _LEAST_RECORDS:
+        raise AnalysisError(
+            f"{total:g} s gives only {count} records {spacing:.3g} s apart, at least {_LEAST_RECORDS} are needed: "
+            "ask for more time"
+        )
+    if count * every > MOST_STEPS:
+        raise AnalysisError(
+            f"{total:g} s would take {count * every:.3g} steps of {spacing / every:.3g} s; ask for less time, or set the steps"
+        )
+    return Grid(spacing, count, round(settle / spacing), every)
+
+
+def integrator_of(
+    method: str,
+    local: LocalSystem,
+    steps: int,
+    *,
+    modal_ratio: float = 0.0,
+    modes: int | None = None,
+    rho_inf: float | None = None,
+    beta: float | None = None,
+    gamma: float | None = None,
+) -> tuple[Integrator, str]:
+    """Return the integrator and why it was chosen.
+
+    Raises:
+        AnalysisError: unknown method, or one that can't serve this model.
+    """
+    if method not in METHODS:
+        raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
+    if modes is not None and modes < 1:
+        raise AnalysisError(f"modes: got {modes}, expected at least 1")
+    modes = None if modes is not None and modes >= local.n else modes
+    reason = "as asked for"
+    if method == "auto":
+        method, reason = _chosen(local, steps, modal_ratio, modes)
+        if method == "exponential" and not (modal_ratio or modes):
+            candidate = Exponential()
+            try:
+                candidate.prepare(local, 1e-6, float(local.rotation.speeds[0]))
+                return candidate, reason
+            except ConvergenceError:
+                method, reason = "newmark", "the complex modes lie too near to each other for the exponential method"
+    if modal_ratio and method != "exponential":
+        raise AnalysisError(
+            "damping.modal_ratio acts on modes: only the exponential method at constant speed can take it"
+        )
+    if method == "exponential":
+        return Exponential(modes, modal_ratio), reason
+    if method == "explicit":
+        from rotorgear.solvers.time.explicit import Explicit
+
+        return Explicit(), reason
+    if method == "hht":
+        return Newmark.hht(0.05 if rho_inf is None else (1.0 - rho_inf) / (1.0 + rho_inf)), reason
+    if method == "generalised-alpha":
+        return Newmark.generalised_alpha(0.95 if rho_inf is None else rho_inf), reason
+    g = 0.5 if gamma is None else gamma
+    return Newmark(0.25 * (0.5 + g) ** 2 if beta is None else beta, g), reason
+
+
+def _chosen(local: LocalSystem, steps: int, modal_ratio: float, modes: int | None) -> tuple[str, str]:
+    """The cheaper method for the same error, from measured costs (docs/transient.md)."""
+    gyroscopic = local.G is not None and local.G.nnz > 0
+    if not local.rotation.is_constant and gyroscopic:
+        return "newmark", "the speed changes, and with it the gyroscopic terms"
+    if np.any(local.M.diagonal() <= 0.0):
+        return "newmark", "a degree of freedom has no inertia"
+    if modal_ratio or modes is not None:
+        return "exponential", "damping by modes" if modal_ratio else "a number of modes was asked for"
+    if local.n > _ALL_MODES:
+        return "newmark", f"{local.n} dofs are too many for all complex modes"
+    newmark = steps * (3e-6 + 4e-8 * local.n)
+    exponential = 2e-8 * local.n**3 + 0.6 * steps * (2e-6 + 2e-8 * local.n)
+    if exponential < newmark:
+        return "exponential", f"constant speed, {local.n} dofs, and enough steps to pay for the complex modes"
+    return "newmark", f"too few steps ({steps}) to pay for the complex modes of {local.n} dofs"

@@ -1,0 +1,138 @@
+"""A transient made ready, and its runs: the one that counts, and those that choose the step and tell its error."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotorgear.analysis.transient.channels import Channels, channels
+from rotorgear.analysis.transient.histories import Histories, Stream, integrate
+from rotorgear.analysis.transient.request import Grid, mesh_frequencies, rotation_of
+from rotorgear.analysis.transient.statistics import Statistics, compared, statistics
+from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress
+from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, still_forces
+from rotorgear.solvers.time.local_system import Integrator, state_at_rest
+from rotorgear.solvers.time.run import Schedule
+from rotorgear.system.local import LocalModel, local_model
+from rotorgear.system.plan import Plan
+from rotorgear.system.system import System
+
+# One element of this order a piece, unless elements are asked for.
+_PLAN = Plan(elements=1, order=2)
+_HALVINGS = 6
+# The search for a step runs over so many steps at most.
+_PROBE = 60_000
+
+
+@dataclass(frozen=True)
+class Task:
+    """A model made ready: local forces, channels, static state and forces, mesh frequencies in Hz, largest speed in rad/s."""
+
+    local: LocalModel
+    channels: Channels
+    rest: Equilibrium
+    rest_force: np.ndarray
+    frequencies: dict[str, float]
+    largest: float
+
+
+def prepare(
+    model: Model | System, speed: float | str | Sequence[tuple[float, float | str]] | None, elements: int | None
+) -> Task:
+    """Make a model ready.
+
+    Raises:
+        AnalysisError: nothing is free to move, or the speed makes no sense.
+    """
+    if elements is not None and elements < 1:
+        raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
+    given = model if isinstance(model, System) else System(model, plan=Plan(elements) if elements else _PLAN)
+    rotation = rotation_of(given, speed)
+    largest = float(rotation.speeds[np.argmax(np.abs(rotation.speeds))])
+    direction = -1 if largest < 0.0 else 1
+    if direction != given.direction:
+        given = System(given.model, plan=given.plan, direction=direction)
+    if given.n == 0:
+        raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
+    local = local_model(given, rotation, largest)
+    rest, force = equilibrium(local.local), still_forces(local.local, tuple(part.law.mean() for part in local.parts))
+    return Task(local, channels(local), rest, force, mesh_frequencies(given, largest), largest)
+
+
+def damped(model: Model | System, modal_damping: float | None) -> Model | System:
+    """The model with another damping ratio of its modes."""
+    if modal_damping is None:
+        return model
+    if not 0.0 <= modal_damping < 1.0:
+        raise AnalysisError(f"the damping ratio of the modes must lie between 0 and 1, got {modal_damping:g}")
+    own = model.model if isinstance(model, System) else model
+    damping = own.damping.model_copy(update={"modal_ratio": modal_damping})
+    own = own.model_copy(update={"damping": damping})
+    return System(own, plan=model.plan, direction=model.direction) if isinstance(model, System) else own
+
+
+def run_task(
+    task: Task,
+    integrator: Integrator,
+    grid: Grid,
+    progress: Progress,
+    *,
+    stream: Stream | None = None,
+    text: str = "",
+    key: str = "",
+    frames: int = 0,
+) -> Histories:
+    """Integrate over a grid; `text` names a run that only serves another one, which an interruption ends for good."""
+    h = grid.spacing / grid.every
+    system = task.local.local
+    settings = {
+        "model": task.local.system.model.model_dump_json(exclude_none=True),
+        "run": f"{h!r} {grid.records} {grid.every} {grid.settled} {system.n} {integrator.name} {key} "
+        f"{system.rotation.times.tolist()} {system.rotation.speeds.tolist()}",
+    }
+
+    def told(fraction: float, step: str) -> None:
+        progress(fraction, f"{text}: {step}" if text else step)
+
+    found = integrate(
+        system, integrator, Schedule(h, grid.records * grid.every, grid.every), state_at_rest(system, h, task.rest.q),
+        task.channels, grid.settled, stream=stream, settings=settings, frames=frames, progress=told,
+    )  # fmt: skip
+    if text and found.status.startswith("interrupted"):
+        raise KeyboardInterrupt
+    return found
+
+
+def skipping(grid: Grid) -> Grid:
+    """The grid of twice the step where every step is recorded: every second record is missing."""
+    return replace(grid, spacing=2.0 * grid.spacing, records=grid.records // 2, settled=grid.settled // 2)
+
+
+def fine_enough(task: Task, integrator: Integrator, grid: Grid, accuracy: float, progress: Progress) -> Grid:
+    """Halve the step until the statistics of a run, or of its beginning, agree with those of twice the step."""
+    records = min(grid.records, max(_PROBE // grid.every, 8))
+    probe = replace(grid, records=records, settled=min(grid.settled, records // 2))
+    last = _probed(task, integrator, probe, progress)
+    for _ in range(_HALVINGS):
+        finer = replace(probe, every=2 * probe.every)
+        now = _probed(task, integrator, finer, progress)
+        error = compared(now, last)[1] if now and last else np.inf
+        # What the finer of the two was found to be good for.
+        if error <= accuracy:
+            # Second order: the coarser one is four times worse.
+            return replace(grid, every=finer.every if 4.0 * error > accuracy else probe.every)
+        probe, last = finer, now
+    return replace(grid, every=probe.every)
+
+
+def _probed(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> Statistics | None:
+    """Statistics of a run that helps to choose the step; None where so large a step did not get through."""
+    try:
+        found = run_task(task, integrator, grid, progress, text="choosing the step")
+    except ConvergenceError:
+        return None
+    return statistics(found, task, grid.settled) if found.status == "success" else None

@@ -1,0 +1,187 @@
+"""Nonlinear transient: time response with backlash, k(t) and e(t), to a stated accuracy."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rotorgear.analysis.common.notes import left_out
+from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.transient.histories import Histories, Stream
+from rotorgear.analysis.transient.notes import transient_left_out, transient_warnings
+from rotorgear.analysis.transient.request import Grid, base_frequencies, grid_of, integrator_of, quantity
+from rotorgear.analysis.transient.statistics import Statistics, compared, statistics
+from rotorgear.analysis.transient.task import Task, damped, fine_enough, prepare, run_task, skipping
+from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, silent
+from rotorgear.results.transient import TransientResult
+from rotorgear.solvers.time.explicit import Explicit
+from rotorgear.solvers.time.exponential import Exponential
+from rotorgear.solvers.time.local_system import Integrator
+from rotorgear.system.system import System
+
+DEFAULT_ACCURACY = 0.01
+
+
+def transient(
+    model: Model | System,
+    *,
+    speed: float | str | Sequence[tuple[float, float | str]] | None = None,
+    time: float | str | None = None,
+    settle: float | str | None = None,
+    steps: int | None = None,
+    records: int | None = None,
+    accuracy: float | None = None,
+    method: str = "auto",
+    modes: int | None = None,
+    modal_damping: float | None = None,
+    rho_inf: float | None = None,
+    beta: float | None = None,
+    gamma: float | None = None,
+    elements: int | None = None,
+    error_estimate: bool = True,
+    frames: int = 0,
+    stream: Stream | None = None,
+    progress: Progress = silent,
+) -> TransientResult:
+    """Return the time response of a model from its static equilibrium.
+
+    Args:
+        model: a model, or its assembled system.
+        speed: of the input shaft in rad/s or as a text, or pairs (time, speed), linear in between. None: the operating speed.
+        time: duration that counts in s or as a text; 30 periods of the slowest mesh where it is not given.
+        settle: time before it, whose response does not count.
+        steps: steps in a period of the fastest mesh; without it the step is halved until the accuracy is reached.
+        records: records in a period of the fastest mesh; 40 where not given.
+        accuracy: wanted relative accuracy of the statistics; 0.01 where neither it nor `steps` is given.
+        method: auto, newmark, hht, generalised-alpha, exponential or explicit.
+        modes: for the exponential method: so many real modes and residual vectors in place of all.
+        modal_damping: damping ratio added to every elastic mode, in place of the one in the model; exponential method only.
+        rho_inf: for hht and generalised-alpha: what remains of the highest frequencies after a step, 0 to 1.
+        beta, gamma: for newmark; 1/4 and 1/2 where not given.
+        elements: basic elements in each piece of shaft; one of second order where not given.
+        error_estimate: False leaves the comparison with twice the step out.
+        frames: so many records at the end keep the motion of all nodes, for an animation.
+        stream: keeps chunks while the run goes on (`rotorgear.stream`), and starts an interrupted run again.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: nothing to run, or a request that makes no sense.
+        ConvergenceError: not even the first records came to be. A run that stops later returns what it has, and says
+        so in `status`.
+    """
+    begun = clock.perf_counter()
+    if steps is not None and accuracy is not None:
+        raise AnalysisError("steps and accuracy: give one of the two; steps fixes the step, accuracy chooses it")
+    if accuracy is not None and not 1e-8 <= accuracy < 1.0:
+        raise AnalysisError(f"the accuracy must lie between 1e-8 and 1, got {accuracy:g}")
+    if frames < 0:
+        raise AnalysisError(f"frames: got {frames}, expected 0 or more")
+    task = prepare(damped(model, modal_damping), speed, elements)
+    duration = [None if x is None else quantity(x, "time", name) for x, name in ((time, "time"), (settle, "settle"))]
+    grid = grid_of(
+        task.local.local, base_frequencies(task.local.system, task.largest), duration[0], duration[1], steps, records
+    )
+    integrator, reason = integrator_of(
+        method, task.local.local, grid.records * grid.every, modal_ratio=task.local.system.model.damping.modal_ratio,
+        modes=modes, rho_inf=rho_inf, beta=beta, gamma=gamma,
+    )  # fmt: skip
+    laps = {"model": clock.perf_counter() - begun}
+    if steps is None and not isinstance(integrator, Explicit):
+        grid = fine_enough(task, integrator, grid, accuracy or DEFAULT_ACCURACY, progress)
+    laps["choice of step"] = clock.perf_counter() - begun - sum(laps.values())
+    others = _comparisons(task, integrator, grid, progress) if error_estimate else []
+    laps["error estimate"] = clock.perf_counter() - begun - sum(laps.values())
+    found = run_task(
+        task,
+        integrator,
+        grid,
+        progress,
+        stream=stream,
+        frames=frames,
+        key=f"{method} {modes} {rho_inf} {beta} {gamma}",
+    )
+    laps["integration"] = clock.perf_counter() - begun - sum(laps.values())
+    laps["total"] = clock.perf_counter() - begun
+    progress(1.0, "done")
+    return _result(task, grid, integrator.name, reason, found, others, laps, estimated=error_estimate)
+
+
+def _result(
+    task: Task,
+    grid: Grid,
+    method: str,
+    reason: str,
+    found: Histories,
+    others: list[tuple[Histories, float]],
+    laps: dict[str, float],
+    *,
+    estimated: bool,
+) -> TransientResult:
+    system, local = task.local.system, task.local.local
+    own: Statistics = statistics(found, task, grid.settled)
+    errors, largest = _errors(own, found, others, task, grid)
+    t = found.table("t")
+    meshes = [i for i, part in enumerate(task.local.parts) if part.is_mesh]
+    columns = [int(local.forces.first[i]) for i in meshes]
+    events = found.state.events[meshes].astype(float)
+    if found.ledger is None:
+        raise ConvergenceError(found.status)
+    motion_time = np.concatenate([np.zeros(0), *(t for t, _ in found.motion)])
+    motion = np.vstack([np.zeros((0, local.n)), *(q for _, q in found.motion)])
+    nodes, shapes = shapes_at_stations(system, system.dofs.transform @ motion.T)
+    result = TransientResult(
+        model=system.model, time=t, angle=local.rotation.angle(t), speed=local.rotation.speed(t),
+        settle=grid.settled * grid.spacing,
+        contact=tuple(task.local.parts[i].label for i in meshes),
+        deflection=found.table("d")[:, columns], mesh_force=found.table("F")[:, columns],
+        mean_force=task.rest_force[columns],
+        contact_time=events[:, :3] / np.maximum(events[:, :3].sum(axis=1, keepdims=True), 1.0),
+        contact_losses=found.state.events[meshes, 3],
+        channel=task.channels.names, unit=task.channels.units, values=found.table("values"),
+        quantity=own.name, quantity_value=own.value, quantity_error=errors, energy=found.ledger,
+        step=grid.spacing / grid.every, steps=found.state.step, every=grid.every, error_estimate=largest,
+        dofs=local.n, seconds=laps, method=method, reason=reason, mesh_frequency=task.frequencies,
+        nodes=nodes, motion_time=motion_time, motion=shapes,
+        status=found.status, left_out=(*left_out(system, float(local.rotation.speeds[0])), *transient_left_out(task.local)),
+    )  # fmt: skip
+    return replace(result, warnings=transient_warnings(result, task.rest, task.local, estimated=estimated))
+
+
+def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> list[tuple[Histories, float]]:
+    """Worse or better runs, each with the factor by which the run that counts is nearer to the truth, less 1.
+
+    Twice the step is four times worse. An explicit method chooses its own steps: there a hundred times the tolerance takes
+    their place. Where modes are cut, a run has half as many more.
+    """
+    if isinstance(integrator, Explicit):
+        loose = Explicit(100.0 * integrator.relative)
+        return [(run_task(task, loose, grid, progress, text="looser tolerance"), 1.0)]
+    double = replace(grid, every=grid.every // 2) if grid.every > 1 else skipping(grid)
+    try:
+        found = [(run_task(task, integrator, double, progress, text="twice the step"), 3.0)]
+    except ConvergenceError:
+        return []
+    if isinstance(integrator, Exponential) and integrator.modes is not None:
+        fuller = Exponential(int(1.5 * integrator.modes), integrator.modal_ratio)
+        found.append((run_task(task, fuller, grid, progress, text="more modes"), 1.0))
+    return found
+
+
+def _errors(
+    own: Statistics, found: Histories, others: list[tuple[Histories, float]], task: Task, grid: Grid
+) -> tuple[np.ndarray, float]:
+    """Errors of the statistics: the sum of those that the comparisons tell, and the largest."""
+    if not others or any(run.status != "success" for run in (found, *(run for run, _ in others))):
+        return np.full(own.value.size, np.nan), float("nan")
+    pairs = [compared(own, statistics(run, task, _settled_of(run, grid)), factor) for run, factor in others]
+    return np.sum([errors for errors, _ in pairs], axis=0), float(sum(largest for _, largest in pairs))
+
+
+def _settled_of(run: Histories, grid: Grid) -> int:
+    t = run.table("t")
+    return int(np.searchsorted(t, grid.settled * grid.spacing * (1.0 - 1e-9)))

@@ -1,0 +1,1 @@
+"""Involute geometry of gears and pairs, blanks, flanks, outlines, measures."""

@@ -1,0 +1,222 @@
+"""Involute geometry of one external cylindrical gear.
+
+tan a_t = tan a_n / cos b,  m_t = m_n / cos b,  r_b = z m_t cos a_t / 2,  sin b_b = sin b cos a_n.
+Reference: ISO 21771-1, Cylindrical involute gears and gear pairs. Lengths in m, angles in rad. Hand and torque
+sense have no place here: helix_angle >= 0 always, and the mesh element adds the sign.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.involute import involute
+
+# Below this tip thickness in normal modules a tooth counts as nearly pointed (the customary limit of gear design).
+THIN_TIP = 0.2
+
+
+@dataclass(frozen=True)
+class GearGeometry:
+    """Tooth data of one external gear (one helix of a herringbone gear); ISO 21771-1.
+
+    normal_module (m), normal_pressure_angle and helix_angle (rad, at the reference cylinder), profile_shift x and the
+    addendum_factor, dedendum_factor and root_radius_factor (rho_fP) of the basic rack in normal modules. `tip_diameter` (m)
+    is the given one; None means d + 2 m_n (h_a + x), and `effective_tip_diameter` is the one in force. So with the root
+    radius: None is that of ISO 53, and `tool_tip_radius_factor` the one in force. Values without meaning raise
+    AnalysisError; `check_gear` tells which meaningful values make a bad or an impossible tooth.
+    """
+
+    teeth: int
+    normal_module: float
+    normal_pressure_angle: float
+    helix_angle: float
+    profile_shift: float = 0.0
+    addendum_factor: float = 1.0
+    dedendum_factor: float = 1.25
+    tip_diameter: float | None = None
+    root_radius_factor: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.teeth < 1 or self.teeth != int(self.teeth):
+            raise AnalysisError(f"A gear needs a whole number of teeth, at least one, not {self.teeth}.")
+        lengths = {"normal module": self.normal_module, "tip diameter": self.tip_diameter}
+        factors = {"addendum factor": self.addendum_factor, "dedendum factor": self.dedendum_factor}
+        for name, value in (lengths | factors).items():
+            if value is not None and not 0.0 < value < math.inf:
+                raise AnalysisError(f"The {name} of a gear must be positive and finite, not {value:g}.")
+        if self.root_radius_factor is not None and not 0.0 <= self.root_radius_factor < math.inf:
+            raise AnalysisError(f"The root radius factor of a gear must be 0 or more, not {self.root_radius_factor:g}.")
+        if not 0.0 < self.normal_pressure_angle < math.pi / 2:
+            angle = math.degrees(self.normal_pressure_angle)
+            raise AnalysisError(f"The normal pressure angle must lie between 0 and 90 deg, not at {angle:g} deg.")
+        if not 0.0 <= self.helix_angle < math.pi / 2:
+            angle = math.degrees(self.helix_angle)
+            raise AnalysisError(
+                f"The helix angle must be 0 or more and below 90 deg, not {angle:g} deg; the hand is given apart."
+            )
+        if not math.isfinite(self.profile_shift):
+            raise AnalysisError(f"The profile shift must be a finite number, not {self.profile_shift:g}.")
+
+    @property
+    def transverse_module(self) -> float:
+        """m_t (m)."""
+        return self.normal_module / math.cos(self.helix_angle)
+
+    @property
+    def transverse_pressure_angle(self) -> float:
+        """a_t (rad)."""
+        return math.atan(math.tan(self.normal_pressure_angle) / math.cos(self.helix_angle))
+
+    @property
+    def reference_diameter(self) -> float:
+        """d (m)."""
+        return self.teeth * self.transverse_module
+
+    @property
+    def base_radius(self) -> float:
+        """r_b (m)."""
+        return 0.5 * self.reference_diameter * math.cos(self.transverse_pressure_angle)
+
+    @property
+    def base_helix_angle(self) -> float:
+        """b_b (rad)."""
+        return math.asin(math.sin(self.helix_angle) * math.cos(self.normal_pressure_angle))
+
+    @property
+    def effective_tip_diameter(self) -> float:
+        """d_a (m): the given tip diameter, or that of the shifted basic rack without tip alteration."""
+        if self.tip_diameter is not None:
+            return self.tip_diameter
+        return self.reference_diameter + 2.0 * self.normal_module * (self.addendum_factor + self.profile_shift)
+
+    @property
+    def root_diameter(self) -> float:
+        """d_f (m), nominal, without allowance for backlash."""
+        return self.reference_diameter - 2.0 * self.normal_module * (self.dedendum_factor - self.profile_shift)
+
+    @property
+    def transverse_base_pitch(self) -> float:
+        """p_bt (m)."""
+        return math.pi * self.transverse_module * math.cos(self.transverse_pressure_angle)
+
+    @property
+    def virtual_teeth(self) -> float:
+        """z_n = z / (cos^2 b_b cos b): teeth of the equivalent spur gear in the normal section."""
+        return self.teeth / (math.cos(self.base_helix_angle) ** 2 * math.cos(self.helix_angle))
+
+    @property
+    def lead(self) -> float:
+        """p_z = pi d / tan b (m); infinite for a spur gear."""
+        return math.pi * self.reference_diameter / math.tan(self.helix_angle) if self.helix_angle else math.inf
+
+    @property
+    def full_radius_factor(self) -> float:
+        """Largest rho_fP at which the tool's tip is still as deep as h_fP: its two roundings meet; negative where none is."""
+        alpha = self.normal_pressure_angle
+        half_land = math.pi / 4 - self.dedendum_factor * math.tan(alpha)
+        return half_land * math.cos(alpha) / (1.0 - math.sin(alpha))
+
+    @property
+    def tool_tip_radius_factor(self) -> float:
+        """rho_fP in force: the given one or that of ISO 53, c_P / (1 - sin a_n), at most the full radius."""
+        wanted = self.root_radius_factor
+        if wanted is None:
+            wanted = (self.dedendum_factor - self.addendum_factor) / (1.0 - math.sin(self.normal_pressure_angle))
+        return max(0.0, min(wanted, self.full_radius_factor))
+
+    @property
+    def straight_flank_factor(self) -> float:
+        """h_FfP: depth of the rack's straight flank below its datum line, h_fP - rho_fP (1 - sin a_n) (ISO 53)."""
+        return self.dedendum_factor - self.tool_tip_radius_factor * (1.0 - math.sin(self.normal_pressure_angle))
+
+    @property
+    def tool_form_roll_length(self) -> float:
+        """xi (m) of the flank point that the end of the rack's straight flank cuts; negative for an undercut tooth."""
+        depth = self.normal_module * (self.straight_flank_factor - self.profile_shift)
+        sine = math.sin(self.transverse_pressure_angle)
+        return 0.5 * self.reference_diameter * sine - depth / sine
+
+    @property
+    def minimum_profile_shift(self) -> float:
+        """x below which the rack's straight flanks of depth h_FfP (ISO 53) undercut the tooth."""
+        half_base = self.teeth * math.sin(self.transverse_pressure_angle) ** 2 / (2.0 * math.cos(self.helix_angle))
+        return self.straight_flank_factor - half_base
+
+    @property
+    def is_undercut(self) -> bool:
+        """Whether the profile shift is below `minimum_profile_shift`."""
+        return self.profile_shift < self.minimum_profile_shift
+
+    def transverse_thickness(self, diameter: float) -> float:
+        """s_yt (m): arc between the two flanks of a tooth at a diameter; negative where they have crossed.
+
+        AnalysisError below the base circle, where there is no involute.
+        """
+        base = 2.0 * self.base_radius
+        if not base <= diameter < math.inf:
+            raise AnalysisError(
+                f"There is no involute at diameter {1e3 * diameter:g} mm: give one of at least the base diameter, "
+                f"{1e3 * base:g} mm."
+            )
+        shift = 2.0 * self.profile_shift * math.tan(self.normal_pressure_angle)
+        half_angles = (math.pi / 2 + shift) / self.teeth + involute(self.transverse_pressure_angle)
+        return diameter * (half_angles - involute(math.acos(base / diameter)))
+
+    @property
+    def transverse_tip_thickness(self) -> float:
+        """s_at (m): arc of the tip land in the transverse section."""
+        return self.transverse_thickness(self.effective_tip_diameter)
+
+    @property
+    def normal_tip_thickness(self) -> float:
+        """s_an (m): tip thickness across the tooth, s_at cos b_a with the helix angle at the tip."""
+        tip = self.effective_tip_diameter / self.reference_diameter
+        return self.transverse_tip_thickness * math.cos(math.atan(math.tan(self.helix_angle) * tip))
+
+    def base_tangent_length(self, teeth_spanned: int) -> float:
+        """W_k (m): span over `teeth_spanned` teeth, measured normal to them."""
+        normal = (teeth_spanned - 0.5) * math.pi + self.teeth * involute(self.transverse_pressure_angle)
+        normal += 2.0 * self.profile_shift * math.tan(self.normal_pressure_angle)
+        return self.normal_module * math.cos(self.normal_pressure_angle) * normal
+
+
+def impossible_teeth(g: GearGeometry) -> list[str]:
+    """Sentences on circles in the wrong order; any of them means that there is no tooth to speak of."""
+    tip, root, base = (1e3 * d for d in (g.effective_tip_diameter, g.root_diameter, 2.0 * g.base_radius))
+    if g.full_radius_factor < 0.0:
+        return [
+            f"The basic rack is pointed before it is {g.dedendum_factor:.6g} normal modules deep: "
+            "use a smaller dedendum or pressure angle."
+        ]
+    if root <= 0.0:
+        return [f"The root diameter is {root:.6g} mm, not positive: use more teeth or a smaller dedendum."]
+    if tip <= root:
+        return [f"The tip diameter of {tip:.6g} mm is not above the root diameter of {root:.6g} mm: there is no tooth."]
+    if tip <= base:
+        return [f"The tip diameter of {tip:.6g} mm is not above the base diameter of {base:.6g} mm: no flank is left."]
+    return []
+
+
+def check_gear(g: GearGeometry) -> list[str]:
+    """What is impossible or unfavourable about a gear's teeth, one sentence each; empty when nothing is."""
+    if found := impossible_teeth(g):
+        return found
+    thickness = g.normal_tip_thickness
+    if thickness <= 0.0:
+        found.append(
+            f"The teeth are pointed below the tip diameter of {1e3 * g.effective_tip_diameter:.6g} mm: "
+            "reduce the tip diameter, the addendum or the profile shift."
+        )
+    elif thickness < THIN_TIP * g.normal_module:
+        found.append(
+            f"The teeth are nearly pointed: {1e3 * thickness:.3g} mm thick at the tip, "
+            f"less than {THIN_TIP:g} normal modules."
+        )
+    if g.is_undercut:
+        found.append(
+            f"The teeth are undercut: the profile shift {g.profile_shift:.4g} is below the least one, "
+            f"{g.minimum_profile_shift:.4g}; use more teeth or more profile shift."
+        )
+    return found

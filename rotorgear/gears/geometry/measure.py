@@ -1,0 +1,125 @@
+"""What a gear is measured by: tooth thickness, span over teeth, dimension over balls or pins, and back.
+
+Base tangent: W_k = m_n cos a_n [(k - 1/2) pi + z inv a_t + 2 x tan a_n].
+Over balls of diameter D: inv a_K = D / (z m_n cos a_n) - eta_b with half the space at the base circle,
+eta_b = (pi/2 - 2 x tan a_n) / z - inv a_t; the centres lie on d_K = d_b / cos a_K, and M = d_K + D, or
+M = d_K cos(pi / 2z) + D for an odd number of teeth. Reference: ISO 21771-1. Lengths in m, angles in rad.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.geometry.involute import inverse_involute, involute
+
+
+def normal_thickness(g: GearGeometry) -> float:
+    """s_n (m): tooth thickness at the reference cylinder, normal to the tooth, without allowance."""
+    return g.normal_module * (math.pi / 2 + 2.0 * g.profile_shift * math.tan(g.normal_pressure_angle))
+
+
+def with_allowance(g: GearGeometry, allowance: float) -> GearGeometry:
+    """The gear with its normal tooth thickness changed by an allowance (m, negative: thinner), as a generating shift x_E."""
+    change = allowance / (2.0 * g.normal_module * math.tan(g.normal_pressure_angle))
+    return replace(g, profile_shift=g.profile_shift + change, tip_diameter=g.effective_tip_diameter)
+
+
+def _space_half_angle(g: GearGeometry) -> float:
+    """eta_b (rad): half the tooth space at the base circle, negative where it is closed there."""
+    shift = 2.0 * g.profile_shift * math.tan(g.normal_pressure_angle)
+    return (math.pi / 2 - shift) / g.teeth - involute(g.transverse_pressure_angle)
+
+
+def _base_length(g: GearGeometry) -> float:
+    """z m_n cos a_n (m): base diameter of a spur gear; with cos b_b of a helical one."""
+    return g.teeth * g.normal_module * math.cos(g.normal_pressure_angle)
+
+
+def ideal_ball_diameter(g: GearGeometry) -> float:
+    """D_M (m) of the ball that touches the flanks at the cylinder d + 2 x m_n, or near the base circle where that is inside.
+
+    With the roll angle t of the touched points and T = tan^2 b_b, a_K solves a_K - t - eta_b + (tan a_K - t) T = 0, and
+    D = (tan a_K - t) z m_n cos a_n / cos^2 b_b: the normal from the ball's centre is D/2 long, D/2 cos b_b of it transverse.
+    """
+    middle = max(g.reference_diameter + 2.0 * g.profile_shift * g.normal_module, 2.0 * g.base_radius * (1.0 + 1e-3))
+    touch = math.sqrt((middle / (2.0 * g.base_radius)) ** 2 - 1.0)
+    slant, space = math.tan(g.base_helix_angle) ** 2, _space_half_angle(g)
+    low, high = math.atan(touch), 0.5 * math.pi
+    for _ in range(60):  # it grows with a_K throughout
+        centre = 0.5 * (low + high)
+        if centre - touch - space + (math.tan(centre) - touch) * slant < 0.0:
+            low = centre
+        else:
+            high = centre
+    return _base_length(g) * (math.tan(low) - touch) / math.cos(g.base_helix_angle) ** 2
+
+
+def ball_contact_diameter(g: GearGeometry, ball_diameter: float) -> float:
+    """Diameter (m) at which a ball touches the flanks: its roll length is r_b tan a_K - D/2 cos b_b.
+
+    Raises:
+        AnalysisError: a ball that falls to the bottom of the space.
+    """
+    centre = (over_balls(g, ball_diameter) - ball_diameter) / _oddness(g)
+    roll = math.sqrt(max(centre**2 - (2.0 * g.base_radius) ** 2, 0.0)) - ball_diameter * math.cos(g.base_helix_angle)
+    return math.hypot(2.0 * g.base_radius, roll)
+
+
+def over_balls(g: GearGeometry, ball_diameter: float) -> float:
+    """M_dK (m): dimension over two balls (of a spur gear, two pins) in opposite spaces.
+
+    Raises:
+        AnalysisError: a ball so small that it falls to the bottom of the space.
+    """
+    value = ball_diameter / _base_length(g) - _space_half_angle(g)
+    if value <= 0.0:
+        raise AnalysisError(
+            f"A ball of {1e3 * ball_diameter:.6g} mm touches no flanks of this gear: take a larger one, such as "
+            f"{1e3 * ideal_ball_diameter(g):.4g} mm."
+        )
+    return ball_diameter + 2.0 * g.base_radius / math.cos(inverse_involute(value)) * _oddness(g)
+
+
+def shift_from_over_balls(g: GearGeometry, ball_diameter: float, dimension: float) -> float:
+    """Profile shift x that a measured dimension over balls (m) means; that of `g` itself does not enter.
+
+    Raises:
+        AnalysisError: a dimension too small for any involute.
+    """
+    cosine = 2.0 * g.base_radius * _oddness(g) / (dimension - ball_diameter)
+    if not 0.0 < cosine <= 1.0:
+        raise AnalysisError(
+            f"A dimension of {1e3 * dimension:.6g} mm over balls of {1e3 * ball_diameter:.6g} mm is impossible: the balls' "
+            "centres would lie inside the base circle."
+        )
+    space = ball_diameter / _base_length(g) - involute(math.acos(cosine))
+    shift = math.pi / 2 - g.teeth * (space + involute(g.transverse_pressure_angle))
+    return shift / (2.0 * math.tan(g.normal_pressure_angle))
+
+
+def _oddness(g: GearGeometry) -> float:
+    """1 for an even number of teeth; cos(pi / 2z) for an odd one, whose spaces don't stand opposite."""
+    return math.cos(math.pi / (2.0 * g.teeth)) if g.teeth % 2 else 1.0
+
+
+def best_span(g: GearGeometry) -> int:
+    """Number of teeth k whose base tangent touches the flanks nearest to the cylinder d + 2 x m_n."""
+    middle = max(g.reference_diameter + 2.0 * g.profile_shift * g.normal_module, 2.0 * g.base_radius)
+    touch = math.sqrt((middle / (2.0 * g.base_radius)) ** 2 - 1.0) / math.cos(g.base_helix_angle) ** 2
+    shift = 2.0 * g.profile_shift * math.tan(g.normal_pressure_angle) / g.teeth
+    k = round(g.teeth / math.pi * (touch - shift - involute(g.transverse_pressure_angle)) + 0.5)
+    return max(1, min(k, g.teeth - 1)) if g.teeth > 1 else 1
+
+
+def span_diameter(g: GearGeometry, teeth_spanned: int) -> float:
+    """Diameter (m) at which the base tangent over k teeth touches the flanks."""
+    roll = g.base_tangent_length(teeth_spanned) * math.cos(g.base_helix_angle)
+    return math.hypot(2.0 * g.base_radius, roll)
+
+
+def span_width(g: GearGeometry, teeth_spanned: int) -> float:
+    """Least face width (m) on which a base tangent over k teeth can be measured: W_k sin b_b."""
+    return g.base_tangent_length(teeth_spanned) * math.sin(g.base_helix_angle)

@@ -1,0 +1,173 @@
+"""Transverse outline of a tooth cut by a rack: tip arc, involute, trochoid of the tool's rounded tip, root arc.
+
+The tool's tip is a circle of rho_fP in the normal section, an ellipse in the transverse one. A point of it with the normal n
+cuts when n passes through the pitch point: the rack has then moved by u = Y n_x / n_y - X and the gear has turned by u / r.
+Where the straight flank ends above the base circle, the trochoid begins there; below it the tooth is undercut, and the
+trochoid begins where it crosses the involute. Reference: F. L. Litvin, A. Fuentes, Gear Geometry and Applied Theory,
+chapter on involute gears; ISO 53 for the rack. Lengths in m, angles in rad.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.geometry import GearGeometry, impossible_teeth
+
+# Points along the trochoid at which the crossing with the involute is looked for before it is refined.
+_SCAN = 801
+# Thinner tips, in normal modules, are refused.
+LEAST_TIP = 0.02
+
+
+@dataclass(frozen=True)
+class ToothOutline:
+    """One flank of a tooth from its tip to the middle of the gap, in polar coordinates about the gear's axis.
+
+    Angles are measured from the middle of the tooth, positive on the flank that is described; the other one mirrors it.
+
+    Attributes:
+        geometry: the gear.
+        tip_radius, root_radius: of tip and root circle.
+        form_radius: where involute and trochoid meet.
+        form_roll_length: xi_F along the line of action from the base tangent point, sqrt(r_F^2 - r_b^2).
+        base_half_angle: half the tooth's angle at the base circle.
+        form_tool_angle: angle of the tool's tip normal that cuts the form circle; pi/2 cuts the root circle.
+        undercut: whether the trochoid cuts away involute.
+    """
+
+    geometry: GearGeometry
+    tip_radius: float
+    root_radius: float
+    form_radius: float
+    form_roll_length: float
+    base_half_angle: float
+    form_tool_angle: float
+    undercut: bool
+
+    @property
+    def tip_roll_length(self) -> float:
+        """xi_a (m)."""
+        return math.sqrt(self.tip_radius**2 - self.geometry.base_radius**2)
+
+    @property
+    def root_half_angle(self) -> float:
+        """Angle at which the trochoid reaches the root circle; pi/z where no root arc is left."""
+        return float(self.fillet(1.0)[1])
+
+    def involute(self, roll_length: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+        """Radii (n,) and angles (n,) of flank points by their roll length xi = sqrt(r^2 - r_b^2), shape (n,)."""
+        roll = np.asarray(roll_length, float)
+        turned = roll / self.geometry.base_radius
+        return np.hypot(roll, self.geometry.base_radius), self.base_half_angle - (turned - np.arctan(turned))
+
+    def fillet(self, share: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+        """Radii (n,) and angles (n,) of the trochoid; share (n,) runs from 0 at the form circle to 1 at the root circle."""
+        first = self.form_tool_angle
+        return trochoid(self.geometry, first + (0.5 * math.pi - first) * np.asarray(share, float))
+
+    def half(self, points: int = 30) -> tuple[np.ndarray, np.ndarray]:
+        """Radii and angles (n,) from the middle of the tip to the middle of the gap, with `points` on involute and fillet."""
+        roll = np.linspace(self.tip_roll_length, self.form_roll_length, points)
+        flank, fillet = self.involute(roll), self.fillet(np.linspace(0.0, 1.0, points)[1:])
+        tip = np.linspace(0.0, flank[1][0], 5)[:-1]
+        root = np.linspace(fillet[1][-1], math.pi / self.geometry.teeth, 5)[1:]
+        radii = np.concatenate([np.full(4, self.tip_radius), flank[0], fillet[0], np.full(4, self.root_radius)])
+        return radii, np.concatenate([tip, flank[1], fillet[1], root])
+
+    def tooth(self, points: int = 30) -> tuple[np.ndarray, np.ndarray]:
+        """Radii and angles (n,) of a whole pitch, counter-clockwise from the middle of one gap to that of the next."""
+        radii, angles = self.half(points)
+        return np.concatenate([radii[::-1], radii[1:]]), np.concatenate([-angles[::-1], angles[1:]])
+
+
+def trochoid(g: GearGeometry, tool_angle: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+    """Radii (n,) and angles (n,) from the tooth's middle that the tool's tip cuts, by the angle (n,) of its normal.
+
+    The angle lies in the normal section: a_n where flank and tip circle of the tool touch, pi/2 at its crest.
+    """
+    theta = np.asarray(tool_angle, float)
+    m, alpha, beta, rho = g.normal_module, g.normal_pressure_angle, g.helix_angle, g.tool_tip_radius_factor
+    below = g.dedendum_factor - rho
+    centre = math.pi / 4 + below * math.tan(alpha) + rho / math.cos(alpha)
+    x = m * (centre - rho * np.cos(theta)) / math.cos(beta)
+    y = m * (g.profile_shift - below - rho * np.sin(theta))
+    reference = 0.5 * g.reference_diameter
+    moved = y * np.cos(theta) * math.cos(beta) / np.sin(theta) - x
+    across, up = x + moved, reference + y
+    return np.hypot(across, up), np.arctan2(across, up) - moved / reference
+
+
+def tooth_outline(g: GearGeometry) -> ToothOutline:
+    """Outline of a gear's tooth.
+
+    Raises:
+        AnalysisError: circles in the wrong order, a pointed tooth, or one that the tool cuts through.
+    """
+    if wrong := impossible_teeth(g):
+        raise AnalysisError(wrong[0])
+    tip = 0.5 * g.effective_tip_diameter
+    base_half = (math.pi / 2 + 2.0 * g.profile_shift * math.tan(g.normal_pressure_angle)) / g.teeth + (
+        math.tan(g.transverse_pressure_angle) - g.transverse_pressure_angle
+    )
+    if g.normal_tip_thickness < LEAST_TIP * g.normal_module:
+        raise AnalysisError(_pointed(g))
+    roll, angle, undercut = g.tool_form_roll_length, g.normal_pressure_angle, False
+    if roll < 0.0:
+        roll, angle = _crossing(g, base_half)
+        undercut = True
+    form = math.hypot(roll, g.base_radius)
+    if form >= tip:
+        raise AnalysisError(
+            f"The tool's tip cuts the flank up to the diameter of {2e3 * form:.6g} mm, beyond the tip diameter of "
+            f"{2e3 * tip:.6g} mm: no involute is left; use more teeth, more profile shift or a smaller dedendum."
+        )
+    outline = ToothOutline(g, tip, 0.5 * g.root_diameter, form, roll, base_half, angle, undercut)
+    if np.min(outline.fillet(np.linspace(0.0, 1.0, 101))[1]) <= 0.0:
+        raise AnalysisError(_cut_through(g))
+    return outline
+
+
+def _pointed(g: GearGeometry) -> str:
+    return (
+        f"The teeth are pointed at the tip diameter of {1e3 * g.effective_tip_diameter:.6g} mm, or all but "
+        f"(thinner than {LEAST_TIP:g} normal modules): reduce the tip diameter, the addendum or the profile shift."
+    )
+
+
+def _cut_through(g: GearGeometry) -> str:
+    return (
+        f"The tool cuts through the root of the tooth (z = {g.teeth}, x = {g.profile_shift:.4g}): "
+        "use more teeth or more profile shift."
+    )
+
+
+def _crossing(g: GearGeometry, base_half_angle: float) -> tuple[float, float]:
+    """Roll length and tool angle where the trochoid of an undercut tooth crosses the involute."""
+    from scipy.optimize import brentq
+
+    def roll(theta: float) -> float:
+        radius = float(trochoid(g, theta)[0])
+        return math.sqrt(max(radius - g.base_radius, 0.0) * (radius + g.base_radius))
+
+    def outside(theta: float) -> float:
+        """How far the trochoid lies outside the involute, as an angle; below the base circle, outside its first point."""
+        turned = roll(theta) / g.base_radius
+        return float(trochoid(g, theta)[1]) - (base_half_angle - (turned - math.atan(turned)))
+
+    first = g.normal_pressure_angle  # the scan is dense there: a slight undercut takes place within a small angle
+    angles = first + (0.5 * math.pi - first) * np.linspace(1.0, 0.0, _SCAN) ** 3
+    radii, halves = trochoid(g, angles)
+    turned = np.sqrt(np.maximum(radii - g.base_radius, 0.0) * (radii + g.base_radius)) / g.base_radius
+    gap = halves - (base_half_angle - (turned - np.arctan(turned)))
+    inside = np.flatnonzero((gap < 0.0) & (radii > g.base_radius))
+    if len(inside) == 0:  # undercut by less than the scan sees: the trochoid meets the involute at its foot
+        return 0.0, g.normal_pressure_angle
+    last = int(inside[-1])
+    if last == _SCAN - 1:
+        raise AnalysisError(_cut_through(g))
+    angle = brentq(outside, angles[last + 1], angles[last], xtol=1e-15, rtol=1e-14)
+    return roll(angle), float(angle)

@@ -1,0 +1,156 @@
+"""Involute geometry of a parallel-axis pair of external gears: centre distance, contact ratios, backlash.
+
+inv a_wt = inv a_t + 2 tan a_n (x1 + x2) / (z1 + z2),  a_w = a cos a_t / cos a_wt.
+Reference: ISO 21771-1, Cylindrical involute gears and gear pairs. Lengths in m, angles in rad.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.geometry.involute import inverse_involute, involute
+
+
+def _require_mates(g1: GearGeometry, g2: GearGeometry) -> None:
+    """AnalysisError unless the two gears share the normal module, the normal pressure angle and the helix angle."""
+    for name in ("normal_module", "normal_pressure_angle", "helix_angle"):
+        one, two = getattr(g1, name), getattr(g2, name)
+        if not math.isclose(one, two, rel_tol=1e-9):
+            words = name.replace("_", " ")
+            raise AnalysisError(
+                f"The two gears of a mesh need the same {words}, but have {one:.9g} and {two:.9g} (m, rad)."
+            )
+
+
+def standard_centre_distance(g1: GearGeometry, g2: GearGeometry) -> float:
+    """a = (d1 + d2) / 2 (m); AnalysisError when the gears don't mate."""
+    _require_mates(g1, g2)
+    return 0.5 * (g1.reference_diameter + g2.reference_diameter)
+
+
+def working_pressure_angle_from_shifts(g1: GearGeometry, g2: GearGeometry) -> float:
+    """a_wt (rad) of the mesh without backlash; AnalysisError when the sum of shifts is too negative for one."""
+    _require_mates(g1, g2)
+    shifts = 2.0 * math.tan(g1.normal_pressure_angle) * (g1.profile_shift + g2.profile_shift) / (g1.teeth + g2.teeth)
+    value = involute(g1.transverse_pressure_angle) + shifts
+    if value < 0.0:
+        raise AnalysisError(
+            f"The profile shifts {g1.profile_shift:g} and {g2.profile_shift:g} are too negative for {g1.teeth} "
+            f"and {g2.teeth} teeth to mesh at any centre distance: raise one of them."
+        )
+    return inverse_involute(value)
+
+
+def working_pressure_angle_from_centre(g1: GearGeometry, g2: GearGeometry, centre_distance: float) -> float:
+    """a_wt (rad) at a centre distance (m): cos a_wt = (r_b1 + r_b2) / a_w; AnalysisError if the bases overlap."""
+    _require_mates(g1, g2)
+    least = g1.base_radius + g2.base_radius
+    if not least < centre_distance < math.inf:
+        raise AnalysisError(
+            f"A centre distance of {1e3 * centre_distance:.6g} mm is impossible for gears whose base radii add up to "
+            f"{1e3 * least:.6g} mm: give a larger one."
+        )
+    return math.acos(least / centre_distance)
+
+
+def working_centre_distance(g1: GearGeometry, g2: GearGeometry) -> float:
+    """a_w (m) at which the shifted teeth mesh without backlash."""
+    return (g1.base_radius + g2.base_radius) / math.cos(working_pressure_angle_from_shifts(g1, g2))
+
+
+def profile_shift_sum(g1: GearGeometry, g2: GearGeometry, centre_distance: float) -> float:
+    """x1 + x2 that gives zero backlash at a centre distance (m); the shifts of the two gears themselves don't enter."""
+    difference = involute(working_pressure_angle_from_centre(g1, g2, centre_distance))
+    difference -= involute(g1.transverse_pressure_angle)
+    return difference * (g1.teeth + g2.teeth) / (2.0 * math.tan(g1.normal_pressure_angle))
+
+
+@dataclass(frozen=True)
+class PairGeometry:
+    """A parallel-axis pair of external gears at its centre distance, one helix; lengths in m, angles in rad.
+
+    start_of_contact (SAP, tip of gear 2) and end_of_contact (EAP, tip of gear 1) are positions xi on the line of action
+    from the pitch point, positive from the base tangent point of gear 1 towards that of gear 2. With `interference` a
+    tip reaches past the base tangent point of its mate; the contact ratio is then only nominal. transverse_backlash
+    is the arc j_wt at the working pitch circles, negative when the teeth would have to overlap.
+    """
+
+    centre_distance: float
+    working_transverse_pressure_angle: float
+    working_helix_angle: float
+    base_helix_angle: float
+    transverse_contact_ratio: float
+    overlap_ratio: float
+    start_of_contact: float
+    end_of_contact: float
+    interference: bool
+    transverse_backlash: float
+
+    @property
+    def total_contact_ratio(self) -> float:
+        """eps_gamma = eps_alpha + eps_beta."""
+        return self.transverse_contact_ratio + self.overlap_ratio
+
+    @property
+    def normal_backlash(self) -> float:
+        """j_bn = j_wt cos a_wt cos b_b (m): play between the two flanks along the flank normal."""
+        transverse = self.transverse_backlash * math.cos(self.working_transverse_pressure_angle)
+        return transverse * math.cos(self.base_helix_angle)
+
+    def active_root_diameters(self, g1: GearGeometry, g2: GearGeometry) -> tuple[float, float]:
+        """d_Nf of both gears (m): where contact with the mate's tip begins; the base diameter with interference."""
+        tangent = math.tan(self.working_transverse_pressure_angle)
+        first = max(g1.base_radius * tangent + self.start_of_contact, 0.0)
+        second = max(g2.base_radius * tangent - self.end_of_contact, 0.0)
+        return 2.0 * math.hypot(g1.base_radius, first), 2.0 * math.hypot(g2.base_radius, second)
+
+
+def _path_beyond_pitch_point(g: GearGeometry, angle: float) -> float:
+    """Length of action (m) from the pitch point to where the tip circle of g cuts the line of action at angle a_wt."""
+    tip = 0.5 * g.effective_tip_diameter
+    if tip <= g.base_radius:
+        raise AnalysisError(
+            f"The tip diameter of {2e3 * tip:.6g} mm is not above the base diameter of {2e3 * g.base_radius:.6g} mm: "
+            "there is no flank to mesh with."
+        )
+    return math.sqrt((tip - g.base_radius) * (tip + g.base_radius)) - g.base_radius * math.tan(angle)
+
+
+def pair_geometry(
+    g1: GearGeometry, g2: GearGeometry, width: float, centre_distance: float | None = None
+) -> PairGeometry:
+    """Geometry of the mesh of g1 and g2 over the width (m) of one helix, at a centre distance (m) or without backlash.
+
+    eps_alpha = (EAP - SAP) / p_bt, eps_beta = width sin b / (pi m_n). The backlash is the working pitch less the two
+    working tooth thicknesses, j_wt = 2 a_w [inv a_wt(a_w) - inv a_wt(x1 + x2)]: zero at the working centre distance.
+    AnalysisError when the gears don't mate, the centre distance is too small, or so large that the teeth don't meet.
+    """
+    if not 0.0 < width < math.inf:
+        raise AnalysisError(f"The common face width of a mesh must be positive and finite, not {width:g} m.")
+    free = working_pressure_angle_from_shifts(g1, g2)
+    if centre_distance is None:
+        angle, distance = free, working_centre_distance(g1, g2)
+    else:
+        angle, distance = working_pressure_angle_from_centre(g1, g2, centre_distance), centre_distance
+    end, start = _path_beyond_pitch_point(g1, angle), -_path_beyond_pitch_point(g2, angle)
+    if end <= start:
+        raise AnalysisError(
+            f"At a centre distance of {1e3 * distance:.6g} mm the teeth don't meet: "
+            "reduce it, or increase the tip diameters."
+        )
+    stretch = math.cos(g1.transverse_pressure_angle) / math.cos(angle)
+    return PairGeometry(
+        centre_distance=distance,
+        working_transverse_pressure_angle=angle,
+        working_helix_angle=math.atan(math.tan(g1.helix_angle) * stretch),
+        base_helix_angle=g1.base_helix_angle,
+        transverse_contact_ratio=(end - start) / g1.transverse_base_pitch,
+        overlap_ratio=width * math.sin(g1.helix_angle) / (math.pi * g1.normal_module),
+        start_of_contact=start,
+        end_of_contact=end,
+        interference=-start > g1.base_radius * math.tan(angle) or end > g2.base_radius * math.tan(angle),
+        transverse_backlash=2.0 * distance * (involute(angle) - involute(free)),
+    )

@@ -1,0 +1,1 @@
+"""Loaded tooth contact: positions, compliance, load distribution over the mesh cycle."""

@@ -1,0 +1,188 @@
+"""Contact lines of a pair over the mesh cycle, cut into slices, and what each slice loads on both gears.
+
+Pair k at position u touches at the pinion's roll length xi_1 = xi_C + (u + k) p_bt + z tan b_b. Each line is cut exactly where
+contact begins and ends, at the face's ends, and into equal slices; beyond the ends of the line of action a tip corner touches.
+A slice presses on a patch of half-width c with semi-elliptic pressure (Gauss-Chebyshev quadrature of the second kind across,
+Gauss-Legendre along the slice), spread over the flank's nodes by the quadratic shape functions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.gears.geometry.line_of_action import LineOfAction
+from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
+
+_ACROSS = 24
+_ALONG = 3
+# Pieces of a contact line shorter than this share of a slice are dropped: they carry nothing and spoil the conditioning.
+_SLIVER = 0.03
+# A corner contact beyond either end of a contact line is cut into so many slices, whatever its length.
+_CORNER_SLICES = 2
+
+
+@dataclass(frozen=True)
+class Slices:
+    """n slices at all positions of a cycle; with q places along each.
+
+    Attributes:
+        position: (n,) number of the position in the cycle; pair: (n,) number k of the tooth pair.
+        z: (n, q) places from the middle of the common face; length: (n,) along the axis.
+        weight: (q,) shares of a slice that its places stand for.
+        roll: (2, n, q) roll lengths on pinion and gear.
+        gap: (n, q) kinematic gap of a corner contact, 0 on the line of action, along the flank normal.
+        corner: (n,) whether it is a corner contact.
+    """
+
+    position: np.ndarray
+    pair: np.ndarray
+    z: np.ndarray
+    length: np.ndarray
+    weight: np.ndarray
+    roll: np.ndarray
+    gap: np.ndarray
+    corner: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.pair)
+
+
+def contact_slices(
+    line: LineOfAction,
+    positions: np.ndarray,
+    width: float,
+    slices: int,
+    beyond: tuple[float, float],
+    *,
+    stations: bool = False,
+) -> Slices:
+    """Cut the contact lines at positions u (p,) (in base pitches from the pitch point).
+
+    Args:
+        line: line of action.
+        positions: (p,) any values; pair k is at u + k.
+        width: common face width.
+        slices: how many over the whole face.
+        beyond: how far before the start and after the end corner contacts are followed (m on the line of action).
+        stations: slices stand at fixed places along the face instead, for slices that don't feel each other.
+    """
+    tangent = float(np.tan(line.base_helix_angle))
+    half = 0.5 * width
+    first, last = line.start - beyond[0], line.end + beyond[1]
+    zones = [(first, line.start), (line.start, line.end), (line.end, last)]
+    pieces: list[tuple[int, int, int, np.ndarray, float]] = []
+    for p, u in enumerate(positions):
+        low = (first - tangent * half - line.pitch_point) / line.base_pitch - u
+        high = (last + tangent * half - line.pitch_point) / line.base_pitch - u
+        for k in range(int(np.ceil(low)), int(np.floor(high)) + 1):
+            middle = line.pitch_point + (u + k) * line.base_pitch
+            for zone, ends in enumerate(zones):
+                for z, length in _cut(middle, tangent, ends, half, slices, stations, closed=zone == 1):
+                    pieces.append((p, k, zone, z, length))
+    weight = np.array([1.0]) if (tangent == 0.0 and slices == 1) or stations else _legendre()[1]
+    return _gathered(line, pieces, positions, tangent, weight)
+
+
+@cache
+def _legendre() -> tuple[np.ndarray, np.ndarray]:
+    x, w = np.polynomial.legendre.leggauss(_ALONG)
+    return x, 0.5 * w
+
+
+def _cut(
+    middle: float, tangent: float, ends: tuple[float, float], half: float, slices: int, stations: bool, *, closed: bool
+) -> list[tuple[np.ndarray, float]]:
+    """Places and lengths of the slices of one contact line inside a zone of the line of action."""
+    step = 2.0 * half / slices
+    if tangent == 0.0 or stations:
+        z = -half + step * (np.arange(slices) + 0.5)
+        roll = middle + z * tangent
+        inside = (roll >= ends[0]) & (roll <= ends[1]) if closed else (roll > ends[0]) & (roll < ends[1])
+        places = np.array([0.0]) if slices == 1 or stations else _legendre()[0]
+        return [(centre + 0.5 * step * places, step) for centre in z[inside]]
+    low, high = max(-half, (ends[0] - middle) / tangent), min(half, (ends[1] - middle) / tangent)
+    length = high - low
+    if length < _SLIVER * step:
+        return []
+    count = max(1, int(length / step + 1e-9)) if closed else _CORNER_SLICES
+    centres = low + length / count * (np.arange(count) + 0.5)
+    return [(centre + 0.5 * length / count * _legendre()[0], length / count) for centre in centres]
+
+
+def _gathered(
+    line: LineOfAction,
+    pieces: list[tuple[int, int, int, np.ndarray, float]],
+    positions: np.ndarray,
+    tangent: float,
+    weight: np.ndarray,
+) -> Slices:
+    position, pair, zone = (np.array([piece[i] for piece in pieces], int) for i in range(3))
+    z = np.array([piece[3] for piece in pieces]).reshape(len(pieces), len(weight))
+    middle = line.pitch_point + (positions[position] + pair) * line.base_pitch
+    first = middle[:, None] + z * tangent
+    roll = np.stack([first, line.length - first])
+    gap = np.zeros(first.shape)
+    for gear, number in ((1, 0), (0, 2)):  # before the start the gear's corner touches, after the end the pinion's
+        own = zone == number
+        if own.any():
+            excess = np.maximum(line.start - first[own] if number == 0 else first[own] - line.end, 0.0)
+            gap[own], mate = line.corner(gear, excess)
+            roll[gear, own], roll[1 - gear, own] = line.tip[gear], mate
+    gap = gap * np.cos(line.base_helix_angle)
+    return Slices(position, pair, z, np.array([piece[4] for piece in pieces]), weight, roll, gap, zone != 1)
+
+
+@dataclass(frozen=True)
+class PatchLoads:
+    """Nodal loads, sparse (n, nodes), of unit normal forces on the slices of one gear, and (n,) the mean logarithm of the
+    patches' half-widths in the transverse section, in normal modules."""
+
+    loads: sp.csr_array
+    log_width: np.ndarray
+
+
+def patch_loads(
+    slices: Slices, gear: int, compliance: GearCompliance, module: float, place: np.ndarray, widths: tuple[float, float]
+) -> PatchLoads:
+    """Spread the slices over the flank of one gear.
+
+    Args:
+        slices: the slices; gear: 0 or 1, whose roll lengths count.
+        compliance: of that gear, in normal modules.
+        module: normal module (m).
+        place: (n, q) places along that gear's face from its middle, in its own direction (m).
+        widths: least and largest half-width c of a patch, in normal modules.
+    """
+    base = compliance.base_radius
+    arc = (slices.roll[gear] / module) ** 2 / (2.0 * base)
+    low, high = compliance.flank_start**2 / (2.0 * base), compliance.flank_end**2 / (2.0 * base)
+    c = np.clip(np.minimum(arc - low, high - arc), *widths)
+    k = np.arange(1, _ACROSS + 1) * np.pi / (_ACROSS + 1)
+    spread = np.clip(arc[..., None] + c[..., None] * np.cos(k), low, high)
+    weights = 2.0 / (_ACROSS + 1) * np.sin(k) ** 2
+    across = _shares(compliance.roll**2 / (2.0 * base), spread, weights[None, None] * slices.weight[:, None])
+    if len(compliance.height) > 1:
+        along = _shares(compliance.height, place[..., None] / module, np.ones((1, 1, 1)))
+        loads = np.einsum("nqh,nqr->nhr", along, across).reshape(len(slices), -1)
+    else:
+        loads = across.sum(axis=1)
+    return PatchLoads(sp.csr_array(loads), np.sum(np.log(c) * slices.weight, axis=1))
+
+
+def _shares(nodes: np.ndarray, places: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Sum of weighted quadratic shape functions at places (n, q, m) on a line of nodes (2 e + 1,), shape (n, q, nodes)."""
+    n, q, m = places.shape
+    ends = nodes[::2]
+    element = np.clip(np.searchsorted(ends, places, side="right") - 1, 0, len(ends) - 2)
+    t = np.clip(2.0 * (places - ends[element]) / (ends[element + 1] - ends[element]) - 1.0, -1.0, 1.0)
+    shapes = (
+        np.stack([0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)], -1)
+        * np.broadcast_to(weights, (n, q, m))[..., None]
+    )
+    row = np.arange(n * q).reshape(n, q, 1, 1) * len(nodes)
+    index = row + 2 * element[..., None] + np.arange(3)
+    return np.bincount(index.ravel(), shapes.ravel(), n * q * len(nodes)).reshape(n, q, len(nodes))

@@ -1,0 +1,170 @@
+"""The contact problem of one helix: line of action, compliance of both gears, gaps; from a tooth pair and its FE settings."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.flank import FlankModification
+from rotorgear.gears.geometry.line_of_action import LineOfAction
+from rotorgear.gears.geometry.outline import tooth_outline
+from rotorgear.gears.loaded.contact_points import Slices
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, compliance_key, gear_compliance
+from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
+from rotorgear.progress import Progress, silent
+
+# Stations of the preview along the face.
+_STATIONS = 48
+_THIN_TIP = 0.2
+
+
+@dataclass(frozen=True)
+class ContactProblem:
+    """One helix, ready for any load and position; index 0 is the pinion, 1 the gear.
+
+    Attributes:
+        line: line of action. width: common face width (m). module: normal module (m).
+        compliance: of both gears in normal modules, for a Young's modulus of 1.
+        scale: (2,) factors that bring it to m/N (space) or m^2/N (plane).
+        local: (2,) K = 2 (1 - nu^2)/(pi E) of both gears; modulus: E*.
+        plane: whether the compliance is that of a unit width. uncoupled: whether slices along the face don't feel each other.
+        slices: of a contact line over the whole face. patch: largest half-width of a patch in normal modules.
+        flanks: deviations of both flanks. teeth: numbers of teeth. misalignment: over the whole face (m).
+        body: what the teeth stand on. unknowns: of both finite-element models together.
+        warnings: sentences.
+    """
+
+    line: LineOfAction
+    width: float
+    module: float
+    compliance: tuple[GearCompliance, GearCompliance]
+    scale: tuple[float, float]
+    local: np.ndarray
+    modulus: float
+    plane: bool
+    uncoupled: bool
+    slices: int
+    patch: float
+    flanks: tuple[FlankModification, FlankModification]
+    teeth: tuple[int, int]
+    misalignment: float
+    body: str
+    unknowns: int
+    warnings: tuple[str, ...] = ()
+
+    def place(self, gear: int, z: np.ndarray) -> np.ndarray:
+        """Places along a gear's own face; that of the gear runs the other way, so that both are the same kind of body."""
+        return z if gear == 0 else -z
+
+    @property
+    def largest_gap(self) -> float:
+        """Upper bound of all gaps from deviations (m)."""
+        return sum(flank.largest for flank in self.flanks) + abs(self.misalignment)
+
+    def gap(self, slices: Slices) -> np.ndarray:
+        """Gap (n,) of each slice along the flank normal before loading (m)."""
+        found = slices.gap + self.misalignment * slices.z / self.width
+        for i, flank in enumerate(self.flanks):
+            form, tip = self.line.form[i], self.line.tip[i]
+            found = found + flank.depth(slices.roll[i], slices.z, form, tip, self.width)
+            if flank.pitch_error:
+                # Pair -n comes into mesh n periods after pair 0.
+                found = found + flank.pitch_depth(-slices.pair, self.teeth[i])[:, None]
+        return np.asarray(np.sum(found * slices.weight, axis=1))
+
+
+def line_of_action(teeth: ToothPair) -> LineOfAction:
+    """Line of action of a pair, with the form circles of its generated teeth."""
+    outlines = [tooth_outline(g) for g in (teeth.first, teeth.second)]
+    line = LineOfAction(
+        base_radius=(teeth.first.base_radius, teeth.second.base_radius),
+        form=(outlines[0].form_roll_length, outlines[1].form_roll_length),
+        tip=(outlines[0].tip_roll_length, outlines[1].tip_roll_length),
+        centre_distance=teeth.pair.centre_distance,
+        pressure_angle=teeth.pair.working_transverse_pressure_angle,
+        base_pitch=teeth.base_pitch,
+        base_helix_angle=teeth.first.base_helix_angle,
+    )
+    if line.end - line.start < line.base_pitch and line.base_helix_angle == 0.0:
+        ratio = (line.end - line.start) / line.base_pitch
+        raise AnalysisError(
+            f"The transverse contact ratio is {ratio:.3f}: below 1 there are positions where no teeth touch. Raise the addendum "
+            "or reduce the centre distance."
+        )
+    return line
+
+
+def in_space(teeth: ToothPair) -> tuple[bool, bool]:
+    """Whether the teeth need a three-dimensional model, and whether slices that don't feel each other stand in for it."""
+    fe = teeth.fe
+    flanks = (teeth.first_flank, teeth.second_flank)
+    varies = teeth.first.helix_angle > 0.0 or any(flank.along_face for flank in flanks) or bool(teeth.misalignment)
+    space = fe.space if fe.space is not None else varies and fe.preset != "preview"
+    return space, varies and not space
+
+
+def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: bool = False) -> ContactProblem:
+    """Prepare the contact of one helix: the compliance of both gears is read from disk or computed (`fresh`: always computed).
+
+    Raises:
+        AnalysisError: teeth that can't be made, meshed or brought into contact.
+        MissingExtraError: scikit-fem is needed and not installed.
+    """
+    fe, line = teeth.fe, line_of_action(teeth)
+    flanks = (teeth.first_flank, teeth.second_flank)
+    space, uncoupled = in_space(teeth)
+    module, bodies = teeth.first.normal_module, (teeth.first_body, teeth.second_body)
+    found, scale, inner = [], [], []
+    for i, (g, body) in enumerate(zip((teeth.first, teeth.second), bodies, strict=True)):
+        key = compliance_key(g, fe, body.poisson_ratio, teeth.width, body.inner_radius, space=space)
+        name = ("pinion", "gear")[i]
+
+        def told(fraction: float, text: str, i: int = i, name: str = name) -> None:
+            progress(0.5 * (i + fraction), f"{name}: {text}")
+
+        told(0.0, "teeth")
+        found.append(_without_torsion(gear_compliance(key, told, fresh=fresh), key, teeth, i))
+        inner.append(module * key.inner_radius)
+        scale.append((math.cos(line.base_helix_angle) ** 2 if not space else 1.0 / module) / body.youngs_modulus)
+    size = fe.mesh_size(teeth.width / module, space=space)
+    slices = _STATIONS if uncoupled else (fe.slices or 2 * size.face if space else 1)
+    plane_strain = [(1.0 - body.poisson_ratio**2) / body.youngs_modulus for body in bodies]
+    return ContactProblem(
+        line, teeth.width, module, (found[0], found[1]), (scale[0], scale[1]),
+        np.array([2.0 * value / math.pi for value in plane_strain]), 1.0 / sum(plane_strain),
+        not space, uncoupled, slices, fe.patch_width, flanks, (teeth.first.teeth, teeth.second.teeth),
+        teeth.misalignment, fe.body_text(fe.arc, (inner[0], inner[1])), sum(item.unknowns for item in found),
+        _warnings(teeth, line),
+    )  # fmt: skip
+
+
+def _without_torsion(found: GearCompliance, key: ComplianceKey, teeth: ToothPair, gear: int) -> GearCompliance:
+    """A ring's compliance without the wind-up of its disc between the held circle and the root, if that is asked for.
+
+    A torque r_b per unit of width turns the root against the bore by r_b (1/r_i^2 - 1/r_f^2)/(4 pi G), all flanks alike.
+    """
+    if not (teeth.fe.exclude_torsion and teeth.fe.body == "ring"):
+        return found
+    g = key.geometry
+    shear = 0.5 / (1.0 + key.poisson_ratio)
+    twist = (1.0 / key.inner_radius**2 - 4.0 / g.root_diameter**2) / (4.0 * math.pi * shear)
+    wind_up = g.base_radius**2 * twist
+    if key.width:
+        wind_up *= math.cos(g.base_helix_angle) ** 2 / key.width
+    return replace(found, flexibility=found.flexibility - wind_up)
+
+
+def _warnings(teeth: ToothPair, line: LineOfAction) -> tuple[str, ...]:
+    notes = []
+    if line.interference:
+        notes.append("a tip reaches below the involute of its mate: contact is taken to end at the form circle")
+    for name, g in (("pinion", teeth.first), ("gear", teeth.second)):
+        if g.normal_tip_thickness < _THIN_TIP * g.normal_module:
+            notes.append(f"the teeth of the {name} are thinner than {_THIN_TIP:g} normal modules at the tip")
+        if g.tool_tip_radius_factor >= g.full_radius_factor * (1.0 - 1e-12):
+            notes.append(f"{name}: the rack's tip is fully rounded, rho = {g.tool_tip_radius_factor:.3f} m_n")
+    return tuple(notes)

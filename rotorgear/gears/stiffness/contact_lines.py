@@ -1,0 +1,57 @@
+"""Contact lines of a pair over one mesh period: where they begin and end, and how long they are.
+
+In the plane of action pair j touches along xi = (u + j) p_bt + z tan b_b, |z| <= b/2, between start and end of contact. The
+mean of their length over a period is eps_alpha b / cos b_b, and its harmonic n is 2 sinc(n eps_alpha) sinc(n eps_beta) of
+that, because the length is the convolution of two boxes. Lengths in m.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+
+
+def contact_lines(teeth: ToothPair, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Pairs in contact and their ends along the face.
+
+    Args:
+        teeth: the pair.
+        positions: u, shape (n,).
+
+    Returns:
+        xi (n, j) of each pair at z = 0, and the z of both ends of its line (n, j); equal where the pair does not touch.
+    """
+    pair, half = teeth.pair, 0.5 * teeth.width
+    slope = math.tan(pair.base_helix_angle)
+    reach = half * slope
+    first = math.floor((pair.start_of_contact - reach) / teeth.base_pitch) - 1
+    last = math.ceil((pair.end_of_contact + reach) / teeth.base_pitch) + 1
+    xi = (np.asarray(positions, float)[:, None] + np.arange(first, last + 1)) * teeth.base_pitch
+    if slope == 0.0:
+        inside = (xi >= pair.start_of_contact) & (xi <= pair.end_of_contact)
+        return xi, np.where(inside, -half, 0.0), np.where(inside, half, 0.0)
+    low = np.clip((pair.start_of_contact - xi) / slope, -half, half)
+    return xi, low, np.maximum(np.clip((pair.end_of_contact - xi) / slope, -half, half), low)
+
+
+def contact_line_length(teeth: ToothPair, positions: np.ndarray) -> np.ndarray:
+    """Length of all contact lines of one helix at positions u (n,), shape (n,)."""
+    _, low, high = contact_lines(teeth, positions)
+    return np.asarray(np.sum(high - low, axis=1) / math.cos(teeth.pair.base_helix_angle))
+
+
+def mean_contact_line_length(teeth: ToothPair) -> float:
+    """Mean over a mesh period: eps_alpha b / cos b_b."""
+    return teeth.pair.transverse_contact_ratio * teeth.width / math.cos(teeth.pair.base_helix_angle)
+
+
+def contact_line_harmonics(teeth: ToothPair, count: int) -> np.ndarray:
+    """Complex harmonics 1 ... count of the length over its mean, as `MeshStiffness.harmonics` has them, shape (count,)."""
+    n = np.arange(1, count + 1)
+    middle = 0.5 * (teeth.pair.start_of_contact + teeth.pair.end_of_contact) / teeth.base_pitch
+    overlap = teeth.width * math.tan(teeth.pair.base_helix_angle) / teeth.base_pitch
+    size = 2.0 * np.sinc(n * teeth.pair.transverse_contact_ratio) * np.sinc(n * overlap)
+    return np.asarray(size * np.exp(-2j * np.pi * n * middle))

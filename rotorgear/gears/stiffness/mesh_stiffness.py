@@ -1,0 +1,246 @@
+"""Mesh stiffness over one mesh period: what every stiffness model takes and what it answers.
+
+A stiffness model is a function of a `ToothPair` and a load. It answers with a `MeshStiffness`: k = F_bt / delta in the
+transverse plane, along the line of action, where F_bt is the force at the base circle and delta the approach of the teeth.
+Along the flank normal, as the rotor model has it, k_n = k / cos^2 b_b, because F_n = F_bt / cos b_b and
+delta_n = delta cos b_b.
+
+A position u counts mesh periods from where a tooth pair touches at the pitch point in the middle of the face, positive in
+the sense of approach of the pinion to recess: pair j stands at xi = (u + j) p_bt + z tan b_b from the pitch point.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from importlib import import_module
+from typing import Literal
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.flank import FlankModification
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.geometry.pair import PairGeometry
+from rotorgear.gears.tooth_fe.settings import ToothFe
+from rotorgear.quantity import nearest
+
+Definition = Literal["secant", "tangent"]
+_EXACT, _DEFAULT_FE = FlankModification(), ToothFe()
+
+
+@dataclass(frozen=True)
+class ToothBody:
+    """Material and blank that carry a gear's teeth.
+
+    Attributes:
+        youngs_modulus (Pa), poisson_ratio: of the teeth.
+        inner_radius: radius (m) of the bore, or inside of the rim.
+        web_share: thickness of the web over the face width of a helix; 1 for a solid disk.
+        rim_thickness: of the rim below the root circle (m); None for a solid disk.
+    """
+
+    youngs_modulus: float = 206e9
+    poisson_ratio: float = 0.3
+    inner_radius: float = 0.0
+    web_share: float = 1.0
+    rim_thickness: float | None = None
+
+
+@dataclass(frozen=True)
+class ToothPair:
+    """One helix of a mesh: all that a stiffness model needs to know.
+
+    Attributes:
+        first, second: pinion and gear as the file calls them.
+        pair: their geometry at the centre distance.
+        width: common face width (m) of one helix.
+        first_body, second_body: what the teeth stand on.
+        first_flank, second_flank: deviations of the flanks; misalignment: of the flanks over the whole face (m), positive
+            where they stand apart at larger z. Only the loaded contact takes them in, as it does `fe`, the FE settings.
+    """
+
+    first: GearGeometry
+    second: GearGeometry
+    pair: PairGeometry
+    width: float
+    first_body: ToothBody = ToothBody()
+    second_body: ToothBody = ToothBody()
+    first_flank: FlankModification = _EXACT
+    second_flank: FlankModification = _EXACT
+    misalignment: float = 0.0
+    fe: ToothFe = _DEFAULT_FE
+
+    @property
+    def base_pitch(self) -> float:
+        """p_bt (m)."""
+        return self.first.transverse_base_pitch
+
+    def swapped(self) -> ToothPair:
+        """The same teeth with gear 2 as gear 1."""
+        p = self.pair
+        turned = replace(p, start_of_contact=-p.end_of_contact, end_of_contact=-p.start_of_contact)
+        return ToothPair(
+            self.second, self.first, turned, self.width, self.second_body, self.first_body, self.second_flank,
+            self.first_flank, self.misalignment, self.fe,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class MeshStiffness:
+    """Stiffness over one mesh period, in the transverse plane along the line of action.
+
+    Attributes:
+        model: name of the stiffness model, as in the model file.
+        position: shares u of the mesh period, evenly spaced from 0, shape (n,).
+        transverse: F_bt / delta in N/m, shape (n,).
+        definition: "secant" (force over approach) or "tangent" (its derivative at the load).
+        helices: how many helices it stands for, 1 or 2.
+        load: F_bt in N of all these helices; None where the model does not depend on it and none was given.
+        body: what the teeth stand on, and against what the approach is measured.
+        base_helix_angle: b_b (rad), for the stiffness along the flank normal.
+        warnings: sentences.
+        tangent: dF_bt / d delta in N/m at the load, shape (n,), of a model whose stiffness depends on it; else None.
+    """
+
+    model: str
+    position: np.ndarray
+    transverse: np.ndarray
+    definition: Definition
+    helices: int
+    load: float | None
+    body: str
+    base_helix_angle: float
+    warnings: tuple[str, ...] = ()
+    tangent: np.ndarray | None = None
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Stiffness along the flank normal in N/m, shape (n,): transverse / cos^2 b_b."""
+        return np.asarray(self.transverse / math.cos(self.base_helix_angle) ** 2)
+
+    @property
+    def mean(self) -> float:
+        """Mean of the transverse stiffness in N/m."""
+        return float(np.mean(self.transverse))
+
+    @property
+    def mean_normal(self) -> float:
+        """Mean of the stiffness along the flank normal in N/m: what the rotor model takes."""
+        return self.mean / math.cos(self.base_helix_angle) ** 2
+
+    @property
+    def static_normal(self) -> float:
+        """Stiffness along the flank normal in N/m that gives the mean deflection of the period under the mean load."""
+        if self.tangent is None:
+            return self.mean_normal
+        return 1.0 / (float(np.mean(1.0 / self.transverse)) * math.cos(self.base_helix_angle) ** 2)
+
+    @property
+    def dynamic_normal(self) -> float:
+        """Mean stiffness along the flank normal in N/m against small motions about the mean load."""
+        return self.about_load.mean_normal
+
+    @property
+    def about_load(self) -> MeshStiffness:
+        """The curve that small motions about the load meet: the tangent one where there is one."""
+        return self if self.tangent is None else replace(self, transverse=self.tangent, definition="tangent")
+
+    @property
+    def peak_to_peak(self) -> float:
+        """Largest less smallest transverse stiffness in N/m."""
+        return float(np.ptp(self.transverse))
+
+    def harmonics(self, count: int) -> np.ndarray:
+        """Complex c_h in N/m, shape (count,): k(u) = mean + sum_h Re(c_h e^{2 pi i h u}), h = 1, 2 ...
+
+        Raises:
+            AnalysisError: more harmonics than half the positions can tell apart.
+        """
+        most = (len(self.transverse) - 1) // 2
+        if count > most:
+            raise AnalysisError(f"{len(self.transverse)} positions give {most} harmonics, not {count}: ask for fewer.")
+        return np.asarray(2.0 * np.fft.fft(self.transverse)[1 : count + 1] / len(self.transverse))
+
+    def of_both_helices(self, stagger: float = 0.0, second: MeshStiffness | None = None) -> MeshStiffness:
+        """Two such helices in parallel, the second one ahead by `stagger` of a mesh period (0 or 0.5 as a rule).
+
+        Values between the positions are interpolated where the stagger is no multiple of their spacing. Helices whose
+        stiffness depends on the load share it evenly (the pinion floats), so their approaches are averaged.
+        """
+        other = self if second is None else second
+        load = None if self.load is None else 2.0 * self.load
+
+        def ahead(values: np.ndarray) -> np.ndarray:
+            return np.interp(self.position + stagger, self.position, values, period=1.0)
+
+        if self.tangent is None or other.tangent is None:
+            both = self.transverse + ahead(other.transverse)
+            return replace(self, transverse=both, helices=2 * self.helices, load=load)
+        secant = 4.0 / (1.0 / self.transverse + ahead(1.0 / other.transverse))
+        tangent = 4.0 / (1.0 / self.tangent + ahead(1.0 / other.tangent))
+        notes = tuple(dict.fromkeys(self.warnings + other.warnings))
+        return replace(self, transverse=secant, tangent=tangent, helices=2 * self.helices, load=load, warnings=notes)
+
+
+StiffnessModel = Callable[[ToothPair, float | None, int], MeshStiffness]
+
+
+@dataclass(frozen=True)
+class Registered:
+    """A stiffness model by name: where its function is, whether it needs a load, and what it is in a line."""
+
+    home: str
+    needs_load: bool
+    meaning: str
+
+
+MODELS = {
+    "iso": Registered(
+        "rotorgear.gears.stiffness.iso:iso_stiffness", False, "mean stiffness c_gamma_alpha of ISO 6336-1, without ripple"
+    ),
+    "contact_line": Registered(
+        "rotorgear.gears.stiffness.lines:contact_line_stiffness", False,
+        "that mean, spread in proportion to the length of the contact lines",
+    ),
+    "potential_energy": Registered(
+        "rotorgear.gears.stiffness.energy:potential_energy_stiffness", False,
+        "tooth slices as beams on an elastic ring, with Hertz' contact",
+    ),
+    "tooth_fe": Registered(
+        "rotorgear.gears.loaded.stiffness:tooth_fe_stiffness", True, "finite elements and loaded tooth contact"
+    ),
+}  # fmt: skip
+
+
+@lru_cache(maxsize=128)  # a refined analysis asks for the same meshes again and again
+def mesh_stiffness(name: str, teeth: ToothPair, load: float | None = None, positions: int = 64) -> MeshStiffness:
+    """Stiffness of one helix by a model's name.
+
+    Args:
+        name: a key of `MODELS`.
+        teeth: the pair.
+        load: force F_bt (N) at the base circle of this helix; None where there is none.
+        positions: how many positions of one mesh period.
+
+    Raises:
+        AnalysisError: no such model, a load that the model needs and doesn't get, or teeth that it can't do.
+    """
+    if name not in MODELS:
+        guess = nearest(name, list(MODELS))
+        hint = f"did you mean '{guess}'?" if guess else "there are " + ", ".join(MODELS)
+        raise AnalysisError(f"There is no stiffness model '{name}': {hint}.")
+    entry = MODELS[name]
+    if entry.needs_load and not load:
+        raise AnalysisError(
+            f"The stiffness model '{name}' needs a load: give the torque or power that the mesh carries."
+        )
+    module, function = entry.home.split(":")
+    model: StiffnessModel = getattr(import_module(module), function)
+    found = model(teeth, load, positions)
+    found.position.flags.writeable = found.transverse.flags.writeable = (
+        False  # the cache hands the same arrays out again
+    )
+    return found

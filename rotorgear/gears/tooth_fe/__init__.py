@@ -1,0 +1,1 @@
+"""Tooth compliance by finite elements."""

@@ -1,0 +1,156 @@
+"""Mapped quadratic mesh of one pitch of a gear: a rim block as wide as the pitch with a tooth block on its middle.
+
+Parameter space is a lattice: columns I run across the pitch, rows J from the inner circle to the tip. The two blocks meet on a
+curve through the middle of both fillets. Quadratic elements (9 nodes) are built on the lattice by scikit-fem and all their
+nodes are then mapped onto the tooth, so their edges follow involute and trochoid. Lengths in normal modules.
+
+The tooth stands on the +y axis, its loaded flank at x > 0; columns and rows are graded towards that flank and to its ends.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError, MissingExtraError
+from rotorgear.gears.geometry.outline import ToothOutline
+from rotorgear.gears.tooth_fe.points import MeshSize, flank_rolls, rim_points, tooth_points
+
+# The least radius of the rim's inner circle over that of the root: below, cells would turn over.
+LEAST_INNER = 0.5
+
+
+@dataclass(frozen=True)
+class PitchMesh:
+    """The quadratic mesh of one pitch in the transverse plane.
+
+    Attributes:
+        outline: of the tooth, normal module 1.
+        points: (p, 2) nodes in normal modules.
+        cells: (9, e) nodes of the elements in scikit-fem's order.
+        mesh: the scikit-fem mesh (MeshQuad2) itself.
+        lattice: (p, 2) doubled lattice numbers of the nodes.
+        inner, left, right: nodes on the inner circle, and on the two cuts by rising radius, without the inner circle.
+        flank: nodes of the loaded involute by rising roll length; `roll` (k,) are their roll lengths.
+        normal: (k, 2) outward unit normals at the flank nodes.
+    """
+
+    outline: ToothOutline
+    points: np.ndarray
+    cells: np.ndarray
+    lattice: np.ndarray
+    inner: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+    flank: np.ndarray
+    roll: np.ndarray
+    normal: np.ndarray
+    mesh: Any = field(repr=False, compare=False)
+
+    @property
+    def loaded_column(self) -> int:
+        """Doubled lattice number of the column on the loaded flank."""
+        return int(self.lattice[self.flank[0], 0])
+
+    @property
+    def tooth_rows(self) -> tuple[int, int]:
+        """Doubled lattice numbers of the rows where tooth and involute begin."""
+        return int(self.lattice[self.right[-1], 1]), int(self.lattice[self.flank[0], 1])
+
+    @property
+    def pitch_angle(self) -> float:
+        """2 pi / z (rad)."""
+        return 2.0 * math.pi / self.outline.geometry.teeth
+
+
+def scikit_fem() -> Any:
+    """The package scikit-fem; MissingExtraError where it is not installed."""
+    try:
+        import skfem
+    except ImportError:
+        raise MissingExtraError("The finite-element model of teeth", "scikit-fem", "tooth") from None
+    return skfem
+
+
+def pitch_mesh(outline: ToothOutline, size: MeshSize, inner_radius: float) -> PitchMesh:
+    """Mesh one pitch of a gear down to a circle of `inner_radius` (normal modules).
+
+    Raises:
+        AnalysisError: the inner circle lies outside the root circle, or cells would turn over.
+        MissingExtraError: scikit-fem is not installed.
+    """
+    if not 0.0 < inner_radius < outline.root_radius:
+        raise AnalysisError(
+            f"The inner radius of the gear's body, {inner_radius:.4g} normal modules, must lie between 0 and the root radius, "
+            f"{outline.root_radius:.4g}."
+        )
+    skfem = scikit_fem()
+    corners, cells = _cells(size)
+    straight = skfem.MeshQuad2.from_mesh(
+        skfem.MeshQuad(np.ascontiguousarray(corners.T, float), np.ascontiguousarray(cells.T))
+    )
+    lattice = np.rint(2.0 * straight.doflocs.T).astype(int)
+    grids = rim_points(outline, size, inner_radius), tooth_points(outline, size)
+    points = _mapped(lattice, grids, size)
+    mesh = skfem.MeshQuad2(np.ascontiguousarray(points.T), straight.t)
+    low = 2 * (size.rim + size.fillet)
+    flank = _on(lattice, (lattice[:, 0] == 2 * (size.land + size.tooth)) & (lattice[:, 1] >= low), 1)
+    roll = flank_rolls(outline, size)
+    g = outline.base_half_angle - roll / outline.geometry.base_radius
+    found = PitchMesh(
+        outline=outline,
+        points=points,
+        cells=mesh.dofs.element_dofs,
+        lattice=lattice,
+        inner=_on(lattice, lattice[:, 1] == 0, 0),
+        left=_on(lattice, (lattice[:, 0] == 0) & (lattice[:, 1] > 0), 1),
+        right=_on(lattice, (lattice[:, 0] == 2 * size.columns) & (lattice[:, 1] > 0), 1),
+        flank=flank,
+        roll=roll,
+        normal=np.stack([np.cos(g), -np.sin(g)], -1),
+        mesh=mesh,
+    )
+    _require_sound(found)
+    return found
+
+
+def _cells(size: MeshSize) -> tuple[np.ndarray, np.ndarray]:
+    """Corner points (c, 2) and cells (e, 4) of the lattice, counter-clockwise."""
+    rim = [(i, j) for j in range(size.rim) for i in range(size.columns)]
+    top = size.rim + size.fillet + size.involute
+    tooth = [(i, j) for j in range(size.rim, top) for i in range(size.land, size.land + size.tooth)]
+    low = np.array(rim + tooth)
+    square = low[:, None, :] + np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    corners, cells = np.unique(square.reshape(-1, 2), axis=0, return_inverse=True)
+    return corners, cells.reshape(-1, 4)
+
+
+def _on(lattice: np.ndarray, chosen: np.ndarray, axis: int) -> np.ndarray:
+    """Numbers of chosen nodes, by rising lattice number along an axis."""
+    nodes = np.flatnonzero(chosen)
+    return nodes[np.argsort(lattice[nodes, axis], kind="stable")]
+
+
+def _mapped(lattice: np.ndarray, grids: tuple[np.ndarray, np.ndarray], size: MeshSize) -> np.ndarray:
+    rim, tooth = grids
+    inside = lattice[:, 1] <= 2 * size.rim
+    points = np.empty(lattice.shape)
+    points[inside] = rim[lattice[inside, 1], lattice[inside, 0]]
+    above = lattice[~inside]
+    points[~inside] = tooth[above[:, 1] - 2 * size.rim, above[:, 0] - 2 * size.land]
+    return points
+
+
+def _require_sound(found: PitchMesh) -> None:
+    """AnalysisError where an element is turned over or nearly so."""
+    skfem = scikit_fem()
+    determinant = skfem.Basis(found.mesh, skfem.ElementQuad2(), intorder=4).dx
+    if not determinant.min() > 0.0:
+        g = found.outline.geometry
+        raise AnalysisError(
+            f"The teeth of a gear with z = {g.teeth}, x = {g.profile_shift:.4g} are undercut so deeply that they can't be "
+            "meshed: use more teeth or more profile shift."
+        )

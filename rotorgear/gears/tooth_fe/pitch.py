@@ -1,0 +1,146 @@
+"""One whole pitch of a gear with all its nodes: stiffness, frames at its cuts, and stresses from displacements.
+
+A helical pitch is a stack of equal layers, each turned by z tan(b_b)/r_b against the middle of the face. Lengths in normal
+modules, Young's modulus 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.gears.tooth_fe.elasticity import assembled, component_dofs, element_matrices, lame
+from rotorgear.gears.tooth_fe.mesh import PitchMesh, scikit_fem
+from rotorgear.gears.tooth_fe.sector import clockwise, layer_mesh
+
+
+@dataclass(frozen=True)
+class Pitch:
+    """All nodes of a pitch, plane by plane along the face (one plane for a spur gear in plane strain).
+
+    Attributes:
+        points: (n, d); cells: (c, e, k) nodes of the elements of each layer, in scikit-fem's order.
+        stiffness: sparse (d n, d n).
+        inner, left, right, flank: nodes, plane by plane as in the plane mesh; normal: (f, d) outward at the flank.
+        fillet: nodes of the fillet and half the root on the loaded side.
+        turn: (planes, d, d) rotation of each plane against the middle of the face; layer_turn: (c, d, d) of each layer
+            against the first one.
+        pitch_turn: (d, d) rotation of the next pitch.
+        basis: of one layer, at its nodes.
+    """
+
+    points: np.ndarray
+    cells: np.ndarray
+    stiffness: sp.csc_array
+    inner: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+    flank: np.ndarray
+    fillet: np.ndarray
+    normal: np.ndarray
+    turn: np.ndarray
+    layer_turn: np.ndarray
+    pitch_turn: np.ndarray
+    poisson_ratio: float
+    basis: Any = field(repr=False, compare=False)
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return self.points.shape[1]
+
+    def left_frame(self, cut: np.ndarray) -> np.ndarray:
+        """Displacements of the left cut in the tooth's frame from those in the frames of its planes."""
+        return self._turned(cut, self.turn)
+
+    def right_frame(self, cut: np.ndarray) -> np.ndarray:
+        """The same of the right cut, which is given in the frame of the next pitch."""
+        return self._turned(cut, self.turn @ self.pitch_turn)
+
+    def _turned(self, cut: np.ndarray, turn: np.ndarray) -> np.ndarray:
+        u = cut.reshape(len(turn), -1, self.dimension)
+        return np.einsum("pij,pnj->pni", turn, u).ravel()
+
+    def stress(self, displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Equivalent stress (von Mises) and largest principal one (n,), means of the elements that meet at a node."""
+        lam, mu = lame(self.poisson_ratio)
+        d, n = self.dimension, len(self.points)
+        gradients = np.stack([np.asarray(found[0].grad) for found in self.basis.basis])  # (k, d, e, q)
+        mises, largest, count = np.zeros(n), np.zeros(n), np.zeros(n)
+        for cells, turn in zip(self.cells, self.layer_turn, strict=True):
+            u = displacement[cells] @ turn  # into the frame of the first layer
+            du = np.einsum("kieq,ekj->eqij", gradients, u)
+            strain = np.zeros((*du.shape[:2], 3, 3))
+            strain[..., :d, :d] = 0.5 * (du + du.swapaxes(-1, -2))
+            trace = np.trace(strain, axis1=-2, axis2=-1)
+            stress = 2.0 * mu * strain + lam * trace[..., None, None] * np.eye(3)
+            deviator = stress - np.trace(stress, axis1=-2, axis2=-1)[..., None, None] / 3.0 * np.eye(3)
+            np.add.at(mises, cells, np.sqrt(1.5 * np.sum(deviator**2, axis=(-2, -1))))
+            np.add.at(largest, cells, np.linalg.eigvalsh(stress)[..., -1])
+            np.add.at(count, cells, 1.0)
+        return mises / count, largest / count
+
+
+def whole_pitch(mesh: PitchMesh, poisson_ratio: float, width: float, layers: int) -> Pitch:
+    """A pitch of face `width` in so many layers; 0 layers: plane strain, unit width."""
+    skfem = scikit_fem()
+    p, size = len(mesh.points), mesh.outline.geometry
+    low, high = mesh.tooth_rows
+    column = mesh.loaded_column
+    inside = (mesh.lattice[:, 0] == column) & (mesh.lattice[:, 1] >= low) & (mesh.lattice[:, 1] <= high)
+    fillet = np.flatnonzero(inside | ((mesh.lattice[:, 1] == low) & (mesh.lattice[:, 0] >= column)))
+    if not layers:
+        element = skfem.ElementQuad2()
+        basis, at_nodes = _bases(mesh.mesh, element)
+        cells = mesh.cells.T[None]
+        K = assembled(element_matrices(basis, poisson_ratio), component_dofs(mesh.cells, 2), 2 * p)
+        one, none = np.eye(2)[None], np.eye(2)
+        return Pitch(
+            mesh.points, cells, K, mesh.inner, mesh.left, mesh.right, mesh.flank, fillet, mesh.normal, one, one,
+            none @ clockwise(mesh.pitch_angle, 2), poisson_ratio, at_nodes,
+        )  # fmt: skip
+    height, twist = width / layers, np.tan(size.base_helix_angle) / size.base_radius
+    hexes, place_of = layer_mesh(mesh, height, twist)
+    basis, at_nodes = _bases(hexes, skfem.ElementHex2())
+    first = place_of[hexes.dofs.element_dofs].T
+    cells = first[None] + 2 * p * np.arange(layers)[:, None, None]
+    z = 0.5 * height * np.arange(2 * layers + 1) - 0.5 * width
+    turn = np.array([clockwise(twist * h, 3) for h in z])
+    layer_turn = turn[0] @ np.array([clockwise(twist * height * i, 3) for i in range(layers)])
+    points = np.einsum("pij,nj->pni", turn[:, :2, :2], mesh.points)
+    points = np.concatenate([points, np.broadcast_to(z[:, None, None], (*points.shape[:2], 1))], -1).reshape(-1, 3)
+    tilt = np.hstack(
+        [np.cos(size.base_helix_angle) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(size.base_helix_angle))]
+    )
+    K = _stacked(element_matrices(basis, poisson_ratio), cells, layer_turn, len(points))
+
+    def planes(nodes: np.ndarray) -> np.ndarray:
+        return np.asarray((nodes[None] + p * np.arange(len(z))[:, None]).ravel())
+
+    return Pitch(
+        points, cells, K, planes(mesh.inner), planes(mesh.left), planes(mesh.right), planes(mesh.flank), planes(fillet),
+        np.einsum("pij,nj->pni", turn, tilt).reshape(-1, 3), turn, layer_turn, clockwise(mesh.pitch_angle, 3), poisson_ratio,
+        at_nodes,
+    )  # fmt: skip
+
+
+def _bases(mesh: Any, element: Any) -> tuple[Any, Any]:
+    """Scalar bases with Gauss points, and with the nodes of the element as points."""
+    skfem = scikit_fem()
+    places = np.array(element.doflocs, float).T
+    at_nodes = skfem.Basis(mesh, element, quadrature=(places, np.ones(places.shape[1])))
+    return skfem.Basis(mesh, element, intorder=4), at_nodes
+
+
+def _stacked(elements: np.ndarray, cells: np.ndarray, turn: np.ndarray, nodes: int) -> sp.csc_array:
+    """Stiffness of all layers, each with the element matrices (e, 3 k, 3 k) of the first one turned."""
+    e, k = cells.shape[1:]
+    total = sp.csc_array((3 * nodes, 3 * nodes))
+    blocks = elements.reshape(e, k, 3, k, 3)
+    for own, R in zip(cells, turn, strict=True):
+        turned = np.einsum("ij,eajbl,ml->eaibm", R, blocks, R, optimize=True).reshape(e, 3 * k, 3 * k)
+        total = total + assembled(turned, component_dofs(own.T, 3), 3 * nodes)
+    return total

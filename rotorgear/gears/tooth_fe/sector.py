@@ -1,0 +1,183 @@
+"""One pitch of a gear as a superelement: its stiffness at the two cuts to its neighbours and along the loaded flank.
+
+All pitches of a gear are the same body turned by 2 pi / z, and all layers of a helical one are the same body turned by
+z tan(b_b) / r_b. With the displacements of each node in the frame of its own pitch and layer, every pitch and every layer has
+the same matrix, so one layer is assembled, stacked along the face by static condensation (exact, K_rr - K_ri K_ii^-1 K_ir), and
+the pitches are chained in `gear_compliance`. Nodes on the inner circle are held. Young's modulus 1, lengths in normal modules.
+Reference: Guyan/Irons static condensation; Przemieniecki, Theory of Matrix Structural Analysis, chapter 9.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from rotorgear.gears.tooth_fe.elasticity import assembled, component_dofs, element_matrices
+from rotorgear.gears.tooth_fe.mesh import PitchMesh, scikit_fem
+from rotorgear.progress import Progress, silent
+
+# Above this many unknowns a plane pitch is condensed by a sparse factorisation instead of a dense one.
+_DENSE_LIMIT = 3000
+
+
+@dataclass(frozen=True)
+class Sector:
+    """Condensed stiffness (n, n) of one pitch; unknowns: left cut, right cut (in the next pitch's frame), flank normals.
+
+    The flank unknowns are displacements along the outward normal, ordered plane by plane, within a plane by roll length.
+    """
+
+    stiffness: np.ndarray
+    cut: int
+    flank: int
+    unknowns: int
+
+
+def clockwise(angle: float, dimension: int) -> np.ndarray:
+    """Matrix (d, d) of a clockwise rotation about z, 2 or 3 dimensions."""
+    c, s = np.cos(angle), np.sin(angle)
+    R = np.eye(dimension)
+    R[:2, :2] = [[c, s], [-s, c]]
+    return R
+
+
+def plane_sector(mesh: PitchMesh, poisson_ratio: float) -> Sector:
+    """Superelement of a spur pitch in plane strain, unit width."""
+    skfem = scikit_fem()
+    K_e = element_matrices(skfem.Basis(mesh.mesh, skfem.ElementQuad2(), intorder=4), poisson_ratio)
+    frame, free, inside, keep = _frames(mesh, mesh.normal)
+    K = sp.csc_array(frame.T @ assembled(K_e, component_dofs(mesh.cells, 2), 2 * len(mesh.points)) @ frame)
+    A, B, D = K[inside][:, inside], K[inside][:, keep].toarray(), K[keep][:, keep].toarray()
+    if len(inside) <= _DENSE_LIMIT:
+        condensed = _condensed(np.block([[A.toarray(), B], [B.T, D]]), len(inside))
+    else:
+        condensed = D - B.T @ sp.linalg.splu(sp.csc_matrix(A), permc_spec="MMD_AT_PLUS_A").solve(B)
+    cut = 2 * len(mesh.left)
+    return Sector(0.5 * (condensed + condensed.T), cut, len(keep) - 2 * cut, len(free))
+
+
+def layered_sector(
+    mesh: PitchMesh, poisson_ratio: float, width: float, layers: int, progress: Progress = silent
+) -> Sector:
+    """Superelement of a helical pitch of face width `width` (normal modules) in so many layers; end faces free."""
+    skfem = scikit_fem()
+    g = mesh.outline.geometry
+    height = width / layers
+    twist = np.tan(g.base_helix_angle) / g.base_radius
+    hexes, place_of = layer_mesh(mesh, height, twist)
+    K_e = element_matrices(skfem.Basis(hexes, skfem.ElementHex2(), intorder=4), poisson_ratio)
+    p = 3 * len(mesh.points)
+    K = assembled(K_e, component_dofs(place_of[hexes.dofs.element_dofs], 3), 3 * p)
+    tilt = np.hstack(
+        [np.cos(g.base_helix_angle) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(g.base_helix_angle))]
+    )
+    frame, free, inside, keep = _frames(mesh, tilt)
+    turn = [
+        sp.csc_array(sp.kron(sp.eye_array(len(mesh.points)), clockwise(twist * h, 3))) @ frame
+        for h in (0.0, 0.5 * height, height)
+    ]
+    T = sp.block_diag(turn, format="csc")
+    K = sp.csc_array(T.T @ K @ T)
+    return _stacked(K, p, inside, keep, layers, 3 * len(mesh.left), len(free) * (2 * layers + 1), progress)
+
+
+def layer_mesh(mesh: PitchMesh, height: float, twist: float) -> tuple[Any, np.ndarray]:
+    """One layer of quadratic hexahedra, and the place of each of its nodes: plane by plane, there as in the plane mesh."""
+    skfem = scikit_fem()
+    quads = mesh.mesh.t
+    corners = 1 + int(quads.max())  # the corners come first among the nodes
+    flat = mesh.lattice[:corners].T.astype(float)
+    ends = np.hstack([np.vstack([flat, np.full((1, corners), z)]) for z in (0.0, 2.0)])
+    straight = skfem.MeshHex2.from_mesh(skfem.MeshHex(np.ascontiguousarray(ends), _hexahedra(quads, corners)))
+    lattice = np.rint(straight.doflocs.T).astype(int)
+    number = {tuple(place): k for k, place in enumerate(mesh.lattice)}
+    below = np.array([number[tuple(place)] for place in lattice[:, :2]])
+    z = 0.5 * height * lattice[:, 2]
+    c, s = np.cos(twist * z), np.sin(twist * z)
+    x, y = mesh.points[below].T
+    points = np.vstack([c * x + s * y, c * y - s * x, z])
+    return skfem.MeshHex2(points, straight.t), lattice[:, 2] * len(mesh.points) + below
+
+
+def _hexahedra(quads: np.ndarray, above: int) -> np.ndarray:
+    """Hexahedra over counter-clockwise quadrangles (4, e), corners in scikit-fem's order; the upper ones are `above` later."""
+    a, b, c, d = quads
+    return np.vstack([a, d, b, a + above, c, d + above, b + above, c + above])
+
+
+def _frames(mesh: PitchMesh, normal: np.ndarray) -> tuple[sp.csc_array, np.ndarray, np.ndarray, np.ndarray]:
+    """Frame of the unknowns in one plane (displacements = frame @ unknowns) and the numbers of free, inner and kept ones."""
+    d, count = normal.shape[1], len(mesh.points)
+    blocks = np.tile(np.eye(d), (count, 1, 1))
+    blocks[mesh.right] = clockwise(mesh.pitch_angle, d)
+    for node, direction in zip(mesh.flank, normal, strict=True):
+        q, _ = np.linalg.qr(np.column_stack([direction, np.eye(d)[:, : d - 1] + 0.1]))
+        q[:, 0] = direction  # qr keeps it up to its sign
+        blocks[node] = q
+    frame = sp.csc_array(sp.block_diag(list(blocks)))
+    components = np.arange(d)
+
+    def of(nodes: np.ndarray) -> np.ndarray:
+        return np.asarray((d * nodes[:, None] + components).ravel())
+
+    free = np.setdiff1d(np.arange(d * count), of(mesh.inner))
+    keep = np.concatenate([of(mesh.left), of(mesh.right), d * mesh.flank])
+    return frame, free, np.setdiff1d(free, keep), keep
+
+
+def _condensed(K: np.ndarray, inside: int) -> np.ndarray:
+    """K without its first `inside` unknowns, in place: K_rr - K_ri K_ii^-1 K_ir."""
+    L = la.cholesky(K[:inside, :inside], lower=True, check_finite=False)
+    W = la.solve_triangular(L, K[:inside, inside:], lower=True, check_finite=False)
+    return np.asarray(K[inside:, inside:] - W.T @ W)
+
+
+def _stacked(
+    K: sp.csc_array,
+    p: int,
+    inside: np.ndarray,
+    keep: np.ndarray,
+    layers: int,
+    cut: int,
+    unknowns: int,
+    progress: Progress,
+) -> Sector:
+    """Condense the middle plane of one layer, then stack layers: equal blocks are doubled, so few joints are worked out."""
+    i, k = len(inside), len(keep)
+    order = np.concatenate([p + inside, inside, 2 * p + inside, keep, p + keep, 2 * p + keep])
+    block = _condensed(K[order][:, order].toarray(), i)  # bottom and top inside, then what is kept of its planes
+    stack: np.ndarray | None = None
+    rest, done = layers, 0
+    while rest:
+        progress(done / layers, f"{done} of {layers} layers")
+        if rest % 2:
+            stack = block if stack is None else _joined(stack, block, i, k)
+        rest //= 2
+        done = layers - rest
+        if rest:
+            block = _joined(block, block, i, k)
+    assert stack is not None
+    S = _condensed(stack, 2 * i)
+    progress(1.0, "pitch condensed")
+    planes = 2 * layers + 1
+    number = np.arange(planes * k).reshape(planes, k)
+    final = np.concatenate([number[:, :cut].ravel(), number[:, cut : 2 * cut].ravel(), number[:, 2 * cut :].ravel()])
+    S = S[np.ix_(final, final)]
+    return Sector(0.5 * (S + S.T), planes * cut, planes * (k - 2 * cut), unknowns)
+
+
+def _joined(lower: np.ndarray, upper: np.ndarray, i: int, k: int) -> np.ndarray:
+    """Two blocks of layers as one: the plane between them is condensed, except for its k kept unknowns."""
+    first, second = len(lower) - 2 * i, len(upper) - 2 * i
+    size = 3 * i + first + second - k
+    whole = np.zeros((size, size))
+    shared, bottom, top, kept = 0, i, 2 * i, 3 * i
+    here = np.r_[bottom : bottom + i, shared : shared + i, kept : kept + first]
+    whole[np.ix_(here, here)] = lower
+    here = np.r_[shared : shared + i, top : top + i, kept + first - k : kept + first - k + second]
+    whole[np.ix_(here, here)] += upper
+    return _condensed(whole, i)

@@ -1,0 +1,119 @@
+"""Settings of the finite-element tooth model: presets, body, and the mesh sizes that they stand for.
+
+Bodies. "rim": an arc of seven pitches, held at its end cuts and on a circle three normal modules below the root, so the approach
+is measured against that circle. "ring": all pitches on a full disc of the face's width, held at the bore or inside of the rim.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.tooth_fe.points import MeshSize
+
+Preset = Literal["preview", "default", "fine"]
+Body = Literal["rim", "ring"]
+PRESETS: tuple[Preset, ...] = ("preview", "default", "fine")
+ARC = 7
+RIM = 3.0
+
+
+@dataclass(frozen=True)
+class ToothFe:
+    """How teeth are modelled.
+
+    Attributes:
+        preset: preview, default or fine.
+        body: "rim" or "ring".
+        rim_thickness: of the "rim" body in normal modules.
+        arc: pitches of the "rim" body, an odd number.
+        exclude_torsion: leave the wind-up of the disc out of a "ring", where the rotor model has it already.
+        space: whether the model is three-dimensional; None: where the teeth are helical or change along the face.
+        size: mesh size in place of the preset's.
+        patch: largest half-width of a load patch in normal modules, in place of the preset's.
+        slices: slices of a contact line over the whole face, in place of two a layer.
+    """
+
+    preset: Preset = "default"
+    body: Body = "rim"
+    rim_thickness: float = RIM
+    arc: int = ARC
+    exclude_torsion: bool = False
+    space: bool | None = None
+    size: MeshSize | None = None
+    patch: float | None = None
+    slices: int | None = None
+
+    def __post_init__(self) -> None:
+        for name, allowed in (("preset", PRESETS), ("body", ("rim", "ring"))):
+            if getattr(self, name) not in allowed:
+                raise AnalysisError(f"{name}: got '{getattr(self, name)}', expected one of {', '.join(allowed)}")
+        if self.arc < 3 or self.arc % 2 == 0:
+            raise AnalysisError(f"An arc needs an odd number of at least 3 pitches, not {self.arc}.")
+        if not self.rim_thickness > 0.0:
+            raise AnalysisError(f"The rim thickness must be positive, not {self.rim_thickness:g} normal modules.")
+
+    @property
+    def patch_width(self) -> float:
+        """c_0 in normal modules."""
+        return self.patch or (0.2 if self.preset == "fine" else 0.3)
+
+    def body_text(self, arc_teeth: int, inner: tuple[float, float]) -> str:
+        """What the teeth stand on and where that is held, in a line; inner: radii of the held circles (m)."""
+        radii = " and ".join(f"{1e3 * radius:.5g}" for radius in inner)
+        if self.body == "rim":
+            return f"rim: arc of {arc_teeth} pitches, held at its end cuts and at radius {radii} mm"
+        torsion = ", without the wind-up of the disc" if self.exclude_torsion else ""
+        return f"ring: full disc held at radius {radii} mm{torsion}"
+
+    def mesh_size(self, width: float, *, space: bool) -> MeshSize:
+        """Elements for a face of `width` normal modules."""
+        if self.size is not None:
+            return self.size
+        if not space:
+            return _PLANE[self.preset]
+        size, thickness = _SPACE[self.preset]
+        return replace(size, face=max(_LEAST_LAYERS, round(width / thickness)))
+
+
+# Rows and columns as measured against finer meshes; see docs/mesh.md for error against run time.
+_PLANE = {
+    "preview": MeshSize(6, 2, 4, 2, 4),
+    "default": MeshSize(10, 3, 8, 3, 6),
+    "fine": MeshSize(16, 4, 12, 4, 8),
+}
+# The same with the thickness of a layer in normal modules; the preview takes slices of the plane model instead.
+_SPACE = {
+    "preview": (MeshSize(7, 2, 4, 2, 3), 2.7),
+    "default": (MeshSize(8, 3, 6, 3, 4), 1.08),
+    "fine": (MeshSize(10, 3, 6, 3, 4), 0.77),
+}
+_LEAST_LAYERS = 4
+
+# The mesh that the error of a preset is estimated by, in its plane and in space.
+_COARSER: dict[Preset, tuple[MeshSize, tuple[MeshSize, float]]] = {
+    "preview": (MeshSize(4, 2, 4, 2, 3), (MeshSize(5, 2, 4, 2, 3), 3.6)),
+    "default": (_PLANE["preview"], _SPACE["preview"]),
+    "fine": (_PLANE["default"], _SPACE["default"]),
+}
+
+
+def coarser_size(fe: ToothFe, width: float, *, space: bool) -> MeshSize:
+    """A coarser mesh of the same kind, for a face of `width` normal modules."""
+    if fe.size is not None:
+        given = fe.size
+        involute, fillet, tooth, land, rim = (
+            max(2, round(0.7 * n)) for n in (given.involute, given.fillet, given.tooth, given.land, given.rim)
+        )
+        return MeshSize(involute, fillet, tooth, land, rim, max(2, round(0.7 * given.face)) if given.face else 0)
+    own = sized(fe, _COARSER[fe.preset][1 if space else 0], width).size
+    assert own is not None
+    return own
+
+
+def sized(fe: ToothFe, size: MeshSize | tuple[MeshSize, float], width: float) -> ToothFe:
+    """Settings with a mesh of one's own: for a plane model, or with the thickness of a layer, for a face of `width` modules."""
+    if isinstance(size, MeshSize):
+        return replace(fe, size=size)
+    return replace(fe, size=replace(size[0], face=max(_LEAST_LAYERS - 1, round(width / size[1]))))

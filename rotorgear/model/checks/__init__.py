@@ -1,0 +1,1 @@
+"""What is wrong with a model: every problem with its address."""

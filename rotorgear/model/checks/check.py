@@ -1,0 +1,61 @@
+"""Checks of a model as a whole, in stages.
+
+A part with a problem is left out of the later stages, so that everything wrong in a file is reported at once, and nothing
+that only follows from an earlier mistake.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+from rotorgear.errors import Problem
+from rotorgear.model.checks.gears import gear_problems, inertia_problems
+from rotorgear.model.checks.meshes import massless_gears, mesh_problems, mesh_settings
+from rotorgear.model.checks.names import duplicate_names, points, unknown_materials, unknown_names
+from rotorgear.model.checks.places import coupled_points, stations
+from rotorgear.model.checks.references import PartName, part_of, sound, without
+from rotorgear.model.checks.sizes import materials, matrices, motions, sections
+from rotorgear.model.checks.train import operating_point, train_problems
+from rotorgear.model.parts.tables import Tables
+
+
+def find_problems(model: Tables, broken: Iterable[PartName] = ()) -> list[Problem]:
+    """List every problem of a model whose single fields are in order.
+
+    Args:
+        model: the model, without the parts whose own fields are wrong.
+        broken: (table, name) of those parts; what refers to them is in order.
+    """
+    dropped = set(broken)
+    found: list[Problem] = []
+    if not model.shafts and not any(table == "shafts" for table, _ in dropped):
+        found.append(Problem("shafts", "", "missing", "a model has at least one shaft, such as [shafts.input]"))
+        dropped.add(("shafts", ""))
+    found += _by_themselves(model, dropped)
+    stages: tuple[Callable[[Tables], Iterable[Problem]], ...] = (
+        lambda rest: [*stations(rest), *coupled_points(rest)],
+        mesh_problems,
+        lambda rest: [*inertia_problems(rest), *train_problems(rest, dropped)],
+        massless_gears,
+    )
+    for stage in stages:
+        # A material that is not there does not keep its part from being checked: `without` puts in the default.
+        dropped |= {part_of(problem.address) for problem in found if not problem.address.endswith(".material")}
+        found += stage(without(model, dropped))
+    return found
+
+
+def _by_themselves(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
+    """Checks that look at one part and at names only, so that they need no other part to be in order."""
+    yield from motions(model)
+    yield from duplicate_names(model, broken)
+    yield from unknown_names(model, broken)
+    yield from unknown_materials(model, broken)
+    rest = sound(model, broken)
+    yield from materials(rest)
+    yield from sections(rest)
+    yield from gear_problems(rest)
+    yield from matrices(rest)
+    yield from mesh_settings(rest)
+    yield from points(rest)
+    yield from operating_point(rest, broken)

@@ -1,0 +1,167 @@
+"""Checks of numbers by themselves: materials, sections, and the 6 x 6 matrices of bearings, supports and couplings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+
+from rotorgear.errors import Problem
+from rotorgear.model.checks.problems import shown
+from rotorgear.model.parts.shaft import Section
+from rotorgear.model.parts.supports import Bearing, DampingMatrix, Pedestal, RollingElements, StiffnessMatrix
+from rotorgear.model.parts.tables import Tables
+from rotorgear.quantity import millimetres
+
+
+def motions(model: Tables) -> Iterator[Problem]:
+    """The model has at least one motion."""
+    if not model.motions or len(set(model.motions)) < len(model.motions):
+        yield Problem("motions", shown(list(model.motions)), "some of bending, axial, torsion, each once")
+
+
+def materials(model: Tables) -> Iterator[Problem]:
+    """A material has one of nu and G beside E, and nu is one of a stable material."""
+    for name, material in model.materials.items():
+        address, given = f"materials.{name}", (material.poisson_ratio is not None, material.shear_modulus is not None)
+        if not any(given):
+            yield Problem(address, "neither poisson_ratio nor shear_modulus", "one of them")
+        elif all(given):
+            yield Problem(
+                address, "poisson_ratio and shear_modulus", "one of them", "the other follows from E = 2 G (1 + nu)"
+            )
+        elif not -1.0 < material.nu < 0.5:
+            hint = "it follows from nu = E/2G - 1" if material.shear_modulus else ""
+            yield Problem(address, f"a Poisson's ratio of {material.nu:.4g}", "one between -1 and 0.5", hint)
+
+
+def sections(model: Tables) -> Iterator[Problem]:
+    """Every section has a wall, for the stiffness and for the mass."""
+    for name, shaft in model.shafts.items():
+        for number, section in enumerate(shaft.sections):
+            yield from _section(f"shafts.{name}.sections[{number}]", section)
+
+
+def _section(address: str, section: Section) -> Iterator[Problem]:
+    outer, bore, outer_end, bore_end = section.stiffness_diameters()
+    if bore >= outer:
+        yield Problem(f"{address}.bore", millimetres(bore), f"less than the outer diameter there, {millimetres(outer)}")
+        return
+    if bore_end >= outer_end:
+        limit = f"less than the outer diameter there, {millimetres(outer_end)}"
+        hint = "" if section.bore_end is not None else "it keeps the bore of the left end: give bore_end"
+        yield Problem(f"{address}.bore_end", millimetres(bore_end), limit, hint)
+        return
+    for key, base in (("mass_outer_diameter_end", "mass_outer_diameter"), ("mass_bore_end", "mass_bore")):
+        if getattr(section, key) is not None and getattr(section, base) is None:
+            yield Problem(f"{address}.{base}", "", "missing", f"required beside {key}")
+            return
+    outer, bore, outer_end, bore_end = section.mass_diameters()
+    for inner, room in ((bore, outer), (bore_end, outer_end)):
+        if inner > room:
+            text = f"at most the outer diameter that counts for the mass there, {millimetres(room)}"
+            yield Problem(f"{address}.mass_bore", millimetres(inner), text)
+            return
+
+
+def matrices(model: Tables) -> Iterator[Problem]:
+    """Bearings, supports and couplings have what they need, each entry given once."""
+    for name, bearing in model.bearings.items():
+        yield from _bearing(f"bearings.{name}", bearing)
+    for name, support in model.supports.items():
+        yield from _six_by_six(f"supports.{name}", support.stiffness, support.damping)
+        if not (support.stiffness or support.damping or support.fixed):
+            yield Problem(f"supports.{name}", "neither stiffness, damping nor fixed", "at least one of them")
+    for name, coupling in model.couplings.items():
+        yield from _six_by_six(f"couplings.{name}", coupling.stiffness, coupling.damping)
+
+
+def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
+    if bearing.stiffness is None and not bearing.table:
+        yield Problem(address, "neither stiffness nor table", "stiffness (with damping), or a table over speed")
+    elif bearing.stiffness is not None and bearing.table:
+        yield Problem(address, "stiffness and table", "one of the two")
+    if bearing.table and bearing.damping is not None:
+        yield Problem(f"{address}.damping", "damping beside a table", "damping in the rows of the table")
+    yield from _six_by_six(address, bearing.stiffness, bearing.damping)
+    speeds = [row.speed for row in bearing.table]
+    if len(speeds) == 1 or any(b <= a for a, b in pairwise(speeds)) or any(s < 0 for s in speeds):
+        rpm = ", ".join(f"{speed * 30.0 / math.pi:.6g}" for speed in speeds)
+        yield Problem(
+            f"{address}.table", f"speeds of {rpm} rpm", "at least two rows with speeds that rise from 0 or more"
+        )
+    for number, row in enumerate(bearing.table):
+        yield from _six_by_six(f"{address}.table[{number}]", row.stiffness, row.damping)
+    if bearing.rolling:
+        yield from _rolling(address, bearing, bearing.rolling)
+    if bearing.pedestal:
+        yield from _pedestal(f"{address}.pedestal", bearing.pedestal)
+
+
+def _rolling(address: str, bearing: Bearing, rolling: RollingElements) -> Iterator[Problem]:
+    """Rolling elements that fit into their bearing, beside a stiffness that the linear analyses take."""
+    here = f"{address}.rolling"
+    if bearing.table or (bearing.stiffness and bearing.stiffness.given & {"matrix", "xy", "yx"}):
+        yield Problem(
+            here, "rolling elements beside a table or cross terms", "stiffness along x, y, axial and tilt beside them"
+        )
+    if rolling.elements < 3:
+        yield Problem(f"{here}.elements", str(rolling.elements), "at least 3")
+    if rolling.elements * rolling.element_diameter > math.pi * rolling.pitch_diameter:
+        text = f"{rolling.elements} of {millimetres(rolling.element_diameter)}"
+        yield Problem(
+            f"{here}.element_diameter", text, f"elements that fit on a circle of {millimetres(rolling.pitch_diameter)}"
+        )
+    if (rolling.kind == "roller") != (rolling.length is not None):
+        got = "a roller without length" if rolling.kind == "roller" else "a length of balls"
+        yield Problem(f"{here}.length", got, "a length for rollers, none for balls")
+    if rolling.kind == "roller" and rolling.contact_angle:
+        yield Problem(f"{here}.contact_angle", "an angle", "0 for cylindrical rollers")
+    for key in ("inner_groove", "outer_groove"):
+        if getattr(rolling, key) <= 0.5:
+            yield Problem(
+                f"{here}.{key}", f"{getattr(rolling, key):g}", "more than 0.5: a groove is wider than its ball"
+            )
+    if not abs(rolling.contact_angle) < 1.4:
+        yield Problem(
+            f"{here}.contact_angle", f"{math.degrees(rolling.contact_angle):.6g} deg", "an angle below 80 deg"
+        )
+    reach = 2.0 * (rolling.inner_groove + rolling.outer_groove - 1.0) * rolling.element_diameter
+    if rolling.kind == "ball" and reach > 0.0 and rolling.clearance >= reach * math.cos(rolling.contact_angle):
+        yield Problem(
+            f"{here}.clearance",
+            millimetres(rolling.clearance),
+            f"less than {millimetres(reach)}: the balls would fall out",
+        )
+
+
+def _pedestal(address: str, pedestal: Pedestal) -> Iterator[Problem]:
+    yield from _six_by_six(address, pedestal.stiffness, pedestal.damping)
+    if not pedestal.stiffness.given:
+        return
+    for key, matrix in (("stiffness", pedestal.stiffness), ("damping", pedestal.damping)):
+        rows = matrix.as_rows() if matrix else ()
+        if any(value for i, row in enumerate(rows) for j, value in enumerate(row) if max(i, j) > 2):
+            yield Problem(f"{address}.{key}", "tilt or torsion", "x, y and axial only", "a pedestal is rigid in tilt")
+    rows = pedestal.stiffness.as_rows()
+    if not any(rows[i][i] for i in range(3)):
+        hint = "leave the pedestal out if it is rigid"
+        yield Problem(f"{address}.stiffness", "none along x, y or z", "a stiffness in one of them", hint)
+
+
+def _six_by_six(address: str, stiffness: StiffnessMatrix | None, damping: DampingMatrix | None) -> Iterator[Problem]:
+    for key, matrix in (("stiffness", stiffness), ("damping", damping)):
+        if matrix is None:
+            continue
+        given = matrix.given
+        clashes = [("radial", {"x", "y"}), ("tilt", {"tilt_x", "tilt_y"}), ("matrix", given - {"matrix"})]
+        for whole, parts in clashes:
+            if whole in given and parts & given:
+                names = ", ".join(sorted(parts & given))
+                yield Problem(f"{address}.{key}", f"{whole} together with {names}", "one of the two ways to give it")
+        if not given:
+            yield Problem(f"{address}.{key}", "an empty table", "entries such as radial, axial or tilt, or a matrix")
+        for i in range(6):
+            if matrix.matrix is not None and matrix.matrix[i][i] < 0.0:
+                place = f"{matrix.matrix[i][i]:g} in row {i + 1}, column {i + 1}"
+                yield Problem(f"{address}.{key}.matrix", place, "0 or more on the diagonal")

@@ -1,0 +1,73 @@
+"""Checks of a gear's teeth: whether the tool leaves a tooth, and whether reliefs, allowances and measures fit it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rotorgear.errors import Problem, RotorgearError
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.geometry.measure import ball_contact_diameter, ideal_ball_diameter, with_allowance
+from rotorgear.gears.geometry.outline import ToothOutline, tooth_outline
+from rotorgear.model.checks.flank import flank_problems
+from rotorgear.model.checks.pairs import allowance, ball_diameter
+from rotorgear.model.parts.gear import Gear
+from rotorgear.quantity import millimetres
+
+_LAST_GRADE = 11
+
+
+def tooth_problems(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem]:
+    """Yield what is impossible in a tooth whose circles are in order."""
+    try:
+        outline = tooth_outline(geometry)
+    except RotorgearError as error:
+        yield Problem(address, "", str(error))
+        return
+    yield from _allowances(address, gear)
+    yield from _relief(address, gear, outline)
+    yield from flank_problems(f"{address}.flank", gear.flank, outline, gear.width or 0.0)
+    if gear.accuracy_grade is not None and gear.accuracy_grade > _LAST_GRADE:
+        yield Problem(
+            f"{address}.accuracy_grade", str(gear.accuracy_grade), f"a class from 1 to {_LAST_GRADE} of ISO 1328-1"
+        )
+    yield from _ball(address, gear, geometry)
+
+
+def _ball(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem]:
+    """The ball must touch the flanks of the thinnest tooth below its tip."""
+    thinnest = with_allowance(geometry, allowance(gear).lower)
+    key = "ball_diameter" if gear.ball_diameter is not None else "lower_thickness_allowance"
+    try:
+        touched = ball_contact_diameter(thinnest, ball_diameter(gear, geometry))
+    except RotorgearError as error:
+        yield Problem(f"{address}.{key}", "", str(error))
+        return
+    if gear.ball_diameter is not None and touched > geometry.effective_tip_diameter:
+        wanted = f"a ball that touches the flanks below the tip, such as {1e3 * ideal_ball_diameter(geometry):.4g} mm"
+        yield Problem(f"{address}.{key}", millimetres(gear.ball_diameter), wanted)
+
+
+def _allowances(address: str, gear: Gear) -> Iterator[Problem]:
+    own = allowance(gear)
+    for key, value, most, what in (
+        ("upper_thickness_allowance", own.upper, 0.0, "0 or a negative length"),
+        ("lower_thickness_allowance", own.lower, own.upper, "a length not above the upper allowance"),
+    ):
+        if value > most:
+            yield Problem(
+                f"{address}.{key}", millimetres(value), what, "allowances make a tooth thinner, for the backlash"
+            )
+
+
+def _relief(address: str, gear: Gear, outline: ToothOutline) -> Iterator[Problem]:
+    start = gear.tip_relief_diameter
+    if start is None:
+        if gear.tip_relief:
+            yield Problem(f"{address}.tip_relief_diameter", "", "missing", "required: where the tip relief starts")
+        return
+    if not gear.tip_relief:
+        yield Problem(f"{address}.tip_relief", "", "missing", "required: amount of the tip relief at the tip circle")
+    low, high = 2.0 * outline.form_radius, 2.0 * outline.tip_radius
+    if not low <= start < high:
+        limits = f"a diameter on the involute, from {millimetres(low)} to below {millimetres(high)}"
+        yield Problem(f"{address}.tip_relief_diameter", millimetres(start), limits)

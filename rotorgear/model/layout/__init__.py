@@ -1,0 +1,1 @@
+"""What follows from the parts: train, contacts, phases, torque flow, stiffness."""

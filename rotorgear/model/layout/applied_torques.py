@@ -1,0 +1,102 @@
+"""The torques that drive and load the train, from the operating point and the loads, balanced in power."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rotorgear.errors import Problem
+from rotorgear.model.layout.train import Train
+from rotorgear.model.parts.operation import Load
+from rotorgear.model.parts.tables import Tables
+
+
+@dataclass(frozen=True)
+class AppliedTorque:
+    """A torque on a shaft: `torque` in N m about +z, at `z` in m."""
+
+    name: str
+    shaft: str
+    z: float
+    torque: float
+
+
+def applied_torques(model: Tables, train: Train) -> tuple[list[AppliedTorque], list[Problem]]:
+    """Return the torques that drive and load the train, balanced in power, and the problems where they can't be."""
+    loads, problems = _loads(model, train)
+    found: list[AppliedTorque] = []
+    open_ends: list[tuple[str, Load]] = []
+    for name, load in loads.items():
+        torque = _size(model, train, load)
+        z = model.shafts[load.shaft].station(load.at if load.at is not None else _default_end(load.kind))
+        if torque is None:
+            open_ends.append((name, load))
+        else:
+            sign = train.sense(load.shaft) * (1 if load.kind == "input" else -1)
+            found.append(AppliedTorque(name, load.shaft, z, sign * torque))
+    if problems or not loads:
+        return found, problems
+    return _balanced(model, train, found, open_ends)
+
+
+def _default_end(kind: str) -> str:
+    return "start" if kind == "input" else "end"
+
+
+def _loads(model: Tables, train: Train) -> tuple[dict[str, Load], list[Problem]]:
+    """Merge [operation] and [loads]; loads on shafts that are not driven are problems."""
+    loads = {f"loads.{name}": load for name, load in model.loads.items()}
+    operation = model.operation
+    if operation and (operation.power is not None or operation.torque is not None):
+        loads["operation"] = Load(
+            shaft=operation.input_shaft, kind="input", torque=operation.torque, power=operation.power
+        )
+        if operation.output_shaft:
+            loads["operation.output_shaft"] = Load(shaft=operation.output_shaft, kind="output")
+    problems = [
+        Problem(name, f"a load on shaft '{load.shaft}', which stands still", "a shaft that the train drives",
+                "no mesh or coupling leads to it from the input shaft")
+        for name, load in loads.items() if train.ratios[load.shaft] == 0
+    ]  # fmt: skip
+    return ({} if problems else loads), problems
+
+
+def _size(model: Tables, train: Train, load: Load) -> float | None:
+    """Size of a load's torque in N m, given or from its power; None where it takes the rest."""
+    if load.power is None or model.operation is None or not model.operation.speed:
+        return load.torque
+    return load.power / abs(model.operation.speed * train.ratio(load.shaft))
+
+
+def _balanced(
+    model: Tables, train: Train, found: list[AppliedTorque], open_ends: list[tuple[str, Load]]
+) -> tuple[list[AppliedTorque], list[Problem]]:
+    """Close the balance of power of each connected part of the train with its one open end, or refuse."""
+    problems: list[Problem] = []
+    for group in sorted(
+        {train.group[item.shaft] for item in found} | {train.group[load.shaft] for _, load in open_ends}
+    ):
+        given = [item for item in found if train.group[item.shaft] == group]
+        ends = [(name, load) for name, load in open_ends if train.group[load.shaft] == group]
+        excess = sum(item.torque * train.ratio(item.shaft) for item in given)
+        scale = max((abs(item.torque * train.ratio(item.shaft)) for item in given), default=0.0)
+        if len(ends) > 1:
+            names = ", ".join(name for name, _ in ends)
+            problems.append(
+                Problem("loads", f"{names} without torque or power", "at most one of them: it takes the rest")
+            )
+        elif ends:
+            name, load = ends[0]
+            z = model.shafts[load.shaft].station(load.at if load.at is not None else _default_end(load.kind))
+            torque = -excess / train.ratio(load.shaft)
+            wanted = train.sense(load.shaft) * (1 if load.kind == "input" else -1)
+            if torque * wanted < 0.0:
+                text = f"to balance the other loads this {load.kind} would need {abs(torque):.6g} N m against its sense"
+                other = "output" if load.kind == "input" else "input"
+                problems.append(Problem(name, "", text, f"change the other torques, or make it an {other}"))
+            found.append(AppliedTorque(name, load.shaft, z, torque))
+        elif abs(excess) > 1e-6 * scale:
+            problems.append(
+                Problem("loads", f"torques that leave {excess:.6g} N m, taken to the speed of shaft '{train.reference}'",
+                        "torques that balance", "leave the torque of one output out and it takes the rest")
+            )  # fmt: skip
+    return found, problems

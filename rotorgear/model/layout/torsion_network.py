@@ -1,0 +1,162 @@
+"""Statics of the train in torsion: which force each contact carries.
+
+Shafts twist by 1/(GJ), meshes and couplings give with their own stiffness. The train's free rotation is held at one node of
+each connected group, which takes no torque where the loads balance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rotorgear.errors import AnalysisError
+from rotorgear.model.layout.applied_torques import AppliedTorque
+from rotorgear.model.layout.mesh_geometry import Contact
+from rotorgear.model.layout.train import Train
+from rotorgear.model.parts.tables import Tables
+
+if TYPE_CHECKING:
+    import numpy as np
+
+# Places on a shaft nearer than this to each other (relative, and of a millimetre) are one.
+_SAME_PLACE = 1e-9
+
+
+class _Network:
+    """Nodes in torsion by number and the springs between them. Places that a rigid stretch of shaft joins are one node."""
+
+    def __init__(self, model: Tables, places: Sequence[tuple[str, float]]) -> None:
+        from rotorgear.elements.shaft import torsional_flexibility
+
+        self.size = 0
+        self.springs: list[tuple[int, int, float]] = []
+        self._nodes: dict[str, list[tuple[float, int]]] = {}
+        for shaft in model.shafts:
+            nodes = self._nodes[shaft] = []
+            for z in sorted({z for name, z in places if name == shaft}):
+                give = torsional_flexibility(*_stretch(model, shaft, nodes[-1][0], z)) if nodes else 0.0
+                if nodes and (give == 0.0 or z - nodes[-1][0] <= _SAME_PLACE * max(1e-3, abs(z))):
+                    nodes.append((z, self.size - 1))
+                    continue
+                if nodes:
+                    self.springs.append((self.size - 1, self.size, 1.0 / give))
+                nodes.append((z, self.size))
+                self.size += 1
+
+    def node(self, shaft: str, z: float) -> int:
+        """Number of the node at a place that the network was built with."""
+        return next(number for place, number in self._nodes[shaft] if place == z)
+
+    def first_node(self, shaft: str) -> int | None:
+        """Number of the first node of a shaft; None where nothing acts on it."""
+        return self._nodes[shaft][0][1] if self._nodes[shaft] else None
+
+
+def contact_forces(
+    model: Tables, train: Train, applied: Sequence[AppliedTorque], lines: Sequence[Contact]
+) -> list[float]:
+    """Signed normal force of each contact in N: positive where the pinion is turned positively into the gear.
+
+    Args:
+        model: a checked model.
+        train: its train, for the groups that turn together.
+        applied: torques that balance in each group.
+        lines: the contacts.
+
+    Raises:
+        AnalysisError: stiffnesses that differ too much to be solved together.
+    """
+    import numpy as np
+
+    couplings = _torsional_couplings(model)
+    ends = [
+        ((model.gears[line.pinion].shaft, line.pinion_z), (model.gears[line.gear].shaft, line.gear_z)) for line in lines
+    ]
+    places = [place for pair in (*ends, *(pair for *pair, _ in couplings)) for place in pair]
+    network = _Network(model, [*places, *((item.shaft, item.z) for item in applied)])
+    network.springs += [(network.node(*first), network.node(*second), k) for first, second, k in couplings]
+
+    squeeze = np.zeros(
+        (len(lines), network.size)
+    )  # of each contact along the flank normal, from the twist of the nodes
+    for row, line, (pinion, gear) in zip(squeeze, lines, ends, strict=True):
+        row[network.node(*pinion)] += line.pinion_base_radius * np.cos(line.base_helix_angle)
+        row[network.node(*gear)] += line.gear_base_radius * np.cos(line.base_helix_angle)
+    stiffness = np.array([line.stiffness for line in lines])
+    torques = np.zeros(network.size)
+    for item in applied:
+        torques[network.node(item.shaft, item.z)] += item.torque
+    K = _stiffness_of_springs(network) + (squeeze.T * stiffness) @ squeeze
+    return [float(force) for force in stiffness * (squeeze @ _twist(K, torques, _held(network, train)))]
+
+
+def _stiffness_of_springs(network: _Network) -> np.ndarray:
+    import numpy as np
+
+    K = np.zeros((network.size, network.size))
+    for first, second, k in network.springs:
+        K[first, first] += k
+        K[second, second] += k
+        K[first, second] -= k
+        K[second, first] -= k
+    return K
+
+
+def _twist(K: np.ndarray, torques: np.ndarray, held: list[int]) -> np.ndarray:
+    """Solve K q = torques with some nodes held."""
+    import numpy as np
+
+    free = np.setdiff1d(np.arange(len(torques)), held)
+    twist = np.zeros(len(torques))
+    try:
+        twist[free] = np.linalg.solve(K[np.ix_(free, free)], torques[free])
+    except np.linalg.LinAlgError:
+        raise AnalysisError(
+            "The torque flow can't be solved: the stiffnesses of meshes, couplings and shafts in torsion differ by more "
+            "than numbers can hold. Check the smallest and the largest of them."
+        ) from None
+    return twist
+
+
+def _torsional_couplings(model: Tables) -> list[tuple[tuple[str, float], tuple[str, float], float]]:
+    """Both places and the torsional stiffness of each coupling that has one."""
+    return [
+        (
+            (item.from_shaft, model.shafts[item.from_shaft].station(item.from_at)),
+            (item.to_shaft, model.shafts[item.to_shaft].station(item.to_at)),
+            item.stiffness.as_rows()[5][5],
+        )
+        for item in model.couplings.values()
+        if item.stiffness.as_rows()[5][5] > 0.0
+    ]
+
+
+def _held(network: _Network, train: Train) -> list[int]:
+    """One node of each group of shafts that turn together."""
+    held: dict[int, int] = {}
+    for shaft, group in train.group.items():
+        node = network.first_node(shaft)
+        if node is not None:
+            held.setdefault(group, node)
+    return list(held.values())
+
+
+def _stretch(
+    model: Tables, shaft: str, left: float, right: float
+) -> tuple[list[float], list[tuple[float, float, float, float]], list[float]]:
+    """Lengths, end diameters and shear moduli of the flexible pieces of a shaft between two places."""
+    lengths, diameters, moduli = [], [], []
+    z = model.shafts[shaft].start
+    for section in model.shafts[shaft].sections:
+        low, high = max(left, z), min(right, z + section.length)
+        if high > low and not section.rigid:
+            outer, bore, outer_end, bore_end = section.stiffness_diameters()
+            first, last = (low - z) / section.length, (high - z) / section.length
+            lengths.append(high - low)
+            diameters.append((
+                outer + (outer_end - outer) * first, bore + (bore_end - bore) * first,
+                outer + (outer_end - outer) * last, bore + (bore_end - bore) * last,
+            ))  # fmt: skip
+            moduli.append(model.material_of(shaft, section).g)
+        z += section.length
+    return lengths, diameters, moduli

@@ -1,0 +1,217 @@
+"""Field types of the parts: each carries its unit, its bounds and its place in the JSON Schema.
+
+A part is its own schema: the loader, the error text, the reference page and the schema file all come from these fields.
+"""
+
+from __future__ import annotations
+
+import numbers
+import re
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationError,
+    WithJsonSchema,
+)
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from rotorgear.errors import ModelError
+from rotorgear.model.checks.problems import from_validation
+from rotorgear.quantity import DIMENSIONS, LARGEST, QuantityError, parse_quantity
+
+MOTIONS = ("bending", "axial", "torsion")
+DOF_NAMES = ("x", "y", "z", "tilt_x", "tilt_y", "torsion")
+
+
+class Part(BaseModel):
+    """Base of every part of a model: frozen, without unknown keys, without coercion of strings."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    def __init__(self, /, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise ModelError(from_validation(error, type(self)), type(self).__name__) from None
+
+    # Tells pydantic that parts inside of parts need no call of __init__, so that all their errors come in one list.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+
+def refuse(text: str) -> PydanticCustomError:
+    """The error that says what was expected in place of a value."""
+    return PydanticCustomError("quantity", "{text}", {"text": text})
+
+
+@dataclass(frozen=True)
+class Unit:
+    """Marks a field of type float as a quantity: read with its unit, held in SI. `bound` is "", "positive" or "non-negative"."""
+
+    dimension: str
+    bound: str = ""
+
+    def parse(self, value: Any) -> float:
+        """Return a value of the file in SI; what pydantic is told otherwise is what was expected."""
+        try:
+            number = parse_quantity(value, self.dimension)
+        except QuantityError as error:
+            raise refuse(str(error)) from error
+        # The least positive number keeps its reciprocal and its powers finite.
+        if (self.bound == "positive" and number < 1.0 / LARGEST) or (self.bound == "non-negative" and number < 0.0):
+            wanted = DIMENSIONS[self.dimension]
+            noun = wanted.phrase.removeprefix("an ").removeprefix("a ")
+            raise refuse(f"a {self.bound} {noun} such as '{wanted.example}'")
+        return number
+
+    def schema(self) -> dict[str, Any]:
+        """Return the JSON Schema: a number in SI or a text with a unit."""
+        wanted = DIMENSIONS[self.dimension]
+        number: dict[str, Any] = {"type": "number"}
+        if self.bound == "positive":
+            number["exclusiveMinimum"] = 0
+        elif self.bound == "non-negative":
+            number["minimum"] = 0
+        text = {"type": "string", "examples": [wanted.example], "pattern": r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"}
+        description = f"{wanted.phrase} (SI: {wanted.unit or '-'})"
+        return {"anyOf": [number, text], "description": description, "x-unit": wanted.unit}
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(self.parse, handler(source))
+
+    def __get_pydantic_json_schema__(self, _: CoreSchema, __: GetJsonSchemaHandler) -> dict[str, Any]:
+        return self.schema()
+
+
+Length = Annotated[float, Unit("length")]
+PositiveLength = Annotated[float, Unit("length", "positive")]
+NonNegativeLength = Annotated[float, Unit("length", "non-negative")]
+Angle = Annotated[float, Unit("angle")]
+Speed = Annotated[float, Unit("speed")]
+Time = Annotated[float, Unit("time", "non-negative")]
+PositiveTime = Annotated[float, Unit("time", "positive")]
+Rate = Annotated[float, Unit("rate", "non-negative")]
+Mass = Annotated[float, Unit("mass", "non-negative")]
+Inertia = Annotated[float, Unit("inertia", "non-negative")]
+Density = Annotated[float, Unit("density", "positive")]
+Modulus = Annotated[float, Unit("modulus", "positive")]
+Torque = Annotated[float, Unit("torque", "non-negative")]
+Power = Annotated[float, Unit("power", "non-negative")]
+Stiffness = Annotated[float, Unit("stiffness", "non-negative")]
+PositiveStiffness = Annotated[float, Unit("stiffness", "positive")]
+SignedStiffness = Annotated[float, Unit("stiffness")]
+RotationalStiffness = Annotated[float, Unit("rotational_stiffness", "non-negative")]
+Damping = Annotated[float, Unit("damping", "non-negative")]
+SignedDamping = Annotated[float, Unit("damping")]
+RotationalDamping = Annotated[float, Unit("rotational_damping", "non-negative")]
+Ratio = Annotated[float, Unit("ratio", "non-negative")]
+PositiveRatio = Annotated[float, Unit("ratio", "positive")]
+SignedRatio = Annotated[float, Unit("ratio")]
+Force = Annotated[float, Unit("force", "non-negative")]
+Viscosity = Annotated[float, Unit("viscosity", "non-negative")]
+UnbalanceSize = Annotated[float, Unit("unbalance", "non-negative")]
+Acceleration = Annotated[float, Unit("acceleration")]
+
+
+def _parse_station(value: Any) -> float | str:
+    if isinstance(value, str) and value in ("start", "end"):
+        return value
+    try:
+        return parse_quantity(value, "length")
+    except QuantityError as error:
+        raise refuse("a position along z such as '120 mm', or 'start' or 'end' of the shaft") from error
+
+
+def _station_schema() -> dict[str, Any]:
+    length = Unit("length").schema()
+    ends = {"type": "string", "enum": ["start", "end"]}
+    return {
+        **length,
+        "anyOf": [*length["anyOf"], ends],
+        "description": "z of the place, or 'start' or 'end' of the shaft",
+    }
+
+
+Station = Annotated[float | Literal["start", "end"], BeforeValidator(_parse_station), WithJsonSchema(_station_schema())]
+
+
+def _parse_position(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise refuse("x and y of the axis such as ['0 mm', '120 mm']")
+    return value
+
+
+Position = Annotated[tuple[Length, Length], BeforeValidator(_parse_position)]
+
+
+def _parse_gravity(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        raise refuse("its x, y and z such as ['0 m/s^2', '-9.81 m/s^2', '0 m/s^2']")
+    return value
+
+
+Gravity = Annotated[tuple[Acceleration, Acceleration, Acceleration], BeforeValidator(_parse_gravity)]
+
+
+def _parse_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
+    rows = value if isinstance(value, list | tuple) else ()
+    if len(rows) != 6 or any(not isinstance(row, list | tuple) or len(row) != 6 for row in rows):
+        raise refuse("6 rows of 6 numbers in SI, rows and columns x y z tilt_x tilt_y torsion")
+    return tuple(
+        tuple(_entry(x, f"row {i + 1}, column {j + 1}") for j, x in enumerate(row)) for i, row in enumerate(rows)
+    )
+
+
+def _entry(value: Any, place: str) -> float:
+    """A plain number: the entries of a 6 x 6 have several units, so that they are given in SI."""
+    if isinstance(value, str):
+        raise refuse(f"plain numbers in SI, without units; {place} is a text")
+    try:
+        return parse_quantity(value, "ratio")
+    except QuantityError as error:
+        raise refuse(f"finite numbers in SI; that of {place} is none") from error
+
+
+Matrix6 = Annotated[
+    tuple[tuple[float, ...], ...],
+    BeforeValidator(_parse_matrix),
+    WithJsonSchema(
+        {
+            "type": "array", "minItems": 6, "maxItems": 6,
+            "items": {"type": "array", "minItems": 6, "maxItems": 6, "items": {"type": "number"}},
+            "description": "6 x 6 in SI, rows and columns x y z tilt_x tilt_y torsion",
+        }
+    ),
+]  # fmt: skip
+
+_MOST = 100_000
+
+
+def _parse_whole(value: Any) -> int:
+    """No 29.0, no "29" and no true for 1."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or not 1 <= int(value) <= _MOST:
+        raise refuse(f"a whole number from 1 to {_MOST}")
+    return int(value)
+
+
+Whole = Annotated[
+    int, BeforeValidator(_parse_whole), WithJsonSchema({"type": "integer", "minimum": 1, "maximum": _MOST})
+]
+Flag = Annotated[bool, Field(strict=True)]
+
+
+def _parse_name(name: str) -> str:
+    if len(name) > 60 or not re.fullmatch(r"[\w-](?:[\w -]*[\w-])?", name) or not re.search(r"[^\W_]", name):
+        raise refuse("a short name of letters, digits, _ and - such as 'input_left'")
+    return name
+
+
+# Names stand in addresses, tables, files and groups of files: dots, brackets and slashes would be read as something else.
+Name = Annotated[str, AfterValidator(_parse_name), WithJsonSchema({"type": "string"})]

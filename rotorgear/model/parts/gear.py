@@ -1,0 +1,113 @@
+"""Gears: spur, helical or herringbone, by their teeth, or by base radius and transverse angle for lumped models."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from rotorgear.model.parts.fields import (
+    Angle,
+    Inertia,
+    Length,
+    Mass,
+    NonNegativeLength,
+    Part,
+    PositiveLength,
+    PositiveRatio,
+    Ratio,
+    SignedRatio,
+    Station,
+    Whole,
+)
+from rotorgear.model.parts.flank import Flank
+
+
+class GearBody(Part):
+    """Shape of a gear's blank, for its mass: rim, web and hub. What is left out is solid."""
+
+    bore: NonNegativeLength | None = Field(None, description="bore; default: the shaft's diameter there")
+    rim_thickness: PositiveLength | None = Field(None, description="thickness of the rim below the tooth roots")
+    web_thickness: PositiveLength | None = Field(None, description="thickness of the web along z, between rim and hub")
+    hub_diameter: PositiveLength | None = Field(None, description="outer diameter of the hub")
+    hub_width: PositiveLength | None = Field(None, description="width of the hub along z")
+
+
+class Gear(Part):
+    """A cylindrical external gear on a shaft."""
+
+    shaft: str = Field(description="name of the shaft")
+    at: Station = Field(description="z of the gear's middle, or 'start' or 'end'")
+    kind: Literal["spur", "helical", "herringbone"] = Field(description="spur, helical or herringbone")
+    teeth: Whole | None = Field(None, description="number of teeth")
+    normal_module: PositiveLength | None = Field(None, description="normal module m_n")
+    normal_pressure_angle: Angle = Field(
+        0.3490658503988659, description="normal pressure angle alpha_n; default 20 deg"
+    )
+    helix_angle: Angle | None = Field(None, description="helix angle beta at the reference circle, positive")
+    hand: Literal["right", "left"] | None = Field(
+        None, description="hand of the helix; of a herringbone: of the helix at the smaller z"
+    )
+    width: PositiveLength | None = Field(None, description="face width (of one helix)")
+    gap: NonNegativeLength = Field(0.0, description="gap between the helices of a herringbone")
+    profile_shift: SignedRatio = Field(0.0, description="profile shift coefficient x")
+    addendum_factor: PositiveRatio = Field(1.0, description="addendum of the rack over m_n")
+    dedendum_factor: PositiveRatio = Field(1.25, description="dedendum of the rack over m_n")
+    tip_diameter: PositiveLength | None = Field(None, description="tip diameter; default: from addendum and shift")
+    root_radius_factor: Ratio | None = Field(
+        None, description="tip radius of the rack over m_n, which cuts the root fillet; default: that of ISO 53"
+    )
+    tip_relief: NonNegativeLength = Field(
+        0.0, description="linear tip relief C_a at the tip circle, normal to the flank"
+    )
+    tip_relief_diameter: PositiveLength | None = Field(None, description="diameter at which the tip relief starts")
+    flank: Flank = Field(default_factory=Flank, description="further modifications and errors of the flanks")
+    upper_thickness_allowance: Length = Field(
+        0.0, description="upper allowance E_sns of the normal tooth thickness, 0 or negative, for the backlash"
+    )
+    lower_thickness_allowance: Length | None = Field(
+        None, description="lower allowance E_sni of the normal tooth thickness; default: the upper one"
+    )
+    ball_diameter: PositiveLength | None = Field(
+        None,
+        description="diameter of the balls or pins that the gear is measured over; default: the ideal one, rounded up",
+    )
+    accuracy_grade: Whole | None = Field(None, description="flank tolerance class 1 to 11 of ISO 1328-1, for K_v")
+    base_radius: PositiveLength | None = Field(None, description="base radius of a lumped gear, in place of the module")
+    transverse_pressure_angle: Angle | None = Field(None, description="transverse pressure angle of a lumped gear")
+    base_helix_angle: Angle | None = Field(None, description="base helix angle of a lumped helical gear")
+    clocking: Angle | None = Field(
+        None,
+        description="angle of a tooth's middle from the mark of the shaft, about +z; default: what closes a loop, else 0",
+    )
+    nodes: Literal[1, 2] | None = Field(
+        None, description="herringbone: 2 = a node for each helix, joined by the shaft (default); 1 = one rigid node"
+    )
+    mass: Mass | None = Field(None, description="mass of the whole gear; default: from the blank")
+    polar_inertia: Inertia | None = Field(None, description="moment of inertia about z of the whole gear")
+    diametral_inertia: Inertia | None = Field(None, description="moment of inertia about x and y through its middle")
+    body: GearBody = Field(default_factory=GearBody, description="shape of the blank, for the mass")
+    material: str | None = Field(None, description="material of the blank; default: the shaft's")
+
+    @property
+    def lumped(self) -> bool:
+        """Whether the gear is given by its base radius instead of its teeth."""
+        return self.base_radius is not None
+
+    @property
+    def node_count(self) -> int:
+        """Nodes of the gear on its shaft: 2 for a herringbone unless it says 1, else 1."""
+        if self.kind != "herringbone":
+            return 1
+        return self.nodes or 2
+
+    @property
+    def helix_offset(self) -> float:
+        """Distance in m of a helix' mid-plane from the gear's middle: (gap + width)/2 for a herringbone, else 0."""
+        return 0.5 * (self.gap + (self.width or 0.0)) if self.kind == "herringbone" else 0.0
+
+    @property
+    def total_width(self) -> float:
+        """Width over all in m; 0 where no width is given."""
+        width = self.width or 0.0
+        return 2.0 * width + self.gap if self.kind == "herringbone" else width

@@ -1,0 +1,108 @@
+"""A mesh between two gears."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
+from rotorgear.model.parts.fields import (
+    Angle,
+    Damping,
+    Length,
+    NonNegativeLength,
+    Part,
+    PositiveLength,
+    PositiveRatio,
+    Ratio,
+    Viscosity,
+)
+from rotorgear.model.parts.flank import ToothFeTable
+from rotorgear.model.parts.stiffness_field import StiffnessValue
+
+
+class Mesh(Part):
+    """Two gears in mesh. Everything that follows from the gears and the axes is computed, not asked for."""
+
+    pinion: str = Field(description="name of the gear that is called the pinion")
+    gear: str = Field(description="name of its mate")
+    stiffness: StiffnessValue = Field(
+        description="mean mesh stiffness along the flank normal, both helices together; a list of such values over one "
+        "mesh period; a Fourier series { mean, amplitudes, phases }; or the name of a stiffness model, which takes the "
+        "mean load of the torque flow"
+    )
+    damping_ratio: Ratio = Field(0.0, description="damping ratio zeta: c = 2 zeta sqrt(k m_e)")
+    damping: Damping | None = Field(
+        None, description="damping coefficient along the flank normal, in place of the ratio"
+    )
+    equivalent_mass: Literal["torsion", "general"] = Field(
+        "torsion", description="m_e of the damping ratio: from the rotations only, or from all motions of the two gears"
+    )
+    centre_distance_allowance: NonNegativeLength = Field(
+        0.0, description="the centre distance may deviate by so much to both sides, for the backlash"
+    )
+    application_factor: PositiveRatio = Field(1.0, description="application factor K_A of ISO 6336, for K_v")
+    stagger: Ratio = Field(
+        0.0, description="herringbone: lead of the helix at larger z in mesh periods, 0 or 0.5 as a rule"
+    )
+    misalignment: Length = Field(
+        0.0, description="distance of the flanks at the end of larger z of the common face less that at its other end"
+    )
+    tooth_fe: ToothFeTable = Field(default_factory=ToothFeTable, description="settings of stiffness = 'tooth_fe'")
+    contact_position: Length = Field(
+        0.0, description="place of the contact along the line of action from the pitch point, positive towards recess"
+    )
+    centre_line_angle: Angle | None = Field(
+        None, description="direction from pinion to gear from +x, only where the shafts have no positions"
+    )
+    pressure_angle: Angle | None = Field(
+        None, description="working transverse pressure angle, only where the shafts have no positions"
+    )
+    index_error: Length = Field(
+        0.0,
+        description="gap along the flank normal that must close before this mesh carries (timing error of a branch)",
+    )
+    helix_index_error: Length = Field(
+        0.0, description="gap that the helix at the larger z of a herringbone has beside that"
+    )
+    helix_stagger: Ratio = Field(
+        0.0,
+        description="herringbone: by how many pitches the teeth at the larger z are ahead; 0 in phase, 0.5 staggered",
+    )
+    phase: Angle | None = Field(
+        None,
+        description="angle of the mesh at the time 0, counted from contact at the pitch point; default: what follows from "
+        "teeth, clocking and centre lines",
+    )
+    transmission_error: tuple[ErrorHarmonic, ...] = Field(
+        (), description="harmonics of the static transmission error, positive where it opens the gap"
+    )
+    stiffness_variation: tuple[StiffnessHarmonic, ...] = Field(
+        (), description="harmonics of the mesh stiffness about its mean"
+    )
+    corner_impact: CornerImpact | None = Field(None, description="impact at each entry of a tooth; default: none")
+    friction_coefficient: Ratio = Field(0.0, description="coefficient of sliding friction between the flanks")
+    lubricant_viscosity: Viscosity | None = Field(
+        None, description="viscosity of the oil: friction by Benedict and Kelley's formula, in place of a coefficient"
+    )
+    backlash: NonNegativeLength | None = Field(
+        None, description="backlash along the flank normal; without it the teeth never part in a transient"
+    )
+    back_flank: Literal["line", "own normals"] = Field(
+        "line", description="the back flank pushes along the line of the driving flank, or along its own normal"
+    )
+    nominal_driver: Literal["pinion", "gear"] | None = Field(
+        None,
+        description="which of the two drives on the flanks that responses, transients and sweeps call the driving ones, "
+        "also where the loads press the others; default: the one that the mean torques make drive",
+    )
+    contact_damping: Literal["clamped", "unclamped", "penetration"] = Field(
+        "clamped",
+        description="clamped: teeth never pull; unclamped: damping may pull; penetration: damping grows with the depth",
+    )
+    damping_depth: PositiveLength | None = Field(
+        None,
+        description="depth over which contact damping grows from zero to its value, so that the force has no jump; default: 2 % "
+        "of the mean deflection; with penetration: the depth at which it has its value, by default the mean deflection",
+    )

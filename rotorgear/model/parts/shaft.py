@@ -1,0 +1,146 @@
+"""Shafts: an axis at (x, y), and sections along z."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from rotorgear.model.parts.fields import (
+    Density,
+    Flag,
+    Length,
+    Modulus,
+    NonNegativeLength,
+    Part,
+    Position,
+    PositiveLength,
+    PositiveRatio,
+    Ratio,
+    SignedRatio,
+    Time,
+    Whole,
+)
+
+
+class Material(Part):
+    """An isotropic elastic material: two of E, G and nu are enough."""
+
+    youngs_modulus: Modulus = Field(description="Young's modulus E")
+    density: Density = Field(description="density")
+    poisson_ratio: Ratio | None = Field(None, description="Poisson's ratio nu; follows from G where that is given")
+    shear_modulus: Modulus | None = Field(None, description="shear modulus G; follows from nu where that is given")
+
+    @property
+    def nu(self) -> float:
+        """Poisson's ratio, from E and G where it is not given."""
+        if self.poisson_ratio is not None:
+            return self.poisson_ratio
+        return self.youngs_modulus / (2.0 * self.shear_modulus) - 1.0 if self.shear_modulus else 0.3
+
+    @property
+    def g(self) -> float:
+        """Shear modulus in Pa, from E and nu where it is not given."""
+        if self.shear_modulus is not None:
+            return self.shear_modulus
+        return self.youngs_modulus / (2.0 * (1.0 + self.nu))
+
+
+# Handbook values at room temperature; a model that needs others gives them under [materials].
+LIBRARY = {
+    "steel": Material(youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0),
+    "stainless_steel": Material(youngs_modulus=193e9, poisson_ratio=0.29, density=8000.0),
+    "cast_iron": Material(youngs_modulus=110e9, poisson_ratio=0.26, density=7200.0),
+    "ductile_iron": Material(youngs_modulus=169e9, poisson_ratio=0.275, density=7100.0),
+    "aluminium": Material(youngs_modulus=70e9, poisson_ratio=0.33, density=2700.0),
+    "titanium": Material(youngs_modulus=114e9, poisson_ratio=0.34, density=4430.0),
+    "bronze": Material(youngs_modulus=110e9, poisson_ratio=0.34, density=8800.0),
+    "brass": Material(youngs_modulus=105e9, poisson_ratio=0.35, density=8500.0),
+}
+
+
+class Section(Part):
+    """A piece of a shaft between two values of z, cylindrical or conical."""
+
+    length: PositiveLength = Field(description="length along z")
+    outer_diameter: PositiveLength = Field(description="outer diameter (at the left end of a cone)")
+    bore: NonNegativeLength = Field(0.0, description="inner diameter (at the left end of a cone)")
+    outer_diameter_end: PositiveLength | None = Field(None, description="outer diameter at the right end of a cone")
+    bore_end: NonNegativeLength | None = Field(None, description="inner diameter at the right end of a cone")
+    mass_outer_diameter: PositiveLength | None = Field(
+        None, description="outer diameter that counts for the mass, where it differs from that for the stiffness"
+    )
+    mass_outer_diameter_end: PositiveLength | None = Field(
+        None, description="the same at the right end; default: as at the left end"
+    )
+    mass_bore: NonNegativeLength | None = Field(None, description="inner diameter that counts for the mass")
+    mass_bore_end: NonNegativeLength | None = Field(None, description="the same at the right end")
+    material: str | None = Field(None, description="name of a material; default: the shaft's")
+    shear_coefficient: PositiveRatio | None = Field(None, description="shear coefficient kappa; default: Cowper's")
+    rigid: Flag = Field(False, description="true: moves as a rigid body (it keeps its mass)")
+    elements: Whole | None = Field(None, description="elements of this section; overrides --elements")
+
+    def stiffness_diameters(self) -> tuple[float, float, float, float]:
+        """Outer and inner diameter at the left end, outer and inner at the right end, in m."""
+        outer_end = self.outer_diameter if self.outer_diameter_end is None else self.outer_diameter_end
+        bore_end = self.bore if self.bore_end is None else self.bore_end
+        return self.outer_diameter, self.bore, outer_end, bore_end
+
+    def mass_diameters(self) -> tuple[float, float, float, float]:
+        """The same four diameters as they count for the mass."""
+        outer, bore, outer_end, bore_end = self.stiffness_diameters()
+        if self.mass_outer_diameter is not None:
+            outer = self.mass_outer_diameter
+            outer_end = outer if self.mass_outer_diameter_end is None else self.mass_outer_diameter_end
+        if self.mass_bore is not None:
+            bore = self.mass_bore
+            bore_end = bore if self.mass_bore_end is None else self.mass_bore_end
+        return outer, bore, outer_end, bore_end
+
+
+class Shaft(Part):
+    """A shaft: an axis parallel to z, and sections from its start on. Without sections it is one rigid point."""
+
+    position: Position | None = Field(
+        None, description="(x, y) of the axis; may be left out where no gear on the shaft needs a centre distance"
+    )
+    start: Length = Field(0.0, description="z of the left end of the first section")
+    sections: tuple[Section, ...] = Field((), description="sections from left to right")
+    material: str = Field("steel", description="name of a material, from [materials] or the library")
+    shear_deformation: Flag = Field(True, description="false: no shear deformation (kappa G A infinite)")
+    mass_matrix: Literal["consistent", "lumped"] = Field("consistent", description="inertia of the elements")
+    internal_damping: Time = Field(
+        0.0, description="viscous rotating damping eta of the material: C = eta K of the shaft"
+    )
+    speed_ratio: SignedRatio | None = Field(
+        None, description="speed relative to the input shaft, only where no mesh or coupling leads to this shaft"
+    )
+
+    @property
+    def length(self) -> float:
+        """Sum of the sections' lengths in m."""
+        return sum(section.length for section in self.sections)
+
+    @property
+    def end(self) -> float:
+        """z of the right end in m."""
+        return self.start + self.length
+
+    def station(self, at: float | str) -> float:
+        """z in m of a place on this shaft: a number as it is, or "start" or "end"."""
+        if isinstance(at, str):
+            return self.start if at == "start" else self.end
+        return at
+
+    def diameter_at(self, z: float) -> float:
+        """Largest outer diameter in m of the sections that touch `z`; 0 for a shaft without sections."""
+        left, found = self.start, 0.0
+        tolerance = 1e-9 * max(self.length, abs(z))
+        for section in self.sections:
+            right = left + section.length
+            if left - tolerance <= z <= right + tolerance:
+                outer, _, outer_end, _ = section.stiffness_diameters()
+                share = min(max((z - left) / section.length, 0.0), 1.0)
+                found = max(found, outer + (outer_end - outer) * share)
+            left = right
+        return found

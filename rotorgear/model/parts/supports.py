@@ -1,0 +1,158 @@
+"""What holds the shafts: bearings on pedestals, supports to ground, and couplings between shaft ends."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from rotorgear.model.parts.fields import (
+    Angle,
+    Damping,
+    Mass,
+    Matrix6,
+    NonNegativeLength,
+    Part,
+    PositiveLength,
+    PositiveRatio,
+    RotationalDamping,
+    RotationalStiffness,
+    SignedDamping,
+    SignedStiffness,
+    Speed,
+    Station,
+    Stiffness,
+    Whole,
+)
+
+Rows = tuple[tuple[float, ...], ...]
+FixedDof = Literal["x", "y", "z", "tilt_x", "tilt_y", "torsion", "all"]
+
+
+class _SixBySix(Part):
+    """What stiffness and damping share: a diagonal shorthand, cross terms in the plane, or the full matrix."""
+
+    @property
+    def given(self) -> frozenset[str]:
+        """Names of the entries that have a value."""
+        return frozenset(name for name in type(self).model_fields if getattr(self, name) is not None)
+
+    def as_rows(self) -> Rows:
+        """The 6 x 6 matrix as rows, in the order x y z tilt_x tilt_y torsion."""
+        values = {name: getattr(self, name) or 0.0 for name in type(self).model_fields if name != "matrix"}
+        matrix = getattr(self, "matrix", None)
+        if matrix is not None:
+            return matrix
+        diagonal = [
+            values["x"] or values["radial"],
+            values["y"] or values["radial"],
+            values["axial"],
+            values["tilt_x"] or values["tilt"],
+            values["tilt_y"] or values["tilt"],
+            values["torsion"],
+        ]
+        rows = [[diagonal[i] if i == j else 0.0 for j in range(6)] for i in range(6)]
+        rows[0][1], rows[1][0] = values["xy"], values["yx"]
+        return tuple(tuple(row) for row in rows)
+
+
+class StiffnessMatrix(_SixBySix):
+    """Stiffness of a bearing, support or coupling."""
+
+    radial: Stiffness | None = Field(None, description="along x and y")
+    x: Stiffness | None = Field(None, description="along x")
+    y: Stiffness | None = Field(None, description="along y")
+    axial: Stiffness | None = Field(None, description="along z")
+    xy: SignedStiffness | None = Field(None, description="cross term: force along x from a displacement along y")
+    yx: SignedStiffness | None = Field(None, description="cross term: force along y from a displacement along x")
+    tilt: RotationalStiffness | None = Field(None, description="about x and y")
+    tilt_x: RotationalStiffness | None = Field(None, description="about x")
+    tilt_y: RotationalStiffness | None = Field(None, description="about y")
+    torsion: RotationalStiffness | None = Field(None, description="about z")
+    matrix: Matrix6 | None = Field(None, description="the full 6 x 6, in place of all the others")
+
+
+class DampingMatrix(_SixBySix):
+    """Viscous damping of a bearing, support or coupling."""
+
+    radial: Damping | None = Field(None, description="along x and y")
+    x: Damping | None = Field(None, description="along x")
+    y: Damping | None = Field(None, description="along y")
+    axial: Damping | None = Field(None, description="along z")
+    xy: SignedDamping | None = Field(None, description="cross term: force along x from a velocity along y")
+    yx: SignedDamping | None = Field(None, description="cross term: force along y from a velocity along x")
+    tilt: RotationalDamping | None = Field(None, description="about x and y")
+    tilt_x: RotationalDamping | None = Field(None, description="about x")
+    tilt_y: RotationalDamping | None = Field(None, description="about y")
+    torsion: RotationalDamping | None = Field(None, description="about z")
+    matrix: Matrix6 | None = Field(None, description="the full 6 x 6, in place of all the others")
+
+
+class TableRow(Part):
+    """A bearing's matrices at one speed of its shaft."""
+
+    speed: Speed = Field(description="speed of the bearing's own shaft, without sign")
+    stiffness: StiffnessMatrix = Field(description="stiffness at that speed")
+    damping: DampingMatrix | None = Field(None, description="damping at that speed; default: none")
+
+
+class Pedestal(Part):
+    """A flexible pedestal with mass in series with a bearing. A direction without stiffness is rigid."""
+
+    mass: Mass = Field(0.0, description="mass that moves with the bearing's housing")
+    stiffness: StiffnessMatrix = Field(description="stiffness to ground along x, y and z")
+    damping: DampingMatrix | None = Field(None, description="damping to ground along x, y and z")
+
+
+class RollingElements(Part):
+    """What rolls in a bearing: its Hertz contacts, clearance and turning cage, for a transient."""
+
+    kind: Literal["ball", "roller"] = Field(description="ball, or cylindrical roller")
+    elements: Whole = Field(description="number of balls or rollers")
+    element_diameter: PositiveLength = Field(description="diameter of a ball or roller")
+    pitch_diameter: PositiveLength = Field(description="diameter of the circle of their centres")
+    length: PositiveLength | None = Field(None, description="effective length of a roller")
+    clearance: NonNegativeLength = Field(0.0, description="radial internal clearance: the whole play along a diameter")
+    contact_angle: Angle = Field(
+        0.0,
+        description="free contact angle of an angular contact ball bearing; positive where it takes a push towards +z",
+    )
+    inner_groove: PositiveRatio = Field(0.52, description="groove radius of the inner ring over the ball's diameter")
+    outer_groove: PositiveRatio = Field(0.53, description="groove radius of the outer ring over the ball's diameter")
+
+
+class Bearing(Part):
+    """A bearing between a shaft and the ground or a pedestal: linear, and in a transient with its rolling elements if given."""
+
+    shaft: str = Field(description="name of the shaft")
+    at: Station = Field(description="z of the bearing, or 'start' or 'end'")
+    stiffness: StiffnessMatrix | None = Field(None, description="stiffness; or give a table")
+    damping: DampingMatrix | None = Field(None, description="damping; default: none")
+    table: tuple[TableRow, ...] = Field(
+        (), description="rows over speed, linear in between, in place of stiffness and damping"
+    )
+    rolling: RollingElements | None = Field(
+        None, description="rolling elements, which take the place of the stiffness in a transient"
+    )
+    pedestal: Pedestal | None = Field(None, description="flexible pedestal; default: rigid ground")
+
+
+class Support(Part):
+    """A support to ground: springs, dampers, and motions that are held fixed."""
+
+    shaft: str = Field(description="name of the shaft")
+    at: Station = Field(description="z of the support, or 'start' or 'end'")
+    stiffness: StiffnessMatrix | None = Field(None, description="stiffness to ground")
+    damping: DampingMatrix | None = Field(None, description="damping to ground")
+    fixed: tuple[FixedDof, ...] = Field((), description="motions held fixed: x y z tilt_x tilt_y torsion, or all")
+
+
+class Coupling(Part):
+    """A flexible coupling between two coaxial points: shaft ends, gear halves, or an inner and an outer shaft."""
+
+    from_shaft: str = Field(description="name of the first shaft")
+    from_at: Station = Field("end", description="z on the first shaft; default: its end")
+    to_shaft: str = Field(description="name of the second shaft")
+    to_at: Station = Field("start", description="z on the second shaft; default: its start")
+    stiffness: StiffnessMatrix = Field(description="stiffness; with a torsional one, both shafts turn at one speed")
+    damping: DampingMatrix | None = Field(None, description="damping; default: none")

@@ -1,0 +1,54 @@
+"""The tables of a model file as named, frozen parts, each sound by itself."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from rotorgear.model.parts.bodies import Disk, PointMass
+from rotorgear.model.parts.excitation import Unbalance
+from rotorgear.model.parts.fields import Name, Part
+from rotorgear.model.parts.gear import Gear
+from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.operation import Load, ModelDamping, Operation, Point
+from rotorgear.model.parts.shaft import LIBRARY, Material, Section, Shaft
+from rotorgear.model.parts.supports import Bearing, Coupling, Support
+
+
+class Tables(Part):
+    """All parts of a model by name. Whether they fit each other is checked by `Model`."""
+
+    schema_version: Literal[1] = Field(1, description="version of this file format; this rotorgear reads 1")
+    title: str = Field("", description="what the model is, in a line")
+    motions: tuple[Literal["bending", "axial", "torsion"], ...] = Field(
+        ("bending", "axial", "torsion"), description="motions the model has; the others are held fixed in every node"
+    )
+    operation: Operation | None = Field(None, description="operating point")
+    materials: dict[Name, Material] = Field(default_factory=dict, description="materials besides the library")
+    shafts: dict[Name, Shaft] = Field(default_factory=dict, description="shafts")
+    disks: dict[Name, Disk] = Field(default_factory=dict, description="rigid disks")
+    point_masses: dict[Name, PointMass] = Field(default_factory=dict, description="point masses")
+    gears: dict[Name, Gear] = Field(default_factory=dict, description="gears")
+    meshes: dict[Name, Mesh] = Field(default_factory=dict, description="meshes between gears")
+    bearings: dict[Name, Bearing] = Field(default_factory=dict, description="bearings")
+    supports: dict[Name, Support] = Field(default_factory=dict, description="supports to ground")
+    couplings: dict[Name, Coupling] = Field(default_factory=dict, description="couplings between shafts")
+    damping: ModelDamping = Field(default_factory=ModelDamping, description="damping of the model as a whole")
+    loads: dict[Name, Load] = Field(default_factory=dict, description="torques, for several inputs or outputs")
+    unbalances: dict[Name, Unbalance] = Field(default_factory=dict, description="unbalances of shafts")
+    points: dict[Name, Point] = Field(default_factory=dict, description="named points with a direction")
+
+    def material_of(self, shaft: str, section: Section | None = None, name: str | None = None) -> Material:
+        """Return the material of a shaft, of one of its sections, or of a body on it with its own material name."""
+        own = name or (section.material if section else None) or self.shafts[shaft].material
+        return self.materials[own] if own in self.materials else LIBRARY[own]
+
+    def has(self, motion: str) -> bool:
+        """Whether the model has a motion: bending, axial or torsion."""
+        return motion in self.motions
+
+    @property
+    def reference_shaft(self) -> str:
+        """The shaft whose speed is the reference: the input shaft, else the first one."""
+        return self.operation.input_shaft if self.operation else next(iter(self.shafts))

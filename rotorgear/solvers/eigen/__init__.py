@@ -1,0 +1,1 @@
+"""Eigenvalue problems: symmetric, damped, over a parameter."""

@@ -1,0 +1,216 @@
+"""Undamped modes K v = lambda M v, lowest first, by shift and invert: (K - sigma M)^-1 M v = v / (lambda - sigma).
+
+Block Lanczos on one sparse factor, or LAPACK's `eigh(M, K - sigma M)` when n is small or most modes are wanted.
+With strain factors S (K = S^T S) a Ritz step on S V replaces the eigenvalues by strain-energy Rayleigh quotients, which
+do not suffer from the rounding of the assembled K. A Sturm count from the pivot signs proves that no mode is missing.
+Ericsson and Ruhe, Math. Comp. 35 (1980) 1251; Parlett, The Symmetric Eigenvalue Problem, chapters 3 and 13.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.solvers.eigen.ritz import count_rigid, orthonormalised, stiffness_ritz, strain_ritz
+from rotorgear.solvers.eigen.shift_invert import ShiftInvert, dense_modes, lanczos_modes, shifted_operator, unstable
+from rotorgear.solvers.sparse.factor import single_thread
+from rotorgear.solvers.sparse.pencil import Strain, backward_errors, check_pencil, count_below, rounding_noise
+
+_DENSE_UP_TO = 250
+_SPARE = 4  # Ritz pairs beyond the converged ones, among which a gap for the Sturm count is looked for
+_GAP = 1e-3  # least relative gap in lambda in which a Sturm count is placed
+_ATTEMPTS = 6
+_UNSTABLE = 100.0  # multiple of the rounding of K below which an eigenvalue is negative in earnest
+_EDGE = 1e-9  # a mode this close above the limit `below` counts as on it
+
+
+@dataclass(frozen=True)
+class UndampedModes:
+    """The m lowest modes of K v = lambda M v.
+
+    Attributes
+    ----------
+    eigenvalues : (m,) lambda = omega^2 in (rad/s)^2, ascending, never negative.
+    vectors : (n, m), V^T M V = identity.
+    rigid_count : how many of the first modes have no strain beyond rounding.
+    backward_error : (m,) ||K v - lambda M v|| / ((||K||_1 + |lambda| ||M||_1) ||v||).
+    available : number of finite modes of the pencil; `complete` says that all of them are here.
+    sturm_shift : lambda at which modes were counted; sturm_count by pivot signs, sturm_expected by this solver.
+    method : "dense" or "block Lanczos"; shift : sigma; factorisations : how many matrices were factored.
+    """
+
+    eigenvalues: np.ndarray
+    vectors: np.ndarray
+    rigid_count: int
+    backward_error: np.ndarray
+    available: int
+    sturm_shift: float
+    sturm_count: int
+    sturm_expected: int
+    method: str
+    shift: float
+    factorisations: int
+
+    @property
+    def sturm_count_ok(self) -> bool:
+        """True when the independent count agrees: no mode below the last one is missing."""
+        return self.sturm_count == self.sturm_expected
+
+    @property
+    def complete(self) -> bool:
+        """True when these are all the finite modes there are."""
+        return self.eigenvalues.size == self.available
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    count: int | None
+    below: float | None
+
+    def among(self, values: np.ndarray) -> int:
+        """How many of the ascending eigenvalues were asked for."""
+        limit = np.inf if self.below is None else self.below**2 * (1.0 + _EDGE)
+        inside = int(np.count_nonzero(values <= limit))
+        return inside if self.count is None else min(inside, self.count)
+
+
+def lowest_modes(
+    M: sp.csc_array,
+    K: sp.csc_array,
+    *,
+    count: int | None = None,
+    below: float | None = None,
+    strain: Strain | None = None,
+    guess: float | None = None,
+) -> UndampedModes:
+    """The lowest undamped modes of a symmetric positive semidefinite pair, rigid modes included.
+
+    Parameters
+    ----------
+    M, K : (n, n) symmetric positive semidefinite; M may have massless dofs (their infinite modes are left out).
+    count : number of modes; when fewer exist all are returned (`complete`). None with no `below`: all modes.
+    below : only the modes with omega <= below [rad/s], and all of them (the lowest `count` when both are given).
+    strain : V (n, m) -> S V (p, m) with K = S^T S, each strain evaluated without forming K. It carries soft modes to
+        full precision and tells rigid from soft; without it a mode softer than the rounding of K counts as rigid.
+    guess : an eigenvalue [(rad/s)^2] near the first elastic one; saves the search for it, never changes the answer.
+
+    Raises
+    ------
+    LooseDofError
+        A dof has neither inertia nor stiffness (`dofs`).
+    AnalysisError
+        The matrices are not symmetric or K is not positive semidefinite.
+    ConvergenceError
+        The Sturm count does not confirm the modes; `partial` holds them.
+    """
+    if count is not None and count < 1:
+        raise AnalysisError(f"The number of modes must be at least 1, got {count}.")
+    if below is not None and not below > 0.0:
+        raise AnalysisError(f"The highest frequency wanted must be positive, got {below} rad/s.")
+    M, K = sp.csc_array(M, dtype=float), sp.csc_array(K, dtype=float)
+    with single_thread(K.shape[0]):
+        massless = check_pencil(M, K)
+        return _confirmed(shifted_operator(M, K, guess), _Wanted(count, below), strain, massless)
+
+
+@dataclass(frozen=True)
+class _Candidates:
+    """Refined Ritz pairs in ascending order; the first `sure` are converged, `finite` exist."""
+
+    values: np.ndarray
+    vectors: np.ndarray
+    noise: np.ndarray
+    rigid: int
+    sure: int
+    finite: int
+    method: str
+
+
+def _confirmed(operator: ShiftInvert, wanted: _Wanted, strain: Strain | None, massless: np.ndarray) -> UndampedModes:
+    """Compute, refine and count, with more Ritz vectors while no gap is found or the count disagrees."""
+    target, spare, modes = _target(operator, wanted, massless), _SPARE, None
+    for _attempt in range(_ATTEMPTS):
+        candidates = _candidates(operator, massless, target, spare, strain)
+        keep = wanted.among(candidates.values)
+        gap = _gap_above(candidates, keep) if keep <= candidates.sure else None
+        if gap is not None:
+            modes = _counted(operator, candidates, keep, gap)
+            if modes.sturm_count_ok:
+                return modes
+            target = max(target, modes.sturm_count)
+        target, spare = max(target, keep), 3 * spare
+    raise ConvergenceError(
+        f"The {target} lowest modes could not be told from those above them: no gap confirmed by a Sturm count."
+        " Ask for more modes.",
+        modes,
+    )
+
+
+def _target(operator: ShiftInvert, wanted: _Wanted, massless: np.ndarray) -> int:
+    finite = operator.K.shape[0] - massless.size
+    if wanted.below is not None:
+        finite = min(finite, count_below(operator.M, operator.K, wanted.below**2 * (1.0 + 1e3 * _EDGE)))
+        operator.factorisations += 1
+    return finite if wanted.count is None else min(wanted.count, finite)
+
+
+def _candidates(
+    operator: ShiftInvert, massless: np.ndarray, target: int, spare: int, strain: Strain | None
+) -> _Candidates:
+    n = operator.K.shape[0]
+    dense = n <= _DENSE_UP_TO or 3 * (target + spare) > n
+    if dense:
+        V = dense_modes(operator, massless, target + spare)
+        sure = finite = V.shape[1]
+        V = V[:, : target + 10 * spare]
+    else:
+        V = lanczos_modes(operator, target + 1, spare)
+        sure, finite = target + 1, n - massless.size
+    V = orthonormalised(operator.mass, V)
+    values, V = stiffness_ritz(operator.K, V, operator.sigma) if strain is None else strain_ritz(strain, V)
+    noise = rounding_noise(operator.size_K, V, operator.sigma)
+    if values.size and values[0] < -_UNSTABLE * noise[0]:
+        raise unstable(float(values[0]))
+    rigid = count_rigid(operator, values, V, noise, strain is not None)
+    if strain is None:
+        values[:rigid] = 0.0
+    return _Candidates(values, V, noise, rigid, sure, finite, "dense" if dense else "block Lanczos")
+
+
+def _gap_above(candidates: _Candidates, keep: int) -> tuple[float, int] | None:
+    """A shift in the widest relative gap above the modes to keep, and the number of modes below it; None: no gap."""
+    values, noise = candidates.values, candidates.noise
+    if values.size == candidates.finite:
+        values, noise = np.append(values, max(4.0 * values[-1], 1e3 * noise[-1])), np.append(noise, 0.0)
+    first = max(keep, 1)
+    above, under = values[first:], values[first - 1 : -1]
+    if keep == 0:
+        above, under = values[:1], np.zeros(1)
+        first = 0
+    gaps = np.where(above > 1e2 * noise[first:], (above - under) / np.maximum(above, np.finfo(float).tiny), 0.0)
+    if gaps.size == 0 or gaps.max() < _GAP:
+        return None
+    best = int(np.argmax(gaps))
+    return float(0.5 * (above[best] + under[best])), first + best
+
+
+def _counted(operator: ShiftInvert, candidates: _Candidates, keep: int, gap: tuple[float, int]) -> UndampedModes:
+    errors = backward_errors(operator.mass, operator.stiffness, candidates.values, candidates.vectors)
+    found = count_below(operator.M, operator.K, gap[0])
+    operator.factorisations += 1
+    return UndampedModes(
+        eigenvalues=candidates.values[:keep],
+        vectors=candidates.vectors[:, :keep],
+        rigid_count=min(candidates.rigid, keep),
+        backward_error=errors[:keep],
+        available=candidates.finite,
+        sturm_shift=gap[0],
+        sturm_count=found,
+        sturm_expected=gap[1],
+        method=candidates.method,
+        shift=operator.sigma,
+        factorisations=operator.factorisations,
+    )

@@ -1,0 +1,247 @@
+"""The quadratic pencil Q(lambda) = lambda^2 M + lambda D + K, scaled, linearised and inverted at a real shift.
+
+With p = lambda q the state x = [q; p] satisfies lambda x = A x, and y = (A - sigma)^-1 x needs one n x n factor only:
+(K + sigma D + sigma^2 M) y_q = -(D + sigma M) x_q - M x_p,   y_p = x_q + sigma y_q.
+Dofs are scaled to unit diagonals and time to a frequency w0, so that units do not matter.
+Tisseur and Meerbergen, SIAM Review 43 (2001) 235, sections 3.4 and 5.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.solvers.sparse.factor import Factor, factor_general
+from rotorgear.solvers.sparse.nullspace import SupportedSolver, left_null_space
+from rotorgear.solvers.sparse.pencil import EPS, LooseDofError
+
+
+@dataclass(frozen=True)
+class Quadratic:
+    """Scaled M, D, K (n, n): q = scale * q_scaled and lambda = w0 * lambda_scaled."""
+
+    M: sp.csc_array
+    D: sp.csc_array
+    K: sp.csc_array
+    scale: np.ndarray
+    w0: float
+
+    @property
+    def n(self) -> int:
+        """Number of dofs."""
+        return int(self.K.shape[0])
+
+    def at(self, z: complex) -> sp.csc_array:
+        """Q(z) = z^2 M + z D + K; real for a real z."""
+        return sp.csc_array(z * z * self.M + z * self.D + self.K)
+
+    def forms(self, V: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """v^H M v, v^H D v and v^H K v of each column of V (n, k): three times (k,)."""
+        mass, velocity, stiffness = (np.einsum("ij,ij->j", V.conj(), A @ V) for A in (self.M, self.D, self.K))
+        return mass, velocity, stiffness
+
+    def residuals(self, values: np.ndarray, V: np.ndarray) -> np.ndarray:
+        """Backward errors ||Q(z) v|| / ((|z|^2 ||M||_1 + |z| ||D||_1 + ||K||_1) ||v||) of scaled pairs: (m,)."""
+        left = (self.M @ V) * values**2 + (self.D @ V) * values + self.K @ V
+        norms = [float(abs(A).sum(axis=0).max()) for A in (self.M, self.D, self.K)]
+        size = np.abs(values) ** 2 * norms[0] + np.abs(values) * norms[1] + norms[2]
+        size = np.maximum(size * np.linalg.norm(V, axis=0), np.finfo(float).tiny)  # K = 0 leaves no residual either
+        errors: np.ndarray = np.linalg.norm(left, axis=0) / size
+        return errors
+
+
+def corrected(values: np.ndarray, trust: np.ndarray, forms: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
+    """Roots z (k,) of z^2 a + z b + c next to the given ones, a, b, c = v^H M v, v^H D v, v^H K v: errors of v count twice.
+
+    That is so where v is its own left vector (no damping), and nearly so with little damping. A step of more than `trust`
+    relative to z is not taken.
+    """
+    a, b, c = forms
+    slope = 2.0 * values * a + b
+    step = (values * (values * a + b) + c) / np.where(slope == 0.0, 1.0, slope)
+    taken = (slope != 0.0) & (np.abs(step) <= trust * np.abs(values))
+    return np.asarray(np.where(taken, values - step, values))
+
+
+def scaled(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, w0: float) -> Quadratic:
+    """Scale dofs by 1/sqrt(|k_ii| + w0 |d_ii| + w0^2 m_ii) and time by w0.
+
+    Raises
+    ------
+    LooseDofError
+        Some dof has no stiffness, damping and inertia of its own.
+    """
+    diagonal = np.abs(K.diagonal()) + w0 * np.abs(D.diagonal()) + w0**2 * np.abs(M.diagonal())
+    if np.any(diagonal <= 0.0):
+        raise LooseDofError(np.flatnonzero(diagonal <= 0.0))
+    scale = 1.0 / np.sqrt(diagonal)
+    S = sp.diags_array(scale)
+    return Quadratic(sp.csc_array(S @ M @ S * w0**2), sp.csc_array(S @ D @ S * w0), sp.csc_array(S @ K @ S), scale, w0)
+
+
+class InverseState:
+    """T = (A - sigma)^-1 on states (2n, k), with the zero eigenvalues of the rigid motions projected out."""
+
+    def __init__(self, quadratic: Quadratic, sigma: float, rigid: np.ndarray) -> None:
+        self.quadratic, self.sigma = quadratic, sigma
+        self.factor: Factor = factor_general(quadratic.at(sigma))
+        self._first = sp.csr_array(quadratic.D + sigma * quadratic.M)
+        self._second = sp.csr_array(quadratic.M)
+        self.zeros = zero_states(quadratic, rigid)
+        inertia = np.maximum(quadratic.M.diagonal(), 0.0)
+        self._balance = np.sqrt(np.maximum(inertia, EPS * inertia.max(initial=0.0)))[:, None]
+
+    def project(self, x: np.ndarray) -> np.ndarray:
+        """x (2n, k) without its part in the zero eigenspace."""
+        return x - self.zeros @ (self.zeros.T @ x) if self.zeros.shape[1] else x
+
+    def apply(self, x: np.ndarray) -> np.ndarray:
+        """T x (2n, k)."""
+        n = self.quadratic.n
+        q = -self.factor.solve(self._first @ x[:n] + self._second @ x[n:])
+        return np.vstack([q, x[:n] + self.sigma * q])
+
+    def apply_balanced(self, y: np.ndarray) -> np.ndarray:
+        """B T B^-1 y without its part in the zero eigenspace, B = diag(1, sqrt(M_ii)): norms are then nearly energies.
+
+        In energies T is normal but for damping. Without B speeds outweigh displacements, and Ritz values stray among the
+        converged ones.
+        """
+        return self._balanced(self.project(self.apply(self.unbalanced(y))))
+
+    def unbalanced(self, y: np.ndarray) -> np.ndarray:
+        """B^-1 y (2n, k)."""
+        n = self.quadratic.n
+        return np.vstack([y[:n], y[n:] / self._balance])
+
+    def _balanced(self, x: np.ndarray) -> np.ndarray:
+        n = self.quadratic.n
+        return np.vstack([x[:n], self._balance * x[n:]])
+
+    def restored(self, mu: np.ndarray, X: np.ndarray, known: np.ndarray) -> np.ndarray:
+        """Eigenvectors (2n, k) of T from those X of T projected off the invariant subspace `known` (2n, z).
+
+        With T Z = Z H and T x = mu x + Z b the eigenvector is x + Z c, (mu - H) c = b.
+        """
+        if known.shape[1] == 0:
+            return X
+        H = known.T @ self.apply(known)
+        coupling = known.T @ self.apply(X)
+        shifted = mu[:, None, None] * np.eye(H.shape[0]) - H
+        try:
+            restored: np.ndarray = X + known @ np.linalg.solve(shifted, coupling.T[:, :, None])[:, :, 0].T
+        except np.linalg.LinAlgError as error:
+            raise ConvergenceError(
+                "A mode can't be told from a rigid motion: some part is held by less than the rounding of the others."
+            ) from error
+        return restored
+
+
+def zero_states(quadratic: Quadratic, rigid: np.ndarray) -> np.ndarray:
+    """Orthonormal basis (2n, z) of the states whose eigenvalue is exactly zero, given K @ rigid = 0.
+
+    Each rigid motion R c is one. If D R c does no work on rigid motions (L^T D R c = 0, L^T K = 0) it may also drift,
+    q = R c t + q1 with K q1 = -D R c: a second state, the pair of a defective double zero.
+
+    Raises
+    ------
+    AnalysisError
+        The rigid vectors are strained, or a drift has no inertia.
+    """
+    K, D, M = quadratic.K, quadratic.D, quadratic.M
+    if rigid.shape[1] == 0:
+        return np.zeros((2 * quadratic.n, 0))
+    R = np.linalg.qr(rigid)[0]
+    if np.any(np.abs(K @ R) > 1e-6 * float(abs(K).sum(axis=0).max())):
+        raise AnalysisError("A vector given as rigid motion is strained: it is not in the null space of the stiffness.")
+    L = left_null_space(K, M, R)
+    drag = L.T @ (D @ R)
+    U, size, W = la.svd(drag)
+    # R carries rounding of EPS in every dof, so a drag up to EPS |D| is none, wherever the exact R moves no damper.
+    noise = 100.0 * EPS * float(abs(D).sum(axis=0).max())
+    rank = int(np.count_nonzero(size > max(noise, EPS**2)))
+    drift = R @ W[rank:].T
+    first = np.vstack([R, np.zeros_like(R)])
+    if drift.shape[1] == 0:
+        return first
+    follow = SupportedSolver(K, R, L).solve(-(D @ drift))
+    inertia = (L @ U[:, rank:]).T @ (M @ drift + D @ follow)
+    if np.linalg.cond(inertia) > 1e12:
+        raise AnalysisError("A rigid motion has no inertia: give the parts that it moves a mass or a support.")
+    return np.linalg.qr(np.hstack([first, np.vstack([follow, drift])]))[0]
+
+
+def infinite_states(quadratic: Quadratic) -> np.ndarray:
+    """Orthonormal basis (2n, z) of the states whose eigenvalue is infinite: those of the massless dofs.
+
+    [0; e] for each massless dof e; and where D does no work on a combination N c of them (N^T D N c = 0) also
+    [N c; -M^+ D N c], the pair of a defective double infinity. The drift pairs of `zero_states` with K and M exchanged.
+
+    Raises
+    ------
+    LooseDofError
+        Massless, undamped dofs have no stiffness.
+    """
+    n, massless = quadratic.n, np.flatnonzero(quadratic.M.diagonal() <= 0.0)
+    if massless.size == 0:
+        return np.zeros((2 * n, 0))
+    N = np.zeros((n, massless.size))
+    N[massless, np.arange(massless.size)] = 1.0
+    DN = quadratic.D @ N
+    U, size, W = la.svd(N.T @ DN)
+    rank = int(np.count_nonzero(size > 100 * EPS * max(abs(quadratic.D).max(), EPS)))
+    free = W[rank:].T
+    massive = np.setdiff1d(np.arange(n), massless)
+    follow = np.zeros((n, free.shape[1]))
+    if massive.size and free.shape[1]:
+        mass = factor_general(sp.csc_array(quadratic.M[massive][:, massive]))
+        follow[massive] = -mass.solve(DN[massive] @ free)
+    held = (N @ U[:, rank:]).T @ (quadratic.K @ (N @ free) + quadratic.D @ follow)
+    if free.shape[1] and np.linalg.cond(held) > 1e12:
+        raise LooseDofError(massless)
+    first, second = np.vstack([np.zeros_like(N), N]), np.vstack([N @ free, follow])
+    return np.linalg.qr(np.hstack([first, second]))[0]
+
+
+# Largest step of a refinement relative to the eigenvalue.
+_LONGEST_STEP = 0.1
+
+
+def newton(quadratic: Quadratic, value: complex, vector: np.ndarray) -> tuple[complex, np.ndarray, int]:
+    """Inverse iteration on Q itself: Q(z) u = Q'(z) v, z <- z - (v^H v)/(v^H u); with the number of factorisations.
+
+    Quadratic convergence from a pair blurred by rounding; a real pair stays real. Tisseur and Meerbergen, section 5.
+    A step that leads away from the pair that was given is not taken: it belongs to another one.
+    """
+    real = value.imag == 0.0
+    z, v = (value.real, vector.real) if real else (value, vector)
+    spent = 0
+    while spent < 5:
+        spent += 1
+        v = v / np.linalg.norm(v)
+        try:
+            factor = factor_general(quadratic.at(z))
+        except ConvergenceError:
+            break  # Q(z) is singular to the last bit: z is the eigenvalue
+        u = factor.solve(2.0 * z * (quadratic.M @ v) + quadratic.D @ v)
+        step = 1.0 / np.vdot(v, u)
+        if abs(step) > _LONGEST_STEP * abs(z):
+            break
+        z, v = z - step, u
+        if abs(step) <= 1e-14 * abs(z):
+            break
+    return complex(z), v / np.linalg.norm(v) + 0j, spent
+
+
+def first_guess(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array) -> float:
+    """A frequency in rad/s below most of those of the matrices, to start the search from."""
+    for A, power in ((M, 0.5), (D, 1.0)):
+        inertia, stiffness = np.abs(A.diagonal()), np.abs(K.diagonal())
+        both = (inertia > 0.0) & (stiffness > 0.0)
+        if np.any(both):
+            return float((1e-8 * np.median(stiffness[both] / inertia[both])) ** power)
+    return 1.0

@@ -1,0 +1,95 @@
+"""Refinement of computed modes with strain factors, and the decision which of them are rigid.
+
+With K = S^T S the Ritz values on span V are the squared singular values of S V. One-sided Jacobi finds them to relative
+accuracy even when they differ by many decades (Demmel and Veselic, SIAM J. Matrix Anal. 13 (1992) 1204; LAPACK dgejsv).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+from scipy.linalg.lapack import dgejsv
+
+from rotorgear.errors import ConvergenceError
+from rotorgear.solvers.eigen.shift_invert import Modes, ShiftInvert
+from rotorgear.solvers.sparse.pencil import EPS, Strain
+
+_SAFETY = 10.0  # between a rounding estimate and the most that rounding was taken to do
+_ROWS = 2048  # rows of a tall matrix that are taken at a time
+
+
+def orthonormalised(M: sp.csr_array, V: np.ndarray) -> np.ndarray:
+    """V (n, m) made M-orthonormal by Cholesky: V^T M V = identity to rounding."""
+    gram = V.T @ (M @ V)
+    scale = 1.0 / np.sqrt(np.diag(gram))
+    triangle = la.cholesky(0.5 * (gram + gram.T) * scale * scale[:, None])
+    result: np.ndarray = V @ (scale[:, None] * la.solve_triangular(triangle, np.eye(scale.size)))
+    return result
+
+
+def stiffness_ritz(K: sp.csc_array, V: np.ndarray, shift: float) -> Modes:
+    """Rayleigh quotients (m,) ascending of the M-orthonormal V (n, m), and V in that order.
+
+    The modes below |shift|, which inversion at the shift hardly tells apart, are Ritz vectors of K among themselves.
+    """
+    values = np.einsum("ij,ij->j", V, K @ V)
+    low = values < abs(shift)
+    if np.any(low):
+        V = V.copy()
+        block = V[:, low].T @ (K @ V[:, low])
+        values[low], rotation = np.linalg.eigh(0.5 * (block + block.T))
+        V[:, low] = V[:, low] @ rotation
+    order = np.argsort(values, kind="stable")
+    return values[order], V[:, order]
+
+
+def strain_ritz(strain: Strain, V: np.ndarray) -> Modes:
+    """Ritz values (m,) ascending and vectors (n, m) of S^T S on the M-orthonormal V (n, m)."""
+    stretched = np.asarray(strain(V), dtype=float)
+    short = V.shape[1] - stretched.shape[0]
+    if short > 0:
+        stretched = np.vstack([stretched, np.zeros((short, V.shape[1]))])
+    stretched = _triangle(stretched)
+    # joba=0: accuracy not degraded by column scaling; jobu=3: no left vectors; jobv=0: right vectors
+    scaled, _, W, work, _, info = dgejsv(stretched, joba=0, jobu=3, jobv=0, jobr=0, jobt=0, jobp=1)
+    if info != 0:
+        raise ConvergenceError(f"The Jacobi iteration on the strains of {V.shape[1]} modes did not converge.")
+    singular = scaled[: V.shape[1]] * (work[0] / work[1])
+    order = np.argsort(singular)
+    return singular[order] ** 2, V @ W[:, order]
+
+
+def _triangle(A: np.ndarray) -> np.ndarray:
+    """R (m, m) of A = Q R for a tall A (n, m), by stretches of rows that stay in the cache.
+
+    Householder QR errs by eps times each column's own length, so it keeps the relative accuracy of short ones.
+    """
+    m = A.shape[1]
+    rows = max(_ROWS, 4 * m)
+    while A.shape[0] > 2 * rows:
+        A = np.vstack([la.qr(A[k : k + rows], mode="r", check_finite=False)[0][:m] for k in range(0, A.shape[0], rows)])
+    return np.asarray(la.qr(A, mode="r", check_finite=False)[0][:m])
+
+
+def count_rigid(operator: ShiftInvert, values: np.ndarray, V: np.ndarray, noise: np.ndarray, with_strain: bool) -> int:
+    """How many leading modes carry no energy beyond rounding; `noise` (m,) is that of the stored K.
+
+    Without strains: lambda <= 10 noise. With strains the noise is of second order: rounding leaves a residual
+    r ~ eps |K||v| in the vector, whose energy is r^T (K - sigma M)^-1 r after removing the part along computed modes,
+    which the Ritz step has cleaned; the strains themselves round by eps noise. A mode is rigid below 100 times the sum.
+    """
+    if not with_strain:
+        return _leading(values <= _SAFETY * noise)
+    low = _leading(values <= 1e3 * noise)
+    if low == 0:
+        return 0
+    signs = np.random.default_rng(3).choice([-1.0, 1.0], size=(V.shape[0], low))
+    residual = EPS * (operator.size_K @ np.abs(V[:, :low])) * signs
+    residual -= operator.mass @ (V @ (V.T @ residual))
+    energy = np.einsum("ij,ij->j", residual, operator.factor.solve(residual))
+    return _leading(values[:low] <= _SAFETY**2 * (energy + EPS * noise[:low]))
+
+
+def _leading(flags: np.ndarray) -> int:
+    return int(np.argmin(np.append(flags, False)))

@@ -1,0 +1,200 @@
+"""Shift and invert of a symmetric pair: T = (K - sigma M)^-1 M, sigma < 0, with eigenvalues 1 / (lambda - sigma).
+
+sigma is set from the matrices themselves: below the rounding of K nothing is seen, far above the first elastic
+eigenvalue all modes look alike. So a guess is probed, and replaced by -0.1 times the first elastic eigenvalue when off.
+Ericsson and Ruhe, Math. Comp. 35 (1980) 1251.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.solvers.eigen.krylov import BlockKrylov
+from rotorgear.solvers.sparse.factor import SymmetricFactor, factor_symmetric
+from rotorgear.solvers.sparse.pencil import EPS, rounding_noise
+
+_BLOCK = 4
+_CONVERGED = 1e-9  # residual of T v = theta v relative to theta; its square is the error of the Rayleigh quotient
+_USEFUL = (1e-3, 10.0)  # |sigma| / first elastic eigenvalue: inside, the shift costs neither accuracy nor iterations
+_SPREAD = 1e7  # highest eigenvalue / |sigma| up to which rounding in soft modes leaves the stiff ones alone
+Modes = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass
+class ShiftInvert:
+    """A factored shift; `factorisations` counts how many were needed, `krylov` keeps the probe to go on from."""
+
+    M: sp.csc_array
+    K: sp.csc_array
+    sigma: float
+    factor: SymmetricFactor
+    factorisations: int
+    elastic: float = 0.0  # the first eigenvalue above rounding as the probe saw it; 0 when there is none
+
+    def __post_init__(self) -> None:
+        self.size_K = sp.csr_array(abs(self.K))
+        self.mass, self.stiffness = sp.csr_array(self.M), sp.csr_array(self.K)
+        self._start()
+
+    def _start(self) -> None:
+        self.krylov = BlockKrylov(self.apply, self.K.shape[0], _BLOCK, lambda X: self.mass @ X)
+
+    def move(self, sigma: float) -> None:
+        """Factor at another shift and start the Krylov basis anew."""
+        self.sigma, self.factor = sigma, factor_symmetric(sp.csc_array(self.K - sigma * self.M))
+        self.factorisations += 1
+        self._start()
+
+    def apply(self, X: np.ndarray) -> np.ndarray:
+        """T X = (K - sigma M)^-1 M X."""
+        return self.factor.solve(self.mass @ X)
+
+    def ritz(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Lowest eigenvalues (k,), their coordinates in the Krylov basis (m, k), and relative residuals (k,)."""
+        H = self.krylov.projection
+        theta, Y = np.linalg.eigh(0.5 * (H + H.T))
+        theta, Y = theta[::-1][:count], Y[:, ::-1][:, :count]
+        keep = theta > EPS * theta[:1].max(initial=0.0)
+        theta, Y = theta[keep], Y[:, keep]
+        return self.sigma + 1.0 / theta, Y, self.krylov.residuals(Y) / theta
+
+
+def shifted_operator(M: sp.csc_array, K: sp.csc_array, guess: float | None = None) -> ShiftInvert:
+    """Find a useful sigma < 0 and factor K - sigma M; `guess`, a first elastic eigenvalue, saves work where it is right.
+
+    Raises
+    ------
+    AnalysisError
+        K is not positive semidefinite.
+    ConvergenceError
+        K - sigma M is singular for every shift.
+    """
+    sigma, factored = -(0.1 * guess if guess else _first_guess(M, K)), 0
+    for _ in range(12):
+        factored += 1
+        factor = _positive_factor(M, K, sigma)
+        if factor is None:
+            sigma *= 1e3
+            continue
+        operator = ShiftInvert(M, K, sigma, factor, factored)
+        elastic = _first_elastic(operator)
+        operator.elastic = elastic or 0.0
+        if elastic is None or _USEFUL[0] <= -sigma / elastic <= _USEFUL[1]:
+            return operator
+        sigma = -0.1 * elastic
+    raise ConvergenceError(
+        "No shift makes K - sigma M positive definite: some motion meets neither stiffness nor inertia."
+    )
+
+
+def _first_guess(M: sp.csc_array, K: sp.csc_array) -> float:
+    mass, stiffness = M.diagonal(), K.diagonal()
+    both = (mass > 0.0) & (stiffness > 0.0)
+    return 1e-16 * float(np.median(stiffness[both] / mass[both])) if np.any(both) else 1.0
+
+
+def _positive_factor(M: sp.csc_array, K: sp.csc_array, sigma: float) -> SymmetricFactor | None:
+    try:
+        factor = factor_symmetric(sp.csc_array(K - sigma * M))
+    except ConvergenceError:
+        return None
+    return factor if factor.negative_count() == 0 else None
+
+
+def _first_elastic(operator: ShiftInvert) -> float | None:
+    """The lowest Ritz value above the rounding of K, or None when the Krylov space holds rigid modes only."""
+    krylov = operator.krylov
+    while not krylov.exhausted and krylov.size < 30 * _BLOCK:
+        krylov.expand()
+        if krylov.size < 2 * _BLOCK and not krylov.exhausted:
+            continue
+        values, Y, residuals = operator.ritz(krylov.size)
+        noise = 1e2 * rounding_noise(operator.size_K, krylov.basis @ Y, operator.sigma)
+        noise += residuals * (values - operator.sigma)  # an eigenvalue lies within the residual of each Ritz value
+        if np.any(values < -10.0 * noise):
+            raise unstable(float(values.min()))
+        if np.any(values > noise):
+            return float(values[values > noise].min())
+    return None
+
+
+def unstable(eigenvalue: float) -> AnalysisError:
+    """What to raise for a negative eigenvalue in (rad/s)^2."""
+    return AnalysisError(
+        f"The stiffness is not positive semidefinite (lambda = {eigenvalue:.4g} (rad/s)^2): the structure is statically"
+        " unstable; check the terms off the diagonal of its 6 x 6 stiffness matrices."
+    )
+
+
+def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarray:
+    """M-orthogonal vectors (n, k) of at least the `converged` lowest eigenpairs and up to `spare` Ritz pairs more."""
+    krylov, enough = operator.krylov, converged + spare
+    goal = 2 * enough
+    while True:
+        while krylov.size < goal and not krylov.exhausted:
+            krylov.expand()
+        values, Y, residuals = operator.ritz(enough)
+        stagnant = krylov.size > 10 * enough + 200  # the Sturm count will tell whether it matters
+        if krylov.exhausted or stagnant or np.all(residuals[:converged] < _CONVERGED):
+            highest = values[min(converged, values.size) - 1]
+            if highest <= _SPREAD * -operator.sigma:
+                return _cleaned(operator, values, krylov.polished(Y))
+            operator.move(-1e-4 * highest)
+            krylov, goal = operator.krylov, 2 * enough
+            continue
+        goal = krylov.size + 1 + krylov.size // 16
+
+
+def _cleaned(operator: ShiftInvert, values: np.ndarray, V: np.ndarray) -> np.ndarray:
+    """V (n, k) after one more solve for the modes below |sigma|: it takes the rounding in stiff modes out of soft ones."""
+    low = values < -operator.sigma
+    V[:, low] = operator.apply(V[:, low])
+    return V
+
+
+def dense_modes(operator: ShiftInvert, massless: np.ndarray, wanted: int) -> np.ndarray:
+    """All finite modes (n, k): `eigh(M, K - sigma M)` for low modes, `eigh(K, M)` for those that it can't resolve."""
+    M, K = operator.M.toarray(), operator.K.toarray()
+    sigma, mu, V = _inverted_modes(M, K, min(operator.sigma, -0.01 * operator.elastic))
+    finite = np.arange(mu.size) < np.count_nonzero(mu > mu.size * EPS * mu[0])
+    values, V = sigma + 1.0 / mu[finite], V[:, finite] / np.sqrt(mu[finite])
+    resolved = int(np.count_nonzero(mu[finite] > 1e-6 * mu[0]))
+    if wanted <= resolved:
+        return V
+    high = _direct_modes(M, K, massless)
+    if high is None:
+        return V
+    # each solver errs by eps times its largest eigenvalue: they are equally good at the geometric mean
+    split = int(np.count_nonzero(values < np.sqrt(-sigma * high[0][-1])))
+    return np.hstack([V[:, :split], high[1][:, split:]])
+
+
+def _inverted_modes(M: np.ndarray, K: np.ndarray, sigma: float) -> tuple[float, np.ndarray, np.ndarray]:
+    """sigma, mu (n,) descending, V (n, n) of `eigh(M, K - sigma M)`, sigma moved out until the Cholesky factor exists."""
+    for _ in range(6):
+        try:
+            mu, V = la.eigh(M, K - sigma * M)
+        except la.LinAlgError:
+            sigma *= 30.0
+        else:
+            return sigma, mu[::-1], V[:, ::-1]
+    raise ConvergenceError("K - sigma M is not positive definite to rounding for any shift; merge very short elements.")
+
+
+def _direct_modes(M: np.ndarray, K: np.ndarray, massless: np.ndarray) -> Modes | None:
+    """`eigh(K, M)` after exact condensation of the massless dofs; None when M stays singular."""
+    massive = np.setdiff1d(np.arange(K.shape[0]), massless)
+    follow = np.zeros((K.shape[0], massive.size))
+    follow[massive, np.arange(massive.size)] = 1.0
+    if massless.size:
+        follow[massless] = -la.solve(K[np.ix_(massless, massless)], K[np.ix_(massless, massive)], assume_a="pos")
+    try:
+        values, V = la.eigh(K[massive] @ follow, M[np.ix_(massive, massive)])
+    except la.LinAlgError:
+        return None
+    return values, follow @ V

@@ -1,0 +1,191 @@
+"""Speeds at which a mode has p times the speed as its frequency: an eigenproblem in the speed itself.
+
+Between two speeds a and b the matrices are affine, D = D_0 + W D_1 and K = K_0 + W K_1. With lambda = p s and W = -i s
+
+    [ K_0 + s (p D_0 - i K_1) + s^2 (p^2 M - i p D_1) ] x = 0 ,       W = Im s
+
+which for D_0 = K_1 = 0 is K x = W^2 (p^2 M - i p G) x, a Hermitian but indefinite pair. It is inverted at s = i (a + b)/2, so
+that all speeds between a and b lie in the disc around it. With damping Re s is not zero, and the root of Im lambda(W) = p W is
+found from it by a secant, each trial an eigenpair of the pencil at a real W.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.errors import ConvergenceError
+from rotorgear.solvers.eigen.quadratic import newton, scaled
+from rotorgear.solvers.sparse.factor import factor_general, factor_symmetric, single_thread
+
+_DENSE_UP_TO = 100
+_CENTRE = 1.000731  # off the middle, where an eigenvalue may sit
+_RADIUS = 1.15  # of half the range, for roots that damping moves sideways
+_MOST = 400
+_SETTLED = 1e-14
+BACK_SUBSTITUTED = 1e-10
+
+
+@dataclass(frozen=True)
+class Affine:
+    """M, D = D_0 + W D_1, K = K_0 + W K_1 for speeds W from `low` to `high` in rad/s; sparse (n, n), real."""
+
+    M: sp.csc_array
+    D0: sp.csc_array
+    D1: sp.csc_array
+    K0: sp.csc_array
+    K1: sp.csc_array
+    low: float
+    high: float
+
+    def at(self, speed: float) -> tuple[sp.csc_array, sp.csc_array]:
+        """D and K at a speed."""
+        return sp.csc_array(self.D0 + speed * self.D1), sp.csc_array(self.K0 + speed * self.K1)
+
+
+@dataclass(frozen=True)
+class Synchronous:
+    """A speed W in rad/s with Im lambda(W) = p W: lambda, its vector (n,), and |Im lambda - p W| / (p W)."""
+
+    speed: float
+    eigenvalue: complex
+    vector: np.ndarray
+    residual: float
+
+
+def synchronous_speeds(family: Affine, order: float) -> list[Synchronous]:
+    """All speeds above `low` and up to `high` at which an oscillating mode has the frequency `order` times the speed, ascending.
+
+    Raises
+    ------
+    ConvergenceError
+        A root does not settle to 1e-10, or a count by pivot signs (undamped systems) says that one is missing.
+    """
+    with single_thread(family.M.shape[0]):
+        for attempt in range(4):
+            s, X = _starts(family, order, attempt)
+            inside = (s.imag > family.low - 1e-3 * family.high) & (s.imag < 1.05 * family.high)
+            inside &= np.abs(s.real) < 0.7 * np.abs(s)
+            near = np.abs(s.imag) > 1e-6 * family.high
+            found: list[Synchronous] = []
+            for k in np.flatnonzero(inside & near):
+                root = _polished(family, order, complex(s[k]), X[:, k])
+                if root is not None and not any(_same(root, other, family.M) for other in found):
+                    found.append(root)
+            found = sorted((r for r in found if family.low < r.speed <= family.high), key=lambda root: root.speed)
+            if _count_agrees(family, order, found):
+                return found
+    raise ConvergenceError(
+        f"a count by pivot signs does not confirm the {len(found)} critical speeds of order {order:g} that were found",
+        found,
+    )
+
+
+def _starts(family: Affine, order: float, attempt: int) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues s (k,) of the problem in the speed inside the disc, and vectors (n, k)."""
+    centre = 0.5 * (family.low + family.high) * _CENTRE * (1.0 + 0.0137 * attempt)
+    radius = _RADIUS * 0.5 * (family.high - family.low) / centre
+    diagonal = np.abs(family.K0.diagonal()) + (order * centre) ** 2 * family.M.diagonal()
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    S = sp.diags_array(scale)
+    A0 = sp.csc_array(S @ family.K0 @ S, dtype=complex)
+    A1 = sp.csc_array(S @ (order * family.D0 - 1j * family.K1) @ S * centre)
+    A2 = sp.csc_array(S @ (order**2 * family.M - 1j * order * family.D1) @ S * centre**2)
+    sigma, n = 1j, family.M.shape[0]
+    factor = factor_general(sp.csc_array(A0 + sigma * A1 + sigma**2 * A2))
+    first = sp.csr_array(A1 + sigma * A2)
+
+    def apply(x: np.ndarray) -> np.ndarray:
+        q = -factor.solve(first @ x[:n] + A2 @ x[n:])
+        return np.concatenate([q, x[:n] + sigma * q])
+
+    mu, X = _largest(apply, 2 * n, 1.0 / radius, attempt)
+    keep = np.abs(mu) >= 1.0 / radius
+    return centre * (sigma + 1.0 / mu[keep]), scale[:, None] * X[:n, keep]
+
+
+def _largest(
+    apply: Callable[[np.ndarray], np.ndarray], size: int, least: float, attempt: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenpairs of a linear map (2n) that hold all with |mu| >= least."""
+    if size <= 2 * _DENSE_UP_TO:
+        return np.linalg.eig(apply(np.eye(size, dtype=complex)))
+    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
+
+    operator = LinearOperator((size, size), matvec=lambda x: apply(x.reshape(-1)), dtype=complex)
+    start = np.random.default_rng(5 + attempt).standard_normal(size) + 0j
+    count = 24 * 2**attempt
+    while count < min(size - 2, _MOST):
+        try:
+            mu, X = eigs(operator, k=count, ncv=min(size, 2 * count + 20), which="LM", v0=start, tol=1e-11)
+        except ArpackNoConvergence as error:
+            raise ConvergenceError(
+                f"the {count} critical speeds nearest to the middle of the range did not settle"
+            ) from error
+        if np.abs(mu).min() < least:
+            return mu, X
+        count *= 2
+    if size > 6000:
+        raise ConvergenceError(
+            f"more than {_MOST} critical speeds lie in the range; ask for a narrower one, or give fmax"
+        )
+    return np.linalg.eig(apply(np.eye(size, dtype=complex)))
+
+
+def _polished(family: Affine, order: float, s: complex, x: np.ndarray) -> Synchronous | None:
+    """The root of Im lambda(W) = p W next to a start; None where it leads elsewhere."""
+    speed, value, v = s.imag, order * s, x
+    last: tuple[float, float] | None = None
+    for _ in range(12):
+        D, K = family.at(speed)
+        quadratic = scaled(family.M, D, K, order * abs(speed))
+        z, v, _ = newton(quadratic, value / quadratic.w0, v / quadratic.scale)
+        value, v = z * quadratic.w0, v * quadratic.scale
+        gap = value.imag - order * speed
+        if abs(gap) <= _SETTLED * order * speed:
+            break
+        slope = -order if last is None or last[0] == speed else (gap - last[1]) / (speed - last[0])
+        last, step = (speed, gap), gap / (slope or -order)
+        if abs(step) > 0.3 * speed:
+            return None
+        if abs(step) <= 1e-16 * speed:
+            break
+        speed -= step
+    residual = abs(value.imag - order * speed) / (order * speed)
+    if residual > BACK_SUBSTITUTED:
+        raise ConvergenceError(f"a critical speed near {speed * 30 / np.pi:.6g} rpm keeps a residual of {residual:.1e}")
+    return Synchronous(float(speed), complex(value), v, float(residual))
+
+
+def _same(one: Synchronous, other: Synchronous, M: sp.csc_array) -> bool:
+    if abs(one.speed - other.speed) > 1e-9 * one.speed or abs(one.eigenvalue - other.eigenvalue) > 1e-8 * abs(
+        one.eigenvalue
+    ):
+        return False
+    x, y = one.vector, other.vector
+    sizes = abs(np.vdot(x, M @ x)) * abs(np.vdot(y, M @ y))
+    return bool(abs(np.vdot(x, M @ y)) ** 2 > 0.98 * sizes)
+
+
+def _count_agrees(family: Affine, order: float, found: list[Synchronous]) -> bool:
+    """Pivot signs of K - W^2 H at both ends of the range against the signs of x^H H x; True where the pair is not Hermitian.
+
+    An eigenvalue of K - m H falls through zero at m = W^2 where x^H H x > 0 and rises where it is negative.
+    """
+    skew = abs(family.D1 + family.D1.T)
+    if family.D0.nnz or family.K1.nnz or (skew.nnz and skew.max() > 1e-12 * abs(family.D1).max()):
+        return True
+    H = sp.csc_array(order**2 * family.M - 1j * order * family.D1)
+    low, high = 0.999 * min([family.high, *(r.speed for r in found)]), family.high
+    first = max(family.low, 1e-4 * low)
+    if any(abs(r.speed - end) < 1e-7 * end for r in found for end in (first, high)):
+        return True  # a root on the very end can't be counted
+    signs = [np.sign(np.vdot(r.vector, H @ r.vector).real) for r in found]
+    try:
+        counts = [factor_symmetric(sp.csc_array(family.K0 - W**2 * H)).pivots.real < 0.0 for W in (first, high)]
+    except ConvergenceError:
+        return True  # no factors without row exchanges: nothing to count with
+    return int(counts[1].sum()) - int(counts[0].sum()) == int(sum(signs))

@@ -1,0 +1,156 @@
+"""One step of mode tracking between two speeds a < b, from eigenvalues, left and right vectors and their derivatives.
+
+    s' = -y^H (s D' + K') q                                  (y^H (2 s M + D) q = 1)
+    c_ij = y_i^H (D_a + (s_i + s_j) M) q_j                   biorthogonal product of mode i at a and mode j at b
+    MAC_ij = |c_ij(a, b) c_ji(b, a)|                         1 for the same mode, 0 for another one of the same pencil
+    mismatch_ij = |s_j - s_i - (b - a)(s_i' + s_j')/2| / |s| of a cubic through both (Hermite)
+
+Pencils are affine in the speed between a and b. Eigenvalues that coincide have their vectors turned so that the derivative
+is diagonal: that is how they part. Two branches whose frequencies change places may cross or veer. To first order the gap between
+them is 2 (b - a) |c'_ij c'_ji|^1/2 with the off-diagonal derivative c'; where it is not zero the step has to be halved.
+Fox and Kapoor, AIAA J. 6 (1968) 2426; Lancaster, Numer. Math. 6 (1964) 377 (derivatives); MAC with left vectors as in
+Bucher and Braun, Mech. Syst. Signal Process. 11 (1997).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotorgear.solvers.eigen.reduced_pencil import Eigen, Pencil, clusters
+
+AMBIGUOUS = 0.3  # best cost over second best, above which a step is too long
+MISMATCH = 5e-3  # relative mismatch of the cubic above which a step is too long
+_WORST = 0.7  # cost above which two modes are not the same one
+_SAME = 1e-7  # derivatives, relative to |s| over the step, that count as equal
+
+
+@dataclass(frozen=True)
+class Step:
+    """Links of a step: `partner` (m_a,) number at b of each mode at a, -1 where it has none; whether the step is too long.
+
+    `doubt` (m_a,) marks the links that make it so. `crossings` pairs of modes at a whose frequencies change places.
+    """
+
+    partner: np.ndarray
+    doubt: np.ndarray
+
+    @property
+    def too_long(self) -> bool:
+        """Whether the step has to be halved."""
+        return bool(self.doubt.any())
+
+
+def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> Step:
+    """Link the modes at a to those at b.
+
+    Parameters
+    ----------
+    a, b : eigenpairs at both ends of the step, of pencils in the same coordinates.
+    length : b - a in rad/s; it may be negative.
+    narrowest : a veering that is narrower in speed than this, in rad/s, is a crossing.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    if not len(a.s) or not len(b.s):
+        return Step(np.full(len(a.s), -1), np.zeros(len(a.s), bool))
+    slope = Pencil(0.0 * a.pencil.M, (b.pencil.D - a.pencil.D) / length, (b.pencil.K - a.pencil.K) / length)
+    (a, rate_a), (b, rate_b) = parted(a, slope), parted(b, slope)
+    mac = _mac(a, b)
+    twins_a, twins_b = _twins(a.s, rate_a, length), _twins(b.s, rate_b, length)
+    mac = np.clip(np.abs(twins_a @ mac @ twins_b) / np.maximum(twins_a.sum(1)[:, None], 1.0), 0.0, 1.0)
+    size = 0.5 * (np.abs(a.s)[:, None] + np.abs(b.s))
+    mismatch = np.abs(b.s - a.s[:, None] - 0.5 * length * (rate_a[:, None] + rate_b)) / size
+    cost = (1.0 - mac) + np.minimum(mismatch / MISMATCH, 10.0) * 0.1
+    rows, columns = linear_sum_assignment(cost)
+    partner = np.full(len(a.s), -1)
+    partner[rows] = columns
+    doubt = _doubtful(cost, mismatch, rows, columns, twins_a, twins_b)
+    doubt |= _veering(a, b, (rate_a, rate_b), slope, partner, narrowest)
+    poor = np.zeros(len(a.s), bool)
+    poor[rows] = (1.0 - mac[rows, columns]) > _WORST
+    partner[poor] = -1
+    return Step(partner, doubt)
+
+
+def parted(at: Eigen, slope: Pencil) -> tuple[Eigen, np.ndarray]:
+    """Eigenpairs with the vectors of equal eigenvalues turned to the directions in which they part; derivatives (m,)."""
+    q, y = at.q, at.y
+    for own in clusters(at.s):
+        if len(own) < 2:
+            continue
+        s = np.mean(at.s[own])
+        block = -(y[:, own].conj().T @ ((s * slope.D + slope.K) @ q[:, own]))
+        W = np.linalg.eig(block)[1]
+        if np.linalg.cond(W) < 1e6:
+            q, y = q.copy(), y.copy()
+            q[:, own], y[:, own] = q[:, own] @ W, y[:, own] @ np.linalg.inv(W).conj().T
+    rate = -np.einsum("ri,ri->i", y.conj(), slope.D @ q * at.s + slope.K @ q)
+    return replace(at, q=q, y=y), rate
+
+
+def _mac(a: Eigen, b: Eigen) -> np.ndarray:
+    """c_ij(a, b) c_ji(b, a), (m_a, m_b)."""
+
+    def product(one: Eigen, other: Eigen) -> np.ndarray:
+        own = one.y.conj().T @ (one.pencil.D @ other.q)
+        mass = one.y.conj().T @ (one.pencil.M @ other.q)
+        return np.asarray(own + (one.s[:, None] + other.s) * mass)
+
+    return np.asarray(product(a, b) * product(b, a).T)
+
+
+def _twins(s: np.ndarray, rate: np.ndarray, length: float) -> np.ndarray:
+    """(m, m) of 0 and 1: which modes are the same in eigenvalue and derivative, so that their vectors are anyone's."""
+    size = np.abs(s)[:, None] + np.abs(s)
+    same = np.abs(s[:, None] - s) <= _SAME * size
+    return np.asarray((same & (np.abs(rate[:, None] - rate) * abs(length) <= _SAME * size)).astype(float))
+
+
+def _doubtful(
+    cost: np.ndarray,
+    mismatch: np.ndarray,
+    rows: np.ndarray,
+    columns: np.ndarray,
+    twins_a: np.ndarray,
+    twins_b: np.ndarray,
+) -> np.ndarray:
+    """Which links are not clearly better than any other, or do not follow their derivatives."""
+    chosen = cost[rows, columns]
+    others = cost[rows].copy()
+    others[twins_b[columns] > 0.0] = np.inf
+    other_rows = cost[:, columns].T.copy()
+    other_rows[twins_a[rows] > 0.0] = np.inf
+    second = np.minimum(others.min(axis=1), other_rows.min(axis=1))
+    doubt = np.zeros(cost.shape[0], bool)
+    doubt[rows] = (chosen > AMBIGUOUS * second) | (mismatch[rows, columns] > MISMATCH)
+    return doubt
+
+
+def _veering(
+    a: Eigen, b: Eigen, rates: tuple[np.ndarray, np.ndarray], slope: Pencil, partner: np.ndarray, narrowest: float
+) -> np.ndarray:
+    """Which modes change places with one that acts on them: too coarse a step to tell a veering from a crossing."""
+    linked = np.flatnonzero(partner >= 0)
+    before, after = a.s[linked].imag, b.s[partner[linked]].imag
+    swapped = (before[:, None] - before) * (after[:, None] - after) < 0.0
+    doubt = np.zeros(len(a.s), bool)
+    for i, j in np.argwhere(np.triu(swapped)):
+        one, two = linked[i], linked[j]
+        width = max(_width(a, rates[0], slope, one, two), _width(b, rates[1], slope, partner[one], partner[two]))
+        if width > narrowest:
+            doubt[[one, two]] = True
+    return doubt
+
+
+def _width(at: Eigen, rate: np.ndarray, slope: Pencil, i: int, j: int) -> float:
+    """Speed range in rad/s of the veering of two modes: gap over difference of slopes."""
+    s = 0.5 * (at.s[i] + at.s[j])
+    Z = s * slope.D + slope.K
+    coupling = (at.y[:, i].conj() @ (Z @ at.q[:, j])) * (at.y[:, j].conj() @ (Z @ at.q[:, i]))
+    closing = abs(rate[i].imag - rate[j].imag)
+    if closing == 0.0:
+        return 0.0
+    reach = abs(at.s[i].imag - at.s[j].imag) / closing
+    return float(2.0 * reach * np.sqrt(abs(coupling)) / closing)

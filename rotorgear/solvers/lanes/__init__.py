@@ -1,0 +1,1 @@
+"""Small systems integrated side by side in vector registers, with tangents."""

@@ -1,0 +1,164 @@
+"""Compiled: many small systems side by side through the same time steps, by the Runge-Kutta method of order 4.
+
+    z'' = f - K z - D z' - B F(B^T z, B^T z', t),   M = 1,   time in radians of the fastest mesh
+
+Every array has the systems as its last axis of LANES entries, which move through vector registers together. What depends on
+time only (k(t), e(t), prescribed forces) stands in tables over the common period, for the times at and between steps.
+Tangents T obey T'' = -K T - D T' - B (Kd B^T T + Kv B^T T') along the trajectory; each mesh period they are freed of rigid
+motions and made orthonormal, and the logarithms of their growth sum up to Lyapunov exponents.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.solvers.lanes.kernel_jumps import add_used_along, missing, missing_along, push
+from rotorgear.solvers.lanes.kernel_laws import SPACE, force_laws, laws_along, schedule_laws
+from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, NEVER, contacts, count, product, read_table
+from rotorgear.solvers.lanes.kernel_tangents import orthonormal
+from rotorgear.solvers.lanes.kernel_vectors import LANES, fill, get, put, work
+from rotorgear.solvers.time.compiled import compiled
+
+
+@compiled(fast=True)
+def slope_of(i, first, column, value, stage, at):
+    """z'' of a dof: row i of a sparse matrix times rows of a stage from `at` on."""
+    total = fill(0.0)
+    for p in range(first[i], first[i + 1]):
+        total += get(value, p) * get(stage, at + column[p])
+    return total
+
+
+@compiled(fast=True)
+def advance(number, h, first, column, value, stage, ahead, at, base, base_at, total):
+    """Add a stage's slopes to those of the step, and write the state of the next stage; the last one writes the step's end, too.
+
+    Args:
+        number: of the stage, 0 to 3. h: the step. first, column, value: z'' from (z, z', F, 1).
+        stage, ahead: rows of this stage and of the next one from `at` on. base: z and z' at the step's begin from `base_at` on.
+        total: sums of slopes so far, (2 n, w).
+    """
+    n = total.shape[0] // 2
+    weight, share = 1.0 if number == 0 else 2.0, h if number == 2 else 0.5 * h
+    for i in range(n):
+        a, v = slope_of(i, first, column, value, stage, at), get(stage, at + n + i)
+        q0, v0 = get(base, base_at + i), get(base, base_at + n + i)
+        if number == 3:
+            q0 += h / 6.0 * (get(total, i) + v)
+            v0 += h / 6.0 * (get(total, n + i) + a)
+            put(base, base_at + i, q0)
+            put(base, base_at + n + i, v0)
+            put(ahead, at + i, q0)
+            put(ahead, at + n + i, v0)
+            continue
+        if number == 0:
+            put(total, i, v)
+            put(total, n + i, a)
+        else:
+            put(total, i, get(total, i) + weight * v)
+            put(total, n + i, get(total, n + i) + weight * a)
+        put(ahead, at + i, q0 + share * v)
+        put(ahead, at + n + i, v0 + share * a)
+
+
+@compiled(fast=True)
+def tangent_stage(number, h, across, matrix, found, jumping, jumps, kept, used, start, own, laws, blocks, d, stage, ahead,
+                  base, totals):  # fmt: skip
+    """One stage of all tangents: (t, 2 n + m + 1, w) of this stage and the next, (t, 2 n, w) of the step's begin and sums."""
+    t, rows = stage.shape[0], stage.shape[1]
+    n, m = base.shape[1] // 2, found.shape[0]
+    for k in range(t):
+        at = k * rows
+        for j in range(2 * m):
+            put(d, j, slope_of(j, *across, stage, at))
+        for j in range(m):
+            along = get(found, FOUND * j + IN_D) * get(d, 2 * j) + get(found, FOUND * j + IN_V) * get(d, 2 * j + 1)
+            put(stage, at + 2 * n + j, along)
+        if own:
+            laws_along(laws, blocks, d, stage, at + 2 * n)
+        if jumping:
+            add_used_along(jumps, weight_of(number, h), found, kept, d, used, start, m * k, number == 0)
+        advance(number, h, *matrix, stage, ahead, at, base, 2 * n * k, totals[k])
+
+
+@compiled
+def weight_of(number, h):
+    """Weight of a stage in a step."""
+    return (h / 6.0) if number in (0, 3) else (h / 3.0)
+
+
+@compiled(fast=True)
+def end_tangents(jumps, values, kept, across, pushes, d, moved, tangents, used, start, impulse):
+    """Put the impulses of the damping right along all tangents."""
+    t, rows = moved.shape[0], moved.shape[1]
+    n, m = tangents.shape[1] // 2, jumps.size
+    for k in range(t):
+        for j in range(2 * m):
+            put(d, j, slope_of(j, *across, moved, k * rows))
+        missing_along(jumps, values, kept, d, used, start, m * k, impulse)
+        push(*pushes, impulse, moved, k * rows, tangents, 2 * n * k)
+
+
+@compiled(fast=True, free=True)
+def lanes_loop(turns, steps, begun, counting, matrix, across, pushes, gap, mode, jumps, values, mesh, table, laws, clock, rigid,
+               root, state, kept, tangents, last, growth, section, sums):  # fmt: skip
+    """Advance all lanes in place by common periods and record a section at the end of each.
+
+    Args:
+        turns: periods of the fastest mesh in a common one; steps: steps in one of those; begun: common periods before.
+        counting: whether the statistics count.
+        matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1).
+        across: d and d' of each column from (z, z'), (2 m, 2 n). pushes: -B, (n, m).
+        gap, mode, jumps, mesh: of the columns, (m,); values: theirs, (m, 6, w), see `contacts`.
+        table: (2 turns steps + 1, m, 4, 1 or w), without its last row where no force is prescribed.
+        laws: see kernel_lane_laws.py; clock (2, w): radians of the reference for one of the fastest mesh, and its rad/s.
+        rigid: orthonormal motions without strain, (r, n, w); root: S with S^T S the mean stiffness, (n, n, w).
+        state: z and z', (2 n, w); kept: of the end of the last step, see kernel_lane_jumps.py.
+        tangents: (t, 2 n, w); last: (m, w) flanks that touched last.
+        growth: (p, t, w), section: (p, 2 m, w), sums: (m, 14, w): what is found in p common periods.
+    """
+    n, m, t = state.shape[0] // 2, mesh.size, tangents.shape[0]
+    rows, own = 2 * n + m + 1, laws[2].size > 0
+    h = 2.0 * np.pi / steps
+    now, found = work(4 * m).reshape(m, 4, LANES), work(FOUND * m).reshape(m, FOUND, LANES)
+    d, total = work(2 * m), work(2 * n)
+    stage, ahead = work(rows), work(rows)
+    stage[:], ahead[:] = 1.0, 1.0
+    moved, moved_ahead = work(t * rows).reshape(t, rows, LANES), work(t * rows).reshape(t, rows, LANES)
+    totals, weighed = work(t * 2 * n).reshape(t, 2 * n, LANES), work(t * 2 * n).reshape(t, 2 * n, LANES)
+    blocks = work(2 * laws[-1][-1]).reshape(2, laws[-1][-1], LANES)
+    condition, space = np.zeros((LANES, laws[-2][-1])), np.zeros(SPACE)
+    jumping = np.any(jumps != NEVER)
+    used, impulse, used_along, start = work(m), work(m), work(t * m), work(t * m)
+    F, F_ahead = stage[2 * n : 2 * n + m], ahead[2 * n : 2 * n + m]
+    stage[: 2 * n], moved[:, : 2 * n] = state, tangents
+    for period in range(growth.shape[0]):
+        for step in range(turns * steps):
+            for number in range(4):
+                if number != 2:
+                    at = 2 * step + (number + 1) // 2
+                    read_table(table, at, now)
+                    if own:
+                        schedule_laws(laws, clock, 0.5 * h * (2.0 * steps * turns * (begun + period) + at), condition)
+                product(*across, stage, d)
+                contacts(gap, mode, values, now, weight_of(number, h), d, F, found, used)
+                if own:
+                    force_laws(laws, clock, condition, d, F, blocks, space)
+                if number == 0 and counting:
+                    count(mesh, now, d, F, found, last, sums)
+                advance(number, h, *matrix, stage, ahead, 0, state, 0, total)
+                if t:
+                    tangent_stage(number, h, across, matrix, found, jumping, jumps, kept, used_along, start, own, laws, blocks,
+                                  d, moved, moved_ahead, tangents, totals)  # fmt: skip
+                stage, ahead, moved, moved_ahead, F, F_ahead = ahead, stage, moved_ahead, moved, F_ahead, F
+            if jumping:
+                product(*across, stage, d)
+                missing(jumps, values, now, d, used, kept, impulse)
+                push(*pushes, impulse, stage, 0, state, 0)
+                if t:
+                    end_tangents(jumps, values, kept, across, pushes, d, moved, tangents, used_along, start, impulse)
+            if t and (step + 1) % steps == 0:
+                orthonormal(tangents, weighed, root, rigid, growth[period])
+                moved[:, : 2 * n] = tangents
+        for j in range(2 * m):
+            put(section, 2 * m * period + j, slope_of(j, *across, state, 0))

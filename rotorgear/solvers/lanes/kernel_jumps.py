@@ -1,0 +1,104 @@
+"""Compiled: the impulse of a damper that sets in where flanks meet, put right at the end of each step.
+
+The damping force c s(x) x' of a contact jumps, or rises over a depth that no step of sensible length sees. What it did in a
+step by the stages of the Runge-Kutta method then depends on where these happened to fall, and so much noise makes motions look
+chaotic that are not. But its impulse in a step follows from the ends alone:
+
+    int c s(x) x' dt = c [G(x_1) - G(x_0)],   G(x) = int s dx
+
+So a step ends by what is missing of that. Damping that never pulls does not obey it while it is held back; there only steps in
+which the flanks meet are put right. Tangents follow with s(x_1) T_1 - s(x_0) T_0 in place of the difference of G.
+"""
+
+from __future__ import annotations
+
+from rotorgear.solvers.lanes.kernel_parts import (
+    BACKLASH,
+    CLOSING,
+    ERROR,
+    FOUND,
+    GROWTH,
+    IN_V,
+    NEVER,
+    RAMP,
+    REACH,
+    VALUES,
+    C,
+)  # fmt: skip
+from rotorgear.solvers.lanes.kernel_vectors import fill, get, larger, put, smaller, where_positive
+from rotorgear.solvers.time.compiled import compiled
+
+# What is kept of the end of a step: G, s, the flank that touches, and whether the impulse of the step is put right (> 0).
+INTEGRAL, SHARE, TOUCH, RIGHT, KEPT = 0, 1, 2, 3, 4
+
+
+@compiled(fast=True)
+def missing(jumps, values, table, d, used, kept, impulse):
+    """What the impulses of a step lack, to impulse (m, w); kept (m, 4, w) goes from the step's begin to its end.
+
+    d (2 m, w): displacements at the end; used (m, w): impulses by the stages.
+    """
+    one, none = fill(1.0), fill(0.0)
+    for j in range(jumps.size):
+        if jumps[j] == NEVER:
+            put(impulse, j, none)
+            continue
+        x = get(d, 2 * j) - get(table, 4 * j + ERROR)
+        behind = -1.0 * x - get(values, VALUES * j + BACKLASH)
+        touch = where_positive(x, one, where_positive(behind, fill(-1.0), none))
+        depth = larger(larger(x, behind), none)
+        share = smaller(depth * get(values, VALUES * j + RAMP), one)
+        integral = touch * share * (depth - 0.5 * share * get(values, VALUES * j + REACH))
+        rest = get(values, VALUES * j + C) * (integral - get(kept, KEPT * j + INTEGRAL)) - get(used, j)
+        right = one
+        if jumps[j] == CLOSING:
+            right = touch * (touch - get(kept, KEPT * j + TOUCH))
+        put(impulse, j, where_positive(right, rest, none))
+        put(used, j, none)
+        put(kept, KEPT * j + INTEGRAL, integral)
+        put(kept, KEPT * j + SHARE, share)
+        put(kept, KEPT * j + TOUCH, touch)
+        put(kept, KEPT * j + RIGHT, right)
+
+
+@compiled(fast=True)
+def add_used_along(jumps, weight, found, kept, d, used, start, at, first):
+    """Add what a stage's damping does along a tangent with displacements and velocities d (2 m, w), to rows of used from `at` on.
+
+    In the first stage, s T at the step's begin goes to the same rows of start.
+    """
+    for j in range(jumps.size):
+        if jumps[j] == NEVER:
+            continue
+        now = get(found, FOUND * j + IN_V) * get(d, 2 * j + 1) + get(found, FOUND * j + GROWTH) * get(d, 2 * j)
+        if first:
+            put(used, at + j, weight * now)
+            put(start, at + j, get(kept, KEPT * j + SHARE) * get(d, 2 * j))
+        else:
+            put(used, at + j, get(used, at + j) + weight * now)
+
+
+@compiled(fast=True)
+def missing_along(jumps, values, kept, d, used, start, at, impulse):
+    """What the impulses of a step lack along a tangent with displacements d (2 m, w) at its end, to impulse (m, w)."""
+    none = fill(0.0)
+    for j in range(jumps.size):
+        if jumps[j] == NEVER:
+            put(impulse, j, none)
+            continue
+        change = get(kept, KEPT * j + SHARE) * get(d, 2 * j) - get(start, at + j)
+        rest = get(values, VALUES * j + C) * change - get(used, at + j)
+        put(impulse, j, where_positive(get(kept, KEPT * j + RIGHT), rest, none))
+
+
+@compiled(fast=True)
+def push(first, column, value, impulse, stage, at, state, state_at):
+    """Add impulses to the velocities, by rows of -B, in the stage to come (rows from `at` on) and the state."""
+    n = first.size - 1
+    for i in range(n):
+        total = fill(0.0)
+        for p in range(first[i], first[i + 1]):
+            total += get(value, p) * get(impulse, column[p])
+        total += get(state, state_at + n + i)
+        put(stage, at + n + i, total)
+        put(state, state_at + n + i, total)

@@ -1,0 +1,68 @@
+"""Compiled: force laws that run one system at a time: rolling bearings, friction, torques over speed.
+
+The laws work in SI: displacements of the lanes are metres already, velocities are multiplied and forces divided by powers of the
+rad/s of the fastest mesh, which the lanes use as unit of time.
+"""
+
+from __future__ import annotations
+
+from rotorgear.solvers.lanes.kernel_vectors import LANES, fill, get, put
+from rotorgear.solvers.time.compiled import compiled
+
+_MOST_COMPONENTS = 6
+# Numbers that a law with so many components c needs beside its state: d, v, F, both tangents and four energies.
+SPACE = 3 * _MOST_COMPONENTS + 2 * _MOST_COMPONENTS**2 + 4
+
+
+@compiled
+def schedule_laws(laws, clock, time, state):
+    """Fill the state (w, s) of the laws in all lanes at a time in radians of the fastest mesh."""
+    schedules, _, kind, _, parameters, parameters_first, state_first, _ = laws
+    for w in range(LANES if kind.size else 0):
+        angle, speed = time * clock[0, w], clock[1, w] * clock[0, w]
+        for i in range(kind.size):
+            schedules[kind[i]](
+                angle, speed, time / clock[1, w], parameters[w, parameters_first[i] : parameters_first[i + 1]],
+                state[w, state_first[i] : state_first[i + 1]],
+            )  # fmt: skip
+
+
+@compiled
+def force_laws(laws, clock, state, d, F, tangents, work):
+    """Forces of the laws to F (m, w), their tangents in displacement and velocity to tangents (2, b, w).
+
+    work: SPACE numbers.
+    """
+    _, forces, kind, place, parameters, parameters_first, state_first, block_first = laws
+    for i in range(kind.size):
+        a, k = place[0, i], place[1, i]
+        own_d, own_v, own_f, rest = work[:k], work[k : 2 * k], work[2 * k : 3 * k], work[3 * k :]
+        in_d, in_v, energy = rest[: k * k], rest[k * k : 2 * k * k], rest[2 * k * k : 2 * k * k + 4]
+        for w in range(LANES):
+            rate = clock[1, w]
+            for j in range(k):
+                own_d[j], own_v[j] = d[2 * (a + j), w], rate * d[2 * (a + j) + 1, w]
+            forces[kind[i]](
+                parameters[w, parameters_first[i] : parameters_first[i + 1]],
+                state[w, state_first[i] : state_first[i + 1]], own_d, own_v, own_f, in_d, in_v, energy,
+            )  # fmt: skip
+            for j in range(k):
+                F[a + j, w] = own_f[j] / (rate * rate)
+            for j in range(k * k):
+                tangents[0, block_first[i] + j, w] = in_d[j] / (rate * rate)
+                tangents[1, block_first[i] + j, w] = in_v[j] / rate
+
+
+@compiled(fast=True)
+def laws_along(laws, tangents, d, out, at):
+    """Forces of the laws along a tangent's displacements and velocities d (2 m, w), to the rows of out from `at` on."""
+    _, _, kind, place, _, _, _, block_first = laws
+    size = tangents.shape[1]
+    for i in range(kind.size):
+        a, k = place[0, i], place[1, i]
+        for r in range(k):
+            total = fill(0.0)
+            for c in range(k):
+                p = block_first[i] + r * k + c
+                total += get(tangents, p) * get(d, 2 * (a + c)) + get(tangents, size + p) * get(d, 2 * (a + c) + 1)
+            put(out, at + a + r, total)

@@ -1,0 +1,65 @@
+"""Compiled: tangents of the lanes of kernel_lanes.py, freed of rigid motions and made orthonormal once in a period.
+
+Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15 (1980) 9.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.solvers.lanes.kernel_vectors import LANES, fill, get, put
+from rotorgear.solvers.time.compiled import compiled
+
+
+@compiled(fast=True)
+def remove(part, part_at, along, along_at, measured, measured_at, unit, unit_at, rows):
+    """Take away from rows of `part` as much of `along` as the product of `measured` with the unit vector `unit` says."""
+    total = fill(0.0)
+    for i in range(rows):
+        total += get(measured, measured_at + i) * get(unit, unit_at + i)
+    for i in range(rows):
+        put(part, part_at + i, get(part, part_at + i) - total * get(along, along_at + i))
+
+
+@compiled(fast=True)
+def weigh(root, tangents, weighed, at):
+    """Root of the stiffness times displacements, and velocities as they are: the energy of a tangent is the square of it."""
+    n = root.shape[0]
+    for i in range(n):
+        total = fill(0.0)
+        for j in range(n):
+            total += get(root, n * i + j) * get(tangents, at + j)
+        put(weighed, at + i, total)
+        put(weighed, at + n + i, get(tangents, at + n + i))
+
+
+@compiled(fast=True)
+def orthonormal(tangents, weighed, root, rigid, growth):
+    """Free tangents (t, 2 n, w) of rigid motions (r, n, w), make them orthonormal, add the logarithms of their sizes to growth.
+
+    Sizes are energies, which vibrations in a linear system keep: slow motions would seem to grow in most other norms.
+    """
+    rows = tangents.shape[1]
+    n = rows // 2
+    size = np.zeros(LANES)
+    for a in range(tangents.shape[0]):
+        for r in range(rigid.shape[0]):
+            for part in range(2):
+                at = a * rows + part * n
+                remove(tangents, at, rigid, r * n, tangents, at, rigid, r * n, n)
+        weigh(root, tangents, weighed, a * rows)
+        for b in range(a):
+            remove(tangents, a * rows, tangents, b * rows, weighed, a * rows, weighed, b * rows, rows)
+            weigh(root, tangents, weighed, a * rows)
+        total = fill(0.0)
+        for i in range(rows):
+            one = get(weighed, a * rows + i)
+            total += one * one
+        put(size, 0, total)
+        for w in range(LANES):
+            growth[a, w] += 0.5 * np.log(size[w])
+            size[w] = 1.0 / np.sqrt(size[w])
+        scale = get(size, 0)
+        for i in range(a * rows, (a + 1) * rows):
+            put(tangents, i, scale * get(tangents, i))
+            put(weighed, i, scale * get(weighed, i))

@@ -1,0 +1,150 @@
+"""Compiled: one number for each of LANES systems as a value of its own, so that loops over systems need no loops.
+
+An array of lanes has the systems as its last axis, is contiguous, and is read and written row by row: row i are the LANES
+numbers from i LANES on, whatever the axes before. The values add, subtract and multiply with each other and with numbers;
+products may be fused with sums. They turn into vector instructions as wide as the machine has, without the checks for
+overlapping arrays that keep a compiler from doing so with loops.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+from numba.core import types
+from numba.core.datamodel import models
+from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
+from numba.extending import intrinsic, lower_builtin, register_model
+
+from rotorgear.solvers.time.compiled import compiled
+
+LANES = 32
+_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_FLAGS = ("contract", "nsz")
+
+
+class LaneType(types.Type):
+    """Type of the values."""
+
+    def __init__(self) -> None:
+        super().__init__(name=f"Lanes{LANES}")
+
+
+@register_model(LaneType)
+class LaneModel(models.PrimitiveModel):
+    """A vector register, or several."""
+
+    def __init__(self, manager: Any, lane_type: Any) -> None:
+        super().__init__(manager, lane_type, _VECTOR)
+
+
+lanes = LaneType()
+
+
+def _place(context: Any, builder: Any, array_type: Any, array: Any, row: Any) -> Any:
+    """Pointer to a row of an array."""
+    data = context.make_array(array_type)(context, builder, array).data
+    at = builder.gep(data, [builder.mul(row, ir.Constant(row.type, LANES))])
+    return builder.bitcast(at, _VECTOR.as_pointer())
+
+
+def _splat(builder: Any, number: Any) -> Any:
+    """A number for all lanes."""
+    blank = ir.Constant(_VECTOR, ir.Undefined)
+    first = builder.insert_element(blank, number, ir.Constant(ir.IntType(32), 0))
+    return builder.shuffle_vector(first, blank, ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES))
+
+
+@intrinsic
+def fill(typing: Any, number: Any) -> Any:
+    """A number for all lanes."""
+
+    def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
+        return _splat(builder, args[0])
+
+    return lanes(types.float64), build
+
+
+@intrinsic
+def get(typing: Any, array: Any, row: Any) -> Any:
+    """Row of an array."""
+
+    def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
+        value = builder.load(_place(context, builder, made.args[0], args[0], args[1]))
+        value.align = 8
+        return value
+
+    return lanes(array, types.intp), build
+
+
+@intrinsic
+def put(typing: Any, array: Any, row: Any, value: Any) -> Any:
+    """Write a row of an array."""
+
+    def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
+        done = builder.store(args[2], _place(context, builder, made.args[0], args[0], args[1]))
+        done.align = 8
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, lanes), build
+
+
+@intrinsic
+def where_positive(typing: Any, sign: Any, then: Any, otherwise: Any) -> Any:
+    """Lane by lane: `then` where `sign` > 0, `otherwise` elsewhere (also where sign is not a number)."""
+
+    def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
+        mask = builder.fcmp_ordered(">", args[0], ir.Constant(_VECTOR, [0.0] * LANES))
+        return builder.select(mask, args[1], args[2])
+
+    return lanes(lanes, lanes, lanes), build
+
+
+def _extreme(comparison: str) -> Any:
+    def choose(typing: Any, a: Any, b: Any) -> Any:
+        def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
+            return builder.select(builder.fcmp_ordered(comparison, args[0], args[1]), args[0], args[1])
+
+        return lanes(lanes, lanes), build
+
+    return choose
+
+
+larger = intrinsic(_extreme(">"))
+smaller = intrinsic(_extreme("<"))
+
+
+def _register(function: Callable[..., Any], name: str) -> None:
+    """Make an operator known for lanes, and for lanes with numbers on either side."""
+    pairs = [(lanes, lanes), (lanes, types.float64), (types.float64, lanes)]
+
+    class Known(ConcreteTemplate):
+        key = function
+        cases = [signature(lanes, *pair) for pair in pairs]  # noqa: RUF012
+
+    infer_global(function)(Known)
+
+    def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
+        wide = [a if kind == lanes else _splat(builder, a) for a, kind in zip(args, made.args, strict=True)]
+        return getattr(builder, name)(*wide, flags=_FLAGS)
+
+    for pair in pairs:
+        lower_builtin(function, *pair)(build)
+
+
+for _name, _functions in {
+    "fadd": (operator.add, operator.iadd), "fsub": (operator.sub, operator.isub), "fmul": (operator.mul, operator.imul),
+}.items():  # fmt: skip
+    for _function in _functions:
+        _register(_function, _name)
+
+
+@compiled
+def work(rows):
+    """New rows (rows, LANES) of zeros that begin where vector registers read best."""
+    raw = np.zeros(rows * LANES + 8)
+    at = ((-raw.ctypes.data) % 64) // 8
+    return raw[at : at + rows * LANES].reshape(rows, LANES)

@@ -1,0 +1,236 @@
+"""Blocks of up to 32 small systems that run side by side, and what a run leaves of each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rotorgear.solvers.lanes.small_system import SmallSystem
+
+# Steps between two questions whether to go on: a fraction of a second.
+_SLICE = 50_000
+_REGISTER = 64  # bytes of the widest vector registers
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How long: steps in a period of the fastest mesh, common periods that settle and count, tangents to follow.
+
+    The tangents are followed over the last `warm` of the periods that settle, so that they find the direction of most growth.
+    """
+
+    steps: int
+    settle: int
+    count: int
+    tangents: int
+    warm: int = 40
+
+    def stride(self, turns: int) -> int:
+        """Common periods of so many mesh periods from one question whether to go on to the next."""
+        return max(1, _SLICE // (turns * self.steps))
+
+    def questions(self, turns: int) -> int:
+        """How often a run asks whether to go on, at most."""
+        return 3 + (self.settle + self.count) // self.stride(turns)
+
+
+@dataclass(frozen=True)
+class Start:
+    """A state: z and z' (n,)."""
+
+    z: np.ndarray
+    dz: np.ndarray
+
+    def moved(self, old: SmallSystem, new: SmallSystem) -> Start:
+        """The same displacements and velocities in the coordinates of another system."""
+        if old is new:
+            return self
+        q, v = (np.linalg.solve(old.root.T, x) for x in (self.z, self.dz * old.w))
+        if old.shapes is not new.shapes and old.shapes and new.shapes:
+            q, v = (new.shapes.weighed.T @ (old.shapes.vectors @ x) for x in (q, v))
+        return Start(new.root.T @ q, new.root.T @ v / new.w)
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """What a run leaves of one system.
+
+    Attributes:
+        section: displacement and velocity (in m and m/s) of each local displacement at the end of each common period, (p, m, 2).
+        growth: (p, t) logarithm of the growth of each tangent in a common period.
+        sums: (m, 14) statistics, see kernel_lane_parts.py; forces in N.
+        end: state at the end. finite: whether everything stayed finite.
+    """
+
+    section: np.ndarray
+    growth: np.ndarray
+    sums: np.ndarray
+    end: Start
+    finite: bool
+
+
+def run_block(
+    systems: Sequence[SmallSystem],
+    starts: Sequence[Start],
+    tables: Sequence[np.ndarray],
+    plan: Plan,
+    go_on: Callable[[], bool] = lambda: True,
+) -> list[Orbit]:
+    """Run up to LANES systems of one kind side by side.
+
+    Args:
+        systems: of the same n, m, kinds of columns, rigid motions and common period.
+        starts: one a system. tables: one a system, or one for all, (2 turns steps + 1, m, 4).
+        plan: how long.
+        go_on: asked now and then; the run is given up with a KeyboardInterrupt where it says no.
+    """
+    from rotorgear.solvers.lanes.kernel import lanes_loop
+    from rotorgear.solvers.lanes.kernel_vectors import LANES
+
+    count = len(systems)
+    if not 0 < count <= LANES:
+        raise ValueError(f"{count} systems in a block, expected 1 to {LANES}")
+    filled = [*systems, *[systems[-1]] * (LANES - count)]
+    first = systems[0]
+    (matrix, across), values = _matrices(filled), _values(filled)
+    mesh, kinds = first.columns.mesh, (first.columns.gap, first.columns.mode)
+    jumps, pushes = np.max([s.columns.jumps for s in filled], axis=0), _sparse([-s.B for s in filled])
+    wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
+    pushed = any(np.any(s.columns.push) for s in systems)
+    table = _stacked([one[:, :, : 4 if pushed else 3] for one in wide])
+    laws, clock = own_laws(filled), _stacked([np.array([s.own.turn, s.w]) for s in filled])
+    rigid, energy = _stacked([s.rigid for s in filled]), _stacked([s.energy for s in filled])
+    begins = [*starts, *[starts[-1]] * (LANES - count)]
+    state = _stacked([np.concatenate([s.z, s.dz]) for s in begins])
+    tangents, kept = _tangents(first, plan.tangents), _kept(filled, begins, wide)
+    last, sums = aligned((mesh.size, LANES)), blank_sums(mesh.size)
+
+    def run(begun: int, periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        growth = aligned((periods, len(followed), LANES))
+        section = aligned((periods, 2 * mesh.size, LANES))
+        stride = plan.stride(first.turns)
+        for p in range(0, periods, stride):
+            if not go_on():
+                raise KeyboardInterrupt
+            lanes_loop(first.turns, plan.steps, begun + p, counting, matrix, across, pushes, *kinds, jumps, values, mesh, table,
+                       laws, clock, rigid, energy, state, kept, followed, last, growth[p : p + stride],
+                       section[p : p + stride], sums)  # fmt: skip
+        return growth, section
+
+    warm = min(plan.warm, plan.settle) if plan.tangents else 0
+    with np.errstate(all="ignore"):
+        run(0, plan.settle - warm, False, tangents[:0])
+        run(plan.settle - warm, warm, False, tangents)
+        growth, section = run(plan.settle, plan.count, True, tangents)
+    return [_orbit(filled[i], i, growth, section, sums, state) for i in range(count)]
+
+
+def _orbit(
+    system: SmallSystem, lane: int, growth: np.ndarray, section: np.ndarray, sums: np.ndarray, state: np.ndarray
+) -> Orbit:
+    """One lane, with forces in N and velocities in m/s."""
+    from rotorgear.solvers.lanes.kernel_parts import F_MAX, F_MIN, F_SQUARES, F_SUM
+
+    found, n = sums[:, :, lane].copy(), system.n
+    moved = section[:, :, lane].reshape(len(section), len(sums), 2).copy()
+    for row in (F_MIN, F_MAX, F_SUM):
+        found[:, row] *= system.w**2
+    found[:, F_SQUARES] *= system.w**4
+    moved[:, :, 1] *= system.w
+    end = Start(state[:n, lane].copy(), state[n:, lane].copy())
+    finite = bool(np.all(np.isfinite(moved)) and np.all(np.isfinite(end.z)))
+    return Orbit(moved, growth[..., lane].copy(), found, end, finite)
+
+
+def blank_sums(m: int) -> np.ndarray:
+    """Statistics (m, 14, w) before anything was counted."""
+    from rotorgear.solvers.lanes.kernel_parts import D_MAX, D_MIN, F_MAX, F_MIN, X_MAX, X_MIN
+    from rotorgear.solvers.lanes.kernel_vectors import LANES
+
+    sums = aligned((m, 14, LANES))
+    sums[:, [D_MIN, X_MIN, F_MIN]], sums[:, [D_MAX, X_MAX, F_MAX]] = np.inf, -np.inf
+    return sums
+
+
+def _tangents(system: SmallSystem, count: int) -> np.ndarray:
+    """Random tangents (t, 2 n, w), the same for all lanes and runs."""
+    from rotorgear.solvers.lanes.kernel_vectors import LANES
+
+    drawn = np.random.default_rng(1).standard_normal((count, 2 * system.n))
+    return _stacked([drawn] * LANES)
+
+
+def own_laws(systems: Sequence[SmallSystem]) -> tuple[Any, ...]:
+    """The laws that act by their own functions as kernel_lane_laws.py takes them; parameters and state by lane."""
+    first = systems[0].own
+    own = first.forces
+    parameters = np.ascontiguousarray(np.stack([s.own.forces.parameters for s in systems]))
+    return (
+        own.schedules, own.forces, own.kind, first.place, parameters, own.parameters_first, own.state_first, own.block_first,
+    )  # fmt: skip
+
+
+def aligned(shape: tuple[int, ...]) -> np.ndarray:
+    """Zeros whose rows of lanes begin where vector registers read best."""
+    size = int(np.prod(shape))
+    raw = np.zeros(size + _REGISTER // 8)
+    at = (-raw.ctypes.data) % _REGISTER // 8
+    return raw[at : at + size].reshape(shape)
+
+
+def _stacked(values: Sequence[Any]) -> np.ndarray:
+    """Arrays of the lanes as one with the lanes as its last axis."""
+    found = aligned((*np.shape(values[0]), len(values)))
+    np.stack(values, axis=-1, out=found)
+    return found
+
+
+Sparse = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+def _matrices(systems: Sequence[SmallSystem]) -> tuple[Sparse, Sparse]:
+    """z'' from (z, z', F, 1), and d, d' from (z, z')."""
+    return (
+        _sparse([np.hstack([-s.K, -s.D, -s.B, s.load[:, None]]) for s in systems]),
+        # Displacement and velocity of a column lie side by side.
+        _sparse(
+            [
+                np.stack([np.kron([1.0, 0.0], s.B.T), np.kron([0.0, 1.0], s.B.T)], axis=1).reshape(-1, 2 * s.n)
+                for s in systems
+            ]
+        ),
+    )
+
+
+def _sparse(matrices: Sequence[np.ndarray]) -> Sparse:
+    """Row starts, columns and values by lane (p, w) of what is not zero in all lanes."""
+    used = np.any([matrix != 0.0 for matrix in matrices], axis=0)
+    first = np.concatenate([[0], np.cumsum(used.sum(axis=1))]).astype(np.int64)
+    return first, np.nonzero(used)[1].astype(np.int64), _stacked([matrix[used] for matrix in matrices])
+
+
+def _kept(systems: Sequence[SmallSystem], starts: Sequence[Start], tables: Sequence[np.ndarray]) -> np.ndarray:
+    """What the kernel keeps of the end of a step (m, 4, w), at the start: see kernel_lane_jumps.py."""
+    from rotorgear.solvers.lanes.kernel_parts import ERROR
+
+    found = []
+    for i, (system, start) in enumerate(zip(systems, starts, strict=True)):
+        c = system.columns
+        x = system.B.T @ start.z - tables[i % len(tables)][0, :, ERROR]
+        behind = -x - c.backlash
+        touch = np.where(x > 0.0, 1.0, np.where(behind > 0.0, -1.0, 0.0))
+        depth = np.maximum(np.maximum(x, behind), 0.0)
+        share = np.minimum(depth * c.ramp, 1.0)
+        found.append(np.stack([touch * share * (depth - 0.5 * share / c.ramp), share, touch, touch], axis=1))
+    return _stacked(found)
+
+
+def _values(systems: Sequence[SmallSystem]) -> np.ndarray:
+    """Values of the columns (m, 6, w), as the kernel reads them."""
+    names = ("stiffness", "damping", "backlash", "ramp", "push")
+    return _stacked(
+        [np.stack([*(getattr(s.columns, name) for name in names), 1.0 / s.columns.ramp], axis=1) for s in systems]
+    )

@@ -1,0 +1,195 @@
+"""A small system with local forces as the lane kernels take it: mass one, time in radians of the fastest mesh.
+
+z = L^T q with M = L L^T, ' = d/d(w t):   z'' = f - K z - D z' - B F,   B^T z = B^T q
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.errors import AnalysisError
+from rotorgear.solvers.lanes.own_laws import OwnLaws, not_held, steepest
+from rotorgear.solvers.time.contact_equilibrium import Equilibrium
+from rotorgear.solvers.time.local_system import LocalSystem
+
+# Dense matrices in the kernel: beyond this many, other methods are cheaper.
+MOST_DOFS = 80
+# The Runge-Kutta method of order 4 is stable along the imaginary axis up to 2.83, along the negative one up to 2.79.
+STABLE = 2.5
+# Products of a frequency and a step that leave errors of 1e-3 or so in a period.
+ACCURATE = 0.35
+# The same above the frequencies that a reduced system follows: its stiffest shapes answer as if static.
+_STATIC = 1.5
+# Of the largest stiffness, that every direction gets in the size of a tangent.
+_FLOOR = 1e-12
+
+
+@dataclass(frozen=True)
+class Columns:
+    """How each of m local displacements acts, arrays (m,): see kernel_lane_parts.py."""
+
+    gap: np.ndarray
+    mode: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    backlash: np.ndarray
+    ramp: np.ndarray
+    push: np.ndarray
+    mesh: np.ndarray
+
+    @property
+    def jumps(self) -> np.ndarray:
+        """(m,) whether the damping sets in where flanks meet: NEVER, only as they CLOSE, or ALWAYS, as they part as well."""
+        from rotorgear.solvers.lanes.kernel_parts import ALWAYS, CLOSING, LINE, NEVER, ONE_SIDED, PENETRATION, UNCLAMPED
+
+        parts = ((self.gap == LINE) | (self.gap == ONE_SIDED)) & (self.mode != PENETRATION) & (self.damping > 0.0)
+        return np.where(parts, np.where(self.mode == UNCLAMPED, ALWAYS, CLOSING), NEVER).astype(np.int64)
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """What n coordinates mean in a larger system: its motions (N, n), M-orthonormal, and these times M."""
+
+    vectors: np.ndarray
+    weighed: np.ndarray
+    up_to: float
+
+    @staticmethod
+    def of(vectors: np.ndarray, M: sp.csc_array, up_to: float) -> Shapes:
+        """Shapes of a system with mass M (N, N) that holds up to a frequency in rad/s."""
+        return Shapes(vectors, M @ vectors, up_to)
+
+
+@dataclass(frozen=True)
+class SmallSystem:
+    """n degrees of freedom, m local displacements.
+
+    Attributes:
+        K, D: (n, n); load: (n,); B: (n, m); rigid: (r, n) orthonormal motions without strain; rest: z in equilibrium, (n,).
+        root: L, (n, n). energy: S with S^T S the stiffness with all contacts closed, (n, n).
+        columns: of the local forces; own: those that act by laws of their own.
+        w: rad/s of the fastest mesh; turns: its periods in the common one.
+        fastest: largest |eigenvalue| of the linear system, in radians of the mesh; followed: of those that a reduced system
+        holds for. shapes: of a system that was reduced.
+    """
+
+    K: np.ndarray
+    D: np.ndarray
+    load: np.ndarray
+    B: np.ndarray
+    rigid: np.ndarray
+    rest: np.ndarray
+    root: np.ndarray
+    energy: np.ndarray
+    columns: Columns
+    own: OwnLaws
+    w: float
+    turns: int
+    fastest: float
+    followed: float
+    shapes: Shapes | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of degrees of freedom before any reduction."""
+        return self.n if self.shapes is None else len(self.shapes.vectors)
+
+    @property
+    def n(self) -> int:
+        """Number of degrees of freedom."""
+        return int(self.load.size)
+
+
+def small_system(
+    local: LocalSystem,
+    rest: Equilibrium,
+    columns: Columns,
+    own: OwnLaws,
+    w: float,
+    turns: int,
+    modal_ratio: float = 0.0,
+    shapes: Shapes | None = None,
+) -> SmallSystem:
+    """Return a system at the speed of its rotation in the form of the kernels.
+
+    Args:
+        local: the system. rest: its equilibrium. columns: of its local forces, in SI. own: those with laws of their own.
+        w: rad/s of the fastest mesh. turns: its periods in the common one.
+        modal_ratio: damping ratio added to every mode with strain. shapes: of a system that was reduced.
+
+    Raises:
+        AnalysisError: too many dofs, or one without inertia.
+    """
+    if shapes is None:
+        refuse_large(local.n)
+    try:
+        L = np.linalg.cholesky(local.M.toarray())
+    except np.linalg.LinAlgError:
+        raise AnalysisError("a degree of freedom has no inertia: a sweep needs mass on all of them") from None
+    inverse = np.linalg.inv(L)
+    B = inverse @ local.B.toarray()
+    K = inverse @ local.K.toarray() @ inverse.T
+    D = inverse @ local.velocity_terms(float(local.rotation.speeds[0])).toarray() @ inverse.T
+    about = inverse @ local.stiffness_about.toarray() @ inverse.T
+    damped = D + B @ local.forces.reference_damping @ B.T
+    steep = steepest(local, rest.q, own, 2.0 * np.pi / w)
+    linear = [(about, damped), *((about + B @ k @ B.T, damped + B @ c @ B.T) for k, c in steep)]
+    squares, modes = np.linalg.eigh(0.5 * (linear[-1][0] + linear[-1][0].T))
+    energy = np.sqrt(np.abs(squares) + _FLOOR * np.abs(squares).max())[:, None] * modes.T / w
+    if modal_ratio:
+        D = D + (modes * (2.0 * modal_ratio * np.sqrt(np.maximum(squares, 0.0)))) @ modes.T
+    free = not_held(local, rest.q, own, rest.free)
+    rigid = np.linalg.qr(L.T @ free)[0].T if free.size else np.zeros((0, local.n))
+    rates = np.concatenate([_rates(k / w**2, c / w) for k, c in linear])
+    followed = rates if shapes is None else rates[rates <= shapes.up_to / w]
+    return SmallSystem(
+        _clean(K) / w**2, _clean(D) / w, inverse @ local.load / w**2, _clean(B), rigid, L.T @ rest.q, L, energy,
+        scaled(columns, w), own, w, turns, float(rates.max()), float(followed.max(initial=0.0)), shapes,
+    )  # fmt: skip
+
+
+def _rates(K: np.ndarray, D: np.ndarray) -> np.ndarray:
+    """All |eigenvalues| of z'' = -K z - D z'."""
+    A = np.block([[np.zeros_like(K), np.eye(len(K))], [-K, -D]])
+    return np.abs(np.linalg.eigvals(A))
+
+
+def refuse_large(n: int) -> None:
+    """AnalysisError where n dofs are too many."""
+    if n > MOST_DOFS:
+        raise AnalysisError(
+            f"{n} dofs are too many for a sweep (at most {MOST_DOFS}): lump the shafts (rigid gears on springs), or run single "
+            "points by the transient analysis"
+        )
+
+
+def scaled(columns: Columns, w: float) -> Columns:
+    """Forces over w^2, damping over w."""
+    return Columns(
+        columns.gap, columns.mode, columns.stiffness / w**2, columns.damping / w, columns.backlash, columns.ramp,
+        columns.push / w**2, columns.mesh,
+    )  # fmt: skip
+
+
+def _clean(A: np.ndarray) -> np.ndarray:
+    """A without the rounding that a change of coordinates leaves where nothing was."""
+    return np.where(np.abs(A) > 1e-14 * np.abs(A).max(initial=0.0), A, 0.0)
+
+
+def steps_needed(system: SmallSystem) -> int:
+    """Steps in a period of the fastest mesh that follow all frequencies the system holds for, and are stable for the rest."""
+    return max(
+        _steps(system.followed, ACCURATE), _steps(system.fastest, ACCURATE if system.shapes is None else _STATIC)
+    )
+
+
+def steps_stable(system: SmallSystem) -> int:
+    """Least steps in a period of the fastest mesh that are stable."""
+    return _steps(system.fastest, STABLE)
+
+
+def _steps(fastest: float, share: float) -> int:
+    return int(np.ceil(2.0 * np.pi * fastest / share))

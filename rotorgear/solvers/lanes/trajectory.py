@@ -1,0 +1,60 @@
+"""The trajectory of one small system, recorded within its periods."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.solvers.lanes.lanes import Start
+from rotorgear.solvers.lanes.small_system import SmallSystem
+
+
+def recorded(
+    system: SmallSystem, start: Start, table: np.ndarray, steps: int, periods: int, every: int = 1, begun: int = 0
+) -> np.ndarray:
+    """Run on from a state over common periods, by the steps of `run_block`.
+
+    Args:
+        table: of what depends on time, (2 turns steps + 1, m, 4).
+        steps: in a period of the fastest mesh. periods: common ones. every: steps between two records.
+        begun: common periods before the start, for laws that go on from one to the next, such as rolling elements.
+
+    Returns:
+        Displacement in m, velocity in m/s and force in N of each local displacement, (periods turns steps / every, m, 3); the
+        first record is the state to start from.
+
+    Raises:
+        ValueError: `every` does not divide the steps of a common period.
+    """
+    from rotorgear.solvers.lanes.kernel_trajectory import trajectory
+
+    length, rest = divmod(system.turns * steps, every)
+    if rest:
+        raise ValueError(f"{system.turns * steps} steps in a common period are no multiple of {every}")
+    c = system.columns
+    values = np.stack([c.stiffness, c.damping, c.backlash, c.ramp, c.push], axis=1)
+    out = np.empty((periods * length, c.gap.size, 3))
+    matrices = [np.ascontiguousarray(x, dtype=float) for x in (system.K, system.D, system.B, system.load)]
+    state = np.concatenate([start.z, start.dz])
+    own = system.own.forces
+    laws = (
+        own.schedules, own.forces, own.kind, system.own.place, own.parameters, own.parameters_first, own.state_first,
+        own.block_first,
+    )  # fmt: skip
+    clock = np.array([system.own.turn, system.w])
+    before = begun * system.turns * steps
+    trajectory(
+        steps,
+        every,
+        before,
+        *matrices,
+        c.gap,
+        c.mode,
+        c.jumps,
+        values,
+        np.ascontiguousarray(table),
+        laws,
+        clock,
+        state,
+        out,
+    )
+    return out * np.array([1.0, system.w, system.w**2])

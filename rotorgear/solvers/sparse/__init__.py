@@ -1,0 +1,1 @@
+"""Sparse factors, null spaces, equilibrium of linear systems."""

@@ -1,0 +1,75 @@
+"""Static equilibrium K q = f where some motions R are free of strain: K R = 0 and R^T K = 0. K may be non-symmetric.
+
+The loads must do no work on R. Then q is the solution on a statically determinate support of r dofs, which carries no load;
+what is left open is q + R c. (For a symmetric K and one orthogonal to R by inertia see static.py.)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.errors import ConvergenceError
+from rotorgear.solvers.sparse.nullspace import SupportedSolver
+from rotorgear.solvers.sparse.static import UnbalancedLoadError
+
+_BALANCE = 1e-8  # as in static.py: work relative to the sum of its absolute parts that counts as none
+_RESIDUAL = 1e-11
+_ROUNDING = 1e-11
+_REFINEMENTS = 4
+
+
+class Equilibrium:
+    """Solves K q = f again and again for loads that leave the free motions R (n, r) alone.
+
+    Raises
+    ------
+    AnalysisError
+        K is singular beyond R.
+    """
+
+    def __init__(self, K: sp.csc_array, R: np.ndarray) -> None:
+        self._K = sp.csc_array(K, dtype=float)
+        diagonal = np.abs(self._K.diagonal())
+        typical = float(np.median(diagonal[diagonal > 0.0])) if np.any(diagonal > 0.0) else 1.0
+        self._scale = np.sqrt(np.where(diagonal > 0.0, diagonal, typical))  # metres and radians compete fairly
+        self._R = np.linalg.qr(R * self._scale[:, None])[0]  # of q * scale
+        self._solver = SupportedSolver(self._K, self._R, self._R)
+
+    def solve(self, f: np.ndarray) -> np.ndarray:
+        """Return q (n, p) for loads f (n, p).
+
+        Raises
+        ------
+        UnbalancedLoadError
+            A load does work on a free motion.
+        ConvergenceError
+            The residual stays above 1e-11 of the forces inside; `partial` holds q.
+        """
+        rest = self._balanced(f)
+        target, q = rest, np.zeros_like(f)
+        size = abs(self._K)
+        for _ in range(_REFINEMENTS):
+            q = q + self._solver.solve(rest)
+            rest = self._free_of_rigid(target - self._K @ q)
+            scale = np.abs(size @ np.abs(q)) + np.abs(target)
+            noise = np.max(np.abs(rest / self._scale[:, None]), axis=0)
+            if np.all(noise <= _RESIDUAL * np.max(scale / self._scale[:, None], axis=0)):
+                return q
+        raise ConvergenceError("the static solution keeps a residual: look for stiffnesses many decades apart", q)
+
+    def _balanced(self, f: np.ndarray) -> np.ndarray:
+        """The loads less the rounding of their balance."""
+        scaled = f / self._scale[:, None]
+        work, parts = self._R.T @ scaled, np.abs(self._R.T) @ np.abs(scaled)
+        if self._R.shape[1]:
+            noise = _ROUNDING * np.linalg.norm(scaled, axis=0)  # a motion that the loads hardly touch
+            imbalance = (np.abs(work) / np.maximum(parts, np.where(noise > 0.0, noise, 1.0))).max(axis=1)
+            imbalance[np.all(np.abs(work) <= noise, axis=1)] = 0.0
+            if np.any(imbalance > _BALANCE):
+                raise UnbalancedLoadError(imbalance)
+        return self._free_of_rigid(f)
+
+    def _free_of_rigid(self, f: np.ndarray) -> np.ndarray:
+        scaled = f / self._scale[:, None]
+        return np.asarray((scaled - self._R @ (self._R.T @ scaled)) * self._scale[:, None])

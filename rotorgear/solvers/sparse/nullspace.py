@@ -1,0 +1,64 @@
+"""Systems with a known null space: K q = f with K R = 0, solved by a statically determinate support of r dofs.
+
+The support dofs come from a pivoted QR of R: R restricted to them is well conditioned, so K without them is regular.
+When f is orthogonal to the left null space the support carries no load, and the solution is exact.
+Golub and Van Loan, Matrix Computations, 4th ed., section 5.4 (column pivoting).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.solvers.sparse.factor import Factor, factor_general
+
+
+def support_dofs(R: np.ndarray) -> np.ndarray:
+    """The r dofs (r,) whose fixing stops all motions R (n, r); scale the rows of R to comparable units first."""
+    if R.shape[1] == 0:
+        return np.zeros(0, dtype=int)
+    _, order = la.qr(R.T, mode="r", pivoting=True)
+    dofs: np.ndarray = np.sort(order[: R.shape[1]])
+    return dofs
+
+
+def left_null_space(K: sp.csc_array, M: sp.csc_array, R: np.ndarray) -> np.ndarray:
+    """Orthonormal L (n, r) with L^T K = 0, by inverse iteration; R itself when K is symmetric."""
+    skew = abs(K - K.T)
+    if R.shape[1] == 0 or skew.nnz == 0 or skew.max() <= 1e-14 * abs(K).max():
+        return np.linalg.qr(R)[0]
+    factor = factor_general(sp.csc_array(K + 1e-6 * M))
+    L = R
+    for _ in range(4):
+        L = np.linalg.qr(factor.solve(M.T @ L, transposed=True))[0]
+    return L
+
+
+class SupportedSolver:
+    """Solves K q = f for f orthogonal to L; q is zero at the support dofs of R.
+
+    Raises
+    ------
+    AnalysisError
+        K stays singular on the support: it has more rigid motions than R.
+    """
+
+    def __init__(self, K: sp.csc_array, R: np.ndarray, L: np.ndarray) -> None:
+        n = K.shape[0]
+        self._columns = np.setdiff1d(np.arange(n), support_dofs(R))
+        self._rows = np.setdiff1d(np.arange(n), support_dofs(L))
+        try:
+            self._factor: Factor = factor_general(sp.csc_array(K[self._rows][:, self._columns]))
+        except ConvergenceError as error:
+            raise AnalysisError(
+                f"The stiffness has more rigid motions (to its rounding) than the {R.shape[1]} given: give them all."
+            ) from error
+        self._n = n
+
+    def solve(self, f: np.ndarray) -> np.ndarray:
+        """q (n,) or (n, m) for f of that shape."""
+        q = np.zeros(f.shape)
+        q[self._columns] = self._factor.solve(f[self._rows])
+        return q

@@ -1,0 +1,103 @@
+"""What K x = lambda M x must satisfy before it is solved, and how far its rounding can be trusted.
+
+Elementwise |fl(K v) - K v| <= eps |K||v|, so the Rayleigh quotient of a stored K carries the noise
+eps |v|^T |K| |v| / (v^T M v): Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 3.5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.solvers.sparse.factor import SymmetricFactor, factor_symmetric, solve_error
+
+EPS = float(np.finfo(float).eps)
+Strain = Callable[[np.ndarray], np.ndarray]
+
+
+class LooseDofError(AnalysisError):
+    """Some dof has neither inertia nor stiffness. `dofs` holds the indices, for upper floors to name."""
+
+    def __init__(self, dofs: np.ndarray) -> None:
+        self.dofs: tuple[int, ...] = tuple(int(dof) for dof in dofs)
+        listed = ", ".join(str(dof) for dof in self.dofs[:10])
+        super().__init__(
+            f"Degrees of freedom {listed} can move with neither inertia nor stiffness; "
+            "give them one of the two or fix them."
+        )
+
+
+def check_pencil(M: sp.csc_array, K: sp.csc_array) -> np.ndarray:
+    """Refuse what is no symmetric pair without loose dofs; return the indices of the massless dofs.
+
+    Raises
+    ------
+    AnalysisError
+        Shapes differ, entries are not finite, or a matrix is not symmetric.
+    LooseDofError
+        Massless dofs can move among themselves without strain.
+    """
+    if M.shape != K.shape or K.shape[0] != K.shape[1]:
+        raise AnalysisError(f"M {M.shape} and K {K.shape} must be square and of one size.")
+    for name, A in (("M", M), ("K", K)):
+        if not np.all(np.isfinite(A.data)):
+            raise AnalysisError(f"{name} holds entries that are not finite; check the input for NaN.")
+        skew, scale = abs(A - A.T), np.sqrt(np.abs(A.diagonal()))
+        rows, cols = skew.nonzero()
+        if rows.size and np.any(skew.data[skew.data > 0] > 1e-9 * (scale[rows] * scale[cols])):
+            raise AnalysisError(f"{name} is not symmetric: use the damped solver for circulatory or gyroscopic terms.")
+    massless = np.flatnonzero(M.diagonal() <= 0.0)
+    if massless.size:
+        _refuse_loose(massless, sp.csc_array(K[massless][:, massless]))
+    return massless
+
+
+def _refuse_loose(massless: np.ndarray, stiffness: sp.csc_array) -> None:
+    """A semidefinite pencil is singular exactly when the massless block of K is."""
+    diagonal = stiffness.diagonal()
+    if np.any(diagonal <= 0.0):
+        raise LooseDofError(massless[diagonal <= 0.0])
+    lifted = sp.csc_array(stiffness + sp.diags_array(4 * EPS * diagonal))  # keeps an exactly zero pivot findable
+    pivots = factor_symmetric(lifted).pivots_by_row()
+    loose = pivots < 100 * EPS * diagonal
+    if np.any(loose):
+        raise LooseDofError(massless[loose])
+
+
+def rounding_noise(size_K: sp.csr_array, V: np.ndarray, shift: float = 0.0) -> np.ndarray:
+    """Noise of the Rayleigh quotients (m,) of M-normal columns of V (n, m) for a K of doubles, size_K = |K|."""
+    size = np.ascontiguousarray(np.abs(V))
+    noise: np.ndarray = EPS * (np.einsum("ij,ij->j", size, size_K @ size) + abs(shift))
+    return noise
+
+
+def backward_errors(M: sp.csr_array, K: sp.csr_array, values: np.ndarray, V: np.ndarray) -> np.ndarray:
+    """||K v - lambda M v|| / ((||K||_1 + |lambda| ||M||_1) ||v||) of each pair: (m,)."""
+    V = np.ascontiguousarray(V)
+    residual = np.linalg.norm(K @ V - M @ (V * values), axis=0)
+    norm_K, norm_M = (float(abs(A).sum(axis=0).max()) for A in (K, M))
+    size = (norm_K + np.abs(values) * norm_M) * np.linalg.norm(V, axis=0)
+    errors: np.ndarray = residual / np.maximum(size, np.finfo(float).tiny)  # K = 0 leaves no residual either
+    return errors
+
+
+def count_below(M: sp.csc_array, K: sp.csc_array, shift: float) -> int:
+    """Number of eigenvalues of K x = lambda M x below the shift, from the signs of the pivots of K - shift M.
+
+    Raises
+    ------
+    ConvergenceError
+        The factors stay inaccurate when the shift is moved by a billionth or so: it lies in a cluster of eigenvalues.
+    """
+    for nudge in (0.0, 1e-9, -1e-9, 1e-8, -1e-8):
+        A = sp.csc_array(K - shift * (1.0 + nudge) * M)
+        try:
+            factor: SymmetricFactor = factor_symmetric(A)
+        except ConvergenceError:
+            continue
+        if solve_error(A, factor) < 1e-9:
+            return factor.negative_count()
+    raise ConvergenceError(f"No accurate factors of K - {shift:.6g} M: the shift lies in a cluster of eigenvalues.")

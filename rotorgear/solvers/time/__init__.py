@@ -1,0 +1,1 @@
+"""Time integration, and the local forces that act in it."""

@@ -1,0 +1,168 @@
+"""Reference integrator for small models: explicit Runge-Kutta of order 8 with its own step control (DOP853).
+
+Its steps are far smaller than those of the others, because they follow the highest frequency of the structure; it
+shares nothing with them but
+the force laws, and so it checks them. Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I (Springer
+1993), II.5.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from scipy.integrate import DOP853
+
+from rotorgear.errors import AnalysisError
+from rotorgear.solvers.sparse.factor import factor_general
+from rotorgear.solvers.time.local_system import LocalSystem, PlainFields, Records, State, blank_records
+
+MOST_DOFS = 600
+_FINEST = 1e-13
+
+
+@dataclass(frozen=True)
+class Explicit:
+    """Dormand and Prince's method of order 8; `relative` is the tolerance of a step."""
+
+    relative: float = 1e-11
+
+    @property
+    def name(self) -> str:
+        """What it is, in words."""
+        return f"explicit Runge-Kutta of order 8, tolerance {self.relative:.0e}"
+
+    def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
+        """None: all damping is in D."""
+        return np.zeros((0, system.n))
+
+    def prepare(self, system: LocalSystem, h: float, speed: float, tolerance: float = 1e-10) -> ExplicitStepper:
+        """Factor the inertia.
+
+        Raises:
+            AnalysisError: a dof without inertia, or a model that is too large.
+        """
+        if np.any(system.M.diagonal() <= 0.0):
+            raise AnalysisError("a degree of freedom has no inertia; the explicit integrator needs it: use newmark")
+        if system.n > MOST_DOFS:
+            raise AnalysisError(
+                f"{system.n} dofs are too many for the explicit integrator (at most {MOST_DOFS}); use newmark"
+            )
+        return ExplicitStepper(system, h, speed, max(self.relative, _FINEST))
+
+
+@dataclass
+class ExplicitStepper:
+    """The method made ready for one system and speed; `h` is the distance at which forces are looked at."""
+
+    system: LocalSystem
+    h: float
+    speed: float
+    relative: float
+    _inverse: tuple[np.ndarray, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        s = self.system
+        factor = factor_general(s.M)
+        dense = (s.K.toarray(), s.velocity_terms(self.speed).toarray(), s.B.toarray(), s.load[:, None])
+        self._inverse = tuple(np.ascontiguousarray(factor.solve(A)) if A.size else A for A in dense)
+        self._local = _LocalForces(s)
+
+    def start(self, state: State) -> None:
+        """Any consistent state will do."""
+
+    def _slope(self, t: float, y: np.ndarray) -> np.ndarray:
+        n = self.system.n
+        q, v = y[:n], y[n:]
+        K, D, B, load = self._inverse
+        F, _ = self._local.at(q, v, t)
+        return np.concatenate([v, load[:, 0] - K @ q - D @ v - B @ F])
+
+    def advance(self, state: State, steps: int, every: int) -> Records:
+        """Advance a state in place by some steps and record every `every`-th."""
+        kept = blank_records(steps, every, self.system.n, self.system)
+        begin, end = state.step * self.h, (state.step + steps) * self.h
+        y = np.concatenate([state.q, state.v])
+        solver = DOP853(self._slope, begin, y, end, rtol=self.relative, atol=self.relative * self._sizes(state))
+        done, status = 0, 0
+        with np.errstate(all="ignore"):
+            while solver.status == "running":
+                solver.step()
+                if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
+                    status = -2
+                    break
+                dense = solver.dense_output()
+                while done < steps and (state.step + done + 1) * self.h <= solver.t * (1.0 + 1e-14):
+                    done += 1
+                    self._look(state, kept, done, every, dense((state.step + done) * self.h))
+        r = done // every
+        t = (state.step + every * np.arange(1, r + 1)) * self.h
+        state.step += done
+        fields = PlainFields(kept["q"][:r], kept["v"][:r], kept["a"][:r])
+        return Records(t, kept["d"][:r], kept["F"][:r], kept["energy"][:r], fields, done, status, solver.nfev)
+
+    def _sizes(self, state: State) -> np.ndarray:
+        """Sizes (2n,) that errors of displacements and velocities are taken relative to."""
+        s = self.system
+        ratio = np.abs(s.stiffness_about.diagonal()) / s.M.diagonal()
+        typical = float(np.sqrt(np.median(ratio[ratio > 0.0]))) if np.any(ratio > 0.0) else 1.0
+        far = max(_size(state.q), _smallest(s), _size(state.v) / typical)
+        return np.concatenate([np.full(s.n, far), np.full(s.n, far * typical)])
+
+    def _look(self, state: State, kept: dict[str, Any], number: int, every: int, y: np.ndarray) -> None:
+        """Take the state over after a step, with what forces did in it."""
+        n, t = self.system.n, (state.step + number) * self.h
+        state.q[:], state.v[:] = y[:n], y[n:]
+        state.a[:] = self._slope(t, y)[n:]
+        F, energy = self._local.at(state.q, state.v, t)
+        state.before[:], state.F[:] = state.F, F
+        powers = energy.reshape(-1, 4)
+        state.sums += self.h * powers[:, 1:3]
+        now = powers[:, 3].astype(np.int64)
+        rows = np.arange(now.size)
+        state.events[rows, np.where(now > 0, 0, np.where(now < 0, 2, 1))] += 1
+        state.events[:, 3] += (now == 0) & (state.last != 0)
+        state.last[:] = now
+        if number % every == 0:
+            r = number // every - 1
+            kept["q"][r], kept["v"][r], kept["a"][r] = state.q, state.v, state.a
+            kept["d"][r], kept["F"][r] = self.system.B.T @ state.q, F
+            kept["energy"][r, :, 0] = powers[:, 0]
+            kept["energy"][r, :, 1:] = state.sums - 0.5 * self.h * powers[:, 1:3]
+
+
+class _LocalForces:
+    """Local forces with arrays that are made once."""
+
+    def __init__(self, system: LocalSystem) -> None:
+        laws = system.forces
+        self._system, self._Bt = system, system.B.T.tocsr()
+        self._state = np.zeros(laws.state_first[-1])
+        self._tangents = np.zeros(laws.block_first[-1]), np.zeros(laws.block_first[-1])
+
+    def at(self, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """Forces (m,) and energies (4 l,)."""
+        from rotorgear.solvers.time.kernel_contact import force_all, schedule_all
+        from rotorgear.solvers.time.kernel_time import rotation_at
+
+        laws, rotation = self._system.forces, self._system.rotation
+        _, forces, kind, first, parameters, parameters_first, state_first, block_first = laws.arguments()
+        angle, speed = rotation_at(t, rotation.times, rotation.speeds, rotation.angles)
+        schedule_all(laws.schedules, kind, parameters, parameters_first, state_first, angle, speed, t, self._state)
+        F, energy = np.zeros(laws.m), np.zeros(4 * len(laws.laws))
+        d, w = np.ascontiguousarray(self._Bt @ q), np.ascontiguousarray(self._Bt @ v)
+        force_all(forces, kind, first, parameters, parameters_first, state_first, block_first,
+                  self._state, d, w, F, *self._tangents, energy)  # fmt: skip
+        return F, energy
+
+
+def _size(*values: np.ndarray) -> float:
+    return max(float(np.abs(x).max(initial=0.0)) for x in values)
+
+
+def _smallest(system: LocalSystem) -> float:
+    """Least displacement that is followed: a share of what the load does to the stiffest dof."""
+    stiffest = float(np.abs(system.stiffness_about.diagonal()).max(initial=0.0))
+    load = float(np.abs(system.load).max(initial=0.0))
+    return max(load / stiffest if stiffest else 0.0, 1e-12)

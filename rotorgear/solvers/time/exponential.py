@@ -1,0 +1,208 @@
+"""The exponential integrator: exact for the linear part in complex modes, second order in the local forces, speed constant.
+
+The local forces are split into their linear reference k d + c v, which goes into the modes, and the rest u, which is
+linear within a
+step and found by Newton's method on m unknowns. Hochbruck and Ostermann, Acta Numerica 19 (2010) 209.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from rotorgear.errors import AnalysisError
+from rotorgear.solvers.eigen.complex_modes import ComplexModes, complex_modes
+from rotorgear.solvers.time.local_system import LocalSystem, Records, State, blank_records
+
+
+@dataclass(frozen=True)
+class Exponential:
+    """Method with all modes, or `modes` real modes and the residual attachment vectors."""
+
+    modes: int | None = None
+    modal_ratio: float = 0.0
+    _known: list[tuple[LocalSystem, float, ComplexModes]] = field(default_factory=list, compare=False, repr=False)
+
+    @property
+    def name(self) -> str:
+        """What it is, in words."""
+        return "exponential, " + ("all complex modes" if self.modes is None else f"{self.modes} modes with residuals")
+
+    def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
+        """Rows Y (b, n) of the damping by modes: it dissipates |Y v|^2; none where no mode has its own ratio."""
+        if not self.modal_ratio:
+            return np.zeros((0, system.n))
+        V = self._modes(system, speed).basis
+        roots = np.sqrt(np.maximum(np.einsum("ij,ij->j", V, system.stiffness_about @ V), 0.0))
+        return np.asarray(np.sqrt(2.0 * self.modal_ratio * roots)[:, None] * (system.M @ V).T)
+
+    def prepare(self, system: LocalSystem, h: float, speed: float, tolerance: float = 1e-10) -> ExponentialStepper:
+        """Find the modes and the step's coefficients.
+
+        Raises:
+            AnalysisError: the speed of the reference changes, or a dof has no inertia.
+        """
+        if not system.rotation.is_constant and system.G is not None and system.G.nnz:
+            raise AnalysisError("the exponential integrator needs a constant speed; use newmark for a run-up")
+        return ExponentialStepper(self._modes(system, speed), system, h, tolerance)
+
+    def _modes(self, system: LocalSystem, speed: float) -> ComplexModes:
+        """The modes, found once for a system and speed."""
+        found = next((modes for known, at, modes in self._known if known is system and at == speed), None)
+        if found is None:
+            D = system.damping_about if system.G is None else system.damping_about + speed * system.G
+            found = complex_modes(system.M, D, system.stiffness_about, system.B.toarray(), self.modes, self.modal_ratio)
+            self._known.append((system, speed, found))
+        return found
+
+
+class ExponentialStepper:
+    """The method made ready for one system, step and speed."""
+
+    def __init__(self, modes: ComplexModes, system: LocalSystem, h: float, tolerance: float) -> None:
+        self.h, self._system, self.modes, self._tolerance = h, system, modes, tolerance
+        B, m = system.B.toarray(), system.m
+        s, e = modes.s, np.exp(modes.s * h)
+        first, second = _phi(modes.s * h)
+        gain = modes.gains @ (modes.basis.T @ B)
+        Q0, self._Q1 = (h * (first - second))[:, None] * gain, (h * second)[:, None] * gain
+        push = modes.gains @ (modes.basis.T @ system.load)
+        CX = B.T @ modes.shapes
+        C = np.vstack([CX, CX * s])
+        Br = modes.rigid.T @ B
+        A = np.real(C @ self._Q1) + np.vstack([h * h / 6.0 * Br.T @ Br, 0.5 * h * Br.T @ Br])
+        k_ref, c_ref = system.forces.reference_stiffness, system.forces.reference_damping
+        linear = np.eye(2 * m) - A @ np.hstack([k_ref, c_ref])
+        Z, compliance = np.linalg.inv(linear), np.linalg.solve(linear, A)
+        self._Br, self._rigid_load = Br, modes.rigid.T @ system.load
+        self._mobile = modes.basis @ (modes.basis.T @ B) + modes.rigid @ Br
+        self._pushed = modes.basis @ (modes.basis.T @ system.load) + modes.rigid @ self._rigid_load
+        needs_v = bool(np.any(c_ref)) or any(law.uses_velocity for law in system.forces.laws)
+        rows = C if needs_v else C[:m]
+        G = (e[:, None] * self._Q1 + Q0).T
+        rotation = system.rotation
+        self._fixed: tuple[Any, ...] = (
+            needs_v, rotation.times, rotation.speeds, rotation.angles, *_parts(e), *_parts(G), *_parts(h * first * push),
+            *_parts(self._Q1.T), *_parts(rows), np.ascontiguousarray(Br), self._rigid_load, np.ascontiguousarray(Z),
+            np.ascontiguousarray(compliance[:m]), np.ascontiguousarray(compliance[m:]), k_ref, c_ref,
+            *system.forces.arguments(),
+        )  # fmt: skip
+        self._rows: dict[tuple[str, int], tuple[np.ndarray, ...]] = {}
+
+    def start(self, state: State) -> None:
+        """Take displacements and velocities over into modal coordinates."""
+        modes, system = self.modes, self._system
+        if "yr" in state.inner and state.inner["yr"].size == modes.s.size:
+            return
+        weighted = modes.basis.T @ (system.M @ np.column_stack([state.q, state.v]))
+        z = self._modal(weighted)
+        laws = system.forces
+        u = (
+            laws.reference_stiffness @ (system.B.T @ state.q)
+            + laws.reference_damping @ (system.B.T @ state.v)
+            - state.F
+        )
+        y = z - self._Q1 @ u
+        rigid = modes.rigid.T @ (system.M @ np.column_stack([state.q, state.v]))
+        state.inner = {
+            "yr": y.real.copy(),
+            "yi": y.imag.copy(),
+            "r0": rigid[:, 0].copy(),
+            "r1": rigid[:, 1].copy(),
+            "u": u,
+        }
+
+    def _modal(self, coordinates: np.ndarray) -> np.ndarray:
+        """z (nz,) with the given basis coordinates and velocities (b, 2), by least squares on the modes themselves."""
+        X = self.modes.basis.T @ (self._system.M @ self.modes.shapes)
+        real = np.vstack([np.hstack([X.real, -X.imag]), np.hstack([(X * self.modes.s).real, -(X * self.modes.s).imag])])
+        scale = np.abs(self.modes.s).max(initial=1.0)
+        real[coordinates.shape[0] :] /= scale
+        right = np.concatenate([coordinates[:, 0], coordinates[:, 1] / scale])
+        if not real.size:
+            return np.zeros(0, complex)
+        found = np.linalg.lstsq(real, right, rcond=None)[0]
+        return np.asarray(found[: self.modes.s.size] + 1j * found[self.modes.s.size :])
+
+    def advance(self, state: State, steps: int, every: int) -> Records:
+        """Advance a state in place by some steps and record every `every`-th."""
+        from rotorgear.solvers.time.kernel_exponential import exponential_loop
+
+        system, inner, nz, nr = self._system, state.inner, self.modes.s.size, self.modes.rigid.shape[1]
+        kept = blank_records(steps, every, 0, system)
+        r = steps // every
+        z, rigid, u = np.zeros((r, 2 * nz)), np.zeros((r, 2 * nr)), np.zeros((r, system.m))
+        done, status, solutions = exponential_loop(
+            steps, every, state.step, self.h, *self._fixed, inner["yr"], inner["yi"], inner["r0"], inner["r1"], inner["u"],
+            state.F, state.before, self._tolerance, z, rigid, u, kept["d"], kept["F"], kept["energy"],
+            state.sums, state.last, state.events,
+        )  # fmt: skip
+        count = done // every
+        t = (state.step + every * np.arange(1, count + 1)) * self.h
+        state.step += done
+        fields = ModalFields(self, z[:count], rigid[:count], u[:count])
+        if count and count * every == done:
+            state.q, state.v, state.a = (fields.last(kind) for kind in "qva")
+        return Records(t, kept["d"][:count], kept["F"][:count], kept["energy"][:count], fields, done, status, solutions)
+
+    def projected(self, kind: str, Y: np.ndarray) -> tuple[np.ndarray, ...]:
+        """What gives Y q, Y v or Y a from modal coordinates, rigid ones, u and the load."""
+        key = (kind, id(Y))
+        if key not in self._rows:
+            power = "qva".index(kind)
+            shapes = Y @ (self.modes.shapes * self.modes.s**power)
+            R = Y @ self.modes.rigid
+            nothing = np.zeros_like(R)
+            rigid = (np.hstack([R, nothing]), np.hstack([nothing, R]), np.hstack([nothing, nothing]))[power]
+            mobile = Y @ self._mobile if kind == "a" else np.zeros((Y.shape[0], self._system.m))
+            constant = Y @ self._pushed if kind == "a" else np.zeros(Y.shape[0])
+            self._rows[key] = (Y, np.hstack([shapes.real, -shapes.imag]).T.copy(), rigid.T, mobile.T, constant)
+        return self._rows[key][1:]
+
+
+@dataclass(frozen=True)
+class ModalFields:
+    """Recorded modal coordinates, from which any rows of q, v and a follow."""
+
+    stepper: ExponentialStepper
+    z: np.ndarray
+    rigid: np.ndarray
+    u: np.ndarray
+
+    def rows(self, kind: str, Y: np.ndarray) -> np.ndarray:
+        """Y q, Y v or Y a at the recorded steps, (r, p); `kind` is "q", "v" or "a"."""
+        shapes, rigid, mobile, constant = self.stepper.projected(kind, Y)
+        return np.asarray(self.z @ shapes + self.rigid @ rigid + self.u @ mobile + constant)
+
+    def chosen(self, which: np.ndarray) -> ModalFields:
+        """Those of some records."""
+        return ModalFields(self.stepper, self.z[which], self.rigid[which], self.u[which])
+
+    def last(self, kind: str) -> np.ndarray:
+        """q, v or a of the last record, (n,)."""
+        modes, power = self.stepper.modes, "qva".index(kind)
+        nz, nr = modes.s.size, modes.rigid.shape[1]
+        z = self.z[-1, :nz] + 1j * self.z[-1, nz:]
+        x = np.real(modes.shapes @ (modes.s**power * z))
+        if power < 2:
+            return np.asarray(x + modes.rigid @ self.rigid[-1, power * nr : (power + 1) * nr])
+        return np.asarray(x + self.stepper._mobile @ self.u[-1] + self.stepper._pushed)
+
+
+def _parts(A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return np.ascontiguousarray(A.real), np.ascontiguousarray(A.imag)
+
+
+def _phi(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """phi_1 = (e^x - 1)/x and phi_2 = (e^x - 1 - x)/x^2, by their series where x is small."""
+    small = np.abs(x) < 0.3
+    safe = np.where(small, 1.0, x)
+    first, second = np.expm1(safe) / safe, (np.expm1(safe) - safe) / safe**2
+    a, b, term = np.zeros_like(x), np.zeros_like(x), np.ones_like(x)
+    for k in range(1, 16):
+        a = a + term
+        b = b + term / (k + 1.0)
+        term = term * x / (k + 1.0)
+    return np.where(small, a, first), np.where(small, b, second)

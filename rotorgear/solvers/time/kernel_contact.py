@@ -1,0 +1,137 @@
+"""Compiled: evaluation of local laws, and Newton's method for the forces of one implicit step.
+
+At the end of a step d = d_free - Ad F and v = v_free - Av F, with m x m compliances of the step; F follows from
+F = law(d, v). The iteration is exact after one linear solution for laws that are piecewise linear.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
+
+_EPS = 2.220446049250313e-16
+_ITERATIONS = 60
+FAILED, NOT_FINITE = -1, -2
+
+
+@schedule_function
+def no_schedule(angle, speed, time, parameters, state):
+    """Nothing depends on time."""
+
+
+@force_function
+def no_force(parameters, state, d, v, force, in_d, in_v, energy):
+    """No force."""
+
+
+@compiled
+def schedule_all(schedules, kind, parameters, parameters_first, state_first, angle, speed, time, state):
+    """Fill the state of all laws at a time."""
+    for i in range(kind.size):
+        schedules[kind[i]](
+            angle, speed, time, parameters[parameters_first[i] : parameters_first[i + 1]],
+            state[state_first[i] : state_first[i + 1]],
+        )  # fmt: skip
+
+
+@compiled
+def force_all(
+    forces, kind, first, parameters, parameters_first, state_first, block_first, state, d, v, F, Kd, Kv, energy
+):
+    """Forces (m,), tangents (sum of k*k,) and energies (4 l,) of all laws."""
+    for i in range(kind.size):
+        a, b, p, q = first[i], first[i + 1], block_first[i], block_first[i + 1]
+        forces[kind[i]](
+            parameters[parameters_first[i] : parameters_first[i + 1]], state[state_first[i] : state_first[i + 1]],
+            d[a:b], v[a:b], F[a:b], Kd[p:q], Kv[p:q], energy[4 * i : 4 * i + 4],
+        )  # fmt: skip
+
+
+@compiled
+def solve_small(A, b, n):
+    """Solve A x = b in place by Gauss with row exchanges; False where A is singular."""
+    for k in range(n):
+        pivot, row = abs(A[k, k]), k
+        for i in range(k + 1, n):
+            if abs(A[i, k]) > pivot:
+                pivot, row = abs(A[i, k]), i
+        if pivot == 0.0:
+            return False
+        if row != k:
+            for j in range(k, n):
+                A[k, j], A[row, j] = A[row, j], A[k, j]
+            b[k], b[row] = b[row], b[k]
+        for i in range(k + 1, n):
+            factor = A[i, k] / A[k, k]
+            if factor != 0.0:
+                for j in range(k + 1, n):
+                    A[i, j] -= factor * A[k, j]
+                b[i] -= factor * b[k]
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, n):
+            b[k] -= A[k, j] * b[j]
+        b[k] /= A[k, k]
+    return True
+
+
+@compiled
+def contact_step(forces, kind, first, parameters, parameters_first, state_first, block_first, state,
+                 d_free, v_free, Ad, Av, F, d, v, trial, Kd, Kv, energy, J, tolerance):  # fmt: skip
+    """Find F with F = law(d_free - Ad F, v_free - Av F), from the guess in F; d, v and energy are filled.
+
+    Returns the number of linear solutions, or FAILED or NOT_FINITE.
+    """
+    m = F.size
+    step = np.empty(m)
+    last, share = np.inf, 1.0
+    for iteration in range(_ITERATIONS):
+        for i in range(m):
+            x, y = d_free[i], v_free[i]
+            for j in range(m):
+                x -= Ad[i, j] * F[j]
+                y -= Av[i, j] * F[j]
+            d[i], v[i] = x, y
+        force_all(forces, kind, first, parameters, parameters_first, state_first, block_first,
+                  state, d, v, trial, Kd, Kv, energy)  # fmt: skip
+        size, worst, floor = 0.0, 0.0, 0.0
+        for i in range(m):
+            step[i] = trial[i] - F[i]
+            if not np.isfinite(step[i]):
+                return NOT_FINITE
+            size = max(size, abs(trial[i]))
+            worst = max(worst, abs(step[i]))
+        for law in range(kind.size):
+            k = first[law + 1] - first[law]
+            for i in range(k):
+                rounding = 0.0
+                for j in range(k):
+                    rounding += abs(Kd[block_first[law] + i * k + j]) * (
+                        abs(d_free[first[law] + j]) + abs(d[first[law] + j])
+                    )
+                floor = max(floor, 8.0 * _EPS * rounding)
+        if worst <= tolerance * size + floor:
+            for i in range(m):
+                F[i] = trial[i]
+            return iteration
+        # A full step that does not bring the residual down again and again runs in a circle: shorten it.
+        if iteration >= 5:
+            share = 0.5 * share if worst >= last else min(1.0, 1.5 * share)
+            share = max(share, 0.02)
+        last = worst
+        for i in range(m):
+            for j in range(m):
+                J[i, j] = 1.0 if i == j else 0.0
+        for law in range(kind.size):
+            a, k = first[law], first[law + 1] - first[law]
+            for i in range(k):
+                for r in range(k):
+                    kd, kv = Kd[block_first[law] + i * k + r], Kv[block_first[law] + i * k + r]
+                    if kd != 0.0 or kv != 0.0:
+                        for j in range(m):
+                            J[a + i, j] += kd * Ad[a + r, j] + kv * Av[a + r, j]
+        if not solve_small(J, step, m):
+            return FAILED
+        for i in range(m):
+            F[i] += share * step[i]
+    return FAILED

@@ -1,0 +1,230 @@
+"""A linear structure with local forces, its state in time, and what integrators record of it.
+
+M q'' + D q' + K q + B F(B^T q, B^T q', t) = f
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Protocol
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.solvers.time.local_forces import LocalForces
+from rotorgear.solvers.time.motion import Rotation
+
+
+@dataclass(frozen=True)
+class LocalSystem:
+    """n degrees of freedom with m local displacements d = B^T q.
+
+    Attributes:
+        M, D, K: sparse (n, n): inertia, velocity terms without W G, stiffness, all without the local forces.
+        B: sparse (n, m).
+        forces: the laws.
+        load: constant load f, (n,).
+        rotation: prescribed rotation of the reference, which gives the laws their phases.
+        G: gyroscopic matrix for unit speed of the reference; None where nothing gyrates.
+    """
+
+    M: sp.csc_array
+    D: sp.csc_array
+    K: sp.csc_array
+    B: sp.csc_array
+    forces: LocalForces
+    load: np.ndarray
+    rotation: Rotation
+    G: sp.csc_array | None = None
+
+    @property
+    def n(self) -> int:
+        """Number of degrees of freedom."""
+        return int(self.M.shape[0])
+
+    @property
+    def m(self) -> int:
+        """Number of local displacements."""
+        return self.forces.m
+
+    def velocity_terms(self, speed: float) -> sp.csc_array:
+        """D + W G at a speed of the reference, sparse (n, n)."""
+        return self.D if self.G is None else sp.csc_array(self.D + speed * self.G)
+
+    @cached_property
+    def stiffness_about(self) -> sp.csc_array:
+        """K with the local forces linear at their reference stiffness, sparse (n, n)."""
+        return sp.csc_array(self.K + self.B @ sp.csc_array(self.forces.reference_stiffness) @ self.B.T)
+
+    @cached_property
+    def damping_about(self) -> sp.csc_array:
+        """D with the local forces linear at their reference damping, sparse (n, n)."""
+        return sp.csc_array(self.D + self.B @ sp.csc_array(self.forces.reference_damping) @ self.B.T)
+
+
+@dataclass
+class State:
+    """Where a run stands after `step` steps: displacements, velocities, accelerations (n,), local forces (m,) and sums.
+
+    `before` are the forces a step earlier; `sums` (l, 2): energy put in and dissipated by each law; `events` (l, 4):
+    steps on the driving
+    flank, apart, on the back flank, and losses of contact; `inner` what else an integrator carries on.
+    """
+
+    step: int
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    F: np.ndarray
+    before: np.ndarray
+    sums: np.ndarray
+    last: np.ndarray
+    events: np.ndarray
+    inner: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def copy(self) -> State:
+        """Return a copy with arrays of its own."""
+        inner = {name: value.copy() for name, value in self.inner.items()}
+        return State(
+            self.step, self.q.copy(), self.v.copy(), self.a.copy(), self.F.copy(), self.before.copy(), self.sums.copy(),
+            self.last.copy(), self.events.copy(), inner,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Records:
+    """r recorded steps: time (r,), local d and F (r, m), energies of each law (r, l, 3): stored, put in, dissipated.
+
+    `fields` gives rows of q, v and a. `status`: 0, or what stopped the loop (-1 no convergence, -2 not finite); `done`
+    steps done;
+    `solutions`: linear ones of m x m.
+    """
+
+    t: np.ndarray
+    d: np.ndarray
+    F: np.ndarray
+    energy: np.ndarray
+    fields: Fields
+    done: int
+    status: int = 0
+    solutions: int = 0
+
+
+class Fields(Protocol):
+    """Motions of the recorded steps."""
+
+    def rows(self, kind: str, Y: np.ndarray) -> np.ndarray:
+        """Y q, Y v or Y a at the recorded steps, (r, p); `kind` is "q", "v" or "a"."""
+
+    def chosen(self, which: np.ndarray) -> Fields:
+        """Those of some records."""
+
+
+@dataclass(frozen=True)
+class PlainFields:
+    """q, v and a of the recorded steps, (r, n)."""
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+
+    def rows(self, kind: str, Y: np.ndarray) -> np.ndarray:
+        """Y q, Y v or Y a at the recorded steps, (r, p)."""
+        return np.asarray(getattr(self, kind) @ Y.T)
+
+    def chosen(self, which: np.ndarray) -> PlainFields:
+        """Those of some records."""
+        return PlainFields(self.q[which], self.v[which], self.a[which])
+
+
+class Stepper(Protocol):
+    """An integrator made ready for one system and one step."""
+
+    h: float
+
+    def start(self, state: State) -> None:
+        """Take a state that another integrator, or the equilibrium, has left."""
+
+    def advance(self, state: State, steps: int, every: int) -> Records:
+        """Advance a state in place by some steps and record every `every`-th."""
+
+
+class Integrator(Protocol):
+    """A method of integration."""
+
+    @property
+    def name(self) -> str:
+        """What it is, in words."""
+
+    def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
+        """Rows Y (b, n) of damping that the method has beside D: it dissipates |Y v|^2."""
+
+    def prepare(self, system: LocalSystem, h: float, speed: float, tolerance: float) -> Stepper:
+        """Make ready for a system, a step in s and a speed of the reference in rad/s at which D + W G is taken."""
+
+
+def evaluated(
+    system: LocalSystem, d: np.ndarray, v: np.ndarray, t: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Forces (m,), tangents in d and v (flat blocks) and energies (4 l,) at local displacements, velocities and a time."""
+    laws = system.forces
+    angle, speed = float(system.rotation.angle(np.array(t))), float(system.rotation.speed(np.array(t)))
+    F, energy, states = np.zeros(laws.m), np.zeros(4 * len(laws.laws)), np.zeros(laws.state_first[-1])
+    Kd, Kv = np.zeros(laws.block_first[-1]), np.zeros(laws.block_first[-1])
+    d, v = np.ascontiguousarray(d, dtype=float), np.ascontiguousarray(v, dtype=float)
+    # Law by law: to hand all compiled functions over as one tuple costs a hundred times the evaluation.
+    for i, kind in enumerate(laws.kind):
+        own, block = slice(laws.first[i], laws.first[i + 1]), slice(laws.block_first[i], laws.block_first[i + 1])
+        parameters = laws.parameters[laws.parameters_first[i] : laws.parameters_first[i + 1]]
+        state = states[laws.state_first[i] : laws.state_first[i + 1]]
+        laws.schedules[kind](angle, speed, t, parameters, state)
+        laws.forces[kind](parameters, state, d[own], v[own], F[own], Kd[block], Kv[block], energy[4 * i : 4 * i + 4])
+    return F, Kd, Kv, energy
+
+
+def local_values(system: LocalSystem, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
+    """Local forces (m,) and energies (4 l,) of a motion at a time."""
+    F, _, _, energy = evaluated(system, system.B.T @ q, system.B.T @ v, t)
+    return F, energy
+
+
+def local_tangent(system: LocalSystem, d: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
+    """Local forces (m,) at rest and their tangent (m, m) at local displacements and a time."""
+    F, blocks, _, _ = evaluated(system, d, np.zeros(system.m), t)
+    laws, K = system.forces, np.zeros((system.m, system.m))
+    for a, b, p, q in zip(laws.first[:-1], laws.first[1:], laws.block_first[:-1], laws.block_first[1:], strict=True):
+        K[a:b, a:b] = blocks[p:q].reshape(b - a, b - a)
+    return F, K
+
+
+def state_at_rest(system: LocalSystem, h: float, q: np.ndarray, v: np.ndarray | None = None) -> State:
+    """Return a consistent state at t = 0: M a = f - D v - K q - B F."""
+    v = np.zeros(system.n) if v is None else np.asarray(v, dtype=float)
+    F, energy = local_values(system, q, v, 0.0)
+    D = system.velocity_terms(float(system.rotation.speeds[0]))
+    a = acceleration(system.M, system.load - D @ v - system.K @ q - system.B @ F)
+    laws = len(system.forces.laws)
+    powers = energy.reshape(laws, 4)
+    return State(
+        0, np.array(q, dtype=float), v.copy(), a, F, F.copy(), 0.5 * h * powers[:, 1:3].copy(),
+        powers[:, 3].astype(np.int64), np.zeros((laws, 4), dtype=np.int64),
+    )  # fmt: skip
+
+
+def acceleration(M: sp.csc_array, force: np.ndarray) -> np.ndarray:
+    """Solve M a = force; dofs without inertia get no acceleration."""
+    from rotorgear.solvers.sparse.factor import factor_general
+
+    heavy = np.flatnonzero(M.diagonal() > 0.0)
+    a = np.zeros(force.size)
+    if heavy.size:
+        a[heavy] = factor_general(sp.csc_array(M[heavy][:, heavy])).solve(force[heavy])
+    return a
+
+
+def blank_records(steps: int, every: int, n: int, system: LocalSystem) -> dict[str, Any]:
+    """Arrays for the records of some steps."""
+    r, m, laws = steps // every, system.m, len(system.forces.laws)
+    shapes = {"q": (r, n), "v": (r, n), "a": (r, n), "d": (r, m), "F": (r, m), "energy": (r, laws, 3)}
+    return {name: np.zeros(shape) for name, shape in shapes.items()}

@@ -1,0 +1,138 @@
+"""Newmark, HHT and generalised-alpha integration with one factorisation and contact condensed to m x m.
+
+Average acceleration (beta 1/4, gamma 1/2) by default: second order, no numerical damping. `rho_inf` < 1 damps what the step can't
+resolve: am = (2 rho - 1)/(rho + 1), af = rho/(rho + 1). Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67; Hilber, Hughes and Taylor,
+Earthquake Eng. Struct. Dyn. 5 (1977) 283; Chung and Hulbert, J. Applied Mechanics 60 (1993) 371.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.errors import AnalysisError
+from rotorgear.solvers.sparse.factor import factor_general
+from rotorgear.solvers.time.local_system import LocalSystem, PlainFields, Records, State, blank_records
+
+
+@dataclass(frozen=True)
+class Newmark:
+    """Method of the generalised-alpha family by its four numbers."""
+
+    beta: float = 0.25
+    gamma: float = 0.5
+    alpha_m: float = 0.0
+    alpha_f: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (self.gamma >= 0.5 and self.beta > 0.0 and self.alpha_m < 1.0 and self.alpha_f < 1.0):
+            raise AnalysisError(
+                f"beta {self.beta:g}, gamma {self.gamma:g}: expected beta > 0 and gamma >= 1/2; less makes the motion grow"
+            )
+
+    @property
+    def name(self) -> str:
+        """What it is, in words."""
+        if self.alpha_m:
+            return f"generalised alpha, rho_inf {(1.0 - self.alpha_f) and self.alpha_f / (1.0 - self.alpha_f):.3g}"
+        if self.alpha_f:
+            return f"HHT, alpha {self.alpha_f:.3g}"
+        if (self.beta, self.gamma) == (0.25, 0.5):
+            return "Newmark, average acceleration"
+        return f"Newmark, beta {self.beta:.4g}, gamma {self.gamma:.4g}"
+
+    @staticmethod
+    def generalised_alpha(rho_inf: float) -> Newmark:
+        """Return the method whose highest frequencies shrink by rho_inf each step (0 to 1)."""
+        if not 0.0 <= rho_inf <= 1.0:
+            raise AnalysisError(f"rho_inf must lie between 0 and 1, got {rho_inf:g}")
+        am, af = (2.0 * rho_inf - 1.0) / (rho_inf + 1.0), rho_inf / (rho_inf + 1.0)
+        return Newmark(0.25 * (1.0 - am + af) ** 2, 0.5 - am + af, am, af)
+
+    @staticmethod
+    def hht(alpha: float) -> Newmark:
+        """Return Hilber, Hughes and Taylor's method, alpha from 0 to 1/3."""
+        if not 0.0 <= alpha <= 1.0 / 3.0:
+            raise AnalysisError(f"alpha of HHT must lie between 0 and 1/3, got {alpha:g}")
+        return Newmark(0.25 * (1.0 + alpha) ** 2, 0.5 + alpha, 0.0, alpha)
+
+    def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
+        """None: all damping is in D."""
+        return np.zeros((0, system.n))
+
+    def prepare(self, system: LocalSystem, h: float, speed: float, tolerance: float = 1e-10) -> NewmarkStepper:
+        """Factor the step's matrix and condense it to the contacts."""
+        return NewmarkStepper(self, system, h, speed, tolerance)
+
+
+class NewmarkStepper:
+    """The method made ready for one system, step and speed."""
+
+    def __init__(self, method: Newmark, system: LocalSystem, h: float, speed: float, tolerance: float) -> None:
+        self.h, self._system = h, system
+        am, af, beta, gamma = method.alpha_m, method.alpha_f, method.beta, method.gamma
+        D = system.velocity_terms(speed)
+        S = sp.csc_array((1.0 - am) * system.M + (1.0 - af) * (gamma * h * D + beta * h**2 * system.K))
+        factor = factor_general(S)
+        B = system.B.toarray()
+        P = factor.solve(B) if system.m else np.zeros((system.n, 0))
+        condensed = (1.0 - af) * (B.T @ P)
+        Bt = sp.csr_array(system.B.T)
+        rotation = system.rotation
+        self._fixed: tuple[Any, ...] = (
+            am, af, beta, gamma, rotation.times, rotation.speeds, rotation.angles,
+            *_one_pattern(system.K, D, system.M), *_triangles(factor._lu),
+            Bt.indptr.astype(np.int32), Bt.indices.astype(np.int32), Bt.data.astype(float), np.ascontiguousarray(P),
+            np.ascontiguousarray(beta * h**2 * condensed), np.ascontiguousarray(gamma * h * condensed),
+            np.ascontiguousarray(system.load, dtype=float), *system.forces.arguments(),
+        )  # fmt: skip
+        self._tolerance = tolerance
+
+    def start(self, state: State) -> None:
+        """Any consistent state will do."""
+
+    def advance(self, state: State, steps: int, every: int) -> Records:
+        """Advance a state in place by some steps and record every `every`-th."""
+        from rotorgear.solvers.time.kernel_newmark import newmark_loop
+
+        kept = blank_records(steps, every, self._system.n, self._system)
+        done, status, solutions = newmark_loop(
+            steps, every, state.step, self.h, *self._fixed, state.q, state.v, state.a, state.F, state.before, self._tolerance,
+            kept["q"], kept["v"], kept["a"], kept["d"], kept["F"], kept["energy"], state.sums, state.last, state.events,
+        )  # fmt: skip
+        t = (state.step + every * np.arange(1, done // every + 1)) * self.h
+        state.step += done
+        r = t.size
+        fields = PlainFields(kept["q"][:r], kept["v"][:r], kept["a"][:r])
+        return Records(t, kept["d"][:r], kept["F"][:r], kept["energy"][:r], fields, done, status, solutions)
+
+
+def _one_pattern(*matrices: sp.csc_array) -> tuple[np.ndarray, ...]:
+    """Row starts and columns of the union of some sparse matrices, and the values of each in it."""
+    pattern = sp.csr_array(sum((sp.csr_array((np.ones(A.nnz), A.indices, A.indptr), shape=A.shape[::-1]).T.tocsr()
+                                for A in map(sp.csc_array, matrices)), sp.csr_array(matrices[0].shape)))  # fmt: skip
+    pattern.sort_indices()
+    rows = np.repeat(np.arange(pattern.shape[0]), np.diff(pattern.indptr))
+    values = []
+    for A in matrices:
+        full = sp.csr_array(A)
+        value = np.zeros(pattern.nnz)
+        coordinates = full.tocoo()
+        key = coordinates.row.astype(np.int64) * full.shape[1] + coordinates.col
+        place = np.searchsorted(rows.astype(np.int64) * full.shape[1] + pattern.indices, key)
+        np.add.at(value, place, coordinates.data)
+        values.append(value)
+    return (pattern.indptr.astype(np.int32), pattern.indices.astype(np.int32), *values)
+
+
+def _triangles(lu: Any) -> tuple[np.ndarray, ...]:
+    """SuperLU's factors by columns without their diagonals, 1/diag(U) and both orders."""
+    L, U = sp.csc_array(sp.tril(lu.L, -1)), sp.csc_array(sp.triu(lu.U, 1))
+    return (
+        L.indptr.astype(np.int32), L.indices.astype(np.int32), L.data.copy(),
+        U.indptr.astype(np.int32), U.indices.astype(np.int32), U.data.copy(),
+        1.0 / lu.U.diagonal(), lu.perm_r.astype(np.int32), lu.perm_c.astype(np.int32),
+    )  # fmt: skip

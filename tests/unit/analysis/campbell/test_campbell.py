@@ -1,0 +1,153 @@
+"""Campbell diagrams and critical speeds against closed forms, true solutions at each speed, and each other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from tests.paths import MODELS
+
+RPM = np.pi / 30.0
+
+
+def rigid_rotor(**bearing: Any) -> rg.Model:
+    """A rigid disk on two equal bearings at 0.2 m to each side of it: closed forms for whirl in translation and in tilt."""
+    return rg.Model(
+        shafts={"rotor": {"sections": [{"length": 0.4, "outer_diameter": 0.1, "rigid": True, "material": "massless"}]}},
+        materials={"massless": {"youngs_modulus": 2.1e11, "shear_modulus": 8e10, "density": 1e-9}},
+        disks={"disk": {"shaft": "rotor", "at": 0.2, "mass": 10.0, "polar_inertia": 0.3, "diametral_inertia": 0.2}},
+        bearings={
+            end: {"shaft": "rotor", "at": end, **(bearing or {"stiffness": {"radial": 1e6, "axial": 1e6}})}
+            for end in ("start", "end")
+        },
+        operation={"input_shaft": "rotor", "speed": 1000.0},
+    )
+
+
+def tilting(speed: float) -> np.ndarray:
+    """Backward and forward frequency in rad/s of the tilting disk: w^2 I_d -+ w W I_p = 2 k l^2."""
+    k, polar, diametral = 2.0 * 1e6 * 0.2**2, 0.3, 0.2
+    middle = polar * speed / (2.0 * diametral)
+    root = np.hypot(middle, np.sqrt(k / diametral))
+    return np.array([root - middle, root + middle])
+
+
+def test_whirl_of_a_tilting_disk_splits_as_its_gyroscopic_moment_says() -> None:
+    result = rg.campbell(rigid_rotor(), speeds=np.linspace(0.0, 2000.0, 11).tolist())
+    for k, speed in enumerate(result.speeds):
+        found = 2.0 * np.pi * result.frequency_hz[k]
+        for exact in tilting(speed):
+            assert np.nanmin(np.abs(found / exact - 1.0)) < 1e-10
+    words = {result.whirl_word(-1, b) for b in range(len(result))}
+    assert {"forward", "backward"} <= words
+
+
+def test_critical_speeds_of_a_tilting_disk_are_those_of_the_closed_form() -> None:
+    """w = W: W^2 (I_d -+ I_p) = 2 k l^2 has a backward root only, since I_p > I_d; translation has sqrt(2 k / m) twice."""
+    result = rg.critical_speeds(rigid_rotor(), top_speed=2000.0, damped=False)
+    speeds = np.array(
+        [item.speed for item in result.speeds if item.whirl in ("forward", "backward", "planar", "mixed")]
+    )
+    assert np.min(np.abs(speeds - np.sqrt(2e6 / 10.0))) < 1e-7
+    assert np.min(np.abs(speeds - np.sqrt(8e4 / 0.5))) < 1e-7
+    assert result.worst_residual < 1e-10
+
+
+@pytest.mark.parametrize("name", ["split_torque", "jeffcott", "helical_pair"])
+def test_the_basis_gives_what_a_true_solution_gives_at_every_speed(name: str) -> None:
+    model = rg.load(MODELS / f"{name}.toml")
+    system = rg.System(model, 2)
+    result = rg.campbell(system, speeds=np.linspace(0.0, 2000.0, 9).tolist(), modes=12, error_estimate=False)
+    assert result.basis_error < 1e-9
+    for k in (2, 5, 8):
+        true = rg.modal(system, speed=float(result.speeds[k]), modes=40, error_estimate=False).eigenvalues
+        for s in result.eigenvalues[k][np.isfinite(result.eigenvalues[k])]:
+            assert np.min(np.abs(true - s)) / abs(s) < 1e-9
+
+
+def test_the_speed_table_of_a_bearing_is_followed_exactly() -> None:
+    rows = [
+        {"speed": speed, "stiffness": {"radial": k, "axial": 1e6}}
+        for speed, k in ((0.0, 1e6), (900.0, 3e6), (2000.0, 4e6))
+    ]
+    model = rigid_rotor(table=rows)
+    result = rg.campbell(model, speeds=[0.0, 450.0, 900.0, 1450.0, 2000.0])
+    for speed, k in ((450.0, 2e6), (900.0, 3e6), (1450.0, 3.5e6)):
+        row = result.frequency_hz[int(np.argmin(np.abs(result.speeds - speed)))]
+        assert np.nanmin(np.abs(2.0 * np.pi * row - np.sqrt(2.0 * k / 10.0))) < 1e-7
+
+
+def test_a_speed_outside_of_a_bearings_table_is_refused() -> None:
+    rows = [{"speed": speed, "stiffness": {"radial": 1e6, "axial": 1e6}} for speed in (100.0, 900.0)]
+    with pytest.raises(rg.AnalysisError, match="table"):
+        rg.campbell(rigid_rotor(table=rows), speeds=[0.0, 500.0])
+
+
+def test_internal_damping_makes_forward_whirl_unstable_where_it_should() -> None:
+    """With C = a M outside and b K inside, s^2 + a s + w^2 (1 + b (s - i W)) = 0: unstable above W = w + a / (b w)."""
+    outside, inside = 4.0, 1e-5
+    model = rg.Model(
+        shafts={"rotor": {"sections": [{"length": 1.0, "outer_diameter": 0.02}], "internal_damping": inside}},
+        supports={end: {"shaft": "rotor", "at": end, "fixed": ["x", "y", "z"]} for end in ("start", "end")},
+        operation={"input_shaft": "rotor", "speed": 1000.0},
+        damping={"rayleigh_alpha": outside},
+        motions=["bending"],
+    )
+    own = float(rg.modal(model, modes=1, accuracy=1e-8).natural_frequency_hz[0]) * 2.0 * np.pi
+    exact = own + outside / (inside * own)
+    result = rg.campbell(model, speeds=np.linspace(0.0, 1.5 * exact, 21).tolist(), modes=2)
+    assert result.onsets
+    assert result.onsets[0].speed == pytest.approx(exact, rel=2e-3)
+    b = result.onsets[0].branch - 1
+    assert result.whirl_word(-1, b) == "forward"
+    assert result.log_decrement[0, b] > 0.0 > result.log_decrement[-1, b]
+
+
+def test_critical_speeds_are_where_branches_cross_the_line() -> None:
+    model = rg.load(MODELS / "jeffcott.toml")
+    direct = rg.critical_speeds(model, top_speed=1500.0)
+    diagram = rg.campbell(model, speeds=np.linspace(0.0, 1500.0, 31).tolist(), shaft_orders=[1.0])
+    crossed = np.array([item.speed for item in diagram.crossings])
+    assert len(direct) >= 2
+    assert direct.worst_residual < 1e-10
+    for item in direct.speeds:
+        assert np.min(np.abs(crossed - item.speed)) / item.speed < 1e-3
+
+
+@pytest.mark.parametrize("count", [14, 51])
+def test_branches_of_a_coarse_grid_end_where_those_of_a_fine_one_do(count: int) -> None:
+    system = rg.System(rg.load(MODELS / "split_torque.toml"), 1)
+
+    def ends(points: int) -> np.ndarray:
+        speeds = np.linspace(0.0, 20000.0 * RPM, points).tolist()
+        result = rg.campbell(system, speeds=speeds, modes=24, error_estimate=False)
+        order = np.argsort(result.frequency_hz[0])
+        return result.eigenvalues[-1, order][:20]
+
+    fine, coarse = ends(201), ends(count)
+    assert coarse == pytest.approx(fine, rel=1e-8)
+
+
+def test_a_result_comes_back_from_hdf5(tmp_path: Path) -> None:
+    model = rg.load(MODELS / "jeffcott.toml")
+    for result in (rg.campbell(model, speeds=[0.0, 100.0, 200.0], modes=4), rg.critical_speeds(model, top_speed=800.0)):
+        back = rg.read(rg.save(result, tmp_path / "result.h5"))
+        assert back.to_dict() == result.to_dict()
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"speeds": [100.0, -100.0]}, "sense"),
+        ({"modes": 0}, "at least 1"),
+        ({"sidebands": -1}, "negative"),
+        ({"fmax": -5.0}, "positive"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(changes: dict[str, Any], words: str) -> None:
+    with pytest.raises(rg.AnalysisError, match=words):
+        rg.campbell(rigid_rotor(), **{"speeds": [0.0, 100.0], **changes})

@@ -1,0 +1,67 @@
+"""What varies over a mesh cycle as a curve, in the forced response: Fourier coefficients, and against the transient."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.analysis.response.cycle_harmonics import HIGHEST, harmonics_of_pieces, harmonics_of_pulse, strong
+from tests.unit.analysis.spur_pair import spur_pair
+
+MESH = 24 * 1500.0 / 60.0
+
+
+def sampled(x: np.ndarray) -> np.ndarray:
+    return 2.0 * np.fft.rfft(x)[1 : HIGHEST + 1] / x.size
+
+
+def test_coefficients_of_straight_pieces_are_those_of_their_samples() -> None:
+    pieces = ((0.0, 1.2, 0.9), (0.3, 1.4, 1.4), (0.55, 0.8, 1.2))
+    u = (np.arange(200_000) + 0.5) / 200_000
+    x = np.piecewise(u, [u < 0.3, (u >= 0.3) & (u < 0.55), u >= 0.55],
+                     [lambda s: 1.2 - s, lambda s: 1.4 + 0.0 * s, lambda s: 0.8 + 0.4 * (s - 0.55) / 0.45])  # fmt: skip
+    turn = np.exp(-1j * np.pi * np.arange(1, HIGHEST + 1) / u.size)  # the samples stand in the middle of their strips
+    assert harmonics_of_pieces(pieces) == pytest.approx(sampled(x) / x.mean() * turn, abs=1e-8)
+
+
+def test_coefficients_of_a_pulse_are_those_of_its_samples() -> None:
+    u = np.arange(200_000) / 200_000
+    late = (u - 0.4) % 1.0
+    x = np.where(late < 0.25, np.sin(np.pi * late / 0.25), 0.0)
+    assert harmonics_of_pulse(0.25, 0.4) == pytest.approx(sampled(x), abs=1e-8)
+
+
+def test_weak_harmonics_do_not_count() -> None:
+    assert strong(np.array([1.0, 0.001, 0.5j])) == [(1, 1.0), (3, 0.5j)]
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        {"stiffness": {"mean": "3e8 N/m", "amplitudes": [0.004, 0.002], "phases": ["30 deg", "100 deg"]}},
+        {"corner_impact": {"force": "40 N", "duration": 0.3, "at": 0.2}},
+        {"stiffness": [float(k) for k in 3e8 * (1.0 + 0.004 * np.array([0.0, 1.0, 0.4, -0.5, -1.0, 0.6]))]},
+    ],
+    ids=["series", "impact", "list"],
+)
+@pytest.mark.parametrize("pinion_drives", [True, False])
+def test_the_response_is_that_of_the_transient(mesh: dict[str, Any], pinion_drives: bool) -> None:
+    changes = {f"meshes__pair__{key}": value for key, value in mesh.items()}
+    if not pinion_drives:
+        changes |= {"operation__input_shaft": "two", "operation__output_shaft": "one", "operation__speed": "1000 rpm",
+                    "operation__torque": "300 N m"}  # fmt: skip
+    model = spur_pair(meshes__pair__transmission_error=[], **changes)
+    run = rg.transient(
+        model, method="exponential", settle=0.3, time=0.05, steps=1200, records=240, error_estimate=False
+    )
+    lines = 2.0 * np.fft.rfft(run.mesh_force[-7200:, 0]) / 7200.0  # 30 whole periods
+    found = rg.response(model, speeds=["1500 rpm" if pinion_drives else "1000 rpm"])
+    for number in (1, 2, 3):
+        place = next((i for i, order in enumerate(found.orders) if order.endswith(f"pair {number}x")), None)
+        if place is None:
+            assert abs(lines[30 * number]) < 0.02 * np.abs(lines[30:]).max()
+            continue
+        assert abs(found.mesh_force[place, 0, 0]) == pytest.approx(abs(lines[30 * number]), rel=0.02)

@@ -1,0 +1,143 @@
+"""Sweeps with laws that run one system at a time: rolling bearings, friction, torques over speed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.analysis.sweep import point as sweep_point
+from rotorgear.analysis.sweep.point import ready, still, table_of
+from rotorgear.forces.ball_bearing import BallBearing
+from rotorgear.forces.law import ForceLaw
+from rotorgear.forces.mesh_contact import MeshContact
+from rotorgear.forces.mesh_friction import MeshFriction
+from rotorgear.forces.torque_curve import TorqueCurve
+from rotorgear.solvers.lanes.kernel_parts import OWN_LAW
+from rotorgear.solvers.lanes.lanes import Plan, Start, run_block
+from rotorgear.solvers.lanes.own_laws import not_held, own_laws
+from rotorgear.solvers.time.local_system import LocalSystem
+from tests.unit.analysis.spur_pair import spur_pair
+from validation.oscillators import integrate, local_system
+
+MESH = MeshContact(
+    1.0, 0.05, 0.5, contact_damping="unclamped", ramp=0.05, order=1.0, error_cos=(0.3,), stiffness_cos=(0.2,)
+)
+ROLLING = {
+    "kind": "ball", "elements": 9, "element_diameter": "12 mm", "pitch_diameter": "60 mm", "clearance": "8 um",
+}  # fmt: skip
+
+
+def with_law(law: ForceLaw, columns: Any, speed: float = 0.9, contact: MeshContact = MESH) -> LocalSystem:
+    """Five masses on springs with a mesh between the first two, and a law."""
+    K = 0.3 * np.eye(5) + 0.1 * (np.eye(5, k=1) + np.eye(5, k=-1))
+    mesh = np.array([[1.0], [-1.0], [0.0], [0.0], [0.2]])
+    return local_system(
+        np.eye(5), 0.05 * np.eye(5), K, [0.2, -0.1, 0.0, 0.05, 0.0], [(contact, mesh), (law, columns)], speed=speed
+    )
+
+
+@pytest.mark.parametrize(
+    ("law", "columns"),
+    [
+        (BallBearing(7, 0.3, 1.2, clearance=0.02, order=0.37, youngs_modulus=8.0), np.eye(5)),
+        (MeshFriction(MESH, 0.9, -0.7, 0.6, 1.5, 0.1, smooth=0.2), np.eye(5)[:, [0, 2, 4]]),
+        (MeshFriction(MESH, 0.9, -0.7, 0.6, 1.5, 0.1, overlap=1.3, smooth=0.2), np.eye(5)[:, [0, 2, 4]]),
+        (TorqueCurve(0.2, 1.0, 2.0, 0.9, damping=0.02, ripple=0.3, order=1.0), np.eye(5)[:, [1]]),
+    ],
+    ids=["ball bearing", "friction", "friction of helical teeth", "torque over speed"],
+)
+def test_laws_follow_newmark_in_small_steps(law: ForceLaw, columns: np.ndarray) -> None:
+    local = with_law(law, columns)
+    point = ready(still(local, [Fraction(1)], ("m",)), 0.9)
+    steps, periods = 800, 5
+    start = Start(point.system.rest, np.zeros(5))
+    orbit = run_block([point.system], [start], [table_of(point, steps)], Plan(steps, 0, periods, 0))[0]
+    fine = 6000
+    q0 = np.linalg.solve(point.system.root.T, start.z)
+    h = 2.0 * np.pi / 0.9 / fine
+    motion = integrate(local, "average acceleration", h, fine * periods, q0, np.zeros(5), fine)
+    d, v = motion.q @ local.B.toarray(), motion.v @ local.B.toarray()
+    assert orbit.section[:, :, 0] == pytest.approx(d[1:], abs=3e-4 * np.abs(d).max())
+    assert orbit.section[:, :, 1] == pytest.approx(v[1:], abs=2e-3 * np.abs(v).max())
+
+
+def test_one_at_a_time_and_in_vectors_are_the_same_to_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Damping that grows with the depth: what jumps is put right in vectors only.
+    smooth = replace(MESH, contact_damping="penetration")
+    local = with_law(smooth, np.array([[0.0], [1.0], [0.0], [-1.0], [0.0]]), contact=smooth)
+
+    def orbit(own: bool) -> Any:
+        known = still(local, [Fraction(1)], ("m", "n"))
+        if own:
+            row = [(OWN_LAW, 0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0)]
+            monkeypatch.setattr(sweep_point, "column_of", lambda *_: row)
+        points = [ready(known, speed) for speed in (0.8, 0.9, 1.1)]
+        # The same measure of tangents for both: that of a law of its own is taken at its steepest.
+        points = [replace(p, system=replace(p.system, energy=np.eye(5))) for p in points]
+        starts = [Start(p.system.rest, np.zeros(5)) for p in points]
+        return run_block([p.system for p in points], starts, [table_of(points[0], 200)], Plan(200, 3, 12, 4, warm=3))
+
+    for a, b in zip(orbit(False), orbit(True), strict=True):
+        assert a.section == pytest.approx(b.section, rel=1e-9, abs=1e-11)
+        assert a.growth == pytest.approx(b.growth, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"bearings__a__rolling": ROLLING, "bearings__b__rolling": ROLLING},
+        {"meshes__pair__friction_coefficient": 0.06},
+        {
+            "operation": {"input_shaft": "one", "speed": "1500 rpm"},
+            "loads": {
+                "drive": {"shaft": "one", "kind": "input", "torque": "200 N m", "ripple": 0.2, "ripple_order": 6.0},
+                "propeller": {"shaft": "two", "kind": "output", "speed_power": 2.0},
+            },
+        },
+    ],
+    ids=["rolling", "friction", "propeller"],
+)
+def test_models_with_such_laws_give_the_transient(changes: dict[str, Any]) -> None:
+    model = spur_pair(meshes__pair__backlash="50 um", **changes)
+    swept = rg.sweep(model, {"operation.speed": ["1500 rpm"]}, settle=60, count=20)
+    mesh = 24 * 1500.0 / 60.0
+    run = rg.transient(model, settle=60 / mesh, time=20 / mesh, steps=600, method="newmark", error_estimate=False)
+    row = run.to_dict()["contacts"][0]
+    assert swept.largest_force[0, 0, 0] == pytest.approx(row["largest_force_n"], rel=5e-3)
+    assert swept.amplitude[0, 0, 0] == pytest.approx(row["peak_to_peak_dte_m"], rel=1e-2)
+    assert swept.rms_force[0, 0, 0] == pytest.approx(row["rms_force_n"], rel=1e-2)
+    assert any("rolling elements pass" in warning for warning in swept.warnings) == ("bearings__a__rolling" in changes)
+
+
+def test_each_ripple_of_a_torque_has_its_own_table() -> None:
+    loads = {"drive": {"shaft": "one", "kind": "input", "torque": "200 N m", "ripple": 0.1, "ripple_order": 6.0},
+             "brake": {"shaft": "two", "kind": "output"}}  # fmt: skip
+    model = spur_pair(
+        operation={"input_shaft": "one", "speed": "1500 rpm"}, loads=loads, meshes__pair__transmission_error=[]
+    )
+    both = rg.sweep(model, {"loads.drive.ripple": [0.1, 0.4]}, settle=40, count=20)
+    # Teeth never part, so the motion is linear in the ripple.
+    assert both.amplitude[1, 0, 0] == pytest.approx(4.0 * both.amplitude[0, 0, 0], rel=1e-3)
+
+
+def test_a_torque_that_steps_is_refused() -> None:
+    loads = {"drive": {"shaft": "one", "kind": "input", "torque": "200 N m", "step_to": 0.5},
+             "brake": {"shaft": "two", "kind": "output"}}  # fmt: skip
+    model = spur_pair(operation={"input_shaft": "one", "speed": "1500 rpm"}, loads=loads)
+    with pytest.raises(rg.RotorgearError, match="a torque that steps at a time"):
+        rg.sweep(model, {"operation.speed": ["1500 rpm"]})
+
+
+def test_a_bearing_without_stiffness_at_rest_still_holds_its_shaft() -> None:
+    law = BallBearing(9, 12e-3, 60e-3, clearance=8e-6, order=0.4)
+    local = local_system(np.eye(5), 0.05 * np.eye(5), np.zeros((5, 5)), np.zeros(5), [(law, np.eye(5))], speed=0.9)
+    rest = still(local, [Fraction(1)], ()).rest
+    own = own_laws(local.forces, np.ones(5, dtype=bool), 1.0)
+    assert rest.free.shape == (5, 5)
+    # The balls answer when the shaft moves far enough, whichever way.
+    assert not_held(local, rest.q, own, rest.free).shape[1] == 0

@@ -1,0 +1,233 @@
+"""One mesh of a model over its cycle, and the same mesh in the rotor model."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.sparse.linalg as spl
+
+import rotorgear as rg
+from rotorgear.analysis.static.mean_state import mean_state
+from rotorgear.model.layout.torque_flow import torque_flow
+from rotorgear.model.layout.train import walk
+from rotorgear.system.system import System
+from tests.paths import MODELS
+from tests.unit.analysis.geared import pair_file
+
+PREVIEW = 'tooth_fe = { preset = "preview" }'
+NAMED = f'stiffness = "tooth_fe"\n{PREVIEW}'
+
+
+def mesh_of(text: str, **options: Any) -> rg.MeshResult:
+    return rg.mesh_analysis(rg.loads(text), positions=16, **options)
+
+
+def deflection_of_rotor_model(text: str) -> float:
+    """Approach of the flanks along the normal in the rotor model under the torque of the file, mean of the helices."""
+    model = rg.loads(text)
+    system = System(model, elements=2, mesh="static")
+    K = system.stiffness()
+    groups = [group for group in system.groups if group.part == "meshes.pair"]
+    # Both shafts are driven against each other by torques in balance; the free rotation is held by a soft spring.
+    f = np.zeros(system.n)
+    for shaft, torque in (("one", 1000.0), ("two", 1000.0 * 80 / 34)):
+        node = next(i for i, name in enumerate(system.nodes.shaft) if name == shaft)
+        f[node * 6 + 5] = torque
+    soft = 1e-3 * abs(K).max()
+    held = K.tolil()
+    node = next(i for i, name in enumerate(system.nodes.shaft) if name == "two")
+    held[node * 6 + 5, node * 6 + 5] += soft
+    q = spl.spsolve(held.tocsc(), f)
+    found = [float((group.matrices.strain[0] @ q[group.dofs[0]])[0]) for group in groups]
+    return abs(float(np.mean(found)))
+
+
+@pytest.mark.parametrize(
+    ("helix", "kind", "extra"),
+    [(0.0, "spur", ""), (20.86, "helical", ""), (20.86, "herringbone", "stagger = 0.5")],
+    ids=["spur", "helical", "herringbone"],
+)
+def test_the_rotor_model_deflects_as_the_loaded_teeth_do(helix: float, kind: str, extra: str) -> None:
+    text = pair_file(helix, kind, mesh=f"{NAMED}\n{extra}")
+    found = rg.mesh_analysis(rg.loads(text), estimate=False)
+    assert found.transmission_error is not None
+    mean = float(found.transmission_error.mean()) * np.cos(found.base_helix_angle)
+    assert deflection_of_rotor_model(text) == pytest.approx(mean, rel=1e-6)
+
+
+def test_statics_press_the_teeth_together_as_loaded_contact_does() -> None:
+    model = rg.loads(pair_file(20.86, "helical", mesh=NAMED))
+    found = rg.mesh_analysis(model, estimate=False)
+    assert found.transmission_error is not None
+    mean = float(found.transmission_error.mean()) * np.cos(found.base_helix_angle)
+    assert rg.static(model).mesh_deflection[0] == pytest.approx(mean, rel=1e-6)
+
+
+def test_small_motions_meet_the_tangent_stiffness() -> None:
+    model = rg.loads(pair_file(mesh=NAMED))
+    found = rg.mesh_analysis(model, estimate=False)
+    assert found.tangent is not None
+    force = System(model).flow.of_mesh("pair")[0]
+    assert force.contact.stiffness == pytest.approx(float(found.tangent.mean()), rel=1e-9)
+
+
+def test_the_load_is_that_of_the_torque_flow_unless_one_is_given() -> None:
+    text = pair_file(mesh=NAMED)
+    own, given = mesh_of(text), mesh_of(text, torque=1000.0)
+    half = mesh_of(text, torque=500.0)
+    assert own.load is not None
+    assert own.load.pinion_torque_n_m == pytest.approx(1000.0, rel=1e-12)
+    assert given.stiffness == pytest.approx(own.stiffness, rel=1e-12)
+    assert half.mean_stiffness < own.mean_stiffness
+
+
+def test_a_number_in_the_file_is_answered_by_teeth_and_on_request_by_itself() -> None:
+    text = pair_file(mesh=f'stiffness = "8e8 N/m"\n{PREVIEW}')
+    assert mesh_of(text).model == "tooth_fe"
+    given = mesh_of(text, stiffness="given")
+    assert given.mean_normal_stiffness == pytest.approx(8e8)
+    assert given.peak_to_peak_stiffness == pytest.approx(0.0, abs=1.0)
+
+
+def test_iso_and_teeth_answer_in_the_same_plane() -> None:
+    text = pair_file(20.86, "helical", mesh=NAMED)
+    teeth, iso = mesh_of(text), mesh_of(text, stiffness="iso")
+    assert iso.mean_stiffness / teeth.mean_stiffness == pytest.approx(1.0, abs=0.35)
+
+
+def test_a_reversed_torque_loads_the_other_flanks_of_a_symmetric_pair_alike() -> None:
+    text = pair_file(20.86, "helical", mesh=NAMED)
+    ahead, back = mesh_of(text, torque=1000.0), mesh_of(text, torque=-1000.0)
+    assert back.stiffness == pytest.approx(ahead.stiffness, rel=1e-12)
+
+
+def test_a_helix_slope_acts_the_other_way_on_the_other_flanks() -> None:
+    right = pair_file(20.86, "helical", mesh=f'{NAMED}\nmisalignment = "20 um"')
+    left = pair_file(20.86, "helical", mesh=f'{NAMED}\nmisalignment = "20 um"', hand=("left", "right"))
+    other = pair_file(20.86, "helical", mesh=f'{NAMED}\nmisalignment = "-20 um"')
+    found = mesh_of(right, torque=1000.0)
+    assert mesh_of(left, torque=1000.0).stiffness == pytest.approx(mesh_of(other, torque=1000.0).stiffness, rel=1e-12)
+    assert mesh_of(right, torque=-1000.0).stiffness == pytest.approx(mesh_of(other, torque=1000.0).stiffness, rel=1e-12)
+    assert abs(mesh_of(other, torque=1000.0).stiffness / found.stiffness - 1.0).max() > 1e-4
+
+
+def test_a_staggered_herringbone_has_no_odd_orders() -> None:
+    plain = mesh_of(pair_file(20.86, "herringbone", mesh=NAMED))
+    half = mesh_of(pair_file(20.86, "herringbone", mesh=f"{NAMED}\nstagger = 0.5"))
+    one = mesh_of(pair_file(20.86, "helical", mesh=NAMED), torque=500.0)
+    assert plain.stiffness == pytest.approx(2.0 * one.stiffness, rel=1e-9)
+    c, whole = half.ste_harmonics(4), plain.ste_harmonics(4)
+    assert c is not None
+    assert whole is not None
+    assert abs(c[::2]).max() <= 1e-9 * abs(whole).max()
+    assert abs(c[1::2]) == pytest.approx(abs(whole[1::2]), rel=1e-9)
+
+
+def test_pitch_errors_are_followed_until_all_have_passed() -> None:
+    flank = '[gears.pinion.flank]\npitch_errors = { "2" = "20 um" }\n'
+    text = pair_file(mesh=NAMED) + flank
+    found = mesh_of(text)
+    assert len(found.position) == 4 * 16
+    assert found.no_load_error is not None
+    assert np.ptp(found.no_load_error) > 1e-6
+    # Orders of the mesh are those of whole periods.
+    assert len(found.harmonics(5)) == 5
+
+
+def test_an_accuracy_takes_the_cheapest_preset_that_is_estimated_to_reach_it() -> None:
+    text = pair_file(mesh='stiffness = "tooth_fe"')
+    rough, sharp = mesh_of(text, accuracy=0.05), mesh_of(text, accuracy=0.008)
+    assert (rough.preset, sharp.preset) == ("preview", "default")
+    assert sharp.errors is not None
+    assert sharp.errors.worst <= 0.008
+    with pytest.raises(rg.AnalysisError, match="No preset reaches"):
+        mesh_of(text, accuracy=1e-7)
+
+
+def test_estimates_are_larger_than_the_errors_against_a_finer_mesh() -> None:
+    ladder = rg.mesh_ladder(rg.loads(pair_file()))
+    for rung in ladder.rungs:
+        if rung.estimate is not None:
+            for name in ("mean_stiffness", "peak_to_peak_stiffness", "ste_peak_to_peak"):
+                assert getattr(rung.error, name) <= 1.5 * getattr(rung.estimate, name)
+
+
+def test_loads_are_tabled_on_request() -> None:
+    found = mesh_of(pair_file(mesh=NAMED), load_factors=(0.1, 1.0))
+    assert [point.factor for point in found.loads] == [0.1, 1.0]
+    assert found.loads[1].mean_stiffness_n_per_m == pytest.approx(found.mean_stiffness, rel=1e-12)
+
+
+def test_a_mesh_without_load_says_what_to_give() -> None:
+    text = pair_file(torque="", mesh='stiffness = "1e9 N/m"')
+    with pytest.raises(rg.AnalysisError, match=r"carries no torque.*--torque"):
+        mesh_of(text)
+    assert mesh_of(text, stiffness="iso").load is None
+    assert mesh_of(pair_file(torque="", mesh=NAMED), stiffness="iso").load is None
+    assert mesh_of(pair_file(torque="", mesh=NAMED), torque=100.0).load is not None
+
+
+def test_gears_without_teeth_are_refused() -> None:
+    model = rg.load(MODELS / "geared_pair.toml")
+    with pytest.raises(rg.AnalysisError, match="given by their base radius have no teeth"):
+        rg.mesh_analysis(model, torque=100.0)
+    assert rg.mesh_analysis(model, stiffness="given").mean_normal_stiffness == pytest.approx(1e8)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"mesh": "pear"}, "did you mean 'pair'"),
+        ({"stiffness": "tooth_fem"}, "did you mean 'tooth_fe'"),
+        ({"stiffness": "given"}, "names the model 'tooth_fe'"),
+        ({"torque": 0.0}, "not zero"),
+        ({"preset": "finest"}, "preset: got 'finest'"),
+        ({"body": "disc"}, "body: got 'disc'"),
+        ({"accuracy": 2.0}, "accuracy between 0 and 1"),
+        ({"periods": 0}, "--periods"),
+        ({"load_factors": (-1.0,)}, "positive"),
+    ],
+)
+def test_a_wish_that_cannot_be_is_refused_in_one_sentence(options: dict[str, Any], said: str) -> None:
+    with pytest.raises(rg.AnalysisError, match=said):
+        mesh_of(pair_file(mesh=NAMED), **options)
+
+
+def test_the_result_is_plain_json() -> None:
+    data = mesh_of(pair_file(mesh=NAMED)).to_dict()
+    again = json.loads(json.dumps(data, allow_nan=False))
+    assert again["definition"] == "secant"
+    assert len(again["stiffness_n_per_m"]) == len(again["position"]) == 16
+    assert again["mean_stiffness_n_per_m"] == pytest.approx(np.mean(again["stiffness_n_per_m"]))
+
+
+def test_a_response_about_the_mean_state_meets_the_tangent_stiffness() -> None:
+    model = rg.loads(pair_file(mesh=NAMED))
+    state = mean_state(System(model, mesh="static"), 100.0)
+    again = System(model, flow=state.system.flow)
+    tangent, secant = (s.flow.of_mesh("pair")[0].contact.stiffness for s in (again, state.system))
+    found = rg.mesh_analysis(model, estimate=False)
+    assert found.tangent is not None
+    assert tangent == pytest.approx(float(found.tangent.mean()), rel=1e-9)
+    assert secant == pytest.approx(1.0 / float(np.mean(1.0 / found.stiffness)), rel=1e-9)
+
+
+def test_in_a_loop_of_meshes_split_and_stiffness_agree() -> None:
+    text = (MODELS / "split_torque.toml").read_text(encoding="utf-8")
+    for number in ("5.63e8 N/m", "1.2e9 N/m"):
+        text = text.replace(f'stiffness = "{number}"', f'stiffness = "tooth_fe"\n{PREVIEW}')
+    model = rg.loads(text)
+    flow = torque_flow(model, walk(model)[0])
+    assert set(flow.stiffness) == {"stage_1a", "stage_1b", "stage_2a", "stage_2b"}
+    assert flow.stiffness["stage_1a"].mean == pytest.approx(flow.stiffness["stage_1b"].mean, rel=1e-6)
+    torque = 2.5e6 / (16350 * np.pi / 30.0)
+    radius = flow.of_mesh("stage_1a")[0].contact.pinion_base_radius
+    base = flow.of_mesh("stage_1a")[0].contact.base_helix_angle
+    carried = (
+        sum(f.normal_force for name in ("stage_1a", "stage_1b") for f in flow.of_mesh(name)) * radius * np.cos(base)
+    )
+    assert carried == pytest.approx(torque, rel=1e-9)
+    assert flow.stiffness["stage_1a"].load == pytest.approx(0.5 * torque / radius, rel=1e-6)
