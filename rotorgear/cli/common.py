@@ -67,21 +67,6 @@ def parse_speed(text: str | None, option: str = "--speed") -> float | None:
         raise AnalysisError(f"{option}: got '{text}', expected {error}") from None
 
 
-def table(*names: str, left: int = 1) -> Any:
-    """An empty table without lines; the first columns stand to the left, the others to the right."""
-    from rich.table import Table
-
-    out = Table(box=None, pad_edge=False, header_style="bold")
-    for number, name in enumerate(names):
-        out.add_column(name, justify="left" if number < left else "right")
-    return out
-
-
-def error_words(value: float) -> str:
-    """A small relative error in one digit; what rounding alone decides is not told apart."""
-    return "<1e-9" if value < 1e-9 else f"{value:.0e}"
-
-
 def write_json(data: dict[str, Any], path: Path | None) -> None:
     """Write a result's plain values where a file was asked for."""
     if path is not None:

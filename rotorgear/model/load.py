@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from rotorgear.errors import ModelError, Problem
-from rotorgear.model.checks.problems import shown
 from rotorgear.model.model import SCHEMA_VERSION, Model
+from rotorgear.model.parts.problems import shown
 from rotorgear.quantity import nearest
 
 

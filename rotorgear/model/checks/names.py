@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 
 from rotorgear.errors import Problem
-from rotorgear.model.checks.problems import address as address_of
-from rotorgear.model.checks.problems import shown
 from rotorgear.model.checks.references import ON_SHAFTS, TABLES, PartName, references
+from rotorgear.model.parts.problems import address as address_of
+from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import LIBRARY
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import nearest

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from rotorgear.errors import Problem
-from rotorgear.model.checks.problems import shown
+from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import Bearing, DampingMatrix, Pedestal, RollingElements, StiffnessMatrix
 from rotorgear.model.parts.tables import Tables

@@ -24,7 +24,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from rotorgear.errors import ModelError
-from rotorgear.model.checks.problems import from_validation
+from rotorgear.model.parts.problems import from_validation
 from rotorgear.quantity import DIMENSIONS, LARGEST, QuantityError, parse_quantity
 
 MOTIONS = ("bending", "axial", "torsion")

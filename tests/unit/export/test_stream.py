@@ -18,6 +18,7 @@ import rotorgear as rg
 from rotorgear.errors import RotorgearError
 from rotorgear.export.files import WriteError
 from rotorgear.export.stream import read_chunk
+from tests.paths import ROOT
 from tests.unit.analysis.spur_pair import spur_pair
 
 SETTINGS: dict[str, Any] = {"time": 0.1, "settle": 0.02, "steps": 160, "error_estimate": False}

@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rotorgear.gears.tooth_fe import compliance_cache
 from rotorgear.gears.tooth_fe.compliance_cache import cached, entry_name, forget
 from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, compliance_key, gear_compliance, pitch_of
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance, chained
 from rotorgear.gears.tooth_fe.sector import Sector, layered_sector, plane_sector
-from rotorgear.gears.tooth_fe.settings import ToothFe, compliance_cache
 from tests.unit.gears.tooth_pairs import COARSE, helical, pair, spur
 
 NU = 0.3
