@@ -30,6 +30,38 @@ FLOORS = {
     "report": 9,
     "cli": 10,
 }
+# Which room of a floor may import which other one: the plan of docs/architecture.md. A new arrow is a decision, made here.
+ROOMS = {
+    "analysis": {
+        "common": set(),
+        "static": {"common"},
+        "modal": {"common", "static"},
+        "campbell": {"common", "modal", "static"},
+        "response": {"common", "modal", "static"},
+        "transient": {"common", "static"},
+        "sweep": {"common", "static", "transient"},
+        "teeth": {"common"},
+        "rig": {"common"},
+    },
+    "cli": {"tables": set(), "": {"tables"}},
+    "gears": {
+        "geometry": set(),
+        "tooth_fe": {"geometry"},
+        "stiffness": {"geometry", "tooth_fe"},
+        "loaded": {"geometry", "stiffness", "tooth_fe"},
+        "": {"geometry", "loaded", "stiffness", "tooth_fe"},
+    },
+    "model": {"parts": set(), "layout": {"parts"}, "checks": {"layout", "parts"}, "": {"checks", "layout", "parts"}},
+    "solvers": {
+        "sparse": set(),
+        "eigen": {"sparse"},
+        "time": {"eigen", "sparse"},
+        "frequency": {"eigen", "sparse", "time"},
+        "lanes": {"time"},
+    },
+}
+# Folders that are rooms' floors, or rooms, hold no more files than this.
+FULL = 20
 Arrows = dict[str, dict[str, int]]  # importing module -> imported module -> line
 
 
@@ -136,6 +168,47 @@ def room_cycle(graph: Arrows) -> list[str]:
     return cycle(rooms)
 
 
+def room_of(module: str) -> tuple[str, str] | None:
+    """Return floor and room of a module; the room "" for a file beside the rooms; None where a floor has no rooms."""
+    parts = module.split(".")
+    if len(parts) < 3 or parts[1] not in ROOMS:
+        return None
+    return parts[1], parts[2] if len(parts) > 3 or parts[2] in ROOMS[parts[1]] else ""
+
+
+def unplanned_arrows(graph: Arrows) -> list[str]:
+    """List the imports between two rooms of a floor that the plan does not have, and rooms that it does not know."""
+    found = []
+    for module, targets in graph.items():
+        here = room_of(module)
+        if here is None:
+            continue
+        floor, room = here
+        if room not in ROOMS[floor]:
+            found.append(f"{module} stands in no room of {floor}/")
+        for target, line in targets.items():
+            there = room_of(target)
+            if there is None or there[0] != floor or there[1] == room or target == f"rotorgear.{floor}":
+                continue
+            if there[1] not in ROOMS[floor].get(room, set()):
+                found.append(f"{module}:{line} ({floor}/{room}) imports {target} ({floor}/{there[1]})")
+    return found
+
+
+def lazy_arrows(root: Path, graph: Arrows, package: str = "rotorgear") -> Arrows:
+    """Return the graph with the imports that hide in strings, "rotorgear.gears.loaded.stiffness:curve"."""
+    found = {module: dict(targets) for module, targets in graph.items()}
+    for module in graph:
+        place = root / module.replace(".", "/")
+        file = place.with_suffix(".py") if place.with_suffix(".py").exists() else place / "__init__.py"
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                target = node.value.partition(":")[0]
+                if target.startswith(f"{package}.") and target in graph and target != module:
+                    found[module].setdefault(target, node.lineno)
+    return found
+
+
 @pytest.fixture(scope="module")
 def house() -> Arrows:
     return arrows(ROOT)
@@ -156,6 +229,30 @@ def test_packages_of_one_floor_do_not_import_each_other_in_a_circle(house: Arrow
 
 def test_modules_do_not_import_each_other_in_a_circle(house: Arrows) -> None:
     assert " -> ".join(module_cycle(house)) == ""
+
+
+def test_rooms_import_each_other_as_planned(house: Arrows) -> None:
+    assert unplanned_arrows(house) == []
+
+
+def test_the_plan_of_the_rooms_has_no_circle() -> None:
+    for floor, rooms in ROOMS.items():
+        assert cycle(rooms) == [], floor
+
+
+def test_imports_by_name_are_arrows_like_others(house: Arrows) -> None:
+    # The face and the command line's entry load everything by name: that is their work.
+    inside = {module: targets for module, targets in lazy_arrows(ROOT, house).items() if floor_of(module) != FACE}
+    assert upward_arrows(inside) == []
+    assert unplanned_arrows(inside) == []
+    assert " -> ".join(module_cycle(inside)) == ""
+
+
+def test_no_folder_of_a_floor_with_rooms_is_too_full() -> None:
+    for floor in ("analysis", "solvers", "gears", "model"):
+        for folder in [ROOT / "rotorgear" / floor, *(ROOT / "rotorgear" / floor).iterdir()]:
+            if folder.is_dir():
+                assert len(list(folder.glob("*.py"))) <= FULL, folder
 
 
 def build(root: Path, files: dict[str, str]) -> Arrows:
@@ -184,11 +281,11 @@ def test_the_walk_catches_an_import_that_goes_up(tmp_path: Path, statement: str)
         "system/__init__.py": "",
         "system/dofs.py": "DofMap = dict",
         "solvers/__init__.py": "",
-        "solvers/eigen/eigen.py": statement,
+        "solvers/eigen.py": statement,
     }
     found = upward_arrows(build(tmp_path, parts))
     assert len(found) == 1
-    assert found[0].startswith("rotorgear.solvers.eigen.eigen:")
+    assert found[0].startswith("rotorgear.solvers.eigen:")
 
 
 def test_the_walk_allows_imports_that_go_down_or_leave_the_house(tmp_path: Path) -> None:
@@ -200,11 +297,11 @@ def test_the_walk_allows_imports_that_go_down_or_leave_the_house(tmp_path: Path)
             "errors.py": "import numpy",
             "cli/main.py": "from rotorgear.errors import RotorgearError\nfrom rotorgear.solvers import eigen",
             "solvers/__init__.py": "from rotorgear.solvers.eigen import modes",
-            "solvers/eigen/eigen.py": "from rotorgear import errors\nimport rotorgears_cousin.cli",
+            "solvers/eigen.py": "from rotorgear import errors\nimport rotorgears_cousin.cli",
         },
     )
-    assert graph["rotorgear.solvers.eigen.eigen"] == {"rotorgear.errors": 1}
-    assert graph["rotorgear.cli.main"] == {"rotorgear.errors": 1, "rotorgear.solvers.eigen.eigen": 2}
+    assert graph["rotorgear.solvers.eigen"] == {"rotorgear.errors": 1}
+    assert graph["rotorgear.cli.main"] == {"rotorgear.errors": 1, "rotorgear.solvers.eigen": 2}
     assert (unknown_modules(graph), upward_arrows(graph), module_cycle(graph)) == ([], [], [])
 
 
@@ -236,3 +333,25 @@ def test_the_walk_catches_a_package_without_a_floor_and_an_import_of_nothing(tmp
         "rotorgear.attic.box stands on no floor",
         "rotorgear.errors:1 imports rotorgear.gone, which is no file",
     ]
+
+
+def test_the_walk_catches_an_arrow_between_rooms_that_the_plan_does_not_have(tmp_path: Path) -> None:
+    files = {
+        "analysis/static/solve.py": "from rotorgear.analysis.modal import modal",
+        "analysis/modal/modal.py": "from rotorgear.analysis.common import clock",
+        "analysis/common/clock.py": "",
+        "analysis/attic/box.py": "",
+    }
+    assert unplanned_arrows(build(tmp_path, files)) == [
+        "rotorgear.analysis.attic.box stands in no room of analysis/",
+        "rotorgear.analysis.static.solve:1 (analysis/static) imports rotorgear.analysis.modal.modal (analysis/modal)",
+    ]
+
+
+def test_the_walk_sees_an_import_that_hides_in_a_string(tmp_path: Path) -> None:
+    files = {
+        "gears/stiffness/models.py": 'MODELS = {"fe": "rotorgear.gears.loaded.curve:make"}',
+        "gears/loaded/curve.py": "",
+    }
+    graph = lazy_arrows(tmp_path, build(tmp_path, files))
+    assert len(unplanned_arrows(graph)) == 1

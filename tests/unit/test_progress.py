@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.gears.stiffness.mesh_stiffness import mesh_stiffness
+from rotorgear.gears.stiffness_models import mesh_stiffness
 from rotorgear.progress import listener, listening, part_of, silent
 from tests.unit.analysis.geared import pair_file
 

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass, replace
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.stiffness.mesh_stiffness import MODELS, ToothPair
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.stiffness_models import MODELS
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.model.layout.applied_torques import applied_torques
 from rotorgear.model.layout.mesh_geometry import base_helix_angle, base_radius

@@ -1,7 +1,7 @@
 """Compliances on disk, one file a gear, named by a hash of all that it depends on.
 
 The folder is ROTORGEAR_CACHE, else the user's cache folder. A file is written under a temporary name and moved into place, so
-that several runs may share the folder; it carries the format's version and a checksum, and what can't be read is computed anew.
+that several runs may share the folder; it carries the sources' hash and a checksum, and what can't be read is computed anew.
 Where nothing can be written, nothing is kept.
 """
 
@@ -18,10 +18,11 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.fingerprint import fingerprint
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 
-# Raise this when meshes, elements or the stored arrays change: older entries are then passed over.
-VERSION = 1
+# Where compliances are computed: entries of other sources are passed over.
+MAKERS = ("gears/tooth_fe",)
 _KEPT: dict[str, GearCompliance] = {}
 _MOST_KEPT = 16
 
@@ -36,8 +37,8 @@ def cache_folder() -> Path:
 
 
 def entry_name(key: Any) -> str:
-    """Name of the entry of a frozen key: a hash of its text and of the version."""
-    return hashlib.sha256(f"{VERSION} {key!r}".encode()).hexdigest()[:32]
+    """Name of the entry of a frozen key: a hash of its text and of the sources that compute it."""
+    return hashlib.sha256(f"{fingerprint(*MAKERS)} {key!r}".encode()).hexdigest()[:32]
 
 
 def cached(key: Any, compute: Callable[[], GearCompliance]) -> GearCompliance:
@@ -70,11 +71,13 @@ def _checksum(values: dict[str, np.ndarray]) -> str:
 
 
 def _read(path: Path, key: Any) -> GearCompliance | None:
-    """The entry of a file; None where it is missing, damaged, or of another key or version."""
+    """The entry of a file; None where it is missing, damaged, or of another key or of other sources."""
     try:
         with np.load(path, allow_pickle=False) as stored:
             values = {field.name: stored[field.name] for field in fields(GearCompliance)}
-            good = str(stored["key"]) == f"{VERSION} {key!r}" and str(stored["checksum"]) == _checksum(values)
+            good = str(stored["key"]) == f"{fingerprint(*MAKERS)} {key!r}" and str(stored["checksum"]) == _checksum(
+                values
+            )
     except Exception:  # whatever is wrong with the file, it is computed anew
         return None
     if not good:
@@ -89,7 +92,7 @@ def _write(path: Path, key: Any, found: GearCompliance) -> None:
     scratch = path.with_name(f".{path.stem}.{uuid.uuid4().hex}")
     try:
         with scratch.open("wb") as file:
-            labels = {"key": np.array(f"{VERSION} {key!r}"), "checksum": np.array(_checksum(values))}
+            labels = {"key": np.array(f"{fingerprint(*MAKERS)} {key!r}"), "checksum": np.array(_checksum(values))}
             store: Any = np.savez  # its stubs take names for options
             store(file, **values, **labels)
         os.replace(scratch, path)

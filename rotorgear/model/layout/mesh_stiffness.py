@@ -148,7 +148,7 @@ def stiffness_of_mesh(
         AnalysisError: teeth or a load that the stiffness model can't do.
     """
     from rotorgear.gears.stiffness.given import given_stiffness
-    from rotorgear.gears.stiffness.mesh_stiffness import mesh_stiffness
+    from rotorgear.gears.stiffness_models import mesh_stiffness
 
     given = name or model.meshes[mesh].stiffness
     helices, angle = helix_count(model, mesh), base_helix_angle(model.gears[model.meshes[mesh].pinion])

@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 from rotorgear.model.parts.fields import Unit, refuse
 from rotorgear.quantity import DIMENSIONS, nearest
 
-# Names of the stiffness models, as gears/stiffness/mesh_stiffness.py has them; a test compares both: no numerics load here.
+# Names of the stiffness models, as gears/stiffness_models.py has them; a test compares both: no numerics load here.
 STIFFNESS_MODELS = ("iso", "contact_line", "potential_energy", "tooth_fe")
 _LEAST_VALUES = 3
 _MOST_HARMONICS, _VALUES_A_HARMONIC, _VALUES = 100, 8, 64

@@ -5,13 +5,18 @@ Only modules named `kernel_*` and force laws import this one, and they are impor
 
 from __future__ import annotations
 
+import os
+import shutil
 import tempfile
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from rotorgear.errors import MissingExtraError
+from rotorgear.fingerprint import fingerprint
 
 try:
     import numba
@@ -20,6 +25,10 @@ except ImportError:
     raise MissingExtraError("The transient analysis", "numba", "transient") from None
 
 warnings.filterwarnings("ignore", category=NumbaExperimentalFeatureWarning)
+# Places in the package whose functions are compiled, or compiled into others.
+COMPILED = ("forces", "solvers/time", "solvers/lanes")
+# Folders of other sources that are kept beside: of other checkouts or versions in use at the same time.
+MOST_VERSIONS = 12
 # Sums may be reordered so that they vectorise; NaN and infinity keep their meaning, so that divergence is seen.
 FAST = {"contract", "nsz", "reassoc"}
 _vector = numba.types.Array(numba.types.float64, 1, "C")
@@ -28,27 +37,66 @@ SCHEDULE = numba.types.void(_number, _number, _number, _vector, _vector)
 FORCE = numba.types.void(*[_vector] * 8)
 
 
+@cache
+def cache_folder() -> Path | None:
+    """Where compiled code of these very sources is kept; None where nothing can be written.
+
+    numba marks what it keeps by the file of the outer function alone. Functions of other files are compiled into it, so a change
+    of theirs would be answered with old machine code. The folder is therefore named by a hash of all sources that compiled code
+    may come from. It lies below NUMBA_CACHE_DIR, ROTORGEAR_CACHE or the user's cache folder, else in the temporary folder.
+    """
+    given = numba.config.CACHE_DIR or os.environ.get("ROTORGEAR_CACHE")
+    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or "~/.cache"
+    likely = Path(given) if given else Path(base).expanduser() / "rotorgear"
+    for parent in (likely / "compiled", Path(tempfile.gettempdir()) / "rotorgear-compiled"):
+        folder = parent / fingerprint(*COMPILED)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            tempfile.TemporaryFile(dir=folder).close()
+            os.utime(folder)
+        except OSError:
+            continue
+        _forget_old(parent)
+        return folder
+    return None
+
+
+def _forget_old(parent: Path) -> None:
+    """Remove the folders of sources that have not been run for longest."""
+    with suppress(OSError):
+        for folder in sorted(parent.iterdir(), key=lambda each: each.stat().st_mtime)[:-MOST_VERSIONS]:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
+def _cache_in(folder: Path) -> Iterator[None]:
+    """numba takes the folder from its settings when a function is decorated; other users of numba keep theirs."""
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(folder)
+    try:
+        yield
+    finally:
+        numba.config.CACHE_DIR = before
+
+
 def compiled(
     function: Callable[..., Any] | None = None, *, signature: Any = None, fast: bool = False, free: bool = False
 ) -> Any:
-    """Compile a function with numba and keep the result on disk; a `free` one lets other threads run beside it.
-
-    Where neither the package's nor the user's cache folder can be written, the cache goes to the temporary folder.
-    """
+    """Compile a function with numba and keep the result on disk; a `free` one lets other threads run beside it."""
     if function is None:
         return lambda given: compiled(given, signature=signature, fast=fast, free=free)
     options: dict[str, Any] = {"fastmath": FAST} if fast else {}
     if free:
         options["nogil"] = True
     arguments = (signature,) if signature is not None else ()
-    try:
-        return numba.njit(*arguments, cache=True, **options)(function)
-    except RuntimeError:  # numba: no locator available
-        numba.config.CACHE_DIR = str(Path(tempfile.gettempdir()) / "rotorgear-numba")
-    try:
-        return numba.njit(*arguments, cache=True, **options)(function)
-    except (RuntimeError, OSError):
+    folder = cache_folder()
+    if folder is None:
         return numba.njit(*arguments, **options)(function)
+    with _cache_in(folder):
+        try:
+            return numba.njit(*arguments, cache=True, **options)(function)
+        except (RuntimeError, OSError):  # a function without a file, such as one typed at a prompt
+            return numba.njit(*arguments, **options)(function)
 
 
 def schedule_function(function: Callable[..., Any]) -> Any:

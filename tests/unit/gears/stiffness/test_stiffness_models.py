@@ -21,8 +21,9 @@ from rotorgear.gears.stiffness.contact_lines import (
 from rotorgear.gears.stiffness.energy import slice_stiffness
 from rotorgear.gears.stiffness.given import given_stiffness
 from rotorgear.gears.stiffness.iso import iso_tooth_stiffness
-from rotorgear.gears.stiffness.mesh_stiffness import MODELS, ToothBody, ToothPair, mesh_stiffness
+from rotorgear.gears.stiffness.mesh_stiffness import ToothBody, ToothPair
 from rotorgear.gears.stiffness.tooth_beam import tooth_compliance
+from rotorgear.gears.stiffness_models import MODELS, mesh_stiffness
 from rotorgear.model.parts.stiffness_field import STIFFNESS_MODELS
 
 deg = math.radians

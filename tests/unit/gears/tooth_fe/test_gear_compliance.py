@@ -17,6 +17,7 @@ from rotorgear.gears.tooth_fe.compliance_cache import cached, entry_name, forget
 from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, compliance_key, gear_compliance, pitch_of
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance, chained
 from rotorgear.gears.tooth_fe.sector import Sector, layered_sector, plane_sector
+from rotorgear.gears.tooth_fe.settings import ToothFe
 from tests.unit.gears.tooth_pairs import COARSE, helical, pair, spur
 
 NU = 0.3
@@ -125,10 +126,10 @@ def test_a_damaged_entry_is_computed_anew(folder: Path, damage: str) -> None:
     assert np.array_equal(found.flexibility, small().flexibility)
 
 
-def test_another_version_does_not_see_the_entry(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_sources_do_not_see_the_entry(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cached("key", small)
     forget()
-    monkeypatch.setattr(compliance_cache, "VERSION", 10_000)
+    monkeypatch.setattr(compliance_cache, "MAKERS", ("gears/geometry/backlash.py",))
     calls: list[int] = []
     cached("key", lambda: calls.append(1) or small())
     assert calls == [1]

@@ -1,0 +1,98 @@
+"""Compiled code and stored compliances are never served stale: a copy of the package is run, changed in one place, and run again.
+
+The places are chosen so that a cache that looks at one file only does not notice: a function that is compiled into others, and a
+source that the computing module imports.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rotorgear.fingerprint import PACKAGE, imported_files, with_imports
+
+# A mass on a spring beside a tooth contact; a step of Newmark's method calls functions of three files.
+INTEGRATE = """
+from rotorgear.forces.mesh_contact import MeshContact
+from validation.oscillators import integrate, local_system
+import numpy as np
+system = local_system(np.eye(1), np.zeros((1, 1)), np.eye(1), [0.0], [(MeshContact(3.0, gap="none"), [1.0])])
+print(repr(float(integrate(system, "average acceleration", 0.1, 20, [1.0], [0.0]).q[-1][0])))
+"""
+COMPLIANCE = """
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.tooth_fe.compliance_model import compliance_key, gear_compliance
+from rotorgear.gears.tooth_fe.points import MeshSize
+from rotorgear.gears.tooth_fe.settings import ToothFe
+import math
+gear = GearGeometry(teeth=30, normal_module=3e-3, normal_pressure_angle=math.radians(20.0), helix_angle=0.0)
+key = compliance_key(gear, ToothFe(size=MeshSize(5, 2, 4, 2, 3, 4)), 0.3, 30e-3, 20e-3, space=False)
+print(repr(float(gear_compliance(key).flexibility.max())))
+"""
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    """The package and the helpers of its tests in a folder of their own, with a cache of their own."""
+    leave = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(PACKAGE, tmp_path / "rotorgear", ignore=leave)
+    shutil.copytree(PACKAGE.parent / "validation", tmp_path / "validation", ignore=leave)
+    return tmp_path
+
+
+def answer(copy: Path, program: str) -> float:
+    environment = {**os.environ, "PYTHONPATH": str(copy), "ROTORGEAR_CACHE": str(copy / "cache")}
+    environment.pop("NUMBA_CACHE_DIR", None)
+    run = subprocess.run(
+        [sys.executable, "-c", program], cwd=copy, env=environment, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 0, run.stderr
+    return float(run.stdout)
+
+
+def change(copy: Path, file: str, old: str, new: str) -> None:
+    path = copy / "rotorgear" / file
+    text = path.read_text(encoding="utf-8")
+    assert text.count(old) == 1, f"{file} no longer says {old!r} once"
+    path.write_text(text.replace(old, new), encoding="utf-8")
+
+
+def test_a_change_of_an_inlined_function_reaches_the_compiled_loop(copy: Path) -> None:
+    before = answer(copy, INTEGRATE)
+    assert answer(copy, INTEGRATE) == before  # from the warm cache
+    change(
+        copy,
+        "solvers/time/kernel_contact.py",
+        "                F[i] = trial[i]",
+        "                F[i] = 2.0 * trial[i]",
+    )
+    assert answer(copy, INTEGRATE) != pytest.approx(before, rel=1e-3)
+
+
+def test_a_change_of_the_elements_reaches_the_stored_compliances(copy: Path) -> None:
+    before = answer(copy, COMPLIANCE)
+    assert answer(copy, COMPLIANCE) == before
+    change(copy, "gears/tooth_fe/elasticity.py", "+= mu * trace", "+= 1.5 * mu * trace")
+    assert answer(copy, COMPLIANCE) != pytest.approx(before, rel=1e-3)
+
+
+def test_the_walk_over_imports_finds_modules_named_in_parentheses_and_functions(tmp_path: Path) -> None:
+    file = tmp_path / "kernel.py"
+    file.write_text(
+        "from rotorgear.solvers.time import (\n    kernel_contact,\n    newmark,\n)\n"
+        "def late():\n    from rotorgear.forces.law import ForceLaw\n",
+        encoding="utf-8",
+    )
+    names = {path.relative_to(PACKAGE).as_posix() for path in imported_files(file)}
+    assert names == {"solvers/time/kernel_contact.py", "solvers/time/newmark.py", "forces/law.py"}
+
+
+def test_the_sources_of_compiled_code_hold_what_is_compiled_into_it() -> None:
+    loop = PACKAGE / "solvers" / "time" / "kernel_newmark.py"
+    names = {path.relative_to(PACKAGE).as_posix() for path in with_imports([loop])}
+    assert {"solvers/time/kernel_newmark.py", "solvers/time/kernel_contact.py", "solvers/time/compiled.py"} <= names
