@@ -30,7 +30,9 @@ motion, numbers have the digits that every machine agrees on.
 """
 
 SYSTEMS = {
-    "marine": ("Marine dual-turbine train", """Model [marine_dual_turbine.toml](../models/marine_dual_turbine.toml): two
+    "marine": (
+        "Marine dual-turbine train",
+        """Model [marine_dual_turbine.toml](../models/marine_dual_turbine.toml): two
 turbines, two stages, in torsion with backlash. The printed equations have no equilibrium; the model is the chain that they
 must have meant, with quill shafts between the stages. Stiffness, drag of the LP turbine, mesh frequency, errors and phases
 are fitted to the three printed regions: that shows that they can be reached, and predicts nothing. Runs start from rest on
@@ -59,8 +61,11 @@ Over the load ratio at both total torques, and the three regions with the fitted
 
 ![Poincare points, exponent and shares of time over the load ratio at 30 and 35 kN m](pictures/seeds_marine_ratio.png)
 
-![Exponent, amplitude and back-side share over the load ratio with both stiffnesses](pictures/seeds_marine_regions.png)"""),
-    "pair24": ("Herringbone pair of 24 degrees of freedom", """Models
+![Exponent, amplitude and back-side share over the load ratio with both stiffnesses](pictures/seeds_marine_regions.png)""",
+    ),
+    "pair24": (
+        "Herringbone pair of 24 degrees of freedom",
+        """Models
 [herringbone_pair_24dof.toml](../models/herringbone_pair_24dof.toml) (set 1) and
 [herringbone_pair_24dof_set2.toml](../models/herringbone_pair_24dof_set2.toml) (set 2). No stiffness, damping, inertia or
 clearance is given, so both sets are chosen ones. Each speed starts from its own static equilibrium; 250 (set 1) or 200 (set
@@ -81,31 +86,41 @@ Set 1 at 6000 rpm over torque, damping, backlash and stiffness, and set 2 over t
 
 ![Poincare points of set 1 over torque, damping, backlash and stiffness](pictures/seeds_pair24_studies.png)
 
-![Poincare points and exponent of set 2 over the speed](pictures/seeds_pair24_set2.png)"""),
-    "split": ("Split-torque gearbox", """Model [split_torque.toml](../models/split_torque.toml). Shaft sizes, bearings and
+![Poincare points and exponent of set 2 over the speed](pictures/seeds_pair24_set2.png)""",
+    ),
+    "split": (
+        "Split-torque gearbox",
+        """Model [split_torque.toml](../models/split_torque.toml). Shaft sizes, bearings and
 masses are not given; the file is one complete layout whose 25 free numbers were fitted to the 24 printed frequencies, so that
 finding them again says nothing; and with its 63 modes even a random list finds partners for most of its lines.
 The spectrum at the output bearing, with the printed harmonics of the transmission error at all meshes
 (`python -m validation.seeds.pictures seeds_split_spectrum`):
 
-![Acceleration at the output bearing, and both mesh frequencies with harmonics](pictures/seeds_split_spectrum.png)"""),
-    "pair12": ("Herringbone pair of 12 degrees of freedom", """Model
+![Acceleration at the output bearing, and both mesh frequencies with harmonics](pictures/seeds_split_spectrum.png)""",
+    ),
+    "pair12": (
+        "Herringbone pair of 12 degrees of freedom",
+        """Model
 [herringbone_pair_12dof.toml](../models/herringbone_pair_12dof.toml), at the printed contact ratio 3.30. Rows at other ratios
 take mean and ripple of the stiffness from the contact lines at the printed ratio, and the printed impact. Supports,
 stiffness and the impact's length are not given, so the spread over 40 random sets stands beside the chosen one.
 Accelerations are those of a pinion half, circumferential at its reference circle; 120 mesh periods settle, 60 count.
 `python -m validation.seeds.pictures seeds_pair12_impact` draws the printed impacts and the vibration that they give:
 
-![Printed impact and computed vibration over the contact ratio](pictures/seeds_pair12_impact.png)"""),
-    "pair16": ("Herringbone pair of 16 degrees of freedom", """Models
+![Printed impact and computed vibration over the contact ratio](pictures/seeds_pair12_impact.png)""",
+    ),
+    "pair16": (
+        "Herringbone pair of 16 degrees of freedom",
+        """Models
 [herringbone_pair_16dof.toml](../models/herringbone_pair_16dof.toml) (pair A) and
 [herringbone_pair_16dof_b.toml](../models/herringbone_pair_16dof_b.toml) (pair B). The dynamic factor is the largest force of
 a helix over its mean (stiffness, damping and impact together) in 60 mesh periods after 250, 200 steps each. It hangs on
 every assumption of the set, so the rows after it show what other sets give.
 `python -m validation.seeds.pictures seeds_pair16_factors` draws the spread:
 
-![Dynamic factors of both pairs over 40 random sets](pictures/seeds_pair16_factors.png)"""),
-}  # fmt: skip
+![Dynamic factors of both pairs over 40 random sets](pictures/seeds_pair16_factors.png)""",
+    ),
+}
 
 
 def pages() -> dict[str, str]:

@@ -75,9 +75,18 @@ def _section(detail: Detail) -> str:
         if row.reason and row.judged:
             source += f"; **{row.reason}**"
         lines.append(
-            [row.what, row.expected, number(row.got, row.expected), error(row), row.tolerance or "-", verdict(row),
-             str(row.dofs), _seconds(row.seconds), source]
-        )  # fmt: skip
+            [
+                row.what,
+                row.expected,
+                number(row.got, row.expected),
+                error(row),
+                row.tolerance or "-",
+                verdict(row),
+                str(row.dofs),
+                _seconds(row.seconds),
+                source,
+            ]
+        )
     return f"\n## {detail.case.title}\n\n{detail.case.text}\n\n{_table(lines)}"
 
 

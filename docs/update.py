@@ -65,7 +65,8 @@ def snippet_changes(page: Path) -> Iterator[tuple[Path, str, str]]:
     """Yield (page, old text, new text) if what the blocks of a page print is not what it shows, seconds apart."""
     with tempfile.TemporaryDirectory() as directory:
         outcomes = list(run_page(page, Path(directory)))
-    old, new = page.read_text(encoding="utf-8"), rewritten(page, outcomes)
+    old = page.read_text(encoding="utf-8")
+    new = rewritten(page, outcomes)
     if new != old:
         yield page, old, new
 

@@ -23,7 +23,13 @@ _HOMES = {
     "rotorgear.model.parts.excitation": ("ErrorHarmonic", "StiffnessHarmonic", "Unbalance"),
     "rotorgear.model.parts.mesh": ("Mesh",),
     "rotorgear.model.parts.supports": (
-        "Bearing", "TableRow", "Pedestal", "Support", "Coupling", "StiffnessMatrix", "DampingMatrix",
+        "Bearing",
+        "TableRow",
+        "Pedestal",
+        "Support",
+        "Coupling",
+        "StiffnessMatrix",
+        "DampingMatrix",
     ),
     "rotorgear.model.parts.operation": ("Operation", "Load", "ModelDamping", "Point"),
     "rotorgear.system.system": ("System",),
@@ -68,7 +74,7 @@ _HOMES = {
     "rotorgear.export.vtk_deflection": ("write_deflections",),
     "rotorgear.export.hdf5": ("save", "read"),
     "rotorgear.errors": ("RotorgearError", "ModelError", "AnalysisError", "ConvergenceError"),
-}  # fmt: skip
+}
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 __all__ = ["__version__", *_HOME]
 

@@ -15,7 +15,8 @@ from rotorgear.errors import AnalysisError
 if TYPE_CHECKING:
     from pathlib import Path
 
-KIND, _PER_WIDTH = "mesh ", " per width"
+KIND = "mesh "
+_PER_WIDTH = " per width"
 
 
 def is_of_mesh(quantity: str) -> bool:

@@ -19,9 +19,13 @@ from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.solvers.time.run import Schedule, run
 
 METHODS: dict[str, Integrator] = {
-    "average acceleration": Newmark(), "linear acceleration": Newmark(1.0 / 6.0, 0.5), "exponential": Exponential(),
-    "generalised alpha": Newmark.generalised_alpha(0.95), "hht": Newmark.hht(0.05), "explicit": Explicit(),
-}  # fmt: skip
+    "average acceleration": Newmark(),
+    "linear acceleration": Newmark(1.0 / 6.0, 0.5),
+    "exponential": Exponential(),
+    "generalised alpha": Newmark.generalised_alpha(0.95),
+    "hht": Newmark.hht(0.05),
+    "explicit": Explicit(),
+}
 
 
 @dataclass(frozen=True)

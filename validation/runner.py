@@ -67,9 +67,19 @@ def _judge(case: Case, line: Expectation, solver: Solver) -> Row:
     passed = error <= line.allowed() and not found.complaint
     reason = "" if passed else found.complaint or f"off by {error:.1e}, allowed {line.allowed():.1e}"
     return Row(
-        case=case.name, what=describe(line), expected=line.expected, got=found.got, error=error, tolerance=line.tolerance,
-        passed=passed, dofs=found.dofs, seconds=found.seconds, reason=reason, source=line.source, note=line.note,
-    )  # fmt: skip
+        case=case.name,
+        what=describe(line),
+        expected=line.expected,
+        got=found.got,
+        error=error,
+        tolerance=line.tolerance,
+        passed=passed,
+        dofs=found.dofs,
+        seconds=found.seconds,
+        reason=reason,
+        source=line.source,
+        note=line.note,
+    )
 
 
 def _error(line: Expectation, got: float | str) -> float:

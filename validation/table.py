@@ -41,10 +41,19 @@ def printed(rows: Sequence[Row]) -> str:
     """Return the table, with sources of failed rows and their reasons below."""
     cells = [list(HEAD)]
     cells += [
-        [row.case, row.what, row.expected, number(row.got, row.expected), error(row), row.tolerance or "-", verdict(row),
-         str(row.dofs), f"{row.seconds:.2f} s"]
+        [
+            row.case,
+            row.what,
+            row.expected,
+            number(row.got, row.expected),
+            error(row),
+            row.tolerance or "-",
+            verdict(row),
+            str(row.dofs),
+            f"{row.seconds:.2f} s",
+        ]
         for row in rows
-    ]  # fmt: skip
+    ]
     widths = [max(len(line[k]) for line in cells) for k in range(len(HEAD))]
     lines = [
         "  ".join(

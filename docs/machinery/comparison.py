@@ -24,7 +24,8 @@ _TOKEN = re.compile(
 
 def numbers_agree(page: str, printed: str) -> bool:
     """Whether two printed numbers are the same number."""
-    a, b = float(page), float(printed)
+    a = float(page)
+    b = float(printed)
     if a == b or re.fullmatch(r"[-+]?\d+", page):  # a whole number is a count or a name: exact
         return a == b
     mantissa, _, exponent = page.lower().partition("e")
@@ -65,7 +66,8 @@ def _pattern(line: str) -> tuple[str, list[str]]:
 
 def texts_agree(page: str, printed: str) -> bool:
     """Whether a printed text is the one on the page, line by line."""
-    old, new = page.rstrip().splitlines(), printed.rstrip().splitlines()
+    old = page.rstrip().splitlines()
+    new = printed.rstrip().splitlines()
     reachable = {0}  # how many printed lines the lines of the page so far can stand for
     for line in old:
         if line.strip() == ELLIPSIS:

@@ -29,7 +29,8 @@ class PythonSession:
     """The process, started when the first block comes and ended with the `with`."""
 
     def __init__(self, directory: Path, environment: dict[str, str]) -> None:
-        self._directory, self._environment = directory, environment
+        self._directory = directory
+        self._environment = environment
         self._process: subprocess.Popen[str] | None = None
 
     def __enter__(self) -> PythonSession:

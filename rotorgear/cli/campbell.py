@@ -76,11 +76,18 @@ def campbell(
         raise AnalysisError(f"--mesh-orders: got '{mesh_orders}', expected whole numbers such as 1,2,3")
     with progress_bar("campbell") as progress:
         result = rg.campbell(
-            built, speeds=speeds_between(built, start, stop, points).tolist(), modes=modes, fmax=fmax, elements=elements,
-            accuracy=accuracy, only=[word.strip() for word in only.split(",")] if only else (),
-            shaft_orders=parse_orders(shaft_orders, "--shaft-orders", SHAFT_ORDERS), mesh_orders=[int(v) for v in whole],
-            sidebands=sidebands, progress=progress,
-        )  # fmt: skip
+            built,
+            speeds=speeds_between(built, start, stop, points).tolist(),
+            modes=modes,
+            fmax=fmax,
+            elements=elements,
+            accuracy=accuracy,
+            only=[word.strip() for word in only.split(",")] if only else (),
+            shaft_orders=parse_orders(shaft_orders, "--shaft-orders", SHAFT_ORDERS),
+            mesh_orders=[int(v) for v in whole],
+            sidebands=sidebands,
+            progress=progress,
+        )
     console().print(campbell_table(result, crossings=crossings))
     write_json(result.to_dict(), json)
     _write(result, save, plot, colour, vtk, branch)

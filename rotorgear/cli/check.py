@@ -66,24 +66,53 @@ def _table(*columns: tuple[str, str]) -> Any:
 
 
 def _shafts(d: ModelDescription) -> Any:
-    table = _table(("shaft", "left"), ("ratio", "right"), ("rpm", "right"), ("length mm", "right"), ("shaft kg", "right"),
-                   ("bodies kg", "right"), ("Ip kg m2", "right"))  # fmt: skip
+    table = _table(
+        ("shaft", "left"),
+        ("ratio", "right"),
+        ("rpm", "right"),
+        ("length mm", "right"),
+        ("shaft kg", "right"),
+        ("bodies kg", "right"),
+        ("Ip kg m2", "right"),
+    )
     for row in d.shafts:
         rpm = "-" if row.speed_rpm is None else f"{row.speed_rpm:.2f}"
-        table.add_row(row.name, f"{row.speed_ratio:+.6f}", rpm, f"{1e3 * row.length_m:.2f}", f"{row.shaft_mass_kg:.3f}",
-                      f"{row.body_mass_kg:.3f}", f"{row.polar_inertia_kg_m2:.5g}")  # fmt: skip
+        table.add_row(
+            row.name,
+            f"{row.speed_ratio:+.6f}",
+            rpm,
+            f"{1e3 * row.length_m:.2f}",
+            f"{row.shaft_mass_kg:.3f}",
+            f"{row.body_mass_kg:.3f}",
+            f"{row.polar_inertia_kg_m2:.5g}",
+        )
     return table
 
 
 def _meshes(d: ModelDescription) -> Any:
-    table = _table(("mesh", "left"), ("ratio", "right"), ("axes mm", "right"), ("at deg", "right"), ("a_wt deg", "right"),
-                   ("beta_b", "right"), ("eps_a", "right"), ("eps_b", "right"), ("mesh Hz", "right"))  # fmt: skip
+    table = _table(
+        ("mesh", "left"),
+        ("ratio", "right"),
+        ("axes mm", "right"),
+        ("at deg", "right"),
+        ("a_wt deg", "right"),
+        ("beta_b", "right"),
+        ("eps_a", "right"),
+        ("eps_b", "right"),
+        ("mesh Hz", "right"),
+    )
     for row in d.meshes:
         table.add_row(
-            row.name, f"{row.ratio:.4f}", _number(row.centre_distance_m, 1e3, 3), f"{row.centre_line_deg:.2f}",
-            f"{row.pressure_angle_deg:.3f}", f"{row.base_helix_angle_deg:.3f}", _number(row.transverse_contact_ratio, 1.0, 3),
-            _number(row.overlap_ratio, 1.0, 3), _number(row.mesh_frequency_hz, 1.0, 2),
-        )  # fmt: skip
+            row.name,
+            f"{row.ratio:.4f}",
+            _number(row.centre_distance_m, 1e3, 3),
+            f"{row.centre_line_deg:.2f}",
+            f"{row.pressure_angle_deg:.3f}",
+            f"{row.base_helix_angle_deg:.3f}",
+            _number(row.transverse_contact_ratio, 1.0, 3),
+            _number(row.overlap_ratio, 1.0, 3),
+            _number(row.mesh_frequency_hz, 1.0, 2),
+        )
     return table
 
 
@@ -92,16 +121,30 @@ def _number(value: float | None, factor: float, digits: int) -> str:
 
 
 def _forces(d: ModelDescription) -> Any:
-    table = _table(("mesh", "left"), ("driver", "left"), ("F_n N", "right"), ("F_t N", "right"), ("F_r N", "right"),
-                   ("F_a N", "right"), ("k N/m", "right"), ("c N s/m", "right"))  # fmt: skip
+    table = _table(
+        ("mesh", "left"),
+        ("driver", "left"),
+        ("F_n N", "right"),
+        ("F_t N", "right"),
+        ("F_r N", "right"),
+        ("F_a N", "right"),
+        ("k N/m", "right"),
+        ("c N s/m", "right"),
+    )
     for row in d.meshes:
         helices = len(row.normal_force_n)
         for number, force in enumerate(row.normal_force_n):
             name = row.name if helices == 1 else f"{row.name} {'L' if number == 0 else 'R'}"
-            a, b = math.radians(row.pressure_angle_deg), math.radians(row.base_helix_angle_deg)
+            a = math.radians(row.pressure_angle_deg)
+            b = math.radians(row.base_helix_angle_deg)
             parts = (force, force * math.cos(b) * math.cos(a), force * math.cos(b) * math.sin(a), force * math.sin(b))
-            table.add_row(name, _driver(row), *(f"{part:.1f}" for part in parts),
-                          f"{row.stiffness_n_per_m / helices:.4g}", f"{row.damping_n_s_per_m / helices:.4g}")  # fmt: skip
+            table.add_row(
+                name,
+                _driver(row),
+                *(f"{part:.1f}" for part in parts),
+                f"{row.stiffness_n_per_m / helices:.4g}",
+                f"{row.damping_n_s_per_m / helices:.4g}",
+            )
     return table
 
 

@@ -69,10 +69,16 @@ def critical(
     chart = None
     with progress_bar("critical") as progress:
         result = rg.critical_speeds(
-            built, top_speed=parse_speed(stop), shaft_orders=parse_orders(shaft_orders, "--shaft-orders", SHAFT_ORDERS),
-            mesh_orders=[int(v) for v in whole], damped=not undamped, fmax=fmax, elements=elements, accuracy=accuracy,
+            built,
+            top_speed=parse_speed(stop),
+            shaft_orders=parse_orders(shaft_orders, "--shaft-orders", SHAFT_ORDERS),
+            mesh_orders=[int(v) for v in whole],
+            damped=not undamped,
+            fmax=fmax,
+            elements=elements,
+            accuracy=accuracy,
             progress=progress,
-        )  # fmt: skip
+        )
         if stiffness_map:
             chart = rg.critical_map(
                 built, shaft=shaft, top_speed=parse_speed(stop), elements=elements, accuracy=accuracy, progress=progress

@@ -60,9 +60,16 @@ def frf(
         raise AnalysisError(f"--fmin and --fmax: got {low:g} and {fmax:g} Hz, expected 0 < fmin < fmax")
     with progress_bar("frf") as progress:
         result = rg.frequency_response(
-            rg.load(model), np.linspace(low, fmax, points), inputs=_names(inputs), outputs=_names(outputs),
-            speed=parse_speed(speed), damping_ratio=damping, elements=elements, accuracy=accuracy, progress=progress,
-        )  # fmt: skip
+            rg.load(model),
+            np.linspace(low, fmax, points),
+            inputs=_names(inputs),
+            outputs=_names(outputs),
+            speed=parse_speed(speed),
+            damping_ratio=damping,
+            elements=elements,
+            accuracy=accuracy,
+            progress=progress,
+        )
     out = console()
     for part in frf_tables(result, quantity):
         out.print(part)

@@ -61,13 +61,14 @@ def mesh(
     vtk: Annotated[
         Path | None,
         typer.Option(
-            "--vtk", help="Write both tooth meshes with deflection, stress and pressure into this folder.",
+            "--vtk",
+            help="Write both tooth meshes with deflection, stress and pressure into this folder.",
             show_default=False,
         ),
     ] = None,
     at: Annotated[float, typer.Option("--at", help="Position in mesh periods that --vtk writes.")] = 0.0,
     json: JsonOption = None,
-) -> None:  # fmt: skip
+) -> None:
     """Print stiffness, transmission error, load sharing and pressure of one mesh over its cycle."""
     import rotorgear as rg
     from rotorgear.cli.tables.mesh import mesh_parts
@@ -76,9 +77,18 @@ def mesh(
     pinion_torque = parse_torque(torque)
     with progress_bar("mesh") as progress:
         found = rg.mesh_analysis(
-            checked, mesh, stiffness=stiffness, torque=pinion_torque, preset=preset, body=body, accuracy=accuracy,
-            positions=positions, periods=periods, load_factors=parse_factors(loads), progress=progress,
-        )  # fmt: skip
+            checked,
+            mesh,
+            stiffness=stiffness,
+            torque=pinion_torque,
+            preset=preset,
+            body=body,
+            accuracy=accuracy,
+            positions=positions,
+            periods=periods,
+            load_factors=parse_factors(loads),
+            progress=progress,
+        )
     for part in mesh_parts(found, harmonics):
         console().print(part)
     write_json(found.to_dict(max(harmonics, 8)), json)

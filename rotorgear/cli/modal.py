@@ -85,9 +85,16 @@ def modal(
         fmax = _ABOVE_RIG * max(line.frequency_hz for line in rig)
     with progress_bar("modal") as progress:
         result = rg.modal(
-            built, speed=parse_speed(speed), modes=modes, fmax=fmax, elements=elements, accuracy=accuracy,
-            only=[word.strip() for word in only.split(",")] if only else (), pruning=pruning, progress=progress,
-        )  # fmt: skip
+            built,
+            speed=parse_speed(speed),
+            modes=modes,
+            fmax=fmax,
+            elements=elements,
+            accuracy=accuracy,
+            only=[word.strip() for word in only.split(",")] if only else (),
+            pruning=pruning,
+            progress=progress,
+        )
     out = console()
     out.print(modal_table(result, energies=energies))
     comparison = compare_with_rig(result, rig, tolerance, None if modes else fmax) if rig else None

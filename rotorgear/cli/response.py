@@ -66,11 +66,13 @@ def response(
     at: Annotated[
         str | None,
         typer.Option(
-            "--at", help="Mesh, bearing or point of --waterfall (default: mesh of the largest force).", show_default=False
+            "--at",
+            help="Mesh, bearing or point of --waterfall (default: mesh of the largest force).",
+            show_default=False,
         ),
     ] = None,
     vtk: VtkOption = None,
-) -> None:  # fmt: skip
+) -> None:
     """Run-up: response to unbalances, transmission errors and stiffness variation, by order and speed."""
     import rotorgear as rg
     from rotorgear.cli.tables.response import response_tables
@@ -78,9 +80,16 @@ def response(
     built = rg.load(model)
     with progress_bar("response") as progress:
         result = rg.response(
-            built, speeds=_speeds(built, start, stop, points), fmax=fmax, damping_ratio=damping, method=method,
-            elements=elements, accuracy=accuracy, shape_speed=parse_speed(shape_speed, "--shape-speed"), progress=progress,
-        )  # fmt: skip
+            built,
+            speeds=_speeds(built, start, stop, points),
+            fmax=fmax,
+            damping_ratio=damping,
+            method=method,
+            elements=elements,
+            accuracy=accuracy,
+            shape_speed=parse_speed(shape_speed, "--shape-speed"),
+            progress=progress,
+        )
     out = console()
     for part in response_tables(result):
         out.print(part)
@@ -108,7 +117,8 @@ def _speeds(model: Model, start: str | None, stop: str | None, points: int) -> l
     from rotorgear.analysis.response.response import HIGHEST, LOWEST
 
     operating = model.operation.speed if model.operation else None
-    low, high = parse_speed(start, "--from"), parse_speed(stop, "--to")
+    low = parse_speed(start, "--from")
+    high = parse_speed(stop, "--to")
     if (low is None or high is None) and not operating:
         raise AnalysisError("--from and --to: give both, since the model has no operating speed")
     if points < 1:

@@ -25,7 +25,8 @@ def static(
     speed: Annotated[
         str | None,
         typer.Option(
-            "--speed", help="Speed of the input shaft; its sign chooses the flanks (default: operating speed).",
+            "--speed",
+            help="Speed of the input shaft; its sign chooses the flanks (default: operating speed).",
             show_default=False,
         ),
     ] = None,
@@ -37,7 +38,7 @@ def static(
     save: SaveOption = None,
     plot: PlotOption = None,
     vtk: VtkOption = None,
-) -> None:  # fmt: skip
+) -> None:
     """Deflections, bearing and mesh forces, load sharing of branches and helices, assembly condition of loops."""
     import rotorgear as rg
     from rotorgear.cli.tables.static import static_tables

@@ -103,12 +103,26 @@ def sweep(
         elsewhere = stack.enter_context(rg.cluster(cluster)) if cluster is not None else None
         try:
             result = rg.sweep(
-                read, {axis.address: [axis.text(value) for value in axis.values] for axis in axes},
-                direction=direction, starts=starts, settle=settle, count=count, exponents=exponents, steps=steps,
-                tolerance=tolerance, chaos=chaos, seed=seed, modes=modes, reduction_error=reduction_error, elements=elements,
-                portraits=portrait or (_PORTRAITS if plot else 0), workers=workers, executor=elsewhere,
-                stream=rg.stream(save, resume=resume) if save else None, progress=progress,
-            )  # fmt: skip
+                read,
+                {axis.address: [axis.text(value) for value in axis.values] for axis in axes},
+                direction=direction,
+                starts=starts,
+                settle=settle,
+                count=count,
+                exponents=exponents,
+                steps=steps,
+                tolerance=tolerance,
+                chaos=chaos,
+                seed=seed,
+                modes=modes,
+                reduction_error=reduction_error,
+                elements=elements,
+                portraits=portrait or (_PORTRAITS if plot else 0),
+                workers=workers,
+                executor=elsewhere,
+                stream=rg.stream(save, resume=resume) if save else None,
+                progress=progress,
+            )
         except (KeyboardInterrupt, RotorgearError):
             if save and any(Path(f"{save}.parts").glob("chunk_*")):
                 typer.echo(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)

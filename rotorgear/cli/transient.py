@@ -106,11 +106,23 @@ def transient(
     stream = rg.stream(save, resume=resume) if save else None
     with progress_bar("transient") as progress:
         result = rg.transient(
-            rg.load(model), speed=_speeds(rg.load(model), speed, speed_to, time, settle), time=time, settle=settle,
-            accuracy=accuracy, steps=steps, records=records, method=method, rho_inf=rho_inf, modes=modes,
-            modal_damping=modal_damping, elements=elements,
-            error_estimate=error_estimate, frames=frames if vtk else 0, stream=stream, progress=progress,
-        )  # fmt: skip
+            rg.load(model),
+            speed=_speeds(rg.load(model), speed, speed_to, time, settle),
+            time=time,
+            settle=settle,
+            accuracy=accuracy,
+            steps=steps,
+            records=records,
+            method=method,
+            rho_inf=rho_inf,
+            modes=modes,
+            modal_damping=modal_damping,
+            elements=elements,
+            error_estimate=error_estimate,
+            frames=frames if vtk else 0,
+            stream=stream,
+            progress=progress,
+        )
     out = console()
     out.print(transient_table(result))
     data = result.to_dict()

@@ -108,7 +108,8 @@ def equivalent_mass_general(geometry: ContactGeometry, first: np.ndarray, second
 
     A direction without inertia gives way freely: m_e is then 0.
     """
-    v, inertia = contact_vector(geometry), np.concatenate([first, second])
+    v = contact_vector(geometry)
+    inertia = np.concatenate([first, second])
     moved = v != 0.0
     if np.any(inertia[moved] <= 0.0):
         return 0.0

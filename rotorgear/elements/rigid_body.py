@@ -11,5 +11,6 @@ def rigid_body(mass: float, polar_inertia: float, diametral_inertia: float) -> E
     """Mass and gyroscopic matrix of one body in x y z tx ty tz (kg, kg m^2); gyroscopic for unit spin."""
     M = np.diag([mass, mass, mass, diametral_inertia, diametral_inertia, polar_inertia])
     G = np.zeros((6, 6))
-    G[3, 4], G[4, 3] = polar_inertia, -polar_inertia
+    G[3, 4] = polar_inertia
+    G[4, 3] = -polar_inertia
     return ElementMatrices(mass=M[None], gyroscopic=G[None] if polar_inertia else None)

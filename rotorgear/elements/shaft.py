@@ -67,12 +67,14 @@ def distinct_elements(
     if order > 1 and not lumped:
         bubbles = shaft_bubbles(kinds, order, points)
         fields = np.concatenate([fields, bubbles.fields], axis=3)
-        strain, modulus = _block(strain, bubbles.strain), _block(modulus, np.eye(bubbles.strain.shape[1])[None])
+        strain = _block(strain, bubbles.strain)
+        modulus = _block(modulus, np.eye(bubbles.strain.shape[1])[None])
         turn = _block(turn[None], bubbles.turn[None])[0]
     mass, gyroscopic = _lumped(kinds, points) if lumped else _consistent(kinds, fields, weights)
     viscosity = circulation = None
     if internal_damping > 0.0:
-        viscosity, circulation = internal_damping * modulus, -internal_damping * modulus @ turn
+        viscosity = internal_damping * modulus
+        circulation = -internal_damping * modulus @ turn
     return ElementMatrices(strain, modulus, mass, viscosity, gyroscopic, None, circulation)
 
 
@@ -95,7 +97,8 @@ def _block(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     e, a, b = first.shape
     _, c, d = second.shape
     whole = np.zeros((e, a + c, b + d))
-    whole[:, :a, :b], whole[:, a:, b:] = first, second
+    whole[:, :a, :b] = first
+    whole[:, a:, b:] = second
     return whole
 
 
@@ -103,14 +106,16 @@ def quarter_turn() -> np.ndarray:
     """Turn lateral displacements and tilts of two nodes by +90 degrees about z; axial and torsion map to 0. Shape (12, 12)."""
     R = np.zeros((12, 12))
     for k in (0, 3, 6, 9):
-        R[k, k + 1], R[k + 1, k] = -1.0, 1.0
+        R[k, k + 1] = -1.0
+        R[k + 1, k] = 1.0
     return R
 
 
 def _strain_turn() -> np.ndarray:
     """What `quarter_turn` does to the strains, B R = P B: those of the two planes change places. Shape (6, 6)."""
     P = np.zeros((6, 6))
-    P[2:4, 4:6], P[4:6, 2:4] = -np.eye(2), np.eye(2)
+    P[2:4, 4:6] = -np.eye(2)
+    P[4:6, 2:4] = np.eye(2)
     return P
 
 
@@ -121,14 +126,19 @@ def _statics(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray, n
     area, inertia, ratio = section(data.stiffness_diameters, points)
     given = data.shear_coefficient[:, None]
     kappa = np.where(np.isnan(given), cowper(data.poisson_ratio[:, None], ratio), given)
-    E, G = data.youngs_modulus[:, None], data.shear_modulus[:, None]
-    bend, shear = 1.0 / (E * inertia), 1.0 / (kappa * G * area)
-    stretch, twist = 1.0 / (E * area), 1.0 / (2.0 * G * inertia)
+    E = data.youngs_modulus[:, None]
+    G = data.shear_modulus[:, None]
+    bend = 1.0 / (E * inertia)
+    shear = 1.0 / (kappa * G * area)
+    stretch = 1.0 / (E * area)
+    twist = 1.0 / (2.0 * G * inertia)
     arm = L * (0.5 - points)  # lever of the shear force about the mid-point
     W = L * weights
     D = np.zeros((len(data.length), 6, 6))
-    D[:, 0, 0], D[:, 1, 1] = 1.0 / np.sum(W * stretch, 1), 1.0 / np.sum(W * twist, 1)
-    a0, a1 = np.sum(W * bend, 1), np.sum(W * bend * arm, 1)
+    D[:, 0, 0] = 1.0 / np.sum(W * stretch, 1)
+    D[:, 1, 1] = 1.0 / np.sum(W * twist, 1)
+    a0 = np.sum(W * bend, 1)
+    a1 = np.sum(W * bend * arm, 1)
     a2 = np.sum(W * (bend * arm**2 + shear), 1)
     if is_uniform(data):
         a1 = np.zeros_like(a1)  # odd integrand: rounding must not couple moment and shear
@@ -136,8 +146,14 @@ def _statics(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray, n
     plane = np.stack([np.stack([a2, -a1], -1), np.stack([-a1, a0], -1)], -2) / determinant[:, None, None]
     D[:, 2:4, 2:4] = D[:, 4:6, 4:6] = plane
     B = _strains(data.length)
-    shape = _bending_shapes(data.length, points, plane, (L * (bend @ cumulative.T), L * ((bend * arm) @ cumulative.T)),
-                            L * (shear @ cumulative.T), cumulative)  # fmt: skip
+    shape = _bending_shapes(
+        data.length,
+        points,
+        plane,
+        (L * (bend @ cumulative.T), L * ((bend * arm) @ cumulative.T)),
+        L * (shear @ cumulative.T),
+        cumulative,
+    )
     return (
         B,
         D,
@@ -149,11 +165,14 @@ def _statics(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray, n
 def _strains(L: np.ndarray) -> np.ndarray:
     """B: stretch, twist, then change of slope and mean shear in the xz plane and in the yz plane."""
     B = np.zeros((len(L), 6, 12))
-    B[:, 0, [2, 8]], B[:, 1, [5, 11]] = (-1.0, 1.0), (-1.0, 1.0)
+    B[:, 0, [2, 8]] = (-1.0, 1.0)
+    B[:, 1, [5, 11]] = (-1.0, 1.0)
     # plane xz: w = x, slope = ty; plane yz: w = y, slope = -tx
     for row, (w, t, sign) in {2: (0, 4, 1.0), 4: (1, 3, -1.0)}.items():
-        B[:, row, t], B[:, row, t + 6] = -sign, sign
-        B[:, row + 1, w], B[:, row + 1, w + 6] = -1.0, 1.0
+        B[:, row, t] = -sign
+        B[:, row, t + 6] = sign
+        B[:, row + 1, w] = -1.0
+        B[:, row + 1, w + 6] = 1.0
         B[:, row + 1, t] = B[:, row + 1, t + 6] = -sign * 0.5 * L
     return B
 
@@ -167,11 +186,14 @@ def _bending_shapes(
     cumulative: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Deflection and slope at the points, each (e, g, 4), from (w1, theta1, w2, theta2)."""
-    e, g = len(length), len(points)
+    e = len(length)
+    g = len(points)
     L = length[:, None, None]
     strain = np.zeros((e, 2, 4))  # change of slope and mean shear from the four dofs
-    strain[:, 0, 1], strain[:, 0, 3] = -1.0, 1.0
-    strain[:, 1, 0], strain[:, 1, 2] = -1.0, 1.0
+    strain[:, 0, 1] = -1.0
+    strain[:, 0, 3] = 1.0
+    strain[:, 1, 0] = -1.0
+    strain[:, 1, 2] = 1.0
     strain[:, 1, 1] = strain[:, 1, 3] = -0.5 * length
     force = plane @ strain  # mid moment and shear force
     slope = np.stack(slopes, -1) @ force
@@ -189,12 +211,17 @@ def _fields(shape: tuple[np.ndarray, np.ndarray], axial: np.ndarray, torsion: np
     deflection, slope = shape
     e, g, _ = deflection.shape
     fields = np.zeros((6, e, g, 12))
-    xz, yz = [0, 4, 6, 10], [1, 3, 7, 9]
+    xz = [0, 4, 6, 10]
+    yz = [1, 3, 7, 9]
     sign = np.array([1.0, -1.0, 1.0, -1.0])
-    fields[0][:, :, xz], fields[4][:, :, xz] = deflection, slope
-    fields[1][:, :, yz], fields[3][:, :, yz] = deflection * sign, -slope * sign
-    fields[2][:, :, 2], fields[2][:, :, 8] = 1.0 - axial, axial
-    fields[5][:, :, 5], fields[5][:, :, 11] = 1.0 - torsion, torsion
+    fields[0][:, :, xz] = deflection
+    fields[4][:, :, xz] = slope
+    fields[1][:, :, yz] = deflection * sign
+    fields[3][:, :, yz] = -slope * sign
+    fields[2][:, :, 2] = 1.0 - axial
+    fields[2][:, :, 8] = axial
+    fields[5][:, :, 5] = 1.0 - torsion
+    fields[5][:, :, 11] = torsion
     return fields
 
 
@@ -202,7 +229,8 @@ def _consistent(data: ShaftElements, fields: np.ndarray, weights: np.ndarray) ->
     """Consistent mass and gyroscopic matrices, each (e, d, d)."""
     points, _, _ = gauss(fields.shape[2])
     area, inertia, _ = section(data.mass_diameters, points)
-    translation, tilt = weights * data.density[:, None] * area, weights * data.density[:, None] * inertia
+    translation = weights * data.density[:, None] * area
+    tilt = weights * data.density[:, None] * inertia
     M = np.zeros((len(data.length), fields.shape[3], fields.shape[3]))
     for number, weight in enumerate([translation, translation, translation, tilt, tilt, 2.0 * tilt]):
         N = fields[number]
@@ -216,10 +244,12 @@ def _lumped(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray]:
     points, weights, _ = gauss(count)
     area, inertia, _ = section(data.mass_diameters, points)
     rho = (data.length * data.density)[:, None] * weights
-    m, tilt = 0.5 * np.sum(rho * area, 1), 0.5 * np.sum(rho * inertia, 1)
+    m = 0.5 * np.sum(rho * area, 1)
+    tilt = 0.5 * np.sum(rho * inertia, 1)
     diagonal = np.stack([m, m, m, tilt, tilt, 2.0 * tilt] * 2, -1)
     M = diagonal[:, :, None] * np.eye(12)
     G = np.zeros_like(M)
     for k in (3, 9):
-        G[:, k, k + 1], G[:, k + 1, k] = 2.0 * tilt, -2.0 * tilt
+        G[:, k, k + 1] = 2.0 * tilt
+        G[:, k + 1, k] = -2.0 * tilt
     return M, G

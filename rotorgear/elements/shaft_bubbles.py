@@ -65,18 +65,23 @@ def shaft_bubbles(data: ShaftElements, order: int, points: int) -> Bubbles:
     at, weights, _ = gauss(points)
     L = data.length[:, None]
     area, inertia, ratio = section(data.stiffness_diameters, at)
-    E, G = data.youngs_modulus[:, None], data.shear_modulus[:, None]
+    E = data.youngs_modulus[:, None]
+    G = data.shear_modulus[:, None]
     W = L * weights
     value, slope = _lobatto(2.0 * at - 1.0, order + 1)
     derivative = (2.0 / data.length)[:, None, None] * slope  # (e, g, k)
     deflection, tilt, bent, sheared = _plane(data, order, at, value, derivative, shear)
-    kappa = np.where(np.isnan(data.shear_coefficient)[:, None], cowper(data.poisson_ratio[:, None], ratio),
-                     data.shear_coefficient[:, None])  # fmt: skip
+    kappa = np.where(
+        np.isnan(data.shear_coefficient)[:, None],
+        cowper(data.poisson_ratio[:, None], ratio),
+        data.shear_coefficient[:, None],
+    )
     rows = [np.sqrt(W * E * inertia)[:, :, None] * bent]
     if shear:
         rows.append(np.sqrt(W * kappa * G * area)[:, :, None] * sheared)
     plane_root = _triangle(np.concatenate(rows, axis=1))
-    along, spin = value[:, : order - 1], derivative[:, :, : order - 1]
+    along = value[:, : order - 1]
+    spin = derivative[:, :, : order - 1]
     axial_root = _triangle(np.sqrt(W * E * area)[:, :, None] * spin)
     twist_root = _triangle(np.sqrt(W * 2.0 * G * inertia)[:, :, None] * spin)
     return _gathered(order, shear, (deflection, tilt), along, (plane_root, axial_root, twist_root))
@@ -86,7 +91,8 @@ def _plane(
     data: ShaftElements, order: int, at: np.ndarray, value: np.ndarray, derivative: np.ndarray, shear: bool
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Deflection, slope, curvature and shear strain of one plane's bubbles at the points, each (e, g, b)."""
-    e, g = len(data.length), len(at)
+    e = len(data.length)
+    g = len(at)
     if not shear:
         f, df, ddf = _hermite(2.0 * at - 1.0, order)
         half = (2.0 / data.length)[:, None, None]
@@ -131,14 +137,20 @@ def _gathered(
     e, g, b = deflection.shape
     k = order - 1
     count = 2 * b + 2 * k
-    xz, yz, z, tz = slice(0, b), slice(b, 2 * b), slice(2 * b, 2 * b + k), slice(2 * b + k, count)
+    xz = slice(0, b)
+    yz = slice(b, 2 * b)
+    z = slice(2 * b, 2 * b + k)
+    tz = slice(2 * b + k, count)
     fields = np.zeros((6, e, g, count))
-    fields[0][:, :, xz], fields[4][:, :, xz] = deflection, tilt
-    fields[1][:, :, yz], fields[3][:, :, yz] = deflection, -tilt
+    fields[0][:, :, xz] = deflection
+    fields[4][:, :, xz] = tilt
+    fields[1][:, :, yz] = deflection
+    fields[3][:, :, yz] = -tilt
     fields[2][:, :, z] = fields[5][:, :, tz] = along
     strain = np.zeros((e, count, count))
     for own, root in ((xz, roots[0]), (yz, roots[0]), (z, roots[1]), (tz, roots[2])):
         strain[:, own, own] = root
     turn = np.zeros((count, count))
-    turn[xz, yz], turn[yz, xz] = -np.eye(b), np.eye(b)
+    turn[xz, yz] = -np.eye(b)
+    turn[yz, xz] = np.eye(b)
     return Bubbles(fields, strain, bubble_motions(order, shear), turn)

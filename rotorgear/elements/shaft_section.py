@@ -12,7 +12,8 @@ from functools import lru_cache
 import numpy as np
 
 # Gauss points: a uniform element needs polynomials up to degree 6 exactly; a cone's 1/d^4 converges spectrally.
-POINTS_UNIFORM, POINTS_CONE = 6, 16
+POINTS_UNIFORM = 6
+POINTS_CONE = 16
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,8 @@ def gauss(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def profile(diameters: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Outer and inner diameter of each element at each point, shapes (e, g)."""
-    left, right = diameters[:, :2, None], diameters[:, 2:, None]
+    left = diameters[:, :2, None]
+    right = diameters[:, 2:, None]
     at = left + (right - left) * points
     return at[:, 0], at[:, 1]
 

@@ -35,7 +35,8 @@ def rigid_transfer(arm: np.ndarray) -> np.ndarray:
 
 
 def _spring(relative: np.ndarray, K: np.ndarray, C: np.ndarray) -> ElementMatrices:
-    symmetric, skew = 0.5 * (K + K.T), 0.5 * (K - K.T)
+    symmetric = 0.5 * (K + K.T)
+    skew = 0.5 * (K - K.T)
     touched = (K != 0.0) | (K.T != 0.0) | (C != 0.0) | (C.T != 0.0)
     used = np.flatnonzero(touched.any(axis=1))
 

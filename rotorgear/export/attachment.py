@@ -51,7 +51,8 @@ class Attachment:
         second = np.where(standing, 0.0, shape[self.right])
         xi = self.share[:, None]
         both = (1.0 - xi) * first + xi * second
-        centre, turn = both[:, :3].copy(), both[:, 3:].copy()
+        centre = both[:, :3].copy()
+        turn = both[:, 3:].copy()
         for w, t, sign in ((0, 4, 1.0), (1, 3, -1.0)):
             slopes = sign * first[:, t], sign * second[:, t]
             centre[:, w], slope = self._bend(first[:, w], second[:, w], *slopes)
@@ -60,7 +61,9 @@ class Attachment:
 
     def _bend(self, w1: np.ndarray, w2: np.ndarray, t1: np.ndarray, t2: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Deflection and slope at the points."""
-        xi, L, phi = self.share, self.length, self.shear
+        xi = self.share
+        L = self.length
+        phi = self.shear
         chord = (w2 - w1) / np.where(L > 0.0, L, 1.0)
         d = (chord - 0.5 * (t1 + t2)) / (1.0 + phi)
         slope = (1.0 - xi) * t1 + xi * t2 + 6.0 * (xi - xi**2) * d
@@ -147,7 +150,8 @@ class Skeleton:
 
     def _phi(self, shaft: str, section: Section, length: float) -> float:
         outer, bore, outer_end, bore_end = section.stiffness_diameters()
-        outer, bore = 0.5 * (outer + outer_end), 0.5 * (bore + bore_end)
+        outer = 0.5 * (outer + outer_end)
+        bore = 0.5 * (bore + bore_end)
         material = self.model.material_of(shaft, section)
         kappa = section.shear_coefficient or float(cowper(material.nu, bore / outer))
         # I/A = (d_o^2 + d_i^2)/16

@@ -19,7 +19,8 @@ def beam_mesh(pv: ModuleType, result: ModalResult, solids: Solids) -> Any:
     Point data: `shaft_id`, `pedestal` (0 or 1), `outer_diameter` (m), and for each mode NN `mode_NN_translation_real`,
     `mode_NN_translation_imag` (m), `mode_NN_rotation_real` and `mode_NN_rotation_imag` (rad), mass-normalised.
     """
-    nodes, model = result.nodes, result.model
+    nodes = result.nodes
+    model = result.model
     lines = [nodes_in_order(nodes, name) for name in model.shafts]
     cells = [[len(line), *line] for line in lines if len(line) > 1]
     single = [int(line[0]) for line in lines if len(line) == 1]

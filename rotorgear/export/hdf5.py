@@ -25,7 +25,8 @@ from rotorgear.results.transient import TransientResult
 if TYPE_CHECKING:
     from types import ModuleType
 
-FORMAT, FORMAT_VERSION = "rotorgear result", 1
+FORMAT = "rotorgear result"
+FORMAT_VERSION = 1
 _KINDS: dict[str, type[Any]] = {
     "modal": ModalResult,
     "campbell": CampbellResult,
@@ -103,7 +104,8 @@ def _kind(path: Path, file: Any) -> type[Any]:
     """Class of the result in a file; ReadError for a foreign or newer file."""
     if file.attrs.get("format") != FORMAT:
         raise ReadError(path, "it is no result of rotorgear")
-    version, kind = file.attrs.get("format_version"), file.attrs.get("kind")
+    version = file.attrs.get("format_version")
+    kind = file.attrs.get("kind")
     if version != FORMAT_VERSION or kind not in _KINDS:
         by = file.attrs.get("rotorgear_version", "another version")
         raise ReadError(

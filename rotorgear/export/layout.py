@@ -31,7 +31,8 @@ def display_axes(model: Model) -> dict[str, Axis]:
 def _envelope(model: Model, shaft: str) -> list[BodySize]:
     """Cylinders that a shaft and its bodies fill."""
     own = model.shafts[shaft]
-    sections, left = [], own.start
+    sections = []
+    left = own.start
     for section in own.sections:
         outer, _, outer_end, _ = section.stiffness_diameters()
         sections.append(BodySize(max(outer, outer_end), left, left + section.length))
@@ -49,7 +50,8 @@ def _place_neighbours(model: Model, axes: dict[str, Axis], envelopes: dict[str, 
                 return True
     for mesh in model.meshes.values():
         for one, other in _both_ways(mesh.pinion, mesh.gear):
-            known, new = model.gears[one].shaft, model.gears[other].shaft
+            known = model.gears[one].shaft
+            new = model.gears[other].shaft
             if known not in axes or new in axes:
                 continue
             turn = math.pi if one == mesh.gear else 0.0

@@ -18,7 +18,9 @@ from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.shaft import Shaft
 
 # Stripes along a shaft, by which its twist is seen: how many, half their width in rad, and their height relative to the radius.
-_STRIPES, _STRIPE_HALF, _STRIPE_HEIGHT = 4, math.radians(3.0), 0.015
+_STRIPES = 4
+_STRIPE_HALF = math.radians(3.0)
+_STRIPE_HEIGHT = 0.015
 # A hole leaves at least a tenth of a body's least radius.
 _LARGEST_HOLE = 0.9
 
@@ -92,12 +94,14 @@ def _outline(shaft: Shaft, step: float, bore: bool) -> np.ndarray:
 
 def _stripe(outer: np.ndarray, angle: float) -> Surface:
     """A strip on the shaft's surface at an angle."""
-    radius, z = outer[:, 0] * (1.0 + _STRIPE_HEIGHT), outer[:, 1]
+    radius = outer[:, 0] * (1.0 + _STRIPE_HEIGHT)
+    z = outer[:, 1]
     edges = [
         np.column_stack([radius * np.cos(a), radius * np.sin(a), z])
         for a in (angle - _STRIPE_HALF, angle + _STRIPE_HALF)
     ]
-    low, high = np.arange(len(z)), len(z) + np.arange(len(z))
+    low = np.arange(len(z))
+    high = len(z) + np.arange(len(z))
     return make_surface(np.vstack(edges), [np.column_stack([low[:-1], high[:-1], high[1:], low[1:]])])
 
 
@@ -105,7 +109,9 @@ def gear_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Pi
     """Yield the helices of each gear with their teeth, and the web and hub of one that has them."""
     phases = tooth_phases(model, skeleton.axes)
     for name, gear in model.gears.items():
-        planes, nodes, rates = helix_planes(model, name), node_positions(model, name), twist_rates(model, name)
+        planes = helix_planes(model, name)
+        nodes = node_positions(model, name)
+        rates = twist_rates(model, name)
         for number, (plane, rate) in enumerate(zip(planes, rates, strict=True)):
             surface = _helix(model, name, plane, rate, phases[name], detail)
             placed = surface.moved((*skeleton.axes[gear.shaft], 0.0))

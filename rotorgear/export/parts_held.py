@@ -14,12 +14,18 @@ from rotorgear.model.model import Model
 from rotorgear.model.parts.supports import Coupling
 
 # Sizes relative to the shaft's radius there: outer radius and half width of a bearing's ring, height and half width of its foot.
-_RING, _RING_HALF = 1.55, 0.28
-_FOOT_HEIGHT, _FOOT_HALF = 0.8, 0.6
+_RING = 1.55
+_RING_HALF = 0.28
+_FOOT_HEIGHT = 0.8
+_FOOT_HALF = 0.6
 # The same for a support's sign, and its half thickness.
-_SIGN_HEIGHT, _SIGN_HALF, _SIGN_THICKNESS = 1.1, 0.7, 0.12
+_SIGN_HEIGHT = 1.1
+_SIGN_HALF = 0.7
+_SIGN_THICKNESS = 0.12
 # A coupling: flange's radius and thickness, and the sleeve between two flanges.
-_FLANGE, _FLANGE_WIDTH, _SLEEVE = 1.35, 0.35, 1.15
+_FLANGE = 1.35
+_FLANGE_WIDTH = 0.35
+_SLEEVE = 1.15
 
 
 def bearing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
@@ -27,7 +33,8 @@ def bearing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator
     for name, bearing in model.bearings.items():
         z = model.shafts[bearing.shaft].station(bearing.at)
         radius = 0.5 * shaft_diameter(model, bearing.shaft, bearing.at)
-        half, housing = _RING_HALF * radius, _RING * radius
+        half = _RING_HALF * radius
+        housing = _RING * radius
         axis = (*skeleton.axes[bearing.shaft], 0.0)
         ring = hollow_cylinder(housing, radius, z - half, z + half, detail.segments).moved(axis)
         foot = wedge(-housing, -housing - _FOOT_HEIGHT * radius, _FOOT_HALF * radius, z - half, z + half).moved(axis)
@@ -50,7 +57,8 @@ def support_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator
     for name, support in model.supports.items():
         z = model.shafts[support.shaft].station(support.at)
         radius = 0.5 * shaft_diameter(model, support.shaft, support.at)
-        bottom, thickness = -(1.0 + _SIGN_HEIGHT) * radius, _SIGN_THICKNESS * radius
+        bottom = -(1.0 + _SIGN_HEIGHT) * radius
+        thickness = _SIGN_THICKNESS * radius
         surface = wedge(-radius, bottom, _SIGN_HALF * radius, z - thickness, z + thickness)
         surface = surface.moved((*skeleton.axes[support.shaft], 0.0))
         carried = skeleton.rigid(support.shaft, z, surface.points)

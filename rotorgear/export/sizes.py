@@ -14,7 +14,8 @@ from rotorgear.model.model import Model
 from rotorgear.model.parts.bodies import Disk
 
 # A shaft without sections has no diameter: parts that need one take this share of its largest body, or this many m.
-NOMINAL_SHARE, NOMINAL_DIAMETER = 0.2, 0.02
+NOMINAL_SHARE = 0.2
+NOMINAL_DIAMETER = 0.02
 # A lumped gear without a width is shown this wide, relative to its pitch radius.
 LUMPED_WIDTH = 0.3
 
@@ -48,7 +49,8 @@ def gear_size(model: Model, name: str) -> BodySize:
     """Tip cylinder of a gear over all its helices."""
     geometry = gear_geometry(model.gears[name])
     diameter = geometry.effective_tip_diameter if geometry else 2.0 * pitch_radius(model, name)
-    planes, half = helix_planes(model, name), 0.5 * helix_width(model, name)
+    planes = helix_planes(model, name)
+    half = 0.5 * helix_width(model, name)
     return BodySize(diameter, planes[0] - half, planes[-1] + half)
 
 
@@ -67,7 +69,8 @@ def _cylinder(disk: Disk, density: float) -> tuple[float, float]:
     """Diameter and width of a disk as given or as its inertia suggests; 0 where nothing does."""
     if disk.outer_diameter is not None and disk.width is not None:
         return disk.outer_diameter, disk.width
-    mass, inertia = disk.mass or 0.0, disk.polar_inertia or 2.0 * (disk.diametral_inertia or 0.0)
+    mass = disk.mass or 0.0
+    inertia = disk.polar_inertia or 2.0 * (disk.diametral_inertia or 0.0)
     if mass > 0.0 and inertia > 0.0:
         diameter = math.sqrt(8.0 * inertia / mass)
         return diameter, 4.0 * mass / (math.pi * density * diameter**2)
@@ -101,7 +104,9 @@ def hidden_hole(model: Model, shaft: str, low: float, high: float) -> tuple[floa
     The second is 0 for a solid shaft: a body may close its hole where nobody looks.
     """
     own = model.shafts[shaft]
-    left, outer, bore = own.start, [0.0], [0.0]
+    left = own.start
+    outer = [0.0]
+    bore = [0.0]
     for section in own.sections:
         if left < high and left + section.length > low:
             diameters = section.stiffness_diameters()

@@ -25,7 +25,8 @@ from rotorgear.results.modal import NodeTable
 
 KINDS = ("shaft", "stripe", "gear", "disk", "point mass", "bearing", "support", "coupling")
 # Largest displacement shown, as a share of the size of the model, and largest rotation in rad.
-DEFAULT_AMPLITUDE, LARGEST_TURN = 0.05, 0.3
+DEFAULT_AMPLITUDE = 0.05
+LARGEST_TURN = 0.3
 
 
 @dataclass(frozen=True)
@@ -88,8 +89,14 @@ def build_solids(model: Model, nodes: NodeTable, detail: Detail = LIGHT) -> Soli
     """Return the surfaces of all parts of a model with the nodes of one of its results."""
     skeleton = Skeleton(model, nodes, display_axes(model))
     makers = (
-        shaft_pieces, gear_pieces, disk_pieces, point_mass_pieces, bearing_pieces, support_pieces, coupling_pieces,
-    )  # fmt: skip
+        shaft_pieces,
+        gear_pieces,
+        disk_pieces,
+        point_mass_pieces,
+        bearing_pieces,
+        support_pieces,
+        coupling_pieces,
+    )
     pieces = [piece for maker in makers for piece in maker(model, skeleton, detail)]
     surface = join([piece.surface for piece in pieces])
     part_names = tuple(dict.fromkeys(piece.part for piece in pieces))

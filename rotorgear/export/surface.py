@@ -77,9 +77,11 @@ def revolve(contour: np.ndarray, segments: int, closed: bool = False) -> Surface
         around = angle if radius > 0.0 else angle[:1]
         points.append(np.column_stack([radius * np.cos(around), radius * np.sin(around), np.full(len(around), z)]))
         rings.append(start + np.arange(segments) % len(around))
-    quads, triangles = [], []
+    quads = []
+    triangles = []
     for low, high in zip(rings, rings[1:] + rings[:1] if closed else rings[1:], strict=False):
-        low_next, high_next = np.roll(low, -1), np.roll(high, -1)
+        low_next = np.roll(low, -1)
+        high_next = np.roll(high, -1)
         if low[0] == low[-1] and high[0] == high[-1]:
             continue  # along the axis
         if low[0] == low[-1]:
@@ -108,7 +110,8 @@ def twisted_prism(angles: np.ndarray, radii: np.ndarray, z: np.ndarray, twist: n
         inner: radius of the hole, with one point a tooth; 0 for none.
     """
     count, corners = angles.shape
-    s, size = len(z), angles.size
+    s = len(z)
+    size = angles.size
     turned = angles.ravel() + twist[:, None]
     side = np.stack([radii.ravel() * np.cos(turned), radii.ravel() * np.sin(turned), np.tile(z[:, None], size)], -1)
     index = np.arange(s * size).reshape(s, size)
@@ -122,7 +125,9 @@ def twisted_prism(angles: np.ndarray, radii: np.ndarray, z: np.ndarray, twist: n
         rim = index[end].reshape(count, corners)
         fan = np.stack([np.tile(core[end][:, None], corners - 1), rim[:, :-1], rim[:, 1:]], -1)
         triangles.append(fan[..., ::order])
-        ring, ring_next, core_next = rim[:, -1], np.roll(rim[:, 0], -1), np.roll(core[end], -1)
+        ring = rim[:, -1]
+        ring_next = np.roll(rim[:, 0], -1)
+        core_next = np.roll(core[end], -1)
         if inner > 0.0:
             quads.append(np.stack([core[end], ring, ring_next, core_next], -1)[:, ::order])
         else:

@@ -22,8 +22,10 @@ from rotorgear.model.layout.mesh_geometry import (
 from rotorgear.model.model import Model
 
 # Grooves of a plain cylinder, and their width in rad and depth relative to the radius, by which its rotation is seen.
-GEAR_GROOVES, DISK_GROOVES = 12, 4
-_GROOVE_WIDTH, _GROOVE_DEPTH = math.radians(8.0), 0.05
+GEAR_GROOVES = 12
+DISK_GROOVES = 4
+_GROOVE_WIDTH = math.radians(8.0)
+_GROOVE_DEPTH = 0.05
 # Least share of the pitch that a drawn tip or gap keeps, also where the given sizes leave none.
 _LEAST_LAND = 0.03
 
@@ -35,7 +37,8 @@ def toothed_contour(geometry: GearGeometry, flank_points: int) -> tuple[np.ndarr
         angles and radii, each (teeth, 2 flank_points), counter-clockwise; flanks are involutes down to the base circle, and
         radial from there to the root circle.
     """
-    tip, root = 0.5 * geometry.effective_tip_diameter, 0.5 * geometry.root_diameter
+    tip = 0.5 * geometry.effective_tip_diameter
+    root = 0.5 * geometry.root_diameter
     pitch = 2.0 * math.pi / geometry.teeth
     radius = np.linspace(root, tip, flank_points)
     involute = np.maximum(radius, geometry.base_radius)
@@ -83,7 +86,8 @@ def tooth_phases(model: Model, axes: dict[str, tuple[float, float]]) -> dict[str
 def _place_mate(model: Model, contact: Contact, axes: dict[str, tuple[float, float]], phases: dict[str, float]) -> None:
     """Set the phase of the mate of a gear that has one."""
     known, new = (contact.pinion, contact.gear) if contact.pinion in phases else (contact.gear, contact.pinion)
-    here, there = axes[model.gears[known].shaft], axes[model.gears[new].shaft]
+    here = axes[model.gears[known].shaft]
+    there = axes[model.gears[new].shaft]
     out = math.atan2(there[1] - here[1], there[0] - here[0])
     pitch, mate_pitch = (2.0 * math.pi / (model.gears[name].teeth or 1) for name in (known, new))
     ahead = (out - phases[known] - _turn(model, known, contact.contact_z)) / pitch

@@ -42,9 +42,13 @@ def write_tooth_vtk(fields: ToothFields, directory: str | Path) -> list[Path]:
             save_mesh(_gear_mesh(pv, gear), scratch / names[-1])
         save_mesh(_contact_mesh(pv, fields.contact), scratch / "contact.vtp")
         text = _README.format(
-            mesh=fields.mesh, position=fields.position, first=first.name, second=second.name, one=1e-6 * first.root_stress,
+            mesh=fields.mesh,
+            position=fields.position,
+            first=first.name,
+            second=second.name,
+            one=1e-6 * first.root_stress,
             two=1e-6 * second.root_stress,
-        )  # fmt: skip
+        )
         (scratch / "README.txt").write_text(text, encoding="utf-8")
         return publish(scratch, Path(directory), [*names, "contact.vtp", "README.txt"])
 

@@ -25,7 +25,8 @@ from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import ModalResult
 
 # Points and colours of frames are rounded to these shares of the model's size: invisible, and they compress to half.
-_POINT_GRID, _COLOUR_GRID = 2.0**-16, 2.0**-13
+_POINT_GRID = 2.0**-16
+_COLOUR_GRID = 2.0**-13
 
 
 def write_vtk(

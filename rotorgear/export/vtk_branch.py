@@ -44,7 +44,8 @@ def write_branch(
     check_amplitude(amplitude)
     pv = import_pyvista("VTK output")
     solids = build_solids(result.model, result.nodes)
-    plain, names = solids_mesh(pv, solids), []
+    plain = solids_mesh(pv, solids)
+    names = []
     add_texts(plain, "part_names", solids.part_names)
     with filling(directory) as scratch:
         steps = []

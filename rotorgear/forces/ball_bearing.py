@@ -36,19 +36,32 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Forces along x, y, z and moments about x, y of the inner ring on the balls."""
-    count, cp, distance, radial, axial, arm = int(p[0]), p[1], p[2], p[3], p[4], p[7]
+    count = int(p[0])
+    cp = p[1]
+    distance = p[2]
+    radial = p[3]
+    axial = p[4]
+    arm = p[7]
     for i in range(5):
         F[i] = 0.0
     for i in range(25):
-        Kd[i], Kv[i] = 0.0, 0.0
-    stored, turned, loaded = 0.0, 0.0, 0.0
+        Kd[i] = 0.0
+        Kv[i] = 0.0
+    stored = 0.0
+    turned = 0.0
+    loaded = 0.0
     g = np.zeros(5)
-    a, b = np.zeros(5), np.zeros(5)
+    a = np.zeros(5)
+    b = np.zeros(5)
     for j in range(count):
         phi = s[0] + 6.283185307179586 * j / count
-        c, n = np.cos(phi), np.sin(phi)
-        a[0], a[1] = c, n
-        b[2], b[3], b[4] = 1.0, arm * n, -arm * c
+        c = np.cos(phi)
+        n = np.sin(phi)
+        a[0] = c
+        a[1] = n
+        b[2] = 1.0
+        b[3] = arm * n
+        b[4] = -arm * c
         u = radial + d[0] * c + d[1] * n
         w = axial + d[2] + arm * (d[3] * n - d[4] * c)
         length = np.sqrt(u * u + w * w)
@@ -57,8 +70,10 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
             continue
         loaded = 1.0
         root = np.sqrt(delta)
-        Q, slope = cp * delta * root, 1.5 * cp * root
-        cosine, sine = u / length, w / length
+        Q = cp * delta * root
+        slope = 1.5 * cp * root
+        cosine = u / length
+        sine = w / length
         for i in range(5):
             g[i] = cosine * a[i] + sine * b[i]
             F[i] += Q * g[i]
@@ -70,7 +85,10 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         du = -d[0] * n + d[1] * c
         dw = arm * (d[3] * c + d[4] * n)
         turned += Q * (cosine * du + sine * dw) * s[1]
-    energy[0], energy[1], energy[2], energy[3] = stored, turned, 0.0, loaded
+    energy[0] = stored
+    energy[1] = turned
+    energy[2] = 0.0
+    energy[3] = loaded
 
 
 @dataclass(frozen=True)
@@ -120,9 +138,14 @@ class BallBearing(ForceLaw):
     def contact_constant(self) -> float:
         """c_p in N/m^1.5."""
         return point_contact(
-            self.ball_diameter, self.pitch_diameter, self.inner_groove * self.ball_diameter,
-            self.outer_groove * self.ball_diameter, self.contact_angle, self.youngs_modulus, self.poisson_ratio,
-        )  # fmt: skip
+            self.ball_diameter,
+            self.pitch_diameter,
+            self.inner_groove * self.ball_diameter,
+            self.outer_groove * self.ball_diameter,
+            self.contact_angle,
+            self.youngs_modulus,
+            self.poisson_ratio,
+        )
 
     @property
     def uses_velocity(self) -> bool:
@@ -139,8 +162,10 @@ class BallBearing(ForceLaw):
 
     def parameters(self) -> np.ndarray:
         """Z, c_p, A, A cos a0, A sin a0, order, phase, R_i."""
-        A, a0 = self.distance, self.contact_angle
-        radial, axial = A * np.cos(a0) - 0.5 * self.clearance, A * np.sin(a0)
+        A = self.distance
+        a0 = self.contact_angle
+        radial = A * np.cos(a0) - 0.5 * self.clearance
+        axial = A * np.sin(a0)
         arm = 0.5 * self.pitch_diameter + (self.inner_groove - 0.5) * self.ball_diameter * radial / A
         return np.array([self.balls, self.contact_constant, A, radial, axial, self.order, self.phase, arm])
 

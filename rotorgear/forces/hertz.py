@@ -20,9 +20,14 @@ LINE_CONTACT = 35948.0 * 1e3 ** (8.0 / 9.0) * 1e3 ** (10.0 / 9.0)
 
 
 def point_contact(
-    ball_diameter: float, pitch_diameter: float, inner_radius: float, outer_radius: float, contact_angle: float,
-    youngs_modulus: float = 210e9, poisson_ratio: float = 0.3,
-) -> float:  # fmt: skip
+    ball_diameter: float,
+    pitch_diameter: float,
+    inner_radius: float,
+    outer_radius: float,
+    contact_angle: float,
+    youngs_modulus: float = 210e9,
+    poisson_ratio: float = 0.3,
+) -> float:
     """Return c_p in N/m^1.5 of a ball between both raceways; all lengths in m, the groove radii of inner and outer ring."""
     gamma = ball_diameter * np.cos(contact_angle) / pitch_diameter
     total = 0.0

@@ -89,10 +89,15 @@ class ForceLaw(ABC):
     def evaluate(self, d: Any, v: Any = 0.0, *, time: float = 0.0, angle: float = 0.0, speed: float = 0.0) -> LawValue:
         """Return force and tangents at displacements d and velocities v (k,), a time, and angle and speed of the reference."""
         schedule, force = self.functions()
-        k, p, state = self.components, np.ascontiguousarray(self.parameters(), dtype=float), np.zeros(self.state_size())
+        k = self.components
+        p = np.ascontiguousarray(self.parameters(), dtype=float)
+        state = np.zeros(self.state_size())
         schedule(angle, speed, time, p, state)
         d, v = (np.ascontiguousarray(np.broadcast_to(np.asarray(x, float), k)).copy() for x in (d, v))
-        F, Kd, Kv, energy = np.zeros(k), np.zeros(k * k), np.zeros(k * k), np.zeros(4)
+        F = np.zeros(k)
+        Kd = np.zeros(k * k)
+        Kv = np.zeros(k * k)
+        energy = np.zeros(4)
         force(p, state, d, v, F, Kd, Kv, energy)
         stored, power_in, dissipated, contact = map(float, energy)
         return LawValue(F, Kd.reshape(k, k), Kv.reshape(k, k), stored, power_in, dissipated, int(contact))

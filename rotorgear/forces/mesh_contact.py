@@ -33,22 +33,30 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     """Fill k, k', e, e', impact."""
     rate = p[6] * speed
     phase = p[6] * angle + p[7]
-    nk, ne, pieces = int(p[8]), int(p[9]), int(p[10])
-    c1, s1 = np.cos(phase), np.sin(phase)
+    nk = int(p[8])
+    ne = int(p[9])
+    pieces = int(p[10])
+    c1 = np.cos(phase)
+    s1 = np.sin(phase)
     place = 16
     for which in range(2):
-        value, slope = 0.0, 0.0
-        cn, sn = 1.0, 0.0
+        value = 0.0
+        slope = 0.0
+        cn = 1.0
+        sn = 0.0
         for n in range(1, (nk if which == 0 else ne) + 1):
             cn, sn = cn * c1 - sn * s1, sn * c1 + cn * s1
-            a, b = p[place], p[place + 1]
+            a = p[place]
+            b = p[place + 1]
             value += a * cn + b * sn
             slope += n * (b * cn - a * sn)
             place += 2
         if which == 0:
-            s[0], s[1] = p[0] * (1.0 + value), p[0] * slope * rate
+            s[0] = p[0] * (1.0 + value)
+            s[1] = p[0] * slope * rate
         else:
-            s[2], s[3] = p[11] + value, slope * rate
+            s[2] = p[11] + value
+            s[3] = slope * rate
     if pieces > 0:
         share = phase / 6.283185307179586
         share -= np.floor(share)
@@ -77,34 +85,55 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Force along the line of contact, positive when the driving flanks are pressed."""
-    c, backlash, gap, mode, ramp = p[1], p[2], int(p[3]), int(p[4]), p[5]
-    k, dk, de = s[0], s[1], s[3]
-    x, rate = d[0] - s[2], v[0] - de
-    side, depth = 0.0, 0.0
+    c = p[1]
+    backlash = p[2]
+    gap = int(p[3])
+    mode = int(p[4])
+    ramp = p[5]
+    k = s[0]
+    dk = s[1]
+    de = s[3]
+    x = d[0] - s[2]
+    rate = v[0] - de
+    side = 0.0
+    depth = 0.0
     if gap == 2 or x > 0.0:
-        side, depth = 1.0, x
+        side = 1.0
+        depth = x
     elif gap == 0 and x < -backlash:
-        side, depth = -1.0, -x - backlash
+        side = -1.0
+        depth = -x - backlash
     F[0] = s[4]
-    Kd[0], Kv[0] = 0.0, 0.0
-    energy[0], energy[1], energy[2], energy[3] = 0.0, -s[4] * v[0], 0.0, side
+    Kd[0] = 0.0
+    Kv[0] = 0.0
+    energy[0] = 0.0
+    energy[1] = -s[4] * v[0]
+    energy[2] = 0.0
+    energy[3] = side
     if side == 0.0:
         return
-    elastic, viscous, in_depth, in_rate = k * depth, 0.0, k, 0.0
+    elastic = k * depth
+    viscous = 0.0
+    in_depth = k
+    in_rate = 0.0
     if c != 0.0:
         closing = side * rate
-        share, slope = 1.0, 0.0
+        share = 1.0
+        slope = 0.0
         if gap != 2 and (mode == 2 or depth < ramp):
-            share, slope = depth / ramp, 1.0 / ramp
+            share = depth / ramp
+            slope = 1.0 / ramp
         viscous = c * share * closing
         if mode != 1 and gap != 2 and elastic + viscous < 0.0:
-            viscous, in_depth = -elastic, 0.0
+            viscous = -elastic
+            in_depth = 0.0
         else:
             in_depth += c * slope * closing
             in_rate = c * share
     total = side * (elastic + viscous)
     F[0] += total
-    Kd[0], Kv[0] = in_depth, in_rate
+    Kd[0] = in_depth
+    Kv[0] = in_rate
     energy[0] = 0.5 * k * depth * depth
     energy[1] += 0.5 * dk * depth * depth - total * de
     energy[2] = side * viscous * rate
@@ -167,12 +196,26 @@ class MeshContact(ForceLaw):
 
     def parameters(self) -> np.ndarray:
         """Return head and tables in a row."""
-        k, e = _pairs(self.stiffness_cos, self.stiffness_sin), _pairs(self.error_cos, self.error_sin)
+        k = _pairs(self.stiffness_cos, self.stiffness_sin)
+        e = _pairs(self.error_cos, self.error_sin)
         head = [
-            self.stiffness, self.damping, self.backlash, GAPS.index(self.gap), DAMPINGS.index(self.contact_damping),
-            self.ramp, self.order, self.phase, len(k) // 2, len(e) // 2, len(self.pieces), self.error_mean,
-            self.impact, self.impact_share, self.impact_phase, 0.0,
-        ]  # fmt: skip
+            self.stiffness,
+            self.damping,
+            self.backlash,
+            GAPS.index(self.gap),
+            DAMPINGS.index(self.contact_damping),
+            self.ramp,
+            self.order,
+            self.phase,
+            len(k) // 2,
+            len(e) // 2,
+            len(self.pieces),
+            self.error_mean,
+            self.impact,
+            self.impact_share,
+            self.impact_phase,
+            0.0,
+        ]
         return np.array([*head, *k, *e, *(x for piece in self.pieces for x in piece)], dtype=float)
 
     def reference_stiffness(self) -> np.ndarray:
@@ -193,17 +236,27 @@ class MeshContact(ForceLaw):
     def mean(self) -> MeshContact:
         """Return the contact without anything that varies in time."""
         return replace(
-            self, stiffness_cos=(), stiffness_sin=(), pieces=(), error_cos=(), error_sin=(), impact=0.0,
+            self,
+            stiffness_cos=(),
+            stiffness_sin=(),
+            pieces=(),
+            error_cos=(),
+            error_sin=(),
+            impact=0.0,
             stiffness=self._mean_stiffness(),
-        )  # fmt: skip
+        )
 
     @classmethod
     def examples(cls) -> tuple[MeshContact, ...]:
         """One of each gap and damping, with harmonics of stiffness and error."""
         ripple: dict[str, Any] = {
-            "order": 20.0, "phase": 0.3, "stiffness_cos": (0.2, 0.05), "stiffness_sin": (0.1,), "error_cos": (2e-6,),
+            "order": 20.0,
+            "phase": 0.3,
+            "stiffness_cos": (0.2, 0.05),
+            "stiffness_sin": (0.1,),
+            "error_cos": (2e-6,),
             "error_sin": (1e-6,),
-        }  # fmt: skip
+        }
         return (
             cls(3e8, 900.0, 40e-6, ramp=2e-6, **ripple),
             cls(3e8, 900.0, 40e-6, contact_damping="unclamped", ramp=2e-6, **ripple),

@@ -23,16 +23,27 @@ from rotorgear.forces.law import ForceLaw, parameter, refuse
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
-_HEAD, _SLICES, _STATE = 16, 9, 5
-_normal_schedule, _normal_force = mesh_contact.schedule, mesh_contact.force
+_HEAD = 16
+_SLICES = 9
+_STATE = 5
+_normal_schedule = mesh_contact.schedule
+_normal_force = mesh_contact.force
 
 
 @schedule_function
 def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     """Fill the state of the contact, W, and for each place of contact xi and its share of mu N."""
     _normal_schedule(angle, speed, time, p[16:], s[:5])
-    pitch, start, end, overlap, slices = p[0], p[1], p[2], p[3], int(p[4])
-    mu, viscosity, line_load, closing, rolling = p[5], p[6], p[7], p[8], p[9]
+    pitch = p[0]
+    start = p[1]
+    end = p[2]
+    overlap = p[3]
+    slices = int(p[4])
+    mu = p[5]
+    viscosity = p[6]
+    line_load = p[7]
+    closing = p[8]
+    rolling = p[9]
     s[5] = closing * speed
     cycle = p[16 + 6] * angle + p[16 + 7]
     total = 0.0
@@ -44,7 +55,8 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
             first -= pitch
         count = 0
         for j in range(4):
-            s[7 + 8 * i + 2 * j], s[8 + 8 * i + 2 * j] = 0.0, 0.0
+            s[7 + 8 * i + 2 * j] = 0.0
+            s[8 + 8 * i + 2 * j] = 0.0
             xi = first + j * pitch
             if start <= xi <= end:
                 count += 1
@@ -69,10 +81,17 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     for i in range(3):
         F[i] = 0.0
     for i in range(9):
-        Kd[i], Kv[i] = 0.0, 0.0
-    n, kd, kv, e = np.zeros(1), np.zeros(1), np.zeros(1), np.zeros(4)
+        Kd[i] = 0.0
+        Kv[i] = 0.0
+    n = np.zeros(1)
+    kd = np.zeros(1)
+    kv = np.zeros(1)
+    e = np.zeros(4)
     _normal_force(p[16:], s[:5], d[:1], v[:1], n, kd, kv, e)
-    energy[0], energy[1], energy[2], energy[3] = 0.0, 0.0, 0.0, e[3]
+    energy[0] = 0.0
+    energy[1] = 0.0
+    energy[2] = 0.0
+    energy[3] = e[3]
     if s[6] == 0.0:
         return
     N = abs(n[0])
@@ -152,9 +171,18 @@ class MeshFriction(ForceLaw):
     def parameters(self) -> np.ndarray:
         """Own parameters in a head, then those of the contact."""
         head = [
-            self.base_pitch, self.start, self.end, self.overlap, self.slices, self.coefficient, self.viscosity, self.line_load,
-            self.closing, self.rolling, self.smooth,
-        ]  # fmt: skip
+            self.base_pitch,
+            self.start,
+            self.end,
+            self.overlap,
+            self.slices,
+            self.coefficient,
+            self.viscosity,
+            self.line_load,
+            self.closing,
+            self.rolling,
+            self.smooth,
+        ]
         return np.concatenate([head, np.zeros(_HEAD - len(head)), self.contact.parameters()])
 
     def mean(self) -> MeshFriction:

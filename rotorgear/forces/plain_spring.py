@@ -20,7 +20,10 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     F[0] = p[0] * x + p[1] * x**3 + p[2] * v[0]
     Kd[0] = (p[0] + 3.0 * p[1] * x * x) if side != 0.0 else 0.0
     Kv[0] = p[2]
-    energy[0], energy[1], energy[2], energy[3] = 0.5 * p[0] * x * x + 0.25 * p[1] * x**4, 0.0, p[2] * v[0] ** 2, side
+    energy[0] = 0.5 * p[0] * x * x + 0.25 * p[1] * x**4
+    energy[1] = 0.0
+    energy[2] = p[2] * v[0] ** 2
+    energy[3] = side
 
 
 @dataclass(frozen=True)

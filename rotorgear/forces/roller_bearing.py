@@ -29,13 +29,18 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Forces along x and y of the inner ring on the rollers."""
     count = int(p[0])
-    F[0], F[1] = 0.0, 0.0
+    F[0] = 0.0
+    F[1] = 0.0
     for i in range(4):
-        Kd[i], Kv[i] = 0.0, 0.0
-    stored, turned, loaded = 0.0, 0.0, 0.0
+        Kd[i] = 0.0
+        Kv[i] = 0.0
+    stored = 0.0
+    turned = 0.0
+    loaded = 0.0
     for j in range(count):
         phi = s[0] + 6.283185307179586 * j / count
-        c, n = np.cos(phi), np.sin(phi)
+        c = np.cos(phi)
+        n = np.sin(phi)
         delta = d[0] * c + d[1] * n - p[2]
         if delta <= 0.0:
             continue
@@ -51,7 +56,10 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         Kd[3] += slope * n * n
         stored += 9.0 / 19.0 * Q * delta
         turned += Q * (d[1] * c - d[0] * n) * s[1]
-    energy[0], energy[1], energy[2], energy[3] = stored, turned, 0.0, loaded
+    energy[0] = stored
+    energy[1] = turned
+    energy[2] = 0.0
+    energy[3] = loaded
 
 
 @dataclass(frozen=True)

@@ -35,8 +35,11 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Torque and its slope over speed."""
-    power, reference, viscous = p[2], p[3], p[4]
-    Kd[0], Kv[0] = 0.0, 0.0
+    power = p[2]
+    reference = p[3]
+    viscous = p[4]
+    Kd[0] = 0.0
+    Kv[0] = 0.0
     torque = s[0]
     if power != 0.0:
         w = s[1] + v[0]
@@ -46,7 +49,10 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
             Kv[0] = -s[0] * power * size ** (power - 1.0) / reference * (1.0 if w > 0.0 else -1.0)
     F[0] = -torque + viscous * v[0]
     Kv[0] += viscous
-    energy[0], energy[1], energy[2], energy[3] = 0.0, torque * v[0], viscous * v[0] * v[0], 0.0
+    energy[0] = 0.0
+    energy[1] = torque * v[0]
+    energy[2] = viscous * v[0] * v[0]
+    energy[3] = 0.0
 
 
 @dataclass(frozen=True)
@@ -82,10 +88,21 @@ class TorqueCurve(ForceLaw):
 
     def parameters(self) -> np.ndarray:
         """In the order of the formula."""
-        return np.array([
-            self.torque, self.ratio, self.power, self.reference_speed, self.damping, self.ripple, self.order, self.phase,
-            self.step, self.step_time, self.step_rise,
-        ])  # fmt: skip
+        return np.array(
+            [
+                self.torque,
+                self.ratio,
+                self.power,
+                self.reference_speed,
+                self.damping,
+                self.ripple,
+                self.order,
+                self.phase,
+                self.step,
+                self.step_time,
+                self.step_rise,
+            ]
+        )
 
     @classmethod
     def examples(cls) -> tuple[TorqueCurve, ...]:

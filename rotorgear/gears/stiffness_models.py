@@ -25,20 +25,24 @@ class Registered:
 
 MODELS = {
     "iso": Registered(
-        "rotorgear.gears.stiffness.iso:iso_stiffness", False, "mean stiffness c_gamma_alpha of ISO 6336-1, without ripple"
+        "rotorgear.gears.stiffness.iso:iso_stiffness",
+        False,
+        "mean stiffness c_gamma_alpha of ISO 6336-1, without ripple",
     ),
     "contact_line": Registered(
-        "rotorgear.gears.stiffness.lines:contact_line_stiffness", False,
+        "rotorgear.gears.stiffness.lines:contact_line_stiffness",
+        False,
         "that mean, spread in proportion to the length of the contact lines",
     ),
     "potential_energy": Registered(
-        "rotorgear.gears.stiffness.energy:potential_energy_stiffness", False,
+        "rotorgear.gears.stiffness.energy:potential_energy_stiffness",
+        False,
         "tooth slices as beams on an elastic ring, with Hertz' contact",
     ),
     "tooth_fe": Registered(
         "rotorgear.gears.loaded.stiffness:tooth_fe_stiffness", True, "finite elements and loaded tooth contact"
     ),
-}  # fmt: skip
+}
 
 
 @lru_cache(maxsize=128)  # a refined analysis asks for the same meshes again and again

@@ -48,7 +48,8 @@ def _curve(axis: Any, ladder: AccuracyLadder, key: str, label: str) -> None:
         own = [rung for rung in ladder.rungs if rung.family == family and rung.error < float("inf")]
         if own:
             # An error of exactly zero has no place on a logarithmic axis.
-            x, y = [getattr(rung, key) for rung in own], [max(rung.error, 1e-16) for rung in own]
+            x = [getattr(rung, key) for rung in own]
+            y = [max(rung.error, 1e-16) for rung in own]
             axis.loglog(x, y, marker=marker, color=colour, lw=1.2, ms=5, label=name)
             axis.loglog(x, [max(rung.estimate, 1e-16) for rung in own], "x", color=colour, ms=5, alpha=0.6)
     axis.loglog([], [], "x", color="#444444", alpha=0.6, label="its own estimate")

@@ -21,7 +21,10 @@ _DIRECTIONS = (
 )  # fmt: skip
 _SMALL = (240, 150)
 # The part of the picture to fill, from -1 to 1 each way: room for the title above and the colours below.
-_LEFT, _RIGHT, _BOTTOM, _TOP = -0.92, 0.92, -0.80, 0.74
+_LEFT = -0.92
+_RIGHT = 0.92
+_BOTTOM = -0.80
+_TOP = 0.74
 
 
 def best_direction(pv: ModuleType, model: Model, nodes: NodeTable) -> tuple[float, float, float]:

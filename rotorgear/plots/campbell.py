@@ -46,9 +46,13 @@ def draw_campbell(result: CampbellResult, path: str | Path, *, colour: str = "mo
     if result.operating_speed is not None and left <= result.operating_speed * RPM <= right:
         axis.axvline(result.operating_speed * RPM, color="black", lw=0.8)
         axis.annotate(
-            "operating speed", (result.operating_speed * RPM, top), xytext=(0, 3), textcoords="offset points", fontsize=7,
+            "operating speed",
+            (result.operating_speed * RPM, top),
+            xytext=(0, 3),
+            textcoords="offset points",
+            fontsize=7,
             ha="center",
-        )  # fmt: skip
+        )
     axis.set_xlabel(f"speed of {result.model.reference_shaft}, rpm")
     axis.set_ylabel("damped frequency, Hz")
     figure.suptitle(result.model.title or "Campbell diagram", fontsize=11)
@@ -72,9 +76,11 @@ def _branches(figure: Any, axis: Any, result: CampbellResult, colour: str) -> No
         return
     if colour == "mesh":
         total = sum(result.mesh_strain.values(), np.zeros(result.frequency_hz.shape))
-        values, label = 100.0 * _mean(total), "share of the meshes in the strain energy, %"
+        values = 100.0 * _mean(total)
+        label = "share of the meshes in the strain energy, %"
     else:
-        values, label = _mean(result.log_decrement), "logarithmic decrement"
+        values = _mean(result.log_decrement)
+        label = "logarithmic decrement"
     lines = LineCollection(segments[there], array=values.ravel()[there], cmap="viridis", lw=1.7, zorder=3)
     axis.add_collection(lines)
     figure.colorbar(lines, ax=axis, label=label, pad=0.06, fraction=0.03)
@@ -89,7 +95,8 @@ def _whirl(axis: Any, result: CampbellResult) -> None:
     count = len(result.speeds)
     step = max(1, count // 8)
     for word, marker in _MARKERS.items():
-        x, y = [], []
+        x = []
+        y = []
         for b in range(len(result)):
             for k in range((b * step) // 3 % step + 1, count, step):
                 if WHIRL_WORDS[result.whirl[k, b]] == word and np.isfinite(result.frequency_hz[k, b]):
@@ -113,17 +120,31 @@ def _lines(axis: Any, result: CampbellResult, ends: tuple[float, float], top: fl
     edge = 1.005 if far == ends[1] else -0.06
     for (height, line), place in zip(side, spread([h for h, _ in side], 0.021), strict=True):
         axis.annotate(
-            _short(line), (far, height * top), xytext=(edge, place), textcoords="axes fraction", fontsize=7, va="center",
-            color=_LINES[line.kind], annotation_clip=False,
-        )  # fmt: skip
+            _short(line),
+            (far, height * top),
+            xytext=(edge, place),
+            textcoords="axes fraction",
+            fontsize=7,
+            va="center",
+            color=_LINES[line.kind],
+            annotation_clip=False,
+        )
     span = ends[1] - ends[0]
     shares = [(far * share - ends[0]) / span for share, _ in above]
     for (_, line), share, place in zip(above, shares, spread(shares, 0.014), strict=True):
         if 0.0 <= share <= 1.0:
             axis.annotate(
-                _short(line), (ends[0] + share * span, top), xytext=(place, 1.01), textcoords="axes fraction", fontsize=7,
-                rotation=50, va="bottom", ha="left", color=_LINES[line.kind], annotation_clip=False,
-            )  # fmt: skip
+                _short(line),
+                (ends[0] + share * span, top),
+                xytext=(place, 1.01),
+                textcoords="axes fraction",
+                fontsize=7,
+                rotation=50,
+                va="bottom",
+                ha="left",
+                color=_LINES[line.kind],
+                annotation_clip=False,
+            )
 
 
 def _short(line: ExcitationOrder) -> str:
@@ -137,7 +158,8 @@ def _crossings(axis: Any, result: CampbellResult, top: float) -> None:
     met = [item for item in result.crossings if item.excited]
     if not met:
         return
-    x, y = np.array([item.speed * RPM for item in met]), np.array([item.frequency_hz for item in met])
+    x = np.array([item.speed * RPM for item in met])
+    y = np.array([item.frequency_hz for item in met])
     size = 6.0 + 60.0 * np.sqrt([item.participation for item in met])
     axis.scatter(x, y, s=size, facecolors="none", edgecolors="black", lw=0.7, zorder=5)
     labels = Labels(axis.get_xlim(), (0.0, top))
@@ -148,9 +170,15 @@ def _crossings(axis: Any, result: CampbellResult, top: float) -> None:
         place = labels.place(item.speed * RPM, item.frequency_hz)
         if place is not None:
             axis.annotate(
-                f"{item.speed * RPM:.0f}", (item.speed * RPM, item.frequency_hz), xytext=place, fontsize=7, zorder=6,
-                va="center", ha="center", bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.6},
-            )  # fmt: skip
+                f"{item.speed * RPM:.0f}",
+                (item.speed * RPM, item.frequency_hz),
+                xytext=place,
+                fontsize=7,
+                zorder=6,
+                va="center",
+                ha="center",
+                bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.6},
+            )
 
 
 def _telling(item: Crossing, result: CampbellResult) -> float:

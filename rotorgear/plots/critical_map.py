@@ -58,6 +58,13 @@ def _bearings(axis: object, chart: CriticalMap) -> None:
             axis.axvline(value, color="#444444", lw=0.8)  # type: ignore[attr-defined]
             more = f" and {len(own) - 3} more" if len(own) > 3 else ""
             axis.text(  # type: ignore[attr-defined]
-                value, 0.02, " " + ", ".join(own[:3]) + more, rotation=90, fontsize=7, va="bottom", ha="right", color="#444444",
+                value,
+                0.02,
+                " " + ", ".join(own[:3]) + more,
+                rotation=90,
+                fontsize=7,
+                va="bottom",
+                ha="right",
+                color="#444444",
                 transform=axis.get_xaxis_transform(),  # type: ignore[attr-defined]
-            )  # fmt: skip
+            )

@@ -25,7 +25,8 @@ def draw_frf(result: FrequencyResponse, path: str | Path, *, quantity: str = "re
     values = result.of(quantity)
     pairs = [(o, i) for i in range(len(result.inputs)) for o in range(len(result.outputs))]
     for number, (o, i) in enumerate(pairs):
-        colour, style = COLOURS[number % len(COLOURS)], ("-", "--", ":")[number // len(COLOURS) % 3]
+        colour = COLOURS[number % len(COLOURS)]
+        style = ("-", "--", ":")[number // len(COLOURS) % 3]
         label = f"{result.inputs[i]} to {result.outputs[o]}"
         size.semilogy(result.frequency_hz, np.abs(values[:, o, i]), color=colour, ls=style, lw=1.3, label=label)
         phase.plot(result.frequency_hz, np.degrees(np.angle(values[:, o, i])), color=colour, ls=style, lw=1.0)

@@ -38,8 +38,10 @@ def gear_contour(teeth: ToothPair, gear: int) -> np.ndarray:
 
 def contact_points(teeth: ToothPair) -> np.ndarray:
     """Where tooth pairs touch in the middle of the face while one touches at the pitch point, shape (k, 2) in m."""
-    pair, step = teeth.pair, teeth.base_pitch
-    first, last = math.ceil(pair.start_of_contact / step - 1e-12), math.floor(pair.end_of_contact / step + 1e-12)
+    pair = teeth.pair
+    step = teeth.base_pitch
+    first = math.ceil(pair.start_of_contact / step - 1e-12)
+    last = math.floor(pair.end_of_contact / step + 1e-12)
     return np.array([on_line_of_action(teeth, k * step) for k in range(first, last + 1)])
 
 
@@ -93,7 +95,8 @@ def draw_mesh(sheet: GearSheet, path: str | Path, mesh: str | None = None) -> Pa
 
 def _draw(axis: Any, teeth: ToothPair, names: tuple[str, str]) -> None:
     """Both gears with their circles and the path of contact, in mm."""
-    angle, turn = teeth.pair.working_transverse_pressure_angle, np.linspace(0.0, 2.0 * math.pi, 721)
+    angle = teeth.pair.working_transverse_pressure_angle
+    turn = np.linspace(0.0, 2.0 * math.pi, 721)
     centres = ((0.0, 0.0), (1e3 * teeth.pair.centre_distance, 0.0))
     for number, (g, centre, colour) in enumerate(zip((teeth.first, teeth.second), centres, _COLOURS, strict=True), 1):
         xy = 1e3 * gear_contour(teeth, number)
@@ -101,7 +104,8 @@ def _draw(axis: Any, teeth: ToothPair, names: tuple[str, str]) -> None:
         axis.plot(*xy.T, color=colour, lw=1.2, label=names[number - 1])
         for radius, style in ((g.base_radius / math.cos(angle), "-."), (g.base_radius, ":")):
             label = {"-.": "working pitch circles", ":": "base circles"}[style] if number == 1 else None
-            x, y = 1e3 * radius * np.cos(turn) + centre[0], 1e3 * radius * np.sin(turn)
+            x = 1e3 * radius * np.cos(turn) + centre[0]
+            y = 1e3 * radius * np.sin(turn)
             axis.plot(x, y, style, color="#555555", lw=0.8, label=label)
         axis.plot(*centre, "+", color=colour, ms=8)
     tangents = [-teeth.first.base_radius * math.tan(angle), teeth.second.base_radius * math.tan(angle)]
@@ -119,6 +123,7 @@ def _draw(axis: Any, teeth: ToothPair, names: tuple[str, str]) -> None:
 
 def _look_near(axis: Any, teeth: ToothPair) -> None:
     """Show a few teeth around the pitch point."""
-    pitch, reach = 1e3 * on_line_of_action(teeth, 0.0)[0], 5.0e3 * teeth.first.transverse_module
+    pitch = 1e3 * on_line_of_action(teeth, 0.0)[0]
+    reach = 5.0e3 * teeth.first.transverse_module
     axis.set_xlim(pitch - 1.25 * reach, pitch + 1.25 * reach)
     axis.set_ylim(-reach, reach)

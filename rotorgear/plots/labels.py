@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 # Size of a short label, and distances at which it is tried, as shares of the axes.
-_WIDTH, _HEIGHT = 0.046, 0.026
+_WIDTH = 0.046
+_HEIGHT = 0.026
 _TRIALS = tuple((r * np.cos(a), r * np.sin(a)) for r in (0.03, 0.045) for a in np.radians((60, 120, -60, -120, 0, 180)))
 
 

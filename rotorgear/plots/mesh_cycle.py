@@ -97,7 +97,8 @@ def _sharing(axis: Any, found: MeshResult, helix: HelixContact) -> None:
 def _pressure(figure: Any, axis: Any, found: MeshResult, helix: HelixContact) -> None:
     """Largest pressure over the flank: at a helical mesh over face and roll length, at a spur mesh over roll length."""
     carrying = helix.force > 0.0
-    roll, pressure = 1e3 * helix.roll[carrying, 0], 1e-6 * helix.pressure[carrying]
+    roll = 1e3 * helix.roll[carrying, 0]
+    pressure = 1e-6 * helix.pressure[carrying]
     axis.set_title(f"contact pressure on {found.pinion}, whole cycle", fontsize=10)
     axis.set_xlabel(f"roll length on {found.pinion}, mm")
     if np.ptp(helix.z) == 0.0:

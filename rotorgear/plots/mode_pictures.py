@@ -94,7 +94,8 @@ def _save(plotter: Any, path: Path) -> None:
 
     fine = plotter.screenshot(None, return_img=True)[..., :3].astype(np.uint16)
     k = _SUPERSAMPLING
-    rows, columns = fine.shape[0] // k, fine.shape[1] // k
+    rows = fine.shape[0] // k
+    columns = fine.shape[1] // k
     mean = fine[: rows * k, : columns * k].reshape(rows, k, columns, k, 3).sum(axis=(1, 3)) // k**2
     Image.fromarray(mean.astype(np.uint8)).save(path)
 

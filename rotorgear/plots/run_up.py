@@ -13,7 +13,8 @@ from rotorgear.plots.static import plain_axis
 from rotorgear.results.response import ResponseResult
 
 _MOST_LINES = len(COLOURS)
-_WIDTH, _HEIGHT = 5.6, 2.9
+_WIDTH = 5.6
+_HEIGHT = 2.9
 _HEADROOM = 0.45  # for the legend, as a share of the height of the curves
 
 

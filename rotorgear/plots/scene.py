@@ -101,10 +101,17 @@ class Scene:
 
     def _colours(self, unit: float) -> dict[str, Any]:
         bar = {
-            "title": "displacement, relative", "color": INK, "fmt": "%.1f", "n_labels": 2, "width": 0.18, "height": 0.075,
-            "position_x": 0.79, "position_y": 0.03,
-            "title_font_size": round(20 * unit), "label_font_size": round(18 * unit),
-        }  # fmt: skip
+            "title": "displacement, relative",
+            "color": INK,
+            "fmt": "%.1f",
+            "n_labels": 2,
+            "width": 0.18,
+            "height": 0.075,
+            "position_x": 0.79,
+            "position_y": 0.03,
+            "title_font_size": round(20 * unit),
+            "label_font_size": round(18 * unit),
+        }
         return {"scalars": "amplitude", "cmap": colour_map(), "clim": (0.0, 1.0), "scalar_bar_args": bar}
 
 

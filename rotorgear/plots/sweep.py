@@ -33,7 +33,8 @@ def draw_sweep(result: SweepResult, directory: str | Path) -> list[Path]:
     for number in range(len(result.contact) if result.portraits else 0):
         plans[f"portraits_{number + 1}.png"] = lambda figure, c=number: draw_portraits(result, figure, c)
         plans[f"spectra_{number + 1}.png"] = lambda figure, c=number: draw_spectra(result, figure, c)
-    target, names = Path(directory), []
+    target = Path(directory)
+    names = []
     with filling(target) as scratch:
         for name, draw in plans.items():
             figure = new_figure(portrait_size(result) if name.startswith(("portraits", "spectra")) else (8.0, 6.0))
@@ -60,9 +61,14 @@ def draw_bifurcation(result: SweepResult, figure: Any, contact: int = 0) -> None
         )
         if exponent:
             axes[1].errorbar(
-                result.values[:, 0], result.lyapunov[:, r, 0], result.lyapunov_error[:, r, 0], fmt=".-", ms=3, lw=0.7,
+                result.values[:, 0],
+                result.lyapunov[:, r, 0],
+                result.lyapunov_error[:, r, 0],
+                fmt=".-",
+                ms=3,
+                lw=0.7,
                 color=_colour(result, r),
-            )  # fmt: skip
+            )
     axes[0].set_ylabel("displacement at the section, um")
     axes[0].set_title(
         f"{result.contact[contact]}: Poincare section once each {result.period_words.removeprefix('the ')}", fontsize=9
@@ -109,7 +115,8 @@ def draw_sections(result: SweepResult, figure: Any) -> None:
         one.set_visible(False)
     for one, p in zip(grid.flat, chosen, strict=False):
         for r in range(len(result.run)):
-            x, v = 1e6 * result.section[p, r, :, 0, 0], 1e3 * result.section[p, r, :, 0, 1]
+            x = 1e6 * result.section[p, r, :, 0, 0]
+            v = 1e3 * result.section[p, r, :, 0, 1]
             one.plot(x, v, ".", ms=2, color=_colour(result, r))
         one.set_title(f"{result.values[p, 0]:.6g} {result.unit[0]}: {result.motion_at(p)}", fontsize=8)
         one.tick_params(labelsize=7)
@@ -124,13 +131,21 @@ def draw_map(result: SweepResult, figure: Any) -> None:
     from matplotlib.colors import BoundaryNorm, ListedColormap
 
     n1, n2 = (int(n) for n in result.shape)
-    x, y = result.values[::n2, 0], result.values[:n2, 1]
+    x = result.values[::n2, 0]
+    y = result.values[:n2, 1]
     kinds = np.array([_class(result.motion_at(p)) for p in range(n1 * n2)], dtype=float).reshape(n1, n2).T
     exponent = bool(result.lyapunov.shape[2])
     axes = np.atleast_1d(figure.subplots(2 if exponent else 1, 1, sharex=True))
     shades = ListedColormap(list(_SHADES))
-    picture = axes[0].pcolormesh(x, y, kinds, cmap=shades, norm=BoundaryNorm(np.arange(-0.5, len(_KINDS)), len(_KINDS)),
-                                 shading="nearest", rasterized=True)  # fmt: skip
+    picture = axes[0].pcolormesh(
+        x,
+        y,
+        kinds,
+        cmap=shades,
+        norm=BoundaryNorm(np.arange(-0.5, len(_KINDS)), len(_KINDS)),
+        shading="nearest",
+        rasterized=True,
+    )
     bar = figure.colorbar(picture, ax=axes[0], ticks=range(len(_KINDS)))
     bar.ax.set_yticklabels(_KINDS, fontsize=7)
     if exponent:

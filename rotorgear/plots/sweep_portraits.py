@@ -11,7 +11,8 @@ from rotorgear.results.portrait import DISPLACEMENT, VELOCITY, Portraits
 from rotorgear.results.sweep import SweepResult
 
 # Mesh orders that a spectrum shows, and decades below its largest line.
-_ORDERS, _DECADES = 4.0, 5
+_ORDERS = 4.0
+_DECADES = 5
 
 
 def portrait_size(result: SweepResult) -> tuple[float, float]:
@@ -25,7 +26,8 @@ def draw_portraits(result: SweepResult, figure: Any, contact: int = 0) -> None:
     own, panels = _panels(result, figure)
     for k, one in enumerate(panels):
         for j in range(len(own.run)):
-            path, points = (1e6 * own.trajectory(k, j)[:, contact], 1e6 * own.section(k, j)[:, contact])
+            path = 1e6 * own.trajectory(k, j)[:, contact]
+            points = 1e6 * own.section(k, j)[:, contact]
             line, dot = _colours(own, j)
             one.plot(
                 path[:, DISPLACEMENT],

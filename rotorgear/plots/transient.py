@@ -30,14 +30,17 @@ def draw_transient(result: TransientResult, directory: str | Path) -> list[Path]
     except ImportError:
         raise MissingExtraError("Drawing pictures", "matplotlib", "plots") from None
     plans: dict[str, Callable[[TransientResult, Any], None]] = {
-        "mesh_forces.png": draw_mesh_forces, "transmission_error.png": draw_transmission_error,
-        "spectra.png": draw_spectra, "energy.png": draw_energy,
-    }  # fmt: skip
+        "mesh_forces.png": draw_mesh_forces,
+        "transmission_error.png": draw_transmission_error,
+        "spectra.png": draw_spectra,
+        "energy.png": draw_energy,
+    }
     if _orbits(result):
         plans["orbits.png"] = draw_orbits
     if np.ptp(result.speed) > 0.0:
         plans["spectrogram.png"] = draw_spectrogram
-    target, names = Path(directory), []
+    target = Path(directory)
+    names = []
     with filling(target) as scratch:
         for name, draw in plans.items():
             figure = Figure(figsize=(8.0, 5.0), dpi=130, layout="constrained")
@@ -117,7 +120,8 @@ def _orbits(result: TransientResult) -> list[str]:
 
 def draw_orbits(result: TransientResult, figure: Any) -> None:
     """Path of the shaft in each bearing about its mean, over the last periods."""
-    names, shown = _orbits(result), _window(result)
+    names = _orbits(result)
+    shown = _window(result)
     columns = int(np.ceil(np.sqrt(len(names))))
     grid = figure.subplots(int(np.ceil(len(names) / columns)), columns, squeeze=False)
     for axes in grid.flat[len(names) :]:
@@ -138,9 +142,12 @@ def draw_energy(result: TransientResult, figure: Any) -> None:
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
     stored = e.strain + e.contact
     terms = {
-        "kinetic": e.kinetic - e.kinetic[0], "stored in springs and contacts": stored - stored[0],
-        "work of the loads": e.load_work, "work of the excitation": e.excitation_work, "dissipated": e.dissipated,
-    }  # fmt: skip
+        "kinetic": e.kinetic - e.kinetic[0],
+        "stored in springs and contacts": stored - stored[0],
+        "work of the loads": e.load_work,
+        "work of the excitation": e.excitation_work,
+        "dissipated": e.dissipated,
+    }
     for name, values in terms.items():
         upper.plot(1e3 * e.time, values, lw=1.0, label=name)
     upper.set_ylabel("energy since the start, J")

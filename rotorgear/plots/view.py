@@ -18,7 +18,8 @@ from rotorgear.plots.offscreen import RenderError, can_render
 from rotorgear.plots.scene import INK, Scene, add_headline
 from rotorgear.results.modal import ModalResult, NodeTable
 
-_MILLISECONDS, _FRAMES = 40, 50
+_MILLISECONDS = 40
+_FRAMES = 50
 _HELP = "left, right: mode    space: stop, go    q: close"
 
 
@@ -101,9 +102,16 @@ class Player:
         plotter.add_key_event("Left", lambda: self.choose(self.mode - 1))
         plotter.add_key_event("space", self.toggle)
         plotter.add_slider_widget(
-            self.resize, rng=[0.0, 0.2], value=self.amplitude, title="amplitude / size", color=INK,
-            pointa=(0.77, 0.93), pointb=(0.97, 0.93), fmt="%.2f", style="modern",
-        )  # fmt: skip
+            self.resize,
+            rng=[0.0, 0.2],
+            value=self.amplitude,
+            title="amplitude / size",
+            color=INK,
+            pointa=(0.77, 0.93),
+            pointb=(0.97, 0.93),
+            fmt="%.2f",
+            style="modern",
+        )
         plotter.add_text(_HELP, position=(0.35, 0.02), viewport=True, font_size=9, color=INK, name="help")
         plotter.add_timer_event(max_steps=2**31 - 1, duration=_MILLISECONDS, callback=self.step)
 

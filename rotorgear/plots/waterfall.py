@@ -14,9 +14,11 @@ from rotorgear.results.response import ResponseResult
 
 _SPECTRA = 45
 # The largest line is so many steps between two spectra high; a line is a peak of this share of the width.
-_STEPS_HIGH, _PEAK_WIDTH = 7.0, 0.0035
+_STEPS_HIGH = 7.0
+_PEAK_WIDTH = 0.0035
 # Orders below this share of the highest peak are left out; labels stand so far apart.
-_SHOWN, _LABELS_APART = 0.01, 0.03
+_SHOWN = 0.01
+_LABELS_APART = 0.03
 
 
 def draw_waterfall(result: ResponseResult, path: str | Path, *, at: str | None = None) -> Path:
@@ -34,7 +36,8 @@ def draw_waterfall(result: ResponseResult, path: str | Path, *, at: str | None =
         raise AnalysisError("a waterfall needs more than one speed")
     title, unit, size = waterfall_of(result, at)
     chosen = np.arange(len(result.speeds) - 1, -1, -(len(result.speeds) // _SPECTRA + 1))[::-1]
-    rpm, top = np.abs(result.speed_rpm), float(size[:, chosen].max()) or 1.0
+    rpm = np.abs(result.speed_rpm)
+    top = float(size[:, chosen].max()) or 1.0
     step = float(rpm[chosen[-1]] - rpm[chosen[0]]) / len(chosen)
     figure = new_figure((10.0, 7.0))
     axis = figure.subplots()
@@ -48,9 +51,16 @@ def draw_waterfall(result: ResponseResult, path: str | Path, *, at: str | None =
             continue
         labelled = here
         axis.annotate(
-            result.orders[order], (here, rpm[-1]), xytext=(2, 4), textcoords="offset points", fontsize=7.5, rotation=35,
-            color="#333333", annotation_clip=False, zorder=200,
-        )  # fmt: skip
+            result.orders[order],
+            (here, rpm[-1]),
+            xytext=(2, 4),
+            textcoords="offset points",
+            fontsize=7.5,
+            rotation=35,
+            color="#333333",
+            annotation_clip=False,
+            zorder=200,
+        )
     for number, s in enumerate(chosen[::-1]):
         hz, height = _spectrum(result.frequency_hz[shown, s], size[shown, s] / top, widest)
         line = rpm[s] + _STEPS_HIGH * step * height

@@ -34,7 +34,9 @@ class RigLine:
 
     def __post_init__(self) -> None:
         problems = []
-        frequency, uncertainty, damping = self.frequency_hz, self.uncertainty_hz, self.damping_ratio
+        frequency = self.frequency_hz
+        uncertainty = self.uncertainty_hz
+        damping = self.damping_ratio
         if not (math.isfinite(frequency) and frequency > 0.0):
             problems.append(Problem("frequency_hz", repr(frequency), "a positive frequency such as '361 Hz'"))
         elif uncertainty is not None and not 0.0 <= uncertainty < frequency:
@@ -212,7 +214,9 @@ class Comparison:
 
 def _finding(comparison: Comparison) -> str:
     """Return the finding of the verdict: the matches against what chance gives."""
-    chance, count, matched = comparison.chance, comparison.rig_count, len(comparison.matches)
+    chance = comparison.chance
+    count = comparison.rig_count
+    matched = len(comparison.matches)
     within = f"within {_percent(comparison.tolerance)}"
     random = f"a random list would match {chance.expected_random_matches:.1f} of {count}"
     if matched == 0:

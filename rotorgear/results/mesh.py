@@ -176,7 +176,8 @@ class MeshResult:
 
     def to_dict(self, harmonics: int = 8) -> dict[str, Any]:
         """Plain values for JSON."""
-        k, e = self.harmonics(harmonics), self.ste_harmonics(harmonics)
+        k = self.harmonics(harmonics)
+        e = self.ste_harmonics(harmonics)
         return {
             "analysis": "mesh",
             "title": self.title,

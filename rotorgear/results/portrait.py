@@ -10,10 +10,14 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 
 # What a record holds of each contact.
-DISPLACEMENT, VELOCITY, FORCE = 0, 1, 2
+DISPLACEMENT = 0
+VELOCITY = 1
+FORCE = 2
 _NAMES = ("displacement", "velocity", "force")
 # A line is a maximum that stands so much above the median of so many bins on both sides, and above that share of the largest.
-_ABOVE, _SIDE, _SHARE = 10.0, 16, 1e-3
+_ABOVE = 10.0
+_SIDE = 16
+_SHARE = 1e-3
 _MOST_LINES = 8
 
 

@@ -51,11 +51,19 @@ class Reduction:
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON; the keys are documented in docs/json.md."""
         return {
-            "dofs": self.dofs, "coordinates": self.coordinates, "modes": self.modes, "highest_mode_hz": self.highest,
-            "rigid_motions": self.rigid, "static_shapes": self.static, "error_closed": self.closed,
-            "error_apart": self.apart, "up_to_hz": self.up_to, "frequencies": self.frequencies, "bases": self.bases,
+            "dofs": self.dofs,
+            "coordinates": self.coordinates,
+            "modes": self.modes,
+            "highest_mode_hz": self.highest,
+            "rigid_motions": self.rigid,
+            "static_shapes": self.static,
+            "error_closed": self.closed,
+            "error_apart": self.apart,
+            "up_to_hz": self.up_to,
+            "frequencies": self.frequencies,
+            "bases": self.bases,
             "seconds": self.seconds,
-        }  # fmt: skip
+        }
 
 
 def _hertz(value: float) -> str:

@@ -93,7 +93,8 @@ class ResponseResult:
         def by_mesh(values: np.ndarray) -> dict[str, Any]:
             return {mesh: [np.abs(values[:, :, k]).tolist() for k in self.contacts_of(mesh)] for mesh in meshes}
 
-        force, moved = np.abs(self.bearing_force), np.abs(self.displacement)
+        force = np.abs(self.bearing_force)
+        moved = np.abs(self.displacement)
         return {
             "analysis": "response",
             "title": self.model.title,

@@ -79,8 +79,14 @@ class RigSpectrum:
         return {
             "tolerance": self.tolerance,
             "lines": [
-                {"rig_hz": float(rig), "label": label, "frequency_hz": number(f), "amplitude": number(a), "source": source,
-                 "reason": reason}
+                {
+                    "rig_hz": float(rig),
+                    "label": label,
+                    "frequency_hz": number(f),
+                    "amplitude": number(a),
+                    "source": source,
+                    "reason": reason,
+                }
                 for rig, label, f, a, source, reason in rows
             ],
-        }  # fmt: skip
+        }

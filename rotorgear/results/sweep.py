@@ -159,11 +159,18 @@ class SweepResult:
 
     def _contact(self, p: int, r: int, c: int) -> dict[str, Any]:
         names = {
-            "peak_to_peak_m": self.peak_to_peak, "peak_to_peak_dte_m": self.amplitude, "rms_dte_m": self.rms,
-            "mean_force_n": self.mean_force, "rms_force_n": self.rms_force, "largest_force_n": self.largest_force,
-            "dynamic_factor": self.dynamic_factor, "driving_share": self.driving, "apart_share": self.apart,
-            "back_share": self.back, "losses_per_mesh_period": self.losses,
-        }  # fmt: skip
+            "peak_to_peak_m": self.peak_to_peak,
+            "peak_to_peak_dte_m": self.amplitude,
+            "rms_dte_m": self.rms,
+            "mean_force_n": self.mean_force,
+            "rms_force_n": self.rms_force,
+            "largest_force_n": self.largest_force,
+            "dynamic_factor": self.dynamic_factor,
+            "driving_share": self.driving,
+            "apart_share": self.apart,
+            "back_share": self.back,
+            "losses_per_mesh_period": self.losses,
+        }
         return {
             "name": self.contact[c],
             "static_force_n": _number(self.static_force[p, c]),

@@ -155,7 +155,8 @@ class TransientResult:
         }
 
     def _contact(self, i: int) -> dict[str, Any]:
-        force, x = self.mesh_force[self.counted, i], self.deflection[self.counted, i]
+        force = self.mesh_force[self.counted, i]
+        x = self.deflection[self.counted, i]
         return {
             "name": self.contact[i],
             "static_force_n": _number(self.mean_force[i]),

@@ -15,7 +15,9 @@ Term = Callable[[ElementGroup], np.ndarray | None]
 
 def assemble(groups: Iterable[ElementGroup], dofs: DofMap, term: Term) -> sp.csc_array:
     """Return the sum over all elements of `term(group)`, each (e, d, d) or None, as a sparse (n, n)."""
-    rows, cols, values = [], [], []
+    rows = []
+    cols = []
+    values = []
     for group in groups:
         block = term(group)
         if block is None:
@@ -26,11 +28,16 @@ def assemble(groups: Iterable[ElementGroup], dofs: DofMap, term: Term) -> sp.csc
         values.append(block.ravel())
     if not rows:
         return sp.csc_array((dofs.n, dofs.n))
-    row, col, value = np.concatenate(rows), np.concatenate(cols), np.concatenate(values)
+    row = np.concatenate(rows)
+    col = np.concatenate(cols)
+    value = np.concatenate(values)
     nonzero = value != 0.0
-    row, col, value = row[nonzero], col[nonzero], value[nonzero]
+    row = row[nonzero]
+    col = col[nonzero]
+    value = value[nonzero]
     if dofs.selects:
-        row, col = dofs.column[row], dofs.column[col]
+        row = dofs.column[row]
+        col = dofs.column[col]
         kept = (row >= 0) & (col >= 0)
         return sp.csc_array(sp.coo_array((value[kept], (row[kept], col[kept])), shape=(dofs.n, dofs.n)))
     size = dofs.transform.shape[0]
@@ -43,9 +50,13 @@ def strain_factor(groups: Iterable[ElementGroup], dofs: DofMap) -> sp.csr_array 
 
     S q has the strains of each element, so |S q|^2 is free of the cancellation in q^T K q.
     """
-    rows, cols, values, first = [], [], [], 0
+    rows = []
+    cols = []
+    values = []
+    first = 0
     for group in groups:
-        strain, modulus = group.matrices.strain, group.matrices.modulus
+        strain = group.matrices.strain
+        modulus = group.matrices.modulus
         if strain is None or modulus is None:
             continue
         root = _root(modulus)

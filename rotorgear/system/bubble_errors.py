@@ -54,7 +54,8 @@ def bubble_errors(system: System, speed: float | None, s: np.ndarray, x: np.ndar
     """
     y = left_shapes(system, speed, s, x)
     first, second = _frequency_form(system, speed, s, x, y)
-    right, left = system.dofs.expand(x), system.dofs.expand(y)
+    right = system.dofs.expand(x)
+    left = system.dofs.expand(y)
     found: dict[PieceKey, np.ndarray] = {}
     for shaft, order, elements in _flexible(system):
         moved = _moved(system, speed or 0.0, shaft, order, elements, s, right, left)  # (e, m)
@@ -106,7 +107,9 @@ def _moved(
     kinds, which = element_data(model, shaft, elements).unique()
     bubbles = _bubble_modes(kinds, order, shear, model.shafts[shaft].mass_matrix == "lumped", model.motions)
     dofs = shaft_dofs(system.nodes, elements, shear)
-    x, y = right[dofs], left[dofs].conj()  # (e, d, m)
+    # (e, d, m)
+    x = right[dofs]
+    y = left[dofs].conj()
     spin = speed * system.train.ratio(shaft)
     squared = s**2 + model.damping.rayleigh_alpha * s
     internal = model.shafts[shaft].internal_damping
@@ -139,7 +142,10 @@ def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, m
     used = 12 + np.flatnonzero([motion in motions for motion in bubble_motions(order + _RICHER, shear)])
     own = np.concatenate([np.arange(12), 12 + bubble_places(order, order + _RICHER, shear)])
     new = ~np.isin(used, own)
-    squared, mass, stiffness, gyroscopic = [], [], [], []
+    squared = []
+    mass = []
+    stiffness = []
+    gyroscopic = []
     for k in range(len(kinds.length)):
         values, modes = la.eigh(K[k][np.ix_(used, used)], rich.mass[k][np.ix_(used, used)])
         taken = modes[new].T  # the residual against bubbles that are there already is zero

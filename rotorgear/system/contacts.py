@@ -40,18 +40,23 @@ def contact_lines(system: System) -> ContactLines:
     """Return the contacts of a system as vectors over its free degrees of freedom."""
     states = system.flow.forces
     groups = [group for group in system.groups if group.part.startswith("meshes.")]
-    count, size = len(states), system.dofs.transform.shape[0]
+    count = len(states)
+    size = system.dofs.transform.shape[0]
     v, turned, rotation = np.zeros((3, size, count))
     stiffness, damping = np.zeros((2, count))
     for k, (state, group) in enumerate(zip(states, groups, strict=True)):
-        strain, D, V = group.matrices.strain, group.matrices.modulus, group.matrices.viscosity
+        strain = group.matrices.strain
+        D = group.matrices.modulus
+        V = group.matrices.viscosity
         assert strain is not None
         assert D is not None
-        stiffness[k], damping[k] = D[0, 0, 0], 0.0 if V is None else V[0, 0, 0]
+        stiffness[k] = D[0, 0, 0]
+        damping[k] = 0.0 if V is None else V[0, 0, 0]
         dofs = group.dofs[0]
         v[dofs, k] = strain[0, 0]
         turned[dofs, k] = _quarter_turn(strain[0, 0])
-        sense, contact = state.torque_sense, state.contact
+        sense = state.torque_sense
+        contact = state.contact
         rotation[dofs[5], k] = sense * contact.pinion_base_radius
         rotation[dofs[11], k] = sense * contact.gear_base_radius
     T = system.dofs.transform.T
@@ -62,7 +67,8 @@ def _quarter_turn(vector: np.ndarray) -> np.ndarray:
     """d/dpsi of a contact vector: displacements and rotations in the plane turn with the centre line."""
     out = np.zeros_like(vector)
     for first in (0, 3, 6, 9):
-        out[first], out[first + 1] = -vector[first + 1], vector[first]
+        out[first] = -vector[first + 1]
+        out[first + 1] = vector[first]
     return out
 
 

@@ -108,7 +108,9 @@ def _tied(
 ) -> DofMap:
     """Build T where rigid groups move with their first node, within what holds any of their nodes."""
     of_node = {node: group for group in groups for node in group}
-    rows, cols, values = [], [], []
+    rows = []
+    cols = []
+    values = []
     n = 0
     for first in range(len(nodes)):
         group = of_node.get(first, [first])

@@ -117,7 +117,8 @@ def table_values(name: str, bearing: Bearing, speed: float) -> tuple[np.ndarray,
         )
     right = int(np.clip(np.searchsorted(speeds, speed), 1, len(speeds) - 1))
     share = float(np.clip((speed - speeds[right - 1]) / (speeds[right] - speeds[right - 1]), 0.0, 1.0))
-    low, high = bearing.table[right - 1], bearing.table[right]
+    low = bearing.table[right - 1]
+    high = bearing.table[right]
     return (
         (1.0 - share) * _rows(low.stiffness) + share * _rows(high.stiffness),
         (1.0 - share) * _rows(low.damping) + share * _rows(high.damping),
@@ -125,7 +126,8 @@ def table_values(name: str, bearing: Bearing, speed: float) -> tuple[np.ndarray,
 
 
 def _shaft(model: Model, train: Train, nodes: Nodes, name: str) -> Iterator[ElementGroup]:
-    shaft, ratio = model.shafts[name], train.ratio(name)
+    shaft = model.shafts[name]
+    ratio = train.ratio(name)
     for rigid, order, chosen in alike(model, nodes, name):
         matrices = shaft_elements(
             element_data(model, name, chosen),
@@ -152,9 +154,11 @@ def alike(model: Model, nodes: Nodes, shaft: str) -> Iterator[tuple[bool, int, l
 
 def shaft_dofs(nodes: Nodes, elements: list[Element], shear: bool) -> np.ndarray:
     """Numbers of the dofs of shaft elements of one order, shape (e, d): left node, right node, internal ones."""
-    left, right = np.array([e.left for e in elements]), np.array([e.right for e in elements])
+    left = np.array([e.left for e in elements])
+    right = np.array([e.right for e in elements])
     first = 6 * len(nodes) + np.array([e.internal for e in elements])
-    k, inside = np.arange(6), np.arange(len(bubble_motions(elements[0].order, shear)))
+    k = np.arange(6)
+    inside = np.arange(len(bubble_motions(elements[0].order, shear)))
     return np.hstack([6 * left[:, None] + k, 6 * right[:, None] + k, first[:, None] + inside])
 
 
@@ -169,11 +173,13 @@ def element_data(model: Model, name: str, elements: list[Element]) -> ShaftEleme
         table.append([material.youngs_modulus, material.g, material.nu, material.density, kappa])
     number = np.array([e.section for e in elements])
     E, G, nu, rho, kappas = np.array(table)[number].T
-    start, stop = np.array([e.start for e in elements])[:, None], np.array([e.stop for e in elements])[:, None]
+    start = np.array([e.start for e in elements])[:, None]
+    stop = np.array([e.stop for e in elements])[:, None]
 
     def ends(diameters: list[tuple[float, float, float, float]]) -> np.ndarray:
         whole = np.array(diameters)[number]
-        left, right = whole[:, :2], whole[:, 2:]
+        left = whole[:, :2]
+        right = whole[:, 2:]
         return np.hstack([left + (right - left) * start, left + (right - left) * stop])
 
     length = np.array([e.length for e in elements])
@@ -188,17 +194,25 @@ def contact_geometry(model: Model, force: MeshForce) -> ContactGeometry:
     # Recess follows the driving flank; the element measures from the pitch point towards where the pinion would recede.
     past_pitch_point = c.contact_position if force.pinion_drives else -c.contact_position
     return ContactGeometry(
-        psi=c.psi, pressure_angle=c.pressure_angle, base_helix_angle=c.base_helix_angle, hand=c.hand,
-        torque_sense=force.torque_sense, pinion_base_radius=c.pinion_base_radius, gear_base_radius=c.gear_base_radius,
-        pinion_offset=c.contact_z - c.pinion_z, gear_offset=c.contact_z - c.gear_z, contact_position=past_pitch_point,
-    )  # fmt: skip
+        psi=c.psi,
+        pressure_angle=c.pressure_angle,
+        base_helix_angle=c.base_helix_angle,
+        hand=c.hand,
+        torque_sense=force.torque_sense,
+        pinion_base_radius=c.pinion_base_radius,
+        gear_base_radius=c.gear_base_radius,
+        pinion_offset=c.contact_z - c.pinion_z,
+        gear_offset=c.contact_z - c.gear_z,
+        contact_position=past_pitch_point,
+    )
 
 
 def _meshes(model: Model, flow: TorqueFlow, nodes: Nodes) -> Iterator[ElementGroup]:
     bodies = node_bodies(model)
     for force in flow.forces:
         c = force.contact
-        pinion, gear = model.gears[c.pinion].shaft, model.gears[c.gear].shaft
+        pinion = model.gears[c.pinion].shaft
+        gear = model.gears[c.gear].shaft
         geometry = contact_geometry(model, force)
         damping = mesh_damping(model, force, geometry, bodies)
         dofs = node_dofs(nodes.at(pinion, c.pinion_z), nodes.at(gear, c.gear_z))
@@ -216,8 +230,9 @@ def mesh_damping(model: Model, force: MeshForce, geometry: ContactGeometry, bodi
     diagonals = []
     for name in (mesh.pinion, mesh.gear):
         own = [body.body for body in bodies if body.part == f"gears.{name}"]
-        mass, polar, tilt = (sum(getattr(b, key) for b in own) / helices
-                             for key in ("mass", "polar_inertia", "diametral_inertia"))  # fmt: skip
+        mass, polar, tilt = (
+            sum(getattr(b, key) for b in own) / helices for key in ("mass", "polar_inertia", "diametral_inertia")
+        )
         diagonals.append(np.array([mass, mass, mass, tilt, tilt, polar]))
     if mesh.equivalent_mass == "general":
         equivalent = equivalent_mass_general(geometry, *diagonals)
@@ -243,7 +258,8 @@ def _bearing(
 def _pedestal(model: Model, nodes: Nodes, name: str, bearing: Bearing) -> Iterator[ElementGroup]:
     if bearing.pedestal is None:
         return
-    dofs, part = node_dofs(nodes.of_pedestal(name)), f"bearings.{name}.pedestal"
+    dofs = node_dofs(nodes.of_pedestal(name))
+    part = f"bearings.{name}.pedestal"
     matrices = grounded_spring(_rows(bearing.pedestal.stiffness), _rows(bearing.pedestal.damping))
     yield ElementGroup(part, bearing.shaft, matrices, dofs)
     if bearing.pedestal.mass:

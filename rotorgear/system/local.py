@@ -117,7 +117,8 @@ def _mesh_parts(system: System) -> list[LocalPart]:
         if len(flow.of_mesh(force.contact.mesh)) == 1:
             label = force.contact.mesh
         law = _mesh_law(system, force, geometry, phases[force.contact.mesh] or 0.0)
-        part, dofs = f"meshes.{force.contact.mesh}", _dofs(system, force)
+        part = f"meshes.{force.contact.mesh}"
+        dofs = _dofs(system, force)
         column = columns_at(system, dofs, contact_vector(geometry)[None])
         found.append(LocalPart(part, label, law, column, is_mesh=True))
         rubbing = friction_part(system, force, geometry, label, law, dofs, column)
@@ -140,8 +141,10 @@ def _dofs(system: System, force: MeshForce) -> np.ndarray:
 def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase: float) -> MeshContact:
     from rotorgear.forces.mesh_contact import MeshContact
 
-    model, contact = system.model, force.contact
-    mesh, pinion = model.meshes[contact.mesh], model.gears[contact.pinion]
+    model = system.model
+    contact = force.contact
+    mesh = model.meshes[contact.mesh]
+    pinion = model.gears[contact.pinion]
     teeth = pinion.teeth or 0
     order = teeth * abs(system.train.ratio(pinion.shaft)) * system.direction
     stiffness_cos, stiffness_sin = _series(mesh.stiffness_variation)
@@ -151,12 +154,22 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
     gap = "none" if mesh.backlash is None else {"line": "line", "own normals": "one-sided"}[mesh.back_flank]
     late = mesh.helix_stagger if contact.helix else 0.0
     return MeshContact(
-        stiffness=contact.stiffness, damping=damping, backlash=mesh.backlash or 0.0, gap=gap,
-        contact_damping=mesh.contact_damping, ramp=_ramp(mesh, deflection),
-        order=order, phase=phase + 2.0 * np.pi * late, stiffness_cos=stiffness_cos, stiffness_sin=stiffness_sin,
+        stiffness=contact.stiffness,
+        damping=damping,
+        backlash=mesh.backlash or 0.0,
+        gap=gap,
+        contact_damping=mesh.contact_damping,
+        ramp=_ramp(mesh, deflection),
+        order=order,
+        phase=phase + 2.0 * np.pi * late,
+        stiffness_cos=stiffness_cos,
+        stiffness_sin=stiffness_sin,
         error_mean=mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0),
-        error_cos=error_cos, error_sin=error_sin, pieces=cycle_pieces(system, force), **_impact(mesh.corner_impact),
-    )  # fmt: skip
+        error_cos=error_cos,
+        error_sin=error_sin,
+        pieces=cycle_pieces(system, force),
+        **_impact(mesh.corner_impact),
+    )
 
 
 def _ramp(mesh: Mesh, deflection: float) -> float:
@@ -202,7 +215,8 @@ def _impact(impact: CornerImpact | None) -> dict[str, Any]:
 def _series(harmonics: tuple[ErrorHarmonic | StiffnessHarmonic, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Cosine and sine parts by harmonic from amplitudes and phases."""
     count = max((item.harmonic for item in harmonics), default=0)
-    cosines, sines = np.zeros(count), np.zeros(count)
+    cosines = np.zeros(count)
+    sines = np.zeros(count)
     for item in harmonics:
         cosines[item.harmonic - 1] += item.amplitude * np.cos(item.phase)
         sines[item.harmonic - 1] -= item.amplitude * np.sin(item.phase)

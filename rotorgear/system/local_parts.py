@@ -82,9 +82,16 @@ def _bearing_law(bearing: Bearing, ratio: float) -> ForceLaw:
             reference=(float(linear[0]), float(linear[1])),
         )
     return BallBearing(
-        rolling.elements, rolling.element_diameter, rolling.pitch_diameter, rolling.inner_groove, rolling.outer_groove,
-        rolling.clearance, rolling.contact_angle, order=order, reference=tuple(map(float, linear[:5])),
-    )  # fmt: skip
+        rolling.elements,
+        rolling.element_diameter,
+        rolling.pitch_diameter,
+        rolling.inner_groove,
+        rolling.outer_groove,
+        rolling.clearance,
+        rolling.contact_angle,
+        order=order,
+        reference=tuple(map(float, linear[:5])),
+    )
 
 
 def friction_part(
@@ -99,8 +106,10 @@ def friction_part(
     """Friction of one helix; None where the mesh has none."""
     from rotorgear.forces.mesh_friction import MeshFriction
 
-    model, name = system.model, force.contact.mesh
-    mesh, pair = model.meshes[name], mesh_pair(model, name)
+    model = system.model
+    name = force.contact.mesh
+    mesh = model.meshes[name]
+    pair = mesh_pair(model, name)
     if not (mesh.friction_coefficient or mesh.lubricant_viscosity) or pair is None:
         return None
     teeth = gear_geometry(model.gears[mesh.pinion])
@@ -113,10 +122,17 @@ def friction_part(
     base_pitch = 2.0 * np.pi * teeth.base_radius / teeth.teeth
     rolling = 2.0 * teeth.base_radius * np.tan(geometry.pressure_angle) * abs(pinion)
     law = MeshFriction(
-        contact=contact, base_pitch=base_pitch, start=ends[0], end=ends[1], closing=sense * (pinion - gear),
-        coefficient=mesh.friction_coefficient, overlap=pair.overlap_ratio, viscosity=1e3 * (mesh.lubricant_viscosity or 0.0),
-        line_load=force.normal_force / min(widths), rolling=float(rolling),
-    )  # fmt: skip
+        contact=contact,
+        base_pitch=base_pitch,
+        start=ends[0],
+        end=ends[1],
+        closing=sense * (pinion - gear),
+        coefficient=mesh.friction_coefficient,
+        overlap=pair.overlap_ratio,
+        viscosity=1e3 * (mesh.lubricant_viscosity or 0.0),
+        line_load=force.normal_force / min(widths),
+        rolling=float(rolling),
+    )
     across = columns_at(system, dofs, np.array([[1.0], [sense]]) * sliding_vectors(geometry))
     return LocalPart(f"meshes.{name}", f"{label} friction", law, np.hstack([column, across]))
 
@@ -143,9 +159,16 @@ def load_parts(system: System) -> Iterator[LocalPart]:
             continue
         ratio = float(system.train.ratio(item.shaft))
         law = TorqueCurve(
-            item.torque, ratio, load.speed_power, speed * abs(ratio) or 1.0, ripple=load.ripple,
-            order=load.ripple_order * abs(ratio), step=load.step_to, step_time=load.step_at, step_rise=load.step_duration,
-        )  # fmt: skip
+            item.torque,
+            ratio,
+            load.speed_power,
+            speed * abs(ratio) or 1.0,
+            ripple=load.ripple,
+            order=load.ripple_order * abs(ratio),
+            step=load.step_to,
+            step_time=load.step_at,
+            step_rise=load.step_duration,
+        )
         yield LocalPart(
             item.name,
             item.name,

@@ -157,7 +157,8 @@ def _add_shaft(nodes: Nodes, model: Model, shaft: str, wanted: list[tuple[float,
         section = own.sections[number]
         count, order = (1, 1) if section.rigid else plan.of((shaft, piece), section.elements)
         if own.mass_matrix == "lumped":  # it has no orders; more elements serve
-            count, order = count * order, 1
+            count = count * order
+            order = 1
         if len(pieces) + count > MOST_ELEMENTS:
             raise AnalysisError(
                 f"shafts.{shaft}: more than {MOST_ELEMENTS} elements on one shaft, got {count} between two places; ask for fewer"

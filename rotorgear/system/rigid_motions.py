@@ -26,7 +26,8 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     T = system.dofs.transform
     rows = [_normalised(held) for held in [_off_range(system, P)] if held.size]
     for group in groups:
-        B, D = group.matrices.strain, group.matrices.modulus
+        B = group.matrices.strain
+        D = group.matrices.modulus
         if B is None or D is None:
             continue
         Z = group.matrices.circulation

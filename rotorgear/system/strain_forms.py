@@ -42,25 +42,30 @@ def strain_forms(groups: Iterable[ElementGroup], dofs: DofMap, speed: float, ray
     own = [group for group in groups if group.matrices.strain is not None]
 
     def viscosity(group: ElementGroup) -> np.ndarray | None:
-        D, V = group.matrices.modulus, group.matrices.viscosity
+        D = group.matrices.modulus
+        V = group.matrices.viscosity
         if D is None or not rayleigh_beta:
             return V
         return rayleigh_beta * D if V is None else V + rayleigh_beta * D
 
     def circulation(group: ElementGroup) -> np.ndarray | None:
-        Z, per_speed = group.matrices.circulation, group.matrices.circulation_per_speed
+        Z = group.matrices.circulation
+        per_speed = group.matrices.circulation_per_speed
         if per_speed is None or not group.spin * speed:
             return Z
         return group.spin * speed * per_speed if Z is None else Z + group.spin * speed * per_speed
 
-    first, rows = 0, []
+    first = 0
+    rows = []
     for group in own:
         assert group.matrices.strain is not None
         e, s, _ = group.matrices.strain.shape
         rows.append(first + np.arange(e * s).reshape(e, s))
         first += e * s
-    B = _scattered([(r, group.dofs, group.matrices.strain) for r, group in zip(rows, own, strict=True)],
-                   (first, dofs.transform.shape[0]))  # fmt: skip
+    B = _scattered(
+        [(r, group.dofs, group.matrices.strain) for r, group in zip(rows, own, strict=True)],
+        (first, dofs.transform.shape[0]),
+    )
 
     def block(term: Local) -> sp.csr_array:
         return _scattered([(r, r, term(group)) for r, group in zip(rows, own, strict=True)], (first, first))
@@ -72,7 +77,9 @@ def strain_forms(groups: Iterable[ElementGroup], dofs: DofMap, speed: float, ray
 
 def _scattered(parts: list[tuple[np.ndarray, np.ndarray, np.ndarray | None]], shape: tuple[int, int]) -> sp.csr_array:
     """Sparse matrix of the sum of small ones (e, r, c) at rows (e, r) and columns (e, c)."""
-    rows, cols, values = [np.zeros(0, int)], [np.zeros(0, int)], [np.zeros(0)]
+    rows = [np.zeros(0, int)]
+    cols = [np.zeros(0, int)]
+    values = [np.zeros(0)]
     for row, col, part in parts:
         if part is None:
             continue

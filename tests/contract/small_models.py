@@ -12,7 +12,9 @@ from rotorgear.elements.gear_mesh import ContactGeometry
 from rotorgear.elements.shaft import ShaftElements
 from rotorgear.system.system import System
 
-E, NU, RHO = 210e9, 0.3, 7850.0
+E = 210e9
+NU = 0.3
+RHO = 7850.0
 G = E / 2.6
 STEEL: dict[str, Any] = {"steel": {"youngs_modulus": E, "poisson_ratio": NU, "density": RHO}}
 

@@ -94,10 +94,12 @@ def test_c03_rotations_are_absolute_so_a_driven_gear_spins_negatively_and_rolls_
 
 
 def test_c04_bending_slopes_are_ty_equal_dx_dz_and_tx_equal_minus_dy_dz() -> None:
-    L, second_moment = 0.8, np.pi * 0.04**4 / 64
+    L = 0.8
+    second_moment = np.pi * 0.04**4 / 64
     model = cantilever({"length": L, "outer_diameter": 0.04}, shear_deformation=False)
     slope = L**2 / (2 * E * second_moment)
-    to_x, to_y = static(model, "rotor", L, {0: 1.0}), static(model, "rotor", L, {1: 1.0})
+    to_x = static(model, "rotor", L, {0: 1.0})
+    to_y = static(model, "rotor", L, {1: 1.0})
     assert to_x[[0, 4]] == pytest.approx([L**3 / (3 * E * second_moment), slope], rel=1e-10)
     assert to_y[[1, 3]] == pytest.approx([L**3 / (3 * E * second_moment), -slope], rel=1e-10)
     assert np.abs(to_x[[1, 3]]).max() == 0.0
@@ -131,10 +133,14 @@ def overhung(**support: float) -> rg.Model:
 
 
 def test_c06_reported_modes_solve_the_equation_of_motion_with_the_spin_of_the_input_shaft() -> None:
-    model, speed = rg.load(ROOT / "models" / "geared_pair.toml"), 157.0
+    model = rg.load(ROOT / "models" / "geared_pair.toml")
+    speed = 157.0
     system = System(model, 2)
     result = rg.modal(system, speed=speed, modes=12, error_estimate=False)
-    M, C, Gy, K = system.mass, system.damping(speed), system.gyroscopic, system.stiffness(speed)
+    M = system.mass
+    C = system.damping(speed)
+    Gy = system.gyroscopic
+    K = system.stiffness(speed)
     for s, shape in zip(result.eigenvalues[1:], np.moveaxis(result.shapes, 2, 0)[1:], strict=True):
         q = system.dofs.transform.T @ shape.ravel()
         parts = [s**2 * (M @ q), s * (C @ q), s * speed * (Gy @ q), K @ q]
@@ -146,7 +152,8 @@ def test_c07_a_spinning_disk_splits_its_tilt_frequency_by_the_closed_form() -> N
     assert matrices.gyroscopic is not None
     assert matrices.gyroscopic[0][3, 4] == 0.08
     assert matrices.gyroscopic[0][4, 3] == -0.08
-    k, speed = 1e5, 700.0
+    k = 1e5
+    speed = 700.0
     result = rg.modal(overhung(tilt=k), speed=speed, modes=2)
     root = np.sqrt((speed * 0.08) ** 2 + 4 * 0.05 * k)
     expected = (root + np.array([-1.0, 1.0]) * speed * 0.08) / (2 * 0.05)
@@ -186,14 +193,20 @@ def test_c09_whirl_is_forward_in_the_sense_of_the_shafts_own_spin() -> None:
         result = rg.modal(model, speed=speed, modes=2)
         assert result.whirl == ("backward", "forward")
         assert result.whirl_by_shaft["rotor"] == pytest.approx([-1.0, 1.0])
-        tx, ty = result.shapes[0, 3], result.shapes[0, 4]  # e^{+iwt}: positive precession has ty = -i tx
+        # e^{+iwt}: positive precession has ty = -i tx
+        tx = result.shapes[0, 3]
+        ty = result.shapes[0, 4]
         np.testing.assert_allclose(ty / tx, np.sign(speed) * np.array([1j, -1j]), atol=1e-9)
     parts = {"disk": disk("two", mass=1.0, polar=0.08, tilt=0.05)}
     held = {"one": clamp(shaft="one"), "two": clamp("x", "y", "z", "torsion", shaft="two")}
     driven = lumped_pair(
-        lumped_gear("one", 0.06), lumped_gear("two", 0.06, mass=0.0, polar_inertia=0.0, diametral_inertia=0.0), {},
-        disks=parts, supports=held, bearings={"springs": bearing("two", tilt=1e5)},
-    )  # fmt: skip
+        lumped_gear("one", 0.06),
+        lumped_gear("two", 0.06, mass=0.0, polar_inertia=0.0, diametral_inertia=0.0),
+        {},
+        disks=parts,
+        supports=held,
+        bearings={"springs": bearing("two", tilt=1e5)},
+    )
     result = rg.modal(driven, speed=700.0, modes=2)
     assert result.whirl == ("backward", "forward")
     two = result.nodes.on_shaft("two")[0]
@@ -211,11 +224,15 @@ def test_c10_rigid_motions_of_a_shaft_are_free_of_strain() -> None:
 
 
 def test_c10_one_uniform_element_deflects_exactly_under_end_loads() -> None:
-    L, d, b = 0.3, 0.06, 0.02
-    A, EI = np.pi / 4 * (d**2 - b**2), E * np.pi / 64 * (d**4 - b**4)
+    L = 0.3
+    d = 0.06
+    b = 0.02
+    A = np.pi / 4 * (d**2 - b**2)
+    EI = E * np.pi / 64 * (d**4 - b**4)
     kappa = float(cowper(NU, b / d))
     model = cantilever({"length": L, "outer_diameter": d, "bore": b})
-    force, moment = static(model, "rotor", L, {0: 1.0}), static(model, "rotor", L, {4: 1.0})
+    force = static(model, "rotor", L, {0: 1.0})
+    moment = static(model, "rotor", L, {4: 1.0})
     assert force[[0, 4]] == pytest.approx([L**3 / (3 * EI) + L / (kappa * G * A), L**2 / (2 * EI)], rel=1e-11)
     assert moment[[0, 4]] == pytest.approx([L**2 / (2 * EI), L / EI], rel=1e-11)
     assert static(model, "rotor", L, {2: 1.0})[2] == pytest.approx(L / (E * A), rel=1e-12)
@@ -230,7 +247,8 @@ def test_c10_one_conical_element_deflects_as_the_integral_over_its_length() -> N
     L = 0.3
 
     def section(s: float) -> tuple[float, float, float]:
-        outer, inner = 0.08 - 0.05 * s / L, 0.02 - 0.01 * s / L
+        outer = 0.08 - 0.05 * s / L
+        inner = 0.02 - 0.01 * s / L
         return np.pi / 4 * (outer**2 - inner**2), np.pi / 64 * (outer**4 - inner**4), float(cowper(NU, inner / outer))
 
     def give(s: float) -> float:
@@ -259,7 +277,8 @@ def test_c11_the_shear_coefficient_is_cowpers_unless_given() -> None:
     assert cowper(0.3, 0.0) == pytest.approx(6 * 1.3 / (7 + 6 * 0.3), rel=1e-15)
     assert cowper(0.3, 1.0) == pytest.approx(2 * 1.3 / (4 + 3 * 0.3), rel=1e-15)  # a thin tube
     assert cowper(0.3, 0.5) == pytest.approx(6 * 1.3 * 1.25**2 / (8.8 * 1.25**2 + 23.6 * 0.25), rel=1e-15)
-    default, given = (elements(0.1, 0.05, 0.025), elements(0.1, 0.05, 0.025, kappa=float(cowper(NU, 0.5))))
+    default = elements(0.1, 0.05, 0.025)
+    given = elements(0.1, 0.05, 0.025, kappa=float(cowper(NU, 0.5)))
     np.testing.assert_allclose(stiffness(shaft_elements(default)), stiffness(shaft_elements(given)), rtol=1e-13)
     other = stiffness(shaft_elements(elements(0.1, 0.05, 0.025, kappa=0.5)))
     assert other[0, 0] < 0.95 * stiffness(shaft_elements(default))[0, 0]
@@ -280,22 +299,28 @@ def test_c12_internal_damping_is_eta_k_and_turns_with_the_shaft() -> None:
 def test_c12_internal_damping_destabilises_forward_whirl_above_the_threshold_of_the_jeffcott_rotor(
     sense: float,
 ) -> None:
-    eta, mass = 2e-4, 10.0
+    eta = 2e-4
+    mass = 10.0
     k = 48 * E * (np.pi * 0.02**4 / 64)
     external = 0.5 * eta * k
     model = rg.Model(
         motions=["bending"],
         materials={"light": {**STEEL["steel"], "density": 1e-6}},
-        shafts={"rotor": {
-            "material": "light", "sections": [{"length": 1.0, "outer_diameter": 0.02}],
-            "internal_damping": eta, "shear_deformation": False,
-        }},
+        shafts={
+            "rotor": {
+                "material": "light",
+                "sections": [{"length": 1.0, "outer_diameter": 0.02}],
+                "internal_damping": eta,
+                "shear_deformation": False,
+            }
+        },
         disks={"disk": disk(at=0.5, mass=mass)},
         supports={
-            "left": clamp("x", "y"), "right": clamp("x", "y", at="end"),
+            "left": clamp("x", "y"),
+            "right": clamp("x", "y", at="end"),
             "dashpot": {"shaft": "rotor", "at": 0.5, "damping": {"radial": external}},
         },
-    )  # fmt: skip
+    )
     critical = np.sqrt(k / mass)
     threshold = critical * (1.0 + external / (eta * k))  # stable up to w (1 + c_external/c_internal)
     for speed, stable in ((0.5 * critical, True), (0.999 * threshold, True), (1.001 * threshold, False)):
@@ -350,7 +375,8 @@ def test_c22_in_a_loop_the_torque_splits_by_stiffness_and_driving_flanks_follow_
     flow = System(loop(4e7, 2.5e7)).flow
     force = {item.contact.mesh: item.normal_force for item in flow.forces}
     step = 0.15 / 0.04  # force on the second mesh over that on the first
-    give_a, give_b = 1 / 4e7 + step**2 / 2.5e7, 1 / 1e8 + step**2 / 1e8
+    give_a = 1 / 4e7 + step**2 / 2.5e7
+    give_b = 1 / 1e8 + step**2 / 1e8
     assert force["one_a"] + force["one_b"] == pytest.approx(100.0 / 0.05, rel=1e-12)
     assert force["one_a"] / force["one_b"] == pytest.approx(give_b / give_a, rel=1e-10)
     assert force["two_a"] == pytest.approx(step * force["one_a"], rel=1e-10)
@@ -386,7 +412,8 @@ def test_c23_a_bearing_puts_its_6x6_to_ground_in_the_order_of_the_dofs() -> None
     rows = named.bearings["springs"].stiffness
     assert rows is not None
     expected = np.diag([1.0, 2.0, 5.0, 6.0, 7.0, 8.0])
-    expected[0, 1], expected[1, 0] = 3.0, 4.0
+    expected[0, 1] = 3.0
+    expected[1, 0] = 4.0
     np.testing.assert_array_equal(rows.as_rows(), expected)
 
 
@@ -421,7 +448,9 @@ def test_c24_a_coupling_is_free_of_strain_in_all_rigid_motions_and_acts_in_the_m
 
 
 def test_c25_a_pedestal_is_in_series_with_its_bearing_and_rigid_where_it_has_no_stiffness() -> None:
-    bearing_k, pedestal_k, mass = 4e6, 1e6, 3.0
+    bearing_k = 4e6
+    pedestal_k = 1e6
+    mass = 3.0
     model = rg.Model(
         shafts={"rotor": {}},
         disks={"disk": disk(mass=mass)},
@@ -457,7 +486,8 @@ def oscillator(damping: dict[str, float], **stiffness: float) -> rg.Model:
 
 
 def test_c27_damping_ratio_and_frequencies_are_those_of_the_oscillator() -> None:
-    k, zeta = 8e4, 0.3
+    k = 8e4
+    zeta = 0.3
     w = np.sqrt(k / 2.0)
     result = rg.modal(oscillator({"radial": 2 * zeta * 2.0 * w}, radial=k), speed=0.0, modes=2)
     np.testing.assert_allclose(result.damping_ratio, zeta, rtol=1e-10)
@@ -466,7 +496,8 @@ def test_c27_damping_ratio_and_frequencies_are_those_of_the_oscillator() -> None
 
 
 def test_c27_cross_coupling_beyond_the_damping_is_unstable_with_a_negative_ratio() -> None:
-    k, cross = 8e4, 5e3
+    k = 8e4
+    cross = 5e3
     w = np.sqrt(k / 2.0)
     for c, unstable in ((1.01 * cross / w, False), (0.99 * cross / w, True)):  # the threshold is c w = k_xy
         result = rg.modal(oscillator({"radial": c}, radial=k, xy=cross, yx=-cross), speed=0.0, modes=2)

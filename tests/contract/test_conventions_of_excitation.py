@@ -16,13 +16,18 @@ from tests.paths import ROOT
 
 @pytest.mark.parametrize("speed", [120.0, -120.0])
 def test_c28_an_unbalance_turns_with_its_shaft_from_its_own_direction(speed: float) -> None:
-    k, size, phase = 1e9, 1e-4, 0.7  # so stiff that the shaft follows the force
+    # so stiff that the shaft follows the force
+    k = 1e9
+    size = 1e-4
+    phase = 0.7
     model = rg.Model(
-        operation={"input_shaft": "r"}, motions=["bending"], shafts={"r": {}},
+        operation={"input_shaft": "r"},
+        motions=["bending"],
+        shafts={"r": {}},
         disks={"d": {"shaft": "r", "at": "start", "mass": 1e-3, "polar_inertia": 0.0, "diametral_inertia": 1.0}},
         bearings={"b": {"shaft": "r", "at": "start", "stiffness": {"radial": k, "tilt": 1e9}}},
         unbalances={"u": {"shaft": "r", "at": "start", "magnitude": size, "phase": phase}},
-    )  # fmt: skip
+    )
     moved = rg.response(model, speeds=[speed]).displacement[0, 0, 0]
     for t in (0.0, 0.003, 0.01):
         x, y = (float((value * cmath.exp(1j * abs(speed) * t)).real) for value in moved[:2])

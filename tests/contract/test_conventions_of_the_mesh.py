@@ -46,7 +46,9 @@ def vectors(system: System) -> list[np.ndarray]:
 
 def involute_flank(g: ContactGeometry, roll: float, z: float) -> np.ndarray:
     """A point of the pinion's driving flank, an involute helicoid; a right-hand one turns positively with +z."""
-    x, y = np.cos(roll) + roll * np.sin(roll), -(np.sin(roll) - roll * np.cos(roll))  # thinner towards the tip
+    # thinner towards the tip
+    x = np.cos(roll) + roll * np.sin(roll)
+    y = -(np.sin(roll) - roll * np.cos(roll))
     across = g.pinion_base_radius * np.array([x, g.torque_sense * y])
     turn = g.hand * np.tan(g.base_helix_angle) * z / g.pinion_base_radius
     return np.array([*(np.cos(turn) * across + np.sin(turn) * TURN @ across), z])
@@ -71,7 +73,8 @@ def test_c13_the_normal_is_that_of_the_involute_helicoid_at_the_pitch_point(sens
 @pytest.mark.parametrize(("sense", "hand"), SIGNS)
 def test_c13_the_normal_is_the_force_on_the_gear_and_pressing_the_teeth_is_positive(sense: int, hand: int) -> None:
     g = contact(hand, sense)
-    n, v = flank_normal(g), contact_vector(g)
+    n = flank_normal(g)
+    v = contact_vector(g)
     assert la.norm(n) == pytest.approx(1.0, rel=1e-15)
     assert n[0] > 0.0  # the flanks push the axes apart
     assert n[1] * sense > 0.0  # a pinion that drives positively pushes a gear on its right upwards
@@ -135,7 +138,8 @@ def test_c14_a_whole_train_without_supports_moves_rigidly_without_strain() -> No
         meshes={"pair": {"pinion": "pinion", "gear": "wheel", "stiffness": 5e8}},
     )
     system = System(model, 2)
-    K, R = system.stiffness().toarray(), rigid_motions(system.positions())
+    K = system.stiffness().toarray()
+    R = rigid_motions(system.positions())
     assert np.abs(K @ R).max() < 1e-12 * np.abs(K).max() * np.abs(R).max()
     assert (
         rg.modal(model, modes=12, elements=2).rigid.sum() == 11
@@ -165,9 +169,17 @@ def test_c15_a_right_hand_pinion_that_drives_counter_clockwise_is_pushed_to_plus
 
 def herringbone(shaft: str, teeth: int, hand: str, nodes: int, at: float) -> dict[str, Any]:
     return {
-        "shaft": shaft, "at": at, "kind": "herringbone", "teeth": teeth, "normal_module": 0.003, "helix_angle": 0.5,
-        "hand": hand, "width": 0.04, "gap": 0.02, "nodes": nodes,
-    }  # fmt: skip
+        "shaft": shaft,
+        "at": at,
+        "kind": "herringbone",
+        "teeth": teeth,
+        "normal_module": 0.003,
+        "helix_angle": 0.5,
+        "hand": hand,
+        "width": 0.04,
+        "gap": 0.02,
+        "nodes": nodes,
+    }
 
 
 def herringbone_pair(nodes: int, hand: str = "right", rigid: bool = True, **shaft: Any) -> rg.Model:
@@ -249,7 +261,8 @@ def test_c17_a_stiffness_acts_along_the_flank_normal_and_the_transverse_one_is_s
     other = None if hand is None else "left"
     held = {"one": clamp("x", "y", "z", "tilt_x", "tilt_y", shaft="one"), "two": clamp(shaft="two")}
     model = lumped_pair(lumped_gear("one", 0.06, hand), lumped_gear("two", 0.15, other), {}, supports=held)
-    transverse_force, transverse_give = 50.0 / 0.06, 0.06 * twist_of_the_pinion(model, 50.0)
+    transverse_force = 50.0 / 0.06
+    transverse_give = 0.06 * twist_of_the_pinion(model, 50.0)
     base_helix = 0.0 if hand is None else 0.4
     normal = transverse_force / transverse_give / np.cos(base_helix) ** 2
     assert normal == pytest.approx(1e8, rel=1e-12)
@@ -262,8 +275,10 @@ def test_c17_the_stiffness_of_a_herringbone_is_that_of_both_helices_together() -
         "two": clamp(shaft="two", at=0.0),
     }
     data = {name: getattr(model, name) for name in ("materials", "shafts", "gears", "meshes")}
-    rigid = {name: shaft.model_copy(update={"sections": tuple(s.model_copy(update={"rigid": True}) for s in shaft.sections)})
-             for name, shaft in model.shafts.items()}  # fmt: skip
+    rigid = {
+        name: shaft.model_copy(update={"sections": tuple(s.model_copy(update={"rigid": True}) for s in shaft.sections)})
+        for name, shaft in model.shafts.items()
+    }
     line = contacts(model, "pair")[0]
     twist = twist_of_the_pinion(rg.Model(**{**data, "shafts": rigid}, supports=held), 80.0)
     expected = 80.0 / (6e8 * (line.pinion_base_radius * np.cos(line.base_helix_angle)) ** 2)
@@ -326,5 +341,6 @@ def replace_motions(model: rg.Model) -> rg.Model:
 
 def test_the_other_flank_has_the_mirrored_normal() -> None:
     g = contact(1, 1)
-    n, other = flank_normal(g), flank_normal(replace(g, torque_sense=-1))
+    n = flank_normal(g)
+    other = flank_normal(replace(g, torque_sense=-1))
     np.testing.assert_allclose(other, n * [1.0, -1.0, -1.0], atol=1e-15)

@@ -15,7 +15,9 @@ from tests.paths import ROOT
 
 # The face (rotorgear/__init__.py) stands just below the command line, which uses it as any user does; __main__ stands above
 # all; single modules at the top level are the ground.
-GROUND, FACE, ROOF = 0, 9, 11
+GROUND = 0
+FACE = 9
+ROOF = 11
 FLOORS = {
     "solvers": 1,
     "gears": 2,

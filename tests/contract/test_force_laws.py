@@ -10,12 +10,15 @@ from rotorgear.forces import registry
 from rotorgear.forces.law import ForceLaw
 
 LAWS = [(f"{name} {i}", law) for name in registry.names() for i, law in enumerate(registry.law(name).examples())]
-TIME, ANGLE, SPEED = 3.7e-4, 0.61, 120.0
+TIME = 3.7e-4
+ANGLE = 0.61
+SPEED = 120.0
 
 
 def motions(law: ForceLaw, count: int = 12) -> list[tuple[np.ndarray, np.ndarray]]:
     """Displacements and velocities on both sides of every gap, away from kinks."""
-    k, random = law.components, np.random.default_rng(3)
+    k = law.components
+    random = np.random.default_rng(3)
     size = np.array([4e-5, 4e-5, 4e-5, 1e-3, 1e-3][:k])
     return [
         (size * random.uniform(-2.0, 2.0, k), 2e-2 * size / 4e-5 * random.uniform(-1.0, 1.0, k)) for _ in range(count)
@@ -29,7 +32,8 @@ def at(law: ForceLaw, d: np.ndarray, v: np.ndarray, later: float = 0.0):  # type
 @pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
 def test_tangents_are_difference_quotients(name: str, law: ForceLaw) -> None:
     for d, v in motions(law):
-        value, k = at(law, d, v), law.components
+        value = at(law, d, v)
+        k = law.components
         for which, given in (("d", value.in_displacement), ("v", value.in_velocity)):
             for j in range(k):
                 step = np.zeros(k)
@@ -62,10 +66,12 @@ def test_dissipation_is_never_negative_and_a_passive_law_gives_no_energy(name: s
     assert all(at(law, d, v).dissipated >= 0.0 for d, v in motions(law, 60))
     if not law.passive:
         return
-    k, t = law.components, np.linspace(0.0, 1.0, 4001)
+    k = law.components
+    t = np.linspace(0.0, 1.0, 4001)
     size = np.array([6e-5, 5e-5, 5e-5, 1e-3, 1e-3][:k])[:, None]
     shift = 1.3 * np.arange(k)[:, None]
-    d, v = size * np.sin(2.0 * np.pi * t + shift), size * 2.0 * np.pi * np.cos(2.0 * np.pi * t + shift)
+    d = size * np.sin(2.0 * np.pi * t + shift)
+    v = size * 2.0 * np.pi * np.cos(2.0 * np.pi * t + shift)
     force = np.array([still.evaluate(d[:, i], v[:, i]).force for i in range(t.size)]).T
     work = float(np.trapezoid(np.sum(force * v, axis=0), t))
     assert work >= -1e-4 * float(np.trapezoid(np.abs(np.sum(force * v, axis=0)), t))

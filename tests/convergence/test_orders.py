@@ -15,9 +15,10 @@ ENDS = ("pinned_pinned", "clamped_free", "free_free", "clamped_clamped", "clampe
 def exact(case: str, model: str, mode: str) -> float:
     """The exact frequency in Hz of a model and mode, from expected.csv."""
     line: Expectation = next(
-        line for line in read_case(case).expectations
+        line
+        for line in read_case(case).expectations
         if (line.model, line.mode, line.quantity) == (model, mode, "frequency_hz")
-    )  # fmt: skip
+    )
     return line.number
 
 

@@ -10,7 +10,10 @@ import pytest
 import rotorgear as rg
 
 # Pinned-pinned Timoshenko beam, L = 1 m, E = 210 GPa, nu = 0.3, rho = 7850, kappa = 6(1+nu)/(7+6nu): closed-form quartic.
-E_MODULUS, NU, RHO, LENGTH = 210e9, 0.3, 7850.0, 1.0
+E_MODULUS = 210e9
+NU = 0.3
+RHO = 7850.0
+LENGTH = 1.0
 KAPPA = 6.0 * (1.0 + NU) / (7.0 + 6.0 * NU)
 
 
@@ -29,13 +32,13 @@ def pinned_beam(diameter: float, motions: tuple[str, ...] = ("bending",)) -> rg.
 
 def closed_form(diameter: float, n: int) -> float:
     """Lower branch of rho^2 I/(kappa G) w^4 - [rho A + rho I k^2 (1 + E/(kappa G))] w^2 + E I k^4 = 0 in Hz."""
-    area, inertia = np.pi / 4 * diameter**2, np.pi / 64 * diameter**4
-    shear, k = KAPPA * E_MODULUS / (2 * (1 + NU)), n * np.pi / LENGTH
-    a, b, c = (
-        RHO**2 * inertia / shear,
-        RHO * area + RHO * inertia * k**2 * (1 + E_MODULUS / shear),
-        E_MODULUS * inertia * k**4,
-    )
+    area = np.pi / 4 * diameter**2
+    inertia = np.pi / 64 * diameter**4
+    shear = KAPPA * E_MODULUS / (2 * (1 + NU))
+    k = n * np.pi / LENGTH
+    a = RHO**2 * inertia / shear
+    b = RHO * area + RHO * inertia * k**2 * (1 + E_MODULUS / shear)
+    c = E_MODULUS * inertia * k**4
     return float(np.sqrt(2 * c / (b + np.sqrt(b * b - 4 * a * c))) / (2 * np.pi))
 
 

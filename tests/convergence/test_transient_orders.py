@@ -14,7 +14,8 @@ from validation.benchmarks.transient_speed import parting_gearbox, step_of
 from validation.oscillators import order
 
 # Steps of a 25th of the mesh period, and how many of them.
-COARSE, STEPS = 8, 150
+COARSE = 8
+STEPS = 150
 
 
 @pytest.fixture(scope="module")

@@ -119,7 +119,9 @@ CASES: list[Case] = [
     _undamped("bearings of 1 N/m", Rotor(even(), on(1.0))),
     _undamped("a segment of 100 diameters", Rotor([Segment(5.0, 0.05), Segment(0.1, 0.05)], on(1e7, last=2))),
     _undamped("a hollow shaft with walls of 1 %", Rotor(even(outer=0.1, inner=0.098), on(1e7))),
-    _undamped("a stub of 0.5 mm on a shaft of 0.5 m", Rotor([Segment(0.1, 0.5), Segment(0.1, 0.0005)], on(1e8, last=1))),
+    _undamped(
+        "a stub of 0.5 mm on a shaft of 0.5 m", Rotor([Segment(0.1, 0.5), Segment(0.1, 0.0005)], on(1e8, last=1))
+    ),
     _whirling("spin of 1e5 rad/s", Rotor(even(), on(1e8, damping=1e3), _UNEQUAL), 1e5),
     _whirling("spin of 1e5 rad/s, a bearing of 1e13 N/m", Rotor(even(), on(1e8, 1e13), _UNEQUAL), 1e5),
     _whirling("bearings of 1e-3 N/m at 1e3 rad/s, undamped", Rotor(even(), on(1e-3)), 1e3),
@@ -157,7 +159,9 @@ CASES: list[Case] = [
     Case("torsional chain of 1000 disks", "closed form", 1e-12, lambda: chain(1000, 24)),
     Case("all modes of a chain of 300, and more asked for", "closed form", 1e-12, lambda: chain(300, 5000)),
     Case("accuracy of 1e-11, torsion of a bar", "closed form", 1e-11, lambda: bar(1e-11)),
-    Case("accuracy of 1e-9, ten modes of a thick pinned shaft", "closed form", 1e-9, lambda: pinned(0.3, 0.1, 1e-9, 10)),
+    Case(
+        "accuracy of 1e-9, ten modes of a thick pinned shaft", "closed form", 1e-9, lambda: pinned(0.3, 0.1, 1e-9, 10)
+    ),
     Case("accuracy of 1e-9, pinned shaft of 1000 diameters", "closed form", 1e-9, lambda: pinned(10.0, 0.01, 1e-9, 6)),
     Case("accuracy of 1e-11 without any shaft element", "closed form", 1e-14, no_elements),
     Case("a shaft that is rigid altogether", "closed form", 1e-13, lambda: rigid_shaft((), 1e6)),
@@ -166,28 +170,49 @@ CASES: list[Case] = [
     Case("a negative speed", "40 digits", 1e-12, backwards),
     Case("two disks 1e-11 m apart: one node, listed", "40 digits", 1e-13, merged),
     Case("no mode below fmax: an empty result", "none there", 1e-300, nothing_below),
-]  # fmt: skip
+]
 
 
 REFUSED: list[Refused] = [
-    Refused("a dof with neither inertia nor stiffness", "neither inertia nor stiffness",
-            lambda: rg.modal(points([0.3, 0.0, 0.0], [1e5, 0.0]))),
+    Refused(
+        "a dof with neither inertia nor stiffness",
+        "neither inertia nor stiffness",
+        lambda: rg.modal(points([0.3, 0.0, 0.0], [1e5, 0.0])),
+    ),
     Refused("a speed outside a bearing's table", "its table covers", lambda: tables(3e5)),
     Refused("a 6 x 6 stiffness that is indefinite", "statically unstable", indefinite),
-    Refused("an accuracy below rounding", "the accuracy must lie between",
-            lambda: rg.modal(rotor_model(Rotor(even(), on(1e8))), accuracy=1e-13)),
-    Refused("no modes asked for", "the number of modes must be at least 1",
-            lambda: rg.modal(rotor_model(Rotor(even())), modes=0)),
-    Refused("everything held", "no free degree of freedom",
-            lambda: rg.modal(rg.Model(shafts={"p": rg.Shaft()},
-                                      supports={"w": rg.Support(shaft="p", at=0.0, fixed=("all",))}))),
+    Refused(
+        "an accuracy below rounding",
+        "the accuracy must lie between",
+        lambda: rg.modal(rotor_model(Rotor(even(), on(1e8))), accuracy=1e-13),
+    ),
+    Refused(
+        "no modes asked for",
+        "the number of modes must be at least 1",
+        lambda: rg.modal(rotor_model(Rotor(even())), modes=0),
+    ),
+    Refused(
+        "everything held",
+        "no free degree of freedom",
+        lambda: rg.modal(
+            rg.Model(shafts={"p": rg.Shaft()}, supports={"w": rg.Support(shaft="p", at=0.0, fixed=("all",))})
+        ),
+    ),
     Refused("a number that is not finite", "expected", lambda: rg.Section(length=float("nan"), outer_diameter=0.1)),
-    Refused("a wall of no thickness", "less than the outer diameter",
-            lambda: rotor_model(Rotor([Segment(0.1, 0.05, 0.05)]))),
-    Refused("a negative stiffness", "0 or more on the diagonal",
-            lambda: rotor_model(Rotor(even()), supports={"n": rg.Support(
-                shaft="s", at=0.0, stiffness=rg.StiffnessMatrix(matrix=np.diag([-1.0] * 6).tolist()))})),
-]  # fmt: skip
+    Refused(
+        "a wall of no thickness", "less than the outer diameter", lambda: rotor_model(Rotor([Segment(0.1, 0.05, 0.05)]))
+    ),
+    Refused(
+        "a negative stiffness",
+        "0 or more on the diagonal",
+        lambda: rotor_model(
+            Rotor(even()),
+            supports={
+                "n": rg.Support(shaft="s", at=0.0, stiffness=rg.StiffnessMatrix(matrix=np.diag([-1.0] * 6).tolist()))
+            },
+        ),
+    ),
+]
 
 
 @cache

@@ -19,10 +19,13 @@ def whirl_error(rotor: Rotor, speed: float) -> float:
 
 def internal_damping(eta: float, stiffness: float, speed: float) -> float:
     """Bending of a shaft with rotating damping: (s^2 M + s (eta K_s - i W G) + K - i eta W K_s) w = 0."""
-    rotor, free = Rotor(even(), on(stiffness)), Rotor(even())
+    rotor = Rotor(even(), on(stiffness))
+    free = Rotor(even())
     M, _, G, K = rotor.bending()
     Ks = free.bending()[3]
-    i, W, h = mp.mpc(0, 1), mp.mpf(speed), mp.mpf(eta)
+    i = mp.mpc(0, 1)
+    W = mp.mpf(speed)
+    h = mp.mpf(eta)
     roots = quadratic_roots(M, h * Ks - i * W * G, K - i * h * W * Ks)
     model = rotor_model(rotor, internal_damping=eta, motions=("bending",))
     both = [mp.mpc(s.real, abs(s.imag)) for s in roots]
@@ -52,18 +55,27 @@ def polynomial_roots(coefficients: list) -> list[mp.mpc]:
 def one_mass(stiffness: float, damping: float, cross: float = 0.0, mass: float = 2.0) -> rg.ModalResult:
     """A point mass in a bearing, x and y."""
     bearing = rg.Bearing(
-        shaft="p", at=0.0, stiffness=rg.StiffnessMatrix(radial=stiffness, xy=cross, yx=-cross),
+        shaft="p",
+        at=0.0,
+        stiffness=rg.StiffnessMatrix(radial=stiffness, xy=cross, yx=-cross),
         damping=rg.DampingMatrix(radial=damping),
-    )  # fmt: skip
+    )
     supports = {"tilt": rg.Support(shaft="p", at=0.0, fixed=("tilt_x", "tilt_y"))}
-    model = rg.Model(shafts={"p": rg.Shaft()}, point_masses={"m": rg.PointMass(shaft="p", at=0.0, mass=mass)},
-                     bearings={"b": bearing}, supports=supports, motions=("bending",))  # fmt: skip
+    model = rg.Model(
+        shafts={"p": rg.Shaft()},
+        point_masses={"m": rg.PointMass(shaft="p", at=0.0, mass=mass)},
+        bearings={"b": bearing},
+        supports=supports,
+        motions=("bending",),
+    )
     return rg.modal(model, speed=0.0)
 
 
 def cross_coupled(times_onset: float) -> float:
     """m s^2 + c s + k - i q = 0 and its conjugate; the forward whirl is unstable from q = c sqrt(k/m) on."""
-    k, c, m = 1e6, 50.0, 2.0
+    k = 1e6
+    c = 50.0
+    m = 2.0
     q = times_onset * c * float(np.sqrt(k / m))
     result = one_mass(k, c, q, m)
     roots = polynomial_roots([m, c, mp.mpc(k, -q)])
@@ -82,9 +94,11 @@ def overdamped_mass(stiffness: float, damping: float) -> float:
 
 def damped_massless() -> float:
     """Disk J on a spring to a massless point, which a spring and a damper hold: a cubic, one root real."""
-    J, k1, k2, c = 2.0, 1e5, 3e4, 40.0
-    hold = rg.Support(shaft="p1", at=0.0, stiffness=rg.StiffnessMatrix(torsion=k2),
-                      damping=rg.DampingMatrix(torsion=c))  # fmt: skip
+    J = 2.0
+    k1 = 1e5
+    k2 = 3e4
+    c = 40.0
+    hold = rg.Support(shaft="p1", at=0.0, stiffness=rg.StiffnessMatrix(torsion=k2), damping=rg.DampingMatrix(torsion=c))
     model = points([J, 0.0], [k1], supports={"hold": hold})
     roots = polynomial_roots([J * c, J * (k1 + k2), k1 * c, k1 * k2])
     return root_error(rg.modal(model, speed=0.0), roots)
@@ -118,11 +132,15 @@ def backwards() -> float:
 
 def tilting_disk() -> float:
     """A disk that only tilts: J_d s^2 - i W J_p s + k = 0."""
-    Jd, Jp, k, W = 0.02, 0.04, 1e-2, 1e5
+    Jd = 0.02
+    Jp = 0.04
+    k = 1e-2
+    W = 1e5
     model = rg.Model(
-        shafts={"p": rg.Shaft()}, motions=("bending",),
+        shafts={"p": rg.Shaft()},
+        motions=("bending",),
         disks={"d": rg.Disk(shaft="p", at=0.0, mass=1.0, polar_inertia=Jp, diametral_inertia=Jd)},
         supports={"x": rg.Support(shaft="p", at=0.0, fixed=("x", "y"), stiffness=rg.StiffnessMatrix(tilt=k))},
-    )  # fmt: skip
+    )
     roots = polynomial_roots([Jd, mp.mpc(0, -W * Jp), k])
     return root_error(rg.modal(model, speed=W), roots)

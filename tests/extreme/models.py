@@ -25,12 +25,13 @@ def rotor_model(rotor: Rotor, *, internal_damping: float = 0.0, **tables: Any) -
     }
     bearings = {
         f"b{k}": rg.Bearing(
-            shaft="s", at=z[k],
+            shaft="s",
+            at=z[k],
             stiffness=rg.StiffnessMatrix(radial=s.radial, axial=s.axial, torsion=s.torsion, tilt=s.tilt),
             damping=rg.DampingMatrix(radial=s.damping) if s.damping else None,
         )
         for k, s in rotor.springs.items()
-    }  # fmt: skip
+    }
     disks = {
         f"d{k}": rg.Disk(shaft="s", at=z[k], mass=b.mass, polar_inertia=b.polar, diametral_inertia=b.diametral)
         for k, b in rotor.bodies.items()

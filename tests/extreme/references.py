@@ -28,9 +28,13 @@ class Segment:
 
     def section(self) -> tuple[mp.mpf, mp.mpf, mp.mpf, mp.mpf]:
         """A, I, G and kappa G A."""
-        d, b, nu = mp.mpf(self.outer), mp.mpf(self.inner), mp.mpf(self.nu)
-        area, inertia = mp.pi / 4 * (d**2 - b**2), mp.pi / 64 * (d**4 - b**4)
-        G, ratio = mp.mpf(self.E) / (2 * (1 + nu)), (b / d) ** 2
+        d = mp.mpf(self.outer)
+        b = mp.mpf(self.inner)
+        nu = mp.mpf(self.nu)
+        area = mp.pi / 4 * (d**2 - b**2)
+        inertia = mp.pi / 64 * (d**4 - b**4)
+        G = mp.mpf(self.E) / (2 * (1 + nu))
+        ratio = (b / d) ** 2
         kappa = 6 * (1 + nu) * (1 + ratio) ** 2 / ((7 + 6 * nu) * (1 + ratio) ** 2 + (20 + 12 * nu) * ratio)
         return area, inertia, G, kappa * G * area
 
@@ -92,12 +96,16 @@ class Rotor:
 
     def axial(self) -> tuple[mp.matrix, mp.matrix]:
         """M and K of axial motion."""
-        return self._bar(lambda s: (mp.mpf(s.rho) * s.section()[0], mp.mpf(s.E) * s.section()[0]),
-                         {k: b.mass for k, b in self.bodies.items()}, {k: s.axial for k, s in self.springs.items()})  # fmt: skip
+        return self._bar(
+            lambda s: (mp.mpf(s.rho) * s.section()[0], mp.mpf(s.E) * s.section()[0]),
+            {k: b.mass for k, b in self.bodies.items()},
+            {k: s.axial for k, s in self.springs.items()},
+        )
 
     def _bar(self, rates, bodies, springs) -> tuple[mp.matrix, mp.matrix]:
         n = len(self.segments) + 1
-        M, K = mp.zeros(n), mp.zeros(n)
+        M = mp.zeros(n)
+        K = mp.zeros(n)
         for k, segment in enumerate(self.segments):
             inertia, stiffness = rates(segment)
             L = mp.mpf(segment.length)
@@ -128,21 +136,30 @@ class Rotor:
 def bending_element(segment: Segment) -> tuple[mp.matrix, mp.matrix, mp.matrix]:
     """Translational and rotary inertia and stiffness of a Timoshenko element, dofs w1 theta1 w2 theta2."""
     area, inertia, _, shear = segment.section()
-    L, EI = mp.mpf(segment.length), mp.mpf(segment.E) * inertia
+    L = mp.mpf(segment.length)
+    EI = mp.mpf(segment.E) * inertia
     p = 12 * EI / (shear * L**2)
     q = mp.mpf(1)
-    m1, m2 = q * 13 / 35 + q * 7 / 10 * p + p**2 / 3, (q * 11 / 210 + q * 11 / 120 * p + p**2 / 24) * L
-    m3, m4 = q * 9 / 70 + q * 3 / 10 * p + p**2 / 6, -(q * 13 / 420 + q * 3 / 40 * p + p**2 / 24) * L
-    m5, m6 = (q / 105 + p / 60 + p**2 / 120) * L**2, -(q / 140 + p / 60 + p**2 / 120) * L**2
+    m1 = q * 13 / 35 + q * 7 / 10 * p + p**2 / 3
+    m2 = (q * 11 / 210 + q * 11 / 120 * p + p**2 / 24) * L
+    m3 = q * 9 / 70 + q * 3 / 10 * p + p**2 / 6
+    m4 = -(q * 13 / 420 + q * 3 / 40 * p + p**2 / 24) * L
+    m5 = (q / 105 + p / 60 + p**2 / 120) * L**2
+    m6 = -(q / 140 + p / 60 + p**2 / 120) * L**2
     translation = mp.matrix([[m1, m2, m3, m4], [m2, m5, -m4, m6], [m3, -m4, m1, -m2], [m4, m6, -m2, m5]])
-    r1, r2 = q * 6 / 5, (q / 10 - p / 2) * L
-    r3, r4 = (q * 2 / 15 + p / 6 + p**2 / 3) * L**2, (-q / 30 - p / 6 + p**2 / 6) * L**2
+    r1 = q * 6 / 5
+    r2 = (q / 10 - p / 2) * L
+    r3 = (q * 2 / 15 + p / 6 + p**2 / 3) * L**2
+    r4 = (-q / 30 - p / 6 + p**2 / 6) * L**2
     rotation = mp.matrix([[r1, r2, -r1, r2], [r2, r3, -r2, r4], [-r1, -r2, r1, -r2], [r2, r4, -r2, r3]])
     stiff = mp.matrix([[12, 6 * L, -12, 6 * L], [6 * L, (4 + p) * L**2, -6 * L, (2 - p) * L**2],
                        [-12, -6 * L, 12, -6 * L], [6 * L, (2 - p) * L**2, -6 * L, (4 + p) * L**2]])  # fmt: skip
     rho = mp.mpf(segment.rho)
-    return (rho * area * L / (1 + p) ** 2 * translation, rho * inertia / ((1 + p) ** 2 * L) * rotation,
-            EI / ((1 + p) * L**3) * stiff)  # fmt: skip
+    return (
+        rho * area * L / (1 + p) ** 2 * translation,
+        rho * inertia / ((1 + p) ** 2 * L) * rotation,
+        EI / ((1 + p) * L**3) * stiff,
+    )
 
 
 def add(A: mp.matrix, rows: Sequence[int], part: mp.matrix) -> None:
@@ -165,7 +182,8 @@ def quadratic_roots(M: mp.matrix, D: mp.matrix, K: mp.matrix) -> list[mp.mpc]:
     inverse = mp.inverse(M)
     A = mp.zeros(2 * n)
     A[:n, n:] = mp.eye(n)
-    A[n:, :n], A[n:, n:] = -inverse * K, -inverse * D
+    A[n:, :n] = -inverse * K
+    A[n:, n:] = -inverse * D
     return list(mp.eig(A, left=False, right=False))
 
 
@@ -176,7 +194,8 @@ def timoshenko_pinned(segment: Segment, highest: int) -> list[mp.mpf]:
     """
     area, inertia, _, shear = segment.section()
     rho = mp.mpf(segment.rho)
-    M, found = mp.diag([rho * area, rho * inertia]), [mp.sqrt(shear / (rho * inertia))]
+    M = mp.diag([rho * area, rho * inertia])
+    found = [mp.sqrt(shear / (rho * inertia))]
     for number in range(1, highest + 1):
         k = number * mp.pi / mp.mpf(segment.length)
         K = mp.matrix([[shear * k**2, -shear * k], [-shear * k, mp.mpf(segment.E) * inertia * k**2 + shear]])

@@ -12,5 +12,4 @@ def even(length: float = 0.1, outer: float = 0.05, count: int = 5, inner: float 
 
 
 def on(stiffness: float, other: float | None = None, damping: float = 0.0, last: int = 5) -> dict[int, Spring]:
-    return {0: Spring(stiffness, damping=damping),
-            last: Spring(stiffness if other is None else other, damping=damping)}  # fmt: skip
+    return {0: Spring(stiffness, damping=damping), last: Spring(stiffness if other is None else other, damping=damping)}

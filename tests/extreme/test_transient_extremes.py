@@ -46,11 +46,17 @@ def test_zero_load_rattles_in_the_gap_and_the_mean_force_vanishes() -> None:
 def test_a_load_that_reverses_moves_contact_to_the_back_flank(flank: str) -> None:
     # The pinion drives at first; then its torque falls and the wheel's inertia and torque push it from behind.
     model = spur_pair(
-        operation__torque=None, operation__output_shaft=None, meshes__pair__backlash="50 um", meshes__pair__back_flank=flank,
+        operation__torque=None,
+        operation__output_shaft=None,
+        meshes__pair__backlash="50 um",
+        meshes__pair__back_flank=flank,
         meshes__pair__transmission_error=[],
-        loads={"drive": {"shaft": "one", "kind": "input", "torque": "100 N m"}, "take": {"shaft": "two", "kind": "output"},
-               "brake": {"shaft": "one", "kind": "output", "torque": "40 N m"}},
-    )  # fmt: skip
+        loads={
+            "drive": {"shaft": "one", "kind": "input", "torque": "100 N m"},
+            "take": {"shaft": "two", "kind": "output"},
+            "brake": {"shaft": "one", "kind": "output", "torque": "40 N m"},
+        },
+    )
     stepped = {**model.loads, "drive": model.loads["drive"].model_copy(update={"step_to": 0.0, "step_at": 0.01})}
     model = model.model_copy(update={"loads": stepped})
     result = transient(model, time=0.02, steps=400)
@@ -90,12 +96,22 @@ def test_a_bearing_that_is_never_loaded_does_nothing() -> None:
 
 def test_torques_that_do_not_balance_are_refused_in_the_model_and_drift_is_told_when_they_come_to_be() -> None:
     with pytest.raises(ModelError, match="balance"):
-        spur_pair(operation__torque=None, operation__output_shaft=None,
-                  loads={"a": {"shaft": "one", "kind": "input", "torque": "100 N m"},
-                         "b": {"shaft": "two", "kind": "output", "torque": "10 N m"}})  # fmt: skip
-    model = spur_pair(operation__torque=None, operation__output_shaft=None,
-                      loads={"a": {"shaft": "one", "kind": "input", "torque": "100 N m", "step_to": 1.5},
-                             "b": {"shaft": "two", "kind": "output"}})  # fmt: skip
+        spur_pair(
+            operation__torque=None,
+            operation__output_shaft=None,
+            loads={
+                "a": {"shaft": "one", "kind": "input", "torque": "100 N m"},
+                "b": {"shaft": "two", "kind": "output", "torque": "10 N m"},
+            },
+        )
+    model = spur_pair(
+        operation__torque=None,
+        operation__output_shaft=None,
+        loads={
+            "a": {"shaft": "one", "kind": "input", "torque": "100 N m", "step_to": 1.5},
+            "b": {"shaft": "two", "kind": "output"},
+        },
+    )
     result = transient(model, time=0.02, settle=0.05, steps=200)
     assert any("balance" in note for note in result.warnings)
 

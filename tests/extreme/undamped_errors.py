@@ -25,7 +25,8 @@ def assembled_error(rotor: Rotor) -> float:
     plane = undamped(M, K)
     system = System(rotor_model(rotor, motions=("bending",)))
     modes = lowest_modes(system.mass, system.stiffness(), strain=None)
-    omega, true = np.sqrt(modes.eigenvalues), sorted([*plane, *plane])
+    omega = np.sqrt(modes.eigenvalues)
+    true = sorted([*plane, *plane])
     return max(abs(float(mp.mpf(float(w)) / t - 1)) for w, t in zip(omega, true, strict=True))
 
 
@@ -100,22 +101,29 @@ def only_axial() -> float:
 
 def zero_gap() -> float:
     """Two shafts end to end, coupled in torsion through a gap of no length: bars joined by a spring."""
-    left, k = Rotor(even(count=3)), mp.mpf(1e13)
+    left = Rotor(even(count=3))
+    k = mp.mpf(1e13)
     M1, K1 = left.torsion()
     n = M1.rows
-    M, K = mp.zeros(2 * n), mp.zeros(2 * n)
+    M = mp.zeros(2 * n)
+    K = mp.zeros(2 * n)
     for first in (0, n):
         for i in range(n):
             for j in range(n):
-                M[first + i, first + j], K[first + i, first + j] = M1[i, j], K1[i, j]
+                M[first + i, first + j] = M1[i, j]
+                K[first + i, first + j] = K1[i, j]
     for a in (n - 1, n):
         for b in (n - 1, n):
             K[a, b] += k if a == b else -k
     own = rotor_model(left)
     second = own.shafts["s"].model_copy(update={"start": own.shafts["s"].end})
     coupling = rg.Coupling(from_shaft="s", to_shaft="t", stiffness=rg.StiffnessMatrix(torsion=1e13))
-    model = rg.Model(shafts={"s": own.shafts["s"], "t": second}, materials=own.materials,
-                     couplings={"c": coupling}, motions=("torsion",))  # fmt: skip
+    model = rg.Model(
+        shafts={"s": own.shafts["s"], "t": second},
+        materials=own.materials,
+        couplings={"c": coupling},
+        motions=("torsion",),
+    )
     return frequency_error(rg.modal(model, elements=1, modes=ALL), undamped(M, K), rigid=1)
 
 
@@ -147,15 +155,20 @@ def no_elements() -> float:
 
 def rigid_shaft(cuts: tuple[float, ...], stiffness: float) -> float:
     """A rigid cylinder on two bearings: bounce and tilt, two dofs a plane."""
-    L, d = mp.mpf("0.5"), mp.mpf(0.05)
+    L = mp.mpf("0.5")
+    d = mp.mpf(0.05)
     lengths = np.diff([0.0, *cuts, 0.5])
     sections = tuple(rg.Section(length=float(part), outer_diameter=0.05, rigid=True) for part in lengths)
-    soft = {end: rg.Bearing(shaft="s", at=end, stiffness=rg.StiffnessMatrix(radial=k))
-            for end, k in (("start", stiffness), ("end", 3.0 * stiffness))}  # fmt: skip
+    soft = {
+        end: rg.Bearing(shaft="s", at=end, stiffness=rg.StiffnessMatrix(radial=k))
+        for end, k in (("start", stiffness), ("end", 3.0 * stiffness))
+    }
     model = rg.Model(shafts={"s": rg.Shaft(sections=sections)}, bearings=soft, motions=("bending",))
     mass = 7850 * mp.pi / 4 * d**2 * L
     tilt = mass * (L**2 / 12 + d**2 / 16)
-    k1, k2, h = mp.mpf(stiffness), 3 * mp.mpf(stiffness), L / 2
+    k1 = mp.mpf(stiffness)
+    k2 = 3 * mp.mpf(stiffness)
+    h = L / 2
     plane = undamped(mp.diag([mass, tilt]), mp.matrix([[k1 + k2, (k2 - k1) * h], [(k2 - k1) * h, (k1 + k2) * h**2]]))
     return frequency_error(rg.modal(model), [*plane, *plane], rigid=0)
 
@@ -168,8 +181,10 @@ def merged() -> float:
     half = {"mass": 1.0, "polar_inertia": 0.01, "diametral_inertia": 0.005}
     counts = []
     for gap in (1e-11, 1e-6):
-        disks = {name: disk.model_copy(update={**half, "at": disk.at + shift})
-                 for name, shift in (("first", 0.0), ("second", gap))}  # fmt: skip
+        disks = {
+            name: disk.model_copy(update={**half, "at": disk.at + shift})
+            for name, shift in (("first", 0.0), ("second", gap))
+        }
         result = rg.modal(model.model_copy(update={"disks": disks}), elements=1, modes=ALL)
         merged = [w for w in result.warnings if "disks.second" in w and "one node" in w]
         counts.append((len(result.nodes.shaft), len(merged)))
@@ -189,11 +204,13 @@ def zero_inertia_gear() -> float:
     model = gearbox(1e9, torsion=(1e3, 5e4), on_shafts=True)
     bar = Rotor([Segment(0.1, 0.02)])
     M1, K1 = bar.torsion()
-    M, K = mp.zeros(4), mp.zeros(4)
+    M = mp.zeros(4)
+    K = mp.zeros(4)
     for first in (0, 2):
         for i in range(2):
             for j in range(2):
-                M[first + i, first + j], K[first + i, first + j] = M1[i, j], K1[i, j]
+                M[first + i, first + j] = M1[i, j]
+                K[first + i, first + j] = K1[i, j]
     K[0, 0] += mp.mpf(1e3)
     K[2, 2] += mp.mpf(5e4)
     r = [mp.mpf(model.gears[g].base_radius) for g in ("pinion", "wheel")]

@@ -19,8 +19,11 @@ from validation.table import printed
 
 @pytest.mark.parametrize("name", names())
 def test_a_case_is_within_its_tolerances(name: str) -> None:
-    failed = [f"{row.what}: expected {row.expected}, got {row.got}: {row.reason}"
-              for row in run([read_case(name)]) if row.judged and not row.passed]  # fmt: skip
+    failed = [
+        f"{row.what}: expected {row.expected}, got {row.got}: {row.reason}"
+        for row in run([read_case(name)])
+        if row.judged and not row.passed
+    ]
     assert not failed, "\n".join(failed)
 
 

@@ -96,8 +96,10 @@ def test_the_pairs_of_16_dofs_give_their_dynamic_factor(file: str, factor: float
 
 
 def test_a_pair_made_by_the_rules_is_that_of_the_file() -> None:
-    made, given = pair16.pair((30, 72), 33.27, 0.054, 1920.0), loaded(pair16.FILES["b"])
-    first, second = rg.modal(made, modes=16), rg.modal(given, modes=16)
+    made = pair16.pair((30, 72), 33.27, 0.054, 1920.0)
+    given = loaded(pair16.FILES["b"])
+    first = rg.modal(made, modes=16)
+    second = rg.modal(given, modes=16)
     np.testing.assert_allclose(first.frequency_hz, second.frequency_hz, rtol=1e-4)
 
 
@@ -117,12 +119,18 @@ def test_load_closes_the_gap_and_damping_calms() -> None:
 
 
 def test_transient_and_sweep_agree_on_a_motion_with_loss_of_contact() -> None:
-    model, period = loaded(pair24.MODEL), 60.0 / (5800.0 * 22.0)
+    model = loaded(pair24.MODEL)
+    period = 60.0 / (5800.0 * 22.0)
     sweep = pair24.route(pair24.MODEL, (5800.0,))
     run = rg.transient(
-        model, speed=5800.0 * math.pi / 30.0, method="newmark", steps=640, settle=250 * period, time=64 * period,
+        model,
+        speed=5800.0 * math.pi / 30.0,
+        method="newmark",
+        steps=640,
+        settle=250 * period,
+        time=64 * period,
         error_estimate=False,
-    )  # fmt: skip
+    )
     assert run.contact_time[0, 1] == pytest.approx(sweep.apart[0, 0, 0], abs=0.01)
     assert run.mesh_force[run.counted, 0].max() == pytest.approx(sweep.largest_force[0, 0, 0], rel=0.02)
 
@@ -142,7 +150,10 @@ def test_less_impact_and_ripple_shake_less() -> None:
 
 
 def test_the_printed_equations_of_the_marine_train_have_no_equilibrium() -> None:
-    rp1, rg1, rp2, rg2 = 0.075, 0.24, 0.09, 0.3
+    rp1 = 0.075
+    rg1 = 0.24
+    rp2 = 0.09
+    rg2 = 0.3
     torques = np.array([15e3, 15e3, 0.0, 0.0, 0.0, 0.0, -320e3])
     # Columns: forces of both first and both second meshes; rows: bodies.
     printed = np.array(
@@ -161,7 +172,8 @@ def test_the_printed_equations_of_the_marine_train_have_no_equilibrium() -> None
 
 
 def test_the_printed_stiffness_of_the_marine_train_is_not_symmetric() -> None:
-    moved, pushed = np.zeros(7), np.zeros(7)
+    moved = np.zeros(7)
+    pushed = np.zeros(7)
     moved[[0, 3]] = 0.075, -0.24  # delta_1 joins bodies 1 and 4
     pushed[[0, 2]] = 0.075, -0.075  # its force acts on bodies 1 and 3
     printed = np.outer(pushed, moved)
@@ -187,7 +199,10 @@ def test_the_printed_arm_of_the_24_dof_pair_is_that_of_the_reference_radius() ->
 
 
 def test_the_printed_mesh_of_the_split_torque_gearbox_strains_in_a_rigid_tilt() -> None:
-    angle, helix, first, second = math.radians(28.3), math.radians(30.0), 0.05, 0.2
+    angle = math.radians(28.3)
+    helix = math.radians(30.0)
+    first = 0.05
+    second = 0.2
     distance = (first + second) / math.cos(angle)
     base_helix = math.asin(math.sin(helix) * math.cos(math.radians(25.0)))
     ours = contact_vector(ContactGeometry(1, 1, 0.0, angle, base_helix, first, second, 0.0, 0.0, 0.0))
@@ -203,7 +218,10 @@ def test_the_printed_mesh_of_the_split_torque_gearbox_strains_in_a_rigid_tilt() 
 
 
 def test_the_impact_force_balances_the_energy_of_compliances_only() -> None:
-    energy, hit, carrying, angle = 0.5, 2e-9, 5e-10, 0.1
+    energy = 0.5
+    hit = 2e-9
+    carrying = 5e-10
+    angle = 0.1
     force = math.sqrt(2.0 * energy / (hit + carrying * math.cos(angle) ** 2))
     given = [(hit * force, hit), (carrying * math.cos(angle) * force, carrying)]
     assert sum(0.5 * d**2 / q for d, q in given) == pytest.approx(energy, rel=1e-12)
@@ -211,7 +229,9 @@ def test_the_impact_force_balances_the_energy_of_compliances_only() -> None:
 
 
 def test_the_printed_axial_rows_of_the_16_dof_pair_are_not_symmetric() -> None:
-    helix, angle, radius = math.radians(20.86), math.radians(21.28), 0.085
+    helix = math.radians(20.86)
+    angle = math.radians(21.28)
+    radius = 0.085
     plane = math.cos(helix) * np.array([math.sin(angle), math.cos(angle), radius])
     relative = np.array([plane[0], plane[1], -math.sin(helix), plane[2]])  # x y z theta in lambda
     pushed = np.array([plane[0], plane[1], math.sin(helix), plane[2]])  # as printed in the rows

@@ -7,7 +7,8 @@ import numpy as np
 from rotorgear.forces.mesh_contact import MeshContact
 from validation.oscillators import integrate, local_system
 
-_STEP, _STEPS = 0.28, 12
+_STEP = 0.28
+_STEPS = 12
 _METHOD = {"average": "average acceleration", "linear": "linear acceleration"}
 
 

@@ -13,7 +13,8 @@ _PERIODS = 10
 # No whole number of steps makes a period, so that the kinks lie at another place of the step each time.
 _SHIFT = 0.382
 # Kink inside of the motion: (force, start, exact period, law).
-_A, _F = 1.25, 0.5
+_A = 1.25
+_F = 0.5
 _V = np.sqrt(_A**2 - _F**2)
 _CASES = {
     "centred": (0.0, 3.0, 2.0 * np.pi + 2.0, MeshContact(1.0, backlash=2.0, error_mean=1.0)),

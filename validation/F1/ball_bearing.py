@@ -15,7 +15,8 @@ def measure(quantity: str, mode: str) -> float:
     if quantity == "contact constant in N/mm^1.5":
         return _bearing(0.0).contact_constant / 1e3**1.5
     direction, load, clearance = mode.split(", ")
-    bearing, axis = _bearing(1e-3 * float(clearance.removesuffix(" mm"))), np.eye(5)[_NAMES[direction]]
+    bearing = _bearing(1e-3 * float(clearance.removesuffix(" mm")))
+    axis = np.eye(5)[_NAMES[direction]]
     wanted = float(load.removesuffix(" N"))
     x = brentq(lambda x: bearing.evaluate(x * axis).force @ axis - wanted, 0.0, 1e-3, xtol=1e-16)
     if quantity == "deflection in um":

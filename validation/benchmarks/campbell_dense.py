@@ -22,7 +22,11 @@ import scipy.linalg as la
 import rotorgear as rg
 
 FILE = Path(__file__).resolve().parents[2] / "models" / "split_torque.toml"
-ELEMENTS, SPEEDS, MODES, AIM, ERROR = 5, 100, 24, 40.0, 1e-9
+ELEMENTS = 5
+SPEEDS = 100
+MODES = 24
+AIM = 40.0
+ERROR = 1e-9
 
 
 def dense(system: rg.System, speed: float) -> np.ndarray:
@@ -52,7 +56,9 @@ def main() -> int:
         start = time.process_time()
         result = rg.campbell(system, speeds=speeds.tolist(), modes=MODES, error_estimate=False)
         times.append(time.process_time() - start)
-    own, lapack, worst = statistics.median(times), [], 0.0
+    own = statistics.median(times)
+    lapack = []
+    worst = 0.0
     for k in (10, 50, 90):
         start = time.process_time()
         true = dense(system, float(speeds[k]))

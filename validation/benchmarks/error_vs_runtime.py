@@ -49,7 +49,8 @@ def main() -> None:
     """Run all ladders, draw the plots, write the page."""
     files = {file.stem: file for file in sorted((ROOT / "models").glob("*.toml"))}
     files |= {f"{file.parent.name}/{file.stem}": file for file in sorted((ROOT / "validation").glob("*/*.toml"))}
-    parts, worst = [HEAD], []
+    parts = [HEAD]
+    worst = []
     for name, file in files.items():
         model = rg.load(file)
         if not any(shaft.sections for shaft in model.shafts.values()):

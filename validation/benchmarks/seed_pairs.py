@@ -23,15 +23,21 @@ PAIRS = (
     ("c", 34, 80, 5.0, 20.0, 20.86, 54.0),
     ("d", 30, 72, 5.0, 20.0, 33.27, 54.0),
 )
-LINE_LOAD, TORQUE = 200e3, 1000.0
+LINE_LOAD = 200e3
+TORQUE = 1000.0
 
 
 def model(first: int, second: int, module: float, alpha: float, beta: float, width: float) -> rg.Model:
     """A herringbone pair on two points."""
     gear = {
-        "at": 0.0, "kind": "herringbone", "normal_module": module * 1e-3, "normal_pressure_angle": math.radians(alpha),
-        "helix_angle": math.radians(beta), "width": width * 1e-3, "gap": 0.02,
-    }  # fmt: skip
+        "at": 0.0,
+        "kind": "herringbone",
+        "normal_module": module * 1e-3,
+        "normal_pressure_angle": math.radians(alpha),
+        "helix_angle": math.radians(beta),
+        "width": width * 1e-3,
+        "gap": 0.02,
+    }
     distance = 0.5e-3 * module * (first + second) / math.cos(math.radians(beta))
     section = [{"length": 0.5, "outer_diameter": 0.05}]
     return rg.Model(

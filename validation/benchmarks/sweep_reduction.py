@@ -37,7 +37,8 @@ def row(found: SweepResult, seconds: float, whole: SweepResult) -> str:
     periodic = same & np.array([kind.endswith("T") for kind in whole.motion])
 
     def off(name: str) -> float:
-        a, b = getattr(found, name)[periodic], getattr(whole, name)[periodic]
+        a = getattr(found, name)[periodic]
+        b = getattr(whole, name)[periodic]
         return 100.0 * float(np.max(np.abs(a / b - 1.0)))
 
     apart = 100.0 * float(np.max(np.abs(found.apart - whole.apart)[periodic]))

@@ -23,7 +23,8 @@ from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.local_system import LocalSystem
 from validation.oscillators import local_system
 
-STEPS, LANES = 200, 32
+STEPS = 200
+LANES = 32
 CASES = ((7, 1), (7, 4), (24, 8))
 _SPEED = 1.35
 
@@ -37,50 +38,96 @@ def chain(n: int, m: int, speed: float = _SPEED) -> LocalSystem:
     for j in range(m):
         column = np.zeros((n, 1))
         at = j * (n - 1) // m
-        column[at], column[at + 1] = 1.0, -1.0
-        law = MeshContact(1.0, 0.04, 0.6, contact_damping="unclamped", ramp=1e-3, order=1.0, phase=0.3 * j,
-                          stiffness_cos=(0.25,), error_cos=(0.15,))  # fmt: skip
+        column[at] = 1.0
+        column[at + 1] = -1.0
+        law = MeshContact(
+            1.0,
+            0.04,
+            0.6,
+            contact_damping="unclamped",
+            ramp=1e-3,
+            order=1.0,
+            phase=0.3 * j,
+            stiffness_cos=(0.25,),
+            error_cos=(0.15,),
+        )
         laws.append((law, column))
     load = np.linspace(0.1, -0.1, n)
     return local_system(np.eye(n), 0.01 * np.eye(n), K, load.tolist(), laws, speed=speed)
 
 
 @compiled(fast=True)
-def scalar_loop(periods, steps, n, first, column, K, D, load, bfirst, bcolumn, bvalue, cfirst, ccolumn, cvalue,
-                k, c, backlash, ramp, table, q, v, section):  # fmt: skip
+def scalar_loop(
+    periods,
+    steps,
+    n,
+    first,
+    column,
+    K,
+    D,
+    load,
+    bfirst,
+    bcolumn,
+    bvalue,
+    cfirst,
+    ccolumn,
+    cvalue,
+    k,
+    c,
+    backlash,
+    ramp,
+    table,
+    q,
+    v,
+    section,
+):
     """One system by the same method and formulas, as one would write it for a single point."""
     h = 2.0 * np.pi / steps
     m = k.size
-    F, qs, vs, a, dq, dv = np.empty(m), np.empty(n), np.empty(n), np.zeros(n), np.empty(n), np.empty(n)
-    before, used = np.empty(m), np.empty(m)
+    F = np.empty(m)
+    qs = np.empty(n)
+    vs = np.empty(n)
+    a = np.zeros(n)
+    dq = np.empty(n)
+    dv = np.empty(n)
+    before = np.empty(m)
+    used = np.empty(m)
     for period in range(periods):
         for step in range(steps):
-            dq[:], dv[:] = 0.0, 0.0
+            dq[:] = 0.0
+            dv[:] = 0.0
             for stage in range(4):
                 share = 0.0 if stage == 0 else (h if stage == 3 else 0.5 * h)
                 weight = (1.0 if stage in (0, 3) else 2.0) * h / 6.0
                 row = 2 * step + (0 if stage == 0 else (2 if stage == 3 else 1))
                 for i in range(n):
                     if stage == 0:
-                        qs[i], vs[i] = q[i], v[i]
+                        qs[i] = q[i]
+                        vs[i] = v[i]
                     else:
                         qs[i] = q[i] + share * vs[i]
                         vs[i] = v[i] + share * a[i]
                 for j in range(m):
-                    d, w = 0.0, 0.0
+                    d = 0.0
+                    w = 0.0
                     for p in range(bfirst[j], bfirst[j + 1]):
                         d += bvalue[p] * qs[bcolumn[p]]
                         w += bvalue[p] * vs[bcolumn[p]]
-                    x, rate = d - table[row, j, 1], w - table[row, j, 2]
-                    side, depth = 0.0, 0.0
+                    x = d - table[row, j, 1]
+                    rate = w - table[row, j, 2]
+                    side = 0.0
+                    depth = 0.0
                     if x > 0.0:
-                        side, depth = 1.0, x
+                        side = 1.0
+                        depth = x
                     elif x < -backlash[j]:
-                        side, depth = -1.0, -x - backlash[j]
+                        side = -1.0
+                        depth = -x - backlash[j]
                     on = min(depth * ramp[j], 1.0)
                     F[j] = side * (k[j] * table[row, j, 0] * depth + c[j] * on * side * rate)
                     if stage == 0:
-                        before[j], used[j] = side * on * (depth - 0.5 * on / ramp[j]), 0.0
+                        before[j] = side * on * (depth - 0.5 * on / ramp[j])
+                        used[j] = 0.0
                     used[j] += weight * c[j] * on * rate
                 for i in range(n):
                     total = load[i]
@@ -98,11 +145,14 @@ def scalar_loop(periods, steps, n, first, column, K, D, load, bfirst, bcolumn, b
                 x = -table[2 * step + 2, j, 1]
                 for p in range(bfirst[j], bfirst[j + 1]):
                     x += bvalue[p] * q[bcolumn[p]]
-                side, depth = 0.0, 0.0
+                side = 0.0
+                depth = 0.0
                 if x > 0.0:
-                    side, depth = 1.0, x
+                    side = 1.0
+                    depth = x
                 elif x < -backlash[j]:
-                    side, depth = -1.0, -x - backlash[j]
+                    side = -1.0
+                    depth = -x - backlash[j]
                 share = min(depth * ramp[j], 1.0)
                 rest = c[j] * (side * share * (depth - 0.5 * share / ramp[j]) - before[j]) - used[j]
                 for p in range(bfirst[j], bfirst[j + 1]):
@@ -122,7 +172,8 @@ def scalar(point: Point, start: Start, table: np.ndarray, periods: int) -> np.nd
 
 def _structure(point: Point) -> tuple[np.ndarray, ...]:
     """Sparse matrices by rows, and the contacts."""
-    s, c = point.system, point.system.columns
+    s = point.system
+    c = point.system.columns
     mask = (s.K != 0.0) | (s.D != 0.0)
     rows, columns = np.nonzero(mask)
     first = np.concatenate([[0], np.cumsum(mask.sum(axis=1))])
@@ -130,9 +181,22 @@ def _structure(point: Point) -> tuple[np.ndarray, ...]:
     crows, ccolumns = np.nonzero(s.B)
     bfirst, cfirst = (np.concatenate([[0], np.cumsum((A != 0.0).sum(axis=1))]) for A in (s.B.T, s.B))
     return (
-        first, columns, s.K[rows, columns], s.D[rows, columns], s.load, bfirst, bcolumns, s.B.T[brows, bcolumns], cfirst,
-        ccolumns, s.B[crows, ccolumns], c.stiffness, c.damping, c.backlash, c.ramp,
-    )  # fmt: skip
+        first,
+        columns,
+        s.K[rows, columns],
+        s.D[rows, columns],
+        s.load,
+        bfirst,
+        bcolumns,
+        s.B.T[brows, bcolumns],
+        cfirst,
+        ccolumns,
+        s.B[crows, ccolumns],
+        c.stiffness,
+        c.damping,
+        c.backlash,
+        c.ramp,
+    )
 
 
 def points(n: int, m: int, count: int = LANES) -> list[Point]:
@@ -144,7 +208,8 @@ def points(n: int, m: int, count: int = LANES) -> list[Point]:
 def apart(n: int, m: int, periods: int = 20) -> float:
     """Largest difference of lanes and scalar kernel after some periods, over the largest displacement."""
     own = points(n, m)
-    starts, tables = [Start(p.system.rest, np.zeros(n)) for p in own], [table_of(own[0], STEPS)]
+    starts = [Start(p.system.rest, np.zeros(n)) for p in own]
+    tables = [table_of(own[0], STEPS)]
     orbits = run_block([p.system for p in own], starts, tables, Plan(STEPS, 0, periods, 0))
     single = [scalar(p, s, tables[0], periods) for p, s in zip(own, starts, strict=True)]
     size = max(np.abs(x).max() for x in single)
@@ -154,7 +219,8 @@ def apart(n: int, m: int, periods: int = 20) -> float:
 def rates(n: int, m: int, tangents: int = 0) -> dict[str, float]:
     """Point-steps in a CPU second of lanes, the scalar kernel and solve_ivp."""
     own = points(n, m)
-    starts, tables = [Start(p.system.rest, np.zeros(n)) for p in own], [table_of(own[0], STEPS)]
+    starts = [Start(p.system.rest, np.zeros(n)) for p in own]
+    tables = [table_of(own[0], STEPS)]
     periods = 60 if n > 10 else 200
 
     def lanes() -> float:
@@ -176,18 +242,43 @@ def rates(n: int, m: int, tangents: int = 0) -> dict[str, float]:
 
 
 @compiled(fast=True)
-def slope(t, y, first, column, K, D, load, bfirst, bcolumn, bvalue, cfirst, ccolumn, cvalue, k, c, backlash, ramp,
-          phase, ripple, error):  # fmt: skip
+def slope(
+    t,
+    y,
+    first,
+    column,
+    K,
+    D,
+    load,
+    bfirst,
+    bcolumn,
+    bvalue,
+    cfirst,
+    ccolumn,
+    cvalue,
+    k,
+    c,
+    backlash,
+    ramp,
+    phase,
+    ripple,
+    error,
+):
     """z' and z'' at a time, with k(t) and e(t) from their first harmonic."""
-    n, m = load.size, k.size
-    out, F = np.empty(2 * n), np.empty(m)
+    n = load.size
+    m = k.size
+    out = np.empty(2 * n)
+    F = np.empty(m)
     for j in range(m):
-        d, w = 0.0, 0.0
+        d = 0.0
+        w = 0.0
         for p in range(bfirst[j], bfirst[j + 1]):
             d += bvalue[p] * y[bcolumn[p]]
             w += bvalue[p] * y[n + bcolumn[p]]
-        co, si = np.cos(t + phase[j]), np.sin(t + phase[j])
-        x, rate = d - error * co, w + error * si
+        co = np.cos(t + phase[j])
+        si = np.sin(t + phase[j])
+        x = d - error * co
+        rate = w + error * si
         side = 1.0 if x > 0.0 else (-1.0 if x < -backlash[j] else 0.0)
         depth = max(x, -x - backlash[j], 0.0)
         F[j] = side * (k[j] * (1.0 + ripple * co) * depth + c[j] * min(depth * ramp[j], 1.0) * side * rate)
@@ -197,14 +288,17 @@ def slope(t, y, first, column, K, D, load, bfirst, bcolumn, bvalue, cfirst, ccol
             total -= K[p] * y[column[p]] + D[p] * y[n + column[p]]
         for p in range(cfirst[i], cfirst[i + 1]):
             total -= cvalue[p] * F[ccolumn[p]]
-        out[i], out[n + i] = y[n + i], total
+        out[i] = y[n + i]
+        out[n + i] = total
     return out
 
 
 def _numpy_slope(t, y, point, phase, ripple, error):  # type: ignore[no-untyped-def]
     """The same with numpy, as one would write it for solve_ivp."""
-    s, c = point.system, point.system.columns
-    z, dz = y[: s.n], y[s.n :]
+    s = point.system
+    c = point.system.columns
+    z = y[: s.n]
+    dz = y[s.n :]
     x = s.B.T @ z - error * np.cos(t + phase)
     rate = s.B.T @ dz + error * np.sin(t + phase)
     side = np.where(x > 0.0, 1.0, np.where(x < -c.backlash, -1.0, 0.0))

@@ -20,7 +20,9 @@ from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.settings import PRESETS, ToothFe
 
-STRIP, LEAST_PATCH, NU = 0.02, 0.08, 0.3
+STRIP = 0.02
+LEAST_PATCH = 0.08
+NU = 0.3
 POINTS = np.linspace(0.1, 0.9, 7)
 REFERENCE = MeshSize(160, 10, 26, 6, 14)
 GEARS = {
@@ -53,7 +55,8 @@ def own_compliance(gear: GearGeometry, fe: ToothFe, largest_patch: float | None)
 
 def _slices(found: GearCompliance) -> Slices:
     """One short contact line at each point: places by arc length along the flank, roll lengths in normal modules."""
-    low, high = found.flank_start**2, found.flank_end**2
+    low = found.flank_start**2
+    high = found.flank_end**2
     roll = np.sqrt(low + (high - low) * POINTS)[:, None]
     none = np.zeros(7, int)
     return Slices(

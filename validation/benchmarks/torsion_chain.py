@@ -23,8 +23,13 @@ from scipy.sparse.linalg import eigsh
 
 import rotorgear as rg
 
-DISKS, MODES, INERTIA, STIFFNESS = 1000, 24, 0.01, 1e6
-TARGET, AGREEMENT, REPETITIONS = 3.0, 1e-9, 7
+DISKS = 1000
+MODES = 24
+INERTIA = 0.01
+STIFFNESS = 1e6
+TARGET = 3.0
+AGREEMENT = 1e-9
+REPETITIONS = 7
 
 
 def chain() -> rg.Model:

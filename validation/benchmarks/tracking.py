@@ -63,9 +63,14 @@ def cases() -> dict[str, tuple[rg.Model, float]]:
 def branches(model: rg.Model, top: float, count: int) -> tuple[np.ndarray, rg.CampbellResult]:
     """First and last eigenvalue of each branch that begins among the lowest modes, ascending at the first speed, (b, 2)."""
     result = rg.campbell(
-        model, speeds=np.linspace(0.02 * top, top, count).tolist(), modes=MODES, elements=1, shaft_orders=(), mesh_orders=(),
+        model,
+        speeds=np.linspace(0.02 * top, top, count).tolist(),
+        modes=MODES,
+        elements=1,
+        shaft_orders=(),
+        mesh_orders=(),
         error_estimate=False,
-    )  # fmt: skip
+    )
     ends = result.eigenvalues[[0, -1]].T
     ends = ends[np.isfinite(ends[:, 0])]
     return ends[np.argsort(np.abs(ends[:, 0]), kind="stable")][:MODES], result

@@ -30,7 +30,8 @@ from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 MODEL = Path(__file__).resolve().parents[2] / "models" / "split_torque.toml"
-STEPS, NAIVE_STEPS = 20_000, 300
+STEPS = 20_000
+NAIVE_STEPS = 300
 PER_PERIOD = 200
 
 
@@ -39,12 +40,16 @@ def parting_gearbox(elements: int = 5, share: float = 0.2) -> LocalSystem:
     model = rg.load(MODEL)
     operation = model.operation.model_copy(update={"power": share * (model.operation.power or 0.0)})
     meshes = {
-        name: mesh.model_copy(update={
-            "transmission_error": (ErrorHarmonic(harmonic=1, amplitude=4e-6),), "damping_ratio": 0.04, "backlash": 1e-4,
-            "stiffness_variation": (StiffnessHarmonic(harmonic=1, amplitude=0.25),),
-        })
+        name: mesh.model_copy(
+            update={
+                "transmission_error": (ErrorHarmonic(harmonic=1, amplitude=4e-6),),
+                "damping_ratio": 0.04,
+                "backlash": 1e-4,
+                "stiffness_variation": (StiffnessHarmonic(harmonic=1, amplitude=0.25),),
+            }
+        )
         for name, mesh in model.meshes.items()
-    }  # fmt: skip
+    }
     damping = model.damping.model_copy(update={"rayleigh_beta": 2e-6})
     given = model.model_copy(update={"operation": operation, "meshes": meshes, "damping": damping, "unbalances": {}})
     speed = float(model.operation.speed or 0.0)
@@ -60,7 +65,10 @@ def step_of(system: LocalSystem) -> float:
 def refactoring(system: LocalSystem, h: float, start: State, steps: int) -> np.ndarray:
     """Textbook Newmark: assemble and factor K + 2/h C + 4/h^2 M in each Newton iteration; contact forces (steps, m)."""
     D = system.velocity_terms(float(system.rotation.speeds[0]))
-    q, v, a, B = start.q.copy(), start.v.copy(), start.a.copy(), system.B
+    q = start.q.copy()
+    v = start.v.copy()
+    a = start.a.copy()
+    B = system.B
     found = np.zeros((steps, system.m))
     for number in range(steps):
         t = (number + 1) * h
@@ -77,7 +85,9 @@ def refactoring(system: LocalSystem, h: float, start: State, steps: int) -> np.n
             if np.abs(change).max() <= 1e-10 * np.abs(new).max():
                 break
         acceleration = 4.0 / h**2 * (new - q - h * v) - a
-        q, v, a = new, v + 0.5 * h * (a + acceleration), acceleration
+        q = new
+        v = v + 0.5 * h * (a + acceleration)
+        a = acceleration
         found[number] = local_values(system, q, v, t)[0]
     return found
 
@@ -106,7 +116,8 @@ def timed(system: LocalSystem, method: Any, h: float, start: State, steps: int, 
 
 def cache_bandwidth(n: int = 240) -> float:
     """Bytes a second of a matrix-vector product whose matrix stays in the second-level cache."""
-    A, x = np.random.default_rng(1).standard_normal((n, n)), np.ones(n)
+    A = np.random.default_rng(1).standard_normal((n, n))
+    x = np.ones(n)
     best = np.inf
     for _ in range(5):
         before = time.process_time()
@@ -141,7 +152,8 @@ def main() -> None:
         print(f"{name:20s} {rate:10.0f} steps in 1 s   {rate / naive_rate:6.0f} x refactoring")
     difference = np.abs(short - naive).max() / np.abs(naive).max()
     print(f"condensed and refactoring Newmark differ by {difference:.1e} of the largest force")
-    nz, m = system.n, system.m
+    nz = system.n
+    m = system.m
     # e, g and y once, G and both rows of C (displacements and velocities) for each contact line.
     moved = 8.0 * nz * (6 * m + 6) * rates["exponential"]
     share = f"{moved / bandwidth:.2f} of the in-cache bandwidth of {bandwidth / 1e9:.1f} GB/s"

@@ -20,12 +20,14 @@ from rotorgear.system.system import System
 from validation.peers import ross_geared, ross_modal
 from validation.peers.comparison import AGREEMENT, ross
 
-SINGLE, GEARED = 60.0, 8.0
+SINGLE = 60.0
+GEARED = 8.0
 
 
 def timed(run: Callable[[], Any], repetitions: int) -> tuple[float, Any]:
     """Median processor time in s, and the last result."""
-    times, result = [], None
+    times = []
+    result = None
     for _ in range(repetitions):
         start = time.process_time()
         with contextlib.redirect_stdout(io.StringIO()):
@@ -54,23 +56,27 @@ def main() -> int:
     """Print both comparisons; 0 where aims and agreement are met."""
     print(f"ROSS {ross.__version__}; processor time of one thread\n")
     print(f"{'':34} {'ROSS':>10} {'rotorgear':>11} {'ratio':>8} {'aim':>6}   differ    basis error")
-    single, speeds = ross_modal.ross_rotor(), np.linspace(0.0, 500.0, 50)
+    single = ross_modal.ross_rotor()
+    speeds = np.linspace(0.0, 500.0, 50)
     system = System(ross_modal.own_model(), 1)
     good = compare(
         "one rotor, N = 200, 50 speeds",
         lambda: single.run_campbell(speeds, frequencies=6),
         lambda: rg.campbell(system, speeds=speeds.tolist(), modes=6, error_estimate=False),
-        6, SINGLE,
-    )  # fmt: skip
-    pair, own = ross_geared.ross_rotor(), rg.load(ross_geared.FILE)
+        6,
+        SINGLE,
+    )
+    pair = ross_geared.ross_rotor()
+    own = rg.load(ross_geared.FILE)
     fewer = np.linspace(1.0, 200.0, 30)
     geared = System(own, ross_geared.REFINE)
     good &= compare(
         "geared pair, 63 elements, 30 speeds",
         lambda: pair.run_campbell(fewer, frequencies=10),
         lambda: rg.campbell(geared, speeds=fewer.tolist(), modes=10, error_estimate=False),
-        10, GEARED,
-    )  # fmt: skip
+        10,
+        GEARED,
+    )
     return 0 if good else 1
 
 

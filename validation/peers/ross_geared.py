@@ -11,7 +11,10 @@ import rotorgear as rg
 from validation.peers.comparison import median_time, print_frequencies, ross, verdict
 
 FILE = Path(__file__).resolve().parents[2] / "models" / "geared_pair.toml"
-REFINE, SPEED, MODES, TARGET = 9, 1500 * np.pi / 30, 13, 5.0
+REFINE = 9
+SPEED = 1500 * np.pi / 30
+MODES = 13
+TARGET = 5.0
 FIRST = ((0.1, 0.3), (4.24, 0.3), (1.16, 0.22), (0.3, 0.22))  # length and diameter of the segments in m
 SECOND = ((0.3, 0.15), (5.0, 0.15), (0.1, 0.15))
 
@@ -59,7 +62,8 @@ def own_modes(model: rg.Model, speed: float, estimate: bool) -> rg.ModalResult:
 
 def main() -> int:
     """Run both programs, print frequencies and times; 0 if they agree and the ratio of times is met."""
-    rotor, model = ross_rotor(), rg.load(FILE)
+    rotor = ross_rotor()
+    model = rg.load(FILE)
     solve, theirs = median_time(lambda speed: rotor.run_modal(speed, num_modes=2 * MODES), SPEED, 9)
     whole, _ = median_time(lambda speed: ross_rotor().run_modal(speed, num_modes=2 * MODES), SPEED, 5)
     plain, ours = median_time(lambda speed: own_modes(model, speed, False), SPEED, 25)

@@ -9,9 +9,14 @@ import numpy as np
 import rotorgear as rg
 from validation.peers.comparison import median_time, print_frequencies, ross, verdict
 
-ELEMENTS, LENGTH, SPEED, MODES, TARGET = 200, 1.5, 100.0, 22, 20.0
+ELEMENTS = 200
+LENGTH = 1.5
+SPEED = 100.0
+MODES = 22
+TARGET = 20.0
 DISKS = ((67, 0.28), (133, 0.35))  # node and outer diameter in m
-STIFFNESS, DAMPING = {"x": 1e6, "y": 0.8e6}, 100.0
+STIFFNESS = {"x": 1e6, "y": 0.8e6}
+DAMPING = 100.0
 
 
 def ross_rotor() -> ross.Rotor:
@@ -51,7 +56,8 @@ def own_modes(model: rg.Model, speed: float, estimate: bool) -> rg.ModalResult:
 
 def main() -> int:
     """Run both programs, print frequencies and times; 0 if they agree and the ratio of times is met."""
-    rotor, model = ross_rotor(), own_model()
+    rotor = ross_rotor()
+    model = own_model()
     solve, theirs = median_time(lambda speed: rotor.run_modal(speed, num_modes=2 * MODES), SPEED, 7)
     whole, _ = median_time(lambda speed: ross_rotor().run_modal(speed, num_modes=2 * MODES), SPEED, 5)
     plain, ours = median_time(lambda speed: own_modes(model, speed, False), SPEED, 15)

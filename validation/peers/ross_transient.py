@@ -17,15 +17,20 @@ from rotorgear.system.system import System
 from validation.peers.comparison import ross
 from validation.peers.ross_geared import FILE, REFINE, SPEED, ross_rotor
 
-STEP, STEPS, MORE = 2e-4, 400, 20_000
-UNBALANCE, TARGET, AGREEMENT = 0.01, 50.0, 2e-2
+STEP = 2e-4
+STEPS = 400
+MORE = 20_000
+UNBALANCE = 0.01
+TARGET = 50.0
+AGREEMENT = 2e-2
 
 
 def theirs() -> tuple[np.ndarray, float, int]:
     """x of the coupling's disk over time, processor seconds a step, dofs."""
     rotor = ross_rotor()
     t = STEP * np.arange(STEPS + 1)
-    force, node = np.zeros((t.size, rotor.ndof)), 2 * REFINE
+    force = np.zeros((t.size, rotor.ndof))
+    node = 2 * REFINE
     force[:, 6 * node] = UNBALANCE * SPEED**2 * np.cos(SPEED * t)
     force[:, 6 * node + 1] = UNBALANCE * SPEED**2 * np.sin(SPEED * t)
     begin = time.process_time()

@@ -15,10 +15,14 @@ import rotorgear as rg
 from validation.seeds.rows import changed, loaded
 
 MODEL = "marine_dual_turbine"
-DRAG, PITCH_RADIUS, STIFFNESS = 11.2e3, 0.075, 1.2e10
+DRAG = 11.2e3
+PITCH_RADIUS = 0.075
+STIFFNESS = 1.2e10
 # Super-periods of 8 periods of the first stage, after which both stages repeat. After 400, large chaos at a load ratio of 0.4
 # has not died out yet.
-SETTLE, COUNT, STEPS = 2000, 200, 40
+SETTLE = 2000
+COUNT = 200
+STEPS = 40
 # Load ratios looked at for the regions.
 RATIOS = tuple(round(0.1 + 0.05 * i, 2) for i in range(23))
 
@@ -45,9 +49,15 @@ def operating(gamma: float, total: float = 30e3, *, drag: float = DRAG, table_st
             k, m_e = (1.2e8, 87.5) if name.startswith("first") else (2.5e8, 280.0)
             keys |= {"stiffness": k, "damping": 0.14 * math.sqrt(k * m_e)}
     return changed(
-        loaded(MODEL), meshes=meshes,
-        loads={"hp": {"torque": hp}, "propeller": {"torque": None}, "lp": {"torque": gamma * hp}, "lp_drag": {"torque": drag}},
-    )  # fmt: skip
+        loaded(MODEL),
+        meshes=meshes,
+        loads={
+            "hp": {"torque": hp},
+            "propeller": {"torque": None},
+            "lp": {"torque": gamma * hp},
+            "lp_drag": {"torque": drag},
+        },
+    )
 
 
 def contact(
@@ -60,18 +70,27 @@ def contact(
 ) -> list[Contact]:
     """Run to steady motion at load ratios and count."""
     result = rg.sweep(
-        loaded(MODEL), {"load ratio": list(gammas)}, steps=STEPS, settle=settle, count=count,
+        loaded(MODEL),
+        {"load ratio": list(gammas)},
+        steps=STEPS,
+        settle=settle,
+        count=count,
         change=lambda _, at: operating(at[0], total, table_stiffness=table_stiffness),
-    )  # fmt: skip
-    i, found = result.contact.index("first_lp"), []
+    )
+    i = result.contact.index("first_lp")
+    found = []
     for p, gamma in enumerate(gammas):
         net = gamma * total / (1.0 + gamma) - DRAG
         found.append(
             Contact(
-                float(result.back[p, 0, i]), float(result.apart[p, 0, i]), float(result.peak_to_peak[p, 0, i]), net,
-                float(result.lyapunov[p, 0, 0]), float(result.lyapunov_error[p, 0, 0]),
+                float(result.back[p, 0, i]),
+                float(result.apart[p, 0, i]),
+                float(result.peak_to_peak[p, 0, i]),
+                net,
+                float(result.lyapunov[p, 0, 0]),
+                float(result.lyapunov_error[p, 0, 0]),
             )
-        )  # fmt: skip
+        )
     return found
 
 
@@ -89,14 +108,15 @@ def values() -> dict[str, float | str]:
                 f"zeta_{name}{suffix}": round(run.back, digits[0]),
                 f"am_{name}{suffix}": round(run.peak_to_peak / nominal, digits[1]),
                 f"le_{name}{suffix}": round(run.exponent, digits[0]) + 0.0,
-            }  # fmt: skip
+            }
         found |= {f"region{suffix}": _region(total), f"way{suffix}": _way(total)}
     soft = contact(list(ratios.values()), table_stiffness=True)
     for name, run in zip(ratios, soft, strict=True):
         found |= {
-            f"zeta_soft_{name}": round(run.back, 1), f"am_soft_{name}": round(run.peak_to_peak / (100.0 * nominal), 2),
+            f"zeta_soft_{name}": round(run.back, 1),
+            f"am_soft_{name}": round(run.peak_to_peak / (100.0 * nominal), 2),
             f"le_soft_{name}": round(run.exponent, 2) + 0.0,
-        }  # fmt: skip
+        }
     return found
 
 
@@ -104,9 +124,13 @@ def _way(total: float) -> str:
     """Motions over the load ratio in steps of 0.02, periods counted in common ones of both stages."""
     ratios = [round(0.1 + 0.02 * i, 2) for i in range(56)]
     result = rg.sweep(
-        loaded(MODEL), {"load ratio": ratios}, steps=STEPS, settle=SETTLE, count=COUNT,
+        loaded(MODEL),
+        {"load ratio": ratios},
+        steps=STEPS,
+        settle=SETTLE,
+        count=COUNT,
         change=lambda _, at: operating(at[0], total),
-    )  # fmt: skip
+    )
     names = [kind if kind in ("1T", "2T") else "others" for kind in (result.motion_at(p) for p in range(len(ratios)))]
     last = [i for i, name in enumerate(names) if i + 1 == len(names) or names[i + 1] != name]
     return ", ".join(f"{names[i]} to {ratios[i]:.2f}" for i in last)
@@ -116,9 +140,10 @@ def _region(total: float) -> str:
     """Load ratios with an exponent above 0.1 and an amplitude indicator above 3."""
     nominal = 15e3 / PITCH_RADIUS / STIFFNESS
     large = [
-        gamma for gamma, run in zip(RATIOS, contact(RATIOS, total), strict=True)
+        gamma
+        for gamma, run in zip(RATIOS, contact(RATIOS, total), strict=True)
         if run.peak_to_peak > 3.0 * nominal and run.exponent > 0.1
-    ]  # fmt: skip
+    ]
     return f"{large[0]:.2f} to {large[-1]:.2f}"
 
 
@@ -134,8 +159,12 @@ def quick() -> dict[str, float | str]:
     return {
         "zeta_m": (model.meshes["first_hp"].damping or 0.0) / (2.0 * math.sqrt(STIFFNESS * m_e)),
         "load_torque": abs(next(row["torque_n_m"] for row in loads if row["name"] == "loads.propeller")) / 1e3,
-        "rigid_modes": float(modes.rigid.sum()), "stage_ratio": hz["second_hp"] / hz["first_hp"],
-        "deflection_table": 1e3 * 15e3 / PITCH_RADIUS / 1.2e8, "deflection_set": 1e6 * 15e3 / PITCH_RADIUS / STIFFNESS,
-        "first_elastic": float(modes.frequency_hz[1]), "ratio_low": RATIOS[0], "ratio_high": RATIOS[-1],
+        "rigid_modes": float(modes.rigid.sum()),
+        "stage_ratio": hz["second_hp"] / hz["first_hp"],
+        "deflection_table": 1e3 * 15e3 / PITCH_RADIUS / 1.2e8,
+        "deflection_set": 1e6 * 15e3 / PITCH_RADIUS / STIFFNESS,
+        "first_elastic": float(modes.frequency_hz[1]),
+        "ratio_low": RATIOS[0],
+        "ratio_high": RATIOS[-1],
         "hp_range": f"{30.0 / (1.0 + RATIOS[-1]):.3g} to {35.0 / (1.0 + RATIOS[0]):.3g}",
-    }  # fmt: skip
+    }

@@ -36,22 +36,32 @@ def geometry(first: float = 0.0, second: float = 0.0) -> tuple[GearGeometry, Gea
 
 
 def at_ratio(
-    ratio: float, impact: float, *, stiffness: float = 1.0, support: float = 5e8, axial: float = 1e8, share: float = 0.25,
-    start: float = 0.0, backlash: float | None = 2e-6,
-) -> rg.Model:  # fmt: skip
+    ratio: float,
+    impact: float,
+    *,
+    stiffness: float = 1.0,
+    support: float = 5e8,
+    axial: float = 1e8,
+    share: float = 0.25,
+    start: float = 0.0,
+    backlash: float | None = 2e-6,
+) -> rg.Model:
     """The model at a printed contact ratio with an impact in N: mean and ripple of the stiffness follow from the ratio."""
     transverse = ratio - OVERLAP
     base = loaded(MODEL)
     mean = stiffness * 0.861 * 14e9 * math.cos(math.radians(24.43)) * (0.75 * transverse + 0.25) * 0.075
     waves = [2.0 * float(np.sinc(n * transverse) * np.sinc(n * OVERLAP)) for n in range(1, 7)]
-    given, damping = base.meshes["left"].stiffness, base.meshes["left"].damping or 0.0
+    given = base.meshes["left"].stiffness
+    damping = base.meshes["left"].damping or 0.0
     mesh = {
-        "stiffness": mean, "damping": damping * math.sqrt(mean / float(given)),  # type: ignore[arg-type]
+        "stiffness": mean,
+        "damping": damping * math.sqrt(mean / float(given)),  # type: ignore[arg-type]
         "stiffness_variation": [
             {"harmonic": n + 1, "amplitude": abs(a), "phase": 0.0 if a > 0.0 else math.pi} for n, a in enumerate(waves)
         ],
-        "corner_impact": {"force": impact, "duration": share, "at": start}, "backlash": backlash,
-    }  # fmt: skip
+        "corner_impact": {"force": impact, "duration": share, "at": start},
+        "backlash": backlash,
+    }
     held: dict[str, dict[str, Any]] = {}
     for side in ("left", "right"):
         for who in ("pinion", "gear"):
@@ -83,9 +93,12 @@ def sample(count: int = _SETS) -> np.ndarray:
     for _ in range(count):
         # k_m at 3.30 lies between 0.9e9 and 1.5e9 N/m a helix.
         draw = {
-            "stiffness": chance.uniform(0.73, 1.22), "support": 10 ** chance.uniform(8.3, 9.0),
-            "axial": 10 ** chance.uniform(7.5, 8.5), "share": chance.uniform(0.1, 0.5), "start": chance.uniform(0.0, 1.0),
-        }  # fmt: skip
+            "stiffness": chance.uniform(0.73, 1.22),
+            "support": 10 ** chance.uniform(8.3, 9.0),
+            "axial": 10 ** chance.uniform(7.5, 8.5),
+            "share": chance.uniform(0.1, 0.5),
+            "start": chance.uniform(0.0, 1.0),
+        }
         found.append([vibration(at_ratio(TABLE[i][1], 1e3 * TABLE[i][3], **draw))[0] for i in (0, 2, 4)])
     return np.array(found)
 
@@ -101,16 +114,23 @@ def quick() -> dict[str, float | str]:
     one, two, mesh = geometry()
     base = loaded(MODEL)
     found: dict[str, float | str] = {
-        "torque_pinion": 800.0, "torque_gear": 800.0 * 44.0 / 17.0, "zeta": _damping_ratio(),
+        "torque_pinion": 800.0,
+        "torque_gear": 800.0 * 44.0 / 17.0,
+        "zeta": _damping_ratio(),
         "inertia_pinion": 2.0 * (base.gears["pinion_left"].polar_inertia or 0.0),
         "inertia_gear": 2.0 * (base.gears["gear_left"].polar_inertia or 0.0),
         "mesh_hz": rg.describe_model(base).to_dict()["meshes"][0]["mesh_frequency_hz"],
-        "eps_alpha": mesh.transverse_contact_ratio, "eps_beta": mesh.overlap_ratio,
-        "alpha_t": math.degrees(one.transverse_pressure_angle), "rb1": 1e3 * one.base_radius,
-        "rb2": 1e3 * two.base_radius, "speed_2": 2000.0 * 17.0 / 44.0, "rigid_modes": float(rg.modal(base).rigid.sum()),
-        "density_pinion": _density("pinion_left", one), "density_gear": _density("gear_left", two),
+        "eps_alpha": mesh.transverse_contact_ratio,
+        "eps_beta": mesh.overlap_ratio,
+        "alpha_t": math.degrees(one.transverse_pressure_angle),
+        "rb1": 1e3 * one.base_radius,
+        "rb2": 1e3 * two.base_radius,
+        "speed_2": 2000.0 * 17.0 / 44.0,
+        "rigid_modes": float(rg.modal(base).rigid.sum()),
+        "density_pinion": _density("pinion_left", one),
+        "density_gear": _density("gear_left", two),
         "normal_force": 400.0 / (one.base_radius * math.cos(one.base_helix_angle)),
-    }  # fmt: skip
+    }
     for i, (shift, _, reference, proposed) in enumerate(TABLE, 1):
         found[f"eps_{i}"] = geometry(shift, 0.0)[2].total_contact_ratio
         found[f"eps_opposite_{i}"] = geometry(shift, -shift)[2].total_contact_ratio

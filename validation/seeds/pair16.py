@@ -24,7 +24,9 @@ PAIRS = {"a": ((34, 80), 20.86, 2230.0), "b": ((30, 72), 33.27, 1920.0)}
 # Printed: helix angle in deg, width in mm, impact force in N.
 CASES = ((15.0, 50.0, 2500.0), (25.0, 50.0, 2100.0), (35.0, 50.0, 1800.0), (25.0, 60.0, 1900.0))
 FILES = {"a": MODEL, "b": "herringbone_pair_16dof_b"}
-STEPS, SETTLE, COUNT = 200, 250, 60
+STEPS = 200
+SETTLE = 250
+COUNT = 60
 _HARMONICS = 6
 
 
@@ -54,9 +56,13 @@ def pair(
     for i, (name, gear) in enumerate(zip(("pinion", "gear"), (one, two), strict=True)):
         for side in ("left", "right"):
             data["gears"][f"{name}_{side}"] |= {
-                "teeth": gear.teeth, "helix_angle": gear.helix_angle, "width": width, "mass": mass[i],
-                "polar_inertia": inertia[i], "diametral_inertia": 0.5 * inertia[i],
-            }  # fmt: skip
+                "teeth": gear.teeth,
+                "helix_angle": gear.helix_angle,
+                "width": width,
+                "mass": mass[i],
+                "polar_inertia": inertia[i],
+                "diametral_inertia": 0.5 * inertia[i],
+            }
             held = data["supports"][f"{name}_{side}"]
             for key in ("stiffness", "damping"):
                 held[key]["radial"] *= support
@@ -69,13 +75,14 @@ def pair(
     m_e = 1.0 / (one.base_radius**2 / inertia[0] + two.base_radius**2 / inertia[1])
     for side in ("left", "right"):
         data["meshes"][side] |= {
-            "stiffness": k, "damping": 2.0 * damping_ratio * math.sqrt(k * m_e),
+            "stiffness": k,
+            "damping": 2.0 * damping_ratio * math.sqrt(k * m_e),
             "stiffness_variation": [
                 {"harmonic": n + 1, "amplitude": abs(a), "phase": 0.0 if (a > 0.0) != flipped else math.pi}
                 for n, a in enumerate(ripple(mesh))
             ],
             "corner_impact": {"force": impact, "duration": share, "at": start},
-        }  # fmt: skip
+        }
     return rg.Model(**data)
 
 
@@ -118,10 +125,13 @@ def spread(teeth: tuple[int, int], helix_deg: float, impact: float, count: int =
     found = []
     for _ in range(count):
         draw: dict[str, Any] = {
-            "stiffness": chance.uniform(0.7, 1.4), "support": chance.uniform(0.5, 5.0),
+            "stiffness": chance.uniform(0.7, 1.4),
+            "support": chance.uniform(0.5, 5.0),
             "damping_ratio": chance.uniform(0.03, 0.17),
-            "share": chance.uniform(0.1, 0.6), "start": chance.uniform(0.0, 1.0), "flipped": bool(chance.integers(2)),
-        }  # fmt: skip
+            "share": chance.uniform(0.1, 0.6),
+            "start": chance.uniform(0.0, 1.0),
+            "flipped": bool(chance.integers(2)),
+        }
         found.append(run(pair(teeth, helix_deg, 0.054, impact, **draw))[0])
     return np.array(found)
 
@@ -138,9 +148,11 @@ def quick() -> dict[str, float | str]:
     for number, (helix, width, _) in enumerate(CASES, 1):
         mesh = geometry((34, 80), helix, 1e-3 * width)[2]
         found |= {
-            f"case{number}_helix": helix, f"case{number}_width": width, f"case{number}_eps": mesh.total_contact_ratio,
+            f"case{number}_helix": helix,
+            f"case{number}_width": width,
+            f"case{number}_eps": mesh.total_contact_ratio,
             f"case{number}_pp": _peak_to_peak(helix, mesh, 1e-3 * width),
-        }  # fmt: skip
+        }
     return found
 
 
@@ -150,12 +162,17 @@ def _of_teeth(name: str, teeth: tuple[int, int], helix: float) -> dict[str, floa
     velocity = 2000.0 * math.pi / 60.0 * one.reference_diameter
     load = 1.1 * 2.0 * 2000.0 / one.reference_diameter / 0.050
     return {
-        "eps_alpha": mesh.transverse_contact_ratio, "eps_beta": mesh.overlap_ratio, "eps_beta_50": narrow.overlap_ratio,
-        "eps": narrow.total_contact_ratio, "centre": 1e3 * mesh.centre_distance, "pp": _peak_to_peak(helix, mesh, 0.054),
-        "eps_printed_formula": 0.5 * mesh.transverse_contact_ratio, "hz": 2000.0 / 60.0 * teeth[0],
+        "eps_alpha": mesh.transverse_contact_ratio,
+        "eps_beta": mesh.overlap_ratio,
+        "eps_beta_50": narrow.overlap_ratio,
+        "eps": narrow.total_contact_ratio,
+        "centre": 1e3 * mesh.centre_distance,
+        "pp": _peak_to_peak(helix, mesh, 0.054),
+        "eps_printed_formula": 0.5 * mesh.transverse_contact_ratio,
+        "hz": 2000.0 / 60.0 * teeth[0],
         "torque": 2.0 * (loaded(FILES[name]).loads["input_left"].torque or 0.0),
         "simple": simple_dynamic_factor(velocity, teeth[0], teeth[1] / teeth[0], load, narrow.overlap_ratio, 6).value,
-    }  # fmt: skip
+    }
 
 
 def _peak_to_peak(helix_deg: float, mesh: PairGeometry, width: float) -> float:
@@ -196,9 +213,12 @@ def _of_pair(name: str, sample: np.ndarray) -> dict[str, float]:
     teeth, helix, impact = PAIRS[name]
     factor, mean, largest = run(loaded(FILES[name]))
     return {
-        "kv": factor, "mean": mean, "max": largest,
-        "kv_low": float(np.quantile(sample, 0.1)), "kv_high": float(np.quantile(sample, 0.9)),
+        "kv": factor,
+        "mean": mean,
+        "max": largest,
+        "kv_low": float(np.quantile(sample, 0.1)),
+        "kv_high": float(np.quantile(sample, 0.9)),
         "kv_shifted": run(pair(teeth, helix, 0.054, impact, start=0.5))[0],
         "kv_flipped": run(pair(teeth, helix, 0.054, impact, flipped=True))[0],
         "kv_no_impact": run(pair(teeth, helix, 0.054, 1e-9))[0],
-    }  # fmt: skip
+    }

@@ -20,9 +20,13 @@ from validation.seeds.rows import changed, loaded
 
 MODEL = "herringbone_pair_24dof"
 SECOND = "herringbone_pair_24dof_set2"
-STEPS, KEPT, SETTLE = 160, 64, 250
+STEPS = 160
+KEPT = 64
+SETTLE = 250
 # The trends take longer runs from several starts: motions that are about to lose their order settle slowly, and some coexist.
-LONG_SETTLE, LONG_KEPT, STARTS = 1500, 300, 16
+LONG_SETTLE = 1500
+LONG_KEPT = 300
+STARTS = 16
 
 
 def route(name: str, speeds: Sequence[float], settle: int = SETTLE) -> rg.SweepResult:
@@ -33,12 +37,16 @@ def route(name: str, speeds: Sequence[float], settle: int = SETTLE) -> rg.SweepR
 
 
 def apart(
-    torques: Sequence[float] = (150.0,), backlash: Sequence[float] = (40e-6,), damping: Sequence[float] = (1.0,),
+    torques: Sequence[float] = (150.0,),
+    backlash: Sequence[float] = (40e-6,),
+    damping: Sequence[float] = (1.0,),
     stiffness: Sequence[float] = (1.0,),
-) -> list[str]:  # fmt: skip
+) -> list[str]:
     """Motion of set 1 at 6000 rpm from most starts, mean share of the time apart to 10 %; damping and stiffness are factors."""
     base = loaded(MODEL)
-    mean, c = float(base.meshes["left"].stiffness), base.meshes["left"].damping or 0.0  # type: ignore[arg-type]
+    # type: ignore[arg-type]
+    mean = float(base.meshes["left"].stiffness)
+    c = base.meshes["left"].damping or 0.0
 
     def changed_to(_: rg.Model, at: tuple[float, ...]) -> rg.Model:
         torque, play, share, factor = points[round(at[0])]
@@ -49,9 +57,14 @@ def apart(
 
     points = list(product(torques, backlash, damping, stiffness))
     result = rg.sweep(
-        base, {"point": list(range(len(points)))}, steps=STEPS, settle=LONG_SETTLE, count=LONG_KEPT, starts=STARTS,
+        base,
+        {"point": list(range(len(points)))},
+        steps=STEPS,
+        settle=LONG_SETTLE,
+        count=LONG_KEPT,
+        starts=STARTS,
         change=changed_to,
-    )  # fmt: skip
+    )
     kinds = [Counter(result.motion_at(p, r) for r in range(STARTS)).most_common(1)[0][0] for p in range(len(points))]
     return [f"{kind} {10 * round(10.0 * result.apart[p, :, 0].mean())} %" for p, kind in enumerate(kinds)]
 
@@ -78,14 +91,21 @@ def quick() -> dict[str, float | str]:
     sheets = {gear["name"]: gear for gear in rg.gear_sheet(loaded(MODEL)).to_dict()["gears"]}
     gears = [sheets[f"{name}_left"] for name in ("pinion", "gear")]
     return {
-        "dofs": float(sheet["dofs"]), "torque": _input(MODEL), "torque_2": _input(SECOND),
-        "d1": 1e3 * gears[0]["reference_diameter_m"], "d2": 1e3 * gears[1]["reference_diameter_m"],
-        "rb1": 500.0 * gears[0]["base_diameter_m"], "rb2": 500.0 * gears[1]["base_diameter_m"],
-        "a": 1e3 * mesh["centre_distance_m"], "eps_alpha": mesh["transverse_contact_ratio"],
-        "eps_beta": mesh["overlap_ratio"], "mesh_hz": mesh["mesh_frequency_hz"],
+        "dofs": float(sheet["dofs"]),
+        "torque": _input(MODEL),
+        "torque_2": _input(SECOND),
+        "d1": 1e3 * gears[0]["reference_diameter_m"],
+        "d2": 1e3 * gears[1]["reference_diameter_m"],
+        "rb1": 500.0 * gears[0]["base_diameter_m"],
+        "rb2": 500.0 * gears[1]["base_diameter_m"],
+        "a": 1e3 * mesh["centre_distance_m"],
+        "eps_alpha": mesh["transverse_contact_ratio"],
+        "eps_beta": mesh["overlap_ratio"],
+        "mesh_hz": mesh["mesh_frequency_hz"],
         # ISO 15: from code 04 on, the bore in mm is five times the last two figures of the designation.
-        "bore_NJ209": 5.0 * int("NJ209"[-2:]), "bore_6211": 5.0 * int("6211"[-2:]),
-    }  # fmt: skip
+        "bore_NJ209": 5.0 * int("NJ209"[-2:]),
+        "bore_6211": 5.0 * int("6211"[-2:]),
+    }
 
 
 @cache
@@ -101,7 +121,7 @@ def values() -> dict[str, float | str]:
         "first_chaotic": f"{next((rpm for rpm, kind in zip(speeds, kinds, strict=True) if kind == 'chaotic'), math.nan):.0f}",
         "exponent_1t": round(float(first.lyapunov[0, 0, 0]), 3),
         "exponent_chaos": round(float(first.lyapunov[kinds.index("chaotic") + 1, 0, 0]), 1),
-    }  # fmt: skip
+    }
     trends = {
         "torque": apart(torques=(75.0, 150.0, 300.0, 600.0, 1200.0)),
         "damping": apart(damping=(0.5, 1.0, 2.0, 4.0, 8.0)),

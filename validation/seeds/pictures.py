@@ -33,11 +33,15 @@ def marine_ratio() -> tuple[np.ndarray, dict[float, rg.SweepResult]]:
     ratios = np.linspace(0.1, 1.2, 221)
     return ratios, {
         total: rg.sweep(
-            loaded(marine.MODEL), {"load ratio": list(ratios)}, steps=marine.STEPS, settle=marine.SETTLE, count=marine.COUNT,
+            loaded(marine.MODEL),
+            {"load ratio": list(ratios)},
+            steps=marine.STEPS,
+            settle=marine.SETTLE,
+            count=marine.COUNT,
             change=lambda _, at, total=total: marine.operating(at[0], total),
         )
         for total in (30e3, 35e3)
-    }  # fmt: skip
+    }
 
 
 def draw_marine_ratio(figure: Any) -> None:
@@ -72,8 +76,10 @@ def draw_marine_regions(figure: Any) -> None:
         found = marine.contact(ratios, table_stiffness=soft)
         size = nominal * (100.0 if soft else 1.0)
         rows = (
-            [c.exponent for c in found], [c.peak_to_peak / size for c in found], [c.back for c in found],
-        )  # fmt: skip
+            [c.exponent for c in found],
+            [c.peak_to_peak / size for c in found],
+            [c.back for c in found],
+        )
         for one, row in zip(axes, rows, strict=True):
             one.plot(ratios, row, ".-", color=COLOURS[colour], lw=0.8, ms=4, label=label)
     for one, (name, values) in zip(axes, printed.items(), strict=True):
@@ -93,7 +99,9 @@ def draw_marine_regions(figure: Any) -> None:
 def pair24_over(name: str) -> tuple[np.ndarray, rg.SweepResult]:
     """Set 1 of the 24-dof pair at 6000 rpm over its torque (N m), damping ratio, backlash (um) or stiffness (N/m)."""
     base = loaded(pair24.MODEL)
-    mean, c = float(base.meshes["left"].stiffness), base.meshes["left"].damping or 0.0  # type: ignore[arg-type]
+    # type: ignore[arg-type]
+    mean = float(base.meshes["left"].stiffness)
+    c = base.meshes["left"].damping or 0.0
     values = np.linspace(
         *{"torque": (50.0, 600.0), "damping": (0.03, 0.15), "backlash": (5.0, 100.0), "stiffness": (1e9, 4e9)}[name],
         111,
@@ -102,9 +110,11 @@ def pair24_over(name: str) -> tuple[np.ndarray, rg.SweepResult]:
     def at(_: rg.Model, value: tuple[float, ...]) -> rg.Model:
         x = value[0]
         mesh = {
-            "torque": {}, "damping": {"damping": c * x / 0.06}, "backlash": {"backlash": 1e-6 * x},
+            "torque": {},
+            "damping": {"damping": c * x / 0.06},
+            "backlash": {"backlash": 1e-6 * x},
             "stiffness": {"stiffness": x, "damping": c * math.sqrt(x / mean)},
-        }[name]  # fmt: skip
+        }[name]
         loads: dict[str, Any] = {}
         if name == "torque":
             loads = {f"input_{side}": {"torque": 0.5 * x} for side in ("left", "right")}
@@ -119,9 +129,11 @@ def pair24_over(name: str) -> tuple[np.ndarray, rg.SweepResult]:
 def draw_pair24_studies(figure: Any) -> None:
     """Bifurcation diagrams of set 1 at 6000 rpm over torque, damping, backlash and stiffness."""
     labels = {
-        "torque": "torque, N m", "damping": "damping ratio of the mesh", "backlash": "backlash, um",
+        "torque": "torque, N m",
+        "damping": "damping ratio of the mesh",
+        "backlash": "backlash, um",
         "stiffness": "mesh stiffness of a helix, N/um",
-    }  # fmt: skip
+    }
     for axes, (name, label) in zip(figure.subplots(2, 2).flat, labels.items(), strict=True):
         values, result = pair24_over(name)
         dots(axes, values * (1e-6 if name == "stiffness" else 1.0), result, 0, 1.0)

@@ -31,8 +31,15 @@ MODELS = FOLDER.parents[1] / "models"
 SYSTEMS = ("marine", "pair24", "split", "pair12", "pair16")
 VERDICTS = ("exact", "assumed", "trend", "not reproducible")
 _SCALE = {
-    "um": 1e-6, "mm": 1e-3, "kN m": 1e3, "kW": 1e3, "MW": 1e6, "deg": math.pi / 180.0, "rpm": math.pi / 30.0, "%": 1e-2,
-}  # fmt: skip
+    "um": 1e-6,
+    "mm": 1e-3,
+    "kN m": 1e3,
+    "kW": 1e3,
+    "MW": 1e6,
+    "deg": math.pi / 180.0,
+    "rpm": math.pi / 30.0,
+    "%": 1e-2,
+}
 
 
 @dataclass(frozen=True)
@@ -95,8 +102,14 @@ def _row(model: str, known: Mapping[str, float | str], line: dict[str, str]) -> 
     elif key:
         computed = known[key]
     return Row(
-        line["where"], line["what"], line["printed"], line["unit"], computed, line["verdict"], line["reason"],
-    )  # fmt: skip
+        line["where"],
+        line["what"],
+        line["printed"],
+        line["unit"],
+        computed,
+        line["verdict"],
+        line["reason"],
+    )
 
 
 def _given(model: str, address: str, unit: str) -> float | str:

@@ -12,7 +12,8 @@ from validation.seeds.rows import entries, loaded
 from validation.T1.spectrum import excited
 
 MODEL = "split_torque"
-TOLERANCE, RANGE = 0.07, 5000.0
+TOLERANCE = 0.07
+RANGE = 5000.0
 
 
 def printed_frequencies() -> list[float]:
@@ -27,10 +28,14 @@ def quick() -> dict[str, float | str]:
     hz = {row["name"]: row["mesh_frequency_hz"] for row in sheet["meshes"]}
     torques = {row["name"]: abs(row["torque_n_m"]) for row in sheet["torques"]}
     found: dict[str, float | str] = {
-        "stage_1": hz["stage_1a"], "stage_2": hz["stage_2a"], "ratio": abs(speeds["input"] / speeds["output"]),
-        "output_rpm": abs(speeds["output"]), "torque_in": torques["operation"], "torque_out": torques["operation.output_shaft"],
+        "stage_1": hz["stage_1a"],
+        "stage_2": hz["stage_2a"],
+        "ratio": abs(speeds["input"] / speeds["output"]),
+        "output_rpm": abs(speeds["output"]),
+        "torque_in": torques["operation"],
+        "torque_out": torques["operation.output_shaft"],
         "power": 2500.0,
-    }  # fmt: skip
+    }
     turns = [abs(speeds[name]) / 60.0 for name in ("input", "branch_a", "output")]
     for name, printed in (("97.8", 97.8), ("285.1", 285.1)):
         nearest = min((n * f for f in turns for n in range(1, 21)), key=lambda f: abs(f - printed))
@@ -64,12 +69,13 @@ def values() -> dict[str, float | str]:
     elastic = result.frequency_hz[~result.rigid]
     near = [int(np.argmin(np.abs(result.frequency_hz - f))) for f in (368.7, 1818.0)]
     found |= {
-        "modes": float(np.count_nonzero(elastic < RANGE)), "matched": float(len(beside.matches)),
+        "modes": float(np.count_nonzero(elastic < RANGE)),
+        "matched": float(len(beside.matches)),
         "random": round(beside.chance.expected_random_matches, 1),
         "as_many": f"{100.0 * beside.chance.probability_as_many:.0f} %",
         "branches": _branches(result, near[0]),
         "output_share": round(100.0 * _share(result, near[1], "output"), 0),
-    }  # fmt: skip
+    }
     for number, name in ((6, "368"), (10, "838"), (15, "1818"), (22, "4410")):
         value = found[f"mode_{number}"]
         rig = {"368": 361.0, "838": 834.0, "1818": 1818.0, "4410": 4415.0}[name]

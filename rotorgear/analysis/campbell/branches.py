@@ -63,7 +63,8 @@ class _Walk:
 
     def link(self, a: float, b: float) -> np.ndarray:
         """Partner at b of each mode at a (m_a,), over as many steps as it takes."""
-        left, right = self.modes(a), self.modes(b)
+        left = self.modes(a)
+        right = self.modes(b)
         found = step(left, right, b - a, NARROWEST * self.span)
         width = abs(b - a)
         if not self._unclear(found, left, right, width):
@@ -73,7 +74,8 @@ class _Walk:
             return found.partner
         self.halvings += 1
         middle = 0.5 * (a + b)
-        first, second = self.link(a, middle), self.link(middle, b)
+        first = self.link(a, middle)
+        second = self.link(middle, b)
         return np.where(first >= 0, second[np.maximum(first, 0)], -1) if len(second) else np.full(len(first), -1)
 
     def _unclear(self, found: Step, left: Eigen, right: Eigen, width: float) -> bool:

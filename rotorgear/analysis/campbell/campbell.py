@@ -100,7 +100,8 @@ def _check(modes: int | None, fmax: float | None, sidebands: int) -> None:
 
 def _grid(found: SpeedModes, asked: np.ndarray, operating: float | None) -> np.ndarray:
     """Speeds of the track: those asked for, the operating speed, and those where a bearing's table has a row."""
-    low, high = float(asked.min()), float(asked.max())
+    low = float(asked.min())
+    high = float(asked.max())
     extra = [*found.family.knots] + ([operating] if operating is not None and low < operating < high else [])
     new = [speed for speed in extra if np.min(np.abs(asked - speed)) > 1e-9 * max(high - low, 1e-300)]
     grid = merged(sorted([*map(float, asked), *map(float, new)]), high - low)
@@ -116,7 +117,8 @@ def _chains(
         parts = found.at(speed)
     wanted = [_wanted(found, speed, request) for speed in grid]
     of_interest = np.isin(grid, asked)
-    chains, tracks = [], []
+    chains = []
+    tracks = []
     for group in range(len(parts)):
         watched = max((own[group] for own in wanted), default=0)
         if not watched:
@@ -141,11 +143,13 @@ def _wanted(found: SpeedModes, speed: float, request: Request) -> list[int]:
 
 def _chain(found: SpeedModes, grid: np.ndarray, group: int, number: np.ndarray) -> Chain:
     r = found.at(grid[0])[group].q.shape[0]
-    s, q = np.full(len(grid), np.nan + 0j), np.full((len(grid), r), np.nan + 0j)
+    s = np.full(len(grid), np.nan + 0j)
+    q = np.full((len(grid), r), np.nan + 0j)
     for k, place in enumerate(number):
         if place >= 0:
             part = found.at(grid[k])[group]
-            s[k], q[k] = part.s[place], part.q[:, place]
+            s[k] = part.s[place]
+            q[k] = part.q[:, place]
     return Chain(group, s, q)
 
 
@@ -226,7 +230,8 @@ def _result(
     coordinates, seen = _looks(shapes, chains, grid, kept)
     margin = _margins(shapes, chains, grid, s, lines, met, operating)
     clock.lap("energies")
-    k, b = len(kept), len(chains)
+    k = len(kept)
+    b = len(chains)
     there = np.isfinite(s[kept]).ravel()
 
     def spread(values: np.ndarray, empty: float = np.nan) -> np.ndarray:
@@ -239,16 +244,32 @@ def _result(
 
     strain = {name: v for name, v in seen.energies.strain.items() if name.startswith("meshes.")}
     result = CampbellResult(
-        model=system.model, speeds=grid[kept], eigenvalues=s[kept], whirl=spread(whirl_numbers(seen.whirl), 0),
-        whirl_by_shaft=every(seen.whirl_by_shaft), kinetic_by_motion=every(seen.energies.kinetic_by_motion),
+        model=system.model,
+        speeds=grid[kept],
+        eigenvalues=s[kept],
+        whirl=spread(whirl_numbers(seen.whirl), 0),
+        whirl_by_shaft=every(seen.whirl_by_shaft),
+        kinetic_by_motion=every(seen.energies.kinetic_by_motion),
         strain_by_motion=every(seen.energies.strain_by_motion),
         mesh_strain={name.removeprefix("meshes."): v for name, v in every(strain).items()},
-        description=_descriptions(shapes, chains, grid), error_estimate=estimate, basis_error=found.error,
-        basis=shapes.stations, coordinates=coordinates, nodes=shapes.nodes, lines=lines, crossings=met, margins=margin,
-        onsets=onsets, operating_speed=operating, dofs=system.n, discretisation=pieces(system), seconds=clock.total(),
-        left_out=_left_out(system, found, grid, operating), warnings=_warnings(system, found, tracks, onsets),
+        description=_descriptions(shapes, chains, grid),
+        error_estimate=estimate,
+        basis_error=found.error,
+        basis=shapes.stations,
+        coordinates=coordinates,
+        nodes=shapes.nodes,
+        lines=lines,
+        crossings=met,
+        margins=margin,
+        onsets=onsets,
+        operating_speed=operating,
+        dofs=system.n,
+        discretisation=pieces(system),
+        seconds=clock.total(),
+        left_out=_left_out(system, found, grid, operating),
+        warnings=_warnings(system, found, tracks, onsets),
         method=_method(found, tracks, len(grid)),
-    )  # fmt: skip
+    )
     progress(1.0, "done")
     return result
 
@@ -269,9 +290,14 @@ def _looks(
 
 
 def _margins(
-    shapes: BasisShapes, chains: list[Chain], grid: np.ndarray, s: np.ndarray, lines: tuple[ExcitationOrder, ...],
-    met: tuple[Crossing, ...], operating: float | None,
-) -> tuple[Margin, ...]:  # fmt: skip
+    shapes: BasisShapes,
+    chains: list[Chain],
+    grid: np.ndarray,
+    s: np.ndarray,
+    lines: tuple[ExcitationOrder, ...],
+    met: tuple[Crossing, ...],
+    operating: float | None,
+) -> tuple[Margin, ...]:
     if operating is None or operating not in grid:
         return ()
     place = int(np.flatnonzero(grid == operating)[0])

@@ -102,14 +102,17 @@ def roots_of(system: System, family: SpeedFamily, order: float, top: float, damp
 
 def affine_pieces(system: System, family: SpeedFamily, top: float, damped: bool) -> Iterator[Affine]:
     """The matrices between two rows of any bearing's table, as functions of the size of the speed."""
-    sign, end = float(np.sign(top)), abs(top)
+    sign = float(np.sign(top))
+    end = abs(top)
     inner = sorted(abs(float(speed)) for speed in family.knots if 0.0 < abs(speed) < end * (1.0 - 1e-12))
     edges = [min((abs(float(w)) for w in family.knots), default=0.0), *inner, end]
     edges = sorted(set(edges))
     for low, high in itertools.pairwise(edges):
         (D_a, K_a), (D_b, K_b) = (_matrices(system, sign * speed, damped) for speed in (low, high))
-        D1, K1 = (D_b - D_a) / (high - low), (K_b - K_a) / (high - low)
-        D0, K0 = D_a - low * D1, K_a - low * K1
+        D1 = (D_b - D_a) / (high - low)
+        K1 = (K_b - K_a) / (high - low)
+        D0 = D_a - low * D1
+        K0 = K_a - low * K1
         parts = ((D0, D_a), (D1, D_b / high), (K0, K_a), (K1, K_b / high))
         D0, D1, K0, K1 = (_clean(A, scale) for A, scale in parts)
         yield Affine(system.mass, D0, D1, K0, K1, low, high)
@@ -138,9 +141,13 @@ def _cut(whole: Affine, dofs: np.ndarray) -> Affine:
 
 
 def _result(
-    system: System, found: list[tuple[ExcitationOrder, Synchronous]], lines: tuple[ExcitationOrder, ...], top: float,
-    damped: bool, clock: Clock,
-) -> CriticalResult:  # fmt: skip
+    system: System,
+    found: list[tuple[ExcitationOrder, Synchronous]],
+    lines: tuple[ExcitationOrder, ...],
+    top: float,
+    damped: bool,
+    clock: Clock,
+) -> CriticalResult:
     count = len(found)
     X = np.column_stack([root.vector for _, root in found]) if found else np.zeros((system.n, 0), complex)
     shapes = BasisShapes(system, [np.hstack([X.real, X.imag])])
@@ -156,19 +163,35 @@ def _result(
         value = root.eigenvalue
         table.append(
             CriticalSpeed(
-                line.name, float(speeds[k]), float(value.imag / (2.0 * np.pi)),
-                (float(-value.real / abs(value)) if damps else 0.0) + zeta, seen.whirl[k], share, share >= EXCITED, words[k],
+                line.name,
+                float(speeds[k]),
+                float(value.imag / (2.0 * np.pi)),
+                (float(-value.real / abs(value)) if damps else 0.0) + zeta,
+                seen.whirl[k],
+                share,
+                share >= EXCITED,
+                words[k],
                 root.residual,
             )
-        )  # fmt: skip
+        )
     clock.lap("energies")
     notes = list(left_out(system, top if damped else None))
     if not damped:
         notes = [note for note in notes if not note.startswith(("gyroscopic", "damping"))]
         notes.append("damping and circulatory terms: an undamped analysis")
     return CriticalResult(
-        model=system.model, damped=damped, top_speed=top, lines=lines, speeds=tuple(table),
-        shapes=shapes.stations @ coordinates, nodes=shapes.nodes, dofs=system.n, discretisation=pieces(system),
-        seconds=clock.total(), left_out=tuple(notes), warnings=tuple(system.nodes.merged),
-        method="eigenproblem in the speed, " + ("damped, root of Im s = p W" if damped else "undamped, counted by pivot signs"),
-    )  # fmt: skip
+        model=system.model,
+        damped=damped,
+        top_speed=top,
+        lines=lines,
+        speeds=tuple(table),
+        shapes=shapes.stations @ coordinates,
+        nodes=shapes.nodes,
+        dofs=system.n,
+        discretisation=pieces(system),
+        seconds=clock.total(),
+        left_out=tuple(notes),
+        warnings=tuple(system.nodes.merged),
+        method="eigenproblem in the speed, "
+        + ("damped, root of Im s = p W" if damped else "undamped, counted by pivot signs"),
+    )

@@ -26,7 +26,8 @@ from rotorgear.results.critical import CriticalMap
 from rotorgear.system.system import System
 
 # Decades below the softest and above the stiffest bearing of the model that the map covers.
-_DECADES, _POINTS = 2.0, 33
+_DECADES = 2.0
+_POINTS = 33
 
 
 def critical_map(
@@ -65,11 +66,17 @@ def critical_map(
     values = np.sort(np.asarray(stiffness if stiffness is not None else _default(own), float))
     if not values.size or not np.all(np.isfinite(values) & (values > 0.0)):
         raise AnalysisError("the support stiffness must be positive, in N/m")
-    top, clock = highest_speed(model, top_speed), Clock()
+    top = highest_speed(model, top_speed)
+    clock = Clock()
     stiffest = system_for_speeds(
-        with_radial_stiffness(model, float(values[-1])), [top], modes=None, fmax=line.frequency_hz(top), elements=elements,
-        accuracy=accuracy, progress=progress,
-    )  # fmt: skip
+        with_radial_stiffness(model, float(values[-1])),
+        [top],
+        modes=None,
+        fmax=line.frequency_hz(top),
+        elements=elements,
+        accuracy=accuracy,
+        progress=progress,
+    )
     clock.lap("mesh")
     rows: list[dict[str, list[float]]] = []
     for k, value in enumerate(values):
@@ -137,7 +144,8 @@ def with_radial_stiffness(model: Model, value: float) -> Model:
         given = bearing.table[len(bearing.table) // 2].stiffness if bearing.table else bearing.stiffness
         assert given is not None
         rows = np.array(given.as_rows())
-        rows[:2, :], rows[:, :2] = 0.0, 0.0
+        rows[:2, :] = 0.0
+        rows[:, :2] = 0.0
         rows[0, 0] = rows[1, 1] = value
         own = data["bearings"][name]
         own.pop("table", None)
@@ -151,5 +159,6 @@ def _default(own: dict[str, np.ndarray]) -> np.ndarray:
     present = present[present > 0.0]
     if not present.size:
         raise AnalysisError("no bearing has a radial stiffness, so there is none to vary")
-    low, high = np.log10(present.min()) - _DECADES, np.log10(present.max()) + _DECADES
+    low = np.log10(present.min()) - _DECADES
+    high = np.log10(present.max()) + _DECADES
     return np.logspace(low, high, _POINTS)

@@ -49,7 +49,8 @@ def roots(modes: SpeedModes, chains: Sequence[Chain], speeds: np.ndarray, branch
     values = np.array([measure(s, w) if np.isfinite(s) else np.nan for s, w in zip(chain.s, speeds, strict=True)])
     found = []
     for k in range(len(speeds) - 1):
-        low, high = values[k], values[k + 1]
+        low = values[k]
+        high = values[k + 1]
         if low * high < 0.0 or (high == 0.0 and low != 0.0):
             found.append(_root(modes, chain, branch, speeds[k : k + 2], (low, high), measure, k))
     return found
@@ -65,7 +66,8 @@ def _root(
     k: int,
 ) -> Root:
     (a, b), (fa, fb) = (float(ends[0]), float(ends[1])), values
-    s, q = chain.s[k], chain.q[k]
+    s = chain.s[k]
+    q = chain.q[k]
     for _ in range(60):
         w = b - fb * (b - a) / (fb - fa) if fb != fa else 0.5 * (a + b)
         share = (w - ends[0]) / (ends[1] - ends[0])
@@ -75,9 +77,14 @@ def _root(
         if f == 0.0 or abs(b - a) <= _CLOSE * max(abs(a), abs(b)) or abs(f) <= _CLOSE * abs(s):
             break
         if f * fb < 0.0:
-            a, fa, b, fb = b, fb, w, f
+            a = b
+            fa = fb
+            b = w
+            fb = f
         else:  # Illinois: the end that stays counts half
-            b, fb, fa = w, f, 0.5 * fa
+            b = w
+            fb = f
+            fa = 0.5 * fa
     return Root(branch, float(w), s, q)
 
 
@@ -105,7 +112,8 @@ def refined(pencil: Pencil, s: complex, q: np.ndarray) -> tuple[complex, np.ndar
         except np.linalg.LinAlgError:
             break
         change = np.vdot(q, q) / np.vdot(q, u)
-        s, q = s - change, u / np.linalg.norm(u)
+        s = s - change
+        q = u / np.linalg.norm(u)
         if abs(change) <= 1e-14 * abs(s):
             break
     return complex(s), q
@@ -159,9 +167,17 @@ def crossings(
         s = modes.damped(np.array([root.s]))[0]
         share = participation(line, seen, place)
         found.append(
-            Crossing(line.name, root.branch + 1, root.speed, float(s.imag) / (2.0 * np.pi), float(-s.real / abs(s)) + 0.0,
-                     seen.whirl[place], share, share >= EXCITED)
-        )  # fmt: skip
+            Crossing(
+                line.name,
+                root.branch + 1,
+                root.speed,
+                float(s.imag) / (2.0 * np.pi),
+                float(-s.real / abs(s)) + 0.0,
+                seen.whirl[place],
+                share,
+                share >= EXCITED,
+            )
+        )
     return tuple(sorted(found, key=lambda item: (abs(item.speed), item.frequency_hz)))
 
 

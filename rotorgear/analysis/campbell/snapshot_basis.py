@@ -26,7 +26,9 @@ TOLERANCE = 1e-9
 _NEGLIGIBLE = 1e-8
 _MOST_SNAPSHOTS = 65
 # More modes than asked for at every snapshot, so that those which come down with speed are known before they arrive.
-_SPARE, _SPARE_SHARE, _BEYOND_LIMIT = 6, 0.25, 1.15
+_SPARE = 6
+_SPARE_SHARE = 0.25
+_BEYOND_LIMIT = 1.15
 _STILL = 1e-5
 
 
@@ -77,7 +79,8 @@ class SpeedModes:
     """
 
     def __init__(self, system: System, low: float, high: float, request: Request, progress: Progress = silent) -> None:
-        self.system, self.request = system, request
+        self.system = system
+        self.request = request
         self.family = SpeedFamily(system, low, high)
         self._conservative = self.family.is_conservative
         self.snapshots: list[Snapshot] = []
@@ -100,7 +103,8 @@ class SpeedModes:
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences about groups of dofs that were solved apart or left out."""
-        motions, groups = dof_motions(self.system), [part.dofs for part in self._parts]
+        motions = dof_motions(self.system)
+        groups = [part.dofs for part in self._parts]
         chosen = [part.dofs for part in self._parts if part.space.size]
         return group_notes(motions, groups, chosen)
 
@@ -191,14 +195,16 @@ class SpeedModes:
     def _project(self) -> None:
         self._known.clear()
         for part, V in zip(self._parts, self.basis(), strict=True):
-            counts, sizes = [0], []
+            counts = [0]
+            sizes = []
             for snapshot in self.snapshots:
                 own = np.abs(snapshot.vectors[part.dofs]).max(axis=0, initial=0.0) > 0.0
                 counts.append(int(own.sum()))
                 sizes += [np.abs(snapshot.s[own])]
             size = np.concatenate(sizes) if sizes else np.zeros(0)
             if not part.space.size or not size.size:
-                part.family, part.count = self.family.reduced(V[:, :0]), 0
+                part.family = self.family.reduced(V[:, :0])
+                part.count = 0
                 continue
             part.family = self.family.reduced(V)
             part.shift, part.smallest = float(np.sqrt(size.min() * size.max())), _STILL * float(size.min())
@@ -222,7 +228,8 @@ class SpeedModes:
 
 def _size(system: System, speed: float) -> np.ndarray:
     """Weights of the dofs (n,): stiffness and inertia of each, the latter at a typical dof's own frequency."""
-    K, M = system.stiffness(speed).diagonal(), system.mass.diagonal()
+    K = system.stiffness(speed).diagonal()
+    M = system.mass.diagonal()
     both = (K > 0.0) & (M > 0.0)
     if not both.any():
         raise AnalysisError("nothing in the model has both stiffness and inertia: there is no vibration to follow")

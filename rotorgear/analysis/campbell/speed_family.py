@@ -35,7 +35,8 @@ class ReducedFamily:
 
     def at(self, speed: float) -> Pencil:
         """M, D and K at a speed in rad/s."""
-        D, K = self.damping + speed * self.gyroscopic, self.stiffness + speed * self.per_speed
+        D = self.damping + speed * self.gyroscopic
+        K = self.stiffness + speed * self.per_speed
         if len(self.knots):
             right = int(np.clip(np.searchsorted(self.knots, speed), 1, len(self.knots) - 1))
             left = right - 1
@@ -54,7 +55,8 @@ class SpeedFamily:
 
     def __init__(self, system: System, low: float, high: float) -> None:
         self.system = system
-        self.mass, self.gyroscopic = system.mass, system.gyroscopic
+        self.mass = system.mass
+        self.gyroscopic = system.gyroscopic
         beta = system.model.damping.rayleigh_beta
         self._constant = strain_forms(system.groups, system.dofs, 0.0, beta)
         self._per_speed = strain_forms(system.groups, system.dofs, 1.0, beta).circulation - self._constant.circulation
@@ -111,7 +113,8 @@ class SpeedFamily:
 
 
 def _whole_stiffness(group: ElementGroup) -> np.ndarray | None:
-    K, N = group.matrices.stiffness, group.matrices.circulatory
+    K = group.matrices.stiffness
+    N = group.matrices.circulatory
     return K if N is None else (N if K is None else K + N)
 
 

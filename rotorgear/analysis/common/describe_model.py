@@ -62,7 +62,8 @@ def _mass(system: System, shaft: str) -> tuple[float, float, float]:
         M = group.matrices.mass
         if M is None or group.shaft != shaft:
             continue
-        x, tz = np.arange(0, M.shape[1], 6), np.arange(5, M.shape[1], 6)
+        x = np.arange(0, M.shape[1], 6)
+        tz = np.arange(5, M.shape[1], 6)
         mass = float(M[:, x][:, :, x].sum())
         polar += float(M[:, tz][:, :, tz].sum())
         if group.part == f"shafts.{shaft}":
@@ -80,12 +81,19 @@ def _shaft(system: System, name: str, speed: float | None) -> ShaftRow:
 
 
 def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
-    model, mesh = system.model, system.model.meshes[name]
-    pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
+    model = system.model
+    mesh = system.model.meshes[name]
+    pinion = model.gears[mesh.pinion]
+    gear = model.gears[mesh.gear]
     forces = system.flow.of_mesh(name)
-    contact, line, pair = forces[0].contact, centre_line(model, name), mesh_pair(model, name)
-    damping = [float(group.matrices.viscosity[0, 0, 0]) for group in system.groups
-               if group.part == f"meshes.{name}" and group.matrices.viscosity is not None]  # fmt: skip
+    contact = forces[0].contact
+    line = centre_line(model, name)
+    pair = mesh_pair(model, name)
+    damping = [
+        float(group.matrices.viscosity[0, 0, 0])
+        for group in system.groups
+        if group.part == f"meshes.{name}" and group.matrices.viscosity is not None
+    ]
     teeth = pinion.teeth and gear.teeth
     return MeshRow(
         name=name,

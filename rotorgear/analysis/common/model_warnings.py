@@ -30,7 +30,8 @@ def _gears(system: System) -> Iterator[str]:
 def _meshes(system: System) -> Iterator[str]:
     model = system.model
     for name, mesh in model.meshes.items():
-        pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
+        pinion = model.gears[mesh.pinion]
+        gear = model.gears[mesh.gear]
         yield from (f"meshes.{name}: {sentence}" for sentence in mesh_findings(model, name))
         if pinion.lumped and pinion.teeth and gear.teeth:
             off = base_radius(gear) / base_radius(pinion) * pinion.teeth / gear.teeth - 1.0
@@ -41,7 +42,8 @@ def _meshes(system: System) -> Iterator[str]:
 
 
 def _train(system: System) -> Iterator[str]:
-    model, train = system.model, system.train
+    model = system.model
+    train = system.train
     for name in model.shafts:
         if train.ratios[name] == 0:
             by = f"nothing drives it from shaft '{train.reference}', so it stands still"

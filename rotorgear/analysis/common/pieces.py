@@ -12,6 +12,7 @@ def pieces(system: System) -> tuple[Piece, ...]:
     for shaft, elements in system.nodes.elements.items():
         for number in sorted({element.piece for element in elements}):
             own = [element for element in elements if element.piece == number]
-            start, end = system.nodes.z[own[0].left], system.nodes.z[own[-1].right]
+            start = system.nodes.z[own[0].left]
+            end = system.nodes.z[own[-1].right]
             found.append(Piece(shaft, start, end, len(own), own[0].order))
     return tuple(found)

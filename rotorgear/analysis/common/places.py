@@ -10,7 +10,8 @@ from rotorgear.system.system import System
 
 def part_nodes(system: System) -> dict[str, int]:
     """Node of every gear, disk and bearing by address; a herringbone with two nodes has one "left" and one "right"."""
-    model, nodes = system.model, system.nodes
+    model = system.model
+    nodes = system.nodes
     found = {}
     for name, gear in model.gears.items():
         places = node_positions(model, name)

@@ -16,8 +16,10 @@ def shapes_at_stations(system: System, q: np.ndarray) -> tuple[NodeTable, np.nda
     Between the nodes of a basic element the exact static shape is all there is, so it gets no stations.
     """
     count = len(system.nodes)
-    shafts, pedestals = list(system.nodes.shaft), list(system.nodes.pedestal)
-    positions, shapes = [system.positions()], [q[: 6 * count].reshape(count, 6, -1)]
+    shafts = list(system.nodes.shaft)
+    pedestals = list(system.nodes.pedestal)
+    positions = [system.positions()]
+    shapes = [q[: 6 * count].reshape(count, 6, -1)]
     for name, shaft in system.model.shafts.items():
         x, y = shaft.position or (0.0, 0.0)
         for rigid, order, elements in alike(system.model, system.nodes, name):

@@ -62,11 +62,18 @@ def accuracy_ladder(
         before = rungs[-1] if rungs and rungs[-1].family == family == "elements" else None
         rungs.append(
             Rung(
-                f"{setting:g} basic element{'s'[: setting != 1]} a piece" if family == "elements" else f"accuracy {setting:g}",
-                family, float(setting), result.dofs, seconds, error, float(np.max(result.error_estimate)),
+                f"{setting:g} basic element{'s'[: setting != 1]} a piece"
+                if family == "elements"
+                else f"accuracy {setting:g}",
+                family,
+                float(setting),
+                result.dofs,
+                seconds,
+                error,
+                float(np.max(result.error_estimate)),
                 _order(before, setting, error),
             )
-        )  # fmt: skip
+        )
     progress(1.0, "done")
     return AccuracyLadder(model.title or "model", "modal", words, len(truth), tuple(rungs))
 

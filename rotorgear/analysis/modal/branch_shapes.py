@@ -46,7 +46,8 @@ class BasisShapes:
 
     def coordinates(self, group: int, q: np.ndarray) -> np.ndarray:
         """Coordinates (r, m) in the whole basis of modes q (r_g, m) of one group, of modal mass 1."""
-        first, last = self.offsets[group], self.offsets[group + 1]
+        first = self.offsets[group]
+        last = self.offsets[group + 1]
         own = self.mass[first:last, first:last]
         norm = np.sqrt(np.abs(np.einsum("rm,rm->m", q.conj(), own @ q)))
         whole = np.zeros((int(self.offsets[-1]), q.shape[1]), complex)

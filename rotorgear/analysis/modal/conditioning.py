@@ -28,7 +28,8 @@ def conditioning_warnings(
         strain_energy: share of each part in the strain energy of each mode, part -> (m,).
     """
     elastic = np.flatnonzero(~rigid & (np.abs(s) > 0.0))
-    K, M = system.stiffness(speed or 0.0).diagonal(), system.mass.diagonal()
+    K = system.stiffness(speed or 0.0).diagonal()
+    M = system.mass.diagonal()
     ratio = np.where(M > 0.0, K / np.where(M > 0.0, M, 1.0), 0.0)
     if not elastic.size or not ratio.size:
         return ()
@@ -50,7 +51,8 @@ def conditioning_warnings(
 def stiffest_part(system: System, speed: float, dof: int) -> str:
     """Name the element that gives a free dof the most of its stiffness."""
     column = system.dofs.transform[:, [dof]].toarray()[:, 0]
-    best, words = 0.0, ""
+    best = 0.0
+    words = ""
     for group in system.groups_at(speed):
         K = group.matrices.stiffness
         if K is None:
@@ -58,7 +60,8 @@ def stiffest_part(system: System, speed: float, dof: int) -> str:
         share = np.diagonal(K, axis1=1, axis2=2) * column[group.dofs] ** 2
         k, local = np.unravel_index(np.argmax(share), share.shape)
         if share[k, local] > best:
-            best, words = float(share[k, local]), _described(system, group, int(k), int(local))
+            best = float(share[k, local])
+            words = _described(system, group, int(k), int(local))
     return words
 
 
@@ -70,7 +73,8 @@ def _described(system: System, group: ElementGroup, element: int, local: int) ->
         return f"{group.part} has {float(np.max(np.abs(group.matrices.modulus[element]))):.3g} {unit}"
     ends = [int(dof) // 6 for dof in group.dofs[element, [0, 6]]]
     own = next(item for item in system.nodes.elements[name] if [item.left, item.right] == ends)
-    number, count = own.section + 1, sum(item.piece == own.piece for item in system.nodes.elements[name])
+    number = own.section + 1
+    count = sum(item.piece == own.piece for item in system.nodes.elements[name])
     section = system.model.shafts[name].sections[own.section]
     whole = abs(own.length * count - section.length) <= 1e-9 * section.length
     z = system.nodes.z[own.left]

@@ -37,7 +37,8 @@ class DampedProblem:
 
 def by_strains(problem: DampedProblem, found: DampedModes) -> DampedModes:
     """The modes with eigenvalues from strain energies, which do not carry the rounding of the assembled stiffness."""
-    V, forms = found.vectors, problem.forms
+    V = found.vectors
+    forms = problem.forms
     S = forms.strain @ V
 
     def form(A: sp.sparray, X: np.ndarray) -> np.ndarray:
@@ -58,6 +59,7 @@ def by_strains(problem: DampedProblem, found: DampedModes) -> DampedModes:
 
 def relative_noise(problem: DampedProblem, size: np.ndarray, V: np.ndarray) -> np.ndarray:
     """Rounding that K q and s C q carry, relative to |s|^2 q^H M q, for |s| = size (m,) and M-normal V (n, m)."""
-    K, C = sp.csr_array(abs(problem.K_symmetric)), sp.csr_array(abs(problem.D - problem.inertial))
+    K = sp.csr_array(abs(problem.K_symmetric))
+    C = sp.csr_array(abs(problem.D - problem.inertial))
     size = np.maximum(size, 1e-150)  # its square is still a number
     return np.asarray(rounding_noise(K, V) / size**2 + rounding_noise(C, V) / size)

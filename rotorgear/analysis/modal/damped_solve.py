@@ -32,7 +32,8 @@ _ZERO = 1e-9  # a strain, or a gyroscopic term, of a rigid motion this much smal
 def damped_group(problem: DampedProblem, count: int | None, below: float | None) -> tuple[DampedModes, str]:
     """Return the damped modes of lowest |s|, and a word on the coordinates they were found in."""
     undamped = _undamped(problem, None, None)  # the softest modes suffer most
-    rigid, elastic = undamped.vectors[:, : undamped.rigid_count], undamped.eigenvalues[undamped.rigid_count :]
+    rigid = undamped.vectors[:, : undamped.rigid_count]
+    elastic = undamped.eigenvalues[undamped.rigid_count :]
     noise = relative_noise(problem, np.sqrt(elastic), undamped.vectors[:, undamped.rigid_count :])
     scale = float(np.sqrt(elastic[0])) if len(elastic) else None
     drift = _drift_noise(problem, rigid)
@@ -102,7 +103,9 @@ def _in_coordinates(
     problem: DampedProblem, rigid: np.ndarray, basis: np.ndarray, count: int | None, below: float | None
 ) -> DampedModes:
     assert problem.strain is not None
-    S, M, r = problem.strain, problem.M, rigid.shape[1]
+    S = problem.strain
+    M = problem.M
+    r = rigid.shape[1]
     squares, X = strain_ritz(lambda V: S @ V, _independent(M, rigid, basis))
     massless = np.flatnonzero(M.diagonal() <= 0.0)
     N = np.zeros((M.shape[0], massless.size))
@@ -120,9 +123,15 @@ def _in_coordinates(
     K = stiffness + strained.T @ (problem.forms.circulation @ strained)
     lowest = float(np.sqrt(squares[0])) if len(squares) else None
     found = damped_modes(
-        sp.csc_array(np.diag(inertia)), sp.csc_array(D), sp.csc_array(K), count=count, below=below,
-        rigid_vectors=np.eye(len(inertia))[:, :r], frequency_scale=lowest, dense=True,
-    )  # fmt: skip
+        sp.csc_array(np.diag(inertia)),
+        sp.csc_array(D),
+        sp.csc_array(K),
+        count=count,
+        below=below,
+        rigid_vectors=np.eye(len(inertia))[:, :r],
+        frequency_scale=lowest,
+        dense=True,
+    )
     return _restored(problem, whole, found, lowest or 1.0)
 
 
@@ -131,11 +140,14 @@ def _independent(M: sp.csc_array, rigid: np.ndarray, basis: np.ndarray) -> np.nd
 
     One column after the other: a soft mode that was turned among stiff ones would lose the accuracy of its small strains.
     """
-    mass, first = sp.csr_array(M), rigid.shape[1]
+    mass = sp.csr_array(M)
+    first = rigid.shape[1]
     kept = np.zeros((M.shape[0], first + basis.shape[1]), order="F")
-    kept[:, :first], k = rigid, first
+    kept[:, :first] = rigid
+    k = first
     for column in basis.T:
-        x, size = column, np.sqrt(max(column @ (mass @ column), 0.0))
+        x = column
+        size = np.sqrt(max(column @ (mass @ column), 0.0))
         for _ in range(3):
             if size == 0.0:
                 break
@@ -175,7 +187,8 @@ def _without_rounding(forms: StrainForms, whole: np.ndarray, rigid: int) -> np.n
 
 
 def _inertial(A: sp.csc_array, whole: np.ndarray, rigid: int) -> np.ndarray:
-    product, R = whole.T @ (A @ whole), whole[:, :rigid]
+    product = whole.T @ (A @ whole)
+    R = whole[:, :rigid]
     size = np.abs(R).T @ (abs(A) @ np.abs(R))
     product[:rigid, :rigid] = np.where(np.abs(product[:rigid, :rigid]) > _ZERO * size, product[:rigid, :rigid], 0.0)
     return np.asarray(product)
@@ -184,7 +197,8 @@ def _inertial(A: sp.csc_array, whole: np.ndarray, rigid: int) -> np.ndarray:
 def _restored(problem: DampedProblem, whole: np.ndarray, found: DampedModes, scale: float) -> DampedModes:
     """The modes in the coordinates of the dofs, with the residuals that they leave there."""
     V = whole @ found.vectors
-    V, values = V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])], found.eigenvalues.copy()
+    V = V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])]
+    values = found.eigenvalues.copy()
     quadratic = scaled(problem.M, problem.D, problem.K, scale)
     size = np.sqrt(np.maximum(np.real(np.einsum("ij,ij->j", V.conj(), problem.M @ V)), 1e-300))
     clean = ~found.rigid & (relative_noise(problem, np.abs(values), V / size) <= _CLEAN)
@@ -198,7 +212,13 @@ def _restored(problem: DampedProblem, whole: np.ndarray, found: DampedModes, sca
     V = V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])]
     errors = quadratic.residuals(values / quadratic.w0, V / quadratic.scale[:, None])
     return DampedModes(
-        eigenvalues=values, vectors=V, rigid=found.rigid, backward_error=errors, zero_count=found.zero_count,
-        complete=found.complete and whole.shape[1] == problem.K.shape[0], method=found.method, shift=found.shift,
+        eigenvalues=values,
+        vectors=V,
+        rigid=found.rigid,
+        backward_error=errors,
+        zero_count=found.zero_count,
+        complete=found.complete and whole.shape[1] == problem.K.shape[0],
+        method=found.method,
+        shift=found.shift,
         factorisations=found.factorisations,
-    )  # fmt: skip
+    )

@@ -42,7 +42,8 @@ def _line(system: System, shape: np.ndarray, ranked: list[tuple[float, tuple[str
         return "no inertia takes part"
     share, (shaft, motion) = ranked[0]
     mates = [item for item in ranked[1:] if item[1][1] == motion and item[0] >= _COMPANION * share]
-    text, total = f"{_name(shaft)}{motion}", share + sum(item[0] for item in mates)
+    text = f"{_name(shaft)}{motion}"
+    total = share + sum(item[0] for item in mates)
     together: list[str] = []
     against: list[str] = []
     for _, (name, _) in mates[:_MOST_NAMED]:

@@ -44,11 +44,15 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
             _add(strain, group.part, elastic)
             _add(strained, label, elastic)
     nothing = np.zeros(modes)
-    total, strained_total = sum(by_motion.values(), nothing), sum(strained.values(), nothing)
+    total = sum(by_motion.values(), nothing)
+    strained_total = sum(strained.values(), nothing)
     return Energies(
-        _shares(kinetic, total), _shares(strain, strained_total), _shares(by_motion, total),
-        _shares(strained, strained_total), _shares(by_shaft, total),
-    )  # fmt: skip
+        _shares(kinetic, total),
+        _shares(strain, strained_total),
+        _shares(by_motion, total),
+        _shares(strained, strained_total),
+        _shares(by_shaft, total),
+    )
 
 
 def _kinetic(group: ElementGroup, local: np.ndarray, motions: Iterable[str]) -> Iterable[tuple[str, np.ndarray]]:
@@ -64,7 +68,8 @@ def _kinetic(group: ElementGroup, local: np.ndarray, motions: Iterable[str]) -> 
 
 
 def _strain(group: ElementGroup, local: np.ndarray) -> Iterable[tuple[str, np.ndarray]]:
-    B, D = group.matrices.strain, group.matrices.modulus
+    B = group.matrices.strain
+    D = group.matrices.modulus
     if B is None or D is None:
         return
     strains = B @ local

@@ -24,7 +24,8 @@ def expected_modes(model: Model, limit: float) -> float:
                 continue
             material = model.material_of(name, section)
             outer, bore = section.stiffness_diameters()[:2]
-            area, inertia = np.pi / 4.0 * (outer**2 - bore**2), np.pi / 64.0 * (outer**4 - bore**4)
+            area = np.pi / 4.0 * (outer**2 - bore**2)
+            inertia = np.pi / 64.0 * (outer**4 - bore**4)
             waves = _waves(material.youngs_modulus, material.g, material.density, area, inertia, limit)
             used = sum(waves[motion] for motion in model.motions)
             count += used * section.length / np.pi
@@ -33,7 +34,8 @@ def expected_modes(model: Model, limit: float) -> float:
 
 def _waves(E: float, G: float, rho: float, area: float, inertia: float, w: float) -> dict[str, float]:
     """Sum of the real wave numbers in 1/m of each motion."""
-    bend, shear = E * inertia, _SHEAR * G * area
+    bend = E * inertia
+    shear = _SHEAR * G * area
     a = bend * shear
     b = (bend * rho * area + shear * rho * inertia) * w**2
     c = rho * area * w**2 * (rho * inertia * w**2 - shear)

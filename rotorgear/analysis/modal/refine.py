@@ -74,7 +74,8 @@ def _finer(system: System, piece: PieceKey, excess: float) -> tuple[int, int]:
     """Elements and order of a piece whose error is `excess` times its share."""
     shaft, number = piece
     own = [element for element in system.nodes.elements[shaft] if element.piece == number]
-    count, order = len(own), own[0].order
+    count = len(own)
+    order = own[0].order
     if system.model.shafts[shaft].mass_matrix == "lumped":
         return 2 * count, order
     if not np.isfinite(excess):  # a mode is finer than the mesh: nothing to extrapolate from yet

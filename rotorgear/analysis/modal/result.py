@@ -72,8 +72,10 @@ def _turned(shapes: np.ndarray) -> np.ndarray:
     if shapes.shape[2] == 0:
         return shapes
     mode = np.arange(shapes.shape[2])
-    everything, rows = shapes.reshape(-1, len(mode)), shapes[:, :3].reshape(-1, len(mode))
-    size, along = np.abs(everything), np.abs(rows)
+    everything = shapes.reshape(-1, len(mode))
+    rows = shapes[:, :3].reshape(-1, len(mode))
+    size = np.abs(everything)
+    along = np.abs(rows)
     moving = along.max(axis=0, initial=0.0) > 1e-9 * size.max(axis=0, initial=0.0)
     peak = np.where(moving, rows[along.argmax(axis=0), mode], everything[size.argmax(axis=0), mode])
     shapes *= np.where(peak != 0.0, np.conj(peak) / np.where(peak != 0.0, np.abs(peak), 1.0), 1.0)

@@ -71,7 +71,8 @@ def solve(system: System, wanted: Wanted) -> Modes:
 
 def _problem(system: System, speed: float | None) -> _Problem:
     at = speed or 0.0
-    skew, K = system.circulatory(at), system.stiffness(at)
+    skew = system.circulatory(at)
+    K = system.stiffness(at)
     D = system.velocity_terms(speed)
     total = sp.csc_array(K + skew) if skew.nnz else K
     damped = speed is not None and bool(system.damping(at).nnz)
@@ -100,7 +101,8 @@ def _part(whole: _Problem, group: np.ndarray, n: int) -> _Problem:
 
     D = None if whole.D is None else cut(whole.D)
     D = None if D is None or not D.nnz else D
-    K, K_symmetric = cut(whole.K), cut(whole.K_symmetric)
+    K = cut(whole.K)
+    K_symmetric = cut(whole.K_symmetric)
     S = None
     if whole.S is not None:
         S = sp.csr_array(sp.csc_array(whole.S)[:, group])
@@ -119,7 +121,8 @@ def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
         s = 1j * np.where(rigid, 0.0, np.sqrt(found.eigenvalues))
         highest = np.sqrt(max(found.sturm_shift, 0.0)) / (2.0 * np.pi)
         method = f"undamped, {found.method}, Sturm count {found.sturm_count} of {found.sturm_expected} below {highest:.6g} Hz"
-        vectors, errors = found.vectors, found.backward_error
+        vectors = found.vectors
+        errors = found.backward_error
         available: int | None = found.available
     else:
         s, vectors, rigid, errors, available, method = _damped(problem, wanted)
@@ -143,12 +146,18 @@ def _damped(
     D = sp.csc_array(problem.M.shape) if problem.D is None else problem.D
     found, coordinates = damped_group(
         DampedProblem(
-            problem.M, D, problem.K, problem.K_symmetric, problem.inertial, problem.S, problem.forms,
+            problem.M,
+            D,
+            problem.K,
+            problem.K_symmetric,
+            problem.inertial,
+            problem.S,
+            problem.forms,
             lambda count, below: _lowest(problem, count, below),
         ),
         wanted.modes,
         wanted.limit,
-    )  # fmt: skip
+    )
     worst = float(found.backward_error.max(initial=0.0))
     if worst > _LARGEST_RESIDUAL:
         raise ConvergenceError(

@@ -26,7 +26,8 @@ def orbits(system: System, inertia: np.ndarray, shapes: np.ndarray, shaft: str) 
     """
     numbers = system.nodes.on_shaft(shaft)
     weight = inertia.reshape(-1, 6)[numbers][:, [0, 3], None]
-    first, second = shapes[numbers][:, [0, 3]], shapes[numbers][:, [1, 4]]
+    first = shapes[numbers][:, [0, 3]]
+    second = shapes[numbers][:, [1, 4]]
     swept = -2.0 * np.sum(weight * np.imag(first.conj() * second), axis=1)
     size = np.sum(weight * (np.abs(first) ** 2 + np.abs(second) ** 2), axis=1)
     return swept, size
@@ -71,7 +72,8 @@ def whirl_words(
         if not name or shares[name] < _LEAST_BENDING or system.train.ratio(name) == 0.0:
             words.append("")
             continue
-        swept, size = swept_of[name][0][:, mode], swept_of[name][1][:, mode]
+        swept = swept_of[name][0][:, mode]
+        size = swept_of[name][1][:, mode]
         total = np.sum(np.abs(swept))
         if total < _PLANAR * np.sum(size):
             words.append("planar")

@@ -8,7 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 # Harmonics of a curve that count: up to this one, and not below this share of the strongest.
-HIGHEST, SMALLEST = 10, 0.01
+HIGHEST = 10
+SMALLEST = 0.01
 _NODES = 64
 
 
@@ -21,7 +22,8 @@ def harmonics_of_pieces(pieces: tuple[tuple[float, float, float], ...]) -> np.nd
     end = np.append(start[1:], 1.0)
     mean = float((0.5 * (first + last) * (end - start)).sum())
     w = 2.0 * np.pi * np.arange(1, HIGHEST + 1)[:, None]
-    a, b = np.exp(-1j * w * start), np.exp(-1j * w * end)
+    a = np.exp(-1j * w * start)
+    b = np.exp(-1j * w * end)
     slope = (last - first) / (end - start)
     return np.asarray(2.0 / mean * ((last * b - first * a) * 1j / w + (b - a) * slope / w**2).sum(axis=1))
 

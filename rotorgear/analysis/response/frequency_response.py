@@ -86,13 +86,24 @@ def frequency_response(
         estimate = float(np.max(np.abs(there - receptance[at]) / np.where(largest > 0.0, largest, 1.0)))
     progress(1.0, "done")
     return FrequencyResponse(
-        model=model, speed=turns, frequency_hz=hz, inputs=tuple(inputs), outputs=tuple(outputs), receptance=receptance,
-        damping_ratio=zeta, residual=residual, error_estimate=estimate, dofs=system.n, discretisation=pieces(system),
-        seconds={"total": time.perf_counter() - clock}, left_out=first.notes,
-        warnings=() if zeta or _is_damped(system, turns) else
-        ("nothing damps the model: heights near a resonance are those of the nearest frequency; give a damping",),
+        model=model,
+        speed=turns,
+        frequency_hz=hz,
+        inputs=tuple(inputs),
+        outputs=tuple(outputs),
+        receptance=receptance,
+        damping_ratio=zeta,
+        residual=residual,
+        error_estimate=estimate,
+        dofs=system.n,
+        discretisation=pieces(system),
+        seconds={"total": time.perf_counter() - clock},
+        left_out=first.notes,
+        warnings=()
+        if zeta or _is_damped(system, turns)
+        else ("nothing damps the model: heights near a resonance are those of the nearest frequency; give a damping",),
         method="direct sparse LU at every frequency",
-    )  # fmt: skip
+    )
 
 
 def _check(hz: np.ndarray, inputs: Sequence[str], outputs: Sequence[str], damping_ratio: float) -> None:
@@ -115,9 +126,11 @@ def _solved(
     plant: Plant, speed: float, hz: np.ndarray, inputs: list[np.ndarray], outputs: list[np.ndarray], progress: Progress
 ) -> tuple[np.ndarray, float]:
     """Receptances (f, o, i) and the largest relative residual."""
-    f, read = np.array(inputs).T, np.array(outputs)
+    f = np.array(inputs).T
+    read = np.array(outputs)
     dynamics = plant.dynamics(speed)
-    rows, worst = [], 0.0
+    rows = []
+    worst = 0.0
     with single_thread(plant.system.n):
         for k, value in enumerate(hz):
             if k % 10 == 0:

@@ -19,7 +19,8 @@ from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 # Up to this much above the highest excited frequency the mesh is refined, and modes get their damping ratio.
-MARGIN, DAMPED = 1.25, 1.5
+MARGIN = 1.25
+DAMPED = 1.5
 
 
 def plan_up_to(model: Model, fmax: float, elements: int | None, accuracy: float | None) -> Plan:

@@ -92,7 +92,8 @@ def _add(
 
 def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:
     """(shaft, size of its speed ratio, force per square of the reference speed) of every unbalance that turns."""
-    model, nodes = system.model, system.nodes
+    model = system.model
+    nodes = system.nodes
     for item in model.unbalances.values():
         ratio = system.train.ratio(item.shaft)
         if ratio == 0.0:
@@ -101,7 +102,8 @@ def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:
         f = np.zeros(system.dofs.transform.shape[0], complex)
         node = nodes.at(item.shaft, model.shafts[item.shaft].station(item.at))
         size = item.magnitude * ratio**2 * cmath.exp(1j * sense * item.phase)
-        f[6 * node], f[6 * node + 1] = size, -1j * sense * size
+        f[6 * node] = size
+        f[6 * node + 1] = -1j * sense * size
         yield item.shaft, abs(ratio), system.dofs.transform.T @ f
 
 

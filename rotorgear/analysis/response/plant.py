@@ -115,7 +115,8 @@ class Plant:
         beta = system.model.damping.rayleigh_beta
         for k, name in enumerate(system.model.bearings):
             group = own[f"bearings.{name}"]
-            m, columns = group.matrices, group.dofs[0]
+            m = group.matrices
+            columns = group.dofs[0]
             for term in (m.stiffness, m.circulatory):
                 if term is not None:
                     K[3 * k : 3 * k + 3, columns] += term[0][-6:-3]

@@ -28,7 +28,9 @@ from rotorgear.system.system import System
 
 METHODS = ("auto", "modal", "direct")
 # A run-up without speeds goes from a tenth of the operating speed to a fifth above it.
-LOWEST, HIGHEST, _POINTS = 0.1, 1.2, 221
+LOWEST = 0.1
+HIGHEST = 1.2
+_POINTS = 221
 
 
 def response(
@@ -86,18 +88,35 @@ def response(
     stacked = _stacked(run.readings)
     progress(1.0, "done")
     return ResponseResult(
-        model=model, speeds=chosen, orders=tuple(order.name for order in orders),
-        ratio=np.array([order.ratio for order in orders]), contact_mesh=setup.lines.names,
+        model=model,
+        speeds=chosen,
+        orders=tuple(order.name for order in orders),
+        ratio=np.array([order.ratio for order in orders]),
+        contact_mesh=setup.lines.names,
         contact_helix=np.array([state.contact.helix for state in setup.lines.states], dtype=int),
-        mean_force=setup.mean_force, mesh_force=stacked[0], transmission_error=stacked[1],
-        bearings=tuple(model.bearings), bearing_force=stacked[2], points=tuple(model.points), acceleration=stacked[3],
-        places=tuple(plant.places), displacement=stacked[4],
-        shape_speed=at, shapes=shapes, nodes=nodes, damping_ratio=zeta, solver_error=run.solver_error, checked=run.checked,
-        error_estimate=estimate, dofs=system.n, discretisation=pieces(system),
-        seconds={"total": time.perf_counter() - clock}, left_out=(*left, *setup.notes),
+        mean_force=setup.mean_force,
+        mesh_force=stacked[0],
+        transmission_error=stacked[1],
+        bearings=tuple(model.bearings),
+        bearing_force=stacked[2],
+        points=tuple(model.points),
+        acceleration=stacked[3],
+        places=tuple(plant.places),
+        displacement=stacked[4],
+        shape_speed=at,
+        shapes=shapes,
+        nodes=nodes,
+        damping_ratio=zeta,
+        solver_error=run.solver_error,
+        checked=run.checked,
+        error_estimate=estimate,
+        dofs=system.n,
+        discretisation=pieces(system),
+        seconds={"total": time.perf_counter() - clock},
+        left_out=(*left, *setup.notes),
         warnings=(*speed_warnings(plant, orders, chosen, (modes, w, zeta)), *parting(setup, stacked[0], chosen)),
         method=f"{run.method} ({how}: {why})",
-    )  # fmt: skip
+    )
 
 
 def _discretised(first: Setup, plan: Plan, orders: list[Order]) -> tuple[Setup, list[Order]]:

@@ -18,7 +18,9 @@ from rotorgear.solvers.sparse.factor import factor_symmetric, single_thread
 TOLERANCE = 1e-6
 # Above so many unknowns in all, the basis is cheaper than direct solutions.
 _DIRECT_UP_TO = 100_000
-_ROUNDS, _PER_ROUND, _SPEEDS_WHILE_GROWING = 40, 6, 24
+_ROUNDS = 40
+_PER_ROUND = 6
+_SPEEDS_WHILE_GROWING = 24
 # Modes up to this much above the highest frequency of an order are in its basis.
 _MODES_UP_TO = 1.5
 
@@ -74,7 +76,8 @@ class ModalSweep:
     def __init__(self, plant: Plant, orders: list[Order], speeds: np.ndarray, modes: np.ndarray) -> None:
         self.plant, self.orders, self.speeds = plant, orders, np.asarray(speeds, float)
         top = max(order.ratio for order in orders) * float(np.max(np.abs(self.speeds)))
-        M, K = plant.system.mass, plant.system.stiffness(float(self.speeds[-1]))
+        M = plant.system.mass
+        K = plant.system.stiffness(float(self.speeds[-1]))
         self.scale = np.sqrt(np.abs(K.diagonal()) + (0.1 * top) ** 2 * np.abs(M.diagonal()))
         shifted = factor_symmetric((K + (0.3 * top) ** 2 * M).tocsc())
         loads = np.hstack([plant.loads(orders, float(self.speeds[-1]))[1]])
@@ -82,7 +85,8 @@ class ModalSweep:
         self.basis = orthonormal(np.zeros((plant.system.n, 0)), np.hstack([modes, shifted.solve(patterns)]), self.scale)
         self._projection: tuple[Projected, Projected] | None = None
         self.modes = modes.shape[1]
-        self.checked, self.error = 0, np.inf
+        self.checked = 0
+        self.error = np.inf
 
     def reduced(self, dynamics: Dynamics, speed: float) -> Projected:
         """The projection at a speed: put together from two speeds where nothing but W G and W K changes."""
@@ -123,7 +127,8 @@ class ModalSweep:
 
     def check(self, points: list[tuple[float, int]]) -> float:
         """Largest relative error at some (speed, order) against direct solutions, which join the basis where it is too large."""
-        new, error = [], 0.0
+        new = []
+        error = 0.0
         for speed, order in points:
             w, q, _ = self.solve(speed)
             f = self.plant.loads(self.orders, speed)[1][:, [order]]
@@ -157,14 +162,18 @@ def modal_sweep(
     `modes` are shapes (n, m) and w (m,) in rad/s. Slow orders get along with few of them.
     """
     shapes, w = modes
-    readings, error, checked, sizes = [], 0.0, 0, []
+    readings = []
+    error = 0.0
+    checked = 0
+    sizes = []
     with single_thread(plant.system.n):
         for number, order in enumerate(orders):
             top = _MODES_UP_TO * order.ratio * float(np.max(np.abs(speeds)))
             sweep = ModalSweep(plant, [order], speeds, shapes[:, w <= top])
             share = _Share(progress, number, len(orders), order.name)
             readings.append(_swept(sweep, order.name, share))
-            error, checked = max(error, sweep.error), checked + sweep.checked
+            error = max(error, sweep.error)
+            checked = checked + sweep.checked
             sizes.append((sweep.modes, sweep.basis.shape[1] - sweep.modes))
     most, added = max(sizes)
     method = f"modal, up to {most} modes and {added} static and direct solutions as basis of an order"
@@ -186,10 +195,13 @@ class _Share:
 
 def _swept(sweep: ModalSweep, name: str, progress: Callable[[float], None]) -> list[Readings]:
     """Readings of one order at every speed, when the basis has been proved where its residual is largest."""
-    plant, orders, speeds = sweep.plant, sweep.orders, sweep.speeds
+    plant = sweep.plant
+    orders = sweep.orders
+    speeds = sweep.speeds
     sweep.grow(lambda fraction, _: progress(fraction))
     for _ in range(_ROUNDS):
-        readings, residuals = [], []
+        readings = []
+        residuals = []
         for k, speed in enumerate(speeds):
             if k % 10 == 0:
                 progress(0.35 + 0.6 * k / len(speeds))

@@ -132,8 +132,10 @@ class _Neighbourhood:
     excitation_tolerance: float
 
     def match(self, line: RigLine, mode: int) -> Match:
-        frequency, damping = float(self.modes.frequency_hz[mode]), float(self.modes.damping_ratio[mode])
-        miss, uncertainty = abs(frequency - line.frequency_hz), line.uncertainty_hz
+        frequency = float(self.modes.frequency_hz[mode])
+        damping = float(self.modes.damping_ratio[mode])
+        miss = abs(frequency - line.frequency_hz)
+        uncertainty = line.uncertainty_hz
         return Match(
             rig=line,
             mode_number=mode + 1,
@@ -205,7 +207,8 @@ def _check_settings(tolerance: float, excitation_tolerance: float, samples: int)
 def _band(rig_hz: NDArray[np.float64], tolerance: float, band: tuple[float, float] | None) -> tuple[float, float]:
     if band is None:
         return float(rig_hz[0]) / (1.0 + tolerance), float(rig_hz[-1]) * (1.0 + tolerance)
-    low, high = float(band[0]), float(band[1])
+    low = float(band[0])
+    high = float(band[1])
     if not (0.0 < low < high < np.inf and low <= rig_hz[0] and rig_hz[-1] <= high):
         lines = f"{rig_hz[0]:g} to {rig_hz[-1]:g} Hz"
         raise AnalysisError(

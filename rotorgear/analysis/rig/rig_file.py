@@ -176,7 +176,8 @@ class _Table:
         uncertainty, is_share = values.get("uncertainty", (None, False))
         if uncertainty is not None and is_share:
             uncertainty *= frequency
-        label, damping = given.get("label", ("", ""))[0], values.get("damping", (None, False))[0]
+        label = given.get("label", ("", ""))[0]
+        damping = values.get("damping", (None, False))[0]
         try:
             line = RigLine(frequency, label, uncertainty, damping)
         except ModelError as error:

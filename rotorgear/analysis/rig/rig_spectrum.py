@@ -19,7 +19,9 @@ def compare_spectrum(
 ) -> RigSpectrum:
     """Put the nearest spectral line within a relative tolerance beside each rig line, and say why where there is none."""
     excitations = excitation_lines(result.model, float(result.speed[-1]))
-    near, sources, reasons = [], [], []
+    near = []
+    sources = []
+    reasons = []
     for line in rig:
         error = np.abs(lines.frequency_hz / line.frequency_hz - 1.0)
         best = int(np.argmin(error)) if error.size else -1
@@ -29,9 +31,16 @@ def compare_spectrum(
         reasons.append("" if found else _reason(line.frequency_hz, excitations, tolerance))
     f, a = np.array(near).T if near else np.zeros((2, 0))
     return RigSpectrum(
-        lines.name, lines.unit, np.array([line.frequency_hz for line in rig]), tuple(line.label or "" for line in rig),
-        f, a, tuple(sources), tuple(reasons), tolerance,
-    )  # fmt: skip
+        lines.name,
+        lines.unit,
+        np.array([line.frequency_hz for line in rig]),
+        tuple(line.label or "" for line in rig),
+        f,
+        a,
+        tuple(sources),
+        tuple(reasons),
+        tolerance,
+    )
 
 
 def _reason(frequency: float, excitations: Sequence[ExcitationLine], tolerance: float) -> str:

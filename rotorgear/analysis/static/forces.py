@@ -23,7 +23,9 @@ def forces_on_gears(found: Equilibrated) -> np.ndarray:
 
 def _inner(group: ElementGroup, q: np.ndarray) -> np.ndarray:
     """Force that an element's own strains put on its dofs, (e, d)."""
-    B, D, Z = group.matrices.strain, group.matrices.modulus, group.matrices.circulation
+    B = group.matrices.strain
+    D = group.matrices.modulus
+    Z = group.matrices.circulation
     parts = [part for part in (D, Z) if part is not None]
     if B is None or not parts:
         return np.zeros(group.dofs.shape)

@@ -28,7 +28,8 @@ class Sensitivity:
 
 def sensitivities(found: Equilibrated) -> Sensitivity:
     """Return the derivatives of all contact forces."""
-    lines, active = found.lines, np.where(found.closed, found.lines.stiffness, 0.0)
+    lines = found.lines
+    active = np.where(found.closed, found.lines.stiffness, 0.0)
     approach = lines.vectors.T @ found.q
     count = len(active)
     names: list[str] = []
@@ -69,7 +70,9 @@ def _solved(
 ) -> Sensitivity:
     active = np.where(found.closed, found.lines.stiffness, 0.0)
     # Round-off of a stiffness term on the free motions is no load; a term that really pushes one has no derivative.
-    kept, dropped, columns = [], [], []
+    kept = []
+    dropped = []
+    columns = []
     for k, right in enumerate(rights.T):
         try:
             columns.append(found.solver.solve(right[:, None])[:, 0])

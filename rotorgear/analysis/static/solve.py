@@ -129,7 +129,8 @@ def outer_loads(system: System) -> np.ndarray:
 
 
 def _circulatory(group: ElementGroup, speed: float) -> np.ndarray | None:
-    plain, turning = group.matrices.circulatory, group.matrices.circulatory_per_speed
+    plain = group.matrices.circulatory
+    turning = group.matrices.circulatory_per_speed
     if turning is None or not group.spin * speed:
         return plain
     return group.spin * speed * turning if plain is None else plain + group.spin * speed * turning
@@ -141,12 +142,15 @@ def without_torsion_to_ground(system: System, groups: list[ElementGroup]) -> tup
     They stand for machines that turn as well, whose torque is among the loads. Where a support holds a shaft of the same
     part of the train fixed in torsion, nothing turns, and they stay.
     """
-    train, model = system.train, system.model
+    train = system.train
+    model = system.model
     held = {train.group[s.shaft] for s in model.supports.values() if {"torsion", "all"} & set(s.fixed)}
-    kept, notes = [], []
+    kept = []
+    notes = []
     for group in groups:
         table = group.part.partition(".")[0]
-        B, D = group.matrices.strain, group.matrices.modulus
+        B = group.matrices.strain
+        D = group.matrices.modulus
         turns = bool(group.shaft) and train.ratios.get(group.shaft, 0) != 0 and train.group[group.shaft] not in held
         if table not in ("bearings", "supports") or not turns or B is None or D is None:
             kept.append(group)
@@ -156,7 +160,8 @@ def without_torsion_to_ground(system: System, groups: list[ElementGroup]) -> tup
             kept.append(group)
             continue
         cut = D.copy()
-        cut[:, twist, :], cut[:, :, twist] = 0.0, 0.0
+        cut[:, twist, :] = 0.0
+        cut[:, :, twist] = 0.0
         kept.append(replace(group, matrices=replace(group.matrices, modulus=cut)))
         notes.append(f"{group.part}: its torsional stiffness to ground; the shaft turns, and the loads hold its torque")
     return kept, tuple(notes)
@@ -168,7 +173,8 @@ def _placed(system: System, R: np.ndarray, q: np.ndarray) -> np.ndarray:
         return q
     node = int(system.nodes.on_shaft(system.model.reference_shaft)[0])
     rows = 6 * node + np.arange(6)
-    move, here = system.dofs.expand(R)[rows], system.dofs.expand(q)[rows]
+    move = system.dofs.expand(R)[rows]
+    here = system.dofs.expand(q)[rows]
     return np.asarray(q - R @ np.linalg.lstsq(move, here, rcond=1e-9)[0])
 
 
@@ -181,7 +187,8 @@ def _mechanism(system: System, R: np.ndarray, f: np.ndarray) -> str:
     if held.max() > 1e-6 * moved.max():
         moved = held
     node, dof = np.unravel_index(int(np.argmax(moved)), moved.shape)
-    shaft, name = system.nodes.shaft[int(node)], DOF_NAMES[int(dof)]
+    shaft = system.nodes.shaft[int(node)]
+    name = DOF_NAMES[int(dof)]
     remedy = {"z": "an axial bearing or a fixed support", "torsion": "loads that balance, or a mesh or coupling"}
     return (
         f"the model is a mechanism in statics: nothing holds shaft '{shaft}' in {name}, and the loads push it; "

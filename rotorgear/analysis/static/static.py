@@ -97,7 +97,8 @@ def _estimate(found: Equilibrated, speed: float) -> float:
 def _result(
     found: Equilibrated, speed: float | None, change: Sensitivity, estimate: float, start: float
 ) -> StaticResult:
-    system, states = found.system, found.lines.states
+    system = found.system
+    states = found.lines.states
     q = system.dofs.expand(found.q)
     nodes, moved = shapes_at_stations(system, q[:, None])
     phases = mesh_phases(system.model, system.train, system.flow, system.direction)

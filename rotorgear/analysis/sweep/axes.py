@@ -77,7 +77,8 @@ def number_in(axis: Axis, value: float | str, what: str) -> float:
 
 
 def _numbers(address: str, texts: Sequence[float | str]) -> tuple[list[float], str]:
-    numbers, units = [], []
+    numbers = []
+    units = []
     for text in texts:
         match = _NUMBER.match(text) if isinstance(text, str) else None
         if isinstance(text, str) and match is None:

@@ -39,7 +39,8 @@ class Job:
 
 def waves(shape: Sequence[int], directions: Sequence[str], starts: int) -> list[list[Job]]:
     """Jobs by wave: all at once for runs from states of their own; along the first parameter for "up" and "down"."""
-    first, rest = shape[0], int(np.prod(shape[1:], dtype=int))
+    first = shape[0]
+    rest = int(np.prod(shape[1:], dtype=int))
     found: list[list[Job]] = [[] for _ in range(first if set(directions) & {"up", "down"} else 1)]
     run = 0
     for direction in directions:
@@ -104,7 +105,8 @@ class Workers:
     """Runs the blocks of a wave on all cores, or by an executor of the caller's; results come in the order of the blocks."""
 
     def __init__(self, workers: int | None, executor: Pool | None) -> None:
-        self._stop, self._asked = Event(), 0
+        self._stop = Event()
+        self._asked = 0
         self._own = None if executor else ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1)
         self._executor: Any = executor or self._own
         self._waiting: deque[Any] = deque()
@@ -132,7 +134,8 @@ class Workers:
         """Yield the orbits of each block, in order; `heard` is told about which share of all is done, every second."""
         work = partial(run_jobs, go_on=self.go_on) if self._own else run_jobs
         self._asked, total = 0, sum(plan.questions(own[0].system.turns) for own, _, plan in tasks) if self._own else 0
-        rest, waiting = iter(tasks), self._waiting
+        rest = iter(tasks)
+        waiting = self._waiting
         while True:
             room = getattr(self._executor, "ahead", len(tasks)) - len(waiting)
             waiting.extend(self._executor.submit(work, *task) for task in islice(rest, max(0, room)))

@@ -18,7 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 LONGEST = 32
-TOLERANCE, CHAOS = 0.02, 0.02
+TOLERANCE = 0.02
+CHAOS = 0.02
 _SMALLEST = 0.05e-6  # m, peak to peak
 _SAME_RANGE = 0.1
 # Of the spread of all x: scatter is no wider among every k-th of few than among all of them, periods are.
@@ -26,9 +27,11 @@ _APART = 0.5
 _GROWTH = 5.0
 # Batches of consecutive periods whose means are taken as independent.
 _BATCHES = 16
-CHAOTIC, QUASI_PERIODIC, NOT_SETTLED, NOT_PERIODIC, FAILED = (
-    "chaotic", "quasi-periodic", "not settled", "not periodic", "failed",
-)  # fmt: skip
+CHAOTIC = "chaotic"
+QUASI_PERIODIC = "quasi-periodic"
+NOT_SETTLED = "not settled"
+NOT_PERIODIC = "not periodic"
+FAILED = "failed"
 
 
 @dataclass(frozen=True)
@@ -82,7 +85,8 @@ def classify(
 
 def period_of(x: np.ndarray, extent: np.ndarray, tolerance: float = TOLERANCE) -> int:
     """Least number of common periods after which x (p, c) repeats; 0 where it does not."""
-    allowed, spread = tolerance * np.maximum(extent, _SMALLEST), np.ptp(x, axis=0)
+    allowed = tolerance * np.maximum(extent, _SMALLEST)
+    spread = np.ptp(x, axis=0)
     allowed = np.where(spread > allowed, np.minimum(allowed, _APART * spread), allowed)
     for k in range(1, min(LONGEST, len(x) // 3) + 1):
         if all(np.all(np.ptp(x[j::k], axis=0) <= allowed) for j in range(k)):

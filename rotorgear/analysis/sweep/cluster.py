@@ -16,7 +16,8 @@ from rotorgear.errors import AnalysisError, MissingExtraError, RotorgearError
 # Seconds that a scheduler, or its first worker, gets to answer.
 TIMEOUT = 10.0
 # Seconds between two looks whether any worker is left, and looks without one after which a run is given up.
-_LOOK, _PATIENCE = 5.0, 12
+_LOOK = 5.0
+_PATIENCE = 12
 # Blocks that are sent for each thread of the workers: enough to keep them busy, and no more to lie in the scheduler's memory.
 _AHEAD = 3
 _MOST_LOCAL = 256
@@ -54,7 +55,9 @@ class Cluster:
     """An executor: `submit(function, *arguments)` returns an object with `result()` and `cancel()`."""
 
     def __init__(self, client: Any, own: tuple[Any, ...], address: str, timeout: float) -> None:
-        self.client, self.address, self._own = client, address, own
+        self.client = client
+        self.address = address
+        self._own = own
         self._logger = logging.getLogger("distributed.client")
         self._level = self._logger.level
         if own:  # what goes wrong is said once, in a sentence
@@ -73,7 +76,8 @@ class Cluster:
 
     def close(self) -> None:
         """Leave the scheduler, and end what was started here."""
-        own, self._own = self._own, ()
+        own = self._own
+        self._own = ()
         for one in own:
             one.close()
         if own:
@@ -122,7 +126,8 @@ class Block:
     """Work that some worker does."""
 
     def __init__(self, owner: Cluster, future: Any) -> None:
-        self._owner, self._future = owner, future
+        self._owner = owner
+        self._future = future
 
     def cancel(self) -> None:
         """Give it up; what a worker has begun it ends, and nobody hears of it."""

@@ -17,8 +17,17 @@ from rotorgear.results.sweep import SweepResult
 from rotorgear.solvers.lanes.lanes import Orbit
 
 _TABLES = (
-    "peak_to_peak", "amplitude", "rms", "mean_force", "rms_force", "largest_force", "driving", "apart", "back", "losses",
-)  # fmt: skip
+    "peak_to_peak",
+    "amplitude",
+    "rms",
+    "mean_force",
+    "rms_force",
+    "largest_force",
+    "driving",
+    "apart",
+    "back",
+    "losses",
+)
 
 # Sizes of a motion beyond which it counts as one without bounds.
 _FAR = 1e4
@@ -39,10 +48,13 @@ def gathered(
     """Return the result."""
     sound = [p for p in points if p is not None]
     contact = sound[0].contact
-    p, r, c = len(points), len(request.runs), len(contact)
+    p = len(points)
+    r = len(request.runs)
+    c = len(contact)
     t = max((o.growth.shape[1] for o in orbits.values()), default=0)
     section = np.full((p, r, request.count, c, 2), np.nan)
-    exponent, error = np.full((p, r, t), np.nan), np.full((p, r, t), np.nan)
+    exponent = np.full((p, r, t), np.nan)
+    error = np.full((p, r, t), np.nan)
     tables = {name: np.full((p, r, c), np.nan) for name in _TABLES}
     motion = [FAILED] * (p * r)
     failed = list(failure)
@@ -83,19 +95,35 @@ def gathered(
         [q.stiffness if q is not None and q.contact == contact else np.full(c, np.nan) for q in points]
     )
     return SweepResult(
-        model=model, address=tuple(axis.address for axis in axes), unit=tuple(axis.unit for axis in axes),
-        values=np.array(values, dtype=float), shape=np.array([len(axis.values) for axis in axes]), run=request.runs,
+        model=model,
+        address=tuple(axis.address for axis in axes),
+        unit=tuple(axis.unit for axis in axes),
+        values=np.array(values, dtype=float),
+        shape=np.array([len(axis.values) for axis in axes]),
+        run=request.runs,
         contact=contact,
         frequency=np.array([q.system.w / (2.0 * np.pi) if q else np.nan for q in points]),
-        turns=np.array([q.system.turns if q else 0 for q in points]), section=section, motion=tuple(motion),
-        lyapunov=exponent, lyapunov_error=error, static_force=static,
-        static_deflection=static / np.where(stiffness > 0.0, stiffness, np.nan), failure=tuple(failed), steps=steps,
-        settle=request.settle, count=request.count, tolerance=request.tolerance, chaos=request.chaos,
-        dofs=max(q.system.n for q in sound), seconds=laps, method="Runge-Kutta of order 4 in lanes of 32 points",
+        turns=np.array([q.system.turns if q else 0 for q in points]),
+        section=section,
+        motion=tuple(motion),
+        lyapunov=exponent,
+        lyapunov_error=error,
+        static_force=static,
+        static_deflection=static / np.where(stiffness > 0.0, stiffness, np.nan),
+        failure=tuple(failed),
+        steps=steps,
+        settle=request.settle,
+        count=request.count,
+        tolerance=request.tolerance,
+        chaos=request.chaos,
+        dofs=max(q.system.n for q in sound),
+        seconds=laps,
+        method="Runge-Kutta of order 4 in lanes of 32 points",
         warnings=notes(axes, points, failed, motion, request.settle, orbits) + _reduction(reduction, request),
-        portraits=None, reduction=reduction,
+        portraits=None,
+        reduction=reduction,
         **tables,
-    )  # fmt: skip
+    )
 
 
 def _size(point: Point) -> float:
@@ -110,14 +138,20 @@ def _indicators(sums: np.ndarray, steps: int) -> dict[str, np.ndarray]:
     from rotorgear.solvers.lanes import kernel_parts as k
 
     total = np.maximum(sums[:, [k.DRIVING, k.APART, k.BACK]].sum(axis=1), 1.0)
-    force, d = sums[:, k.F_SUM] / total, sums[:, k.D_SUM] / total
+    force = sums[:, k.F_SUM] / total
+    d = sums[:, k.D_SUM] / total
     return {
-        "peak_to_peak": sums[:, k.X_MAX] - sums[:, k.X_MIN], "amplitude": sums[:, k.D_MAX] - sums[:, k.D_MIN],
-        "rms": np.sqrt(np.maximum(sums[:, k.D_SQUARES] / total - d**2, 0.0)), "mean_force": force,
-        "rms_force": np.sqrt(np.maximum(sums[:, k.F_SQUARES] / total - force**2, 0.0)), "largest_force": sums[:, k.F_MAX],
-        "driving": sums[:, k.DRIVING] / total, "apart": sums[:, k.APART] / total, "back": sums[:, k.BACK] / total,
+        "peak_to_peak": sums[:, k.X_MAX] - sums[:, k.X_MIN],
+        "amplitude": sums[:, k.D_MAX] - sums[:, k.D_MIN],
+        "rms": np.sqrt(np.maximum(sums[:, k.D_SQUARES] / total - d**2, 0.0)),
+        "mean_force": force,
+        "rms_force": np.sqrt(np.maximum(sums[:, k.F_SQUARES] / total - force**2, 0.0)),
+        "largest_force": sums[:, k.F_MAX],
+        "driving": sums[:, k.DRIVING] / total,
+        "apart": sums[:, k.APART] / total,
+        "back": sums[:, k.BACK] / total,
         "losses": sums[:, k.LOSSES] / total * steps,
-    }  # fmt: skip
+    }
 
 
 def _reduction(found: Reduction | None, request: Request) -> tuple[str, ...]:

@@ -12,7 +12,8 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.sweep_ladder import SweepLadder, SweepRung
 
-STEPS, COUNTS = (50, 100, 200, 400), (50, 200, 800)
+STEPS = (50, 100, 200, 400)
+COUNTS = (50, 200, 800)
 _SETTLE = 300
 # Far enough apart for chaos to forget, near enough to stay with one motion.
 _THROW = 1e-3
@@ -54,13 +55,22 @@ def sweep_ladder(
         worst = int(np.argmax(found.peak_to_peak[0].mean(axis=0)))
         exponents = found.lyapunov[0, :, 0]
         scatter = exponents.std(ddof=1) if np.ptp(exponents) else 0.0
-        sizes, factors = found.peak_to_peak[0, :, worst], found.dynamic_factor[0, :, worst]
+        sizes = found.peak_to_peak[0, :, worst]
+        factors = found.dynamic_factor[0, :, worst]
         rungs.append(
             SweepRung(
-                n, count, found.seconds["integration"] / starts, float(exponents.mean()), float(scatter),
-                float(np.median(found.lyapunov_error[0, :, 0])), float(sizes.mean()), float(sizes.std(ddof=1)),
-                float(factors.mean()), float(factors.std(ddof=1)), tuple(sorted(set(found.motion))),
+                n,
+                count,
+                found.seconds["integration"] / starts,
+                float(exponents.mean()),
+                float(scatter),
+                float(np.median(found.lyapunov_error[0, :, 0])),
+                float(sizes.mean()),
+                float(sizes.std(ddof=1)),
+                float(factors.mean()),
+                float(factors.std(ddof=1)),
+                tuple(sorted(set(found.motion))),
             )
-        )  # fmt: skip
+        )
     progress(1.0, "done")
     return SweepLadder(model.title or "model", starts, tuple(rungs))

@@ -66,11 +66,24 @@ def idle(axes: Sequence[Axis], points: Sequence[Point | None]) -> list[Axis]:
 
 def _digest(point: Point) -> bytes:
     """All that a point's motion depends on."""
-    system, columns = point.system, point.system.columns
+    system = point.system
+    columns = point.system.columns
     parts = (
-        system.K, system.D, system.load, system.B, system.rest, columns.gap, columns.mode, columns.stiffness, columns.damping,
-        columns.backlash, columns.ramp, columns.push, system.own.forces.parameters, np.array([system.w, system.turns]),
-    )  # fmt: skip
+        system.K,
+        system.D,
+        system.load,
+        system.B,
+        system.rest,
+        columns.gap,
+        columns.mode,
+        columns.stiffness,
+        columns.damping,
+        columns.backlash,
+        columns.ramp,
+        columns.push,
+        system.own.forces.parameters,
+        np.array([system.w, system.turns]),
+    )
     return hashlib.blake2b(b"".join([*(np.ascontiguousarray(part).tobytes() for part in parts), point.shape])).digest()
 
 

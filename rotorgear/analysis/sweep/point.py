@@ -62,8 +62,18 @@ class Point:
         c = self.system.columns
         own = self.system.own.forces
         names = tuple(type(law).__name__ for law in own.laws)
-        return (self.system.n, c.gap.tobytes(), c.mode.tobytes(), c.mesh.tobytes(), len(self.system.rigid),
-                self.system.turns, self.contact, names, own.parameters_first.tobytes(), own.state_first.tobytes())  # fmt: skip
+        return (
+            self.system.n,
+            c.gap.tobytes(),
+            c.mode.tobytes(),
+            c.mesh.tobytes(),
+            len(self.system.rigid),
+            self.system.turns,
+            self.contact,
+            names,
+            own.parameters_first.tobytes(),
+            own.state_first.tobytes(),
+        )
 
 
 @dataclass(frozen=True)
@@ -87,7 +97,8 @@ class PointMaker:
     """
 
     def __init__(self, wanted: Wanted | None = None, elements: int | None = None) -> None:
-        self._wanted, self._elements = wanted or Wanted(), elements
+        self._wanted = wanted or Wanted()
+        self._elements = elements
         self._known: dict[str, Still | Large] = {}
         self._free: tuple[bytes, np.ndarray] = (b"", np.zeros((0, 0)))
 
@@ -192,7 +203,8 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     )
     drift = known.rest.drift
     drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
-    shape, mesh = b"".join(shape_of(law) for law in laws), columns.mesh
+    shape = b"".join(shape_of(law) for law in laws)
+    mesh = columns.mesh
     return Point(
         system,
         local.forces,
@@ -228,7 +240,8 @@ def table_of(point: Point, steps: int) -> np.ndarray:
             k, _, e, slope, push = state.T
             mean = law.mean().stiffness
             table[:, at, STIFFNESS] = k / mean if mean else 1.0
-            table[:, at, ERROR], table[:, at, SLOPE] = e, slope / point.order
+            table[:, at, ERROR] = e
+            table[:, at, SLOPE] = slope / point.order
             table[:, at, PUSH] = push / law.impact if law.impact else 0.0
         elif isinstance(law, TorqueCurve):
             table[:, at, PUSH] = -state[:, 0] / law.torque if law.torque else 0.0

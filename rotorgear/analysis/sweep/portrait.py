@@ -20,7 +20,8 @@ from rotorgear.solvers.lanes.trajectory import recorded
 
 MOST_PORTRAITS = 16
 # Common periods: enough that subharmonics stand apart, fewer where the common period is long.
-_LONGEST, _SHORTEST = 64, 8
+_LONGEST = 64
+_SHORTEST = 8
 _MOST_RECORDS = 100_000
 # Records in a period of the fastest mesh that are kept at least.
 _FEWEST = 20
@@ -50,7 +51,8 @@ def _nearest(value: float | str | Sequence[float], axes: Sequence[Axis]) -> int:
         raise AnalysisError(f"portrait: got '{value}', expected {what} of {' and '.join(a.address for a in axes)}")
     place = 0
     for axis, part in zip(axes, parts, strict=True):
-        number, all_of = number_in(axis, part, "portrait"), np.array(axis.values)
+        number = number_in(axis, part, "portrait")
+        all_of = np.array(axis.values)
         if not all_of.min() - 1e-9 * abs(all_of.min()) <= number <= all_of.max() + 1e-9 * abs(all_of.max()):
             raise AnalysisError(
                 f"portrait: got '{part}', expected {axis.address} from {all_of.min():g} to {all_of.max():g} {axis.unit}".rstrip()

@@ -22,7 +22,9 @@ _ASIDE = 0.005
 _PARTING = 3
 # Coefficients of a tabulated stiffness below this share of the largest do not count.
 _SMALL = 0.02
-_SPEEDS, _GRID, _NATURAL = 16, 48, 96
+_SPEEDS = 16
+_GRID = 48
+_NATURAL = 96
 
 
 def harmonics(law: LocalLaw) -> int:

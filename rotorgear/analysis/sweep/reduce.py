@@ -81,25 +81,40 @@ class Reducer:
         """
         begun = time.perf_counter()
         first = max(points, key=lambda point: abs(point.speed))
-        local, scale = first.local, scale_of(first.local)
+        local = first.local
+        scale = scale_of(first.local)
         among = candidates(local, _loads(points), _acting(local), _CANDIDATES)
         top = float(rates(local.forces.laws, first.speed).max())
         probes = probes_for(local.forces.laws, [point.speed for point in points], among.w, first.modal_ratio)
         full = full_receptances(local, probes)
-        choice = self._chosen(among, lambda begin: choose(
-            among, full, probes, scale, self._wanted.error, MOST_COORDINATES, begin, self._wanted.modes, heard
-        ))  # fmt: skip
+        choice = self._chosen(
+            among,
+            lambda begin: choose(
+                among, full, probes, scale, self._wanted.error, MOST_COORDINATES, begin, self._wanted.modes, heard
+            ),
+        )
         complete = choice.basis.shape[1] == local.n  # what is left then is rounding
         if self._wanted.modes is None and not (complete or choice.error <= self._wanted.error):
             raise AnalysisError(_refusal(local.n, choice, self._wanted.error, top))
         own, V = reduced(local, among, choice.basis)
         shapes = Shapes.of(V, local.M, top)
         self._modes = choice.modes
-        self.found.append(Reduction(
-            local.n, own.n, len(choice.modes), float(among.w[choice.modes].max(initial=0.0)) / (2.0 * np.pi), among.rigid,
-            own.n - len(choice.modes) - among.rigid, choice.closed, choice.apart, top / (2.0 * np.pi), probes.count, 1,
-            time.perf_counter() - begun,
-        ))  # fmt: skip
+        self.found.append(
+            Reduction(
+                local.n,
+                own.n,
+                len(choice.modes),
+                float(among.w[choice.modes].max(initial=0.0)) / (2.0 * np.pi),
+                among.rigid,
+                own.n - len(choice.modes) - among.rigid,
+                choice.closed,
+                choice.apart,
+                top / (2.0 * np.pi),
+                probes.count,
+                1,
+                time.perf_counter() - begun,
+            )
+        )
         return [
             Reduced(replace(own, load=V.T @ point.local.load, forces=point.local.forces), shapes) for point in points
         ]

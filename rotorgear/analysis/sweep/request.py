@@ -105,11 +105,13 @@ def steps_of(points: Sequence[Point | None], wanted: int | None) -> tuple[np.nda
     Without a wanted number: so many that the highest frequency is followed, from 200 on, in classes 2^(1/2) apart, so that few
     different numbers occur.
     """
-    steps, refused = np.zeros(len(points), dtype=np.int64), {}
+    steps = np.zeros(len(points), dtype=np.int64)
+    refused = {}
     for i, point in enumerate(points):
         if point is None:
             continue
-        needed, least = steps_needed(point.system), steps_stable(point.system)
+        needed = steps_needed(point.system)
+        least = steps_stable(point.system)
         if wanted is not None:
             steps[i] = wanted
             if wanted < least:

@@ -25,7 +25,8 @@ def shrunk(
         if isinstance(point, Large):
             groups.setdefault(point.key, []).append(i)
     done: list[Point | None] = [None if isinstance(point, Large) else point for point in points]
-    reasons, reducer = list(failure), Reducer(wanted)
+    reasons = list(failure)
+    reducer = Reducer(wanted)
     for number, members in enumerate(groups.values()):
         own = [point for point in (points[i] for i in members) if isinstance(point, Large)]
         text = f"basis {number + 1} of {len(groups)}: " if len(groups) > 1 else "basis: "
@@ -38,5 +39,6 @@ def shrunk(
                 done[i] = ready_reduced(large, found)
         except RotorgearError as error:
             for i in members:
-                done[i], reasons[i] = None, str(error)
+                done[i] = None
+                reasons[i] = str(error)
     return done, reasons, reducer.summary

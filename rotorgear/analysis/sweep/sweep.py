@@ -84,16 +84,31 @@ def sweep(
         AnalysisError: a request that makes no sense, or a model that sweeps don't take. Points that fail alone are kept as such.
     """
     begun = clock.perf_counter()
-    request = Request(direction, starts, settle, count, exponents, steps, tolerance, chaos, seed, throw, modes,
-                      reduction_error, elements)  # fmt: skip
+    request = Request(
+        direction,
+        starts,
+        settle,
+        count,
+        exponents,
+        steps,
+        tolerance,
+        chaos,
+        seed,
+        throw,
+        modes,
+        reduction_error,
+        elements,
+    )
     axes = [axis_of(address, values) for address, values in over.items()]
-    values, wanted = points_of(axes), wanted_points(portraits, axes)
+    values = points_of(axes)
+    wanted = wanted_points(portraits, axes)
     with single_thread(0):
         models, large, failure = _ready(model, axes, values, change, request, progress)
         points, failure, reduction = shrunk(large, failure, request.reduction, progress, _READY)
         chosen, refused = steps_of(points, steps)
         for i, reason in refused.items():
-            points[i], failure[i] = None, reason
+            points[i] = None
+            failure[i] = reason
         if all(point is None for point in points):
             raise RotorgearError(next(filter(None, failure)))
         laps = {"points": clock.perf_counter() - begun}
@@ -129,7 +144,9 @@ def _ready(
     failure: list[str] = []
     for i, value in enumerate(values):
         progress(_READY * i / len(values), f"point {i + 1} of {len(values)}")
-        point, reason, text = None, "", repr(value)
+        point = None
+        reason = ""
+        text = repr(value)
         try:
             own = change(model, value) if change else family.at(value)  # type: ignore[union-attr]
             text = own.model_dump_json(exclude_none=True)
@@ -155,11 +172,13 @@ def _run(
     """Run all jobs; blocks that were kept by an interrupted sweep are taken over."""
     found: dict[tuple[int, int], Orbit] = {}
     plans = waves(shape, request.directions, request.starts)
-    total, done = sum(len(jobs) for jobs in plans), 0
+    total = sum(len(jobs) for jobs in plans)
+    done = 0
     with pool:
         for jobs in plans:
             grouped = list(blocks(jobs, points, steps))
-            old, kept = kept[: len(grouped)], kept[len(grouped) :]
+            old = kept[: len(grouped)]
+            kept = kept[len(grouped) :]
             for block, chunk in zip(grouped, old, strict=False):
                 found.update(zip([job.key for job in block], unpacked(chunk), strict=True))
                 done += len(block)
@@ -174,7 +193,8 @@ def _run(
                     int(steps[block[0].point]), request.settle, request.count, min(request.exponents, _most(own[0]))
                 )
                 tasks.append(([p.bare for p in own], states, plan))
-            begun, runs = done, sum(map(len, rest))
+            begun = done
+            runs = sum(map(len, rest))
 
             def heard(share: float, begun: int = begun, runs: int = runs) -> None:
                 part = (begun + share * runs) / total

@@ -36,9 +36,12 @@ def mesh_dynamic_factor(model: Model, name: str, base_force: float | None) -> Dy
         return "K_v: give accuracy_grade of both gears"
     if not speed or not base_force:
         return "K_v: give the speed and the load of the operating point"
-    teeth, order = tooth_pair(model, name), (mesh.pinion, mesh.gear)
+    teeth = tooth_pair(model, name)
+    order = (mesh.pinion, mesh.gear)
     if teeth.first.teeth > teeth.second.teeth:
-        teeth, order, grades = teeth.swapped(), order[::-1], grades[::-1]
+        teeth = teeth.swapped()
+        order = order[::-1]
+        grades = grades[::-1]
     spin = abs(walk(model)[0].ratio(model.gears[order[0]].shaft) * speed)
     line_load = mesh.application_factor * base_force * math.cos(teeth.first.transverse_pressure_angle) / teeth.width
     velocity = 0.5 * teeth.first.reference_diameter * spin
@@ -64,14 +67,21 @@ def _method_b(
     relief: float,
 ) -> DynamicMesh:
     """Inputs of method B from the pair, pinion first; deviations are those of the tolerance classes."""
-    g1, g2 = teeth.first, teeth.second
+    g1 = teeth.first
+    g2 = teeth.second
     stiffness = pair_iso_stiffness(teeth, line_load)
     classes = [(gear, grade) for gear, grade in zip((g1, g2), grades, strict=True) if grade is not None]
     return DynamicMesh(
-        pinion_teeth=g1.teeth, ratio=g2.teeth / g1.teeth, pinion_speed=spin, pitch_line_velocity=velocity,
-        total_contact_ratio=teeth.pair.total_contact_ratio, line_load=line_load, single_stiffness=stiffness.single,
+        pinion_teeth=g1.teeth,
+        ratio=g2.teeth / g1.teeth,
+        pinion_speed=spin,
+        pitch_line_velocity=velocity,
+        total_contact_ratio=teeth.pair.total_contact_ratio,
+        line_load=line_load,
+        single_stiffness=stiffness.single,
         mesh_stiffness=stiffness.mesh_alpha,
         reduced_mass=reduced_mass(inertias[0], inertias[1], g1.base_radius, g2.base_radius, teeth.width),
         base_pitch_deviation=max(base_pitch_deviation(*item) for item in classes),
-        profile_deviation=max(profile_form_deviation(*item) for item in classes), tip_relief=relief,
-    )  # fmt: skip
+        profile_deviation=max(profile_form_deviation(*item) for item in classes),
+        tip_relief=relief,
+    )

@@ -69,28 +69,60 @@ def gear_sheet(model: Model, mesh: str | None = None) -> GearSheet:
 def _gear(name: str, gear: Gear) -> GearRow:
     g = gear_geometry(gear)
     assert g is not None
-    outline, own, ball, k = tooth_outline(g), allowance(gear), ball_diameter(gear, g), best_span(g)
-    thick, thin = with_allowance(g, own.upper), with_allowance(g, own.lower)
+    outline = tooth_outline(g)
+    own = allowance(gear)
+    ball = ball_diameter(gear, g)
+    k = best_span(g)
+    thick = with_allowance(g, own.upper)
+    thin = with_allowance(g, own.lower)
     return GearRow(
-        name=name, kind=gear.kind, hand=gear.hand, teeth=g.teeth, normal_module_m=g.normal_module,
-        normal_pressure_angle_deg=math.degrees(g.normal_pressure_angle), helix_angle_deg=math.degrees(g.helix_angle),
-        profile_shift=g.profile_shift, addendum_factor=g.addendum_factor, dedendum_factor=g.dedendum_factor,
-        root_radius_factor=g.tool_tip_radius_factor, face_width_m=gear.width or 0.0,
-        transverse_module_m=g.transverse_module, transverse_pressure_angle_deg=math.degrees(g.transverse_pressure_angle),
-        base_helix_angle_deg=math.degrees(g.base_helix_angle), lead_m=g.lead if g.helix_angle else None,
-        reference_diameter_m=g.reference_diameter, base_diameter_m=2.0 * g.base_radius,
-        tip_diameter_m=g.effective_tip_diameter, root_diameter_m=g.root_diameter, form_diameter_m=2.0 * outline.form_radius,
-        undercut=outline.undercut, virtual_teeth=g.virtual_teeth, normal_thickness_m=normal_thickness(g),
-        tip_thickness_m=g.normal_tip_thickness, upper_thickness_allowance_m=own.upper, lower_thickness_allowance_m=own.lower,
-        span_teeth=k, span_m=g.base_tangent_length(k), span_upper_m=thick.base_tangent_length(k),
-        span_lower_m=thin.base_tangent_length(k), span_least_width_m=span_width(g, k), ball_diameter_m=ball,
-        over_balls_m=over_balls(g, ball), over_balls_upper_m=over_balls(thick, ball), over_balls_lower_m=over_balls(thin, ball),
-        tip_relief_m=gear.tip_relief, tip_relief_diameter_m=gear.tip_relief_diameter, warnings=tuple(check_gear(g)),
-    )  # fmt: skip
+        name=name,
+        kind=gear.kind,
+        hand=gear.hand,
+        teeth=g.teeth,
+        normal_module_m=g.normal_module,
+        normal_pressure_angle_deg=math.degrees(g.normal_pressure_angle),
+        helix_angle_deg=math.degrees(g.helix_angle),
+        profile_shift=g.profile_shift,
+        addendum_factor=g.addendum_factor,
+        dedendum_factor=g.dedendum_factor,
+        root_radius_factor=g.tool_tip_radius_factor,
+        face_width_m=gear.width or 0.0,
+        transverse_module_m=g.transverse_module,
+        transverse_pressure_angle_deg=math.degrees(g.transverse_pressure_angle),
+        base_helix_angle_deg=math.degrees(g.base_helix_angle),
+        lead_m=g.lead if g.helix_angle else None,
+        reference_diameter_m=g.reference_diameter,
+        base_diameter_m=2.0 * g.base_radius,
+        tip_diameter_m=g.effective_tip_diameter,
+        root_diameter_m=g.root_diameter,
+        form_diameter_m=2.0 * outline.form_radius,
+        undercut=outline.undercut,
+        virtual_teeth=g.virtual_teeth,
+        normal_thickness_m=normal_thickness(g),
+        tip_thickness_m=g.normal_tip_thickness,
+        upper_thickness_allowance_m=own.upper,
+        lower_thickness_allowance_m=own.lower,
+        span_teeth=k,
+        span_m=g.base_tangent_length(k),
+        span_upper_m=thick.base_tangent_length(k),
+        span_lower_m=thin.base_tangent_length(k),
+        span_least_width_m=span_width(g, k),
+        ball_diameter_m=ball,
+        over_balls_m=over_balls(g, ball),
+        over_balls_upper_m=over_balls(thick, ball),
+        over_balls_lower_m=over_balls(thin, ball),
+        tip_relief_m=gear.tip_relief,
+        tip_relief_diameter_m=gear.tip_relief_diameter,
+        warnings=tuple(check_gear(g)),
+    )
 
 
 def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ...]) -> MeshSheetRow:
-    g1, g2, pair, mesh = teeth.first, teeth.second, teeth.pair, model.meshes[name]
+    g1 = teeth.first
+    g2 = teeth.second
+    pair = teeth.pair
+    mesh = model.meshes[name]
     backlash = mesh_backlash(model, name)
     lines = contact_line_length(teeth, (np.arange(_POSITIONS) + 0.5) / _POSITIONS)
     iso = pair_iso_stiffness(teeth)
@@ -100,30 +132,51 @@ def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ..
     dynamic = mesh_dynamic_factor(model, name, force * base or None)
     factor = dynamic if isinstance(dynamic, DynamicFactor) else None
     return MeshSheetRow(
-        name=name, pinion=mesh.pinion, gear=mesh.gear, ratio=g2.teeth / g1.teeth, centre_distance_m=pair.centre_distance,
+        name=name,
+        pinion=mesh.pinion,
+        gear=mesh.gear,
+        ratio=g2.teeth / g1.teeth,
+        centre_distance_m=pair.centre_distance,
         reference_centre_distance_m=standard_centre_distance(g1, g2),
-        profile_shift_sum=profile_shift_sum(g1, g2, pair.centre_distance), common_width_m=teeth.width,
-        helices=helix_count(model, name), working_pressure_angle_deg=math.degrees(pair.working_transverse_pressure_angle),
-        working_helix_angle_deg=math.degrees(pair.working_helix_angle), base_helix_angle_deg=math.degrees(pair.base_helix_angle),
-        transverse_contact_ratio=pair.transverse_contact_ratio, overlap_ratio=pair.overlap_ratio,
-        total_contact_ratio=pair.total_contact_ratio, base_pitch_m=teeth.base_pitch, approach_length_m=-pair.start_of_contact,
-        recess_length_m=pair.end_of_contact, working_pitch_diameter_m=_pitch_diameters(teeth),
+        profile_shift_sum=profile_shift_sum(g1, g2, pair.centre_distance),
+        common_width_m=teeth.width,
+        helices=helix_count(model, name),
+        working_pressure_angle_deg=math.degrees(pair.working_transverse_pressure_angle),
+        working_helix_angle_deg=math.degrees(pair.working_helix_angle),
+        base_helix_angle_deg=math.degrees(pair.base_helix_angle),
+        transverse_contact_ratio=pair.transverse_contact_ratio,
+        overlap_ratio=pair.overlap_ratio,
+        total_contact_ratio=pair.total_contact_ratio,
+        base_pitch_m=teeth.base_pitch,
+        approach_length_m=-pair.start_of_contact,
+        recess_length_m=pair.end_of_contact,
+        working_pitch_diameter_m=_pitch_diameters(teeth),
         active_root_diameter_m=pair.active_root_diameters(g1, g2),
         tip_clearance_m=(_clearance(g1, g2, pair.centre_distance), _clearance(g2, g1, pair.centre_distance)),
-        transverse_backlash_m=pair.transverse_backlash, normal_backlash_least_m=backlash.least,
-        normal_backlash_mean_m=backlash.mean, normal_backlash_most_m=backlash.most,
-        least_contact_line_m=float(lines.min()), mean_contact_line_m=mean_contact_line_length(teeth),
-        largest_contact_line_m=float(lines.max()), iso_theoretical_stiffness_n_per_m2=iso.theoretical,
-        iso_single_stiffness_n_per_m2=iso.single, iso_mesh_stiffness_n_per_m2=iso.mesh_alpha,
-        iso_lead_stiffness_n_per_m2=iso.mesh_beta, stiffness_model=curve.model, stiffness_n_per_m=curve.mean_normal,
-        stiffness_peak_to_peak_n_per_m=curve.peak_to_peak / base**2, stiffness_definition=curve.definition,
-        stiffness_body=curve.body, pitch_line_velocity_m_per_s=_velocity(model, mesh.pinion, g1),
+        transverse_backlash_m=pair.transverse_backlash,
+        normal_backlash_least_m=backlash.least,
+        normal_backlash_mean_m=backlash.mean,
+        normal_backlash_most_m=backlash.most,
+        least_contact_line_m=float(lines.min()),
+        mean_contact_line_m=mean_contact_line_length(teeth),
+        largest_contact_line_m=float(lines.max()),
+        iso_theoretical_stiffness_n_per_m2=iso.theoretical,
+        iso_single_stiffness_n_per_m2=iso.single,
+        iso_mesh_stiffness_n_per_m2=iso.mesh_alpha,
+        iso_lead_stiffness_n_per_m2=iso.mesh_beta,
+        stiffness_model=curve.model,
+        stiffness_n_per_m=curve.mean_normal,
+        stiffness_peak_to_peak_n_per_m=curve.peak_to_peak / base**2,
+        stiffness_definition=curve.definition,
+        stiffness_body=curve.body,
+        pitch_line_velocity_m_per_s=_velocity(model, mesh.pinion, g1),
         tangential_force_n=force * base * math.cos(g1.transverse_pressure_angle) if force else None,
         base_tangential_force_n=force * base if force else None,
-        dynamic_factor=factor.value if factor else None, resonance_ratio=factor.resonance_ratio if factor else None,
+        dynamic_factor=factor.value if factor else None,
+        resonance_ratio=factor.resonance_ratio if factor else None,
         dynamic_factor_method=dynamic if isinstance(dynamic, str) else dynamic.method,
         warnings=(*mesh_findings(model, name), *curve.warnings, *(_of_factor(model, name, factor) if factor else ())),
-    )  # fmt: skip
+    )
 
 
 def _of_factor(model: Model, name: str, factor: DynamicFactor) -> Iterator[str]:

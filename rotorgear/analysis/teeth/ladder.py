@@ -88,16 +88,27 @@ def _run(teeth: ToothPair, load: float, progress: Progress) -> _Run:
 
 
 def _rung(name: str, teeth: ToothPair, run: _Run, truth: MeshCycle, load: float) -> MeshRung:
-    k, error = run.cycle.secant, run.cycle.deflection
+    k = run.cycle.secant
+    error = run.cycle.deflection
     size = teeth.fe.mesh_size(teeth.width / teeth.first.normal_module, space=in_space(teeth)[0])
     return MeshRung(
-        name, size.elements, size.face, run.problem.unknowns, run.fe_seconds, run.contact_seconds, float(k.mean()),
-        float(np.ptp(k)), float(np.ptp(error)), _errors(k, error, truth), _estimate(name, teeth, k, error, load),
-    )  # fmt: skip
+        name,
+        size.elements,
+        size.face,
+        run.problem.unknowns,
+        run.fe_seconds,
+        run.contact_seconds,
+        float(k.mean()),
+        float(np.ptp(k)),
+        float(np.ptp(error)),
+        _errors(k, error, truth),
+        _estimate(name, teeth, k, error, load),
+    )
 
 
 def _errors(k: np.ndarray, error: np.ndarray, truth: MeshCycle) -> MeshErrors:
-    other, other_error = truth.secant, truth.deflection
+    other = truth.secant
+    other_error = truth.deflection
     return MeshErrors(
         abs(float(k.mean()) / float(other.mean()) - 1.0),
         abs(float(np.ptp(k)) / float(np.ptp(other)) - 1.0),

@@ -23,7 +23,8 @@ from rotorgear.results.mesh import HelixContact, LoadPoint, MeshErrors, MeshResu
 
 POSITIONS = 64
 # More positions or periods than these are a slip of the keyboard.
-_MOST_POSITIONS, _MOST_PERIODS = 4096, 256
+_MOST_POSITIONS = 4096
+_MOST_PERIODS = 256
 
 
 @dataclass(frozen=True)
@@ -184,11 +185,32 @@ def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> 
     clock.lap("stiffness")
     width = request.teeth.width if request.teeth else model.gears[model.meshes[request.name].pinion].width or 0.0
     return MeshResult(
-        model.title, request.name, model.meshes[request.name].pinion, model.meshes[request.name].gear, curve.model, None,
-        curve.definition, curve.body, request.helices, width, curve.base_helix_angle, model.meshes[request.name].stagger,
-        request.load, curve.position, curve.transverse, curve.tangent, error, None if error is None else np.zeros(len(error)),
-        (), None, 0, sum(clock.laps.values()), clock.laps, (), curve.warnings,
-    )  # fmt: skip
+        model.title,
+        request.name,
+        model.meshes[request.name].pinion,
+        model.meshes[request.name].gear,
+        curve.model,
+        None,
+        curve.definition,
+        curve.body,
+        request.helices,
+        width,
+        curve.base_helix_angle,
+        model.meshes[request.name].stagger,
+        request.load,
+        curve.position,
+        curve.transverse,
+        curve.tangent,
+        error,
+        None if error is None else np.zeros(len(error)),
+        (),
+        None,
+        0,
+        sum(clock.laps.values()),
+        clock.laps,
+        (),
+        curve.warnings,
+    )
 
 
 def _result(
@@ -210,17 +232,50 @@ def _result(
             "preview: slices along the face do not feel each other, which is tens of percent off in the ripple of a helical pair"
         )
     return MeshResult(
-        model.title, request.name, mesh.pinion, mesh.gear, "tooth_fe", teeth.fe.preset, "secant", found.problem.body,
-        request.helices, teeth.width, teeth.pair.base_helix_angle, mesh.stagger, request.load, u, found.stiffness, found.tangent,
-        found.error, found.no_load, tuple(_helix(cycle, teeth) for cycle in found.cycles), errors, found.problem.unknowns,
-        sum(clock.laps.values()), clock.laps, loads, tuple(dict.fromkeys(notes)),
-    )  # fmt: skip
+        model.title,
+        request.name,
+        mesh.pinion,
+        mesh.gear,
+        "tooth_fe",
+        teeth.fe.preset,
+        "secant",
+        found.problem.body,
+        request.helices,
+        teeth.width,
+        teeth.pair.base_helix_angle,
+        mesh.stagger,
+        request.load,
+        u,
+        found.stiffness,
+        found.tangent,
+        found.error,
+        found.no_load,
+        tuple(_helix(cycle, teeth) for cycle in found.cycles),
+        errors,
+        found.problem.unknowns,
+        sum(clock.laps.values()),
+        clock.laps,
+        loads,
+        tuple(dict.fromkeys(notes)),
+    )
 
 
 def _helix(cycle: MeshCycle, teeth: ToothPair) -> HelixContact:
     s = cycle.slices
     return HelixContact(
-        cycle.secant, cycle.tangent, cycle.deflection, cycle.no_load, cycle.share_by_pair(), cycle.contact_ratio,
-        teeth.pair.total_contact_ratio, s.position, s.pair, s.z @ s.weight, s.length / np.cos(teeth.pair.base_helix_angle),
-        np.stack([roll @ s.weight for roll in s.roll], axis=-1), cycle.force, cycle.strip, cycle.pressure,
-    )  # fmt: skip
+        cycle.secant,
+        cycle.tangent,
+        cycle.deflection,
+        cycle.no_load,
+        cycle.share_by_pair(),
+        cycle.contact_ratio,
+        teeth.pair.total_contact_ratio,
+        s.position,
+        s.pair,
+        s.z @ s.weight,
+        s.length / np.cos(teeth.pair.base_helix_angle),
+        np.stack([roll @ s.weight for roll in s.roll], axis=-1),
+        cycle.force,
+        cycle.strip,
+        cycle.pressure,
+    )

@@ -100,7 +100,8 @@ def _with(teeth: ToothPair, fe: dict[str, object]) -> ToothPair:
 def _load(model: Model, name: str, torque: float | None) -> tuple[MeshLoad | None, int]:
     """Load and sense of the torque on the pinion."""
     pinion = model.gears[model.meshes[name].pinion]
-    lever, cosine = base_radius(pinion), math.cos(base_helix_angle(pinion))
+    lever = base_radius(pinion)
+    cosine = math.cos(base_helix_angle(pinion))
     if torque is not None:
         if torque == 0.0 or not math.isfinite(torque):
             raise AnalysisError(f"--torque: got {torque:g} N m, expected one that is not zero")
@@ -111,7 +112,8 @@ def _load(model: Model, name: str, torque: float | None) -> tuple[MeshLoad | Non
         return None, 1
     speed = model.operation.speed if model.operation else None
     forces = torque_flow(model, train, -1 if speed is not None and speed < 0.0 else 1).of_mesh(name)
-    normal, sense = sum(force.normal_force for force in forces), forces[0].torque_sense
+    normal = sum(force.normal_force for force in forces)
+    sense = forces[0].torque_sense
     if not normal:
         return None, sense
     base = normal * cosine

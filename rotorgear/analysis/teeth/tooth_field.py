@@ -71,19 +71,28 @@ def _gear(
 ) -> ToothField:
     key = _key(teeth, gear)
     solution = solve_teeth(key, _loads(problem, cycle, gear), progress)
-    module, E = problem.module, (teeth.first_body, teeth.second_body)[gear].youngs_modulus
+    module = problem.module
+    E = (teeth.first_body, teeth.second_body)[gear].youngs_modulus
     # A plane model carries the force of a unit width.
     thickness = module if key.width else teeth.width
-    stretch, strength = 1.0 / (E * thickness), 1.0 / (thickness * module)
+    stretch = 1.0 / (E * thickness)
+    strength = 1.0 / (thickness * module)
     stress = [solution.pitch.stress(u) for u in solution.displacement]
     mises, largest = (strength * np.concatenate([part[i] for part in stress]) for i in (0, 1))
     fillet = np.concatenate([part[1][solution.pitch.fillet] for part in stress])
     points, moved = _placed(solution, problem, teeth, at, gear)
-    cells, n = _vtk_cells(solution, flipped=gear == 0 and bool(key.width)), len(solution.pitch.points)
+    cells = _vtk_cells(solution, flipped=gear == 0 and bool(key.width))
+    n = len(solution.pitch.points)
     return ToothField(
-        name, module * points, np.concatenate([cells + i * n for i in range(len(solution.teeth))]),
-        np.repeat(solution.teeth, n), stretch * moved, mises, largest, strength * float(fillet.max()),
-    )  # fmt: skip
+        name,
+        module * points,
+        np.concatenate([cells + i * n for i in range(len(solution.teeth))]),
+        np.repeat(solution.teeth, n),
+        stretch * moved,
+        mises,
+        largest,
+        strength * float(fillet.max()),
+    )
 
 
 def _loads(problem: ContactProblem, cycle: MeshCycle, gear: int) -> dict[int, np.ndarray]:
@@ -103,19 +112,24 @@ def _placed(
     solution: TeethSolution, problem: ContactProblem, teeth: ToothPair, at: float, gear: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Points in normal modules and displacements, both in space and in the place of the mesh."""
-    line, g = problem.line, (teeth.first, teeth.second)[gear]
-    outline, pitch = tooth_outline(g), solution.pitch
+    line = problem.line
+    g = (teeth.first, teeth.second)[gear]
+    outline = tooth_outline(g)
+    pitch = solution.pitch
     first = line.pitch_point + at * line.base_pitch
     roll = first if gear == 0 else line.length - first
     start = roll / g.base_radius - outline.base_half_angle - line.pressure_angle
-    points, moved = [], []
+    points = []
+    moved = []
     for tooth, u in zip(solution.teeth, solution.displacement, strict=True):
         R = clockwise(start + 2.0 * np.pi * tooth / g.teeth, pitch.dimension)
         points.append(pitch.points @ R.T)
         moved.append(u @ R.T)
-    x, u = np.concatenate(points), np.concatenate(moved)
+    x = np.concatenate(points)
+    u = np.concatenate(moved)
     if gear == 1:  # the gear is the pinion's kind of body, seen through the middle of the face
-        x, u = -x, -u
+        x = -x
+        u = -u
         x[:, 1] += line.centre_distance / problem.module
     if pitch.dimension == 2:
         x, u = (np.pad(values, ((0, 0), (0, 1))) for values in (x, u))
@@ -135,12 +149,15 @@ def _vtk_cells(solution: TeethSolution, *, flipped: bool) -> np.ndarray:
 
 def _contact(problem: ContactProblem, cycle: MeshCycle, at: float) -> ContactField:
     """The loaded slices as pieces of contact lines on the plane of action."""
-    line, slices = problem.line, cycle.slices
+    line = problem.line
+    slices = cycle.slices
     own = cycle.force > 0.0
     z = (slices.z @ slices.weight)[own, None] + 0.5 * slices.length[own, None] * np.array([-1.0, 1.0])
     roll = line.pitch_point + (at + slices.pair[own, None]) * line.base_pitch + z * np.tan(line.base_helix_angle)
-    c, s = np.cos(line.pressure_angle), np.sin(line.pressure_angle)
-    x, y = roll * c - line.base_radius[0] * s, roll * s + line.base_radius[0] * c
+    c = np.cos(line.pressure_angle)
+    s = np.sin(line.pressure_angle)
+    x = roll * c - line.base_radius[0] * s
+    y = roll * s + line.base_radius[0] * c
     length = slices.length[own] / np.cos(line.base_helix_angle)
     return ContactField(
         np.stack([x, y, z], -1), cycle.force[own] / length, cycle.strip[own], cycle.pressure[own], slices.pair[own]
@@ -151,7 +168,11 @@ _VTK_QUAD = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0], [1, 0.5], [0.5, 
 _FACE = [[0, 0], [1, 0], [1, 1], [0, 1]]
 _EDGE = [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5]]
 _VTK_HEX = np.array(
-    [[*p, 0] for p in _FACE] + [[*p, 1] for p in _FACE] + [[*p, 0] for p in _EDGE] + [[*p, 1] for p in _EDGE]
+    [[*p, 0] for p in _FACE]
+    + [[*p, 1] for p in _FACE]
+    + [[*p, 0] for p in _EDGE]
+    + [[*p, 1] for p in _EDGE]
     + [[*p, 0.5] for p in _FACE]
-    + [[0, 0.5, 0.5], [1, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 1, 0.5], [0.5, 0.5, 0], [0.5, 0.5, 1], [0.5, 0.5, 0.5]], float
-)  # fmt: skip
+    + [[0, 0.5, 0.5], [1, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 1, 0.5], [0.5, 0.5, 0], [0.5, 0.5, 1], [0.5, 0.5, 0.5]],
+    float,
+)

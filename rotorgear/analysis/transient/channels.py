@@ -38,7 +38,8 @@ def channels(local: LocalModel) -> Channels:
     found += _points(local)
     found += _orbits(local)
     found += _rotations(local)
-    names, units = tuple(item[0] for item in found), tuple(item[1] for item in found)
+    names = tuple(item[0] for item in found)
+    units = tuple(item[1] for item in found)
     rows = {}
     for kind in "qvaF":
         which = np.array([i for i, item in enumerate(found) if kind in item[2]], dtype=int)
@@ -56,8 +57,11 @@ def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndar
     found = []
     T = local.system.dofs.transform
     firsts = local.local.forces.first
-    rolling = {part.part: (int(first), part.law.components)
-               for part, first in zip(local.parts, firsts, strict=False) if part.part.startswith("bearings.")}  # fmt: skip
+    rolling = {
+        part.part: (int(first), part.law.components)
+        for part, first in zip(local.parts, firsts, strict=False)
+        if part.part.startswith("bearings.")
+    }
     for group in local.groups:
         if not group.part.startswith("bearings.") or group.part.endswith(".pedestal"):
             continue
@@ -91,7 +95,8 @@ def _points(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
 
 def _orbits(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
     """x and y of the shaft in each bearing."""
-    model, found = local.system.model, []
+    model = local.system.model
+    found = []
     for name, bearing in model.bearings.items():
         node = local.system.nodes.at(bearing.shaft, model.shafts[bearing.shaft].station(bearing.at))
         for dof, axis in ((0, "x"), (1, "y")):
@@ -103,7 +108,8 @@ def _orbits(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
 
 def _rotations(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
     """Fluctuation of the speed of each gear."""
-    model, found = local.system.model, []
+    model = local.system.model
+    found = []
     for name, gear in model.gears.items():
         row = _row(local, local.system.nodes.at(gear.shaft, node_positions(model, name)[0]), 5)
         if row.any():

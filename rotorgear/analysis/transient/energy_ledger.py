@@ -92,7 +92,8 @@ class LedgerBook:
         self._spent, self._last = float(spent[-1]), (float(records.t[-1]), float(power[-1]))
         which = np.unique(np.linspace(0, records.t.size - 1, _SAMPLES + 1).astype(int)[1:])
         fields = records.fields.chosen(which)
-        q, v = fields.rows("q", self._all), fields.rows("v", self._all)
+        q = fields.rows("q", self._all)
+        v = fields.rows("v", self._all)
         kinetic, strain = self._stored(q, v)
         laws = records.energy[which].sum(axis=1)
         work = q @ self._load[0] - self._work_at_start

@@ -74,8 +74,11 @@ def integrate(
 
     def receive(records: Records, state: State) -> None:
         part = {
-            "t": records.t, "d": records.d, "F": records.F, "values": wanted.values(records.fields, records.F),
-        }  # fmt: skip
+            "t": records.t,
+            "d": records.d,
+            "F": records.F,
+            "values": wanted.values(records.fields, records.F),
+        }
         last = records.t > (schedule.steps - frames * schedule.every + 0.5) * schedule.h
         if frames and last.any():
             found.motion.append((records.t[last], records.fields.chosen(last).rows("q", np.eye(local.n))))
@@ -93,8 +96,15 @@ def integrate(
         if not 0 < goal <= schedule.steps or state.step >= goal:
             continue
         try:
-            cost = run(local, integrator, Schedule(schedule.h, goal, schedule.every), state, receive,
-                       tolerance=tolerance, progress=progress)  # fmt: skip
+            cost = run(
+                local,
+                integrator,
+                Schedule(schedule.h, goal, schedule.every),
+                state,
+                receive,
+                tolerance=tolerance,
+                progress=progress,
+            )
             found.steps += cost.steps
         except ConvergenceError as error:
             found.status = str(error)

@@ -78,15 +78,18 @@ def _drifting(result: TransientResult) -> list[str]:
     from rotorgear.model.layout.train import walk
 
     train, _ = walk(result.model)
-    worst, name = 0.0, ""
+    worst = 0.0
+    name = ""
     for gear, part in result.model.gears.items():
-        history, own = f"gears.{gear} speed fluctuation", abs(float(train.ratio(part.shaft)) * result.speed[-1])
+        history = f"gears.{gear} speed fluctuation"
+        own = abs(float(train.ratio(part.shaft)) * result.speed[-1])
         if history not in result.channel or own == 0.0:
             continue
         values = result.history(history)
         share = abs(float(values[-max(len(values) // 10, 1) :].mean())) / own
         if share > worst:
-            worst, name = share, gear
+            worst = share
+            name = gear
     if worst <= _DRIFT:
         return []
     return [

@@ -20,7 +20,9 @@ METHODS = ("auto", "newmark", "hht", "generalised-alpha", "exponential", "explic
 # Periods of the slowest mesh that settle, and as many that count.
 PERIODS = 30
 # Records and first steps in a period of the fastest mesh, first steps in a period of the contact resonance.
-RECORDS, STEPS, CONTACT_STEPS = 40, 100, 20
+RECORDS = 40
+STEPS = 100
+CONTACT_STEPS = 20
 # Largest system whose complex modes are all found without being asked: dense matrices of 2n.
 _ALL_MODES = 900
 MOST_STEPS = 200_000_000
@@ -108,7 +110,8 @@ def grid_of(
         if given is not None and not given > 0:
             raise AnalysisError(f"{name}: got {given}, expected more than 0")
     contact = contact_frequency(local)
-    fastest, slowest = max(frequencies.values(), default=0.0), min(frequencies.values(), default=0.0)
+    fastest = max(frequencies.values(), default=0.0)
+    slowest = min(frequencies.values(), default=0.0)
     if fastest == 0.0 and (time is None or contact == 0.0):
         raise AnalysisError(
             "nothing turns that says how long to run and in what steps: give a time, and a speed or meshes"
@@ -164,7 +167,8 @@ def integrator_of(
                 candidate.prepare(local, 1e-6, float(local.rotation.speeds[0]))
                 return candidate, reason
             except ConvergenceError:
-                method, reason = "newmark", "the complex modes lie too near to each other for the exponential method"
+                method = "newmark"
+                reason = "the complex modes lie too near to each other for the exponential method"
     if modal_ratio and method != "exponential":
         raise AnalysisError(
             "damping.modal_ratio acts on modes: only the exponential method at constant speed can take it"

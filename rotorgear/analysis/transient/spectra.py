@@ -61,7 +61,8 @@ def spectrum(result: TransientResult, name: str, *, window: str = "hann", orders
     values = values[result.counted]
     if values.size < 16:
         raise AnalysisError(f"{values.size} records are too few for a spectrum: run longer, or record more often")
-    spacing, over = result.spacing, "Hz"
+    spacing = result.spacing
+    over = "Hz"
     if orders:
         values, spacing, over = *_at_even_angles(result, values), "order"
     w = get_window(window, values.size)
@@ -92,9 +93,15 @@ def spectral_lines(
     strongest = np.sort(inner[np.argsort(a[inner])[::-1][:count]])
     frequencies = np.array([_between_bins(hann, i) for i in strongest])
     # Two peaks of one line, on a shoulder of the wide window, are one.
-    other = np.array([not np.any((np.abs(frequencies - f) < 0.5 * found.resolution) & (a[strongest] > a[i]))
-                      for f, i in zip(frequencies, strongest, strict=True)], dtype=bool)  # fmt: skip
-    strongest, frequencies = strongest[other], frequencies[other]
+    other = np.array(
+        [
+            not np.any((np.abs(frequencies - f) < 0.5 * found.resolution) & (a[strongest] > a[i]))
+            for f, i in zip(frequencies, strongest, strict=True)
+        ],
+        dtype=bool,
+    )
+    strongest = strongest[other]
+    frequencies = frequencies[other]
     sources = tuple(_source(result, f, found.resolution) for f in frequencies)
     return SpectralLines(name, found.unit, frequencies, a[strongest], sources, window, found.resolution)
 
@@ -114,14 +121,17 @@ def _between_bins(hann: Spectrum, i: int) -> float:
 
 def _source(result: TransientResult, frequency: float, resolution: float) -> str:
     """Name of the mesh order within a quarter of the resolution, else of the shaft order where shafts have an unbalance."""
-    best, name = 0.25 * resolution, ""
+    best = 0.25 * resolution
+    name = ""
     for mesh, f in result.mesh_frequency.items():
         order = max(1, round(frequency / f))
         if abs(frequency - order * f) < best * (1.0 - 1e-9):
-            best, name = abs(frequency - order * f), f"mesh {mesh} {order}x"
+            best = abs(frequency - order * f)
+            name = f"mesh {mesh} {order}x"
     if name or not result.model.unbalances:
         return name
     for line in excitation_lines(result.model, float(result.speed[-1])):
         if line.name.startswith("shaft") and abs(frequency - line.frequency_hz) < best:
-            best, name = abs(frequency - line.frequency_hz), line.name
+            best = abs(frequency - line.frequency_hz)
+            name = line.name
     return name

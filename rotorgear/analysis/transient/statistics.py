@@ -26,7 +26,8 @@ def statistics(found: Histories, task: Any, settled: int) -> Statistics:
     """Mean, root mean square about it and largest of each contact force, and root mean square of each channel."""
     t = found.table("t")
     counted = slice(settled, None) if t.size > settled else slice(None)
-    F, values = found.table("F")[counted], found.table("values")[counted]
+    F = found.table("F")[counted]
+    values = found.table("values")[counted]
     names: list[str] = []
     data: list[float] = []
     scale: list[float] = []

@@ -59,7 +59,8 @@ def prepare(
     if given.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     local = local_model(given, rotation, largest)
-    rest, force = equilibrium(local.local), still_forces(local.local, tuple(part.law.mean() for part in local.parts))
+    rest = equilibrium(local.local)
+    force = still_forces(local.local, tuple(part.law.mean() for part in local.parts))
     return Task(local, channels(local), rest, force, mesh_frequencies(given, largest), largest)
 
 
@@ -99,9 +100,17 @@ def run_task(
         progress(fraction, f"{text}: {step}" if text else step)
 
     found = integrate(
-        system, integrator, Schedule(h, grid.records * grid.every, grid.every), state_at_rest(system, h, task.rest.q),
-        task.channels, grid.settled, stream=stream, settings=settings, frames=frames, progress=told,
-    )  # fmt: skip
+        system,
+        integrator,
+        Schedule(h, grid.records * grid.every, grid.every),
+        state_at_rest(system, h, task.rest.q),
+        task.channels,
+        grid.settled,
+        stream=stream,
+        settings=settings,
+        frames=frames,
+        progress=told,
+    )
     if text and found.status.startswith("interrupted"):
         raise KeyboardInterrupt
     return found
@@ -125,7 +134,8 @@ def fine_enough(task: Task, integrator: Integrator, grid: Grid, accuracy: float,
         if error <= accuracy:
             # Second order: the coarser one is four times worse.
             return replace(grid, every=finer.every if 4.0 * error > accuracy else probe.every)
-        probe, last = finer, now
+        probe = finer
+        last = now
     return replace(grid, every=probe.every)
 
 

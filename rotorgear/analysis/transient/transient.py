@@ -87,9 +87,15 @@ def transient(
         task.local.local, base_frequencies(task.local.system, task.largest), duration[0], duration[1], steps, records
     )
     integrator, reason = integrator_of(
-        method, task.local.local, grid.records * grid.every, modal_ratio=task.local.system.model.damping.modal_ratio,
-        modes=modes, rho_inf=rho_inf, beta=beta, gamma=gamma,
-    )  # fmt: skip
+        method,
+        task.local.local,
+        grid.records * grid.every,
+        modal_ratio=task.local.system.model.damping.modal_ratio,
+        modes=modes,
+        rho_inf=rho_inf,
+        beta=beta,
+        gamma=gamma,
+    )
     laps = {"model": clock.perf_counter() - begun}
     if steps is None and not isinstance(integrator, Explicit):
         grid = fine_enough(task, integrator, grid, accuracy or DEFAULT_ACCURACY, progress)
@@ -122,7 +128,8 @@ def _result(
     *,
     estimated: bool,
 ) -> TransientResult:
-    system, local = task.local.system, task.local.local
+    system = task.local.system
+    local = task.local.local
     own: Statistics = statistics(found, task, grid.settled)
     errors, largest = _errors(own, found, others, task, grid)
     t = found.table("t")
@@ -135,20 +142,39 @@ def _result(
     motion = np.vstack([np.zeros((0, local.n)), *(q for _, q in found.motion)])
     nodes, shapes = shapes_at_stations(system, system.dofs.transform @ motion.T)
     result = TransientResult(
-        model=system.model, time=t, angle=local.rotation.angle(t), speed=local.rotation.speed(t),
+        model=system.model,
+        time=t,
+        angle=local.rotation.angle(t),
+        speed=local.rotation.speed(t),
         settle=grid.settled * grid.spacing,
         contact=tuple(task.local.parts[i].label for i in meshes),
-        deflection=found.table("d")[:, columns], mesh_force=found.table("F")[:, columns],
+        deflection=found.table("d")[:, columns],
+        mesh_force=found.table("F")[:, columns],
         mean_force=task.rest_force[columns],
         contact_time=events[:, :3] / np.maximum(events[:, :3].sum(axis=1, keepdims=True), 1.0),
         contact_losses=found.state.events[meshes, 3],
-        channel=task.channels.names, unit=task.channels.units, values=found.table("values"),
-        quantity=own.name, quantity_value=own.value, quantity_error=errors, energy=found.ledger,
-        step=grid.spacing / grid.every, steps=found.state.step, every=grid.every, error_estimate=largest,
-        dofs=local.n, seconds=laps, method=method, reason=reason, mesh_frequency=task.frequencies,
-        nodes=nodes, motion_time=motion_time, motion=shapes,
-        status=found.status, left_out=(*left_out(system, float(local.rotation.speeds[0])), *transient_left_out(task.local)),
-    )  # fmt: skip
+        channel=task.channels.names,
+        unit=task.channels.units,
+        values=found.table("values"),
+        quantity=own.name,
+        quantity_value=own.value,
+        quantity_error=errors,
+        energy=found.ledger,
+        step=grid.spacing / grid.every,
+        steps=found.state.step,
+        every=grid.every,
+        error_estimate=largest,
+        dofs=local.n,
+        seconds=laps,
+        method=method,
+        reason=reason,
+        mesh_frequency=task.frequencies,
+        nodes=nodes,
+        motion_time=motion_time,
+        motion=shapes,
+        status=found.status,
+        left_out=(*left_out(system, float(local.rotation.speeds[0])), *transient_left_out(task.local)),
+    )
     return replace(result, warnings=transient_warnings(result, task.rest, task.local, estimated=estimated))
 
 

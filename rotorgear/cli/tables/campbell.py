@@ -18,7 +18,8 @@ def campbell_table(result: CampbellResult, *, crossings: bool = False) -> Render
     from rich.console import Group
     from rich.text import Text
 
-    first, last = result.speed_rpm[0], result.speed_rpm[-1]
+    first = result.speed_rpm[0]
+    last = result.speed_rpm[-1]
     title = f"{result.model.title or 'Modes'}: {result.model.reference_shaft} at {first:.6g} to {last:.6g} rpm"
     parts: list[RenderableType] = [Text(title, style="bold"), _branches(result)]
     if result.margins:
@@ -34,9 +35,13 @@ def plain_table(title: str = "") -> Any:
     from rich.table import Table
 
     return Table(
-        box=None, pad_edge=False, title=f"\n{title}" if title else None, title_justify="left", title_style="bold",
+        box=None,
+        pad_edge=False,
+        title=f"\n{title}" if title else None,
+        title_justify="left",
+        title_style="bold",
         header_style="bold",
-    )  # fmt: skip
+    )
 
 
 def _branches(result: CampbellResult) -> Any:
@@ -50,9 +55,12 @@ def _branches(result: CampbellResult) -> Any:
     for b in range(len(result)):
         hertz = result.frequency_hz[[0, -1], b]
         table.add_row(
-            str(b + 1), *(_number(value, ".4f") for value in hertz), _number(result.log_decrement[-1, b], ".4f"),
-            result.whirl_word(-1, b), result.description[b],
-        )  # fmt: skip
+            str(b + 1),
+            *(_number(value, ".4f") for value in hertz),
+            _number(result.log_decrement[-1, b], ".4f"),
+            result.whirl_word(-1, b),
+            result.description[b],
+        )
     return table
 
 
@@ -65,10 +73,14 @@ def _margins(result: CampbellResult) -> Any:
     for item in result.margins:
         known = item.branch > 0
         table.add_row(
-            item.line, f"{item.frequency_hz:.2f}", str(item.branch) if known else "-", _number(item.mode_hz, ".2f"),
-            _number(100.0 * item.margin, "+.2f"), _number(100.0 * item.participation, ".2f") if known else "-",
+            item.line,
+            f"{item.frequency_hz:.2f}",
+            str(item.branch) if known else "-",
+            _number(item.mode_hz, ".2f"),
+            _number(100.0 * item.margin, "+.2f"),
+            _number(100.0 * item.participation, ".2f") if known else "-",
             _number(item.crossing_speed * _RPM, ".1f"),
-        )  # fmt: skip
+        )
     return table
 
 
@@ -84,9 +96,14 @@ def _crossings(result: CampbellResult) -> Any:
     for item in result.crossings:
         share = f"{100.0 * item.participation:.2f}" if item.excited else "not excited"
         table.add_row(
-            f"{item.speed * _RPM:.2f}", f"{item.frequency_hz:.3f}", str(item.branch), item.line, item.whirl,
-            _number(100.0 * item.damping_ratio, ".3f"), share,
-        )  # fmt: skip
+            f"{item.speed * _RPM:.2f}",
+            f"{item.frequency_hz:.3f}",
+            str(item.branch),
+            item.line,
+            item.whirl,
+            _number(100.0 * item.damping_ratio, ".3f"),
+            share,
+        )
     return table
 
 

@@ -92,7 +92,8 @@ def _unmatched_modes(comparison: Comparison) -> Iterable[RenderableType]:
 
 
 def _chance(comparison: Comparison) -> str:
-    chance, count = comparison.chance, comparison.rig_count
+    chance = comparison.chance
+    count = comparison.rig_count
     return (
         f"Chance: {100 * chance.coverage:.1f} % of the band {chance.band_low_hz:.1f} to {chance.band_high_hz:.1f} Hz "
         f"(measured in log frequency) lies within {100 * comparison.tolerance:.3g} % of one of its "

@@ -40,7 +40,8 @@ def _allowed(key: str) -> Callable[[Any], str]:
 
 
 def _allowances(row: GearRow) -> str:
-    upper, lower = 1e6 * row.upper_thickness_allowance_m, 1e6 * row.lower_thickness_allowance_m
+    upper = 1e6 * row.upper_thickness_allowance_m
+    lower = 1e6 * row.lower_thickness_allowance_m
     return f"{upper:g} {lower:g}" if lower else "-"
 
 
@@ -79,7 +80,7 @@ GEAR_ROWS: Sequence[Row] = (
     ("over balls M_dK mm", _mm("over_balls_m")),
     ("  upper mm", _allowed("over_balls_upper_m")),
     ("  lower mm", _allowed("over_balls_lower_m")),
-)  # fmt: skip
+)
 
 MESH_ROWS: Sequence[Row] = (
     ("pinion", lambda row: row.pinion),
@@ -117,7 +118,7 @@ MESH_ROWS: Sequence[Row] = (
     ("base force F_bt a helix N", _plain("base_tangential_force_n", 0)),
     ("dynamic factor K_v", _plain("dynamic_factor", 3)),
     ("resonance ratio N", _plain("resonance_ratio", 4)),
-)  # fmt: skip
+)
 
 
 def sheet_parts(sheet: GearSheet) -> Iterator[Any]:

@@ -68,7 +68,8 @@ def _main(found: MeshResult) -> Any:
         row("mean tangent stiffness", float(found.tangent.mean()), None)
     row("mean along the normal", found.mean_normal_stiffness, None)
     if found.transmission_error is not None and found.no_load_error is not None:
-        ste, error = found.transmission_error, errors.ste_peak_to_peak if errors else None
+        ste = found.transmission_error
+        error = errors.ste_peak_to_peak if errors else None
         table.add_row("transmission error, mean", f"{1e6 * ste.mean():.4f} um", "", "")
         table.add_row(
             "peak to peak", f"{1e6 * np.ptp(ste):.4f} um", "", "-" if error is None else f"{100 * error:.2g} %"
@@ -87,7 +88,8 @@ def _main(found: MeshResult) -> Any:
 
 def _harmonics(found: MeshResult, count: int) -> Any:
     table = _table("mesh order", "stiffness", "phase", "transmission error", "phase")
-    k, e = found.harmonics(count), found.ste_harmonics(count)
+    k = found.harmonics(count)
+    e = found.ste_harmonics(count)
     # Below this share of the mean an order is rounding, and its phase says nothing.
     for order in range(len(k)):
         small = abs(k[order]) < 1e-9 * found.mean_stiffness
@@ -102,9 +104,12 @@ def _loads(found: MeshResult) -> Any:
     table = _table("load factor", "mean stiffness", "peak to peak", "STE peak to peak", "contact ratio")
     for point in found.loads:
         table.add_row(
-            f"{point.factor:g}", f"{point.mean_stiffness_n_per_m:.5g} N/m", f"{point.peak_to_peak_stiffness_n_per_m:.4g} N/m",
-            f"{1e6 * point.ste_peak_to_peak_m:.4f} um", f"{point.contact_ratio:.3f}",
-        )  # fmt: skip
+            f"{point.factor:g}",
+            f"{point.mean_stiffness_n_per_m:.5g} N/m",
+            f"{point.peak_to_peak_stiffness_n_per_m:.4g} N/m",
+            f"{1e6 * point.ste_peak_to_peak_m:.4f} um",
+            f"{point.contact_ratio:.3f}",
+        )
     return table
 
 

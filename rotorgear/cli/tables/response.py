@@ -21,7 +21,8 @@ def response_tables(result: ResponseResult) -> list[Any]:
     """Return title, tables of the largest values and notes as rich renderables."""
     from rich.text import Text
 
-    first, last = result.speed_rpm[0], result.speed_rpm[-1]
+    first = result.speed_rpm[0]
+    last = result.speed_rpm[-1]
     speeds = f"{first:.6g} rpm" if len(result.speeds) == 1 else f"{first:.6g} to {last:.6g} rpm"
     parts: list[Any] = [
         f"[bold]{result.model.title or 'Model'}: forced response, {result.model.reference_shaft} at {speeds}[/bold]"
@@ -65,9 +66,13 @@ def _row(out: Any, result: ResponseResult, what: str, name: str, size: np.ndarra
     if size[o, s] == 0.0:
         return
     out.add_row(
-        what, name, str(o + 1), f"{result.speed_rpm[s]:.1f}", f"{result.frequency_hz[o, s]:.1f}",
+        what,
+        name,
+        str(o + 1),
+        f"{result.speed_rpm[s]:.1f}",
+        f"{result.frequency_hz[o, s]:.1f}",
         f"{factor * size[o, s]:.4g} {unit}",
-    )  # fmt: skip
+    )
 
 
 def _notes(result: ResponseResult) -> list[str]:

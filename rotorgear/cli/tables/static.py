@@ -50,11 +50,14 @@ def _meshes(result: StaticResult) -> Any:
         name = f"{mesh} {'LR'[int(result.contact_helix[k])]}" if two else mesh
         phase = result.mesh_phase.get(mesh, math.nan)
         out.add_row(
-            name, result.driver[k] if result.carries[k] else "open", f"{result.mesh_force[k]:.1f}",
-            f"{100.0 * result.helix_share[k]:.2f}" if two else "-", f"{1e6 * result.mesh_deflection[k]:.3f}",
+            name,
+            result.driver[k] if result.carries[k] else "open",
+            f"{result.mesh_force[k]:.1f}",
+            f"{100.0 * result.helix_share[k]:.2f}" if two else "-",
+            f"{1e6 * result.mesh_deflection[k]:.3f}",
             *(f"{_signless(value):.0f}" for value in result.mesh_force_on_gear[k]),
             "-" if phase != phase else f"{phase:.4f}",
-        )  # fmt: skip
+        )
     return out
 
 

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 # Lines of a spectrum in a row, with the columns before them.
 _LINES = 5
 # Lines of a table and stretches of a route that are shown at most; the rest is in the files.
-_MOST, _STRETCHES = 60, 16
+_MOST = 60
+_STRETCHES = 16
 
 
 def sweep_table(result: SweepResult) -> RenderableType:
@@ -70,9 +71,12 @@ def _points(result: SweepResult, rows: range) -> Any:
         if result.lyapunov.shape[2]:
             cells += [_number(result.lyapunov[p, r, 0], "+.3f"), _number(result.lyapunov_error[p, r, 0], ".3f")]
         out.add_row(
-            *cells, _largest(1e6 * result.peak_to_peak[p, r], ".2f"), _largest(result.dynamic_factor[p, r], ".2f"),
-            _largest(100.0 * result.apart[p, r], ".1f"), _largest(100.0 * result.back[p, r], ".1f"),
-        )  # fmt: skip
+            *cells,
+            _largest(1e6 * result.peak_to_peak[p, r], ".2f"),
+            _largest(result.dynamic_factor[p, r], ".2f"),
+            _largest(100.0 * result.apart[p, r], ".1f"),
+            _largest(100.0 * result.back[p, r], ".1f"),
+        )
     return out
 
 
@@ -111,7 +115,8 @@ def _notes(result: SweepResult) -> list[str]:
     if result.lyapunov.shape[2]:
         what = f"LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; {what}"
     sound = result.steps[result.steps > 0]
-    first, last = int(sound.min()), int(sound.max())
+    first = int(sound.min())
+    last = int(sound.max())
     steps = f"{first}" if first == last else f"{first} to {last}"
     lines = [
         "",
@@ -132,10 +137,16 @@ def ladder_table(ladder: SweepLadder) -> RenderableType:
     out = table("steps", "periods", "seconds", "LE", "scatter", "stated", "p-p um", "scatter", "K_dyn", left=0)
     for rung in ladder.rungs:
         out.add_row(
-            str(rung.steps), str(rung.count), f"{rung.seconds:.3f} s", f"{rung.exponent:+.3f}", f"{rung.scatter:.3f}",
-            f"{rung.stated:.3f}", f"{1e6 * rung.peak_to_peak:.2f}", f"{1e6 * rung.peak_to_peak_scatter:.2f}",
+            str(rung.steps),
+            str(rung.count),
+            f"{rung.seconds:.3f} s",
+            f"{rung.exponent:+.3f}",
+            f"{rung.scatter:.3f}",
+            f"{rung.stated:.3f}",
+            f"{1e6 * rung.peak_to_peak:.2f}",
+            f"{1e6 * rung.peak_to_peak_scatter:.2f}",
             f"{rung.dynamic_factor:.2f}",
-        )  # fmt: skip
+        )
     kinds = ", ".join(sorted({kind for rung in ladder.rungs for kind in rung.motion}))
     head = f"{ladder.title}: one point from {ladder.runs} states ({kinds})"
     notes = (

@@ -50,11 +50,17 @@ def _contacts(result: TransientResult) -> Any:
         table.add_column(name, justify="right")
     for row in result.to_dict()["contacts"]:
         table.add_row(
-            row["name"], _value(row["static_force_n"]), _value(row["mean_force_n"]), _value(row["rms_force_n"]),
-            _value(row["largest_force_n"]), "-" if row["dynamic_factor"] is None else f"{row['dynamic_factor']:.3f}",
-            f"{1e6 * (row['peak_to_peak_dte_m'] or 0.0):.2f}", f"{100.0 * row['apart_share']:.1f}",
-            f"{100.0 * row['back_share']:.1f}", str(row["losses"]),
-        )  # fmt: skip
+            row["name"],
+            _value(row["static_force_n"]),
+            _value(row["mean_force_n"]),
+            _value(row["rms_force_n"]),
+            _value(row["largest_force_n"]),
+            "-" if row["dynamic_factor"] is None else f"{row['dynamic_factor']:.3f}",
+            f"{1e6 * (row['peak_to_peak_dte_m'] or 0.0):.2f}",
+            f"{100.0 * row['apart_share']:.1f}",
+            f"{100.0 * row['back_share']:.1f}",
+            str(row["losses"]),
+        )
     return table
 
 

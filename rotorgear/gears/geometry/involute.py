@@ -17,7 +17,9 @@ def _tangent_minus_angle(t: float) -> float:
     """t - atan(t) for t >= 0 with full relative accuracy: t^3/3 - t^5/5 + ... where the difference would cancel."""
     if t >= _SERIES_LIMIT:
         return t - math.atan(t)
-    total, power, order = 0.0, t**3, 3
+    total = 0.0
+    power = t**3
+    order = 3
     while power / order > 1e-18 * abs(total):
         total += power / order if order % 4 == 3 else -power / order
         power *= t * t

@@ -66,11 +66,14 @@ class LineOfAction:
             gear: whose tip it is; the pinion's leaves contact, the gear's comes into it.
             excess: (k,) how far the nominal contact is beyond that tip on the line of action.
         """
-        own, mate = self.base_radius[gear], self.base_radius[1 - gear]
-        tip, excess = self.tip[gear], np.asarray(excess, float)
+        own = self.base_radius[gear]
+        mate = self.base_radius[1 - gear]
+        tip = self.tip[gear]
+        excess = np.asarray(excess, float)
         angle = self.pressure_angle - math.atan(tip / own) - excess / own
         radius = math.hypot(tip, own)
-        across, along = radius * np.sin(angle), self.centre_distance - radius * np.cos(angle)
+        across = radius * np.sin(angle)
+        along = self.centre_distance - radius * np.cos(angle)
         t = np.sqrt(np.maximum((across**2 + along**2) / mate**2 - 1.0, 0.0))
         effective = mate * (self.pressure_angle + np.arctan2(across, along) + t - np.arctan(t))
         return tip + excess + effective - self.length, mate * t

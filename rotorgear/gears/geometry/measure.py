@@ -46,8 +46,10 @@ def ideal_ball_diameter(g: GearGeometry) -> float:
     """
     middle = max(g.reference_diameter + 2.0 * g.profile_shift * g.normal_module, 2.0 * g.base_radius * (1.0 + 1e-3))
     touch = math.sqrt((middle / (2.0 * g.base_radius)) ** 2 - 1.0)
-    slant, space = math.tan(g.base_helix_angle) ** 2, _space_half_angle(g)
-    low, high = math.atan(touch), 0.5 * math.pi
+    slant = math.tan(g.base_helix_angle) ** 2
+    space = _space_half_angle(g)
+    low = math.atan(touch)
+    high = 0.5 * math.pi
     for _ in range(60):  # it grows with a_K throughout
         centre = 0.5 * (low + high)
         if centre - touch - space + (math.tan(centre) - touch) * slant < 0.0:

@@ -72,7 +72,8 @@ class ToothOutline:
     def half(self, points: int = 30) -> tuple[np.ndarray, np.ndarray]:
         """Radii and angles (n,) from the middle of the tip to the middle of the gap, with `points` on involute and fillet."""
         roll = np.linspace(self.tip_roll_length, self.form_roll_length, points)
-        flank, fillet = self.involute(roll), self.fillet(np.linspace(0.0, 1.0, points)[1:])
+        flank = self.involute(roll)
+        fillet = self.fillet(np.linspace(0.0, 1.0, points)[1:])
         tip = np.linspace(0.0, flank[1][0], 5)[:-1]
         root = np.linspace(fillet[1][-1], math.pi / self.geometry.teeth, 5)[1:]
         radii = np.concatenate([np.full(4, self.tip_radius), flank[0], fillet[0], np.full(4, self.root_radius)])
@@ -90,14 +91,18 @@ def trochoid(g: GearGeometry, tool_angle: np.ndarray | float) -> tuple[np.ndarra
     The angle lies in the normal section: a_n where flank and tip circle of the tool touch, pi/2 at its crest.
     """
     theta = np.asarray(tool_angle, float)
-    m, alpha, beta, rho = g.normal_module, g.normal_pressure_angle, g.helix_angle, g.tool_tip_radius_factor
+    m = g.normal_module
+    alpha = g.normal_pressure_angle
+    beta = g.helix_angle
+    rho = g.tool_tip_radius_factor
     below = g.dedendum_factor - rho
     centre = math.pi / 4 + below * math.tan(alpha) + rho / math.cos(alpha)
     x = m * (centre - rho * np.cos(theta)) / math.cos(beta)
     y = m * (g.profile_shift - below - rho * np.sin(theta))
     reference = 0.5 * g.reference_diameter
     moved = y * np.cos(theta) * math.cos(beta) / np.sin(theta) - x
-    across, up = x + moved, reference + y
+    across = x + moved
+    up = reference + y
     return np.hypot(across, up), np.arctan2(across, up) - moved / reference
 
 
@@ -115,7 +120,9 @@ def tooth_outline(g: GearGeometry) -> ToothOutline:
     )
     if g.normal_tip_thickness < LEAST_TIP * g.normal_module:
         raise AnalysisError(_pointed(g))
-    roll, angle, undercut = g.tool_form_roll_length, g.normal_pressure_angle, False
+    roll = g.tool_form_roll_length
+    angle = g.normal_pressure_angle
+    undercut = False
     if roll < 0.0:
         roll, angle = _crossing(g, base_half)
         undercut = True

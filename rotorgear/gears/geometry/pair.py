@@ -17,7 +17,8 @@ from rotorgear.gears.geometry.involute import inverse_involute, involute
 def _require_mates(g1: GearGeometry, g2: GearGeometry) -> None:
     """AnalysisError unless the two gears share the normal module, the normal pressure angle and the helix angle."""
     for name in ("normal_module", "normal_pressure_angle", "helix_angle"):
-        one, two = getattr(g1, name), getattr(g2, name)
+        one = getattr(g1, name)
+        two = getattr(g2, name)
         if not math.isclose(one, two, rel_tol=1e-9):
             words = name.replace("_", " ")
             raise AnalysisError(
@@ -132,10 +133,13 @@ def pair_geometry(
         raise AnalysisError(f"The common face width of a mesh must be positive and finite, not {width:g} m.")
     free = working_pressure_angle_from_shifts(g1, g2)
     if centre_distance is None:
-        angle, distance = free, working_centre_distance(g1, g2)
+        angle = free
+        distance = working_centre_distance(g1, g2)
     else:
-        angle, distance = working_pressure_angle_from_centre(g1, g2, centre_distance), centre_distance
-    end, start = _path_beyond_pitch_point(g1, angle), -_path_beyond_pitch_point(g2, angle)
+        angle = working_pressure_angle_from_centre(g1, g2, centre_distance)
+        distance = centre_distance
+    end = _path_beyond_pitch_point(g1, angle)
+    start = -_path_beyond_pitch_point(g2, angle)
     if end <= start:
         raise AnalysisError(
             f"At a centre distance of {1e3 * distance:.6g} mm the teeth don't meet: "

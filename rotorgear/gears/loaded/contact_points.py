@@ -72,7 +72,8 @@ def contact_slices(
     """
     tangent = float(np.tan(line.base_helix_angle))
     half = 0.5 * width
-    first, last = line.start - beyond[0], line.end + beyond[1]
+    first = line.start - beyond[0]
+    last = line.end + beyond[1]
     zones = [(first, line.start), (line.start, line.end), (line.end, last)]
     pieces: list[tuple[int, int, int, np.ndarray, float]] = []
     for p, u in enumerate(positions):
@@ -104,7 +105,8 @@ def _cut(
         inside = (roll >= ends[0]) & (roll <= ends[1]) if closed else (roll > ends[0]) & (roll < ends[1])
         places = np.array([0.0]) if slices == 1 or stations else _legendre()[0]
         return [(centre + 0.5 * step * places, step) for centre in z[inside]]
-    low, high = max(-half, (ends[0] - middle) / tangent), min(half, (ends[1] - middle) / tangent)
+    low = max(-half, (ends[0] - middle) / tangent)
+    high = min(half, (ends[1] - middle) / tangent)
     length = high - low
     if length < _SLIVER * step:
         return []
@@ -131,7 +133,8 @@ def _gathered(
         if own.any():
             excess = np.maximum(line.start - first[own] if number == 0 else first[own] - line.end, 0.0)
             gap[own], mate = line.corner(gear, excess)
-            roll[gear, own], roll[1 - gear, own] = line.tip[gear], mate
+            roll[gear, own] = line.tip[gear]
+            roll[1 - gear, own] = mate
     gap = gap * np.cos(line.base_helix_angle)
     return Slices(position, pair, z, np.array([piece[4] for piece in pieces]), weight, roll, gap, zone != 1)
 
@@ -159,7 +162,8 @@ def patch_loads(
     """
     base = compliance.base_radius
     arc = (slices.roll[gear] / module) ** 2 / (2.0 * base)
-    low, high = compliance.flank_start**2 / (2.0 * base), compliance.flank_end**2 / (2.0 * base)
+    low = compliance.flank_start**2 / (2.0 * base)
+    high = compliance.flank_end**2 / (2.0 * base)
     c = np.clip(np.minimum(arc - low, high - arc), *widths)
     k = np.arange(1, _ACROSS + 1) * np.pi / (_ACROSS + 1)
     spread = np.clip(arc[..., None] + c[..., None] * np.cos(k), low, high)

@@ -79,7 +79,8 @@ def xu_kahraman_friction(
     if slide == 0.0:
         return 0.0
     b1, b2, b3, b4, b5, b6, b7, b8, b9 = _XU
-    P, nu = 1e-9 * hertz_pressure, 1e3 * viscosity
+    P = 1e-9 * hertz_pressure
+    nu = 1e3 * viscosity
     common = slide * P * math.log10(nu)
     f = b1 + b4 * common + b5 * math.exp(-common) + b9 * math.exp(1e6 * roughness)
     return math.exp(f) * P**b2 * slide**b3 * entraining_velocity**b6 * nu**b7 * curvature_radius**b8

@@ -48,15 +48,20 @@ def corner_gap(teeth: ToothPair, advance: float) -> float:
 
 def _state(teeth: ToothPair, advance: float) -> tuple[float, float, tuple[float, float]]:
     """Gap, polar angle t of the tangent point of the normal at D, and D."""
-    rb1, rb2, distance = teeth.first.base_radius, teeth.second.base_radius, teeth.pair.centre_distance
+    rb1 = teeth.first.base_radius
+    rb2 = teeth.second.base_radius
+    distance = teeth.pair.centre_distance
     working = teeth.pair.working_transverse_pressure_angle
     start = teeth.pair.start_of_contact
     pitch = rb1 / math.cos(working)
-    ax, ay = pitch + start * math.sin(working), start * math.cos(working)
+    ax = pitch + start * math.sin(working)
+    ay = start * math.cos(working)
     turned = math.atan2(ay, ax - distance) + advance / rb2
     tip = 0.5 * teeth.second.effective_tip_diameter
-    x, y = distance + tip * math.cos(turned), tip * math.sin(turned)
-    radius, first = math.hypot(x, y), math.hypot(ax, ay)
+    x = distance + tip * math.cos(turned)
+    y = tip * math.sin(turned)
+    radius = math.hypot(x, y)
+    first = math.hypot(ax, ay)
     if radius <= rb1:
         raise AnalysisError("The tip corner would meet the driver below its base circle: there is no involute to hit.")
     pressure = math.acos(rb1 / radius)
@@ -121,15 +126,18 @@ def corner_impact_force(
         AnalysisError: a value that is not positive, or a corner without contact.
     """
     given = {
-        "driver speed": driver_speed, "driver inertia": driver_inertia, "driven inertia": driven_inertia,
+        "driver speed": driver_speed,
+        "driver inertia": driver_inertia,
+        "driven inertia": driven_inertia,
         "compliance of the hit pair": hit_compliance,
-    }  # fmt: skip
+    }
     for name, value in given.items():
         if not 0.0 < value < math.inf:
             raise AnalysisError(f"The {name} of a corner impact must be positive and finite, not {value:g}.")
     if not 0.0 <= carrying_compliance < math.inf:
         raise AnalysisError(f"The compliance of the carrying pairs must be 0 or more, not {carrying_compliance:g} m/N.")
-    contact, rb1 = corner_contact(teeth, separation), teeth.first.base_radius
+    contact = corner_contact(teeth, separation)
+    rb1 = teeth.first.base_radius
     velocity = driver_speed * rb1 * contact.approach
     inertia = driver_inertia * contact.base_radius**2 + driven_inertia * rb1**2
     give = hit_compliance + carrying_compliance * math.cos(contact.angle) ** 2

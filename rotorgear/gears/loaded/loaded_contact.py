@@ -78,7 +78,8 @@ def solve_contact(contact: PositionContact, total: float) -> ContactState:
         C = contact.compliance + np.diag(_local(contact, force, total, tangent=False))
         found, approach = unilateral(C, contact.gap, total, start)
         change = float(np.abs(found - force).max()) / total
-        force, start = found, found > 0.0
+        force = found
+        start = found > 0.0
         if change <= _FORCE_TOLERANCE:
             return _state(contact, C, force, approach, total, count)
     raise ConvergenceError(

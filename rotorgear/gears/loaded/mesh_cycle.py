@@ -18,12 +18,14 @@ from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 from rotorgear.progress import Progress, silent
 
 # The patch stays wider than the Hertz strip by this factor, and than this in normal modules.
-_STRIP_MARGIN, _LEAST_PATCH = 1.3, 0.08
+_STRIP_MARGIN = 1.3
+_LEAST_PATCH = 0.08
 # Corner contacts are followed up to this share of the base pitch.
 _MOST_BEYOND = 0.45
 _PASSES = 12
 # Wider strips (half-width over m_n) are no line contact any more; above such a pressure (Pa) no gear steel stays elastic.
-_WIDEST_STRIP, _MOST_PRESSURE = 0.5, 4e9
+_WIDEST_STRIP = 0.5
+_MOST_PRESSURE = 4e9
 # They are followed a little farther than they touch, so that the next pass does not ask for more.
 _MORE_BEYOND = 1.05
 
@@ -132,7 +134,8 @@ def _swept(
     progress: Progress,
 ) -> tuple[MeshCycle, float, tuple[float, float]]:
     """One sweep over all positions; also the patch and the reach of corners that its solution asks for."""
-    line, p = problem.line, len(positions)
+    line = problem.line
+    p = len(positions)
     slices = contact_slices(line, positions, problem.width, problem.slices, beyond, stations=problem.uncoupled)
     widths = (least, max(problem.patch, least))
     patches = [
@@ -148,26 +151,46 @@ def _swept(
         [patch.log_width for patch in patches], -1
     )
     responses = _Responses(problem, slices, patches)
-    force, strip = np.zeros(len(slices)), np.zeros(len(slices))
-    approach, tangent, open_gap = np.zeros(p), np.zeros(p), np.zeros(p)
-    residual, eigenvalue = 0.0, np.inf
+    force = np.zeros(len(slices))
+    strip = np.zeros(len(slices))
+    approach = np.zeros(p)
+    tangent = np.zeros(p)
+    open_gap = np.zeros(p)
+    residual = 0.0
+    eigenvalue = np.inf
     for i in range(p):
         own = np.flatnonzero(slices.position == i)
         C = responses.compliance(own)
         contact = PositionContact(C, gap[own], length[own], problem.local, log_width[own], R[own], problem.modulus)
         state: ContactState = solve_contact(contact, normal)
-        force[own], strip[own] = state.force, state.strip
-        approach[i], tangent[i], open_gap[i] = state.approach, state.tangent, gap[own].min()
+        force[own] = state.force
+        strip[own] = state.strip
+        approach[i] = state.approach
+        tangent[i] = state.tangent
+        open_gap[i] = gap[own].min()
         _require_line_contact(problem, state)
-        residual, eigenvalue = max(residual, state.residual), min(eigenvalue, float(np.linalg.eigvalsh(C)[0]))
+        residual = max(residual, state.residual)
+        eigenvalue = min(eigenvalue, float(np.linalg.eigvalsh(C)[0]))
         progress((i + 1) / p, f"contact {i + 1} of {p}")
     cosine = float(np.cos(line.base_helix_angle))
     load_per_length = force / length
     pressure = np.where(force > 0.0, 2.0 * load_per_length / (np.pi * np.maximum(strip, 1e-300)), 0.0)
     cycle = MeshCycle(
-        positions, load, approach / cosine, open_gap / cosine, tangent * cosine**2, slices, force, strip, pressure, residual,
-        eigenvalue, widths, beyond, _notes(problem, slices, force, pressure, beyond),
-    )  # fmt: skip
+        positions,
+        load,
+        approach / cosine,
+        open_gap / cosine,
+        tangent * cosine**2,
+        slices,
+        force,
+        strip,
+        pressure,
+        residual,
+        eigenvalue,
+        widths,
+        beyond,
+        _notes(problem, slices, force, pressure, beyond),
+    )
     wanted = _beyond(problem, float((approach - open_gap).max()) / cosine + problem.largest_gap)
     return cycle, _patch_for(float(strip.max()), problem), wanted
 
@@ -176,7 +199,9 @@ class _Responses:
     """Compliance between slices: P_i G_o P_j' of both gears, with o the distance of their tooth pairs."""
 
     def __init__(self, problem: ContactProblem, slices: Slices, patches: list[PatchLoads]) -> None:
-        self.problem, self.slices, self.patches = problem, slices, patches
+        self.problem = problem
+        self.slices = slices
+        self.patches = patches
         reach = int(slices.pair.max() - slices.pair.min()) if len(slices) else 0
         self.moved: list[list[np.ndarray]] = []
         for i in (0, 1):
@@ -189,7 +214,8 @@ class _Responses:
 
     def compliance(self, own: np.ndarray) -> np.ndarray:
         """(n, n) in m/N of the slices `own` of one position."""
-        pair, n = self.slices.pair[own], len(own)
+        pair = self.slices.pair[own]
+        n = len(own)
         distance = pair[:, None] - pair[None, :]
         C = np.zeros((n, n))
         for i in (0, 1):
@@ -223,7 +249,8 @@ def _notes(
         notes.append(
             f"a contact pressure of {1e-9 * pressure.max():.2g} GPa is beyond any gear steel; the result is elastic"
         )
-    most, cosine = _MOST_BEYOND * problem.line.base_pitch, np.cos(problem.line.base_helix_angle)
+    most = _MOST_BEYOND * problem.line.base_pitch
+    cosine = np.cos(problem.line.base_helix_angle)
     widest = min(float(problem.line.corner(gear, np.array([0.9 * most]))[0][0]) for gear in (0, 1)) * cosine
     far = (slices.gap @ slices.weight >= widest) & (force > 0.0)
     if max(beyond) >= most * (1.0 - 1e-9) and far.any():

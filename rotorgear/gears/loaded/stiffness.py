@@ -40,7 +40,14 @@ def tooth_fe_stiffness(teeth: ToothPair, load: float | None, positions: int) -> 
         )
     problem, cycle = loaded_cycle(teeth, load, np.arange(positions) / positions, listener())
     return MeshStiffness(
-        model="tooth_fe", position=cycle.position, transverse=cycle.secant, definition="secant", helices=1, load=cycle.load,
-        body=problem.body, base_helix_angle=problem.line.base_helix_angle, warnings=problem.warnings + cycle.warnings,
+        model="tooth_fe",
+        position=cycle.position,
+        transverse=cycle.secant,
+        definition="secant",
+        helices=1,
+        load=cycle.load,
+        body=problem.body,
+        base_helix_angle=problem.line.base_helix_angle,
+        warnings=problem.warnings + cycle.warnings,
         tangent=cycle.tangent,
-    )  # fmt: skip
+    )

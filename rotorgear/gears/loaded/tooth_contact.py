@@ -69,7 +69,8 @@ class ContactProblem:
         """Gap (n,) of each slice along the flank normal before loading (m)."""
         found = slices.gap + self.misalignment * slices.z / self.width
         for i, flank in enumerate(self.flanks):
-            form, tip = self.line.form[i], self.line.tip[i]
+            form = self.line.form[i]
+            tip = self.line.tip[i]
             found = found + flank.depth(slices.roll[i], slices.z, form, tip, self.width)
             if flank.pitch_error:
                 # Pair -n comes into mesh n periods after pair 0.
@@ -114,11 +115,15 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
         AnalysisError: teeth that can't be made, meshed or brought into contact.
         MissingExtraError: scikit-fem is needed and not installed.
     """
-    fe, line = teeth.fe, line_of_action(teeth)
+    fe = teeth.fe
+    line = line_of_action(teeth)
     flanks = (teeth.first_flank, teeth.second_flank)
     space, uncoupled = in_space(teeth)
-    module, bodies = teeth.first.normal_module, (teeth.first_body, teeth.second_body)
-    found, scale, inner = [], [], []
+    module = teeth.first.normal_module
+    bodies = (teeth.first_body, teeth.second_body)
+    found = []
+    scale = []
+    inner = []
     for i, (g, body) in enumerate(zip((teeth.first, teeth.second), bodies, strict=True)):
         key = compliance_key(g, fe, body.poisson_ratio, teeth.width, body.inner_radius, space=space)
         name = ("pinion", "gear")[i]
@@ -134,12 +139,24 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
     slices = _STATIONS if uncoupled else (fe.slices or 2 * size.face if space else 1)
     plane_strain = [(1.0 - body.poisson_ratio**2) / body.youngs_modulus for body in bodies]
     return ContactProblem(
-        line, teeth.width, module, (found[0], found[1]), (scale[0], scale[1]),
-        np.array([2.0 * value / math.pi for value in plane_strain]), 1.0 / sum(plane_strain),
-        not space, uncoupled, slices, fe.patch_width, flanks, (teeth.first.teeth, teeth.second.teeth),
-        teeth.misalignment, fe.body_text(fe.arc, (inner[0], inner[1])), sum(item.unknowns for item in found),
+        line,
+        teeth.width,
+        module,
+        (found[0], found[1]),
+        (scale[0], scale[1]),
+        np.array([2.0 * value / math.pi for value in plane_strain]),
+        1.0 / sum(plane_strain),
+        not space,
+        uncoupled,
+        slices,
+        fe.patch_width,
+        flanks,
+        (teeth.first.teeth, teeth.second.teeth),
+        teeth.misalignment,
+        fe.body_text(fe.arc, (inner[0], inner[1])),
+        sum(item.unknowns for item in found),
         _warnings(teeth, line),
-    )  # fmt: skip
+    )
 
 
 def _without_torsion(found: GearCompliance, key: ComplianceKey, teeth: ToothPair, gear: int) -> GearCompliance:

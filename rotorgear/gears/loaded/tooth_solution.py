@@ -41,7 +41,8 @@ def solve_teeth(key: ComplianceKey, loads: dict[int, np.ndarray], progress: Prog
     """
     mesh = pitch_of(key)[1]
     layers = key.size.face if key.width else 0
-    count, ring = (key.arc or key.geometry.teeth), key.arc == 0
+    count = key.arc or key.geometry.teeth
+    ring = key.arc == 0
     if layers:
         sector = layered_sector(mesh, key.poisson_ratio, key.width, layers, part_of(progress, 0.0, 0.3))
     else:
@@ -64,7 +65,8 @@ def _inside(
     pitch: Pitch, teeth: np.ndarray, cuts: np.ndarray, loads: dict[int, np.ndarray], progress: Progress
 ) -> np.ndarray:
     """Displacements (t, n, d) with the cuts given and the flanks loaded."""
-    d, n = pitch.dimension, len(pitch.points)
+    d = pitch.dimension
+    n = len(pitch.points)
 
     def of(nodes: np.ndarray) -> np.ndarray:
         return np.asarray((d * nodes[:, None] + np.arange(d)).ravel())

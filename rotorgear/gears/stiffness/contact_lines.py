@@ -24,7 +24,8 @@ def contact_lines(teeth: ToothPair, positions: np.ndarray) -> tuple[np.ndarray, 
     Returns:
         xi (n, j) of each pair at z = 0, and the z of both ends of its line (n, j); equal where the pair does not touch.
     """
-    pair, half = teeth.pair, 0.5 * teeth.width
+    pair = teeth.pair
+    half = 0.5 * teeth.width
     slope = math.tan(pair.base_helix_angle)
     reach = half * slope
     first = math.floor((pair.start_of_contact - reach) / teeth.base_pitch) - 1

@@ -22,9 +22,11 @@ _LOW_LINE_LOAD = 1e5  # N/m
 # K1 of accuracy grades 3 ... 12, and K2, of spur gears and of helical ones with eps_beta >= 1.
 _K1_SPUR = (2.1, 3.9, 7.5, 14.9, 26.8, 39.1, 52.8, 76.6, 102.6, 146.3)
 _K1_HELICAL = (1.9, 3.5, 6.7, 13.3, 23.9, 34.8, 47.0, 68.2, 91.4, 130.3)
-_K2_SPUR, _K2_HELICAL = 0.0193, 0.0087
+_K2_SPUR = 0.0193
+_K2_HELICAL = 0.0087
 # Beyond these of v z1/100 sqrt(u^2/(1+u^2)), in m/s, method C does not hold; below the first, method B is not meant for it.
-_LEAST_B, _MOST_C = 3.0, 10.0
+_LEAST_B = 3.0
+_MOST_C = 10.0
 
 
 @dataclass(frozen=True)
@@ -98,16 +100,22 @@ def iso_dynamic_factor(mesh: DynamicMesh) -> DynamicFactor:
         )
     if not mesh.line_load > 0.0:
         raise AnalysisError("K_v of ISO 6336-1 needs a load: give the torque or power that the mesh carries.")
-    N, limit = mesh.resonance_ratio, _subcritical_limit(mesh.line_load)
-    resonance, beyond = _at_resonance(mesh), _supercritical(mesh)
+    N = mesh.resonance_ratio
+    limit = _subcritical_limit(mesh.line_load)
+    resonance = _at_resonance(mesh)
+    beyond = _supercritical(mesh)
     if limit >= N:
-        value, words = 1.0 + N * _subcritical(mesh), "subcritical"
+        value = 1.0 + N * _subcritical(mesh)
+        words = "subcritical"
     elif N <= 1.15:
-        value, words = resonance, "main resonance"
+        value = resonance
+        words = "main resonance"
     elif N < 1.5:
-        value, words = beyond + (resonance - beyond) * (1.5 - N) / 0.35, "between main resonance and supercritical"
+        value = beyond + (resonance - beyond) * (1.5 - N) / 0.35
+        words = "between main resonance and supercritical"
     else:
-        value, words = beyond, "supercritical"
+        value = beyond
+        words = "supercritical"
     slow = _speed_term(mesh.pitch_line_velocity, mesh.pinion_teeth, mesh.ratio) < _LEAST_B
     note = ("K_v: v z1/100 sqrt(u^2/(1+u^2)) is below 3 m/s, where method B is not meant for use",) if slow else ()
     return DynamicFactor(value, "ISO 6336-1 method B", N, words, note)
@@ -169,7 +177,8 @@ def simple_dynamic_factor(
     """
     if not 3 <= grade <= 12:
         raise AnalysisError(f"The simple form of K_v knows accuracy grades 3 to 12, not {grade}.")
-    speed, load = _speed_term(pitch_line_velocity, pinion_teeth, ratio), 1e-3 * max(line_load, _LOW_LINE_LOAD)
+    speed = _speed_term(pitch_line_velocity, pinion_teeth, ratio)
+    load = 1e-3 * max(line_load, _LOW_LINE_LOAD)
     spur = 1.0 + (_K1_SPUR[grade - 3] / load + _K2_SPUR) * speed
     helical = 1.0 + (_K1_HELICAL[grade - 3] / load + _K2_HELICAL) * speed
     note = (f"K_v: v z1/100 sqrt(u^2/(1+u^2)) = {speed:.3g} m/s is beyond 10 m/s, the range of method C",)

@@ -19,13 +19,16 @@ from rotorgear.gears.stiffness.tooth_beam import RING_ANGLE, RING_RATIO, ring_sh
 
 # Points of the path of contact at which the compliance is computed; Gauss points along a contact line; positions
 # within an interval of the period over which the stiffness is averaged.
-_PATH, _GAUSS, _FINER = 201, 12, 16
+_PATH = 201
+_GAUSS = 12
+_FINER = 16
 
 
 def slice_stiffness(teeth: ToothPair, position: np.ndarray) -> np.ndarray:
     """Stiffness of one pair per face width (N/m^2), shape (n,), touching at positions (n,) from the pitch point."""
     tangent = math.tan(teeth.pair.working_transverse_pressure_angle)
-    outlines, bodies = _outlines(teeth), (teeth.first_body, teeth.second_body)
+    outlines = _outlines(teeth)
+    bodies = (teeth.first_body, teeth.second_body)
     first = teeth.first.base_radius * tangent + position
     second = teeth.second.base_radius * tangent - position
     give = sum(
@@ -63,10 +66,16 @@ def potential_energy_stiffness(teeth: ToothPair, load: float | None, positions: 
     total = np.sum(0.5 * (high - low) * (along @ weights), axis=1).reshape(positions, _FINER).mean(axis=1)
     bodies = (teeth.first_body, teeth.second_body)
     return MeshStiffness(
-        model="potential_energy", position=start, transverse=total, definition="secant", helices=1, load=load,
+        model="potential_energy",
+        position=start,
+        transverse=total,
+        definition="secant",
+        helices=1,
+        load=load,
         body="; ".join(_body(outline, body) for outline, body in zip(_outlines(teeth), bodies, strict=True)),
-        base_helix_angle=teeth.pair.base_helix_angle, warnings=_warnings(teeth),
-    )  # fmt: skip
+        base_helix_angle=teeth.pair.base_helix_angle,
+        warnings=_warnings(teeth),
+    )
 
 
 def _body(outline: ToothOutline, body: ToothBody) -> str:
@@ -76,7 +85,8 @@ def _body(outline: ToothOutline, body: ToothBody) -> str:
 
 def _warnings(teeth: ToothPair) -> tuple[str, ...]:
     found = []
-    bodies, pair = (teeth.first_body, teeth.second_body), teeth.pair
+    bodies = (teeth.first_body, teeth.second_body)
+    pair = teeth.pair
     tangent = math.tan(pair.working_transverse_pressure_angle)
     lowest = (
         teeth.first.base_radius * tangent + pair.start_of_contact,

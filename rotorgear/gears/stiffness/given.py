@@ -24,7 +24,12 @@ def given_stiffness(
     """
     normal = np.full(positions, values[0]) if len(values) == 1 else np.asarray(values, float)
     return MeshStiffness(
-        model="given", position=np.arange(len(normal)) / len(normal), transverse=normal * math.cos(base_helix_angle) ** 2,
-        definition="tangent", helices=helices, load=load, body="as whoever gave the stiffness took it",
+        model="given",
+        position=np.arange(len(normal)) / len(normal),
+        transverse=normal * math.cos(base_helix_angle) ** 2,
+        definition="tangent",
+        helices=helices,
+        load=load,
+        body="as whoever gave the stiffness took it",
         base_helix_angle=base_helix_angle,
-    )  # fmt: skip
+    )

@@ -55,7 +55,10 @@ def iso_tooth_stiffness(
         modulus_ratio: E / 206 GPa, with E = 2 E1 E2 / (E1 + E2).
     """
     pinion, wheel = (g1, g2) if g1.teeth <= g2.teeth else (g2, g1)
-    zn1, zn2, x1, x2 = pinion.virtual_teeth, wheel.virtual_teeth, pinion.profile_shift, wheel.profile_shift
+    zn1 = pinion.virtual_teeth
+    zn2 = wheel.virtual_teeth
+    x1 = pinion.profile_shift
+    x2 = wheel.profile_shift
     terms = (1.0, 1.0 / zn1, 1.0 / zn2, x1, x1 / zn1, x2, x2 / zn2, x1**2, x2**2)
     theoretical = UNIT * modulus_ratio / sum(c * term for c, term in zip(_C, terms, strict=True))
     rack = 0.5 * sum(_rack_factor(g) for g in (pinion, wheel))
@@ -117,12 +120,20 @@ def iso_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshS
     warnings = (*values.warnings, nominal) if teeth.pair.interference else values.warnings
     body = f"blanks as in ISO 6336-1 (C_R = {blank_factor(teeth):.3f}); the approach is that of the teeth"
     return MeshStiffness(
-        model="iso", position=np.arange(positions) / positions, transverse=k, definition="secant", helices=1, load=load,
-        body=body, base_helix_angle=teeth.pair.base_helix_angle, warnings=warnings,
-    )  # fmt: skip
+        model="iso",
+        position=np.arange(positions) / positions,
+        transverse=k,
+        definition="secant",
+        helices=1,
+        load=load,
+        body=body,
+        base_helix_angle=teeth.pair.base_helix_angle,
+        warnings=warnings,
+    )
 
 
 def _modulus_ratio(teeth: ToothPair) -> float:
     """E / E_steel of ISO 6336-1, E = 2 E1 E2 / (E1 + E2)."""
-    e1, e2 = teeth.first_body.youngs_modulus, teeth.second_body.youngs_modulus
+    e1 = teeth.first_body.youngs_modulus
+    e2 = teeth.second_body.youngs_modulus
     return 2.0 * e1 * e2 / (e1 + e2) / _STEEL

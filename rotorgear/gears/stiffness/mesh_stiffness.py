@@ -24,7 +24,8 @@ from rotorgear.gears.geometry.pair import PairGeometry
 from rotorgear.gears.tooth_fe.settings import ToothFe
 
 Definition = Literal["secant", "tangent"]
-_EXACT, _DEFAULT_FE = FlankModification(), ToothFe()
+_EXACT = FlankModification()
+_DEFAULT_FE = ToothFe()
 
 
 @dataclass(frozen=True)
@@ -79,9 +80,17 @@ class ToothPair:
         p = self.pair
         turned = replace(p, start_of_contact=-p.end_of_contact, end_of_contact=-p.start_of_contact)
         return ToothPair(
-            self.second, self.first, turned, self.width, self.second_body, self.first_body, self.second_flank,
-            self.first_flank, self.misalignment, self.fe,
-        )  # fmt: skip
+            self.second,
+            self.first,
+            turned,
+            self.width,
+            self.second_body,
+            self.first_body,
+            self.second_flank,
+            self.first_flank,
+            self.misalignment,
+            self.fe,
+        )
 
 
 @dataclass(frozen=True)

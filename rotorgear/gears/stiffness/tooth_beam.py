@@ -28,7 +28,8 @@ _RING = np.array([
     [-6.2042e-5, 9.0889e-3, -4.0964e-4, 7.8297e-3, -0.1472, 0.6904],
 ])  # fmt: skip
 # The polynomials were fitted for these ranges of h and theta_f.
-RING_RATIO, RING_ANGLE = (1.4, 7.0), (0.01, 0.12)
+RING_RATIO = (1.4, 7.0)
+RING_ANGLE = (0.01, 0.12)
 
 
 def tooth_compliance(outline: ToothOutline, body: ToothBody, roll_length: np.ndarray) -> np.ndarray:
@@ -55,8 +56,10 @@ def _beam(
 ) -> np.ndarray:
     """Bending, shear and compression of the tooth, (n,)."""
     radii, angles = _contour(outline)
-    y, thickness = radii * np.cos(angles), 2.0 * radii * np.sin(angles)
-    E, G = body.youngs_modulus, body.youngs_modulus / (2.0 * (1.0 + body.poisson_ratio))
+    y = radii * np.cos(angles)
+    thickness = 2.0 * radii * np.sin(angles)
+    E = body.youngs_modulus
+    G = body.youngs_modulus / (2.0 * (1.0 + body.poisson_ratio))
     powers = np.stack([_integral(y, y**k / thickness**3) for k in range(3)])
     slender = _integral(y, 1.0 / thickness)
     radius, half = outline.involute(roll)
@@ -82,7 +85,8 @@ def _integral(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def _ring(outline: ToothOutline, body: ToothBody, inclination: np.ndarray, cut: np.ndarray) -> np.ndarray:
     """Give of the ring below the tooth, (n,)."""
     ratio, angle = ring_shape(outline, body)
-    h, theta = min(max(ratio, RING_RATIO[0]), RING_RATIO[1]), angle
+    h = min(max(ratio, RING_RATIO[0]), RING_RATIO[1])
+    theta = angle
     L, M, P, Q = _RING @ np.array([theta**-2, h**2, h / theta, 1.0 / theta, h, 1.0])
     arm = (cut - outline.root_radius) / (2.0 * outline.root_radius * theta)
     tangent = np.tan(inclination)

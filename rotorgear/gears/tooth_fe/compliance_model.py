@@ -88,7 +88,8 @@ def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
         sector = layered_sector(mesh, key.poisson_ratio, key.width, key.size.face, progress)
         height = np.linspace(-0.5 * key.width, 0.5 * key.width, 2 * key.size.face + 1)
     else:
-        sector, height = plane_sector(mesh, key.poisson_ratio), np.zeros(1)
+        sector = plane_sector(mesh, key.poisson_ratio)
+        height = np.zeros(1)
     teeth = key.geometry.teeth if key.arc == 0 else key.arc
     G, asymmetry = chained(sector, teeth, min(REACH, (teeth - 1) // 2), ring=key.arc == 0)
     return GearCompliance(

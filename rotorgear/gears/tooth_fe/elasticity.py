@@ -40,5 +40,6 @@ def component_dofs(cells: np.ndarray, dimension: int) -> np.ndarray:
 def assembled(elements: np.ndarray, dofs: np.ndarray, size: int) -> sp.csc_array:
     """Sum of element matrices (e, n, n) on their degrees of freedom (e, n), sparse (size, size)."""
     n = dofs.shape[1]
-    rows, columns = np.repeat(dofs, n, axis=1).ravel(), np.tile(dofs, n).ravel()
+    rows = np.repeat(dofs, n, axis=1).ravel()
+    columns = np.tile(dofs, n).ravel()
     return sp.csc_array(sp.coo_array((elements.ravel(), (rows, columns)), (size, size)))

@@ -81,7 +81,8 @@ def chained(sector: Sector, teeth: int, reach: int, *, ring: bool) -> tuple[np.n
 
 def cut_motions(sector: Sector, force: np.ndarray, teeth: int, *, ring: bool) -> np.ndarray:
     """Motions (cuts, c, k) of the cuts between pitches for k sets of flank forces (f, k) on the middle one."""
-    c, S = sector.cut, sector.stiffness
+    c = sector.cut
+    S = sector.stiffness
     factor = la.cho_factor(S[2 * c :, 2 * c :], lower=True, check_finite=False)
     load = S[: 2 * c, 2 * c :] @ la.cho_solve(factor, force)
     carried = la.cho_solve(factor, S[2 * c :, : 2 * c])
@@ -90,13 +91,18 @@ def cut_motions(sector: Sector, force: np.ndarray, teeth: int, *, ring: bool) ->
 
 def _cut_motions(K: np.ndarray, load: np.ndarray, teeth: int, c: int, ring: bool) -> np.ndarray:
     """Motions (cuts, c, n) of all cuts for the loads on the middle pitch; the held end cuts of a rim do not move."""
-    A, B, D = K[:c, :c], K[:c, c:], K[c:, c:]
-    middle, n = teeth // 2, load.shape[1]
+    A = K[:c, :c]
+    B = K[:c, c:]
+    D = K[c:, c:]
+    middle = teeth // 2
+    n = load.shape[1]
     if ring:
         return _closed(A + D, B, -load, middle, teeth, c)
-    diagonal, moved = D + A, np.zeros((teeth + 1, c, n))
+    diagonal = D + A
+    moved = np.zeros((teeth + 1, c, n))
     rhs = np.zeros((teeth + 1, c, n))
-    rhs[middle], rhs[middle + 1] = -load[:c], -load[c:]
+    rhs[middle] = -load[:c]
+    rhs[middle + 1] = -load[c:]
     factors: list[tuple[np.ndarray, bool]] = []
     for cut in range(1, teeth):  # block elimination from the left
         pivot = diagonal if cut == 1 else diagonal - B.T @ la.cho_solve(factors[-1], B)
@@ -111,7 +117,8 @@ def _cut_motions(K: np.ndarray, load: np.ndarray, teeth: int, c: int, ring: bool
 
 def _closed(diagonal: np.ndarray, B: np.ndarray, load: np.ndarray, middle: int, teeth: int, c: int) -> np.ndarray:
     """The cuts of a closed ring by its cyclic symmetry: one complex system of one cut for each harmonic round the gear."""
-    first, second = load[:c], load[c:]
+    first = load[:c]
+    second = load[c:]
     moved = np.zeros((teeth, c, load.shape[1]))
     index = np.arange(teeth)
     for harmonic in range(teeth // 2 + 1):

@@ -67,9 +67,12 @@ class Pitch:
     def stress(self, displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Equivalent stress (von Mises) and largest principal one (n,), means of the elements that meet at a node."""
         lam, mu = lame(self.poisson_ratio)
-        d, n = self.dimension, len(self.points)
+        d = self.dimension
+        n = len(self.points)
         gradients = np.stack([np.asarray(found[0].grad) for found in self.basis.basis])  # (k, d, e, q)
-        mises, largest, count = np.zeros(n), np.zeros(n), np.zeros(n)
+        mises = np.zeros(n)
+        largest = np.zeros(n)
+        count = np.zeros(n)
         for cells, turn in zip(self.cells, self.layer_turn, strict=True):
             u = displacement[cells] @ turn  # into the frame of the first layer
             du = np.einsum("kieq,ekj->eqij", gradients, u)
@@ -87,7 +90,8 @@ class Pitch:
 def whole_pitch(mesh: PitchMesh, poisson_ratio: float, width: float, layers: int) -> Pitch:
     """A pitch of face `width` in so many layers; 0 layers: plane strain, unit width."""
     skfem = scikit_fem()
-    p, size = len(mesh.points), mesh.outline.geometry
+    p = len(mesh.points)
+    size = mesh.outline.geometry
     low, high = mesh.tooth_rows
     column = mesh.loaded_column
     inside = (mesh.lattice[:, 0] == column) & (mesh.lattice[:, 1] >= low) & (mesh.lattice[:, 1] <= high)
@@ -97,12 +101,26 @@ def whole_pitch(mesh: PitchMesh, poisson_ratio: float, width: float, layers: int
         basis, at_nodes = _bases(mesh.mesh, element)
         cells = mesh.cells.T[None]
         K = assembled(element_matrices(basis, poisson_ratio), component_dofs(mesh.cells, 2), 2 * p)
-        one, none = np.eye(2)[None], np.eye(2)
+        one = np.eye(2)[None]
+        none = np.eye(2)
         return Pitch(
-            mesh.points, cells, K, mesh.inner, mesh.left, mesh.right, mesh.flank, fillet, mesh.normal, one, one,
-            none @ clockwise(mesh.pitch_angle, 2), poisson_ratio, at_nodes,
-        )  # fmt: skip
-    height, twist = width / layers, np.tan(size.base_helix_angle) / size.base_radius
+            mesh.points,
+            cells,
+            K,
+            mesh.inner,
+            mesh.left,
+            mesh.right,
+            mesh.flank,
+            fillet,
+            mesh.normal,
+            one,
+            one,
+            none @ clockwise(mesh.pitch_angle, 2),
+            poisson_ratio,
+            at_nodes,
+        )
+    height = width / layers
+    twist = np.tan(size.base_helix_angle) / size.base_radius
     hexes, place_of = layer_mesh(mesh, height, twist)
     basis, at_nodes = _bases(hexes, skfem.ElementHex2())
     first = place_of[hexes.dofs.element_dofs].T
@@ -121,10 +139,21 @@ def whole_pitch(mesh: PitchMesh, poisson_ratio: float, width: float, layers: int
         return np.asarray((nodes[None] + p * np.arange(len(z))[:, None]).ravel())
 
     return Pitch(
-        points, cells, K, planes(mesh.inner), planes(mesh.left), planes(mesh.right), planes(mesh.flank), planes(fillet),
-        np.einsum("pij,nj->pni", turn, tilt).reshape(-1, 3), turn, layer_turn, clockwise(mesh.pitch_angle, 3), poisson_ratio,
+        points,
+        cells,
+        K,
+        planes(mesh.inner),
+        planes(mesh.left),
+        planes(mesh.right),
+        planes(mesh.flank),
+        planes(fillet),
+        np.einsum("pij,nj->pni", turn, tilt).reshape(-1, 3),
+        turn,
+        layer_turn,
+        clockwise(mesh.pitch_angle, 3),
+        poisson_ratio,
         at_nodes,
-    )  # fmt: skip
+    )
 
 
 def _bases(mesh: Any, element: Any) -> tuple[Any, Any]:

@@ -50,7 +50,8 @@ class MeshSize:
 def _halves(knots: np.ndarray) -> np.ndarray:
     """Knots with the middle of each interval between them."""
     found = np.empty(2 * len(knots) - 1)
-    found[::2], found[1::2] = knots, 0.5 * (knots[1:] + knots[:-1])
+    found[::2] = knots
+    found[1::2] = 0.5 * (knots[1:] + knots[:-1])
     return found
 
 
@@ -68,7 +69,8 @@ def _geometric(count: int, ratio: float) -> np.ndarray:
 
 def flank_rolls(outline: ToothOutline, size: MeshSize) -> np.ndarray:
     """Roll lengths of the nodes on the involute, equal to the arc length's grading: arc = xi^2 / (2 r_b)."""
-    low, high = outline.form_roll_length**2, outline.tip_roll_length**2
+    low = outline.form_roll_length**2
+    high = outline.tip_roll_length**2
     return np.sqrt(low + (high - low) * _halves(_graded_ends(size.involute)))
 
 
@@ -118,7 +120,8 @@ def tooth_points(outline: ToothOutline, size: MeshSize) -> np.ndarray:
     across = _across(size)
     half_tip = float(outline.involute(outline.tip_roll_length)[1])
     tip = _cartesian(np.full(len(across), outline.tip_radius), half_tip * (2.0 * across - 1.0))
-    base, left = _base_curve(outline, across), _mirror(right)
+    base = _base_curve(outline, across)
+    left = _mirror(right)
     s = across[None, :, None]
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(right, axis=0), axis=1))])
     t = (length / length[-1])[:, None, None]

@@ -39,7 +39,8 @@ class Sector:
 
 def clockwise(angle: float, dimension: int) -> np.ndarray:
     """Matrix (d, d) of a clockwise rotation about z, 2 or 3 dimensions."""
-    c, s = np.cos(angle), np.sin(angle)
+    c = np.cos(angle)
+    s = np.sin(angle)
     R = np.eye(dimension)
     R[:2, :2] = [[c, s], [-s, c]]
     return R
@@ -51,7 +52,9 @@ def plane_sector(mesh: PitchMesh, poisson_ratio: float) -> Sector:
     K_e = element_matrices(skfem.Basis(mesh.mesh, skfem.ElementQuad2(), intorder=4), poisson_ratio)
     frame, free, inside, keep = _frames(mesh, mesh.normal)
     K = sp.csc_array(frame.T @ assembled(K_e, component_dofs(mesh.cells, 2), 2 * len(mesh.points)) @ frame)
-    A, B, D = K[inside][:, inside], K[inside][:, keep].toarray(), K[keep][:, keep].toarray()
+    A = K[inside][:, inside]
+    B = K[inside][:, keep].toarray()
+    D = K[keep][:, keep].toarray()
     if len(inside) <= _DENSE_LIMIT:
         condensed = _condensed(np.block([[A.toarray(), B], [B.T, D]]), len(inside))
     else:
@@ -97,7 +100,8 @@ def layer_mesh(mesh: PitchMesh, height: float, twist: float) -> tuple[Any, np.nd
     number = {tuple(place): k for k, place in enumerate(mesh.lattice)}
     below = np.array([number[tuple(place)] for place in lattice[:, :2]])
     z = 0.5 * height * lattice[:, 2]
-    c, s = np.cos(twist * z), np.sin(twist * z)
+    c = np.cos(twist * z)
+    s = np.sin(twist * z)
     x, y = mesh.points[below].T
     points = np.vstack([c * x + s * y, c * y - s * x, z])
     return skfem.MeshHex2(points, straight.t), lattice[:, 2] * len(mesh.points) + below
@@ -111,7 +115,8 @@ def _hexahedra(quads: np.ndarray, above: int) -> np.ndarray:
 
 def _frames(mesh: PitchMesh, normal: np.ndarray) -> tuple[sp.csc_array, np.ndarray, np.ndarray, np.ndarray]:
     """Frame of the unknowns in one plane (displacements = frame @ unknowns) and the numbers of free, inner and kept ones."""
-    d, count = normal.shape[1], len(mesh.points)
+    d = normal.shape[1]
+    count = len(mesh.points)
     blocks = np.tile(np.eye(d), (count, 1, 1))
     blocks[mesh.right] = clockwise(mesh.pitch_angle, d)
     for node, direction in zip(mesh.flank, normal, strict=True):
@@ -147,11 +152,13 @@ def _stacked(
     progress: Progress,
 ) -> Sector:
     """Condense the middle plane of one layer, then stack layers: equal blocks are doubled, so few joints are worked out."""
-    i, k = len(inside), len(keep)
+    i = len(inside)
+    k = len(keep)
     order = np.concatenate([p + inside, inside, 2 * p + inside, keep, p + keep, 2 * p + keep])
     block = _condensed(K[order][:, order].toarray(), i)  # bottom and top inside, then what is kept of its planes
     stack: np.ndarray | None = None
-    rest, done = layers, 0
+    rest = layers
+    done = 0
     while rest:
         progress(done / layers, f"{done} of {layers} layers")
         if rest % 2:
@@ -172,10 +179,14 @@ def _stacked(
 
 def _joined(lower: np.ndarray, upper: np.ndarray, i: int, k: int) -> np.ndarray:
     """Two blocks of layers as one: the plane between them is condensed, except for its k kept unknowns."""
-    first, second = len(lower) - 2 * i, len(upper) - 2 * i
+    first = len(lower) - 2 * i
+    second = len(upper) - 2 * i
     size = 3 * i + first + second - k
     whole = np.zeros((size, size))
-    shared, bottom, top, kept = 0, i, 2 * i, 3 * i
+    shared = 0
+    bottom = i
+    top = 2 * i
+    kept = 3 * i
     here = np.r_[bottom : bottom + i, shared : shared + i, kept : kept + first]
     whole[np.ix_(here, here)] = lower
     here = np.r_[shared : shared + i, top : top + i, kept + first - k : kept + first - k + second]

@@ -33,16 +33,19 @@ def _pair(address: str, amount: float, place: object, keys: tuple[str, str], wha
 
 
 def _root_relief(address: str, flank: Flank, outline: ToothOutline) -> Iterator[Problem]:
-    start, keys = flank.root_relief_diameter, ("root_relief", "root_relief_diameter")
+    start = flank.root_relief_diameter
+    keys = ("root_relief", "root_relief_diameter")
     yield from _pair(address, flank.root_relief, start, keys, "where the root relief starts")
-    low, high = 2.0 * outline.form_radius, 2.0 * outline.tip_radius
+    low = 2.0 * outline.form_radius
+    high = 2.0 * outline.tip_radius
     if start is not None and not low < start <= high:
         limits = f"a diameter on the involute, above {millimetres(low)} to {millimetres(high)}"
         yield Problem(f"{address}.root_relief_diameter", millimetres(start), limits)
 
 
 def _end_relief(address: str, flank: Flank, width: float) -> Iterator[Problem]:
-    length, keys = flank.end_relief_length, ("end_relief", "end_relief_length")
+    length = flank.end_relief_length
+    keys = ("end_relief", "end_relief_length")
     yield from _pair(address, flank.end_relief, length, keys, "the length of the end relief along the face")
     if length > 0.5 * width:
         yield Problem(

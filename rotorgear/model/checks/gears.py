@@ -15,11 +15,18 @@ from rotorgear.model.parts.gear import Gear, GearBody
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import millimetres
 
-_LARGEST_PRESSURE_ANGLE, _LARGEST_HELIX_ANGLE = 45.0, 60.0  # deg
+# deg
+_LARGEST_PRESSURE_ANGLE = 45.0
+_LARGEST_HELIX_ANGLE = 60.0
 _OF_TEETH = (
-    "normal_module", "normal_pressure_angle", "helix_angle", "profile_shift", "addendum_factor", "dedendum_factor",
+    "normal_module",
+    "normal_pressure_angle",
+    "helix_angle",
+    "profile_shift",
+    "addendum_factor",
+    "dedendum_factor",
     "tip_diameter",
-)  # fmt: skip
+)
 
 
 def missing(address: str, why: str) -> Problem:

@@ -46,7 +46,8 @@ def mesh_settings(model: Tables) -> Iterator[Problem]:
 def mesh_problems(model: Tables) -> Iterator[Problem]:
     """Yield what keeps two gears from meshing: kind, module, angle, hand, faces, axes."""
     for name, mesh in model.meshes.items():
-        pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
+        pinion = model.gears[mesh.pinion]
+        gear = model.gears[mesh.gear]
         address = f"meshes.{name}"
         if mesh.pinion == mesh.gear:
             yield Problem(address, f"gear '{mesh.gear}' with itself", "two gears")
@@ -109,7 +110,8 @@ def _mates(address: str, pinion: Gear, gear: Gear) -> Iterator[Problem]:
         return
     keys = ["normal_module", "normal_pressure_angle", "helix_angle"]
     for key in ["transverse_pressure_angle", "base_helix_angle"] if pinion.lumped else keys:
-        first, second = getattr(pinion, key), getattr(gear, key)
+        first = getattr(pinion, key)
+        second = getattr(gear, key)
         if first is not None and second is not None and not math.isclose(first, second, rel_tol=1e-9):
             one, other = (f"{1e3 * x:.9g} mm" if key == "normal_module" else degrees(x) for x in (first, second))
             text = f"a {key.replace('_', ' ')} of {one} on the pinion and {other} on the gear"
@@ -120,7 +122,8 @@ def _mates(address: str, pinion: Gear, gear: Gear) -> Iterator[Problem]:
 
 
 def _faces(model: Tables, address: str, mesh: Mesh) -> Iterator[Problem]:
-    first, second = model.gears[mesh.pinion], model.gears[mesh.gear]
+    first = model.gears[mesh.pinion]
+    second = model.gears[mesh.gear]
     if first.kind != second.kind:
         return
     for one, other in zip(helix_planes(model, mesh.pinion), helix_planes(model, mesh.gear), strict=True):
@@ -130,7 +133,8 @@ def _faces(model: Tables, address: str, mesh: Mesh) -> Iterator[Problem]:
             yield Problem(address, text, "gears at one z, or widths that say where the faces meet")
             return
         if face and face[1] <= face[0]:
-            low, high = (millimetres(one), millimetres(other))
+            low = millimetres(one)
+            high = millimetres(other)
             yield Problem(
                 address, f"faces around z = {low} and z = {high}", "faces that overlap", "check at, width and gap"
             )
@@ -138,7 +142,8 @@ def _faces(model: Tables, address: str, mesh: Mesh) -> Iterator[Problem]:
 
 
 def _axes(model: Tables, address: str, name: str) -> Iterator[Problem]:
-    mesh, line = model.meshes[name], centre_line(model, name)
+    mesh = model.meshes[name]
+    line = centre_line(model, name)
     found = list(_no_axes(model, address, mesh) if line is None else _given_twice(address, mesh))
     try:
         found += [] if line is None else _distance(model, address, mesh, line[0])
@@ -158,7 +163,8 @@ def _given_twice(address: str, mesh: Mesh) -> Iterator[Problem]:
 
 
 def _distance(model: Tables, address: str, mesh: Mesh, given: float) -> Iterator[Problem]:
-    pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
+    pinion = model.gears[mesh.pinion]
+    gear = model.gears[mesh.gear]
     bases = base_radius(pinion) + base_radius(gear)
     wanted, slack = _centre_distance(pinion, gear)
     if given <= bases or (wanted and abs(given - wanted) > slack):
@@ -173,7 +179,8 @@ def _distance(model: Tables, address: str, mesh: Mesh, given: float) -> Iterator
 
 def _centre_distance(pinion: Gear, gear: Gear) -> tuple[float, float]:
     """Return the distance of the axes that two gears want and how far it may be missed, in m; 0 where they want none."""
-    first, second = gear_geometry(pinion), gear_geometry(gear)
+    first = gear_geometry(pinion)
+    second = gear_geometry(gear)
     if first and second:
         return working_centre_distance(first, second), CENTRE_DISTANCE_TOLERANCE * first.normal_module
     angle = pinion.transverse_pressure_angle or gear.transverse_pressure_angle
@@ -182,7 +189,8 @@ def _centre_distance(pinion: Gear, gear: Gear) -> tuple[float, float]:
 
 
 def _no_axes(model: Tables, address: str, mesh: Mesh) -> Iterator[Problem]:
-    pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
+    pinion = model.gears[mesh.pinion]
+    gear = model.gears[mesh.gear]
     if not model.has("bending"):
         return
     if mesh.centre_line_angle is None:

@@ -40,8 +40,10 @@ def mesh_backlash(model: Tables, name: str) -> Backlash:
         AnalysisError: gears that are given by their base radius.
     """
     mesh = model.meshes[name]
-    pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
-    first, second = gear_geometry(pinion), gear_geometry(gear)
+    pinion = model.gears[mesh.pinion]
+    gear = model.gears[mesh.gear]
+    first = gear_geometry(pinion)
+    second = gear_geometry(gear)
     pair = mesh_pair(model, name)
     if first is None or second is None or pair is None:
         raise AnalysisError(f"meshes.{name}: gears given by their base radius have no backlash of their own; give one.")
@@ -54,7 +56,8 @@ def mesh_findings(model: Tables, name: str) -> Iterator[str]:
     """Sentences on a mesh whose teeth meet where they shouldn't, or hardly."""
     from rotorgear.gears.geometry.outline import tooth_outline
 
-    mesh, pair = model.meshes[name], mesh_pair(model, name)
+    mesh = model.meshes[name]
+    pair = mesh_pair(model, name)
     first, second = (gear_geometry(model.gears[gear]) for gear in (mesh.pinion, mesh.gear))
     if pair is None or first is None or second is None:
         return

@@ -28,7 +28,8 @@ def stations(model: Tables) -> Iterator[Problem]:
 
 def _station(model: Tables, address: str, shaft: str, at: float | str, offset: float = 0.0) -> Iterator[Problem]:
     own = model.shafts[shaft]
-    z, slack = own.station(at), 1e-9 * max(own.length, abs(own.start), 1e-6)
+    z = own.station(at)
+    slack = 1e-9 * max(own.length, abs(own.start), 1e-6)
     if own.start - slack <= z - offset and z + offset <= own.end + slack:
         return
     run = f"shaft '{shaft}', which runs from {millimetres(own.start)} to {millimetres(own.end)}"
@@ -48,7 +49,8 @@ def coupled_points(model: Tables) -> Iterator[Problem]:
 
 
 def _coupling(model: Tables, address: str, coupling: Coupling) -> Iterator[Problem]:
-    first, second = model.shafts[coupling.from_shaft], model.shafts[coupling.to_shaft]
+    first = model.shafts[coupling.from_shaft]
+    second = model.shafts[coupling.to_shaft]
     if coupling.from_shaft == coupling.to_shaft and first.station(coupling.from_at) == second.station(coupling.to_at):
         yield Problem(address, "one and the same point twice", "two points")
     if not model.has("bending") or first.position is None or second.position is None:

@@ -11,9 +11,19 @@ from rotorgear.model.parts.tables import Tables
 
 PartName = tuple[str, str]  # (table, name); the name "" stands for the whole table
 TABLES = (
-    "materials", "shafts", "disks", "point_masses", "gears", "meshes", "bearings", "supports", "couplings", "loads",
-    "unbalances", "points",
-)  # fmt: skip
+    "materials",
+    "shafts",
+    "disks",
+    "point_masses",
+    "gears",
+    "meshes",
+    "bearings",
+    "supports",
+    "couplings",
+    "loads",
+    "unbalances",
+    "points",
+)
 ON_SHAFTS = ("disks", "point_masses", "gears", "bearings", "supports")
 
 

@@ -23,7 +23,8 @@ def motions(model: Tables) -> Iterator[Problem]:
 def materials(model: Tables) -> Iterator[Problem]:
     """A material has one of nu and G beside E, and nu is one of a stable material."""
     for name, material in model.materials.items():
-        address, given = f"materials.{name}", (material.poisson_ratio is not None, material.shear_modulus is not None)
+        address = f"materials.{name}"
+        given = (material.poisson_ratio is not None, material.shear_modulus is not None)
         if not any(given):
             yield Problem(address, "neither poisson_ratio nor shear_modulus", "one of them")
         elif all(given):

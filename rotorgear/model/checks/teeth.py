@@ -67,7 +67,8 @@ def _relief(address: str, gear: Gear, outline: ToothOutline) -> Iterator[Problem
         return
     if not gear.tip_relief:
         yield Problem(f"{address}.tip_relief", "", "missing", "required: amount of the tip relief at the tip circle")
-    low, high = 2.0 * outline.form_radius, 2.0 * outline.tip_radius
+    low = 2.0 * outline.form_radius
+    high = 2.0 * outline.tip_radius
     if not low <= start < high:
         limits = f"a diameter on the involute, from {millimetres(low)} to below {millimetres(high)}"
         yield Problem(f"{address}.tip_relief_diameter", millimetres(start), limits)

@@ -53,10 +53,15 @@ def _loads(model: Tables, train: Train) -> tuple[dict[str, Load], list[Problem]]
         if operation.output_shaft:
             loads["operation.output_shaft"] = Load(shaft=operation.output_shaft, kind="output")
     problems = [
-        Problem(name, f"a load on shaft '{load.shaft}', which stands still", "a shaft that the train drives",
-                "no mesh or coupling leads to it from the input shaft")
-        for name, load in loads.items() if train.ratios[load.shaft] == 0
-    ]  # fmt: skip
+        Problem(
+            name,
+            f"a load on shaft '{load.shaft}', which stands still",
+            "a shaft that the train drives",
+            "no mesh or coupling leads to it from the input shaft",
+        )
+        for name, load in loads.items()
+        if train.ratios[load.shaft] == 0
+    ]
     return ({} if problems else loads), problems
 
 
@@ -96,7 +101,11 @@ def _balanced(
             found.append(AppliedTorque(name, load.shaft, z, torque))
         elif abs(excess) > 1e-6 * scale:
             problems.append(
-                Problem("loads", f"torques that leave {excess:.6g} N m, taken to the speed of shaft '{train.reference}'",
-                        "torques that balance", "leave the torque of one output out and it takes the rest")
-            )  # fmt: skip
+                Problem(
+                    "loads",
+                    f"torques that leave {excess:.6g} N m, taken to the speed of shaft '{train.reference}'",
+                    "torques that balance",
+                    "leave the torque of one output out and it takes the rest",
+                )
+            )
     return found, problems

@@ -97,20 +97,23 @@ def centre_line(model: Tables, mesh_name: str) -> tuple[float, float] | None:
     second = model.shafts[model.gears[mesh.gear].shaft].position
     if first is None or second is None:
         return None
-    dx, dy = second[0] - first[0], second[1] - first[1]
+    dx = second[0] - first[0]
+    dy = second[1] - first[1]
     return math.hypot(dx, dy), math.atan2(dy, dx)
 
 
 def pressure_angle(model: Tables, mesh_name: str) -> float:
     """Working transverse pressure angle in rad."""
     mesh = model.meshes[mesh_name]
-    pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
+    pinion = model.gears[mesh.pinion]
+    gear = model.gears[mesh.gear]
     line = centre_line(model, mesh_name)
     if line is not None:
         return math.acos(min((base_radius(pinion) + base_radius(gear)) / line[0], 1.0))
     if mesh.pressure_angle is not None:
         return mesh.pressure_angle
-    first, second = gear_geometry(pinion), gear_geometry(gear)
+    first = gear_geometry(pinion)
+    second = gear_geometry(gear)
     if first and second:
         return working_pressure_angle_from_shifts(first, second)
     return pinion.transverse_pressure_angle or gear.transverse_pressure_angle or 0.0
@@ -119,8 +122,10 @@ def pressure_angle(model: Tables, mesh_name: str) -> float:
 def mesh_pair(model: Tables, mesh_name: str) -> PairGeometry | None:
     """Contact ratios and working circles of a mesh; None for lumped gears."""
     mesh = model.meshes[mesh_name]
-    pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
-    first, second = gear_geometry(pinion), gear_geometry(gear)
+    pinion = model.gears[mesh.pinion]
+    gear = model.gears[mesh.gear]
+    first = gear_geometry(pinion)
+    second = gear_geometry(gear)
     if first is None or second is None:
         return None
     line = centre_line(model, mesh_name)
@@ -134,10 +139,12 @@ def contacts(model: Tables, mesh_name: str, stiffness: float = math.nan) -> tupl
     `stiffness` is that of the mesh along the flank normal in N/m; without it, the contacts serve their geometry only.
     """
     mesh = model.meshes[mesh_name]
-    pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
+    pinion = model.gears[mesh.pinion]
+    gear = model.gears[mesh.gear]
     line = centre_line(model, mesh_name)
     planes = list(zip(helix_planes(model, mesh.pinion), helix_planes(model, mesh.gear), strict=True))
-    first_nodes, second_nodes = node_positions(model, mesh.pinion), node_positions(model, mesh.gear)
+    first_nodes = node_positions(model, mesh.pinion)
+    second_nodes = node_positions(model, mesh.gear)
     hand = {"right": 1, "left": -1, None: 0}[pinion.hand] if pinion.kind != "spur" else 0
     return tuple(
         Contact(

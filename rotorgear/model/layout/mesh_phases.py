@@ -106,7 +106,8 @@ def _walk(model: Tables, train: Train) -> _Walk:
 def _fit(model: Tables, done: _Walk, name: str) -> None:
     """Turn the shaft that a mesh reaches, or close a loop."""
     mesh = model.meshes[name]
-    pinion, gear = model.gears[mesh.pinion], model.gears[mesh.gear]
+    pinion = model.gears[mesh.pinion]
+    gear = model.gears[mesh.gear]
     if gear.shaft not in done.shaft:
         done.shaft[gear.shaft] = _mate(model, done, name, of_gear=True) - done.clocking.get(mesh.gear, 0.0)
     elif pinion.shaft not in done.shaft:

@@ -57,11 +57,20 @@ def tooth_pair(model: Tables, mesh: str) -> ToothPair:
     if first is None or second is None or pair is None:
         raise AnalysisError(f"meshes.{mesh}: gears given by their base radius have no teeth to look at.")
     width = min(model.gears[name].width or 0.0 for name in names)
-    bodies, flanks = [_tooth_body(model, name) for name in names], [_flank(model, name) for name in names]
+    bodies = [_tooth_body(model, name) for name in names]
+    flanks = [_flank(model, name) for name in names]
     return ToothPair(
-        first, second, pair, width, bodies[0], bodies[1], flanks[0], flanks[1], model.meshes[mesh].misalignment,
+        first,
+        second,
+        pair,
+        width,
+        bodies[0],
+        bodies[1],
+        flanks[0],
+        flanks[1],
+        model.meshes[mesh].misalignment,
         _tooth_fe(model.meshes[mesh]),
-    )  # fmt: skip
+    )
 
 
 def mirrored(teeth: ToothPair) -> ToothPair:
@@ -81,7 +90,8 @@ def _flank(model: Tables, name: str) -> FlankModification:
     from rotorgear.gears.geometry.flank import FlankModification
     from rotorgear.gears.geometry.outline import tooth_outline
 
-    gear, geometry = model.gears[name], gear_geometry(model.gears[name])
+    gear = model.gears[name]
+    geometry = gear_geometry(model.gears[name])
     given = gear.flank
     if geometry is None or (given == Flank() and not gear.tip_relief):
         return FlankModification()
@@ -106,9 +116,12 @@ def _flank(model: Tables, name: str) -> FlankModification:
 def _tooth_body(model: Tables, name: str) -> ToothBody:
     from rotorgear.gears.stiffness.mesh_stiffness import ToothBody
 
-    gear, geometry = model.gears[name], gear_geometry(model.gears[name])
+    gear = model.gears[name]
+    geometry = gear_geometry(model.gears[name])
     material = model.material_of(gear.shaft, name=gear.material)
-    inner, rim, web = 0.5 * bore_of(model, name), gear.body.rim_thickness, gear.body.web_thickness
+    inner = 0.5 * bore_of(model, name)
+    rim = gear.body.rim_thickness
+    web = gear.body.web_thickness
     if rim is not None and geometry is not None:
         inner = 0.5 * geometry.root_diameter - rim
     share = 1.0 if web is None or not gear.width else web / gear.width
@@ -151,7 +164,8 @@ def stiffness_of_mesh(
     from rotorgear.gears.stiffness_models import mesh_stiffness
 
     given = name or model.meshes[mesh].stiffness
-    helices, angle = helix_count(model, mesh), base_helix_angle(model.gears[model.meshes[mesh].pinion])
+    helices = helix_count(model, mesh)
+    angle = base_helix_angle(model.gears[model.meshes[mesh].pinion])
     # Rounding of the torque flow must not make another load: equal meshes are solved once.
     load = None if not normal_force else float(f"{normal_force * math.cos(angle):.12g}")
     if not isinstance(given, str):

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 # A mesh whose share of the torque is below this relative to the largest one is called unloaded.
 UNLOADED = 1e-9
 # Stiffness and force of modelled meshes agree when no stiffness changes by more than this; so many passes are tried.
-_AGREED, _PASSES = 1e-9, 60
+_AGREED = 1e-9
+_PASSES = 60
 
 
 @dataclass(frozen=True)
@@ -122,7 +123,8 @@ def _agreed(
 ) -> tuple[list[Contact], list[float], dict[str, MeshStiffness]]:
     """Iterate until the modelled stiffnesses are those at the forces that they lead to."""
     for _ in range(_PASSES):
-        before, curves = curves, _loaded(model, lines, squeeze)
+        before = curves
+        curves = _loaded(model, lines, squeeze)
         lines, squeeze = _solved(model, train, applied, curves)
         if all(abs(curves[name].mean / before[name].mean - 1.0) <= _AGREED for name in curves):
             return lines, squeeze, curves
@@ -173,6 +175,7 @@ def _forces(
 
 def _assumed_sense(model: Tables, train: Train, contact: Contact) -> int:
     """Sense of the pinion's torque where no load flows: the shaft nearer to the input drives in its own sense."""
-    pinion, gear = model.gears[contact.pinion].shaft, model.gears[contact.gear].shaft
+    pinion = model.gears[contact.pinion].shaft
+    gear = model.gears[contact.gear].shaft
     drives = train.depth[pinion] <= train.depth[gear]
     return train.sense(pinion) if drives else -train.sense(pinion)

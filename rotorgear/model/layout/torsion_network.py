@@ -145,18 +145,26 @@ def _stretch(
     model: Tables, shaft: str, left: float, right: float
 ) -> tuple[list[float], list[tuple[float, float, float, float]], list[float]]:
     """Lengths, end diameters and shear moduli of the flexible pieces of a shaft between two places."""
-    lengths, diameters, moduli = [], [], []
+    lengths = []
+    diameters = []
+    moduli = []
     z = model.shafts[shaft].start
     for section in model.shafts[shaft].sections:
-        low, high = max(left, z), min(right, z + section.length)
+        low = max(left, z)
+        high = min(right, z + section.length)
         if high > low and not section.rigid:
             outer, bore, outer_end, bore_end = section.stiffness_diameters()
-            first, last = (low - z) / section.length, (high - z) / section.length
+            first = (low - z) / section.length
+            last = (high - z) / section.length
             lengths.append(high - low)
-            diameters.append((
-                outer + (outer_end - outer) * first, bore + (bore_end - bore) * first,
-                outer + (outer_end - outer) * last, bore + (bore_end - bore) * last,
-            ))  # fmt: skip
+            diameters.append(
+                (
+                    outer + (outer_end - outer) * first,
+                    bore + (bore_end - bore) * first,
+                    outer + (outer_end - outer) * last,
+                    bore + (bore_end - bore) * last,
+                )
+            )
             moduli.append(model.material_of(shaft, section).g)
         z += section.length
     return lengths, diameters, moduli

@@ -65,7 +65,8 @@ def links(model: Tables) -> list[Link]:
     """List the meshes and the torsionally stiff couplings as links between shafts (parts with errors are skipped)."""
     found = []
     for name, mesh in model.meshes.items():
-        pinion, gear = model.gears.get(mesh.pinion), model.gears.get(mesh.gear)
+        pinion = model.gears.get(mesh.pinion)
+        gear = model.gears.get(mesh.gear)
         if pinion is None or gear is None or pinion.shaft == gear.shaft:
             continue
         ratio: Fraction | float | None = None
@@ -86,7 +87,8 @@ def walk(model: Tables) -> tuple[Train, list[Problem]]:
 
     Returns the train and the problems: loops with two ratios, and given speed ratios that contradict the train.
     """
-    train, problems = Train(model.reference_shaft), []
+    train = Train(model.reference_shaft)
+    problems = []
     at_shaft: dict[str, list[Link]] = {}
     for link in links(model):
         at_shaft.setdefault(link.from_shaft, []).append(link)
@@ -104,9 +106,13 @@ def walk(model: Tables) -> tuple[Train, list[Problem]]:
 
 def _walk_group(train: Train, at_shaft: dict[str, list[Link]], start: str, ratio: Fraction | float) -> list[Problem]:
     group = len(set(train.group.values()))
-    train.ratios[start], train.depth[start] = ratio, 0
-    train.group[start], train.reached_by[start] = group, ""
-    queue, problems, used = deque([start]), [], set()
+    train.ratios[start] = ratio
+    train.depth[start] = 0
+    train.group[start] = group
+    train.reached_by[start] = ""
+    queue = deque([start])
+    problems = []
+    used = set()
     while queue:
         shaft = queue.popleft()
         for link in at_shaft.get(shaft, ()):
@@ -123,7 +129,8 @@ def _walk_group(train: Train, at_shaft: dict[str, list[Link]], start: str, ratio
                 continue
             if other not in train.ratios:
                 train.ratios[other], train.depth[other] = speed, train.depth[shaft] + 1
-                train.group[other], train.reached_by[other] = group, link.part
+                train.group[other] = group
+                train.reached_by[other] = link.part
                 queue.append(other)
             elif not _same(speed, train.ratios[other]):
                 problems.append(_loop_problem(train, link, other, speed))
@@ -137,7 +144,8 @@ def _same(first: Fraction | float, second: Fraction | float) -> bool:
 
 
 def _loop_problem(train: Train, link: Link, shaft: str, speed: Fraction | float) -> Problem:
-    first, second = train.ratios[shaft], speed
+    first = train.ratios[shaft]
+    second = speed
     return Problem(
         link.part,
         f"ratio {_ratio_text(second)} of shaft '{shaft}' on this path of a closed loop",
@@ -159,10 +167,12 @@ def _contradictions(model: Tables, train: Train) -> list[Problem]:
         by = train.reached_by[name] or "it is the reference shaft"
         found.append(
             Problem(
-                f"shafts.{name}.speed_ratio", f"{shaft.speed_ratio:.9g}",
-                f"{train.ratio(name):.9g}, which follows from the train ({by})", "leave speed_ratio out",
+                f"shafts.{name}.speed_ratio",
+                f"{shaft.speed_ratio:.9g}",
+                f"{train.ratio(name):.9g}, which follows from the train ({by})",
+                "leave speed_ratio out",
             )
-        )  # fmt: skip
+        )
     return found
 
 

@@ -184,12 +184,14 @@ Matrix6 = Annotated[
     BeforeValidator(_parse_matrix),
     WithJsonSchema(
         {
-            "type": "array", "minItems": 6, "maxItems": 6,
+            "type": "array",
+            "minItems": 6,
+            "maxItems": 6,
             "items": {"type": "array", "minItems": 6, "maxItems": 6, "items": {"type": "number"}},
             "description": "6 x 6 in SI, rows and columns x y z tilt_x tilt_y torsion",
         }
     ),
-]  # fmt: skip
+]
 
 _MOST = 100_000
 

@@ -82,7 +82,9 @@ def guessed_key(item: Any, root: type[BaseModel]) -> str:
 
 def _problem(item: Any, root: type[BaseModel]) -> Problem:
     loc: Loc = item["loc"]
-    where, value, kind = address(loc) or "model", shown(item["input"]), item["type"]
+    where = address(loc) or "model"
+    value = shown(item["input"])
+    kind = item["type"]
     owner = class_at(loc[:-1], root)
     field = owner.model_fields.get(str(loc[-1])) if owner and loc else None
     description = (field.description if field else None) or ""

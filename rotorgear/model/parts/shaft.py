@@ -134,7 +134,8 @@ class Shaft(Part):
 
     def diameter_at(self, z: float) -> float:
         """Largest outer diameter in m of the sections that touch `z`; 0 for a shaft without sections."""
-        left, found = self.start, 0.0
+        left = self.start
+        found = 0.0
         tolerance = 1e-9 * max(self.length, abs(z))
         for section in self.sections:
             right = left + section.length

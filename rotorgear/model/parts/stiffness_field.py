@@ -17,8 +17,12 @@ from rotorgear.quantity import DIMENSIONS, nearest
 # Names of the stiffness models, as gears/stiffness_models.py has them; a test compares both: no numerics load here.
 STIFFNESS_MODELS = ("iso", "contact_line", "potential_energy", "tooth_fe")
 _LEAST_VALUES = 3
-_MOST_HARMONICS, _VALUES_A_HARMONIC, _VALUES = 100, 8, 64
-_UNIT, _SHARE, _ANGLE = Unit("stiffness", "positive"), Unit("ratio"), Unit("angle")
+_MOST_HARMONICS = 100
+_VALUES_A_HARMONIC = 8
+_VALUES = 64
+_UNIT = Unit("stiffness", "positive")
+_SHARE = Unit("ratio")
+_ANGLE = Unit("angle")
 _SERIES = ("mean", "amplitudes", "phases")
 
 
@@ -40,7 +44,8 @@ def _parse(value: Any) -> Any:
 
 def _series(table: dict[str, Any]) -> tuple[float, ...]:
     """Values of a Fourier series over one mesh period."""
-    amplitudes, phases = table.get("amplitudes"), table.get("phases", [])
+    amplitudes = table.get("amplitudes")
+    phases = table.get("phases", [])
     if (
         set(table) - set(_SERIES)
         or "mean" not in table
@@ -53,7 +58,8 @@ def _series(table: dict[str, Any]) -> tuple[float, ...]:
             f"mean, a list of 1 to {_MOST_HARMONICS} amplitudes as shares of it, and as many phases or none, such as "
             f"{{ mean = '{_example()}', amplitudes = [0.1, 0.02], phases = ['0 deg', '90 deg'] }}"
         )
-    mean, shares = _UNIT.parse(table["mean"]), [_SHARE.parse(item) for item in amplitudes]
+    mean = _UNIT.parse(table["mean"])
+    shares = [_SHARE.parse(item) for item in amplitudes]
     angles = [_ANGLE.parse(item) for item in phases] or [0.0] * len(shares)
     count = max(_VALUES, _VALUES_A_HARMONIC * len(shares))
     turns = [2.0 * math.pi * j / count for j in range(count)]

@@ -52,7 +52,8 @@ class _SixBySix(Part):
             values["torsion"],
         ]
         rows = [[diagonal[i] if i == j else 0.0 for j in range(6)] for i in range(6)]
-        rows[0][1], rows[1][0] = values["xy"], values["yx"]
+        rows[0][1] = values["xy"]
+        rows[1][0] = values["yx"]
         return tuple(tuple(row) for row in rows)
 
 

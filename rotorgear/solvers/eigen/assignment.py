@@ -19,7 +19,8 @@ ROUNDING = 1e-12
 
 def relative_errors(measured: ArrayLike, computed: ArrayLike) -> NDArray[np.float64]:
     """Return f / r - 1, shape (r measured, f computed)."""
-    rows, columns = np.asarray(measured, dtype=float), np.asarray(computed, dtype=float)
+    rows = np.asarray(measured, dtype=float)
+    columns = np.asarray(computed, dtype=float)
     return columns[None, :] / rows[:, None] - 1.0
 
 
@@ -62,7 +63,8 @@ def covered_share(computed: ArrayLike, tolerance: float, low: float, high: float
     values = np.sort(np.asarray(computed, dtype=float))
     starts = np.log(np.clip(values / (1.0 + tolerance), low, high) / low)
     ends = np.log(np.clip(values / (1.0 - tolerance), low, high) / low)
-    covered, reached = 0.0, 0.0
+    covered = 0.0
+    reached = 0.0
     for start, end in zip(starts, ends, strict=True):
         covered += max(0.0, end - max(start, reached))
         reached = max(reached, end)

@@ -64,11 +64,13 @@ def complex_modes(
     """
     with single_thread(0):
         V, R = _real_basis(M, K, B, modes)
-        Kb, Db = V.T @ (K @ V), V.T @ (D @ V)
+        Kb = V.T @ (K @ V)
+        Db = V.T @ (D @ V)
         if R.shape[1]:
             met, R = _split_damped(D, V, R, Db)
             V = np.hstack([met, V])
-            Kb, Db = V.T @ (K @ V), V.T @ (D @ V)
+            Kb = V.T @ (K @ V)
+            Db = V.T @ (D @ V)
         if modal_ratio:
             Db = Db + np.diag(2.0 * modal_ratio * np.sqrt(np.maximum(np.diag(Kb), 0.0)))
         s, X, gains, condition = _pairs(Kb, Db)
@@ -77,7 +79,8 @@ def complex_modes(
 
 def _split_damped(D: sp.csc_array, V: np.ndarray, R: np.ndarray, Db: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Split motions without stiffness into those that meet velocity terms (rates in 1/s) and those that meet none."""
-    DR, DtR = D @ R, D.T @ R
+    DR = D @ R
+    DtR = D.T @ R
     rates = np.vstack([R.T @ DR, V.T @ DR, R.T @ DtR, V.T @ DtR])
     _, sizes, turned = la.svd(rates)
     met = np.concatenate(
@@ -90,7 +93,8 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     """Elastic vectors (n, b) and rigid ones (n, r), by eigh(M, K + sigma M), exact for low modes."""
     if np.any(M.diagonal() <= 0.0):
         raise AnalysisError("a degree of freedom has no inertia; the exponential integrator needs it: use newmark")
-    dense, stiff = M.toarray(), K.toarray()
+    dense = M.toarray()
+    stiff = K.toarray()
     stiff = 0.5 * (stiff + stiff.T)
     ratio = np.diag(stiff) / np.diag(dense)
     sigma = 1e-3 * float(ratio[ratio > 0.0].min(initial=1.0)) if np.any(ratio > 0.0) else 1.0
@@ -98,15 +102,18 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
         mu, V = la.eigh(dense, stiff + sigma * dense)
     except la.LinAlgError:
         raise ConvergenceError("stiffnesses too far apart for dense modes; use the newmark method") from None
-    mu, V = mu[::-1], V[:, ::-1]
+    mu = mu[::-1]
+    V = V[:, ::-1]
     V = V / np.sqrt(np.maximum(np.einsum("ij,ij->j", V, dense @ V), 1e-300))
-    strain, noise = np.einsum("ij,ij->j", V, stiff @ V), np.einsum("ij,ij->j", np.abs(V), np.abs(stiff) @ np.abs(V))
+    strain = np.einsum("ij,ij->j", V, stiff @ V)
+    noise = np.einsum("ij,ij->j", np.abs(V), np.abs(stiff) @ np.abs(V))
     rigid = np.abs(strain) <= 1e3 * _EPS * noise
     rigid[noise == 0.0] = True
     lam = 1.0 / mu - sigma
     if np.any(np.abs(lam[rigid]) > sigma):
         raise ConvergenceError("stiffnesses too far apart for dense modes; use the newmark method")
-    R, V = V[:, rigid], V[:, ~rigid]
+    R = V[:, rigid]
+    V = V[:, ~rigid]
     V, lam = _freed_of_slower(dense, stiff, R, V)
     if modes is not None and modes < V.shape[1]:
         V = _with_residuals(dense, stiff, V, lam, B, modes)
@@ -119,17 +126,21 @@ def _freed_of_slower(M: np.ndarray, K: np.ndarray, R: np.ndarray, V: np.ndarray)
     Slow motions hardly show in K, so fast vectors carry shares of them. Freed of all that is slower they are solved anew, and
     those within a step of the lowest are taken.
     """
-    slower, squares = R, [np.zeros(0)]
+    slower = R
+    squares = [np.zeros(0)]
     while V.shape[1]:
         for _ in range(2):
             V = V - slower @ (slower.T @ (M @ V))
         V = V / np.sqrt(np.einsum("ij,ij->j", V, K @ V))
-        mass, strain = V.T @ (M @ V), V.T @ (K @ V)
+        mass = V.T @ (M @ V)
+        strain = V.T @ (K @ V)
         mu, turned = la.eigh(0.5 * (mass + mass.T), 0.5 * (strain + strain.T))
-        V, lam = V @ turned[:, ::-1], 1.0 / mu[::-1]
+        V = V @ turned[:, ::-1]
+        lam = 1.0 / mu[::-1]
         V = V / np.sqrt(np.einsum("ij,ij->j", V, M @ V))
         count = max(1, int(np.searchsorted(lam, _STEP * lam[0])))
-        slower, V = np.hstack([slower, V[:, :count]]), V[:, count:]
+        slower = np.hstack([slower, V[:, :count]])
+        V = V[:, count:]
         squares.append(lam[:count])
     return slower[:, R.shape[1] :], np.concatenate(squares)
 
@@ -138,7 +149,8 @@ def _with_residuals(
     M: np.ndarray, K: np.ndarray, V: np.ndarray, lam: np.ndarray, B: np.ndarray, modes: int
 ) -> np.ndarray:
     """The lowest modes and what the others give statically under unit local forces, as Ritz vectors with inertia."""
-    high, low = V[:, modes:], V[:, :modes]
+    high = V[:, modes:]
+    low = V[:, :modes]
     residual = high @ ((high.T @ B) / lam[modes:, None])
     return np.hstack([low, ritz_residuals(M, K, residual)])
 
@@ -160,7 +172,8 @@ def _pairs(K: np.ndarray, D: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nda
     unit = np.sqrt(np.maximum(diagonal, 1e-12 * np.abs(diagonal).max(initial=1e-300)))
     A = np.zeros((2 * b, 2 * b))
     A[:b, b:] = np.diag(unit)
-    A[b:, :b], A[b:, b:] = -K / unit, -D
+    A[b:, :b] = -K / unit
+    A[b:, b:] = -D
     s, X = la.eig(A)
     condition = float(np.linalg.cond(X, 1))
     if not condition < _WORST_CONDITION:

@@ -118,7 +118,8 @@ def _package(search: Search, R: np.ndarray, pairs: Pairs, count: int | None, bel
 
 def _refuse_hidden_rigid(quadratic: Quadratic, rigid: np.ndarray, V: np.ndarray) -> None:
     """A vector outside the given rigid motions that K strains by rounding only: its eigenvalue would be noise."""
-    force, rounding = np.abs(quadratic.K @ V), 32.0 * EPS * (abs(quadratic.K) @ np.abs(V))
+    force = np.abs(quadratic.K @ V)
+    rounding = 32.0 * EPS * (abs(quadratic.K) @ np.abs(V))
     R = np.linalg.qr(rigid)[0]
     outside = np.linalg.norm(V - R @ (R.T @ V), axis=0) > 1e-6 * np.linalg.norm(V, axis=0)
     if np.any(np.all(force <= rounding, axis=0) & outside):

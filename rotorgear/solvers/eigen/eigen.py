@@ -110,7 +110,8 @@ def lowest_modes(
         raise AnalysisError(f"The number of modes must be at least 1, got {count}.")
     if below is not None and not below > 0.0:
         raise AnalysisError(f"The highest frequency wanted must be positive, got {below} rad/s.")
-    M, K = sp.csc_array(M, dtype=float), sp.csc_array(K, dtype=float)
+    M = sp.csc_array(M, dtype=float)
+    K = sp.csc_array(K, dtype=float)
     with single_thread(K.shape[0]):
         massless = check_pencil(M, K)
         return _confirmed(shifted_operator(M, K, guess), _Wanted(count, below), strain, massless)
@@ -131,7 +132,9 @@ class _Candidates:
 
 def _confirmed(operator: ShiftInvert, wanted: _Wanted, strain: Strain | None, massless: np.ndarray) -> UndampedModes:
     """Compute, refine and count, with more Ritz vectors while no gap is found or the count disagrees."""
-    target, spare, modes = _target(operator, wanted, massless), _SPARE, None
+    target = _target(operator, wanted, massless)
+    spare = _SPARE
+    modes = None
     for _attempt in range(_ATTEMPTS):
         candidates = _candidates(operator, massless, target, spare, strain)
         keep = wanted.among(candidates.values)
@@ -141,7 +144,8 @@ def _confirmed(operator: ShiftInvert, wanted: _Wanted, strain: Strain | None, ma
             if modes.sturm_count_ok:
                 return modes
             target = max(target, modes.sturm_count)
-        target, spare = max(target, keep), 3 * spare
+        target = max(target, keep)
+        spare = 3 * spare
     raise ConvergenceError(
         f"The {target} lowest modes could not be told from those above them: no gap confirmed by a Sturm count."
         " Ask for more modes.",
@@ -168,7 +172,8 @@ def _candidates(
         V = V[:, : target + 10 * spare]
     else:
         V = lanczos_modes(operator, target + 1, spare)
-        sure, finite = target + 1, n - massless.size
+        sure = target + 1
+        finite = n - massless.size
     V = orthonormalised(operator.mass, V)
     values, V = stiffness_ritz(operator.K, V, operator.sigma) if strain is None else strain_ritz(strain, V)
     noise = rounding_noise(operator.size_K, V, operator.sigma)
@@ -182,13 +187,17 @@ def _candidates(
 
 def _gap_above(candidates: _Candidates, keep: int) -> tuple[float, int] | None:
     """A shift in the widest relative gap above the modes to keep, and the number of modes below it; None: no gap."""
-    values, noise = candidates.values, candidates.noise
+    values = candidates.values
+    noise = candidates.noise
     if values.size == candidates.finite:
-        values, noise = np.append(values, max(4.0 * values[-1], 1e3 * noise[-1])), np.append(noise, 0.0)
+        values = np.append(values, max(4.0 * values[-1], 1e3 * noise[-1]))
+        noise = np.append(noise, 0.0)
     first = max(keep, 1)
-    above, under = values[first:], values[first - 1 : -1]
+    above = values[first:]
+    under = values[first - 1 : -1]
     if keep == 0:
-        above, under = values[:1], np.zeros(1)
+        above = values[:1]
+        under = np.zeros(1)
         first = 0
     gaps = np.where(above > 1e2 * noise[first:], (above - under) / np.maximum(above, np.finfo(float).tiny), 0.0)
     if gaps.size == 0 or gaps.max() < _GAP:

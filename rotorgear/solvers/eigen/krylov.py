@@ -32,7 +32,8 @@ class BlockKrylov:
         self._V = np.empty((n, room), order="F")  # untouched pages cost nothing
         self._H = np.zeros((room, room))
         self._size = 0
-        self._border, self._border_start = np.zeros((0, 0)), 0
+        self._border = np.zeros((0, 0))
+        self._border_start = 0
         self._block, _ = self._orthonormal(self._fresh(self._width))
 
     @property
@@ -62,7 +63,8 @@ class BlockKrylov:
 
     def expand(self) -> None:
         """Apply T to the newest block and orthonormalise the image into the next one."""
-        old, new = self._size, self._size + self._block.shape[1]
+        old = self._size
+        new = self._size + self._block.shape[1]
         self._reserve(new + self._block.shape[1])
         self._V[:, old:new] = self._block
         self._size = new
@@ -85,7 +87,8 @@ class BlockKrylov:
         return self._apply(self._random.standard_normal((self._V.shape[0], count)))
 
     def _inject(self, count: int) -> None:
-        held, pending = self._size, self._block.shape[1]
+        held = self._size
+        pending = self._block.shape[1]
         self._reserve(held + pending)
         self._V[:, held : held + pending] = self._block
         self._size = held + pending  # for the orthogonalisation only: the images of these are not known yet
@@ -111,7 +114,8 @@ class BlockKrylov:
             V[:, : self._size] = self.basis
             H = np.zeros((room, room))
             H[: self._H.shape[0], : self._H.shape[1]] = self._H
-            self._V, self._H = V, H
+            self._V = V
+            self._H = H
 
     def _orthonormal(self, X: np.ndarray, since: int = 0) -> tuple[np.ndarray, np.ndarray]:
         """Q (n, r) orthonormal and orthogonal to V, and the coefficients (m + r, b) with X = [V, Q] coefficients.
@@ -149,7 +153,8 @@ def _compressed(gram: np.ndarray, shortest: float) -> tuple[np.ndarray, np.ndarr
     scale = scale[kept]
     values, vectors = np.linalg.eigh(gram[np.ix_(kept, kept)] / scale / scale[:, None])
     strong = values > 1e-14 * values.max(initial=0.0)
-    roots, vectors = np.sqrt(values[strong]), vectors[:, strong]
+    roots = np.sqrt(values[strong])
+    vectors = vectors[:, strong]
     Q = np.zeros((gram.shape[0], roots.size))
     R = np.zeros((roots.size, gram.shape[0]))
     Q[kept] = vectors / roots / scale[:, None]

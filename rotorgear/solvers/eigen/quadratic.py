@@ -87,7 +87,8 @@ class InverseState:
     """T = (A - sigma)^-1 on states (2n, k), with the zero eigenvalues of the rigid motions projected out."""
 
     def __init__(self, quadratic: Quadratic, sigma: float, rigid: np.ndarray) -> None:
-        self.quadratic, self.sigma = quadratic, sigma
+        self.quadratic = quadratic
+        self.sigma = sigma
         self.factor: Factor = factor_general(quadratic.at(sigma))
         self._first = sp.csr_array(quadratic.D + sigma * quadratic.M)
         self._second = sp.csr_array(quadratic.M)
@@ -152,7 +153,9 @@ def zero_states(quadratic: Quadratic, rigid: np.ndarray) -> np.ndarray:
     AnalysisError
         The rigid vectors are strained, or a drift has no inertia.
     """
-    K, D, M = quadratic.K, quadratic.D, quadratic.M
+    K = quadratic.K
+    D = quadratic.D
+    M = quadratic.M
     if rigid.shape[1] == 0:
         return np.zeros((2 * quadratic.n, 0))
     R = np.linalg.qr(rigid)[0]
@@ -186,7 +189,8 @@ def infinite_states(quadratic: Quadratic) -> np.ndarray:
     LooseDofError
         Massless, undamped dofs have no stiffness.
     """
-    n, massless = quadratic.n, np.flatnonzero(quadratic.M.diagonal() <= 0.0)
+    n = quadratic.n
+    massless = np.flatnonzero(quadratic.M.diagonal() <= 0.0)
     if massless.size == 0:
         return np.zeros((2 * n, 0))
     N = np.zeros((n, massless.size))
@@ -203,7 +207,8 @@ def infinite_states(quadratic: Quadratic) -> np.ndarray:
     held = (N @ U[:, rank:]).T @ (quadratic.K @ (N @ free) + quadratic.D @ follow)
     if free.shape[1] and np.linalg.cond(held) > 1e12:
         raise LooseDofError(massless)
-    first, second = np.vstack([np.zeros_like(N), N]), np.vstack([N @ free, follow])
+    first = np.vstack([np.zeros_like(N), N])
+    second = np.vstack([N @ free, follow])
     return np.linalg.qr(np.hstack([first, second]))[0]
 
 
@@ -231,7 +236,8 @@ def newton(quadratic: Quadratic, value: complex, vector: np.ndarray) -> tuple[co
         step = 1.0 / np.vdot(v, u)
         if abs(step) > _LONGEST_STEP * abs(z):
             break
-        z, v = z - step, u
+        z = z - step
+        v = u
         if abs(step) <= 1e-14 * abs(z):
             break
     return complex(z), v / np.linalg.norm(v) + 0j, spent
@@ -240,7 +246,8 @@ def newton(quadratic: Quadratic, value: complex, vector: np.ndarray) -> tuple[co
 def first_guess(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array) -> float:
     """A frequency in rad/s below most of those of the matrices, to start the search from."""
     for A, power in ((M, 0.5), (D, 1.0)):
-        inertia, stiffness = np.abs(A.diagonal()), np.abs(K.diagonal())
+        inertia = np.abs(A.diagonal())
+        stiffness = np.abs(K.diagonal())
         both = (inertia > 0.0) & (stiffness > 0.0)
         if np.any(both):
             return float((1e-8 * np.median(stiffness[both] / inertia[both])) ** power)

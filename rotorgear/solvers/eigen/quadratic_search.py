@@ -50,7 +50,8 @@ class Search:
         """mu (m,) in descending size, coordinates (m, m), residuals relative to |mu| (m,)."""
         mu, Y = np.linalg.eig(self.krylov.projection)
         order = np.argsort(-np.abs(mu), kind="stable")
-        mu, Y = mu[order], Y[:, order]
+        mu = mu[order]
+        Y = Y[:, order]
         keep = np.abs(mu) > EPS * np.abs(mu[:1]).max(initial=0.0)
         return mu[keep], Y[:, keep], self.krylov.residuals(Y[:, keep]) / np.abs(mu[keep])
 
@@ -68,7 +69,8 @@ class Pairs:
 def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, frequency_scale: float | None) -> Search:
     """Choose w0 near the lowest frequencies: probe, and move there while the guess is off by more than a decade."""
     w0 = first_guess(M, D, K) if frequency_scale is None else frequency_scale
-    best, off = None, np.inf
+    best = None
+    off = np.inf
     for attempt in range(1, 12):
         quadratic = scaled(M, D, K, w0)
         inverse = InverseState(quadratic, _SHIFT, R / quadratic.scale[:, None])
@@ -77,7 +79,8 @@ def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, f
         if lowest is None or 0.1 <= lowest <= 10.0:
             return search
         if abs(np.log(lowest)) < off:
-            best, off = search, abs(np.log(lowest))
+            best = search
+            off = abs(np.log(lowest))
         w0 *= lowest
     if best is None:
         raise ConvergenceError(
@@ -194,7 +197,8 @@ def _dense(search: Search, rows: int | None) -> Pairs:
     T = rest.T @ inverse.apply(rest)
     mu, X = np.linalg.eig(T)
     finite = np.abs(mu) > size * EPS**2 * np.abs(mu).max(initial=0.0)
-    mu, X = mu[finite], rest @ X[:, finite]
+    mu = mu[finite]
+    X = rest @ X[:, finite]
     norm = float(np.linalg.norm(T, 1)) if T.size else 0.0
     if mu.size and EPS * norm > _TOO_BLURRED * np.abs(mu).min():
         mu, X = _with_direct(inverse, mu, X)
@@ -203,7 +207,8 @@ def _dense(search: Search, rows: int | None) -> Pairs:
 
 def _with_direct(inverse: InverseState, mu: np.ndarray, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The pairs of the inverse with the upper part of the spectrum from the companion matrix, where M is regular."""
-    quadratic, n = inverse.quadratic, inverse.quadratic.n
+    quadratic = inverse.quadratic
+    n = inverse.quadratic.n
     M = quadratic.M.toarray()
     if np.any(M.diagonal() <= 0.0) or np.linalg.cond(M) > 1e12:
         return mu, X
@@ -211,7 +216,8 @@ def _with_direct(inverse: InverseState, mu: np.ndarray, X: np.ndarray) -> tuple[
     A[:n, n:] = np.eye(n)
     A[n:] = -np.linalg.solve(M, np.hstack([quadratic.K.toarray(), quadratic.D.toarray()]))
     direct, Y = np.linalg.eig(A)
-    order, upper = np.argsort(np.abs(inverse.sigma + 1.0 / mu)), np.argsort(np.abs(direct))[::-1]
+    order = np.argsort(np.abs(inverse.sigma + 1.0 / mu))
+    upper = np.argsort(np.abs(direct))[::-1]
     size = np.abs(inverse.sigma + 1.0 / mu[order])
     middle = np.sqrt(size[0] * size[-1])
     # Conjugate pairs and close groups stay together: the spectrum is cut in its widest gap around the middle.
@@ -222,8 +228,10 @@ def _with_direct(inverse: InverseState, mu: np.ndarray, X: np.ndarray) -> tuple[
     high = upper[: mu.size - cut]
     if np.abs(direct[high]).min() < size[cut - 1]:
         return mu, X
-    return (np.concatenate([mu[order[:cut]], 1.0 / (direct[high] - inverse.sigma)]),
-            np.hstack([X[:, order[:cut]], Y[:, high]]))  # fmt: skip
+    return (
+        np.concatenate([mu[order[:cut]], 1.0 / (direct[high] - inverse.sigma)]),
+        np.hstack([X[:, order[:cut]], Y[:, high]]),
+    )
 
 
 def _selected(
@@ -233,7 +241,8 @@ def _selected(
 
     That norm, not the largest |mu|, is what rounding goes with: a fast spin makes the matrix far from normal.
     """
-    quadratic, sigma = search.inverse.quadratic, search.inverse.sigma
+    quadratic = search.inverse.quadratic
+    sigma = search.inverse.sigma
     one = mu.imag <= 0.0
     mu = mu[one].astype(complex)
     V = search.inverse.restored(mu, X[:, one].astype(complex), known)[: quadratic.n]
@@ -248,6 +257,7 @@ def _selected(
         values[i], V[:, i], spent = newton(quadratic, values[i], V[:, i])
         search.factorisations += spent
         if values[i].imag < 0.0:  # of a pair next to the real axis the other one may be found
-            values[i], V[:, i] = np.conj(values[i]), np.conj(V[:, i])
+            values[i] = np.conj(values[i])
+            V[:, i] = np.conj(V[:, i])
     order = np.lexsort((values.imag, np.abs(values)))
     return Pairs(values[order], V[:, order], reach - sigma, "dense" if np.isinf(reach) else "block Arnoldi")

@@ -83,9 +83,13 @@ def eigen(pencil: Pencil, shift: float, smallest: float, count: int) -> Eigen:
     real = counted & (np.abs(s.imag) <= 1e-9 * size)
     chosen = np.flatnonzero(counted & ~real & (s.imag > 0.0))
     chosen = chosen[np.argsort(size[chosen], kind="stable")][:count]
-    q, l1, l2 = X[:r, chosen], L[:r, chosen], L[r:, chosen]
+    q = X[:r, chosen]
+    l1 = L[:r, chosen]
+    l2 = L[r:, chosen]
     y = -P.T @ (l1 + l2) / np.conj(mu[chosen])
-    s, y, q = s[chosen], scale[:, None] * y, scale[:, None] * q
+    s = s[chosen]
+    y = scale[:, None] * y
+    q = scale[:, None] * q
     q = q / np.linalg.norm(q, axis=0)
     return Eigen(s, q, _biorthogonal(pencil, s, q, y), np.sort(shift * (1.0 + 1.0 / mu[real]).real), pencil)
 
@@ -101,7 +105,8 @@ def _inverted(pencil: Pencil, shift: float) -> tuple[np.ndarray, np.ndarray, np.
         P = la.inv(K + D + M, check_finite=False)
     except la.LinAlgError:
         raise ConvergenceError("A reduced problem is singular at its shift.") from None
-    PD, PM = P @ (D + M), P @ M
+    PD = P @ (D + M)
+    PM = P @ M
     return np.block([[-PD, -PM], [np.eye(len(K)) - PD, -PM]]), P, scale
 
 

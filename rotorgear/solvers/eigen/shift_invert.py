@@ -58,9 +58,11 @@ class ShiftInvert:
         """Lowest eigenvalues (k,), their coordinates in the Krylov basis (m, k), and relative residuals (k,)."""
         H = self.krylov.projection
         theta, Y = np.linalg.eigh(0.5 * (H + H.T))
-        theta, Y = theta[::-1][:count], Y[:, ::-1][:, :count]
+        theta = theta[::-1][:count]
+        Y = Y[:, ::-1][:, :count]
         keep = theta > EPS * theta[:1].max(initial=0.0)
-        theta, Y = theta[keep], Y[:, keep]
+        theta = theta[keep]
+        Y = Y[:, keep]
         return self.sigma + 1.0 / theta, Y, self.krylov.residuals(Y) / theta
 
 
@@ -74,7 +76,8 @@ def shifted_operator(M: sp.csc_array, K: sp.csc_array, guess: float | None = Non
     ConvergenceError
         K - sigma M is singular for every shift.
     """
-    sigma, factored = -(0.1 * guess if guess else _first_guess(M, K)), 0
+    sigma = -(0.1 * guess if guess else _first_guess(M, K))
+    factored = 0
     for _ in range(12):
         factored += 1
         factor = _positive_factor(M, K, sigma)
@@ -93,7 +96,8 @@ def shifted_operator(M: sp.csc_array, K: sp.csc_array, guess: float | None = Non
 
 
 def _first_guess(M: sp.csc_array, K: sp.csc_array) -> float:
-    mass, stiffness = M.diagonal(), K.diagonal()
+    mass = M.diagonal()
+    stiffness = K.diagonal()
     both = (mass > 0.0) & (stiffness > 0.0)
     return 1e-16 * float(np.median(stiffness[both] / mass[both])) if np.any(both) else 1.0
 
@@ -133,7 +137,8 @@ def unstable(eigenvalue: float) -> AnalysisError:
 
 def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarray:
     """M-orthogonal vectors (n, k) of at least the `converged` lowest eigenpairs and up to `spare` Ritz pairs more."""
-    krylov, enough = operator.krylov, converged + spare
+    krylov = operator.krylov
+    enough = converged + spare
     goal = 2 * enough
     while True:
         while krylov.size < goal and not krylov.exhausted:
@@ -145,7 +150,8 @@ def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarr
             if highest <= _SPREAD * -operator.sigma:
                 return _cleaned(operator, values, krylov.polished(Y))
             operator.move(-1e-4 * highest)
-            krylov, goal = operator.krylov, 2 * enough
+            krylov = operator.krylov
+            goal = 2 * enough
             continue
         goal = krylov.size + 1 + krylov.size // 16
 
@@ -159,10 +165,12 @@ def _cleaned(operator: ShiftInvert, values: np.ndarray, V: np.ndarray) -> np.nda
 
 def dense_modes(operator: ShiftInvert, massless: np.ndarray, wanted: int) -> np.ndarray:
     """All finite modes (n, k): `eigh(M, K - sigma M)` for low modes, `eigh(K, M)` for those that it can't resolve."""
-    M, K = operator.M.toarray(), operator.K.toarray()
+    M = operator.M.toarray()
+    K = operator.K.toarray()
     sigma, mu, V = _inverted_modes(M, K, min(operator.sigma, -0.01 * operator.elastic))
     finite = np.arange(mu.size) < np.count_nonzero(mu > mu.size * EPS * mu[0])
-    values, V = sigma + 1.0 / mu[finite], V[:, finite] / np.sqrt(mu[finite])
+    values = sigma + 1.0 / mu[finite]
+    V = V[:, finite] / np.sqrt(mu[finite])
     resolved = int(np.count_nonzero(mu[finite] > 1e-6 * mu[0]))
     if wanted <= resolved:
         return V

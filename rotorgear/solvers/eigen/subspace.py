@@ -13,7 +13,8 @@ class Subspace:
     """
 
     def __init__(self, weight: np.ndarray, tolerance: float) -> None:
-        self._weight, self._tolerance = weight, tolerance
+        self._weight = weight
+        self._tolerance = tolerance
         self._scaled = np.zeros((len(weight), 0))
 
     @property

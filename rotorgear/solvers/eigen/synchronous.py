@@ -94,7 +94,8 @@ def _starts(family: Affine, order: float, attempt: int) -> tuple[np.ndarray, np.
     A0 = sp.csc_array(S @ family.K0 @ S, dtype=complex)
     A1 = sp.csc_array(S @ (order * family.D0 - 1j * family.K1) @ S * centre)
     A2 = sp.csc_array(S @ (order**2 * family.M - 1j * order * family.D1) @ S * centre**2)
-    sigma, n = 1j, family.M.shape[0]
+    sigma = 1j
+    n = family.M.shape[0]
     factor = factor_general(sp.csc_array(A0 + sigma * A1 + sigma**2 * A2))
     first = sp.csr_array(A1 + sigma * A2)
 
@@ -137,18 +138,22 @@ def _largest(
 
 def _polished(family: Affine, order: float, s: complex, x: np.ndarray) -> Synchronous | None:
     """The root of Im lambda(W) = p W next to a start; None where it leads elsewhere."""
-    speed, value, v = s.imag, order * s, x
+    speed = s.imag
+    value = order * s
+    v = x
     last: tuple[float, float] | None = None
     for _ in range(12):
         D, K = family.at(speed)
         quadratic = scaled(family.M, D, K, order * abs(speed))
         z, v, _ = newton(quadratic, value / quadratic.w0, v / quadratic.scale)
-        value, v = z * quadratic.w0, v * quadratic.scale
+        value = z * quadratic.w0
+        v = v * quadratic.scale
         gap = value.imag - order * speed
         if abs(gap) <= _SETTLED * order * speed:
             break
         slope = -order if last is None or last[0] == speed else (gap - last[1]) / (speed - last[0])
-        last, step = (speed, gap), gap / (slope or -order)
+        last = (speed, gap)
+        step = gap / (slope or -order)
         if abs(step) > 0.3 * speed:
             return None
         if abs(step) <= 1e-16 * speed:
@@ -165,7 +170,8 @@ def _same(one: Synchronous, other: Synchronous, M: sp.csc_array) -> bool:
         one.eigenvalue
     ):
         return False
-    x, y = one.vector, other.vector
+    x = one.vector
+    y = other.vector
     sizes = abs(np.vdot(x, M @ x)) * abs(np.vdot(y, M @ y))
     return bool(abs(np.vdot(x, M @ y)) ** 2 > 0.98 * sizes)
 
@@ -179,7 +185,8 @@ def _count_agrees(family: Affine, order: float, found: list[Synchronous]) -> boo
     if family.D0.nnz or family.K1.nnz or (skew.nnz and skew.max() > 1e-12 * abs(family.D1).max()):
         return True
     H = sp.csc_array(order**2 * family.M - 1j * order * family.D1)
-    low, high = 0.999 * min([family.high, *(r.speed for r in found)]), family.high
+    low = 0.999 * min([family.high, *(r.speed for r in found)])
+    high = family.high
     first = max(family.low, 1e-4 * low)
     if any(abs(r.speed - end) < 1e-7 * end for r in found for end in (first, high)):
         return True  # a root on the very end can't be counted

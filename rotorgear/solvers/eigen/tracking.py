@@ -58,7 +58,8 @@ def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> Step:
     slope = Pencil(0.0 * a.pencil.M, (b.pencil.D - a.pencil.D) / length, (b.pencil.K - a.pencil.K) / length)
     (a, rate_a), (b, rate_b) = parted(a, slope), parted(b, slope)
     mac = _mac(a, b)
-    twins_a, twins_b = _twins(a.s, rate_a, length), _twins(b.s, rate_b, length)
+    twins_a = _twins(a.s, rate_a, length)
+    twins_b = _twins(b.s, rate_b, length)
     mac = np.clip(np.abs(twins_a @ mac @ twins_b) / np.maximum(twins_a.sum(1)[:, None], 1.0), 0.0, 1.0)
     size = 0.5 * (np.abs(a.s)[:, None] + np.abs(b.s))
     mismatch = np.abs(b.s - a.s[:, None] - 0.5 * length * (rate_a[:, None] + rate_b)) / size
@@ -76,7 +77,8 @@ def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> Step:
 
 def parted(at: Eigen, slope: Pencil) -> tuple[Eigen, np.ndarray]:
     """Eigenpairs with the vectors of equal eigenvalues turned to the directions in which they part; derivatives (m,)."""
-    q, y = at.q, at.y
+    q = at.q
+    y = at.y
     for own in clusters(at.s):
         if len(own) < 2:
             continue
@@ -84,8 +86,10 @@ def parted(at: Eigen, slope: Pencil) -> tuple[Eigen, np.ndarray]:
         block = -(y[:, own].conj().T @ ((s * slope.D + slope.K) @ q[:, own]))
         W = np.linalg.eig(block)[1]
         if np.linalg.cond(W) < 1e6:
-            q, y = q.copy(), y.copy()
-            q[:, own], y[:, own] = q[:, own] @ W, y[:, own] @ np.linalg.inv(W).conj().T
+            q = q.copy()
+            y = y.copy()
+            q[:, own] = q[:, own] @ W
+            y[:, own] = y[:, own] @ np.linalg.inv(W).conj().T
     rate = -np.einsum("ri,ri->i", y.conj(), slope.D @ q * at.s + slope.K @ q)
     return replace(at, q=q, y=y), rate
 
@@ -133,11 +137,13 @@ def _veering(
 ) -> np.ndarray:
     """Which modes change places with one that acts on them: too coarse a step to tell a veering from a crossing."""
     linked = np.flatnonzero(partner >= 0)
-    before, after = a.s[linked].imag, b.s[partner[linked]].imag
+    before = a.s[linked].imag
+    after = b.s[partner[linked]].imag
     swapped = (before[:, None] - before) * (after[:, None] - after) < 0.0
     doubt = np.zeros(len(a.s), bool)
     for i, j in np.argwhere(np.triu(swapped)):
-        one, two = linked[i], linked[j]
+        one = linked[i]
+        two = linked[j]
         width = max(_width(a, rates[0], slope, one, two), _width(b, rates[1], slope, partner[one], partner[two]))
         if width > narrowest:
             doubt[[one, two]] = True

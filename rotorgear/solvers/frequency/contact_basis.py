@@ -77,9 +77,11 @@ def candidates(local: LocalSystem, loads: np.ndarray, acting: np.ndarray, count:
     Args:
         local: the system. loads: (n, l), and acting: columns (a,), that attachment vectors are kept of. count: modes.
     """
-    M, K = local.M, local.stiffness_about
+    M = local.M
+    K = local.stiffness_about
     found = lowest_modes(M, sp.csc_array(0.5 * (K + K.T)), count=min(count, local.n))
-    V, rigid = found.vectors, found.rigid_count
+    V = found.vectors
+    rigid = found.rigid_count
     R = V[:, :rigid]
     solver = SupportedSolver(K, R * np.sqrt(np.maximum(K.diagonal(), 1e-300))[:, None], left_null_space(K, M, R))
     B = local.B.toarray()
@@ -89,18 +91,28 @@ def candidates(local: LocalSystem, loads: np.ndarray, acting: np.ndarray, count:
     whole = np.sqrt(np.einsum("ij,ij->j", X, M @ X))
     rest[:, np.sqrt(np.einsum("ij,ij->j", rest, M @ rest)) <= _IN_MODES * whole] = 0.0
     E = np.hstack([V, ritz_residuals(M, sp.csc_array(0.5 * (K + K.T)), rest)])
-    Ke, Be = E.T @ (K @ E), E.T @ B
+    Ke = E.T @ (K @ E)
+    Be = E.T @ B
     strained = np.diag(local.forces.reference_stiffness) > 0.0
-    Ke[:rigid], Ke[:, :rigid], Be[:rigid, strained] = 0.0, 0.0, 0.0
+    Ke[:rigid] = 0.0
+    Ke[:, :rigid] = 0.0
+    Be[:rigid, strained] = 0.0
     size = E.shape[1]
     G = np.zeros((size, size)) if local.G is None else E.T @ (local.G @ E)
     statics = np.zeros((size, forces.shape[1]))
     statics[rigid:] = np.linalg.solve(Ke[rigid:, rigid:], (E.T @ forces)[rigid:])
     kept = np.concatenate([acting, B.shape[1] + np.arange(loads.shape[1])])
     return Candidates(
-        E, rigid, V.shape[1] - rigid, np.sqrt(np.maximum(np.diag(Ke), 0.0)), Ke, E.T @ (local.damping_about @ E), G, Be,
+        E,
+        rigid,
+        V.shape[1] - rigid,
+        np.sqrt(np.maximum(np.diag(Ke), 0.0)),
+        Ke,
+        E.T @ (local.damping_about @ E),
+        G,
+        Be,
         statics[:, kept],
-    )  # fmt: skip
+    )
 
 
 def _without(M: sp.csc_array, V: np.ndarray, X: np.ndarray) -> np.ndarray:
@@ -131,14 +143,22 @@ def reduced_receptances(among: Candidates, Q: np.ndarray, probes: Probes) -> tup
 
 
 def _dynamic(K: np.ndarray, D: np.ndarray, G: np.ndarray, probes: Probes) -> np.ndarray:
-    s, W = probes.s[:, None, None], probes.speed[:, None, None]
+    s = probes.s[:, None, None]
+    W = probes.speed[:, None, None]
     return np.asarray(K + s * D + (s * W) * G + (s * s) * np.eye(len(K)))
 
 
 def choose(
-    among: Candidates, full: np.ndarray, probes: Probes, scale: Scale, tolerance: float, most: int,
-    begin: np.ndarray | None = None, fixed: int | None = None, heard: Callable[[int, float], None] = lambda n, e: None,
-) -> Choice:  # fmt: skip
+    among: Candidates,
+    full: np.ndarray,
+    probes: Probes,
+    scale: Scale,
+    tolerance: float,
+    most: int,
+    begin: np.ndarray | None = None,
+    fixed: int | None = None,
+    heard: Callable[[int, float], None] = lambda n, e: None,
+) -> Choice:
     """Choose modes until the receptances agree to a tolerance, or the basis has `most` shapes, or no mode is left.
 
     Args:
@@ -165,12 +185,21 @@ def choose(
 
 
 def _worth(
-    among: Candidates, Q: np.ndarray, H: np.ndarray, y: np.ndarray, dual: np.ndarray, probes: Probes, scale: Scale,
+    among: Candidates,
+    Q: np.ndarray,
+    H: np.ndarray,
+    y: np.ndarray,
+    dual: np.ndarray,
+    probes: Probes,
+    scale: Scale,
     left: np.ndarray,
-) -> np.ndarray:  # fmt: skip
+) -> np.ndarray:
     """About how much each mode that is left out changes the receptances, (j,)."""
-    s, W = probes.s[:, None, None], probes.speed[:, None, None]
-    K, D, G = among.K, among.D, among.G
+    s = probes.s[:, None, None]
+    W = probes.speed[:, None, None]
+    K = among.K
+    D = among.D
+    G = among.G
     r = among.B[left] - ((K[left] @ Q) @ y + s * ((D[left] @ Q) @ y) + (s * W) * ((G[left] @ Q) @ y))
     d = among.B[left] - ((K.T[left] @ Q) @ dual + s * ((D.T[left] @ Q) @ dual) + (s * W) * ((G.T[left] @ Q) @ dual))
     own = np.abs(np.diag(K)[left] + probes.s[:, None] * np.diag(D)[left] + probes.s[:, None] ** 2)
@@ -183,7 +212,8 @@ def _worth(
 def _share(r: np.ndarray, d: np.ndarray, own: np.ndarray, H: np.ndarray, scale: Scale) -> np.ndarray:
     """Largest relative change (j,) of receptances H by shapes with residuals r, d (f, j, m) and stiffness `own` (f, j)."""
     size, moved = sizes(H, scale)
-    at, root = scale.contacts, scale.root[scale.contacts]
+    at = scale.contacts
+    root = scale.root[scale.contacts]
     dual = np.linalg.norm(d[:, :, at] * root, axis=2) / own
     inner = dual * np.linalg.norm(r[:, :, at] * root, axis=2) / size[:, None]
     others = np.flatnonzero((scale.root == 0.0) & (moved > 0.0))
@@ -193,9 +223,11 @@ def _share(r: np.ndarray, d: np.ndarray, own: np.ndarray, H: np.ndarray, scale: 
 
 def reduced(local: LocalSystem, among: Candidates, Q: np.ndarray) -> tuple[LocalSystem, np.ndarray]:
     """Return a system in a basis, mass 1 and stiffness without contacts diagonal, and its shapes (n, r)."""
-    inner, free = local.forces.reference_stiffness, among.rigid
+    inner = local.forces.reference_stiffness
+    free = among.rigid
     K = Q.T @ among.K @ Q - (Q.T @ among.B) @ inner @ (Q.T @ among.B).T
-    squares, turned = np.zeros(len(K)), np.eye(len(K))
+    squares = np.zeros(len(K))
+    turned = np.eye(len(K))
     squares[free:], turned[free:, free:] = la.eigh(0.5 * (K + K.T)[free:, free:])
     T = Q @ turned
     V = among.vectors @ T
@@ -204,7 +236,13 @@ def reduced(local: LocalSystem, among: Candidates, Q: np.ndarray) -> tuple[Local
     B = T.T @ among.B
     D = T.T @ among.D @ T - B @ local.forces.reference_damping @ B.T
     own = LocalSystem(
-        M=sp.csc_array(np.eye(V.shape[1])), D=sp.csc_array(D), K=sp.csc_array(stiff), B=sp.csc_array(B), forces=local.forces,
-        load=V.T @ local.load, rotation=local.rotation, G=None if local.G is None else sp.csc_array(T.T @ among.G @ T),
-    )  # fmt: skip
+        M=sp.csc_array(np.eye(V.shape[1])),
+        D=sp.csc_array(D),
+        K=sp.csc_array(stiff),
+        B=sp.csc_array(B),
+        forces=local.forces,
+        load=V.T @ local.load,
+        rotation=local.rotation,
+        G=None if local.G is None else sp.csc_array(T.T @ among.G @ T),
+    )
     return own, V

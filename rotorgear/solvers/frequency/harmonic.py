@@ -17,7 +17,9 @@ from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.sparse.factor import factor_general
 
 # Residuals relative to the forces inside: refined below the first, refused above the second.
-_RESIDUAL, _LARGEST_RESIDUAL, _REFINEMENTS = 1e-14, 1e-11, 6
+_RESIDUAL = 1e-14
+_LARGEST_RESIDUAL = 1e-11
+_REFINEMENTS = 6
 # Relative distances of the frequency whose factors are used.
 _ASIDE = (0.0, 1e-8, 1e-6, 1e-4)
 
@@ -69,7 +71,8 @@ class Dynamics:
             factor = factor_general(self._stiffness(near))
         except ConvergenceError:
             return None
-        P, d = self.low_rank.vectors, 1j * near * self.low_rank.sizes
+        P = self.low_rank.vectors
+        d = 1j * near * self.low_rank.sizes
         spread = factor.solve(P.astype(complex))
         inner = la.lu_factor(np.eye(len(d)) + d[:, None] * (P.T @ spread))
         q = np.zeros_like(f)
@@ -95,7 +98,8 @@ class Dynamics:
         """Z q, (n, p), at one frequency or at one for each column."""
         out = self.K @ q + (self.D @ q) * (1j * w) - (self.M @ q) * (w**2)
         if self.low_rank is not None:
-            P, d = self.low_rank.vectors, self.low_rank.sizes
+            P = self.low_rank.vectors
+            d = self.low_rank.sizes
             out = out + (P @ (d[:, None] * (P.T @ q))) * (1j * w)
         return np.asarray(out)
 

@@ -51,7 +51,8 @@ def full_receptances(local: LocalSystem, probes: Probes) -> np.ndarray:
     """H (f, m, m) with contacts closed: one sparse factorisation for each of f probes."""
     B = local.B.toarray().astype(complex)
     found = np.zeros((probes.count, local.m, local.m), complex)
-    K, D = local.stiffness_about, local.damping_about
+    K = local.stiffness_about
+    D = local.damping_about
     with single_thread(local.n):
         for i, (speed, s) in enumerate(zip(probes.speed, probes.s, strict=True)):
             own = D if local.G is None else D + speed * local.G
@@ -68,7 +69,8 @@ def around(H: np.ndarray, s: np.ndarray, scale: Scale) -> tuple[np.ndarray, np.n
 
 def sizes(H: np.ndarray, scale: Scale) -> tuple[np.ndarray, np.ndarray]:
     """What differences are measured by: between contacts (f,), and of other columns (m,), 0 where they move no contact."""
-    at, root = scale.contacts, scale.root
+    at = scale.contacts
+    root = scale.root
     inner = H[:, at][:, :, at] * root[at][:, None] * root[at]
     own = np.maximum(np.linalg.norm(inner, ord=2, axis=(1, 2)), 1.0) if at.size else np.ones(len(H))
     moved = np.linalg.norm(root[at][:, None] * H[:, at], axis=1).max(axis=0, initial=0.0)
@@ -83,7 +85,8 @@ def difference(H: np.ndarray, found: np.ndarray, scale: Scale) -> float:
     relative to the most that each does over all probes.
     """
     own, moved = sizes(H, scale)
-    at, root = scale.contacts, scale.root
+    at = scale.contacts
+    root = scale.root
     apart = root[at][:, None] * (found - H)[:, at]
     inner = np.linalg.norm(apart[:, :, at] * root[at], ord=2, axis=(1, 2)) / own if at.size else np.zeros(1)
     others = np.flatnonzero((scale.root == 0.0) & (moved > 0.0))

@@ -35,7 +35,8 @@ def flow_exponents(
         raise AnalysisError("states: expected an array (w, n) of at least two trajectories")
     w, n = y.shape
     Y = np.broadcast_to(np.eye(n), (w, n, n)).copy()
-    growth, counted = np.zeros((w, n)), 0
+    growth = np.zeros((w, n))
+    counted = 0
     for number in range(1, settle + count + 1):
         y, Y = _step(slope, jacobian, y, Y, step)
         if number % every == 0 or number == settle + count:
@@ -46,18 +47,26 @@ def flow_exponents(
                 growth += np.log(np.abs(np.diagonal(R, axis1=1, axis2=2)))
                 counted = number
         if number == settle:
-            Y, growth[:] = np.linalg.qr(Y)[0], 0.0
+            Y = np.linalg.qr(Y)[0]
+            growth[:] = 0.0
     rates = growth / ((counted - settle) * step)
     return rates.mean(axis=0), rates.std(axis=0, ddof=1) / np.sqrt(w)
 
 
 def _step(slope: Field, jacobian: Field, y: np.ndarray, Y: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
     """One step of trajectories and tangents."""
-    k1, K1 = slope(y), jacobian(y) @ Y
-    a, A = y + 0.5 * h * k1, Y + 0.5 * h * K1
-    k2, K2 = slope(a), jacobian(a) @ A
-    a, A = y + 0.5 * h * k2, Y + 0.5 * h * K2
-    k3, K3 = slope(a), jacobian(a) @ A
-    a, A = y + h * k3, Y + h * K3
-    k4, K4 = slope(a), jacobian(a) @ A
+    k1 = slope(y)
+    K1 = jacobian(y) @ Y
+    a = y + 0.5 * h * k1
+    A = Y + 0.5 * h * K1
+    k2 = slope(a)
+    K2 = jacobian(a) @ A
+    a = y + 0.5 * h * k2
+    A = Y + 0.5 * h * K2
+    k3 = slope(a)
+    K3 = jacobian(a) @ A
+    a = y + h * k3
+    A = Y + h * K3
+    k4 = slope(a)
+    K4 = jacobian(a) @ A
     return y + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4), Y + h / 6.0 * (K1 + 2.0 * (K2 + K3) + K4)

@@ -39,10 +39,13 @@ def advance(number, h, first, column, value, stage, ahead, at, base, base_at, to
         total: sums of slopes so far, (2 n, w).
     """
     n = total.shape[0] // 2
-    weight, share = 1.0 if number == 0 else 2.0, h if number == 2 else 0.5 * h
+    weight = 1.0 if number == 0 else 2.0
+    share = h if number == 2 else 0.5 * h
     for i in range(n):
-        a, v = slope_of(i, first, column, value, stage, at), get(stage, at + n + i)
-        q0, v0 = get(base, base_at + i), get(base, base_at + n + i)
+        a = slope_of(i, first, column, value, stage, at)
+        v = get(stage, at + n + i)
+        q0 = get(base, base_at + i)
+        v0 = get(base, base_at + n + i)
         if number == 3:
             q0 += h / 6.0 * (get(total, i) + v)
             v0 += h / 6.0 * (get(total, n + i) + a)
@@ -62,11 +65,31 @@ def advance(number, h, first, column, value, stage, ahead, at, base, base_at, to
 
 
 @compiled(fast=True)
-def tangent_stage(number, h, across, matrix, found, jumping, jumps, kept, used, start, own, laws, blocks, d, stage, ahead,
-                  base, totals):  # fmt: skip
+def tangent_stage(
+    number,
+    h,
+    across,
+    matrix,
+    found,
+    jumping,
+    jumps,
+    kept,
+    used,
+    start,
+    own,
+    laws,
+    blocks,
+    d,
+    stage,
+    ahead,
+    base,
+    totals,
+):
     """One stage of all tangents: (t, 2 n + m + 1, w) of this stage and the next, (t, 2 n, w) of the step's begin and sums."""
-    t, rows = stage.shape[0], stage.shape[1]
-    n, m = base.shape[1] // 2, found.shape[0]
+    t = stage.shape[0]
+    rows = stage.shape[1]
+    n = base.shape[1] // 2
+    m = found.shape[0]
     for k in range(t):
         at = k * rows
         for j in range(2 * m):
@@ -90,8 +113,10 @@ def weight_of(number, h):
 @compiled(fast=True)
 def end_tangents(jumps, values, kept, across, pushes, d, moved, tangents, used, start, impulse):
     """Put the impulses of the damping right along all tangents."""
-    t, rows = moved.shape[0], moved.shape[1]
-    n, m = tangents.shape[1] // 2, jumps.size
+    t = moved.shape[0]
+    rows = moved.shape[1]
+    n = tangents.shape[1] // 2
+    m = jumps.size
     for k in range(t):
         for j in range(2 * m):
             put(d, j, slope_of(j, *across, moved, k * rows))
@@ -100,8 +125,32 @@ def end_tangents(jumps, values, kept, across, pushes, d, moved, tangents, used, 
 
 
 @compiled(fast=True, free=True)
-def lanes_loop(turns, steps, begun, counting, matrix, across, pushes, gap, mode, jumps, values, mesh, table, laws, clock, rigid,
-               root, state, kept, tangents, last, growth, section, sums):  # fmt: skip
+def lanes_loop(
+    turns,
+    steps,
+    begun,
+    counting,
+    matrix,
+    across,
+    pushes,
+    gap,
+    mode,
+    jumps,
+    values,
+    mesh,
+    table,
+    laws,
+    clock,
+    rigid,
+    root,
+    state,
+    kept,
+    tangents,
+    last,
+    growth,
+    section,
+    sums,
+):
     """Advance all lanes in place by common periods and record a section at the end of each.
 
     Args:
@@ -117,21 +166,36 @@ def lanes_loop(turns, steps, begun, counting, matrix, across, pushes, gap, mode,
         tangents: (t, 2 n, w); last: (m, w) flanks that touched last.
         growth: (p, t, w), section: (p, 2 m, w), sums: (m, 14, w): what is found in p common periods.
     """
-    n, m, t = state.shape[0] // 2, mesh.size, tangents.shape[0]
-    rows, own = 2 * n + m + 1, laws[2].size > 0
+    n = state.shape[0] // 2
+    m = mesh.size
+    t = tangents.shape[0]
+    rows = 2 * n + m + 1
+    own = laws[2].size > 0
     h = 2.0 * np.pi / steps
-    now, found = work(4 * m).reshape(m, 4, LANES), work(FOUND * m).reshape(m, FOUND, LANES)
-    d, total = work(2 * m), work(2 * n)
-    stage, ahead = work(rows), work(rows)
-    stage[:], ahead[:] = 1.0, 1.0
-    moved, moved_ahead = work(t * rows).reshape(t, rows, LANES), work(t * rows).reshape(t, rows, LANES)
-    totals, weighed = work(t * 2 * n).reshape(t, 2 * n, LANES), work(t * 2 * n).reshape(t, 2 * n, LANES)
+    now = work(4 * m).reshape(m, 4, LANES)
+    found = work(FOUND * m).reshape(m, FOUND, LANES)
+    d = work(2 * m)
+    total = work(2 * n)
+    stage = work(rows)
+    ahead = work(rows)
+    stage[:] = 1.0
+    ahead[:] = 1.0
+    moved = work(t * rows).reshape(t, rows, LANES)
+    moved_ahead = work(t * rows).reshape(t, rows, LANES)
+    totals = work(t * 2 * n).reshape(t, 2 * n, LANES)
+    weighed = work(t * 2 * n).reshape(t, 2 * n, LANES)
     blocks = work(2 * laws[-1][-1]).reshape(2, laws[-1][-1], LANES)
-    condition, space = np.zeros((LANES, laws[-2][-1])), np.zeros(SPACE)
+    condition = np.zeros((LANES, laws[-2][-1]))
+    space = np.zeros(SPACE)
     jumping = np.any(jumps != NEVER)
-    used, impulse, used_along, start = work(m), work(m), work(t * m), work(t * m)
-    F, F_ahead = stage[2 * n : 2 * n + m], ahead[2 * n : 2 * n + m]
-    stage[: 2 * n], moved[:, : 2 * n] = state, tangents
+    used = work(m)
+    impulse = work(m)
+    used_along = work(t * m)
+    start = work(t * m)
+    F = stage[2 * n : 2 * n + m]
+    F_ahead = ahead[2 * n : 2 * n + m]
+    stage[: 2 * n] = state
+    moved[:, : 2 * n] = tangents
     for period in range(growth.shape[0]):
         for step in range(turns * steps):
             for number in range(4):
@@ -148,8 +212,26 @@ def lanes_loop(turns, steps, begun, counting, matrix, across, pushes, gap, mode,
                     count(mesh, now, d, F, found, last, sums)
                 advance(number, h, *matrix, stage, ahead, 0, state, 0, total)
                 if t:
-                    tangent_stage(number, h, across, matrix, found, jumping, jumps, kept, used_along, start, own, laws, blocks,
-                                  d, moved, moved_ahead, tangents, totals)  # fmt: skip
+                    tangent_stage(
+                        number,
+                        h,
+                        across,
+                        matrix,
+                        found,
+                        jumping,
+                        jumps,
+                        kept,
+                        used_along,
+                        start,
+                        own,
+                        laws,
+                        blocks,
+                        d,
+                        moved,
+                        moved_ahead,
+                        tangents,
+                        totals,
+                    )
                 stage, ahead, moved, moved_ahead, F, F_ahead = ahead, stage, moved_ahead, moved, F_ahead, F
             if jumping:
                 product(*across, stage, d)

@@ -24,12 +24,16 @@ from rotorgear.solvers.lanes.kernel_parts import (
     REACH,
     VALUES,
     C,
-)  # fmt: skip
+)
 from rotorgear.solvers.lanes.kernel_vectors import fill, get, larger, put, smaller, where_positive
 from rotorgear.solvers.time.compiled import compiled
 
 # What is kept of the end of a step: G, s, the flank that touches, and whether the impulse of the step is put right (> 0).
-INTEGRAL, SHARE, TOUCH, RIGHT, KEPT = 0, 1, 2, 3, 4
+INTEGRAL = 0
+SHARE = 1
+TOUCH = 2
+RIGHT = 3
+KEPT = 4
 
 
 @compiled(fast=True)
@@ -38,7 +42,8 @@ def missing(jumps, values, table, d, used, kept, impulse):
 
     d (2 m, w): displacements at the end; used (m, w): impulses by the stages.
     """
-    one, none = fill(1.0), fill(0.0)
+    one = fill(1.0)
+    none = fill(0.0)
     for j in range(jumps.size):
         if jumps[j] == NEVER:
             put(impulse, j, none)

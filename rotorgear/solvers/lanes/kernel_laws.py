@@ -19,12 +19,16 @@ def schedule_laws(laws, clock, time, state):
     """Fill the state (w, s) of the laws in all lanes at a time in radians of the fastest mesh."""
     schedules, _, kind, _, parameters, parameters_first, state_first, _ = laws
     for w in range(LANES if kind.size else 0):
-        angle, speed = time * clock[0, w], clock[1, w] * clock[0, w]
+        angle = time * clock[0, w]
+        speed = clock[1, w] * clock[0, w]
         for i in range(kind.size):
             schedules[kind[i]](
-                angle, speed, time / clock[1, w], parameters[w, parameters_first[i] : parameters_first[i + 1]],
+                angle,
+                speed,
+                time / clock[1, w],
+                parameters[w, parameters_first[i] : parameters_first[i + 1]],
                 state[w, state_first[i] : state_first[i + 1]],
-            )  # fmt: skip
+            )
 
 
 @compiled
@@ -35,17 +39,30 @@ def force_laws(laws, clock, state, d, F, tangents, work):
     """
     _, forces, kind, place, parameters, parameters_first, state_first, block_first = laws
     for i in range(kind.size):
-        a, k = place[0, i], place[1, i]
-        own_d, own_v, own_f, rest = work[:k], work[k : 2 * k], work[2 * k : 3 * k], work[3 * k :]
-        in_d, in_v, energy = rest[: k * k], rest[k * k : 2 * k * k], rest[2 * k * k : 2 * k * k + 4]
+        a = place[0, i]
+        k = place[1, i]
+        own_d = work[:k]
+        own_v = work[k : 2 * k]
+        own_f = work[2 * k : 3 * k]
+        rest = work[3 * k :]
+        in_d = rest[: k * k]
+        in_v = rest[k * k : 2 * k * k]
+        energy = rest[2 * k * k : 2 * k * k + 4]
         for w in range(LANES):
             rate = clock[1, w]
             for j in range(k):
-                own_d[j], own_v[j] = d[2 * (a + j), w], rate * d[2 * (a + j) + 1, w]
+                own_d[j] = d[2 * (a + j), w]
+                own_v[j] = rate * d[2 * (a + j) + 1, w]
             forces[kind[i]](
                 parameters[w, parameters_first[i] : parameters_first[i + 1]],
-                state[w, state_first[i] : state_first[i + 1]], own_d, own_v, own_f, in_d, in_v, energy,
-            )  # fmt: skip
+                state[w, state_first[i] : state_first[i + 1]],
+                own_d,
+                own_v,
+                own_f,
+                in_d,
+                in_v,
+                energy,
+            )
             for j in range(k):
                 F[a + j, w] = own_f[j] / (rate * rate)
             for j in range(k * k):
@@ -59,7 +76,8 @@ def laws_along(laws, tangents, d, out, at):
     _, _, kind, place, _, _, _, block_first = laws
     size = tangents.shape[1]
     for i in range(kind.size):
-        a, k = place[0, i], place[1, i]
+        a = place[0, i]
+        k = place[1, i]
         for r in range(k):
             total = fill(0.0)
             for c in range(k):

@@ -10,17 +10,38 @@ from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import schedule_all
 
 # How a column acts: as MeshContact.gap does, as a force that is prescribed, or by a law of its own (kernel_lane_laws.py).
-LINE, ONE_SIDED, NEVER_PARTS, PRESCRIBED, OWN_LAW = 0, 1, 2, 3, 4
-CLAMPED, UNCLAMPED, PENETRATION = 0, 1, 2
+LINE = 0
+ONE_SIDED = 1
+NEVER_PARTS = 2
+PRESCRIBED = 3
+OWN_LAW = 4
+CLAMPED = 0
+UNCLAMPED = 1
+PENETRATION = 2
 # When the damping of a column jumps, or nearly does: never, as flanks close, or as they close and as they part.
-NEVER, CLOSING, ALWAYS = 0, 1, 2
+NEVER = 0
+CLOSING = 1
+ALWAYS = 2
 # Rows of the tables: share of the mean stiffness, error, its slope, share of the prescribed force.
-STIFFNESS, ERROR, SLOPE, PUSH = 0, 1, 2, 3
+STIFFNESS = 0
+ERROR = 1
+SLOPE = 2
+PUSH = 3
 # Values of a column: k, c, backlash, 1/ramp, prescribed force, ramp.
-K, C, BACKLASH, RAMP, FORCE, REACH, VALUES = 0, 1, 2, 3, 4, 5, 6
+K = 0
+C = 1
+BACKLASH = 2
+RAMP = 3
+FORCE = 4
+REACH = 5
+VALUES = 6
 # What a contact leaves: its tangents in displacement and velocity, the flank that touches, and the part of the tangent in
 # displacement that comes from the ramp.
-IN_D, IN_V, FLANK, GROWTH, FOUND = 0, 1, 2, 3, 4
+IN_D = 0
+IN_V = 1
+FLANK = 2
+GROWTH = 3
+FOUND = 4
 # Rows of the sums: steps on the driving flank, apart, on the back flank, losses of contact; least and largest of the displacement
 # d, of the approach d - e and of the force; sums of force, its square, displacement, its square.
 DRIVING, APART, BACK, LOSSES, D_MIN, D_MAX, X_MIN, X_MAX, F_MIN, F_MAX, F_SUM, F_SQUARES, D_SUM, D_SQUARES = range(14)
@@ -61,7 +82,8 @@ def contacts(gap, mode, values, table, weight, d, F, found, used):
     values (m, 6, w); table (m, 4, w); d (2 m, w): displacement and velocity; found (m, 4, w);
     used (m, w): impulses of the damping, to which this one is added with its weight.
     """
-    one, none = fill(1.0), fill(0.0)
+    one = fill(1.0)
+    none = fill(0.0)
     for j in range(gap.size):
         if gap[j] == OWN_LAW:
             continue
@@ -69,18 +91,22 @@ def contacts(gap, mode, values, table, weight, d, F, found, used):
         if gap[j] == PRESCRIBED:
             put(F, j, prescribed)
             continue
-        k, c = get(values, VALUES * j + K) * get(table, 4 * j + STIFFNESS), get(values, VALUES * j + C)
-        x, rate = get(d, 2 * j) - get(table, 4 * j + ERROR), get(d, 2 * j + 1) - get(table, 4 * j + SLOPE)
+        k = get(values, VALUES * j + K) * get(table, 4 * j + STIFFNESS)
+        c = get(values, VALUES * j + C)
+        x = get(d, 2 * j) - get(table, 4 * j + ERROR)
+        rate = get(d, 2 * j + 1) - get(table, 4 * j + SLOPE)
         if gap[j] == NEVER_PARTS:
             put(F, j, k * x + c * rate + prescribed)
             put(found, FOUND * j + IN_D, k)
             put(found, FOUND * j + IN_V, c)
             put(found, FOUND * j + FLANK, one)
             continue
-        behind, ramp = -1.0 * x - get(values, VALUES * j + BACKLASH), get(values, VALUES * j + RAMP)
+        behind = -1.0 * x - get(values, VALUES * j + BACKLASH)
+        ramp = get(values, VALUES * j + RAMP)
         touch = where_positive(x, one, where_positive(behind, fill(-1.0), none))
         depth = larger(larger(x, behind), none)
-        closing, share = touch * rate, depth * ramp
+        closing = touch * rate
+        share = depth * ramp
         if mode[j] != PENETRATION:
             ramp = where_positive(one - share, ramp, none)
             share = smaller(share, one)
@@ -89,7 +115,8 @@ def contacts(gap, mode, values, table, weight, d, F, found, used):
         if mode[j] != UNCLAMPED:
             holds = where_positive(total, holds, none)
         put(F, j, touch * (holds * total) + prescribed)
-        damping, growth = holds * c * share, holds * (c * ramp * closing)
+        damping = holds * c * share
+        growth = holds * (c * ramp * closing)
         put(found, FOUND * j + IN_D, holds * k + growth)
         put(found, FOUND * j + IN_V, damping)
         put(found, FOUND * j + GROWTH, growth)
@@ -100,18 +127,22 @@ def contacts(gap, mode, values, table, weight, d, F, found, used):
 @compiled(fast=True)
 def count(mesh, table, d, F, found, last, sums):
     """Take a step into the statistics of the mesh contacts; arrays as in `contacts`, sums (m, 14, w)."""
-    one, none = fill(1.0), fill(0.0)
+    one = fill(1.0)
+    none = fill(0.0)
     for j in range(mesh.size):
         if not mesh[j]:
             continue
-        s, flank, before = 14 * j, get(found, FOUND * j + FLANK), get(last, j)
+        s = 14 * j
+        flank = get(found, FOUND * j + FLANK)
+        before = get(last, j)
         touching = flank * flank
         put(sums, s + DRIVING, get(sums, s + DRIVING) + where_positive(flank, one, none))
         put(sums, s + APART, get(sums, s + APART) + (one - touching))
         put(sums, s + BACK, get(sums, s + BACK) + where_positive(-1.0 * flank, one, none))
         put(sums, s + LOSSES, get(sums, s + LOSSES) + (one - touching) * (before * before))
         put(last, j, flank)
-        f, x = get(F, j), get(d, 2 * j)
+        f = get(F, j)
+        x = get(d, 2 * j)
         put(sums, s + F_SUM, get(sums, s + F_SUM) + f)
         put(sums, s + F_SQUARES, get(sums, s + F_SQUARES) + f * f)
         put(sums, s + D_SUM, get(sums, s + D_SUM) + x)

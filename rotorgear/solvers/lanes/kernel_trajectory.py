@@ -32,7 +32,10 @@ def force(gap, mode, values, now, d, v):
     push = values[4] * now[PUSH]
     if gap == PRESCRIBED:
         return push, 0.0
-    k, c, x, rate = values[0] * now[STIFFNESS], values[1], d - now[ERROR], v - now[SLOPE]
+    k = values[0] * now[STIFFNESS]
+    c = values[1]
+    x = d - now[ERROR]
+    rate = v - now[SLOPE]
     if gap == NEVER_PARTS:
         return k * x + c * rate + push, 0.0
     behind = -x - values[2]
@@ -62,9 +65,12 @@ def own_schedules(laws, clock, time, condition):
     schedules, _, kind, _, parameters, parameters_first, state_first, _ = laws
     for i in range(kind.size):
         schedules[kind[i]](
-            time * clock[0], clock[1] * clock[0], time / clock[1],
-            parameters[parameters_first[i] : parameters_first[i + 1]], condition[state_first[i] : state_first[i + 1]],
-        )  # fmt: skip
+            time * clock[0],
+            clock[1] * clock[0],
+            time / clock[1],
+            parameters[parameters_first[i] : parameters_first[i + 1]],
+            condition[state_first[i] : state_first[i + 1]],
+        )
 
 
 @compiled
@@ -76,14 +82,25 @@ def own_forces(laws, clock, condition, space, local):
     _, forces, kind, place, parameters, parameters_first, state_first, _ = laws
     rate = clock[1]
     for i in range(kind.size):
-        a, k = place[0, i], place[1, i]
-        d, v, F, rest = space[:k], space[k : 2 * k], space[2 * k : 3 * k], space[3 * k :]
+        a = place[0, i]
+        k = place[1, i]
+        d = space[:k]
+        v = space[k : 2 * k]
+        F = space[2 * k : 3 * k]
+        rest = space[3 * k :]
         for j in range(k):
-            d[j], v[j] = local[a + j, 0], rate * local[a + j, 1]
+            d[j] = local[a + j, 0]
+            v[j] = rate * local[a + j, 1]
         forces[kind[i]](
-            parameters[parameters_first[i] : parameters_first[i + 1]], condition[state_first[i] : state_first[i + 1]],
-            d, v, F, rest[: k * k], rest[k * k : 2 * k * k], rest[2 * k * k : 2 * k * k + 4],
-        )  # fmt: skip
+            parameters[parameters_first[i] : parameters_first[i + 1]],
+            condition[state_first[i] : state_first[i + 1]],
+            d,
+            v,
+            F,
+            rest[: k * k],
+            rest[k * k : 2 * k * k],
+            rest[2 * k * k : 2 * k * k + 4],
+        )
         for j in range(k):
             local[a + j, 2] = F[j] / (rate * rate)
 
@@ -94,14 +111,18 @@ def slopes(K, D, B, load, gap, mode, values, now, laws, clock, condition, space,
 
     laws, clock, condition, space: of the columns that act by laws of their own, see `own_forces`.
     """
-    n, m = K.shape[0], B.shape[1]
-    z, dz = y[:n], y[n:]
+    n = K.shape[0]
+    m = B.shape[1]
+    z = y[:n]
+    dz = y[n:]
     for j in range(m):
-        d, v = 0.0, 0.0
+        d = 0.0
+        v = 0.0
         for i in range(n):
             d += B[i, j] * z[i]
             v += B[i, j] * dz[i]
-        local[j, 0], local[j, 1] = d, v
+        local[j, 0] = d
+        local[j, 1] = v
         if gap[j] != OWN_LAW:
             local[j, 2], local[j, 3] = force(gap[j], mode[j], values[j], now[j], d, v)
     own_forces(laws, clock, condition, space, local)
@@ -122,14 +143,22 @@ def trajectory(steps, every, begun, K, D, B, load, gap, mode, jumps, values, tab
         steps: in a period of the fastest mesh; begun: steps before. jumps, values: (m,), (m, 5).
         table: (2 steps in a common period + 1, m, 4). laws, clock: see `own_forces`.
     """
-    n, h, period = K.shape[0], 2.0 * np.pi / steps, (table.shape[0] - 1) // 2
+    n = K.shape[0]
+    h = 2.0 * np.pi / steps
+    period = (table.shape[0] - 1) // 2
     m = B.shape[1]
-    y, total, a, local = np.empty(2 * n), np.empty(2 * n), np.empty(n), np.zeros((m, 4))
-    used, edge = np.empty(m), np.empty((m, 2))
-    condition, space = np.zeros(laws[6][-1]), np.zeros(SPACE)
+    y = np.empty(2 * n)
+    total = np.empty(2 * n)
+    a = np.empty(n)
+    local = np.zeros((m, 4))
+    used = np.empty(m)
+    edge = np.empty((m, 2))
+    condition = np.zeros(laws[6][-1])
+    space = np.zeros(SPACE)
     for step in range(out.shape[0] * every):
         y[:] = state
-        total[:], used[:] = 0.0, 0.0
+        total[:] = 0.0
+        used[:] = 0.0
         for stage in range(4):
             half = (stage + 1) // 2
             if stage != 2:

@@ -136,8 +136,10 @@ def _register(function: Callable[..., Any], name: str) -> None:
 
 
 for _name, _functions in {
-    "fadd": (operator.add, operator.iadd), "fsub": (operator.sub, operator.isub), "fmul": (operator.mul, operator.imul),
-}.items():  # fmt: skip
+    "fadd": (operator.add, operator.iadd),
+    "fsub": (operator.sub, operator.isub),
+    "fmul": (operator.mul, operator.imul),
+}.items():
     for _function in _functions:
         _register(_function, _name)
 

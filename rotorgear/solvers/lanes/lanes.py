@@ -96,17 +96,23 @@ def run_block(
     filled = [*systems, *[systems[-1]] * (LANES - count)]
     first = systems[0]
     (matrix, across), values = _matrices(filled), _values(filled)
-    mesh, kinds = first.columns.mesh, (first.columns.gap, first.columns.mode)
-    jumps, pushes = np.max([s.columns.jumps for s in filled], axis=0), _sparse([-s.B for s in filled])
+    mesh = first.columns.mesh
+    kinds = (first.columns.gap, first.columns.mode)
+    jumps = np.max([s.columns.jumps for s in filled], axis=0)
+    pushes = _sparse([-s.B for s in filled])
     wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
     pushed = any(np.any(s.columns.push) for s in systems)
     table = _stacked([one[:, :, : 4 if pushed else 3] for one in wide])
-    laws, clock = own_laws(filled), _stacked([np.array([s.own.turn, s.w]) for s in filled])
-    rigid, energy = _stacked([s.rigid for s in filled]), _stacked([s.energy for s in filled])
+    laws = own_laws(filled)
+    clock = _stacked([np.array([s.own.turn, s.w]) for s in filled])
+    rigid = _stacked([s.rigid for s in filled])
+    energy = _stacked([s.energy for s in filled])
     begins = [*starts, *[starts[-1]] * (LANES - count)]
     state = _stacked([np.concatenate([s.z, s.dz]) for s in begins])
-    tangents, kept = _tangents(first, plan.tangents), _kept(filled, begins, wide)
-    last, sums = aligned((mesh.size, LANES)), blank_sums(mesh.size)
+    tangents = _tangents(first, plan.tangents)
+    kept = _kept(filled, begins, wide)
+    last = aligned((mesh.size, LANES))
+    sums = blank_sums(mesh.size)
 
     def run(begun: int, periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         growth = aligned((periods, len(followed), LANES))
@@ -115,9 +121,31 @@ def run_block(
         for p in range(0, periods, stride):
             if not go_on():
                 raise KeyboardInterrupt
-            lanes_loop(first.turns, plan.steps, begun + p, counting, matrix, across, pushes, *kinds, jumps, values, mesh, table,
-                       laws, clock, rigid, energy, state, kept, followed, last, growth[p : p + stride],
-                       section[p : p + stride], sums)  # fmt: skip
+            lanes_loop(
+                first.turns,
+                plan.steps,
+                begun + p,
+                counting,
+                matrix,
+                across,
+                pushes,
+                *kinds,
+                jumps,
+                values,
+                mesh,
+                table,
+                laws,
+                clock,
+                rigid,
+                energy,
+                state,
+                kept,
+                followed,
+                last,
+                growth[p : p + stride],
+                section[p : p + stride],
+                sums,
+            )
         return growth, section
 
     warm = min(plan.warm, plan.settle) if plan.tangents else 0
@@ -134,7 +162,8 @@ def _orbit(
     """One lane, with forces in N and velocities in m/s."""
     from rotorgear.solvers.lanes.kernel_parts import F_MAX, F_MIN, F_SQUARES, F_SUM
 
-    found, n = sums[:, :, lane].copy(), system.n
+    found = sums[:, :, lane].copy()
+    n = system.n
     moved = section[:, :, lane].reshape(len(section), len(sums), 2).copy()
     for row in (F_MIN, F_MAX, F_SUM):
         found[:, row] *= system.w**2
@@ -151,7 +180,8 @@ def blank_sums(m: int) -> np.ndarray:
     from rotorgear.solvers.lanes.kernel_vectors import LANES
 
     sums = aligned((m, 14, LANES))
-    sums[:, [D_MIN, X_MIN, F_MIN]], sums[:, [D_MAX, X_MAX, F_MAX]] = np.inf, -np.inf
+    sums[:, [D_MIN, X_MIN, F_MIN]] = np.inf
+    sums[:, [D_MAX, X_MAX, F_MAX]] = -np.inf
     return sums
 
 
@@ -169,8 +199,15 @@ def own_laws(systems: Sequence[SmallSystem]) -> tuple[Any, ...]:
     own = first.forces
     parameters = np.ascontiguousarray(np.stack([s.own.forces.parameters for s in systems]))
     return (
-        own.schedules, own.forces, own.kind, first.place, parameters, own.parameters_first, own.state_first, own.block_first,
-    )  # fmt: skip
+        own.schedules,
+        own.forces,
+        own.kind,
+        first.place,
+        parameters,
+        own.parameters_first,
+        own.state_first,
+        own.block_first,
+    )
 
 
 def aligned(shape: tuple[int, ...]) -> np.ndarray:

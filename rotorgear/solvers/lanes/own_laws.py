@@ -52,7 +52,8 @@ def _tangents(local: LocalSystem, q: np.ndarray, own: OwnLaws, t: float) -> tupl
     laws = local.forces
     d = local.B.T @ q
     _, in_d, in_v, _ = evaluated(local, d, np.zeros(local.m), t)
-    K, C = np.zeros((local.m, local.m)), np.zeros((local.m, local.m))
+    K = np.zeros((local.m, local.m))
+    C = np.zeros((local.m, local.m))
     for a, k in own.place.T:
         at = int(laws.block_first[int(np.searchsorted(laws.first, a))])
         block = slice(a, a + k), slice(a, a + k)
@@ -68,8 +69,10 @@ def not_held(local: LocalSystem, q: np.ndarray, own: OwnLaws, free: np.ndarray) 
     """
     if not own.forces.laws or not free.size:
         return free
-    d, still = local.B.T @ q, np.zeros(local.m)
-    at_rest, acts = evaluated(local, d, still, 0.0)[0], np.zeros(local.m, dtype=bool)
+    d = local.B.T @ q
+    still = np.zeros(local.m)
+    at_rest = evaluated(local, d, still, 0.0)[0]
+    acts = np.zeros(local.m, dtype=bool)
     for j in np.concatenate([np.arange(a, a + k) for a, k in own.place.T]):
         for far in (-_FAR, _FAR):
             moved = d.copy()

@@ -146,9 +146,22 @@ def small_system(
     rates = np.concatenate([_rates(k / w**2, c / w) for k, c in linear])
     followed = rates if shapes is None else rates[rates <= shapes.up_to / w]
     return SmallSystem(
-        _clean(K) / w**2, _clean(D) / w, inverse @ local.load / w**2, _clean(B), rigid, L.T @ rest.q, L, energy,
-        scaled(columns, w), own, w, turns, float(rates.max()), float(followed.max(initial=0.0)), shapes,
-    )  # fmt: skip
+        _clean(K) / w**2,
+        _clean(D) / w,
+        inverse @ local.load / w**2,
+        _clean(B),
+        rigid,
+        L.T @ rest.q,
+        L,
+        energy,
+        scaled(columns, w),
+        own,
+        w,
+        turns,
+        float(rates.max()),
+        float(followed.max(initial=0.0)),
+        shapes,
+    )
 
 
 def _rates(K: np.ndarray, D: np.ndarray) -> np.ndarray:
@@ -169,9 +182,15 @@ def refuse_large(n: int) -> None:
 def scaled(columns: Columns, w: float) -> Columns:
     """Forces over w^2, damping over w."""
     return Columns(
-        columns.gap, columns.mode, columns.stiffness / w**2, columns.damping / w, columns.backlash, columns.ramp,
-        columns.push / w**2, columns.mesh,
-    )  # fmt: skip
+        columns.gap,
+        columns.mode,
+        columns.stiffness / w**2,
+        columns.damping / w,
+        columns.backlash,
+        columns.ramp,
+        columns.push / w**2,
+        columns.mesh,
+    )
 
 
 def _clean(A: np.ndarray) -> np.ndarray:

@@ -37,9 +37,15 @@ def recorded(
     state = np.concatenate([start.z, start.dz])
     own = system.own.forces
     laws = (
-        own.schedules, own.forces, own.kind, system.own.place, own.parameters, own.parameters_first, own.state_first,
+        own.schedules,
+        own.forces,
+        own.kind,
+        system.own.place,
+        own.parameters,
+        own.parameters_first,
+        own.state_first,
         own.block_first,
-    )  # fmt: skip
+    )
     clock = np.array([system.own.turn, system.w])
     before = begun * system.turns * steps
     trajectory(

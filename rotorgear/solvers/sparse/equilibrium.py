@@ -47,7 +47,8 @@ class Equilibrium:
             The residual stays above 1e-11 of the forces inside; `partial` holds q.
         """
         rest = self._balanced(f)
-        target, q = rest, np.zeros_like(f)
+        target = rest
+        q = np.zeros_like(f)
         size = abs(self._K)
         for _ in range(_REFINEMENTS):
             q = q + self._solver.solve(rest)
@@ -61,7 +62,8 @@ class Equilibrium:
     def _balanced(self, f: np.ndarray) -> np.ndarray:
         """The loads less the rounding of their balance."""
         scaled = f / self._scale[:, None]
-        work, parts = self._R.T @ scaled, np.abs(self._R.T) @ np.abs(scaled)
+        work = self._R.T @ scaled
+        parts = np.abs(self._R.T) @ np.abs(scaled)
         if self._R.shape[1]:
             noise = _ROUNDING * np.linalg.norm(scaled, axis=0)  # a motion that the loads hardly touch
             imbalance = (np.abs(work) / np.maximum(parts, np.where(noise > 0.0, noise, 1.0))).max(axis=1)

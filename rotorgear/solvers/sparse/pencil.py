@@ -45,7 +45,8 @@ def check_pencil(M: sp.csc_array, K: sp.csc_array) -> np.ndarray:
     for name, A in (("M", M), ("K", K)):
         if not np.all(np.isfinite(A.data)):
             raise AnalysisError(f"{name} holds entries that are not finite; check the input for NaN.")
-        skew, scale = abs(A - A.T), np.sqrt(np.abs(A.diagonal()))
+        skew = abs(A - A.T)
+        scale = np.sqrt(np.abs(A.diagonal()))
         rows, cols = skew.nonzero()
         if rows.size and np.any(skew.data[skew.data > 0] > 1e-9 * (scale[rows] * scale[cols])):
             raise AnalysisError(f"{name} is not symmetric: use the damped solver for circulatory or gyroscopic terms.")

@@ -54,7 +54,8 @@ def static_solution(K: sp.csc_array, M: sp.csc_array, f: np.ndarray, rigid_vecto
     ConvergenceError
         The residual stays above its bound; `partial` holds q.
     """
-    K, M = sp.csc_array(K, dtype=float), sp.csc_array(M, dtype=float)
+    K = sp.csc_array(K, dtype=float)
+    M = sp.csc_array(M, dtype=float)
     f = np.asarray(f, dtype=float)
     loads = f.reshape(K.shape[0], -1)
     R = np.zeros((K.shape[0], 0)) if rigid_vectors is None else np.asarray(rigid_vectors, dtype=float)
@@ -68,7 +69,8 @@ def _balanced(M: sp.csc_array, R: np.ndarray, loads: np.ndarray) -> np.ndarray:
     """The loads less the rounding of their balance, carried by inertia forces."""
     if R.shape[1] == 0:
         return loads
-    work, parts = R.T @ loads, np.abs(R.T) @ np.abs(loads)
+    work = R.T @ loads
+    parts = np.abs(R.T) @ np.abs(loads)
     imbalance = (np.abs(work) / np.where(parts > 0.0, parts, 1.0)).max(axis=1)
     if np.any(imbalance > _BALANCE):
         raise UnbalancedLoadError(imbalance)

@@ -53,7 +53,8 @@ def free_motions(M: sp.csc_array, K: sp.csc_array) -> np.ndarray:
 
 def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibrium:
     """Return the static state at t = 0, at rest relative to the prescribed rotation; `free`: its free motions, where known."""
-    K, M = system.stiffness_about, system.M
+    K = system.stiffness_about
+    M = system.M
     R = free_motions(M, K) if free is None else free
     B = system.B.toarray()
     solver = SupportedSolver(K, R * np.sqrt(np.maximum(K.diagonal(), 1e-300))[:, None], left_null_space(K, M, R))
@@ -62,8 +63,10 @@ def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibr
         q = solver.solve(f - M @ (R @ (R.T @ f)))
         return np.asarray(q - R @ (R.T @ (M @ q)))
 
-    q0, X = settled(system.load), settled(B) if system.m else np.zeros((system.n, 0))
-    linear, A = np.asarray(B.T @ q0), B.T @ X
+    q0 = settled(system.load)
+    X = settled(B) if system.m else np.zeros((system.n, 0))
+    linear = np.asarray(B.T @ q0)
+    A = B.T @ X
     d, F, converged = _local(system, linear, A, linear)
     if not converged:  # within a gap nothing says where to go
         d, F, converged = _local(system, linear, A, _beyond_gaps(system, linear))
@@ -123,7 +126,10 @@ def _local(
                 break
             share *= 0.5
         stuck = stuck + 1 if np.linalg.norm(r_new) > (1.0 - 1e-6) * np.linalg.norm(r) else 0
-        d, r, F, Kd = trial, r_new, F_new, Kd_new
+        d = trial
+        r = r_new
+        F = F_new
+        Kd = Kd_new
         if stuck == _STUCK:
             break
     return d0, local_tangent(system, d0, 0.0)[0], False

@@ -74,7 +74,8 @@ class ExplicitStepper:
 
     def _slope(self, t: float, y: np.ndarray) -> np.ndarray:
         n = self.system.n
-        q, v = y[:n], y[n:]
+        q = y[:n]
+        v = y[n:]
         K, D, B, load = self._inverse
         F, _ = self._local.at(q, v, t)
         return np.concatenate([v, load[:, 0] - K @ q - D @ v - B @ F])
@@ -82,10 +83,12 @@ class ExplicitStepper:
     def advance(self, state: State, steps: int, every: int) -> Records:
         """Advance a state in place by some steps and record every `every`-th."""
         kept = blank_records(steps, every, self.system.n, self.system)
-        begin, end = state.step * self.h, (state.step + steps) * self.h
+        begin = state.step * self.h
+        end = (state.step + steps) * self.h
         y = np.concatenate([state.q, state.v])
         solver = DOP853(self._slope, begin, y, end, rtol=self.relative, atol=self.relative * self._sizes(state))
-        done, status = 0, 0
+        done = 0
+        status = 0
         with np.errstate(all="ignore"):
             while solver.status == "running":
                 solver.step()
@@ -112,11 +115,14 @@ class ExplicitStepper:
 
     def _look(self, state: State, kept: dict[str, Any], number: int, every: int, y: np.ndarray) -> None:
         """Take the state over after a step, with what forces did in it."""
-        n, t = self.system.n, (state.step + number) * self.h
-        state.q[:], state.v[:] = y[:n], y[n:]
+        n = self.system.n
+        t = (state.step + number) * self.h
+        state.q[:] = y[:n]
+        state.v[:] = y[n:]
         state.a[:] = self._slope(t, y)[n:]
         F, energy = self._local.at(state.q, state.v, t)
-        state.before[:], state.F[:] = state.F, F
+        state.before[:] = state.F
+        state.F[:] = F
         powers = energy.reshape(-1, 4)
         state.sums += self.h * powers[:, 1:3]
         now = powers[:, 3].astype(np.int64)
@@ -126,8 +132,11 @@ class ExplicitStepper:
         state.last[:] = now
         if number % every == 0:
             r = number // every - 1
-            kept["q"][r], kept["v"][r], kept["a"][r] = state.q, state.v, state.a
-            kept["d"][r], kept["F"][r] = self.system.B.T @ state.q, F
+            kept["q"][r] = state.q
+            kept["v"][r] = state.v
+            kept["a"][r] = state.a
+            kept["d"][r] = self.system.B.T @ state.q
+            kept["F"][r] = F
             kept["energy"][r, :, 0] = powers[:, 0]
             kept["energy"][r, :, 1:] = state.sums - 0.5 * self.h * powers[:, 1:3]
 
@@ -146,14 +155,30 @@ class _LocalForces:
         from rotorgear.solvers.time.kernel_contact import force_all, schedule_all
         from rotorgear.solvers.time.kernel_time import rotation_at
 
-        laws, rotation = self._system.forces, self._system.rotation
+        laws = self._system.forces
+        rotation = self._system.rotation
         _, forces, kind, first, parameters, parameters_first, state_first, block_first = laws.arguments()
         angle, speed = rotation_at(t, rotation.times, rotation.speeds, rotation.angles)
         schedule_all(laws.schedules, kind, parameters, parameters_first, state_first, angle, speed, t, self._state)
-        F, energy = np.zeros(laws.m), np.zeros(4 * len(laws.laws))
-        d, w = np.ascontiguousarray(self._Bt @ q), np.ascontiguousarray(self._Bt @ v)
-        force_all(forces, kind, first, parameters, parameters_first, state_first, block_first,
-                  self._state, d, w, F, *self._tangents, energy)  # fmt: skip
+        F = np.zeros(laws.m)
+        energy = np.zeros(4 * len(laws.laws))
+        d = np.ascontiguousarray(self._Bt @ q)
+        w = np.ascontiguousarray(self._Bt @ v)
+        force_all(
+            forces,
+            kind,
+            first,
+            parameters,
+            parameters_first,
+            state_first,
+            block_first,
+            self._state,
+            d,
+            w,
+            F,
+            *self._tangents,
+            energy,
+        )
         return F, energy
 
 

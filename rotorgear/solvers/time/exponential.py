@@ -62,21 +62,30 @@ class ExponentialStepper:
     """The method made ready for one system, step and speed."""
 
     def __init__(self, modes: ComplexModes, system: LocalSystem, h: float, tolerance: float) -> None:
-        self.h, self._system, self.modes, self._tolerance = h, system, modes, tolerance
-        B, m = system.B.toarray(), system.m
-        s, e = modes.s, np.exp(modes.s * h)
+        self.h = h
+        self._system = system
+        self.modes = modes
+        self._tolerance = tolerance
+        B = system.B.toarray()
+        m = system.m
+        s = modes.s
+        e = np.exp(modes.s * h)
         first, second = _phi(modes.s * h)
         gain = modes.gains @ (modes.basis.T @ B)
-        Q0, self._Q1 = (h * (first - second))[:, None] * gain, (h * second)[:, None] * gain
+        Q0 = (h * (first - second))[:, None] * gain
+        self._Q1 = (h * second)[:, None] * gain
         push = modes.gains @ (modes.basis.T @ system.load)
         CX = B.T @ modes.shapes
         C = np.vstack([CX, CX * s])
         Br = modes.rigid.T @ B
         A = np.real(C @ self._Q1) + np.vstack([h * h / 6.0 * Br.T @ Br, 0.5 * h * Br.T @ Br])
-        k_ref, c_ref = system.forces.reference_stiffness, system.forces.reference_damping
+        k_ref = system.forces.reference_stiffness
+        c_ref = system.forces.reference_damping
         linear = np.eye(2 * m) - A @ np.hstack([k_ref, c_ref])
-        Z, compliance = np.linalg.inv(linear), np.linalg.solve(linear, A)
-        self._Br, self._rigid_load = Br, modes.rigid.T @ system.load
+        Z = np.linalg.inv(linear)
+        compliance = np.linalg.solve(linear, A)
+        self._Br = Br
+        self._rigid_load = modes.rigid.T @ system.load
         self._mobile = modes.basis @ (modes.basis.T @ B) + modes.rigid @ Br
         self._pushed = modes.basis @ (modes.basis.T @ system.load) + modes.rigid @ self._rigid_load
         needs_v = bool(np.any(c_ref)) or any(law.uses_velocity for law in system.forces.laws)
@@ -84,16 +93,30 @@ class ExponentialStepper:
         G = (e[:, None] * self._Q1 + Q0).T
         rotation = system.rotation
         self._fixed: tuple[Any, ...] = (
-            needs_v, rotation.times, rotation.speeds, rotation.angles, *_parts(e), *_parts(G), *_parts(h * first * push),
-            *_parts(self._Q1.T), *_parts(rows), np.ascontiguousarray(Br), self._rigid_load, np.ascontiguousarray(Z),
-            np.ascontiguousarray(compliance[:m]), np.ascontiguousarray(compliance[m:]), k_ref, c_ref,
+            needs_v,
+            rotation.times,
+            rotation.speeds,
+            rotation.angles,
+            *_parts(e),
+            *_parts(G),
+            *_parts(h * first * push),
+            *_parts(self._Q1.T),
+            *_parts(rows),
+            np.ascontiguousarray(Br),
+            self._rigid_load,
+            np.ascontiguousarray(Z),
+            np.ascontiguousarray(compliance[:m]),
+            np.ascontiguousarray(compliance[m:]),
+            k_ref,
+            c_ref,
             *system.forces.arguments(),
-        )  # fmt: skip
+        )
         self._rows: dict[tuple[str, int], tuple[np.ndarray, ...]] = {}
 
     def start(self, state: State) -> None:
         """Take displacements and velocities over into modal coordinates."""
-        modes, system = self.modes, self._system
+        modes = self.modes
+        system = self._system
         if "yr" in state.inner and state.inner["yr"].size == modes.s.size:
             return
         weighted = modes.basis.T @ (system.M @ np.column_stack([state.q, state.v]))
@@ -130,15 +153,39 @@ class ExponentialStepper:
         """Advance a state in place by some steps and record every `every`-th."""
         from rotorgear.solvers.time.kernel_exponential import exponential_loop
 
-        system, inner, nz, nr = self._system, state.inner, self.modes.s.size, self.modes.rigid.shape[1]
+        system = self._system
+        inner = state.inner
+        nz = self.modes.s.size
+        nr = self.modes.rigid.shape[1]
         kept = blank_records(steps, every, 0, system)
         r = steps // every
-        z, rigid, u = np.zeros((r, 2 * nz)), np.zeros((r, 2 * nr)), np.zeros((r, system.m))
+        z = np.zeros((r, 2 * nz))
+        rigid = np.zeros((r, 2 * nr))
+        u = np.zeros((r, system.m))
         done, status, solutions = exponential_loop(
-            steps, every, state.step, self.h, *self._fixed, inner["yr"], inner["yi"], inner["r0"], inner["r1"], inner["u"],
-            state.F, state.before, self._tolerance, z, rigid, u, kept["d"], kept["F"], kept["energy"],
-            state.sums, state.last, state.events,
-        )  # fmt: skip
+            steps,
+            every,
+            state.step,
+            self.h,
+            *self._fixed,
+            inner["yr"],
+            inner["yi"],
+            inner["r0"],
+            inner["r1"],
+            inner["u"],
+            state.F,
+            state.before,
+            self._tolerance,
+            z,
+            rigid,
+            u,
+            kept["d"],
+            kept["F"],
+            kept["energy"],
+            state.sums,
+            state.last,
+            state.events,
+        )
         count = done // every
         t = (state.step + every * np.arange(1, count + 1)) * self.h
         state.step += done
@@ -182,8 +229,10 @@ class ModalFields:
 
     def last(self, kind: str) -> np.ndarray:
         """q, v or a of the last record, (n,)."""
-        modes, power = self.stepper.modes, "qva".index(kind)
-        nz, nr = modes.s.size, modes.rigid.shape[1]
+        modes = self.stepper.modes
+        power = "qva".index(kind)
+        nz = modes.s.size
+        nr = modes.rigid.shape[1]
         z = self.z[-1, :nz] + 1j * self.z[-1, nz:]
         x = np.real(modes.shapes @ (modes.s**power * z))
         if power < 2:
@@ -199,8 +248,11 @@ def _phi(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """phi_1 = (e^x - 1)/x and phi_2 = (e^x - 1 - x)/x^2, by their series where x is small."""
     small = np.abs(x) < 0.3
     safe = np.where(small, 1.0, x)
-    first, second = np.expm1(safe) / safe, (np.expm1(safe) - safe) / safe**2
-    a, b, term = np.zeros_like(x), np.zeros_like(x), np.ones_like(x)
+    first = np.expm1(safe) / safe
+    second = (np.expm1(safe) - safe) / safe**2
+    a = np.zeros_like(x)
+    b = np.zeros_like(x)
+    term = np.ones_like(x)
     for k in range(1, 16):
         a = a + term
         b = b + term / (k + 1.0)

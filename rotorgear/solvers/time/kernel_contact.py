@@ -12,7 +12,8 @@ from rotorgear.solvers.time.compiled import compiled, force_function, schedule_f
 
 _EPS = 2.220446049250313e-16
 _ITERATIONS = 60
-FAILED, NOT_FINITE = -1, -2
+FAILED = -1
+NOT_FINITE = -2
 
 
 @schedule_function
@@ -30,9 +31,12 @@ def schedule_all(schedules, kind, parameters, parameters_first, state_first, ang
     """Fill the state of all laws at a time."""
     for i in range(kind.size):
         schedules[kind[i]](
-            angle, speed, time, parameters[parameters_first[i] : parameters_first[i + 1]],
+            angle,
+            speed,
+            time,
+            parameters[parameters_first[i] : parameters_first[i + 1]],
             state[state_first[i] : state_first[i + 1]],
-        )  # fmt: skip
+        )
 
 
 @compiled
@@ -41,21 +45,32 @@ def force_all(
 ):
     """Forces (m,), tangents (sum of k*k,) and energies (4 l,) of all laws."""
     for i in range(kind.size):
-        a, b, p, q = first[i], first[i + 1], block_first[i], block_first[i + 1]
+        a = first[i]
+        b = first[i + 1]
+        p = block_first[i]
+        q = block_first[i + 1]
         forces[kind[i]](
-            parameters[parameters_first[i] : parameters_first[i + 1]], state[state_first[i] : state_first[i + 1]],
-            d[a:b], v[a:b], F[a:b], Kd[p:q], Kv[p:q], energy[4 * i : 4 * i + 4],
-        )  # fmt: skip
+            parameters[parameters_first[i] : parameters_first[i + 1]],
+            state[state_first[i] : state_first[i + 1]],
+            d[a:b],
+            v[a:b],
+            F[a:b],
+            Kd[p:q],
+            Kv[p:q],
+            energy[4 * i : 4 * i + 4],
+        )
 
 
 @compiled
 def solve_small(A, b, n):
     """Solve A x = b in place by Gauss with row exchanges; False where A is singular."""
     for k in range(n):
-        pivot, row = abs(A[k, k]), k
+        pivot = abs(A[k, k])
+        row = k
         for i in range(k + 1, n):
             if abs(A[i, k]) > pivot:
-                pivot, row = abs(A[i, k]), i
+                pivot = abs(A[i, k])
+                row = i
         if pivot == 0.0:
             return False
         if row != k:
@@ -76,25 +91,65 @@ def solve_small(A, b, n):
 
 
 @compiled
-def contact_step(forces, kind, first, parameters, parameters_first, state_first, block_first, state,
-                 d_free, v_free, Ad, Av, F, d, v, trial, Kd, Kv, energy, J, tolerance):  # fmt: skip
+def contact_step(
+    forces,
+    kind,
+    first,
+    parameters,
+    parameters_first,
+    state_first,
+    block_first,
+    state,
+    d_free,
+    v_free,
+    Ad,
+    Av,
+    F,
+    d,
+    v,
+    trial,
+    Kd,
+    Kv,
+    energy,
+    J,
+    tolerance,
+):
     """Find F with F = law(d_free - Ad F, v_free - Av F), from the guess in F; d, v and energy are filled.
 
     Returns the number of linear solutions, or FAILED or NOT_FINITE.
     """
     m = F.size
     step = np.empty(m)
-    last, share = np.inf, 1.0
+    last = np.inf
+    share = 1.0
     for iteration in range(_ITERATIONS):
         for i in range(m):
-            x, y = d_free[i], v_free[i]
+            x = d_free[i]
+            y = v_free[i]
             for j in range(m):
                 x -= Ad[i, j] * F[j]
                 y -= Av[i, j] * F[j]
-            d[i], v[i] = x, y
-        force_all(forces, kind, first, parameters, parameters_first, state_first, block_first,
-                  state, d, v, trial, Kd, Kv, energy)  # fmt: skip
-        size, worst, floor = 0.0, 0.0, 0.0
+            d[i] = x
+            v[i] = y
+        force_all(
+            forces,
+            kind,
+            first,
+            parameters,
+            parameters_first,
+            state_first,
+            block_first,
+            state,
+            d,
+            v,
+            trial,
+            Kd,
+            Kv,
+            energy,
+        )
+        size = 0.0
+        worst = 0.0
+        floor = 0.0
         for i in range(m):
             step[i] = trial[i] - F[i]
             if not np.isfinite(step[i]):
@@ -123,10 +178,12 @@ def contact_step(forces, kind, first, parameters, parameters_first, state_first,
             for j in range(m):
                 J[i, j] = 1.0 if i == j else 0.0
         for law in range(kind.size):
-            a, k = first[law], first[law + 1] - first[law]
+            a = first[law]
+            k = first[law + 1] - first[law]
             for i in range(k):
                 for r in range(k):
-                    kd, kv = Kd[block_first[law] + i * k + r], Kv[block_first[law] + i * k + r]
+                    kd = Kd[block_first[law] + i * k + r]
+                    kv = Kv[block_first[law] + i * k + r]
                     if kd != 0.0 or kv != 0.0:
                         for j in range(m):
                             J[a + i, j] += kd * Ad[a + r, j] + kv * Av[a + r, j]

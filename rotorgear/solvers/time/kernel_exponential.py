@@ -24,37 +24,59 @@ def modal_pass(er, ei, Gr, Gi, gr, gi, Cr, Ci, u, yr, yi, out):
 
     Slices whose index starts at 0, and several rows at once: only so do the loops become vector instructions.
     """
-    nz, m, rows = yr.size, u.size, out.size
+    nz = yr.size
+    m = u.size
+    rows = out.size
     for r in range(rows):
         out[r] = 0.0
     for start in range(0, nz, _BLOCK):
         stop = min(start + _BLOCK, nz)
-        n, a, b = stop - start, yr[start:stop], yi[start:stop]
-        e, f, p, q = er[start:stop], ei[start:stop], gr[start:stop], gi[start:stop]
+        n = stop - start
+        a = yr[start:stop]
+        b = yi[start:stop]
+        e = er[start:stop]
+        f = ei[start:stop]
+        p = gr[start:stop]
+        q = gi[start:stop]
         for j in range(n):
             x = e[j] * a[j] - f[j] * b[j] + p[j]
             b[j] = e[j] * b[j] + f[j] * a[j] + q[j]
             a[j] = x
         i = 0
         while i + 3 < m:
-            u0, u1, u2, u3 = u[i], u[i + 1], u[i + 2], u[i + 3]
-            k0, k1, k2, k3 = Gr[i, start:stop], Gr[i + 1, start:stop], Gr[i + 2, start:stop], Gr[i + 3, start:stop]
+            u0 = u[i]
+            u1 = u[i + 1]
+            u2 = u[i + 2]
+            u3 = u[i + 3]
+            k0 = Gr[i, start:stop]
+            k1 = Gr[i + 1, start:stop]
+            k2 = Gr[i + 2, start:stop]
+            k3 = Gr[i + 3, start:stop]
             for j in range(n):
                 a[j] += k0[j] * u0 + k1[j] * u1 + k2[j] * u2 + k3[j] * u3
-            k0, k1, k2, k3 = Gi[i, start:stop], Gi[i + 1, start:stop], Gi[i + 2, start:stop], Gi[i + 3, start:stop]
+            k0 = Gi[i, start:stop]
+            k1 = Gi[i + 1, start:stop]
+            k2 = Gi[i + 2, start:stop]
+            k3 = Gi[i + 3, start:stop]
             for j in range(n):
                 b[j] += k0[j] * u0 + k1[j] * u1 + k2[j] * u2 + k3[j] * u3
             i += 4
         while i < m:
-            k0, k1, u0 = Gr[i, start:stop], Gi[i, start:stop], u[i]
+            k0 = Gr[i, start:stop]
+            k1 = Gi[i, start:stop]
+            u0 = u[i]
             for j in range(n):
                 a[j] += k0[j] * u0
                 b[j] += k1[j] * u0
             i += 1
         r = 0
         while r + 1 < rows:
-            k0, k1, k2, k3 = Cr[r, start:stop], Ci[r, start:stop], Cr[r + 1, start:stop], Ci[r + 1, start:stop]
-            first, second = 0.0, 0.0
+            k0 = Cr[r, start:stop]
+            k1 = Ci[r, start:stop]
+            k2 = Cr[r + 1, start:stop]
+            k3 = Ci[r + 1, start:stop]
+            first = 0.0
+            second = 0.0
             for j in range(n):
                 first += k0[j] * a[j] - k1[j] * b[j]
                 second += k2[j] * a[j] - k3[j] * b[j]
@@ -62,7 +84,9 @@ def modal_pass(er, ei, Gr, Gi, gr, gi, Cr, Ci, u, yr, yi, out):
             out[r + 1] += second
             r += 2
         if r < rows:
-            k0, k1, first = Cr[r, start:stop], Ci[r, start:stop], 0.0
+            k0 = Cr[r, start:stop]
+            k1 = Ci[r, start:stop]
+            first = 0.0
             for j in range(n):
                 first += k0[j] * a[j] - k1[j] * b[j]
             out[r] += first
@@ -70,18 +94,73 @@ def modal_pass(er, ei, Gr, Gi, gr, gi, Cr, Ci, u, yr, yi, out):
 
 @compiled
 def exponential_loop(
-    steps, every, step0, h, needs_v, times, speeds, angles,
-    er, ei, Gr, Gi, gr, gi, Qr, Qi, Cr, Ci, Br, rigid_load, Z, Ad, Av, k_ref, c_ref,
-    schedules, forces, kind, first, parameters, parameters_first, state_first, block_first,
-    yr, yi, r0, r1, u, F, before, tolerance, records_z, records_r, records_u, records_d, records_F, records_E, sums, last, events,
-):  # fmt: skip
+    steps,
+    every,
+    step0,
+    h,
+    needs_v,
+    times,
+    speeds,
+    angles,
+    er,
+    ei,
+    Gr,
+    Gi,
+    gr,
+    gi,
+    Qr,
+    Qi,
+    Cr,
+    Ci,
+    Br,
+    rigid_load,
+    Z,
+    Ad,
+    Av,
+    k_ref,
+    c_ref,
+    schedules,
+    forces,
+    kind,
+    first,
+    parameters,
+    parameters_first,
+    state_first,
+    block_first,
+    yr,
+    yi,
+    r0,
+    r1,
+    u,
+    F,
+    before,
+    tolerance,
+    records_z,
+    records_r,
+    records_u,
+    records_d,
+    records_F,
+    records_E,
+    sums,
+    last,
+    events,
+):
     """Advance `steps` steps in place and record every `every`-th; returns steps done, status and linear solutions."""
-    m, nr, nz = F.size, r0.size, yr.size
+    m = F.size
+    nr = r0.size
+    nz = yr.size
     state = np.zeros(state_first[-1])
-    Kd, Kv = np.zeros(block_first[-1]), np.zeros(block_first[-1])
-    energy, J = np.zeros(4 * kind.size), np.empty((m, m))
-    d, w, trial, d_free, v_free = np.empty(m), np.empty(m), np.empty(m), np.empty(m), np.empty(m)
-    out, free = np.empty(2 * m if needs_v else m), np.zeros(2 * m)
+    Kd = np.zeros(block_first[-1])
+    Kv = np.zeros(block_first[-1])
+    energy = np.zeros(4 * kind.size)
+    J = np.empty((m, m))
+    d = np.empty(m)
+    w = np.empty(m)
+    trial = np.empty(m)
+    d_free = np.empty(m)
+    v_free = np.empty(m)
+    out = np.empty(2 * m if needs_v else m)
+    free = np.zeros(2 * m)
     pushed = np.empty(nr)
     solutions = 0
     for number in range(1, steps + 1):
@@ -103,14 +182,37 @@ def exponential_loop(
                 free[j] += Br[k, j] * r0[k]
                 free[m + j] += Br[k, j] * r1[k]
         for i in range(m):
-            x, y = 0.0, 0.0
+            x = 0.0
+            y = 0.0
             for j in range(2 * m):
                 x += Z[i, j] * free[j]
                 y += Z[m + i, j] * free[j]
-            d_free[i], v_free[i] = x, y
+            d_free[i] = x
+            v_free[i] = y
             F[i], before[i] = 2.0 * F[i] - before[i], F[i]
-        code = contact_step(forces, kind, first, parameters, parameters_first, state_first, block_first, state,
-                            d_free, v_free, Ad, Av, F, d, w, trial, Kd, Kv, energy, J, tolerance)  # fmt: skip
+        code = contact_step(
+            forces,
+            kind,
+            first,
+            parameters,
+            parameters_first,
+            state_first,
+            block_first,
+            state,
+            d_free,
+            v_free,
+            Ad,
+            Av,
+            F,
+            d,
+            w,
+            trial,
+            Kd,
+            Kv,
+            energy,
+            J,
+            tolerance,
+        )
         if code < 0:
             return number - 1, code, solutions
         solutions += code
@@ -132,14 +234,19 @@ def exponential_loop(
         if number % every == 0:
             r = number // every - 1
             for j in range(nz):
-                real, imaginary = yr[j], yi[j]
+                real = yr[j]
+                imaginary = yi[j]
                 for i in range(m):
                     real += Qr[i, j] * u[i]
                     imaginary += Qi[i, j] * u[i]
-                records_z[r, j], records_z[r, nz + j] = real, imaginary
+                records_z[r, j] = real
+                records_z[r, nz + j] = imaginary
             for k in range(nr):
-                records_r[r, k], records_r[r, nr + k] = r0[k], r1[k]
-            records_u[r], records_d[r], records_F[r] = u, d, F
+                records_r[r, k] = r0[k]
+                records_r[r, nr + k] = r1[k]
+            records_u[r] = u
+            records_d[r] = d
+            records_F[r] = F
             for law in range(kind.size):
                 records_E[r, law, 0] = energy[4 * law]
                 records_E[r, law, 1] = sums[law, 0] - 0.5 * h * energy[4 * law + 1]

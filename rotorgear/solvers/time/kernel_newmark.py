@@ -19,31 +19,96 @@ from rotorgear.solvers.time.kernel_time import add_products, count_events, lu_so
 
 @compiled
 def newmark_loop(
-    steps, every, step0, h, am, af, beta, gamma, times, speeds, angles,
-    first_nz, column, K, D, M, Lp, Li, Lx, Up, Ui, Ux, diagonal, row_place, column_place,
-    Bt_first, Bt_column, Bt_value, P, Ad, Av, load,
-    schedules, forces, kind, first, parameters, parameters_first, state_first, block_first,
-    q, v, a, F, before, tolerance, records_q, records_v, records_a, records_d, records_F, records_E, sums, last, events,
-):  # fmt: skip
+    steps,
+    every,
+    step0,
+    h,
+    am,
+    af,
+    beta,
+    gamma,
+    times,
+    speeds,
+    angles,
+    first_nz,
+    column,
+    K,
+    D,
+    M,
+    Lp,
+    Li,
+    Lx,
+    Up,
+    Ui,
+    Ux,
+    diagonal,
+    row_place,
+    column_place,
+    Bt_first,
+    Bt_column,
+    Bt_value,
+    P,
+    Ad,
+    Av,
+    load,
+    schedules,
+    forces,
+    kind,
+    first,
+    parameters,
+    parameters_first,
+    state_first,
+    block_first,
+    q,
+    v,
+    a,
+    F,
+    before,
+    tolerance,
+    records_q,
+    records_v,
+    records_a,
+    records_d,
+    records_F,
+    records_E,
+    sums,
+    last,
+    events,
+):
     """Advance `steps` steps in place and record every `every`-th; returns steps done and the status of the last."""
-    n, m = q.size, F.size
+    n = q.size
+    m = F.size
     state = np.zeros(state_first[-1])
-    Kd, Kv = np.zeros(block_first[-1]), np.zeros(block_first[-1])
-    energy, J = np.zeros(4 * kind.size), np.empty((m, m))
-    d, w, trial, d_free, v_free = np.empty(m), np.empty(m), np.empty(m), np.empty(m), np.empty(m)
+    Kd = np.zeros(block_first[-1])
+    Kv = np.zeros(block_first[-1])
+    energy = np.zeros(4 * kind.size)
+    J = np.empty((m, m))
+    d = np.empty(m)
+    w = np.empty(m)
+    trial = np.empty(m)
+    d_free = np.empty(m)
+    v_free = np.empty(m)
     Ma = np.zeros(n)
-    qm, vm, rhs, work, a_free = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    qm = np.empty(n)
+    vm = np.empty(n)
+    rhs = np.empty(n)
+    work = np.empty(n)
+    a_free = np.empty(n)
     solutions = 0
     for number in range(1, steps + 1):
         t = (step0 + number) * h
         angle, speed = rotation_at(t, times, speeds, angles)
         schedule_all(schedules, kind, parameters, parameters_first, state_first, angle, speed, t, state)
-        old, new = h * h * (0.5 - beta), h * (1.0 - gamma)
+        old = h * h * (0.5 - beta)
+        new = h * (1.0 - gamma)
         for i in range(n):
-            qp, vp = q[i] + h * v[i] + old * a[i], v[i] + new * a[i]
-            qm[i], vm[i] = (1.0 - af) * qp + af * q[i], (1.0 - af) * vp + af * v[i]
+            qp = q[i] + h * v[i] + old * a[i]
+            vp = v[i] + new * a[i]
+            qm[i] = (1.0 - af) * qp + af * q[i]
+            vm[i] = (1.0 - af) * vp + af * v[i]
             rhs[i] = load[i]
-            q[i], v[i] = qp, vp
+            q[i] = qp
+            v[i] = vp
         add_products(first_nz, column, K, D, qm, vm, rhs)
         if am != 0.0:
             row_products(first_nz, column, M, a, Ma)
@@ -55,15 +120,38 @@ def newmark_loop(
                     rhs[Bt_column[p]] -= af * Bt_value[p] * F[j]
         lu_solve(Lp, Li, Lx, Up, Ui, Ux, diagonal, row_place, column_place, rhs, work, a_free)
         for j in range(m):
-            x, y = 0.0, 0.0
+            x = 0.0
+            y = 0.0
             for p in range(Bt_first[j], Bt_first[j + 1]):
                 i = Bt_column[p]
                 x += Bt_value[p] * (q[i] + beta * h * h * a_free[i])
                 y += Bt_value[p] * (v[i] + gamma * h * a_free[i])
-            d_free[j], v_free[j] = x, y
+            d_free[j] = x
+            v_free[j] = y
             F[j], before[j] = 2.0 * F[j] - before[j], F[j]  # a guess that goes on as before
-        code = contact_step(forces, kind, first, parameters, parameters_first, state_first, block_first, state,
-                            d_free, v_free, Ad, Av, F, d, w, trial, Kd, Kv, energy, J, tolerance)  # fmt: skip
+        code = contact_step(
+            forces,
+            kind,
+            first,
+            parameters,
+            parameters_first,
+            state_first,
+            block_first,
+            state,
+            d_free,
+            v_free,
+            Ad,
+            Av,
+            F,
+            d,
+            w,
+            trial,
+            Kd,
+            Kv,
+            energy,
+            J,
+            tolerance,
+        )
         if code < 0:
             return number - 1, code, solutions
         solutions += code
@@ -80,7 +168,11 @@ def newmark_loop(
         count_events(energy, last, events)
         if number % every == 0:
             r = number // every - 1
-            records_q[r], records_v[r], records_a[r], records_d[r], records_F[r] = q, v, a, d, F
+            records_q[r] = q
+            records_v[r] = v
+            records_a[r] = a
+            records_d[r] = d
+            records_F[r] = F
             for law in range(kind.size):
                 records_E[r, law, 0] = energy[4 * law]
                 records_E[r, law, 1] = sums[law, 0] - 0.5 * h * energy[4 * law + 1]

@@ -77,9 +77,15 @@ class LocalForces:
     def arguments(self) -> tuple[Any, ...]:
         """What the compiled loops take, in their order."""
         return (
-            self.schedules, self.forces, self.kind, self.first, self.parameters, self.parameters_first,
-            self.state_first, self.block_first,
-        )  # fmt: skip
+            self.schedules,
+            self.forces,
+            self.kind,
+            self.first,
+            self.parameters,
+            self.parameters_first,
+            self.state_first,
+            self.block_first,
+        )
 
 
 def gather(laws: tuple[LocalLaw, ...]) -> LocalForces:
@@ -100,7 +106,8 @@ def gather(laws: tuple[LocalLaw, ...]) -> LocalForces:
     sizes = [law.components for law in laws]
     parameters = [np.ascontiguousarray(law.parameters(), dtype=float) for law in laws]
     m = sum(sizes)
-    K, C = np.zeros((m, m)), np.zeros((m, m))
+    K = np.zeros((m, m))
+    C = np.zeros((m, m))
     first = _starts(sizes)
     for law, at, size in zip(laws, first, sizes, strict=False):
         K[at : at + size, at : at + size] = law.reference_stiffness()

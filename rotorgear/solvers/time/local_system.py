@@ -87,9 +87,17 @@ class State:
         """Return a copy with arrays of its own."""
         inner = {name: value.copy() for name, value in self.inner.items()}
         return State(
-            self.step, self.q.copy(), self.v.copy(), self.a.copy(), self.F.copy(), self.before.copy(), self.sums.copy(),
-            self.last.copy(), self.events.copy(), inner,
-        )  # fmt: skip
+            self.step,
+            self.q.copy(),
+            self.v.copy(),
+            self.a.copy(),
+            self.F.copy(),
+            self.before.copy(),
+            self.sums.copy(),
+            self.last.copy(),
+            self.events.copy(),
+            inner,
+        )
 
 
 @dataclass(frozen=True)
@@ -169,13 +177,19 @@ def evaluated(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Forces (m,), tangents in d and v (flat blocks) and energies (4 l,) at local displacements, velocities and a time."""
     laws = system.forces
-    angle, speed = float(system.rotation.angle(np.array(t))), float(system.rotation.speed(np.array(t)))
-    F, energy, states = np.zeros(laws.m), np.zeros(4 * len(laws.laws)), np.zeros(laws.state_first[-1])
-    Kd, Kv = np.zeros(laws.block_first[-1]), np.zeros(laws.block_first[-1])
-    d, v = np.ascontiguousarray(d, dtype=float), np.ascontiguousarray(v, dtype=float)
+    angle = float(system.rotation.angle(np.array(t)))
+    speed = float(system.rotation.speed(np.array(t)))
+    F = np.zeros(laws.m)
+    energy = np.zeros(4 * len(laws.laws))
+    states = np.zeros(laws.state_first[-1])
+    Kd = np.zeros(laws.block_first[-1])
+    Kv = np.zeros(laws.block_first[-1])
+    d = np.ascontiguousarray(d, dtype=float)
+    v = np.ascontiguousarray(v, dtype=float)
     # Law by law: to hand all compiled functions over as one tuple costs a hundred times the evaluation.
     for i, kind in enumerate(laws.kind):
-        own, block = slice(laws.first[i], laws.first[i + 1]), slice(laws.block_first[i], laws.block_first[i + 1])
+        own = slice(laws.first[i], laws.first[i + 1])
+        block = slice(laws.block_first[i], laws.block_first[i + 1])
         parameters = laws.parameters[laws.parameters_first[i] : laws.parameters_first[i + 1]]
         state = states[laws.state_first[i] : laws.state_first[i + 1]]
         laws.schedules[kind](angle, speed, t, parameters, state)
@@ -192,7 +206,8 @@ def local_values(system: LocalSystem, q: np.ndarray, v: np.ndarray, t: float) ->
 def local_tangent(system: LocalSystem, d: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
     """Local forces (m,) at rest and their tangent (m, m) at local displacements and a time."""
     F, blocks, _, _ = evaluated(system, d, np.zeros(system.m), t)
-    laws, K = system.forces, np.zeros((system.m, system.m))
+    laws = system.forces
+    K = np.zeros((system.m, system.m))
     for a, b, p, q in zip(laws.first[:-1], laws.first[1:], laws.block_first[:-1], laws.block_first[1:], strict=True):
         K[a:b, a:b] = blocks[p:q].reshape(b - a, b - a)
     return F, K
@@ -207,9 +222,16 @@ def state_at_rest(system: LocalSystem, h: float, q: np.ndarray, v: np.ndarray | 
     laws = len(system.forces.laws)
     powers = energy.reshape(laws, 4)
     return State(
-        0, np.array(q, dtype=float), v.copy(), a, F, F.copy(), 0.5 * h * powers[:, 1:3].copy(),
-        powers[:, 3].astype(np.int64), np.zeros((laws, 4), dtype=np.int64),
-    )  # fmt: skip
+        0,
+        np.array(q, dtype=float),
+        v.copy(),
+        a,
+        F,
+        F.copy(),
+        0.5 * h * powers[:, 1:3].copy(),
+        powers[:, 3].astype(np.int64),
+        np.zeros((laws, 4), dtype=np.int64),
+    )
 
 
 def acceleration(M: sp.csc_array, force: np.ndarray) -> np.ndarray:
@@ -225,6 +247,8 @@ def acceleration(M: sp.csc_array, force: np.ndarray) -> np.ndarray:
 
 def blank_records(steps: int, every: int, n: int, system: LocalSystem) -> dict[str, Any]:
     """Arrays for the records of some steps."""
-    r, m, laws = steps // every, system.m, len(system.forces.laws)
+    r = steps // every
+    m = system.m
+    laws = len(system.forces.laws)
     shapes = {"q": (r, n), "v": (r, n), "a": (r, n), "d": (r, m), "F": (r, m), "energy": (r, laws, 3)}
     return {name: np.zeros(shape) for name, shape in shapes.items()}

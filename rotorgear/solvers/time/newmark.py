@@ -49,7 +49,8 @@ class Newmark:
         """Return the method whose highest frequencies shrink by rho_inf each step (0 to 1)."""
         if not 0.0 <= rho_inf <= 1.0:
             raise AnalysisError(f"rho_inf must lie between 0 and 1, got {rho_inf:g}")
-        am, af = (2.0 * rho_inf - 1.0) / (rho_inf + 1.0), rho_inf / (rho_inf + 1.0)
+        am = (2.0 * rho_inf - 1.0) / (rho_inf + 1.0)
+        af = rho_inf / (rho_inf + 1.0)
         return Newmark(0.25 * (1.0 - am + af) ** 2, 0.5 - am + af, am, af)
 
     @staticmethod
@@ -72,8 +73,12 @@ class NewmarkStepper:
     """The method made ready for one system, step and speed."""
 
     def __init__(self, method: Newmark, system: LocalSystem, h: float, speed: float, tolerance: float) -> None:
-        self.h, self._system = h, system
-        am, af, beta, gamma = method.alpha_m, method.alpha_f, method.beta, method.gamma
+        self.h = h
+        self._system = system
+        am = method.alpha_m
+        af = method.alpha_f
+        beta = method.beta
+        gamma = method.gamma
         D = system.velocity_terms(speed)
         S = sp.csc_array((1.0 - am) * system.M + (1.0 - af) * (gamma * h * D + beta * h**2 * system.K))
         factor = factor_general(S)
@@ -83,12 +88,24 @@ class NewmarkStepper:
         Bt = sp.csr_array(system.B.T)
         rotation = system.rotation
         self._fixed: tuple[Any, ...] = (
-            am, af, beta, gamma, rotation.times, rotation.speeds, rotation.angles,
-            *_one_pattern(system.K, D, system.M), *_triangles(factor._lu),
-            Bt.indptr.astype(np.int32), Bt.indices.astype(np.int32), Bt.data.astype(float), np.ascontiguousarray(P),
-            np.ascontiguousarray(beta * h**2 * condensed), np.ascontiguousarray(gamma * h * condensed),
-            np.ascontiguousarray(system.load, dtype=float), *system.forces.arguments(),
-        )  # fmt: skip
+            am,
+            af,
+            beta,
+            gamma,
+            rotation.times,
+            rotation.speeds,
+            rotation.angles,
+            *_one_pattern(system.K, D, system.M),
+            *_triangles(factor._lu),
+            Bt.indptr.astype(np.int32),
+            Bt.indices.astype(np.int32),
+            Bt.data.astype(float),
+            np.ascontiguousarray(P),
+            np.ascontiguousarray(beta * h**2 * condensed),
+            np.ascontiguousarray(gamma * h * condensed),
+            np.ascontiguousarray(system.load, dtype=float),
+            *system.forces.arguments(),
+        )
         self._tolerance = tolerance
 
     def start(self, state: State) -> None:
@@ -100,9 +117,27 @@ class NewmarkStepper:
 
         kept = blank_records(steps, every, self._system.n, self._system)
         done, status, solutions = newmark_loop(
-            steps, every, state.step, self.h, *self._fixed, state.q, state.v, state.a, state.F, state.before, self._tolerance,
-            kept["q"], kept["v"], kept["a"], kept["d"], kept["F"], kept["energy"], state.sums, state.last, state.events,
-        )  # fmt: skip
+            steps,
+            every,
+            state.step,
+            self.h,
+            *self._fixed,
+            state.q,
+            state.v,
+            state.a,
+            state.F,
+            state.before,
+            self._tolerance,
+            kept["q"],
+            kept["v"],
+            kept["a"],
+            kept["d"],
+            kept["F"],
+            kept["energy"],
+            state.sums,
+            state.last,
+            state.events,
+        )
         t = (state.step + every * np.arange(1, done // every + 1)) * self.h
         state.step += done
         r = t.size
@@ -112,8 +147,15 @@ class NewmarkStepper:
 
 def _one_pattern(*matrices: sp.csc_array) -> tuple[np.ndarray, ...]:
     """Row starts and columns of the union of some sparse matrices, and the values of each in it."""
-    pattern = sp.csr_array(sum((sp.csr_array((np.ones(A.nnz), A.indices, A.indptr), shape=A.shape[::-1]).T.tocsr()
-                                for A in map(sp.csc_array, matrices)), sp.csr_array(matrices[0].shape)))  # fmt: skip
+    pattern = sp.csr_array(
+        sum(
+            (
+                sp.csr_array((np.ones(A.nnz), A.indices, A.indptr), shape=A.shape[::-1]).T.tocsr()
+                for A in map(sp.csc_array, matrices)
+            ),
+            sp.csr_array(matrices[0].shape),
+        )
+    )
     pattern.sort_indices()
     rows = np.repeat(np.arange(pattern.shape[0]), np.diff(pattern.indptr))
     values = []
@@ -130,9 +172,16 @@ def _one_pattern(*matrices: sp.csc_array) -> tuple[np.ndarray, ...]:
 
 def _triangles(lu: Any) -> tuple[np.ndarray, ...]:
     """SuperLU's factors by columns without their diagonals, 1/diag(U) and both orders."""
-    L, U = sp.csc_array(sp.tril(lu.L, -1)), sp.csc_array(sp.triu(lu.U, 1))
+    L = sp.csc_array(sp.tril(lu.L, -1))
+    U = sp.csc_array(sp.triu(lu.U, 1))
     return (
-        L.indptr.astype(np.int32), L.indices.astype(np.int32), L.data.copy(),
-        U.indptr.astype(np.int32), U.indices.astype(np.int32), U.data.copy(),
-        1.0 / lu.U.diagonal(), lu.perm_r.astype(np.int32), lu.perm_c.astype(np.int32),
-    )  # fmt: skip
+        L.indptr.astype(np.int32),
+        L.indices.astype(np.int32),
+        L.data.copy(),
+        U.indptr.astype(np.int32),
+        U.indices.astype(np.int32),
+        U.data.copy(),
+        1.0 / lu.U.diagonal(),
+        lu.perm_r.astype(np.int32),
+        lu.perm_c.astype(np.int32),
+    )

@@ -42,7 +42,8 @@ def unilateral(
         force, approach = _pressed(C, gap, total, active)
         open_by = C @ force + gap - approach
         slack = _TOLERANCE * (abs(approach) + float(np.abs(gap).max()))
-        pulling, closed = active & (force < 0.0), ~active & (open_by < -slack)
+        pulling = active & (force < 0.0)
+        closed = ~active & (open_by < -slack)
         if not pulling.any() and not closed.any():
             return force, approach
         active = (active & ~pulling) | closed
@@ -86,5 +87,6 @@ def _primal(C: np.ndarray, gap: np.ndarray, total: float) -> tuple[np.ndarray, f
         steps = force[falling] / np.maximum(force[falling] - target[falling], 1e-300)
         force = force + steps.min() * (target - force)
         leaving = np.flatnonzero(falling)[np.argmin(steps)]
-        active[leaving], force[leaving] = False, 0.0
+        active[leaving] = False
+        force[leaving] = 0.0
     raise ConvergenceError("The contact did not settle: the compliance is too badly conditioned. Use a finer preset.")

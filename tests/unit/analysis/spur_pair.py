@@ -12,28 +12,59 @@ _DATA: dict[str, Any] = {
     "operation": {"input_shaft": "one", "output_shaft": "two", "speed": "1500 rpm", "torque": "200 N m"},
     "materials": {"steel": {"youngs_modulus": "206 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}},
     "shafts": {
-        "one": {"position": ["0 mm", "0 mm"], "material": "steel", "sections": [{"length": "120 mm", "outer_diameter": "40 mm"}]},
-        "two": {"position": ["120 mm", "0 mm"], "material": "steel",
-                "sections": [{"length": "120 mm", "outer_diameter": "50 mm"}]},
+        "one": {
+            "position": ["0 mm", "0 mm"],
+            "material": "steel",
+            "sections": [{"length": "120 mm", "outer_diameter": "40 mm"}],
+        },
+        "two": {
+            "position": ["120 mm", "0 mm"],
+            "material": "steel",
+            "sections": [{"length": "120 mm", "outer_diameter": "50 mm"}],
+        },
     },
     "gears": {
-        "pinion": {"shaft": "one", "at": "60 mm", "kind": "spur", "teeth": 24, "normal_module": "4 mm", "width": "30 mm"},
-        "wheel": {"shaft": "two", "at": "60 mm", "kind": "spur", "teeth": 36, "normal_module": "4 mm", "width": "30 mm"},
+        "pinion": {
+            "shaft": "one",
+            "at": "60 mm",
+            "kind": "spur",
+            "teeth": 24,
+            "normal_module": "4 mm",
+            "width": "30 mm",
+        },
+        "wheel": {
+            "shaft": "two",
+            "at": "60 mm",
+            "kind": "spur",
+            "teeth": 36,
+            "normal_module": "4 mm",
+            "width": "30 mm",
+        },
     },
     "meshes": {
         "pair": {
-            "pinion": "pinion", "gear": "wheel", "stiffness": "3e8 N/m", "damping_ratio": 0.05,
-            "transmission_error": [{"harmonic": 1, "amplitude": "4 um"}, {"harmonic": 2, "amplitude": "1 um", "phase": "40 deg"}],
+            "pinion": "pinion",
+            "gear": "wheel",
+            "stiffness": "3e8 N/m",
+            "damping_ratio": 0.05,
+            "transmission_error": [
+                {"harmonic": 1, "amplitude": "4 um"},
+                {"harmonic": 2, "amplitude": "1 um", "phase": "40 deg"},
+            ],
         }
     },
     "bearings": {
-        name: {"shaft": shaft, "at": at, "stiffness": {"radial": "2e8 N/m", "axial": "5e7 N/m"},
-               "damping": {"radial": "3e3 N s/m", "axial": "1e3 N s/m"}}
+        name: {
+            "shaft": shaft,
+            "at": at,
+            "stiffness": {"radial": "2e8 N/m", "axial": "5e7 N/m"},
+            "damping": {"radial": "3e3 N s/m", "axial": "1e3 N s/m"},
+        }
         for name, shaft, at in (("a", "one", "start"), ("b", "one", "end"), ("c", "two", "start"), ("d", "two", "end"))
     },
     "damping": {"rayleigh_beta": "2e-6 s"},
     "points": {"housing": {"on": "bearings.d", "direction": "y"}},
-}  # fmt: skip
+}
 
 
 def spur_pair(**changes: Any) -> rg.Model:

@@ -38,7 +38,7 @@ def test_one_parameter_gives_route_table_files_and_pictures(tmp_path: Path) -> N
     speeds = ",".join(f"{2300 + i} rpm,{3800 + 3 * i} rpm" for i in range(35))
     code, text = run(
         PAIR, "--over", f"operation.speed={speeds}", *QUICK, "--json", files[0], "--save", files[1], "--plot", files[2]
-    )  # fmt: skip
+    )
     assert code == 0
     assert max(len(line) for line in text.splitlines() if str(tmp_path) not in line) <= 80
     for words in ("route (rpm): ", "more lines: see --json", "more changes", "speed rpm", "LE", "wrote 4 pictures"):
@@ -103,8 +103,21 @@ def test_mistakes_are_named_in_a_sentence(arguments: list[str], words: str) -> N
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_a_killed_sweep_goes_on_to_the_same_file(tmp_path: Path) -> None:
     files = [tmp_path / "whole.h5", tmp_path / "killed.h5"]
-    command = [sys.executable, "-m", "rotorgear", "sweep", PAIR, "--over", "operation.speed=3000 rpm:9000 rpm:128",
-               "--settle", "200", "--count", "100", "--workers", "1"]  # fmt: skip
+    command = [
+        sys.executable,
+        "-m",
+        "rotorgear",
+        "sweep",
+        PAIR,
+        "--over",
+        "operation.speed=3000 rpm:9000 rpm:128",
+        "--settle",
+        "200",
+        "--count",
+        "100",
+        "--workers",
+        "1",
+    ]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     child = subprocess.Popen([*command, "--save", str(files[1])], env=environment, stdout=subprocess.DEVNULL)
     for _ in range(600):
@@ -123,7 +136,8 @@ def test_a_killed_sweep_goes_on_to_the_same_file(tmp_path: Path) -> None:
 
 
 def test_a_large_model_says_what_it_was_reduced_to_and_keeps_that_in_files(tmp_path: Path) -> None:
-    flexible, files = str(ROOT / "models" / "flexible_pair.toml"), [str(tmp_path / name) for name in ("s.json", "s.h5")]
+    flexible = str(ROOT / "models" / "flexible_pair.toml")
+    files = [str(tmp_path / name) for name in ("s.json", "s.h5")]
     few = ["--over", "operation.speed=5000 rpm,6000 rpm", "--settle", "9", "--count", "9"]
     code, text = run(flexible, *few, "--modes", "12", "--elements", "2", "--json", files[0], "--save", files[1])
     assert code == 0

@@ -140,7 +140,8 @@ def test_the_motion_at_the_end_is_written_for_paraview_with_its_times(shaken: st
     reader = pv.PVDReader(folder / "motion.pvd")
     assert reader.time_values == pytest.approx(result.motion_time)
     mesh = pv.read(folder / "motion" / "instant_0012.vtp")
-    true, scaled = mesh.point_data["displacement_m"], mesh.point_data["displacement"]
+    true = mesh.point_data["displacement_m"]
+    scaled = mesh.point_data["displacement"]
     assert scaled == pytest.approx(true * mesh.field_data["displacement_scale"][0], rel=1e-4, abs=1e-9)
     node = 0  # the left end of the input shaft moves as its node does
     about = result.motion[node, :3, -1] - result.motion[node, :3].mean(axis=1)

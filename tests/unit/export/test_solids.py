@@ -37,7 +37,8 @@ def test_a_stepped_hollow_conical_shaft_has_its_volume():
 
 
 def test_a_gear_has_its_root_and_tip_circles_its_width_and_its_number_of_teeth():
-    solids, model = solids_of(HERRINGBONE, FINE), model_of(HERRINGBONE)
+    solids = solids_of(HERRINGBONE, FINE)
+    model = model_of(HERRINGBONE)
     geometry = gear_geometry(model.gears["wheel"])
     points = solids.points[only(solids, "gears.wheel", "gear")[0]]
     x, y, z = (points - np.array([0.0, 0.12, 0.0])).T
@@ -69,7 +70,8 @@ def test_flanks_lean_to_the_hand_that_the_mesh_element_works_with(hand):
 
 
 def test_the_right_hand_helix_of_the_solids_turns_counter_clockwise_towards_positive_z():
-    solids, model = solids_of(PAIR, FINE), model_of(PAIR)
+    solids = solids_of(PAIR, FINE)
+    model = model_of(PAIR)
     geometry = gear_geometry(model.gears["pinion"])
     points = solids.points[only(solids, "gears.pinion", "gear")[0]]
     x, y, z = points[np.hypot(points[:, 0], points[:, 1]) > 0.4999999 * geometry.effective_tip_diameter].T
@@ -78,7 +80,9 @@ def test_the_right_hand_helix_of_the_solids_turns_counter_clockwise_towards_posi
     turn = np.tan(geometry.helix_angle) / (0.5 * geometry.reference_diameter)
     for place in np.unique(z):
         shift = np.arctan2(y, x)[z == place] - angle[0] - turn * (place - z.min())
-        first, second = 0.0, angle[1] - angle[0]  # the two edges of a tip
+        # the two edges of a tip
+        first = 0.0
+        second = angle[1] - angle[0]
         miss = np.minimum(*(np.abs((shift - edge + 0.5 * pitch) % pitch - 0.5 * pitch) for edge in (first, second)))
         assert np.max(miss) < 1e-9
 
@@ -100,7 +104,8 @@ def test_teeth_stand_in_the_gaps_of_their_mates_all_along_the_face(text):
     axes = display_axes(model)
     phases = tooth_phases(model, axes)
     one, two = (model.gears[name] for name in ("pinion", "wheel"))
-    here, there = axes[one.shaft], axes[two.shaft]
+    here = axes[one.shaft]
+    there = axes[two.shaft]
     out = np.arctan2(there[1] - here[1], there[0] - here[0])
     for z in (0.0, 0.011, -0.013):
         share = []
@@ -130,7 +135,8 @@ def test_teeth_in_mesh_do_not_cut_into_each_other():
 @pytest.mark.parametrize("text", [PAIR, HERRINGBONE, CHAIN])
 def test_a_rigid_motion_of_all_nodes_moves_what_is_carried_by_shafts_rigidly(text):
     solids = solids_of(text)
-    shift, turn = np.array([1.0, -2.0, 0.5]), np.array([0.3, -0.2, 0.7])
+    shift = np.array([1.0, -2.0, 0.5])
+    turn = np.array([0.3, -0.2, 0.7])
     arm = solids.node_positions - np.array([0.1, 0.2, 0.3])
     shape = np.hstack([shift + np.cross(turn, arm), np.tile(turn, (len(arm), 1))])
     moved = solids.displacement(shape)
@@ -146,22 +152,30 @@ def test_a_rigid_motion_of_all_nodes_moves_what_is_carried_by_shafts_rigidly(tex
 
 def test_points_between_nodes_follow_the_deflection_curve_of_a_timoshenko_cantilever():
     """Two nodes hold the closed form of a cantilever under end force and end moment; the points between have to find it."""
-    L, E, nu, kappa = 0.3, 206e9, 0.3, 0.8
+    L = 0.3
+    E = 206e9
+    nu = 0.3
+    kappa = 0.8
     model = loads(
         "schema_version = 1\n[shafts.s]\n"
         "sections = [{ length = 0.3, outer_diameter = 0.1, bore = 0.02, shear_coefficient = 0.8 }]\n"
         '[supports.wall]\nshaft = "s"\nat = "start"\nfixed = ["all"]\n'
     )
-    area, inertia = 0.25 * np.pi * (0.1**2 - 0.02**2), np.pi / 64.0 * (0.1**4 - 0.02**4)
-    bend, shear = E * inertia, kappa * E / (2.0 * (1.0 + nu)) * area
+    area = 0.25 * np.pi * (0.1**2 - 0.02**2)
+    inertia = np.pi / 64.0 * (0.1**4 - 0.02**4)
+    bend = E * inertia
+    shear = kappa * E / (2.0 * (1.0 + nu)) * area
 
     def curve(z: np.ndarray) -> np.ndarray:
         """x y z tx ty tz (k, 6) for 3 kN along x, -2 kN along y and 50 N m about y at the end, with stretch and twist."""
-        w, t = (L - z / 3.0) * z**2 / (2.0 * bend) + z / shear, (L - z / 2.0) * z / bend
-        x, ty = 3e3 * w + 50.0 * z**2 / (2.0 * bend), 3e3 * t + 50.0 * z / bend
+        w = (L - z / 3.0) * z**2 / (2.0 * bend) + z / shear
+        t = (L - z / 2.0) * z / bend
+        x = 3e3 * w + 50.0 * z**2 / (2.0 * bend)
+        ty = 3e3 * t + 50.0 * z / bend
         return np.column_stack([x, -2e3 * w, 1e-5 * z, 2e3 * t, ty, 1e-3 * z])
 
-    ends, between = np.array([0.0, L]), np.linspace(0.0, L, 13)
+    ends = np.array([0.0, L])
+    between = np.linspace(0.0, L, 13)
     nodes = NodeTable(("s", "s"), np.column_stack([np.zeros((2, 2)), ends]), ("", ""))
     skeleton = Skeleton(model, nodes, {"s": (0.0, 0.0)})
     for offset in (np.zeros(3), np.array([0.05, 0.0, 0.0]), np.array([0.0, 0.05, 0.0])):
@@ -202,7 +216,8 @@ def test_a_coupled_shaft_without_a_place_continues_the_other_one():
 
 
 def test_torsion_turns_disks_without_shape_by_the_angle_of_their_node():
-    solids, result = solids_of(CHAIN), modes_of(CHAIN)
+    solids = solids_of(CHAIN)
+    result = modes_of(CHAIN)
     points, _ = only(solids, "disks.load", "disk")
     node = result.nodes.on_shaft("load")[0]
     angle = result.shapes[node, 5, 1].real
@@ -214,7 +229,8 @@ def test_torsion_turns_disks_without_shape_by_the_angle_of_their_node():
 
 def test_shapes_are_scaled_to_a_twentieth_of_the_model_or_less_where_bodies_turn_far():
     for text in (PAIR, CHAIN):
-        solids, result = solids_of(text), modes_of(text)
+        solids = solids_of(text)
+        result = modes_of(text)
         for mode in range(len(result)):
             shape = result.shapes[:, :, mode]
             moved, scale = solids.scaled(shape)
@@ -233,7 +249,8 @@ def test_a_shape_in_which_nothing_moves_is_left_alone():
 
 
 def test_a_ring_follows_the_shaft_inside_and_the_pedestal_outside():
-    solids, result = solids_of(PAIR), modes_of(PAIR)
+    solids = solids_of(PAIR)
+    result = modes_of(PAIR)
     shape = np.zeros((len(result.nodes.shaft), 6))
     shape[result.nodes.pedestal.index("fast_left"), 0] = 1.0
     points, _ = only(solids, "bearings.fast_left", "bearing")

@@ -31,7 +31,8 @@ class _StopError(Exception):
 def stopped(path: Path, after: int, method: str) -> None:
     """Run until so many chunks are written, then break off as a crash would."""
     stream = rg.stream(path)
-    keep, written = stream.write, []
+    keep = stream.write
+    written = []
 
     def write(chunk: dict[str, np.ndarray]) -> None:
         keep(chunk)
@@ -68,7 +69,8 @@ def test_a_full_disk_ends_the_run_with_a_sentence_and_keeps_the_chunks_before(
 ) -> None:
     import h5py
 
-    real, opened = h5py.File, []
+    real = h5py.File
+    opened = []
 
     def full(name: Any, mode: str = "r", **options: Any) -> Any:
         if mode == "w":

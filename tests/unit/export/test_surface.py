@@ -40,7 +40,8 @@ def test_every_edge_of_a_closed_surface_is_shared_by_two_cells_that_run_along_it
             for cells in (surface.quads, surface.triangles)
         ]
     )
-    forwards, backwards = {tuple(edge) for edge in edges}, {tuple(edge[::-1]) for edge in edges}
+    forwards = {tuple(edge) for edge in edges}
+    backwards = {tuple(edge[::-1]) for edge in edges}
     assert len(forwards) == len(edges)
     assert forwards == backwards
     assert surface.volume() > 0.0
@@ -65,7 +66,8 @@ def test_an_untwisted_prism_has_the_volume_of_its_contour():
 
 
 def test_joined_surfaces_keep_their_points_and_cells_in_order():
-    one, two = prism(0.7), ball(0.5, 12)
+    one = prism(0.7)
+    two = ball(0.5, 12)
     both = join([one, two])
     assert np.array_equal(both.points[len(one.points) :][two.quads], both.points[both.quads[len(one.quads) :]])
     assert both.volume() == pytest.approx(one.volume() + two.volume())

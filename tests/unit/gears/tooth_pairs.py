@@ -24,11 +24,14 @@ def pair(helix: float = 0.0, fe: ToothFe | None = None, addendum: float = 1.0, *
     """Teeth 34/80, module 5 mm, 20 deg, face 54 mm, no shift, at the distance without backlash; helix in degrees."""
     gears = [
         GearGeometry(
-            teeth=z, normal_module=5e-3, normal_pressure_angle=math.radians(20.0), helix_angle=math.radians(helix),
+            teeth=z,
+            normal_module=5e-3,
+            normal_pressure_angle=math.radians(20.0),
+            helix_angle=math.radians(helix),
             addendum_factor=addendum,
         )
         for z in (34, 80)
-    ]  # fmt: skip
+    ]
     return ToothPair(gears[0], gears[1], pair_geometry(*gears, WIDTH), WIDTH, fe=fe or ToothFe(), **given)
 
 

@@ -108,9 +108,37 @@ def test_no_damage_to_the_text_gives_anything_but_a_model_error(text: str, data:
 
 
 STRANGE: list[Any] = [
-    True, 0, -1, 3, 10**400, 1e308, 1e-320, 1e30, math.nan, math.inf, "", "x", "20 mm", "-20 mm", "20 deg", "90 deg", "1e29 mm",
-    "start", "input", "a.b", "\0\n", [], {}, [1, 2], [[1]], {"a": 1}, {"x": {"y": 3}}, ["x", "x"], 7, 50.0,
-]  # fmt: skip
+    True,
+    0,
+    -1,
+    3,
+    10**400,
+    1e308,
+    1e-320,
+    1e30,
+    math.nan,
+    math.inf,
+    "",
+    "x",
+    "20 mm",
+    "-20 mm",
+    "20 deg",
+    "90 deg",
+    "1e29 mm",
+    "start",
+    "input",
+    "a.b",
+    "\0\n",
+    [],
+    {},
+    [1, 2],
+    [[1]],
+    {"a": 1},
+    {"x": {"y": 3}},
+    ["x", "x"],
+    7,
+    50.0,
+]
 
 
 def places(data: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:

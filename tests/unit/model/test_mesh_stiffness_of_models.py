@@ -71,7 +71,8 @@ def test_both_helices_of_a_herringbone_share_the_load_and_add_up(split: dict[str
     model = with_stiffness(split, "contact_line")
     flow = torque_flow(model, walk(model)[0])
     for name in model.meshes:
-        forces, curve = flow.of_mesh(name), flow.stiffness[name]
+        forces = flow.of_mesh(name)
+        curve = flow.stiffness[name]
         assert curve.helices == len(forces)
         base = math.cos(curve.base_helix_angle)
         assert curve.load == pytest.approx(sum(force.normal_force for force in forces) * base, rel=1e-6)

@@ -63,7 +63,8 @@ def test_naming_the_wheel_the_pinion_changes_who_drives_and_not_the_force(pair: 
 
 def test_a_train_that_turns_the_other_way_drives_on_the_other_flanks(split: Data) -> None:
     model = Model(**split)
-    forwards, backwards = flow_of(model), flow_of(model, -1)
+    forwards = flow_of(model)
+    backwards = flow_of(model, -1)
     for one, other in zip(forwards.forces, backwards.forces, strict=True):
         assert other.torque_sense == -one.torque_sense
         assert other.pinion_drives == one.pinion_drives
@@ -98,15 +99,17 @@ def two_meshes_between_two_shafts(section: Section, k1: float, k2: float) -> Mod
         operation=Operation(input_shaft="in"),
         shafts={"in": Shaft(sections=(section,)), "out": Shaft(sections=(section,))},
         gears={
-            "p1": lumped("in", 0, 0.05), "p2": lumped("in", section.length, 0.05),
-            "w1": lumped("out", 0, 0.1), "w2": lumped("out", section.length, 0.1),
+            "p1": lumped("in", 0, 0.05),
+            "p2": lumped("in", section.length, 0.05),
+            "w1": lumped("out", 0, 0.1),
+            "w2": lumped("out", section.length, 0.1),
         },
         meshes={"1": Mesh(pinion="p1", gear="w1", stiffness=k1), "2": Mesh(pinion="p2", gear="w2", stiffness=k2)},
         loads={
             "motor": Load(shaft="in", kind="input", torque=100.0, at="start"),
             "mill": Load(shaft="out", kind="output", at="start"),
         },
-    )  # fmt: skip
+    )
 
 
 def test_between_rigid_shafts_a_loop_splits_by_the_mesh_stiffnesses() -> None:
@@ -121,7 +124,8 @@ def test_a_long_way_through_shafts_takes_its_share_from_a_loop() -> None:
     flow = flow_of(two_meshes_between_two_shafts(section, 1e8, 1e8))
     twist = 0.5 / (206e9 / 2.6 * math.pi / 32 * 0.05**4)  # L / GJ in rad/(N m)
     # Gives in m/N along the line of action: of mesh 1, and of mesh 2 behind both shafts.
-    short, long = 1e-8, 1e-8 + twist * (0.05**2 + 0.1**2)
+    short = 1e-8
+    long = 1e-8 + twist * (0.05**2 + 0.1**2)
     share = long / (short + long)
     assert flow.forces[0].normal_force == pytest.approx(share * 100 / 0.05, rel=1e-9)
     assert flow.forces[1].normal_force == pytest.approx((1 - share) * 100 / 0.05, rel=1e-9)

@@ -132,7 +132,8 @@ def test_a_coupling_drives_with_torsional_stiffness_and_not_without() -> None:
             )
         )
 
-    stiff, loose = build(1e3), build(0.0)
+    stiff = build(1e3)
+    loose = build(0.0)
     assert (stiff.ratios, stiff.reached_by["b"]) == ({"a": 1, "b": 1}, "couplings.c")
     assert (loose.ratios, loose.group) == ({"a": 1, "b": 0}, {"a": 0, "b": 1})
 

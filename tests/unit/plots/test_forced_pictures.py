@@ -109,11 +109,24 @@ def test_the_static_deflection_in_vtk_is_true_in_metres(tmp_path: Path) -> None:
         (["response", str(ROOT / "models" / "geared_pair.toml"), "--points", "2"], "nothing excites"),
         (["frf", str(GEARBOX), "--from", "x", "--to", "y", "--fmax", "10"], "'x' is no place"),
         (["frf", str(GEARBOX), "--from", "output_bearing_y", "--to", "output_bearing_y", "--fmax", "-1"], "--fmax"),
-        (["frf", str(GEARBOX), "--from", "output_bearing_y", "--to", "output_bearing_y", "--fmax", "9", "--quantity", "x"],
-         "receptance"),
+        (
+            [
+                "frf",
+                str(GEARBOX),
+                "--from",
+                "output_bearing_y",
+                "--to",
+                "output_bearing_y",
+                "--fmax",
+                "9",
+                "--quantity",
+                "x",
+            ],
+            "receptance",
+        ),
         (["static", str(GEARBOX), "--elements", "0"], "at least 1"),
     ],
-)  # fmt: skip
+)
 def test_a_slip_on_the_command_line_gets_a_sentence(arguments: list[str], words: str) -> None:
     run = CliRunner().invoke(app, arguments)
     assert isinstance(run.exception, rg.RotorgearError)

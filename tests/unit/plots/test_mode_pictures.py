@@ -36,7 +36,8 @@ def test_pictures_have_the_size_that_was_asked_for_and_show_the_gearbox_in_colou
         drawn = np.any(picture < 240, axis=-1)
         assert 0.15 < np.mean(drawn) < 0.8
         assert np.count_nonzero(np.ptp(picture, axis=-1) > 80) > 300, "what moves most is in strong colours"
-        rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
+        rows = np.flatnonzero(drawn.any(axis=1))
+        columns = np.flatnonzero(drawn.any(axis=0))
         assert rows[0] > 0, "nothing is cut off"
         assert columns[-1] < 479
 
@@ -168,7 +169,8 @@ def test_the_player_shows_the_shape_at_its_phase_and_size():
 
 
 def test_the_headline_names_mode_frequency_damping_and_whirl():
-    still, spinning = modes_of(PAIR), modes_of(PAIR, 600.0)
+    still = modes_of(PAIR)
+    spinning = modes_of(PAIR, 600.0)
     assert headline(still, 0).startswith("Mode 1:  rigid body, 0 Hz\n")
     assert headline(still, 2) == f"Mode 3:  {still.frequency_hz[2]:.1f} Hz\n{still.description[2]}"
     assert f"damping {100.0 * spinning.damping_ratio[2]:.2f} %" in headline(spinning, 2)

@@ -23,10 +23,18 @@ MESH = ExcitationLine("stage_2 mesh 1x", 1818.27)
 
 def chance(**changes):
     values = {
-        "band_low_hz": 337.4, "band_high_hz": 4724.1, "modes_in_band": 52, "coverage": 0.97,
-        "expected_random_matches": 3.9, "probability_as_many": 0.9, "probability_as_close": 0.4,
-        "binomial_expected": 3.88, "binomial_probability": 0.885, "samples": 2000, "seed": 0,
-    }  # fmt: skip
+        "band_low_hz": 337.4,
+        "band_high_hz": 4724.1,
+        "modes_in_band": 52,
+        "coverage": 0.97,
+        "expected_random_matches": 3.9,
+        "probability_as_many": 0.9,
+        "probability_as_close": 0.4,
+        "binomial_expected": 3.88,
+        "binomial_probability": 0.885,
+        "samples": 2000,
+        "seed": 0,
+    }
     return Chance(**values | changes)
 
 
@@ -99,9 +107,16 @@ def test_lines_that_may_be_forced_response_are_counted_in_the_verdict():
 def test_the_plain_data_survive_json_and_carry_every_key():
     data = json.loads(json.dumps(comparison(2, 1, (MESH,)).to_dict(), allow_nan=False))
     assert list(data) == [
-        "verdict", "tolerance", "excitation_tolerance", "rig_lines", "matches", "unmatched_rig", "unmatched_modes",
-        "chance", "warnings",
-    ]  # fmt: skip
+        "verdict",
+        "tolerance",
+        "excitation_tolerance",
+        "rig_lines",
+        "matches",
+        "unmatched_rig",
+        "unmatched_modes",
+        "chance",
+        "warnings",
+    ]
     first = data["matches"][0]
     assert first["rig"] == {"frequency_hz": 361.0, "label": "A1", "uncertainty_hz": 3.0, "damping_ratio": None}
     assert first["runner_up"]["mode_number"] == 8

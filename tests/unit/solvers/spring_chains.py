@@ -62,20 +62,23 @@ class Beam:
 
     def matrices(self) -> tuple[sp.csc_array, sp.csc_array]:
         """M, K assembled in doubles, as a finite-element code does."""
-        M, K = np.zeros((self.n, self.n)), np.zeros((self.n, self.n))
+        M = np.zeros((self.n, self.n))
+        K = np.zeros((self.n, self.n))
         self._assemble(M, K, float)
         return sp.csc_array(M), sp.csc_array(K)
 
     def exact(self) -> tuple[mp.matrix, mp.matrix]:
         """M, K in the working precision of mpmath, from the same doubles."""
-        M, K = mp.zeros(self.n), mp.zeros(self.n)
+        M = mp.zeros(self.n)
+        K = mp.zeros(self.n)
         self._assemble(M, K, mp.mpf)
         return M, K
 
     def strain(self, V: np.ndarray) -> np.ndarray:
         """S V: bending and shear factor of each element, and the springs; differences are taken before scaling."""
         l = np.array(self.lengths)[:, None]  # noqa: E741
-        w, turn = V[0::2], V[1::2]
+        w = V[0::2]
+        turn = V[1::2]
         curvature = np.sqrt(self.bending / l) * np.diff(turn, axis=0)
         sway = np.sqrt(12.0 * self.bending / l**3) * (np.diff(w, axis=0) - 0.5 * l * (turn[1:] + turn[:-1]))
         springs = [np.sqrt(k) * w[i : i + 1] for i, k in self.springs.items()]
@@ -83,7 +86,9 @@ class Beam:
 
     def _assemble(self, M, K, number) -> None:
         for e, length in enumerate(self.lengths):
-            l, EI, m = number(length), number(self.bending), number(self.line_mass)  # noqa: E741
+            l = number(length)  # noqa: E741
+            EI = number(self.bending)
+            m = number(self.line_mass)
             k = [[12, 6 * l, -12, 6 * l], [6 * l, 4 * l**2, -6 * l, 2 * l**2], [-12, -6 * l, 12, -6 * l]]
             k.append([6 * l, 2 * l**2, -6 * l, 4 * l**2])
             c = [[156, 22 * l, 54, -13 * l], [22 * l, 4 * l**2, 13 * l, -3 * l**2], [54, 13 * l, 156, -22 * l]]

@@ -30,7 +30,9 @@ def rigid_rotor(**bearing: Any) -> rg.Model:
 
 def tilting(speed: float) -> np.ndarray:
     """Backward and forward frequency in rad/s of the tilting disk: w^2 I_d -+ w W I_p = 2 k l^2."""
-    k, polar, diametral = 2.0 * 1e6 * 0.2**2, 0.3, 0.2
+    k = 2.0 * 1e6 * 0.2**2
+    polar = 0.3
+    diametral = 0.2
     middle = polar * speed / (2.0 * diametral)
     root = np.hypot(middle, np.sqrt(k / diametral))
     return np.array([root - middle, root + middle])
@@ -89,7 +91,8 @@ def test_a_speed_outside_of_a_bearings_table_is_refused() -> None:
 
 def test_internal_damping_makes_forward_whirl_unstable_where_it_should() -> None:
     """With C = a M outside and b K inside, s^2 + a s + w^2 (1 + b (s - i W)) = 0: unstable above W = w + a / (b w)."""
-    outside, inside = 4.0, 1e-5
+    outside = 4.0
+    inside = 1e-5
     model = rg.Model(
         shafts={"rotor": {"sections": [{"length": 1.0, "outer_diameter": 0.02}], "internal_damping": inside}},
         supports={end: {"shaft": "rotor", "at": end, "fixed": ["x", "y", "z"]} for end in ("start", "end")},
@@ -128,7 +131,8 @@ def test_branches_of_a_coarse_grid_end_where_those_of_a_fine_one_do(count: int) 
         order = np.argsort(result.frequency_hz[0])
         return result.eigenvalues[-1, order][:20]
 
-    fine, coarse = ends(201), ends(count)
+    fine = ends(201)
+    coarse = ends(count)
     assert coarse == pytest.approx(fine, rel=1e-8)
 
 

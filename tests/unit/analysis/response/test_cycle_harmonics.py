@@ -21,8 +21,11 @@ def sampled(x: np.ndarray) -> np.ndarray:
 def test_coefficients_of_straight_pieces_are_those_of_their_samples() -> None:
     pieces = ((0.0, 1.2, 0.9), (0.3, 1.4, 1.4), (0.55, 0.8, 1.2))
     u = (np.arange(200_000) + 0.5) / 200_000
-    x = np.piecewise(u, [u < 0.3, (u >= 0.3) & (u < 0.55), u >= 0.55],
-                     [lambda s: 1.2 - s, lambda s: 1.4 + 0.0 * s, lambda s: 0.8 + 0.4 * (s - 0.55) / 0.45])  # fmt: skip
+    x = np.piecewise(
+        u,
+        [u < 0.3, (u >= 0.3) & (u < 0.55), u >= 0.55],
+        [lambda s: 1.2 - s, lambda s: 1.4 + 0.0 * s, lambda s: 0.8 + 0.4 * (s - 0.55) / 0.45],
+    )
     turn = np.exp(-1j * np.pi * np.arange(1, HIGHEST + 1) / u.size)  # the samples stand in the middle of their strips
     assert harmonics_of_pieces(pieces) == pytest.approx(sampled(x) / x.mean() * turn, abs=1e-8)
 
@@ -51,8 +54,12 @@ def test_weak_harmonics_do_not_count() -> None:
 def test_the_response_is_that_of_the_transient(mesh: dict[str, Any], pinion_drives: bool) -> None:
     changes = {f"meshes__pair__{key}": value for key, value in mesh.items()}
     if not pinion_drives:
-        changes |= {"operation__input_shaft": "two", "operation__output_shaft": "one", "operation__speed": "1000 rpm",
-                    "operation__torque": "300 N m"}  # fmt: skip
+        changes |= {
+            "operation__input_shaft": "two",
+            "operation__output_shaft": "one",
+            "operation__speed": "1000 rpm",
+            "operation__torque": "300 N m",
+        }
     model = spur_pair(meshes__pair__transmission_error=[], **changes)
     run = rg.transient(
         model, method="exponential", settle=0.3, time=0.05, steps=1200, records=240, error_estimate=False

@@ -29,7 +29,9 @@ def jeffcott(**parts: Any) -> rg.Model:
 
 @pytest.mark.parametrize("q", [0.5, 1.0, 2.0, 1.0 / math.sqrt(1.0 - 2.0 * 0.02**2)])
 def test_a_jeffcott_rotor_whirls_as_the_closed_form_says(q: float) -> None:
-    wn, zeta, e = 88.976477, 0.02, 1e-5
+    wn = 88.976477
+    zeta = 0.02
+    e = 1e-5
     result = rg.response(jeffcott(), speeds=[q * wn], elements=1)
     got = result.displacement[0, 0, result.places.index("disks.disk")]
     size = e * q**2 / math.hypot(1.0 - q**2, 2.0 * zeta * q)
@@ -41,14 +43,23 @@ def test_a_jeffcott_rotor_whirls_as_the_closed_form_says(q: float) -> None:
 
 # --- lumped trains: every shaft is one point, so that all is known by hand ----------------------------------------------
 
-BASE, RADIUS = 0.06, 0.15
-J1, J2 = 0.02, 0.5
+BASE = 0.06
+RADIUS = 0.15
+J1 = 0.02
+J2 = 0.5
 K = 4e8
 
 
 def gear(shaft: str, radius: float, inertia: float, teeth: int | None = None, **more: Any) -> Data:
-    found = {"shaft": shaft, "at": "start", "kind": "spur", "base_radius": radius, "mass": 8.0, "polar_inertia": inertia,
-        "diametral_inertia": 0.6 * inertia}  # fmt: skip
+    found = {
+        "shaft": shaft,
+        "at": "start",
+        "kind": "spur",
+        "base_radius": radius,
+        "mass": 8.0,
+        "polar_inertia": inertia,
+        "diametral_inertia": 0.6 * inertia,
+    }
     return {**found, **({"teeth": teeth} if teeth else {}), **more}
 
 
@@ -105,7 +116,11 @@ def test_the_peak_of_a_mode_with_a_damping_ratio_is_the_closed_form() -> None:
 
 def test_the_unbalance_of_a_driven_shaft_acts_at_its_own_speed_where_ross_takes_that_of_the_driving_one() -> None:
     """ROSS 2.3 solves a geared train at the frequency of the driving shaft for the unbalances of all of its shafts."""
-    size, k, c, m, speed = 2e-4, 3e7, 500.0, 8.0, 900.0
+    size = 2e-4
+    k = 3e7
+    c = 500.0
+    m = 8.0
+    speed = 900.0
     bearing = {"at": "start", "stiffness": {"radial": k}, "damping": {"radial": c}}
     model = rg.Model(
         motions=["bending", "torsion"],
@@ -131,8 +146,12 @@ def test_the_unbalance_of_a_driven_shaft_acts_at_its_own_speed_where_ross_takes_
 
 def two_wheels(teeth: int, harmonic: int) -> ResponseResult:
     """A pinion that floats between two wheels, at 0 and 180 degrees."""
-    mesh = {"pinion": "p", "stiffness": K, "pressure_angle": 0.4, "transmission_error": [{"harmonic": harmonic,
-        "amplitude": 1e-6}]}  # fmt: skip
+    mesh = {
+        "pinion": "p",
+        "stiffness": K,
+        "pressure_angle": 0.4,
+        "transmission_error": [{"harmonic": harmonic, "amplitude": 1e-6}],
+    }
     shafts = ("0", "a", "b")
     model = rg.Model(
         motions=["bending", "torsion"],
@@ -143,11 +162,17 @@ def two_wheels(teeth: int, harmonic: int) -> ResponseResult:
         },
         operation={"input_shaft": "0"},
         shafts={name: {} for name in shafts},
-        gears={"p": gear("0", BASE, J1, teeth), "a": gear("a", BASE * 60 / teeth, J2, 60),
-            "b": gear("b", BASE * 60 / teeth, J2, 60)},
-        meshes={"ma": {"gear": "a", "centre_line_angle": 0.0, **mesh}, "mb": {"gear": "b", "centre_line_angle": math.pi, **mesh}},
+        gears={
+            "p": gear("0", BASE, J1, teeth),
+            "a": gear("a", BASE * 60 / teeth, J2, 60),
+            "b": gear("b", BASE * 60 / teeth, J2, 60),
+        },
+        meshes={
+            "ma": {"gear": "a", "centre_line_angle": 0.0, **mesh},
+            "mb": {"gear": "b", "centre_line_angle": math.pi, **mesh},
+        },
         bearings={name: {"shaft": name, "at": "start", "stiffness": {"radial": 1e8, "tilt": 1e6}} for name in shafts},
-    )  # fmt: skip
+    )
     return rg.response(model, speeds=[300.0], damping_ratio=0.01)
 
 
@@ -157,7 +182,8 @@ def test_teeth_between_two_wheels_decide_whether_a_pinion_shakes_or_turns(
 ) -> None:
     result = two_wheels(teeth, harmonic)
     pinion = np.abs(result.displacement[0, 0, result.places.index("gears.p")])
-    moves, turns = np.hypot(pinion[0], pinion[1]), pinion[5] * BASE
+    moves = np.hypot(pinion[0], pinion[1])
+    turns = pinion[5] * BASE
     assert (moves < 1e-9 * turns) if in_phase else (turns < 1e-9 * moves)
 
 
@@ -241,7 +267,10 @@ def test_a_bearing_with_a_table_acts_with_its_value_at_the_speed() -> None:
 
 def test_a_damping_ratio_needs_no_symmetric_bearings() -> None:
     """With k_xy = -k_yx the modes are real still, and an isotropic rotor whirls as k - m w^2 + i (c w +- k_xy) says."""
-    k, cross, m, w = 1e6, 2e4, 10.0, 300.0
+    k = 1e6
+    cross = 2e4
+    m = 10.0
+    w = 300.0
     model = rg.Model(
         motions=["bending"],
         operation={"input_shaft": "r"},

@@ -68,7 +68,8 @@ def test_rigid_modes_are_never_matched():
 
 def test_the_order_of_rig_lines_and_modes_changes_nothing():
     random = np.random.default_rng(5)
-    modes, rig = np.sort(random.uniform(50, 900, 30)), lines(*random.uniform(50, 900, 6))
+    modes = np.sort(random.uniform(50, 900, 30))
+    rig = lines(*random.uniform(50, 900, 6))
     plain = run(rig, modes)
     assert len(plain.matches) >= 3
     order = random.permutation(30)
@@ -80,8 +81,10 @@ def test_the_order_of_rig_lines_and_modes_changes_nothing():
 
 def test_a_common_factor_on_all_frequencies_changes_no_match_and_no_chance():
     random = np.random.default_rng(6)
-    modes, rig = random.uniform(50, 900, 30), random.uniform(50, 900, 6)
-    plain, scaled = run(lines(*rig), modes), run(lines(*(10 * rig)), 10 * modes)
+    modes = random.uniform(50, 900, 30)
+    rig = random.uniform(50, 900, 6)
+    plain = run(lines(*rig), modes)
+    scaled = run(lines(*(10 * rig)), 10 * modes)
     assert list(numbers(scaled).values()) == list(numbers(plain).values())
     assert scaled.chance.coverage == pytest.approx(plain.chance.coverage, rel=1e-12)
     assert scaled.chance.expected_random_matches == plain.chance.expected_random_matches
@@ -117,7 +120,8 @@ def test_a_runner_up_that_belongs_to_another_line_says_so():
 
 
 def test_excitation_lines_on_a_rig_line_and_on_modes_are_named():
-    mesh, order = ExcitationLine("stage_2 mesh 1x", 1818.27), ExcitationLine("input 1x", 272.5)
+    mesh = ExcitationLine("stage_2 mesh 1x", 1818.27)
+    order = ExcitationLine("input 1x", 272.5)
     result = run(lines(1818, 361, 200), [200.0, 272.0, 368.7, 1830.0], excitations=[mesh, order])
     by_line = {match.rig.frequency_hz: match for match in result.matches}
     assert by_line[1818.0].excitations == (mesh,)
@@ -170,7 +174,9 @@ def occupancy(count, intervals, share, at_least):
 
 @pytest.mark.parametrize(("rig", "matched"), [((200, 410, 1000), 2), ((200, 410, 800), 3), ((250, 410, 600), 1)])
 def test_the_sampled_probability_agrees_with_the_enumeration_for_widely_separated_modes(rig, matched):
-    modes, band, samples = [200.0, 400.0, 800.0], (100.0, 1600.0), 4000
+    modes = [200.0, 400.0, 800.0]
+    band = (100.0, 1600.0)
+    samples = 4000
     share = math.log(1.1 / 0.9) / math.log(16.0)
     result = run(lines(*rig), modes, tolerance=0.1, band=band, samples=samples)
     assert len(result.matches) == matched
@@ -182,7 +188,8 @@ def test_the_sampled_probability_agrees_with_the_enumeration_for_widely_separate
 
 
 def test_the_binomial_closed_form_agrees_with_the_samples_where_lines_hardly_compete():
-    modes, samples = 100.0 * 1.1 ** np.arange(25), 2000
+    modes = 100.0 * 1.1 ** np.arange(25)
+    samples = 2000
     result = run(lines(*modes[[3, 11, 17]]), modes, tolerance=0.01, band=(100.0, 1000.0), samples=samples)
     p = result.chance.coverage
     assert result.chance.binomial_probability == pytest.approx(p**3)
@@ -214,7 +221,8 @@ def test_closeness_follows_the_closed_form_of_a_single_line_and_a_single_mode():
 
 def test_the_same_seed_gives_the_same_chance_and_another_seed_another_sample():
     random = np.random.default_rng(8)
-    modes, rig = random.uniform(50, 900, 20), lines(*random.uniform(50, 900, 5))
+    modes = random.uniform(50, 900, 20)
+    rig = lines(*random.uniform(50, 900, 5))
     assert run(rig, modes, seed=3).chance == run(rig, modes, seed=3).chance
     assert (
         run(rig, modes, seed=3).chance.expected_random_matches != run(rig, modes, seed=4).chance.expected_random_matches

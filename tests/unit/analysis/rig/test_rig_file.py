@@ -61,10 +61,16 @@ def test_every_bad_row_is_reported_at_once_with_its_line_and_column(problems):
         ",2,\n10 mm,,\n50,60 Hz,-1\n0,,\n1000,,\n"
     )
     assert list(found) == [
-        "rig.csv:3:frequency", "rig.csv:4:frequency", "rig.csv:5:uncertainty", "rig.csv:6:damping",
-        "rig.csv:7:frequency", "rig.csv:8:frequency",
-        "rig.csv:9:uncertainty", "rig.csv:9:damping", "rig.csv:10:frequency",
-    ]  # fmt: skip
+        "rig.csv:3:frequency",
+        "rig.csv:4:frequency",
+        "rig.csv:5:uncertainty",
+        "rig.csv:6:damping",
+        "rig.csv:7:frequency",
+        "rig.csv:8:frequency",
+        "rig.csv:9:uncertainty",
+        "rig.csv:9:damping",
+        "rig.csv:10:frequency",
+    ]
     assert found["rig.csv:3:frequency"] == (
         "rig.csv:3:frequency: got '-361', expected a positive frequency such as '361 Hz'"
     )

@@ -47,7 +47,8 @@ def beam(**parts: Any) -> rg.Model:
 def test_a_cantilever_bends_under_its_weight_as_timoshenko_says() -> None:
     model = beam(supports={"wall": {"shaft": "beam", "at": "start", "fixed": ["all"]}})
     steel = model.material_of("beam")
-    A, inertia = math.pi / 4 * 0.1**2, math.pi / 64 * 0.1**4
+    A = math.pi / 4 * 0.1**2
+    inertia = math.pi / 64 * 0.1**4
     load = steel.density * A * 9.81
     kappa = float(cowper(steel.nu, 0.0))
     exact = load / (8.0 * steel.youngs_modulus * inertia) + load / (2.0 * kappa * steel.g * A)
@@ -61,8 +62,12 @@ def test_a_cantilever_bends_under_its_weight_as_timoshenko_says() -> None:
 def test_bearings_carry_the_weight_with_the_lever_of_a_simple_beam() -> None:
     stiffness = {"radial": 1e8, "axial": 1e7}
     bearings = {n: {"shaft": "beam", "at": z, "stiffness": stiffness} for n, z in (("a", 0.0), ("b", 0.8))}
-    result = rg.static(beam(bearings=bearings, disks={"d": {"shaft": "beam", "at": 0.2, "mass": 50.0,
-        "polar_inertia": 1.0, "diametral_inertia": 0.5}}))  # fmt: skip
+    result = rg.static(
+        beam(
+            bearings=bearings,
+            disks={"d": {"shaft": "beam", "at": 0.2, "mass": 50.0, "polar_inertia": 1.0, "diametral_inertia": 0.5}},
+        )
+    )
     rod = 7850.0 * math.pi / 4 * 0.1**2 * 9.81
     b = (rod * 0.5 + 50.0 * 9.81 * 0.2) / 0.8
     assert result.bearing_force["b"][1] == pytest.approx(b, rel=1e-10)
@@ -131,7 +136,8 @@ def test_the_forces_of_a_split_torque_box_carry_the_torque_of_every_shaft() -> N
     )
     assert input_torque == pytest.approx(torque, rel=1e-10)
     for branch in "ab":
-        first, second = mesh == f"stage_1{branch}", mesh == f"stage_2{branch}"
+        first = mesh == f"stage_1{branch}"
+        second = mesh == f"stage_2{branch}"
         wheel = pull[first].sum() * lines[int(np.flatnonzero(first)[0])].gear_base_radius
         assert wheel == pytest.approx(pull[second].sum() * lines[int(np.flatnonzero(second)[0])].pinion_base_radius)
     assert sum(row.share for row in result.shares if row.gear == "bull") == pytest.approx(1.0)
@@ -157,11 +163,18 @@ def test_where_the_loads_alone_decide_a_share_the_table_says_so() -> None:
     """One pinion drives two wheels with a machine each: the torques of the machines decide."""
     gear = {"at": "start", "kind": "spur", "base_radius": 0.1, "mass": 1, "polar_inertia": 1, "diametral_inertia": 1}
     mesh = {"pinion": "p", "stiffness": 1e8, "centre_line_angle": 0.0, "pressure_angle": 0.4}
-    loads = {"in": {"shaft": "0", "kind": "input", "torque": 100}, "one": {"shaft": "1", "kind": "output", "torque": 70},
-             "two": {"shaft": "2", "kind": "output"}}  # fmt: skip
-    model = rg.Model(motions=["torsion"], shafts={"0": {}, "1": {}, "2": {}}, loads=loads,
+    loads = {
+        "in": {"shaft": "0", "kind": "input", "torque": 100},
+        "one": {"shaft": "1", "kind": "output", "torque": 70},
+        "two": {"shaft": "2", "kind": "output"},
+    }
+    model = rg.Model(
+        motions=["torsion"],
+        shafts={"0": {}, "1": {}, "2": {}},
+        loads=loads,
         gears={"p": {**gear, "shaft": "0"}, "a": {**gear, "shaft": "1"}, "b": {**gear, "shaft": "2"}},
-        meshes={"ma": {**mesh, "gear": "a"}, "mb": {**mesh, "gear": "b"}})  # fmt: skip
+        meshes={"ma": {**mesh, "gear": "a"}, "mb": {**mesh, "gear": "b"}},
+    )
     result = rg.static(model)
     assert [row.share for row in result.shares] == pytest.approx([0.7, 0.3])
     assert {row.decided_by for row in result.shares} == {"loads"}

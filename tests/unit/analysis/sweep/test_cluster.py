@@ -141,7 +141,9 @@ class Hand:
     ahead = 3
 
     def __init__(self) -> None:
-        self.lying, self.most, self.cancelled = 0, 0, 0
+        self.lying = 0
+        self.most = 0
+        self.cancelled = 0
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any) -> Any:
         self.lying += 1
@@ -151,7 +153,8 @@ class Hand:
 
 class Held:
     def __init__(self, hand: Hand, arguments: tuple[Any, ...]) -> None:
-        self.hand, self.arguments = hand, arguments
+        self.hand = hand
+        self.arguments = arguments
 
     def result(self) -> Any:
         self.hand.lying -= 1

@@ -56,18 +56,21 @@ def test_lanes_agree_with_a_scalar_kernel_to_rounding(sizes: tuple[int, int]) ->
     ids=["never parts", "undamped", "penetration", "clamped with impact", "one-sided"],
 )
 def test_the_kernel_follows_newmark_in_small_steps(law: MeshContact) -> None:
-    speed, n = 0.9, 3
+    speed = 0.9
+    n = 3
     K = np.diag([0.4, 0.3, 0.5])
     M = np.array([[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 1.5]])
     local = local_system(M, 0.05 * M, K, [0.1, -0.05, 0.0], [(law, [[1.0], [-1.0], [0.2]])], speed=speed)
     point = ready(still(local, [Fraction(1)], ("m",)), speed)
-    steps, periods = 800, 6
+    steps = 800
+    periods = 6
     start = Start(point.system.rest, np.zeros(n))
     orbit = run_block([point.system], [start], [table_of(point, steps)], Plan(steps, 0, periods, 0))[0]
     fine = 4000
     q0 = np.linalg.solve(point.system.root.T, start.z)
     motion = integrate(local, "average acceleration", 2.0 * np.pi / speed / fine, fine * periods, q0, np.zeros(n), fine)
-    d, v = motion.q @ local.B.toarray()[:, 0], motion.v @ local.B.toarray()[:, 0]
+    d = motion.q @ local.B.toarray()[:, 0]
+    v = motion.v @ local.B.toarray()[:, 0]
     tolerance = 5e-6 if law.gap == "none" else 2e-4
     assert orbit.section[:, 0, 0] == pytest.approx(d[1:], abs=tolerance * np.abs(d).max())
     assert orbit.section[:, 0, 1] == pytest.approx(v[1:], abs=5.0 * tolerance * np.abs(v).max())
@@ -115,8 +118,9 @@ def test_statistics_of_a_sweep_are_those_of_the_transient() -> None:
     model = rg.load(PAIR)
     swept = rg.sweep(model, {"operation.speed": ["8000 rpm"]}, settle=300, count=40, steps=400)
     mesh = 40 * 8000 / 60.0
-    run = rg.transient(model, speed="8000 rpm", settle=300 / mesh, time=40 / mesh, steps=800, method="newmark",
-                       error_estimate=False)  # fmt: skip
+    run = rg.transient(
+        model, speed="8000 rpm", settle=300 / mesh, time=40 / mesh, steps=800, method="newmark", error_estimate=False
+    )
     row = run.to_dict()["contacts"][0]
     assert swept.motion == ("1T",)
     assert swept.largest_force[0, 0, 0] == pytest.approx(row["largest_force_n"], rel=2e-3)
@@ -233,7 +237,8 @@ def test_exponents_of_a_known_growth_and_their_error() -> None:
 def test_kinds_of_motion_by_the_stated_criterion() -> None:
     k = np.arange(240)
     extent = np.array([2e-6])
-    one, two = np.full((240, 1), 3e-6), (3e-6 + 1e-6 * (k % 2))[:, None]
+    one = np.full((240, 1), 3e-6)
+    two = (3e-6 + 1e-6 * (k % 2))[:, None]
     torus = 1e-6 * np.cos(2.0 * np.pi * 0.381966 * k)[:, None]
     assert classify(one, extent, -0.1, 0.01).kind == "1T"
     assert classify(two, extent, -0.1, 0.01).kind == "2T"
@@ -294,9 +299,11 @@ def test_addresses_lead_to_numbers_with_stars_and_places() -> None:
     assert places_of(data, "meshes.*.k") == [("meshes", "a", "k"), ("meshes", "b", "k")]
     assert places_of(data, "meshes.a.e.0.amplitude") == [("meshes", "a", "e", 0, "amplitude")]
     for address, words in (
-        ("mesh.a.k", "did you mean 'meshes'"), ("meshes.a.e.1.amplitude", "no place in a list"),
-        ("meshes.a", "table"), ("meshes.a.k.x", "below a number"),
-    ):  # fmt: skip
+        ("mesh.a.k", "did you mean 'meshes'"),
+        ("meshes.a.e.1.amplitude", "no place in a list"),
+        ("meshes.a", "table"),
+        ("meshes.a.k.x", "below a number"),
+    ):
         with pytest.raises(AnalysisError, match=words):
             places_of(data, address)
 

@@ -24,7 +24,8 @@ def test_whole_numbers_of_the_file_are_swept_and_others_fail_alone() -> None:
 
 
 def test_a_point_does_not_depend_on_the_points_beside_it() -> None:
-    model, few = rg.load(PAIR), {"settle": 0, "count": 20}
+    model = rg.load(PAIR)
+    few = {"settle": 0, "count": 20}
     alone = rg.sweep(model, {"operation.speed": "3000 rpm"}, **few)  # type: ignore[arg-type]
     second = rg.sweep(model, {"operation.speed": "2600 rpm,3000 rpm"}, **few)  # type: ignore[arg-type]
     assert np.array_equal(alone.section[0], second.section[1])

@@ -28,8 +28,12 @@ MESH = MeshContact(
     1.0, 0.05, 0.5, contact_damping="unclamped", ramp=0.05, order=1.0, error_cos=(0.3,), stiffness_cos=(0.2,)
 )
 ROLLING = {
-    "kind": "ball", "elements": 9, "element_diameter": "12 mm", "pitch_diameter": "60 mm", "clearance": "8 um",
-}  # fmt: skip
+    "kind": "ball",
+    "elements": 9,
+    "element_diameter": "12 mm",
+    "pitch_diameter": "60 mm",
+    "clearance": "8 um",
+}
 
 
 def with_law(law: ForceLaw, columns: Any, speed: float = 0.9, contact: MeshContact = MESH) -> LocalSystem:
@@ -54,14 +58,16 @@ def with_law(law: ForceLaw, columns: Any, speed: float = 0.9, contact: MeshConta
 def test_laws_follow_newmark_in_small_steps(law: ForceLaw, columns: np.ndarray) -> None:
     local = with_law(law, columns)
     point = ready(still(local, [Fraction(1)], ("m",)), 0.9)
-    steps, periods = 800, 5
+    steps = 800
+    periods = 5
     start = Start(point.system.rest, np.zeros(5))
     orbit = run_block([point.system], [start], [table_of(point, steps)], Plan(steps, 0, periods, 0))[0]
     fine = 6000
     q0 = np.linalg.solve(point.system.root.T, start.z)
     h = 2.0 * np.pi / 0.9 / fine
     motion = integrate(local, "average acceleration", h, fine * periods, q0, np.zeros(5), fine)
-    d, v = motion.q @ local.B.toarray(), motion.v @ local.B.toarray()
+    d = motion.q @ local.B.toarray()
+    v = motion.v @ local.B.toarray()
     assert orbit.section[:, :, 0] == pytest.approx(d[1:], abs=3e-4 * np.abs(d).max())
     assert orbit.section[:, :, 1] == pytest.approx(v[1:], abs=2e-3 * np.abs(v).max())
 
@@ -115,8 +121,10 @@ def test_models_with_such_laws_give_the_transient(changes: dict[str, Any]) -> No
 
 
 def test_each_ripple_of_a_torque_has_its_own_table() -> None:
-    loads = {"drive": {"shaft": "one", "kind": "input", "torque": "200 N m", "ripple": 0.1, "ripple_order": 6.0},
-             "brake": {"shaft": "two", "kind": "output"}}  # fmt: skip
+    loads = {
+        "drive": {"shaft": "one", "kind": "input", "torque": "200 N m", "ripple": 0.1, "ripple_order": 6.0},
+        "brake": {"shaft": "two", "kind": "output"},
+    }
     model = spur_pair(
         operation={"input_shaft": "one", "speed": "1500 rpm"}, loads=loads, meshes__pair__transmission_error=[]
     )
@@ -126,8 +134,10 @@ def test_each_ripple_of_a_torque_has_its_own_table() -> None:
 
 
 def test_a_torque_that_steps_is_refused() -> None:
-    loads = {"drive": {"shaft": "one", "kind": "input", "torque": "200 N m", "step_to": 0.5},
-             "brake": {"shaft": "two", "kind": "output"}}  # fmt: skip
+    loads = {
+        "drive": {"shaft": "one", "kind": "input", "torque": "200 N m", "step_to": 0.5},
+        "brake": {"shaft": "two", "kind": "output"},
+    }
     model = spur_pair(operation={"input_shaft": "one", "speed": "1500 rpm"}, loads=loads)
     with pytest.raises(rg.RotorgearError, match="a torque that steps at a time"):
         rg.sweep(model, {"operation.speed": ["1500 rpm"]})

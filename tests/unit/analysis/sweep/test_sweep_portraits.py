@@ -51,16 +51,19 @@ LAWS = {
 
 def check(point: Point, steps: int, periods: int, settle: int = 20) -> None:
     """The trajectory begins with the last Poincare point and goes through those of the lanes, with their forces."""
-    table, system = table_of(point, steps), point.system
+    table = table_of(point, steps)
+    system = point.system
     settled = run_block([system], [start_of(system, 1, 3)], [table], Plan(steps, settle, 2, 0))[0]
     whole = run_block([system], [start_of(system, 1, 3)], [table], Plan(steps, settle + 2, periods, 0))[0]
-    path, mesh = recorded(system, settled.end, table, steps, periods + 1, begun=settle + 2), system.columns.mesh
+    path = recorded(system, settled.end, table, steps, periods + 1, begun=settle + 2)
+    mesh = system.columns.mesh
     length = system.turns * steps
     size = np.abs(path[:, mesh]).max(axis=0)
     points = path[::length, mesh]
     assert points[0, :, :2] == pytest.approx(settled.section[-1, mesh], abs=1e-12 * size[:, :2].min())
     assert np.abs((points[1:, :, :2] - whole.section[:, mesh]) / size[:, :2]).max() < 1e-12
-    counted, force = path[: periods * length, mesh], whole.sums[mesh]
+    counted = path[: periods * length, mesh]
+    force = whole.sums[mesh]
     assert counted[:, :, FORCE].max(axis=0) == pytest.approx(force[:, 9], rel=1e-11)
     assert counted[:, :, FORCE].sum(axis=0) == pytest.approx(force[:, 10], rel=1e-11)
     assert np.array_equal(
@@ -100,7 +103,12 @@ def test_records_that_miss_the_poincare_points_are_refused() -> None:
 
 
 def test_a_linear_forced_oscillator_has_the_lines_of_its_closed_form() -> None:
-    k, c, ground, damping, w, e = 1.0, 0.05, 0.3, 0.1, 0.7, np.array([0.02, 0.005])
+    k = 1.0
+    c = 0.05
+    ground = 0.3
+    damping = 0.1
+    w = 0.7
+    e = np.array([0.02, 0.005])
     law = MeshContact(k, c, 0.0, gap="none", order=1.0, error_sin=tuple(e))
     local = local_system(np.eye(1), [[damping]], [[ground]], [0.1], [(law, [[1.0]])], speed=w)
     point = ready(still(local, [Fraction(1)], ("m",)), w)
@@ -156,7 +164,8 @@ def test_portraits_go_on_where_the_counted_run_ended_and_have_its_statistics(swe
     assert own is not None
     assert own.periods.tolist() == [64] * 4
     for k, p in enumerate(own.point):
-        path, points = own.trajectory(k), own.section(k)
+        path = own.trajectory(k)
+        points = own.section(k)
         assert points.shape == (64, 1, 3)
         size = np.ptp(path[:, 0], axis=0)
         assert np.all(np.abs(points[0, 0, :2] - swept.section[p, 0, -1, 0]) <= 1e-12 * size[:2])
@@ -214,11 +223,18 @@ def test_points_are_spread_over_the_sweep() -> None:
 @pytest.mark.parametrize(
     ("turns", "steps", "repeats", "periods", "every"),
     [
-        (1, 200, 1, 64, 1), (1, 283, 3, 63, 1), (1, 200, 5, 60, 1), (1, 200, 29, 58, 1), (17, 200, 1, 29, 1),
+        (1, 200, 1, 64, 1),
+        (1, 283, 3, 63, 1),
+        (1, 200, 5, 60, 1),
+        (1, 200, 29, 58, 1),
+        (17, 200, 1, 29, 1),
         (113, 283, 1, 8, 1),  # no divisor leaves 20 records in a mesh period
-        (113, 400, 3, 6, 4), (1000, 200, 1, 8, 10), (1000, 4999, 1, 8, 200), (1000, 4999, 29, 8, 200),
+        (113, 400, 3, 6, 4),
+        (1000, 200, 1, 8, 10),
+        (1000, 4999, 1, 8, 200),
+        (1000, 4999, 29, 8, 200),
     ],
-)  # fmt: skip
+)
 def test_portraits_have_whole_periods_and_no_more_records_than_they_need(
     turns: int, steps: int, repeats: int, periods: int, every: int
 ) -> None:
@@ -227,7 +243,8 @@ def test_portraits_have_whole_periods_and_no_more_records_than_they_need(
 
 
 def test_wishes_that_make_no_sense_are_refused_in_a_sentence() -> None:
-    speed, torque = Axis("operation.speed", (1000.0, 2000.0), "rpm"), Axis("operation.torque", (5.0, 10.0), "N m")
+    speed = Axis("operation.speed", (1000.0, 2000.0), "rpm")
+    torque = Axis("operation.torque", (5.0, 10.0), "N m")
     assert wanted_points([1400.0, "1600 rpm", 1999], [speed]) == [0, 1]
     assert wanted_points(["2000,5.1 N m"], [speed, torque]) == [2]
     for wish, axes, words in (

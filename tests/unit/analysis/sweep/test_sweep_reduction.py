@@ -58,9 +58,11 @@ def reduced_point(model: Model, elements: int, wanted: Wanted) -> Point:
 def test_a_reduced_sweep_shows_the_motions_of_the_whole_one_with_and_without_contact(tmp_path: Path) -> None:
     # Between 2600 and 4400 rpm motions are quasi-periodic, or take so long to settle that their kind is chance.
     speeds = [800, 1400, 2000, 2600, 4400, 5000, 5600, 6200, 6800]
-    model, over = pair(tmp_path), {"operation.speed": [f"{rpm} rpm" for rpm in speeds]}
+    model = pair(tmp_path)
+    over = {"operation.speed": [f"{rpm} rpm" for rpm in speeds]}
     how: dict[str, Any] = {"settle": 120, "count": 40}
-    whole, part = rg.sweep(model, over, **how), rg.sweep(model, over, modes=18, **how)
+    whole = rg.sweep(model, over, **how)
+    part = rg.sweep(model, over, modes=18, **how)
     assert whole.reduction is None
     assert part.reduction is not None
     assert (part.reduction.dofs, whole.dofs) == (36, 36)
@@ -76,7 +78,8 @@ def test_a_reduced_sweep_shows_the_motions_of_the_whole_one_with_and_without_con
 
 
 def test_more_modes_come_nearer_in_receptance_and_in_motion(tmp_path: Path) -> None:
-    model, over = pair(tmp_path), {"operation.speed": ["2000 rpm", "7000 rpm"]}
+    model = pair(tmp_path)
+    over = {"operation.speed": ["2000 rpm", "7000 rpm"]}
     how: dict[str, Any] = {"settle": 200, "count": 10, "exponents": 0, "steps": 1200}
     whole = rg.sweep(model, over, **how).peak_to_peak
     found = [rg.sweep(model, over, modes=n, **how) for n in (4, 10, 20, 35)]
@@ -93,10 +96,19 @@ def test_more_modes_come_nearer_in_receptance_and_in_motion(tmp_path: Path) -> N
 
 
 def test_a_large_model_agrees_with_its_own_transient_where_teeth_part() -> None:
-    model, mesh = rg.load(FLEXIBLE), 23 * 8250 / 60.0
+    model = rg.load(FLEXIBLE)
+    mesh = 23 * 8250 / 60.0
     swept = rg.sweep(model, {"operation.speed": ["8250 rpm"]}, settle=400, count=40, exponents=0)
-    run = rg.transient(model, speed="8250 rpm", settle=400 / mesh, time=40 / mesh, steps=400, method="newmark", elements=1,
-                       error_estimate=False)  # fmt: skip
+    run = rg.transient(
+        model,
+        speed="8250 rpm",
+        settle=400 / mesh,
+        time=40 / mesh,
+        steps=400,
+        method="newmark",
+        elements=1,
+        error_estimate=False,
+    )
     row = run.to_dict()["contacts"][0]
     assert swept.reduction is not None
     assert swept.reduction.dofs == 84 > swept.dofs
@@ -160,8 +172,15 @@ def test_continuation_goes_on_in_another_basis(tmp_path: Path) -> None:
     assert second.B.T @ moved.z == pytest.approx(first.B.T @ start.z, rel=5e-3)
     back = moved.moved(second, first)
     assert first.B.T @ back.z == pytest.approx(first.B.T @ start.z, rel=5e-3)
-    up = rg.sweep(pair(tmp_path), {"meshes.pair.stiffness": ["8e8 N/m", "9e8 N/m"]}, direction="up", modes=9, settle=20,
-                  count=20, exponents=0)  # fmt: skip
+    up = rg.sweep(
+        pair(tmp_path),
+        {"meshes.pair.stiffness": ["8e8 N/m", "9e8 N/m"]},
+        direction="up",
+        modes=9,
+        settle=20,
+        count=20,
+        exponents=0,
+    )
     assert up.reduction is not None
     assert up.reduction.bases == 2
     assert "failed" not in up.motion
@@ -186,7 +205,8 @@ def test_small_models_are_left_as_they_are() -> None:
 
 
 def test_no_basis_is_refused_and_a_number_by_hand_is_warned_of() -> None:
-    model, over = rg.load(FLEXIBLE), {"operation.speed": ["8000 rpm"]}
+    model = rg.load(FLEXIBLE)
+    over = {"operation.speed": ["8000 rpm"]}
     with pytest.raises(RotorgearError, match=r"444 dofs can't be reduced: with 160 coordinates .* lower the speed"):
         rg.sweep(model, over, elements=6, reduction_error=1e-12, settle=1, count=1)
     few = rg.sweep(model, over, modes=3, settle=5, count=5)
@@ -201,7 +221,8 @@ def test_a_dof_without_inertia_is_reduced_away(tmp_path: Path) -> None:
     own = large(pair(tmp_path), 1, 1)
     M = own.local.M.tolil()
     last = own.local.n - 1
-    M[last, :], M[:, last] = 0.0, 0.0
+    M[last, :] = 0.0
+    M[:, last] = 0.0
     light = replace(own, local=replace(own.local, M=M.tocsc()))
     with pytest.raises(AnalysisError, match="no inertia"):
         small_system(light.local, None, None, None, 1.0, 1)  # type: ignore[arg-type]
@@ -232,9 +253,11 @@ def test_probes_hold_the_harmonics_of_all_meshes_up_to_the_highest_tabulated() -
     ids=["rolling", "friction"],
 )
 def test_bearings_with_rolling_elements_and_friction_act_in_a_reduced_system(changes: dict[str, Any]) -> None:
-    model, over = spur_pair(meshes__pair__backlash="50 um", **changes), {"operation.speed": ["3000 rpm"]}
+    model = spur_pair(meshes__pair__backlash="50 um", **changes)
+    over = {"operation.speed": ["3000 rpm"]}
     how: dict[str, Any] = {"settle": 15, "count": 5, "exponents": 0}
-    whole, part = rg.sweep(model, over, **how), rg.sweep(model, over, modes=10, **how)
+    whole = rg.sweep(model, over, **how)
+    part = rg.sweep(model, over, modes=10, **how)
     assert part.dofs < whole.dofs
     for name in ("peak_to_peak", "largest_force", "rms_force"):
         assert getattr(part, name)[0, 0] == pytest.approx(getattr(whole, name)[0, 0], rel=2e-3)
@@ -243,8 +266,13 @@ def test_bearings_with_rolling_elements_and_friction_act_in_a_reduced_system(cha
 def test_a_long_block_tells_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sweep_blocks, "_EVERY", 1e-3)
     told: list[tuple[float, str]] = []
-    rg.sweep(rg.load(ROOT / "models" / "backlash_pair.toml"), {"operation.speed": ["6000 rpm"]}, settle=9000, count=10,
-             progress=lambda share, text: told.append((share, text)))  # fmt: skip
+    rg.sweep(
+        rg.load(ROOT / "models" / "backlash_pair.toml"),
+        {"operation.speed": ["6000 rpm"]},
+        settle=9000,
+        count=10,
+        progress=lambda share, text: told.append((share, text)),
+    )
     inside = [share for share, text in told if text.startswith("about")]
     assert any(0.15 < share < 1.0 for share in inside)
     assert inside == sorted(inside)

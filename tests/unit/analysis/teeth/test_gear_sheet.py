@@ -59,15 +59,18 @@ def test_the_drawn_contours_touch_at_the_contact_points_and_never_overlap() -> N
 
     sheet = rg.gear_sheet(rg.load(PAIR))
     teeth = sheet.pairs["stage"]
-    first, second = gear_contour(teeth, 1), gear_contour(teeth, 2)
+    first = gear_contour(teeth, 1)
+    second = gear_contour(teeth, 2)
     for point in contact_points(teeth):
         for contour in (first, second):
-            a, b = contour[:-1], contour[1:]
+            a = contour[:-1]
+            b = contour[1:]
             along = np.clip(np.einsum("ij,ij->i", point - a, b - a) / np.einsum("ij,ij->i", b - a, b - a), 0, 1)
             assert np.hypot(*(point - a - along[:, None] * (b - a)).T).min() < 2e-6
     deep = Polygon(first).contains_points(second)
     inside = second[deep]
-    a, b = first[:-1], first[1:]
+    a = first[:-1]
+    b = first[1:]
     for point in inside:  # chords of the outline may cut in by their sagitta, no more
         along = np.clip(np.einsum("ij,ij->i", point - a, b - a) / np.einsum("ij,ij->i", b - a, b - a), 0, 1)
         assert np.hypot(*(point - a - along[:, None] * (b - a)).T).min() < 2e-6

@@ -76,7 +76,8 @@ def test_small_motions_meet_the_tangent_stiffness() -> None:
 
 def test_the_load_is_that_of_the_torque_flow_unless_one_is_given() -> None:
     text = pair_file(mesh=NAMED)
-    own, given = mesh_of(text), mesh_of(text, torque=1000.0)
+    own = mesh_of(text)
+    given = mesh_of(text, torque=1000.0)
     half = mesh_of(text, torque=500.0)
     assert own.load is not None
     assert own.load.pinion_torque_n_m == pytest.approx(1000.0, rel=1e-12)
@@ -94,13 +95,15 @@ def test_a_number_in_the_file_is_answered_by_teeth_and_on_request_by_itself() ->
 
 def test_iso_and_teeth_answer_in_the_same_plane() -> None:
     text = pair_file(20.86, "helical", mesh=NAMED)
-    teeth, iso = mesh_of(text), mesh_of(text, stiffness="iso")
+    teeth = mesh_of(text)
+    iso = mesh_of(text, stiffness="iso")
     assert iso.mean_stiffness / teeth.mean_stiffness == pytest.approx(1.0, abs=0.35)
 
 
 def test_a_reversed_torque_loads_the_other_flanks_of_a_symmetric_pair_alike() -> None:
     text = pair_file(20.86, "helical", mesh=NAMED)
-    ahead, back = mesh_of(text, torque=1000.0), mesh_of(text, torque=-1000.0)
+    ahead = mesh_of(text, torque=1000.0)
+    back = mesh_of(text, torque=-1000.0)
     assert back.stiffness == pytest.approx(ahead.stiffness, rel=1e-12)
 
 
@@ -119,7 +122,8 @@ def test_a_staggered_herringbone_has_no_odd_orders() -> None:
     half = mesh_of(pair_file(20.86, "herringbone", mesh=f"{NAMED}\nstagger = 0.5"))
     one = mesh_of(pair_file(20.86, "helical", mesh=NAMED), torque=500.0)
     assert plain.stiffness == pytest.approx(2.0 * one.stiffness, rel=1e-9)
-    c, whole = half.ste_harmonics(4), plain.ste_harmonics(4)
+    c = half.ste_harmonics(4)
+    whole = plain.ste_harmonics(4)
     assert c is not None
     assert whole is not None
     assert abs(c[::2]).max() <= 1e-9 * abs(whole).max()
@@ -139,7 +143,8 @@ def test_pitch_errors_are_followed_until_all_have_passed() -> None:
 
 def test_an_accuracy_takes_the_cheapest_preset_that_is_estimated_to_reach_it() -> None:
     text = pair_file(mesh='stiffness = "tooth_fe"')
-    rough, sharp = mesh_of(text, accuracy=0.05), mesh_of(text, accuracy=0.008)
+    rough = mesh_of(text, accuracy=0.05)
+    sharp = mesh_of(text, accuracy=0.008)
     assert (rough.preset, sharp.preset) == ("preview", "default")
     assert sharp.errors is not None
     assert sharp.errors.worst <= 0.008

@@ -17,13 +17,17 @@ _CLOSES = [{"harmonic": 1, "amplitude": "4 um", "phase": "200 deg"}]
 def braked(driver: str | None, error: list[dict[str, Any]], **changes: Any) -> rg.Model:
     """The pinion is held back by 80 N m net, so the wheel drives it."""
     return spur_pair(
-        operation__torque=None, operation__output_shaft=None, meshes__pair__transmission_error=error,
+        operation__torque=None,
+        operation__output_shaft=None,
+        meshes__pair__transmission_error=error,
         meshes__pair__nominal_driver=driver,
-        loads={"push": {"shaft": "one", "kind": "input", "torque": "20 N m"},
-               "brake": {"shaft": "one", "kind": "output", "torque": "100 N m"},
-               "drive": {"shaft": "two", "kind": "input"}},
+        loads={
+            "push": {"shaft": "one", "kind": "input", "torque": "20 N m"},
+            "brake": {"shaft": "one", "kind": "output", "torque": "100 N m"},
+            "drive": {"shaft": "two", "kind": "input"},
+        },
         **({"meshes__pair__phase": "0 deg"} | changes),
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize("backlash", [None, "30 um", "0 um"])

@@ -23,7 +23,8 @@ def harmonic_force(model: rg.Model, number: int) -> complex:
     local = local_model(system, Rotation.constant(model.operation.speed), model.operation.speed).local
     law = local.forces.laws[0]
     w = 2.0 * np.pi * MESH * number
-    k, c = float(law.stiffness), float(law.damping)
+    k = float(law.stiffness)
+    c = float(law.damping)
     e = (law.error_cos[number - 1] - 1j * law.error_sin[number - 1]) * np.exp(1j * number * law.phase)
     b = local.B.toarray()
     D = local.velocity_terms(model.operation.speed).toarray() + c * b @ b.T
@@ -66,9 +67,11 @@ def test_a_given_mesh_phase_turns_the_harmonics_by_so_much() -> None:
 @pytest.mark.parametrize("kind", ["clamped", "unclamped", "penetration"])
 def test_damping_sets_in_over_the_depth_that_is_given(kind: str) -> None:
     model = spur_pair(
-        meshes__pair__backlash="40 um", meshes__pair__contact_damping=kind, meshes__pair__damping_depth="3 um",
+        meshes__pair__backlash="40 um",
+        meshes__pair__contact_damping=kind,
+        meshes__pair__damping_depth="3 um",
         meshes__pair__transmission_error=[],
-    )  # fmt: skip
+    )
     law = local_model(System(model), Rotation.constant(1.0), 1.0).local.forces.laws[0]
     shares = [law.evaluate(x, 1e-4).dissipated / law.evaluate(3e-6, 1e-4).dissipated for x in (1e-6, 1.5e-6)]
     assert shares == pytest.approx([1.0 / 3.0, 0.5])
@@ -106,8 +109,10 @@ def test_contact_is_lost_only_if_there_is_backlash_and_the_response_does_not_dep
 
 
 def test_own_normals_and_one_line_agree_while_only_the_driving_flank_carries() -> None:
-    both = [transient(spur_pair(meshes__pair__backlash="50 um", meshes__pair__back_flank=f), time=0.02, steps=200)
-            for f in ("line", "own normals")]  # fmt: skip
+    both = [
+        transient(spur_pair(meshes__pair__backlash="50 um", meshes__pair__back_flank=f), time=0.02, steps=200)
+        for f in ("line", "own normals")
+    ]
     assert both[1].mesh_force[:, 0] == pytest.approx(both[0].mesh_force[:, 0], rel=1e-8)
     assert np.all(both[1].mesh_force[:, 1] == 0.0)
 
@@ -141,9 +146,11 @@ def test_a_run_up_uses_newmark_and_names_the_reason() -> None:
 
 def test_an_unbalance_gives_the_closed_form_whirl() -> None:
     model = spur_pair(
-        meshes__pair__transmission_error=[], operation__torque=None, operation__output_shaft=None,
+        meshes__pair__transmission_error=[],
+        operation__torque=None,
+        operation__output_shaft=None,
         unbalances={"u": {"shaft": "one", "at": "60 mm", "magnitude": "500 g mm"}},
-    )  # fmt: skip
+    )
     result = transient(model, time=0.16, settle=0.4, steps=100, records=20)
     system = System(model)
     local = local_model(system, Rotation.constant(model.operation.speed), model.operation.speed).local
@@ -167,8 +174,12 @@ def test_rolling_bearings_settle_at_the_deflection_of_their_law_under_the_mean_f
         "pitch_diameter": "60 mm",
         "clearance": "8 um",
     }
-    model = spur_pair(bearings__a__rolling=rolling, bearings__b__rolling=rolling, meshes__pair__transmission_error=[],
-                      meshes__pair__backlash="50 um")  # fmt: skip
+    model = spur_pair(
+        bearings__a__rolling=rolling,
+        bearings__b__rolling=rolling,
+        meshes__pair__transmission_error=[],
+        meshes__pair__backlash="50 um",
+    )
     result = transient(model, time=0.05, settle=0.2, steps=100)
     x, y, fx, fy = (
         result.history(f"bearings.a {what} {axis}")[-1] for what in ("displacement", "force") for axis in "xy"
@@ -284,9 +295,11 @@ def test_a_spectrum_is_true_in_amplitude(window: str) -> None:
 
 def test_gravity_bends_the_shafts_and_its_force_arrives_at_the_bearings() -> None:
     model = spur_pair(
-        operation__gravity=["0 m/s^2", "-9.81 m/s^2", "0 m/s^2"], operation__torque=None, operation__output_shaft=None,
+        operation__gravity=["0 m/s^2", "-9.81 m/s^2", "0 m/s^2"],
+        operation__torque=None,
+        operation__output_shaft=None,
         meshes__pair__transmission_error=[],
-    )  # fmt: skip
+    )
     result = transient(model, time=0.005, steps=100)
     total = sum(result.history(f"bearings.{name} force y")[0] for name in "abcd")
     mass = rg.describe_model(model).total_mass_kg

@@ -62,7 +62,8 @@ def test_two_halves_of_a_herringbone_gear_add_their_parallel_axis_share() -> Non
 
 
 def test_a_webbed_blank_is_the_solid_one_less_its_two_pockets() -> None:
-    width, web = 0.065, WEBBED["web_thickness"]
+    width = 0.065
+    web = WEBBED["web_thickness"]
     inner = WEBBED["root_diameter"] - 2 * WEBBED["rim_thickness"]
     depth = (width - web) / 2
     pocket = hollow_cylinder(inner, WEBBED["hub_diameter"], depth, STEEL)

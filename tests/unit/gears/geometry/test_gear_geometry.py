@@ -112,7 +112,8 @@ def test_the_tip_diameter_follows_the_profile_shift_unless_it_is_given() -> None
 
 
 def test_a_profile_shift_moves_tip_and_root_outwards_together() -> None:
-    plain, shifted = gear(20, 2), gear(20, 2, profile_shift=0.5)
+    plain = gear(20, 2)
+    shifted = gear(20, 2, profile_shift=0.5)
     assert (shifted.root_diameter - plain.root_diameter) / MM == pytest.approx(2.0)
     assert (shifted.effective_tip_diameter - shifted.root_diameter) / MM == pytest.approx(2 * 2 * 2.25)
 

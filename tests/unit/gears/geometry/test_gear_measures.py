@@ -41,19 +41,29 @@ def clearance(g: GearGeometry, centre: float) -> float:
 def nearest(g: GearGeometry, centre: float) -> tuple[float, float]:
     """Distance from a point on the middle of a space, at radius `centre`, to the helicoid beside it, and radius of the point
     there, by a refined grid search."""
-    turn, half, middle = 2 * math.pi / g.lead, base_half_angle(g), math.pi / g.teeth
+    turn = 2 * math.pi / g.lead
+    half = base_half_angle(g)
+    middle = math.pi / g.teeth
     reach = 0.0 if math.isinf(g.lead) else 2 * g.normal_module
-    low, high = np.array([0.0, -reach]), np.array([1.5, reach])
-    best, at = math.inf, 0.0
+    low = np.array([0.0, -reach])
+    high = np.array([1.5, reach])
+    best = math.inf
+    at = 0.0
     for _ in range(9):
-        roll, z = np.linspace(low[0], high[0], 201)[:, None], np.linspace(low[1], high[1], 201)
-        radius, angle = g.base_radius * np.hypot(1, roll), half - (roll - np.arctan(roll)) + turn * z
-        x, y = radius * np.cos(angle) - centre * math.cos(middle), radius * np.sin(angle) - centre * math.sin(middle)
+        roll = np.linspace(low[0], high[0], 201)[:, None]
+        z = np.linspace(low[1], high[1], 201)
+        radius = g.base_radius * np.hypot(1, roll)
+        angle = half - (roll - np.arctan(roll)) + turn * z
+        x = radius * np.cos(angle) - centre * math.cos(middle)
+        y = radius * np.sin(angle) - centre * math.sin(middle)
         distance = np.sqrt(x**2 + y**2 + z**2)
         i, j = np.unravel_index(np.argmin(distance), distance.shape)
-        best, at, size = float(distance[i, j]), float(radius[i, 0]), (high - low) / 16
+        best = float(distance[i, j])
+        at = float(radius[i, 0])
+        size = (high - low) / 16
         point = np.array([roll[i, 0], z[j]])
-        low, high = np.maximum(point - size, [0.0, -reach]), point + size
+        low = np.maximum(point - size, [0.0, -reach])
+        high = point + size
     return best, at
 
 

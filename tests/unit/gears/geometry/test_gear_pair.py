@@ -82,7 +82,8 @@ def test_the_iso_6336_example_has_its_thirty_digit_pair_data(iso_pair: tuple[Gea
 
 @pytest.mark.parametrize("shift", [-0.3, 0.0, 0.4])
 def test_the_centre_distance_and_the_sum_of_shifts_invert_each_other(shift: float) -> None:
-    g1, g2 = gear(23, 3, 20, 15, profile_shift=shift), gear(57, 3, 20, 15, profile_shift=0.1)
+    g1 = gear(23, 3, 20, 15, profile_shift=shift)
+    g2 = gear(57, 3, 20, 15, profile_shift=0.1)
     distance = working_centre_distance(g1, g2)
     assert profile_shift_sum(g1, g2, distance) == pytest.approx(shift + 0.1, abs=1e-12)
     angle = working_pressure_angle_from_shifts(g1, g2)
@@ -91,7 +92,8 @@ def test_the_centre_distance_and_the_sum_of_shifts_invert_each_other(shift: floa
 
 
 def test_gears_without_shift_work_at_the_standard_centre_distance() -> None:
-    g1, g2 = gear(29, 2.75, 25, 30), gear(113, 2.75, 25, 30)
+    g1 = gear(29, 2.75, 25, 30)
+    g2 = gear(113, 2.75, 25, 30)
     pair = pair_geometry(g1, g2, 65 * MM)
     assert pair.centre_distance == pytest.approx(standard_centre_distance(g1, g2), rel=1e-14)
     assert pair.working_helix_angle == pytest.approx(deg(30.0), rel=1e-14)
@@ -99,7 +101,8 @@ def test_gears_without_shift_work_at_the_standard_centre_distance() -> None:
 
 @pytest.mark.parametrize("change", [-0.2e-3, 0.1e-3, 0.5e-3])
 def test_backlash_is_the_working_pitch_less_the_two_working_tooth_thicknesses(change: float) -> None:
-    g1, g2 = gear(23, 3, 20, 15, profile_shift=0.3), gear(57, 3, 20, 15, profile_shift=-0.1)
+    g1 = gear(23, 3, 20, 15, profile_shift=0.3)
+    g2 = gear(57, 3, 20, 15, profile_shift=-0.1)
     distance = working_centre_distance(g1, g2) + change
     pair = pair_geometry(g1, g2, 0.02, distance)
     d1, d2 = (2 * distance * g.teeth / (g1.teeth + g2.teeth) for g in (g1, g2))
@@ -109,15 +112,18 @@ def test_backlash_is_the_working_pitch_less_the_two_working_tooth_thicknesses(ch
 
 
 def test_backlash_grows_by_twice_the_tangent_of_the_working_pressure_angle() -> None:
-    g1, g2 = gear(23, 3, 20, 15, profile_shift=0.3), gear(57, 3, 20, 15)
-    distance, step = working_centre_distance(g1, g2), 1e-6
+    g1 = gear(23, 3, 20, 15, profile_shift=0.3)
+    g2 = gear(57, 3, 20, 15)
+    distance = working_centre_distance(g1, g2)
+    step = 1e-6
     wide, tight = (pair_geometry(g1, g2, 0.02, distance + h).transverse_backlash for h in (step, -step))
     slope = 2 * math.tan(working_pressure_angle_from_shifts(g1, g2))
     assert (wide - tight) / (2 * step) == pytest.approx(slope, rel=1e-8)
 
 
 def test_normal_backlash_is_the_base_circle_play_seen_along_the_flank_normal() -> None:
-    g1, g2 = gear(23, 3, 20, 15), gear(57, 3, 20, 15)
+    g1 = gear(23, 3, 20, 15)
+    g2 = gear(57, 3, 20, 15)
     distance = standard_centre_distance(g1, g2) + 0.2e-3
     pair = pair_geometry(g1, g2, 0.02, distance)
     working_pitch_radius = distance * g1.teeth / (g1.teeth + g2.teeth)
@@ -136,15 +142,18 @@ def test_interference_starts_at_the_textbook_wheel(pinion: int, largest_wheel: i
 
 
 def test_the_working_helix_has_the_lead_of_the_gear() -> None:
-    g1, g2 = gear(23, 3, 20, 15, profile_shift=0.3), gear(57, 3, 20, 15, profile_shift=0.4)
+    g1 = gear(23, 3, 20, 15, profile_shift=0.3)
+    g2 = gear(57, 3, 20, 15, profile_shift=0.4)
     pair = pair_geometry(g1, g2, 0.02)
     working_diameter = 2 * pair.centre_distance * g1.teeth / (g1.teeth + g2.teeth)
     assert math.tan(pair.working_helix_angle) == pytest.approx(math.pi * working_diameter / g1.lead, rel=1e-12)
 
 
 def test_swapping_the_gears_mirrors_the_line_of_action() -> None:
-    g1, g2 = gear(17, 6, 20, 24.43, profile_shift=0.2), gear(44, 6, 20, 24.43)
-    one, two = pair_geometry(g1, g2, 0.075), pair_geometry(g2, g1, 0.075)
+    g1 = gear(17, 6, 20, 24.43, profile_shift=0.2)
+    g2 = gear(44, 6, 20, 24.43)
+    one = pair_geometry(g1, g2, 0.075)
+    two = pair_geometry(g2, g1, 0.075)
     assert (two.start_of_contact, two.end_of_contact) == pytest.approx((-one.end_of_contact, -one.start_of_contact))
     assert two.transverse_contact_ratio == pytest.approx(one.transverse_contact_ratio, rel=1e-13)
 
@@ -160,7 +169,8 @@ def test_gears_that_do_not_fit_each_other_are_refused() -> None:
 
 
 def test_impossible_centre_distances_and_shifts_are_refused() -> None:
-    g1, g2 = gear(20, 2), gear(40, 2)
+    g1 = gear(20, 2)
+    g2 = gear(40, 2)
     with pytest.raises(AnalysisError, match="base radii add up to"):
         pair_geometry(g1, g2, 0.02, 0.05)
     with pytest.raises(AnalysisError, match="teeth don't meet"):

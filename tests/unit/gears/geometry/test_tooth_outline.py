@@ -25,7 +25,9 @@ SOME = [
 
 def rack(g: GearGeometry, points: int) -> tuple[np.ndarray, np.ndarray]:
     """Half of a space of the rack in the transverse section, from the tip of the gear's tooth down to the tool's crest."""
-    m, a, rho = g.normal_module, g.normal_pressure_angle, g.tool_tip_radius_factor
+    m = g.normal_module
+    a = g.normal_pressure_angle
+    rho = g.tool_tip_radius_factor
     depth = g.dedendum_factor - rho
     theta = np.linspace(a, math.pi / 2, points)
     x_tip = math.pi / 4 + depth * math.tan(a) + rho * (1 / math.cos(a) - np.cos(theta))
@@ -56,7 +58,8 @@ def test_the_rack_touches_the_outline_everywhere_and_cuts_into_it_nowhere(g: Gea
 @pytest.mark.parametrize("g", SOME)
 def test_involute_and_trochoid_meet_and_end_on_tip_and_root_circle(g: GearGeometry) -> None:
     outline = tooth_outline(g)
-    involute, fillet = outline.involute(outline.form_roll_length), outline.fillet(0.0)
+    involute = outline.involute(outline.form_roll_length)
+    fillet = outline.fillet(0.0)
     assert involute[0] == pytest.approx(fillet[0], rel=1e-12)
     assert involute[1] == pytest.approx(fillet[1], abs=1e-11)
     assert float(outline.involute(outline.tip_roll_length)[0]) == pytest.approx(outline.tip_radius, rel=1e-14)
@@ -110,7 +113,8 @@ def test_the_sweep_of_gears_is_drawn_or_refused_with_a_sentence() -> None:
         assert np.all(np.isfinite(radius))
         assert np.all(angle >= 0.0)
         assert outline.root_radius <= outline.form_radius < outline.tip_radius
-        involute, fillet = outline.involute(outline.form_roll_length), outline.fillet(0.0)
+        involute = outline.involute(outline.form_roll_length)
+        fillet = outline.fillet(0.0)
         assert np.hypot(involute[0] - fillet[0], involute[0] * (involute[1] - fillet[1])) < 1e-10 * g.normal_module
     assert 0 < len(refused) < 80
     for teeth, sentence in refused:

@@ -21,7 +21,11 @@ PITCH_POINT = 18.708e9
 
 
 def test_one_slice_approaches_as_the_hertz_strip_and_the_rest_of_the_body() -> None:
-    E, nu, R, L, load = 206e9, 0.3, 20e-3, 10e-3, 5e3
+    E = 206e9
+    nu = 0.3
+    R = 20e-3
+    L = 10e-3
+    load = 5e3
     K = 2.0 * (1.0 - nu**2) / (np.pi * E)
     modulus = E / (2.0 * (1.0 - nu**2))
     log_c = np.log(1.2e-3)
@@ -69,7 +73,8 @@ def test_the_tangent_stiffness_of_many_slices_is_the_slope_of_the_load() -> None
         np.full(30, 0.02),
         1.13e11,
     )
-    load, step = 4e3, 1e-5
+    load = 4e3
+    step = 1e-5
     low, middle, high = (solve_contact(contact, load * (1.0 + s)) for s in (-step, 0.0, step))
     assert 0 < np.sum(middle.force > 0.0) < 30
     assert middle.tangent == pytest.approx(2.0 * step * load / (high.approach - low.approach), rel=1e-6)
@@ -77,7 +82,8 @@ def test_the_tangent_stiffness_of_many_slices_is_the_slope_of_the_load() -> None
 
 def test_the_tangent_stiffness_over_a_cycle_is_the_slope_of_the_load() -> None:
     # The reach of tip corners, and with it the slicing, follows the load: a light one has none.
-    load, step = 1e-3 * LOAD, 1e-4
+    load = 1e-3 * LOAD
+    step = 1e-4
     low, middle, high = (cycle(spur(), load * (1.0 + s), 8) for s in (-step, 0.0, step))
     assert middle.tangent == pytest.approx(2.0 * step * load / (high.deflection - low.deflection), rel=1e-5)
 
@@ -85,7 +91,8 @@ def test_the_tangent_stiffness_over_a_cycle_is_the_slope_of_the_load() -> None:
 @pytest.mark.parametrize("teeth", [spur(), helical()], ids=["spur", "helical"])
 def test_pinion_and_gear_may_change_names(teeth: ToothPair) -> None:
     # The path runs the other way, so position u becomes -u.
-    one, other = cycle(teeth), cycle(teeth.swapped())
+    one = cycle(teeth)
+    other = cycle(teeth.swapped())
     back = (-np.arange(16)) % 16
     assert other.secant[back] == pytest.approx(one.secant, rel=1e-9)
     assert other.deflection[back] == pytest.approx(one.deflection, rel=1e-9)
@@ -118,7 +125,8 @@ def test_the_width_of_a_spur_pair_is_only_a_factor() -> None:
 
 
 def test_a_spur_pair_in_space_is_a_little_softer_than_in_its_plane() -> None:
-    plane, space = cycle(spur()), cycle(spur(fe=ToothFe(space=True, size=COARSE)))
+    plane = cycle(spur())
+    space = cycle(spur(fe=ToothFe(space=True, size=COARSE)))
     ratio = space.secant.mean() / plane.secant.mean()
     assert 0.97 < ratio < 1.03
 
@@ -170,15 +178,18 @@ def test_a_misaligned_pair_carries_at_one_end(factor: float) -> None:
 
 def test_tip_relief_takes_load_from_the_ends_of_the_path() -> None:
     relief = FlankModification(tip_relief=20e-6, tip_relief_length=5e-3)
-    plain, relieved = cycle(spur()), cycle(replace(spur(), first_flank=relief, second_flank=relief))
+    plain = cycle(spur())
+    relieved = cycle(replace(spur(), first_flank=relief, second_flank=relief))
     assert relieved.contact_ratio < plain.contact_ratio
     assert relieved.no_load == pytest.approx(np.zeros(16), abs=20e-6)
 
 
 def test_the_flank_carries_in_the_middle_where_it_is_crowned() -> None:
     crowned = cycle(replace(helical(), first_flank=FlankModification(crowning=30e-6)))
-    z, load = crowned.slices.z @ crowned.slices.weight, crowned.force / crowned.slices.length
-    middle, end = np.abs(z) < 0.15 * WIDTH, np.abs(z) > 0.42 * WIDTH
+    z = crowned.slices.z @ crowned.slices.weight
+    load = crowned.force / crowned.slices.length
+    middle = np.abs(z) < 0.15 * WIDTH
+    end = np.abs(z) > 0.42 * WIDTH
     assert load[middle].mean() > 2.0 * load[end].mean()
 
 

@@ -76,12 +76,14 @@ def test_inside_the_teeth_forces_balance(space: bool) -> None:
 @pytest.mark.parametrize("space", [False, True])
 def test_the_whole_pitch_does_not_resist_rigid_motion(space: bool) -> None:
     pitch = solve_teeth(key_of("rim", space=space), {0: np.zeros(_flank(space))}).pitch
-    d, x = pitch.dimension, pitch.points
+    d = pitch.dimension
+    x = pitch.points
     motions = [np.tile(direction, (len(x), 1)) for direction in np.eye(d)]
     spins = [(0, 1)] if d == 2 else [(0, 1), (1, 2), (0, 2)]
     for i, j in spins:
         turned = np.zeros_like(x)
-        turned[:, i], turned[:, j] = -x[:, j], x[:, i]
+        turned[:, i] = -x[:, j]
+        turned[:, j] = x[:, i]
         motions.append(turned)
     scale = abs(pitch.stiffness).max()
     for motion in motions:

@@ -29,14 +29,24 @@ from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 
 deg = math.radians
 MESH = DynamicMesh(
-    pinion_teeth=20, ratio=3.0, pinion_speed=300.0, pitch_line_velocity=15.0, total_contact_ratio=1.6, line_load=4e5,
-    single_stiffness=14e9, mesh_stiffness=20e9, reduced_mass=8.0, base_pitch_deviation=10e-6, profile_deviation=8e-6,
-)  # fmt: skip
+    pinion_teeth=20,
+    ratio=3.0,
+    pinion_speed=300.0,
+    pitch_line_velocity=15.0,
+    total_contact_ratio=1.6,
+    line_load=4e5,
+    single_stiffness=14e9,
+    mesh_stiffness=20e9,
+    reduced_mass=8.0,
+    base_pitch_deviation=10e-6,
+    profile_deviation=8e-6,
+)
 
 
 def test_method_b_below_resonance_is_the_sum_written_out_by_hand() -> None:
     n = 300.0 / (math.sqrt(20e9 / 8.0) / 20)
-    b_p, b_f = 14e9 * 9.25e-6 / 4e5, 14e9 * 7.4e-6 / 4e5
+    b_p = 14e9 * 9.25e-6 / 4e5
+    b_f = 14e9 * 7.4e-6 / 4e5
     found = iso_dynamic_factor(MESH)
     assert found.resonance_ratio == pytest.approx(n, rel=1e-14)
     assert found.value == pytest.approx(1 + n * (0.32 * b_p + 0.34 * b_f + 0.23), rel=1e-14)
@@ -88,21 +98,27 @@ def test_no_load_and_a_contact_ratio_of_1_are_refused() -> None:
 
 
 def spur() -> ToothPair:
-    g1, g2 = GearGeometry(34, 5e-3, deg(20), 0.0), GearGeometry(80, 5e-3, deg(20), 0.0)
+    g1 = GearGeometry(34, 5e-3, deg(20), 0.0)
+    g2 = GearGeometry(80, 5e-3, deg(20), 0.0)
     return ToothPair(g1, g2, pair_geometry(g1, g2, 0.054), 0.054)
 
 
 def test_the_tip_corner_lies_on_the_flank_that_rolled_back_by_the_gap() -> None:
     """Both gears turned by hand to a position before A: how far the driver's flank must turn to reach the corner."""
-    teeth, advance = spur(), 2e-3
-    g1, g2, distance = teeth.first, teeth.second, teeth.pair.centre_distance
-    angle, start = teeth.pair.working_transverse_pressure_angle, teeth.pair.start_of_contact
+    teeth = spur()
+    advance = 2e-3
+    g1 = teeth.first
+    g2 = teeth.second
+    distance = teeth.pair.centre_distance
+    angle = teeth.pair.working_transverse_pressure_angle
+    start = teeth.pair.start_of_contact
     pitch = g1.base_radius / math.cos(angle)
     a = np.array([pitch + start * math.sin(angle), start * math.cos(angle)])
     back = advance / g2.base_radius  # the driven gear turns clockwise; earlier it was turned the other way
     rotate = np.array([[math.cos(back), -math.sin(back)], [math.sin(back), math.cos(back)]])
     corner = rotate @ (a - [distance, 0.0]) + [distance, 0.0]
-    outline, roll = tooth_outline(g1), np.linspace(0.0, 0.06, 400001)
+    outline = tooth_outline(g1)
+    roll = np.linspace(0.0, 0.06, 400001)
     radius, half = outline.involute(roll)
     at_a = float(outline.involute(math.sqrt(float(a @ a) - g1.base_radius**2))[1])
     turned = math.atan2(a[1], a[0]) - at_a - advance / g1.base_radius  # middle of the driver's tooth
@@ -120,7 +136,8 @@ def test_without_separation_the_corner_touches_at_a_without_a_blow() -> None:
 
 def test_the_approach_velocity_is_how_fast_the_gap_closes() -> None:
     teeth = spur()
-    contact, step = corner_contact(teeth, 20e-6), 1e-7
+    contact = corner_contact(teeth, 20e-6)
+    step = 1e-7
     closing = (corner_gap(teeth, contact.advance + step) - corner_gap(teeth, contact.advance - step)) / (2 * step)
     assert contact.approach == pytest.approx(
         closing, rel=1e-2
@@ -128,7 +145,8 @@ def test_the_approach_velocity_is_how_fast_the_gap_closes() -> None:
 
 
 def test_the_impact_force_is_the_energy_of_the_reduced_mass_in_the_springs() -> None:
-    teeth, contact = spur(), corner_contact(spur(), 20e-6)
+    teeth = spur()
+    contact = corner_contact(spur(), 20e-6)
     given = {"driver_speed": 200.0, "driver_inertia": 0.05, "driven_inertia": 1.3, "hit_compliance": 1e-9}
     force = corner_impact_force(teeth, 20e-6, **given, carrying_compliance=0.0)
     mass = 1 / (teeth.first.base_radius**2 / 0.05 + contact.base_radius**2 / 1.3)

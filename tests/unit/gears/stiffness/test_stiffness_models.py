@@ -36,7 +36,8 @@ def teeth_of(z1: int, z2: int, module: float, helix: float, width: float, inner:
     return ToothPair(g1, g2, pair_geometry(g1, g2, width), width, *bodies)
 
 
-SPUR, HELICAL = teeth_of(34, 80, 5e-3, 0, 0.054), teeth_of(34, 80, 5e-3, 20.86, 0.054)
+SPUR = teeth_of(34, 80, 5e-3, 0, 0.054)
+HELICAL = teeth_of(34, 80, 5e-3, 20.86, 0.054)
 
 
 def test_the_iso_stiffness_of_a_mesh_is_c_gamma_times_the_width() -> None:
@@ -75,7 +76,8 @@ def test_an_integer_overlap_ratio_leaves_no_ripple_in_the_contact_lines() -> Non
 @pytest.mark.parametrize("name", ANALYTIC)
 @pytest.mark.parametrize("teeth", [SPUR, HELICAL])
 def test_a_model_does_not_mind_which_gear_comes_first(name: str, teeth: ToothPair) -> None:
-    one, other = mesh_stiffness(name, teeth, 50e3, 60), mesh_stiffness(name, teeth.swapped(), 50e3, 60)
+    one = mesh_stiffness(name, teeth, 50e3, 60)
+    other = mesh_stiffness(name, teeth.swapped(), 50e3, 60)
     assert other.mean == pytest.approx(one.mean, rel=1e-12)
     # seen from the other gear the cycle runs backwards
     assert other.transverse == pytest.approx(np.roll(one.transverse[::-1], 1), rel=1e-12)
@@ -84,9 +86,10 @@ def test_a_model_does_not_mind_which_gear_comes_first(name: str, teeth: ToothPai
 @pytest.mark.parametrize("name", ANALYTIC)
 def test_a_model_scales_as_elasticity_does(name: str) -> None:
     double = replace(
-        HELICAL, first_body=replace(HELICAL.first_body, youngs_modulus=412e9),
+        HELICAL,
+        first_body=replace(HELICAL.first_body, youngs_modulus=412e9),
         second_body=replace(HELICAL.second_body, youngs_modulus=412e9),
-    )  # fmt: skip
+    )
     one = mesh_stiffness(name, HELICAL, 60e3)
     assert mesh_stiffness(name, double, 60e3).transverse == pytest.approx(2 * one.transverse, rel=1e-12)
     large = teeth_of(34, 80, 10e-3, 20.86, 0.108)  # the same shape twice as large: twice as stiff
@@ -94,18 +97,22 @@ def test_a_model_scales_as_elasticity_does(name: str) -> None:
 
 
 def test_the_energy_of_a_tooth_is_that_of_its_outline_summed_in_thin_slabs() -> None:
-    outline, body = tooth_outline(SPUR.first), ToothBody(inner_radius=0.0119)
-    outer, roll = tooth_outline(SPUR.first), 0.75 * tooth_outline(SPUR.first).tip_roll_length
+    outline = tooth_outline(SPUR.first)
+    body = ToothBody(inner_radius=0.0119)
+    outer = tooth_outline(SPUR.first)
+    roll = 0.75 * tooth_outline(SPUR.first).tip_roll_length
     radius, half = (float(value) for value in outer.involute(roll))
     tilt = math.atan(roll / SPUR.first.base_radius) - half
     top = radius * math.cos(half) - radius * math.sin(half) * math.tan(tilt)
     radii, angles = outer.half(4000)
-    height, thick = (radii * np.cos(angles))[4:-4][::-1], (2 * radii * np.sin(angles))[4:-4][::-1]
+    height = (radii * np.cos(angles))[4:-4][::-1]
+    thick = (2 * radii * np.sin(angles))[4:-4][::-1]
     y = np.linspace(height[0], radius * math.cos(half), 20001)
     y, step = 0.5 * (y[1:] + y[:-1]), y[1] - y[0]
     s = np.interp(y, height, thick)
     moment = math.cos(tilt) * (top - y)
-    e, g = 206e9, 206e9 / 2.6
+    e = 206e9
+    g = 206e9 / 2.6
     beam = (
         np.sum(12 * moment**2 / (e * s**3) + 1.2 * math.cos(tilt) ** 2 / (g * s) + math.sin(tilt) ** 2 / (e * s)) * step
     )
@@ -144,7 +151,8 @@ def test_where_a_tip_works_below_the_base_circle_there_is_no_energy_to_compute()
 
 
 def test_the_sweep_of_pairs_is_computed_or_refused_with_a_sentence() -> None:
-    refused, done = set(), 0
+    refused = set()
+    done = 0
     for z, x, pressure, helix in itertools.product((6, 8, 12, 25, 150), (-0.6, 0.0, 0.9), (14.5, 20, 25), (0, 20, 35)):
         g = GearGeometry(z, 2e-3, deg(pressure), deg(helix), profile_shift=x)
         mate = GearGeometry(50, 2e-3, deg(pressure), deg(helix))
@@ -166,7 +174,8 @@ def test_the_sweep_of_pairs_is_computed_or_refused_with_a_sentence() -> None:
 
 def test_two_helices_double_in_phase_and_average_when_staggered() -> None:
     one = mesh_stiffness("contact_line", HELICAL, 1e3)
-    both, staggered = one.of_both_helices(), one.of_both_helices(0.5)
+    both = one.of_both_helices()
+    staggered = one.of_both_helices(0.5)
     assert both.transverse == pytest.approx(2 * one.transverse, rel=1e-14)
     assert (both.helices, both.load) == (2, 2e3)
     assert staggered.mean == pytest.approx(2 * one.mean, rel=1e-12)

@@ -71,7 +71,8 @@ def test_all_teeth_loaded_alike_twist_a_ring_as_the_closed_form_says() -> None:
         across = chained(sector_of(key), z, z // 2, ring=True)[0][0]
         found.append(float((G.sum(axis=0) + across).mean()))
     # u = r_b phi with a torque z r_b over a disc between the two radii, phi = z r_b (1/r_1^2 - 1/r_2^2)/(4 pi G).
-    r_b, shear = key_of().geometry.base_radius, 0.5 / (1.0 + NU)
+    r_b = key_of().geometry.base_radius
+    shear = 0.5 / (1.0 + NU)
     exact = 34 * r_b**2 * (1.0 / 8.0**2 - 1.0 / 11.0**2) / (4.0 * math.pi * shear)
     assert found[0] - found[1] == pytest.approx(exact, rel=2e-3)
 
@@ -157,7 +158,8 @@ def _work(folder: str, barrier: Any, answers: Any) -> None:
 
 def test_several_processes_share_the_store(tmp_path: Path) -> None:
     context = mp.get_context("spawn")
-    barrier, answers = context.Barrier(3), context.Queue()
+    barrier = context.Barrier(3)
+    answers = context.Queue()
     workers = [context.Process(target=_work, args=(str(tmp_path), barrier, answers)) for _ in range(3)]
     for worker in workers:
         worker.start()

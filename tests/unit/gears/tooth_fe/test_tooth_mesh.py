@@ -52,7 +52,8 @@ def test_the_area_is_that_of_the_outline() -> None:
 
 def test_both_cuts_are_the_same_but_for_a_pitch() -> None:
     mesh = mesh_of(gear(17, 0.3))
-    c, s = math.cos(mesh.pitch_angle), math.sin(mesh.pitch_angle)
+    c = math.cos(mesh.pitch_angle)
+    s = math.sin(mesh.pitch_angle)
     turned = mesh.points[mesh.left] @ np.array([[c, -s], [s, c]])
     assert mesh.points[mesh.right] == pytest.approx(turned, abs=1e-12)
 

@@ -42,7 +42,8 @@ def test_an_overdamped_mass_has_two_real_eigenvalues():
 
 @pytest.mark.parametrize("spin", [0.0, 1.0, 1e5])
 def test_gyroscopic_coupling_splits_a_double_mode_into_forward_and_backward(spin):
-    k, m = 4.0, 2.0
+    k = 4.0
+    m = 2.0
     modes = _modes(m * np.eye(2), spin * np.array([[0, 1], [-1, 0]]), k * np.eye(2), count=2)
     half = spin / (2 * m)
     fast = half + np.hypot(half, np.sqrt(k / m))
@@ -186,7 +187,8 @@ def test_a_strained_vector_given_as_rigid_is_refused():
 @pytest.mark.parametrize("damper", [0.0, 3.0])
 def test_massless_dofs_add_a_real_eigenvalue_each_where_damped_and_none_else(damper):
     # mass 1 on spring 1 to the wall, and a massless joint on springs 1 (to the mass) and 1 (to the wall) with a damper
-    M, D = np.diag([1.0, 0.0]), np.diag([0.1, damper])
+    M = np.diag([1.0, 0.0])
+    D = np.diag([0.1, damper])
     K = np.array([[2.0, -1.0], [-1.0, 2.0]])
     modes = _modes(M, D, K)
     roots = np.roots(np.trim_zeros(np.polysub(np.polymul([1, 0.1, 2], [damper, 2]), [1.0]), "f"))
@@ -213,8 +215,11 @@ def test_a_beam_on_bearings_of_ten_to_the_thirteenth_is_exact_to_eleven_digits()
 def test_gyroscopic_beams_at_high_spin_agree_with_forty_digits():
     beam = Beam([0.2] * 3, springs={0: 1e13, 3: 1e7})
     M1, K1 = (A.toarray() for A in beam.matrices())
-    n, spin, polar = beam.n, 1e5, np.diag(np.tile([0.0, 2e-3], beam.n // 2))
-    M, K = np.kron(np.eye(2), M1), np.kron(np.eye(2), K1)
+    n = beam.n
+    spin = 1e5
+    polar = np.diag(np.tile([0.0, 2e-3], beam.n // 2))
+    M = np.kron(np.eye(2), M1)
+    K = np.kron(np.eye(2), K1)
     D = np.kron([[0.0, spin], [-spin, 0.0]], polar) + 1e-6 * K
     modes = _modes(M, D, K, count=2 * n)
     with mp.workdps(40):

@@ -130,7 +130,8 @@ def test_massless_dofs_give_no_modes_and_follow_their_neighbours(n):
 
 def test_a_dof_with_neither_mass_nor_stiffness_is_named():
     M, K, _ = _walls(6)
-    M, K = sp.block_diag([M, [[0.0]]]), sp.block_diag([K, [[0.0]]])
+    M = sp.block_diag([M, [[0.0]]])
+    K = sp.block_diag([K, [[0.0]]])
     with pytest.raises(LooseDofError) as caught:
         lowest_modes(M, K, count=2)
     assert caught.value.dofs == (6,)
@@ -138,7 +139,8 @@ def test_a_dof_with_neither_mass_nor_stiffness_is_named():
 
 def test_massless_dofs_that_move_together_without_strain_are_named():
     M, K, _ = _walls(6)
-    M, K = sp.block_diag([M, np.zeros((2, 2))]), sp.block_diag([K, [[1.0, -1.0], [-1.0, 1.0]]])
+    M = sp.block_diag([M, np.zeros((2, 2))])
+    K = sp.block_diag([K, [[1.0, -1.0], [-1.0, 1.0]]])
     with pytest.raises(LooseDofError) as caught:
         lowest_modes(M, K, count=2)
     assert set(caught.value.dofs) <= {6, 7}

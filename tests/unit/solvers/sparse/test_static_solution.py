@@ -22,7 +22,8 @@ def test_a_free_chain_pulled_at_both_ends_stretches_about_its_mass_centre():
     n = 41
     M, K, _ = bar(n, stiffness=2.0, mass=3.0)
     f = np.zeros(n)
-    f[0], f[-1] = -1.0, 1.0
+    f[0] = -1.0
+    f[-1] = 1.0
     q = static_solution(K, M, f, np.ones((n, 1)))
     np.testing.assert_allclose(q, 0.5 * (np.arange(n) - 20), atol=1e-12)
 
@@ -43,9 +44,13 @@ def test_a_free_beam_with_mixed_units_keeps_its_residual_small():
     M, K = beam.matrices()
     x = np.arange(21) * 0.1
     R = np.zeros((42, 2))
-    R[0::2, 0], R[0::2, 1], R[1::2, 1] = 1.0, x, 1.0
+    R[0::2, 0] = 1.0
+    R[0::2, 1] = x
+    R[1::2, 1] = 1.0
     f = np.zeros(42)
-    f[0], f[20], f[40] = 1.0, -2.0, 1.0
+    f[0] = 1.0
+    f[20] = -2.0
+    f[40] = 1.0
     q = static_solution(K, M, f, R)
     assert _residual(K, q, f) < 1e-14
     np.testing.assert_allclose(R.T @ (M @ q), 0.0, atol=1e-13)

@@ -43,7 +43,9 @@ def test_a_linear_system_is_followed_exactly(name: str) -> None:
 @pytest.mark.parametrize("name", [n for n in IMPLICIT if n not in ("exponential", "hht")])
 def test_a_linear_system_is_followed_with_order_two(name: str) -> None:
     M, D, K = damped_pair()
-    truth, counts, errors = exact(M, D, K, [1.0, -0.5], 10.0), (100, 200, 400, 800), []
+    truth = exact(M, D, K, [1.0, -0.5], 10.0)
+    counts = (100, 200, 400, 800)
+    errors = []
     for n in counts:
         motion = integrate(local_system(M, D, K, [0.0, 0.0]), name, 10.0 / n, n, [1.0, -0.5], [0.0, 0.0])
         errors.append(float(np.abs(motion.q[-1] - truth).max()))
@@ -122,7 +124,8 @@ def test_a_run_up_follows_the_angle_of_its_speeds() -> None:
 
 
 def test_a_propeller_torque_lets_the_speed_settle_where_both_torques_are_equal() -> None:
-    drive, propeller = TorqueCurve(3.0), TorqueCurve(-2.0, power=2.0, reference_speed=10.0)
+    drive = TorqueCurve(3.0)
+    propeller = TorqueCurve(-2.0, power=2.0, reference_speed=10.0)
     system = local_system([[0.1]], [[0.0]], [[0.0]], [0.0], [(drive, [[1.0]]), (propeller, [[1.0]])], speed=10.0)
     for name in ("average acceleration", "exponential"):
         motion = integrate(system, name, 0.002, 4000, [0.0], [0.0])
@@ -162,8 +165,12 @@ class _Broken(ForceLaw):
 
         def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
             F[0] = d[0] if d[0] < 0.45 else np.nan
-            Kd[0], Kv[0] = 1.0, 0.0
-            energy[0], energy[1], energy[2], energy[3] = 0.0, 0.0, 0.0, 0.0
+            Kd[0] = 1.0
+            Kv[0] = 0.0
+            energy[0] = 0.0
+            energy[1] = 0.0
+            energy[2] = 0.0
+            energy[3] = 0.0
 
         global _FUNCTIONS
         if _FUNCTIONS is None:
@@ -184,7 +191,8 @@ _FUNCTIONS = None
 @pytest.mark.parametrize("name", list(METHODS))
 def test_nan_in_a_law_stops_the_run_with_a_sentence_and_keeps_what_was_before(name: str) -> None:
     system = local_system([[1.0]], [[0.0]], [[0.0]], [0.3], [(_Broken(), [[1.0]])])
-    state, kept = state_at_rest(system, 0.01, np.zeros(1)), []
+    state = state_at_rest(system, 0.01, np.zeros(1))
+    kept = []
     with pytest.raises(ConvergenceError, match="not finite"):
         run(system, METHODS[name], Schedule(0.01, 5000), state, lambda records, _: kept.append(records))
     assert kept
@@ -195,7 +203,8 @@ def test_nan_in_a_law_stops_the_run_with_a_sentence_and_keeps_what_was_before(na
 def test_restarting_from_a_state_gives_the_same_trajectory() -> None:
     for name in ("average acceleration", "exponential"):
         whole = integrate(impacts(), name, 0.02, 1000, [0.0, 0.0], [0.0, 0.0])
-        system, kept = impacts(), []
+        system = impacts()
+        kept = []
         state = state_at_rest(system, 0.02, np.zeros(2))
         for goal in (300, 1000):
             run(
@@ -211,7 +220,8 @@ def test_restarting_from_a_state_gives_the_same_trajectory() -> None:
 
 
 def test_nearly_equal_overdamped_modes_do_not_spoil_the_exponential_method() -> None:
-    M, K = np.eye(3), np.diag([4.0, 4.0 + 1e-9, 9.0])
+    M = np.eye(3)
+    K = np.diag([4.0, 4.0 + 1e-9, 9.0])
     D = np.diag([1.0, 1.0, 30.0])
     found = integrate(local_system(M, D, K, [0.0] * 3), "exponential", 0.1, 50, [1.0, 1.0, 1.0], [0.0] * 3)
     truth = integrate(local_system(M, D, K, [0.0] * 3), "explicit", 0.1, 50, [1.0, 1.0, 1.0], [0.0] * 3)

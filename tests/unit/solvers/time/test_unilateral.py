@@ -19,7 +19,8 @@ def compliance(n: int, seed: int) -> np.ndarray:
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("spread", [0.0, 0.1, 3.0, 100.0])
 def test_forces_push_gaps_stay_open_and_the_sum_is_the_load(seed: int, spread: float) -> None:
-    C, gap = compliance(20, seed), spread * np.random.default_rng(seed + 50).normal(size=20)
+    C = compliance(20, seed)
+    gap = spread * np.random.default_rng(seed + 50).normal(size=20)
     force, approach = unilateral(C, gap, 2.0)
     opening = C @ force + gap - approach
     scale = abs(approach) + np.abs(gap).max()
@@ -30,7 +31,8 @@ def test_forces_push_gaps_stay_open_and_the_sum_is_the_load(seed: int, spread: f
 
 
 def test_the_same_forces_as_a_general_least_squares_solver() -> None:
-    C, gap = compliance(25, 3), np.random.default_rng(1).normal(size=25)
+    C = compliance(25, 3)
+    gap = np.random.default_rng(1).normal(size=25)
     force, approach = unilateral(C, gap, 1.5)
     # For the approach found, the forces minimise f'Cf/2 + f'(gap - approach) over f >= 0.
     L = np.linalg.cholesky(C)
@@ -39,7 +41,8 @@ def test_the_same_forces_as_a_general_least_squares_solver() -> None:
 
 
 def test_any_start_leads_to_the_same_contact() -> None:
-    C, gap = compliance(15, 4), np.random.default_rng(2).normal(size=15)
+    C = compliance(15, 4)
+    gap = np.random.default_rng(2).normal(size=15)
     first, _ = unilateral(C, gap, 1.0)
     for seed in range(5):
         start = np.random.default_rng(seed).random(15) > 0.5
