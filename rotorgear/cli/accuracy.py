@@ -93,7 +93,7 @@ def _mesh(model: Path, mesh: str | None, torque: str | None, plot: Path | None, 
     """The ladder of a mesh."""
     import rotorgear as rg
     from rotorgear.cli.mesh import parse_torque
-    from rotorgear.cli.tables.mesh import ladder_parts
+    from rotorgear.results.tables.mesh import ladder_parts
 
     pinion_torque = parse_torque(torque)
     with progress_bar("accuracy") as progress:
@@ -115,7 +115,7 @@ def _refuse_others(time: str | None, modal_damping: float | None, reference: Pat
 def _sweep(model: Path, speed: str | None, json: Path | None) -> None:
     """The ladder of a point of a sweep."""
     import rotorgear as rg
-    from rotorgear.cli.tables.sweep import ladder_table
+    from rotorgear.results.tables.sweep import ladder_table
 
     with progress_bar("accuracy") as progress:
         ladder = rg.sweep_ladder(rg.load(model), speed=parse_speed(speed), progress=progress)

@@ -68,7 +68,7 @@ def campbell(
     """Campbell diagram: modes over speed, excitation lines, crossings, margins, whirl and stability."""
     import rotorgear as rg
     from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS
-    from rotorgear.cli.tables.campbell import campbell_table
+    from rotorgear.results.tables.campbell import campbell_table
 
     built = rg.load(model)
     whole = parse_orders(mesh_orders, "--mesh-orders", MESH_ORDERS)

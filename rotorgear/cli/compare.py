@@ -40,7 +40,7 @@ def compare(
 ) -> None:
     """Compare modes with rig frequencies, and say what chance alone would give."""
     import rotorgear as rg
-    from rotorgear.cli.tables.comparison import comparison_table
+    from rotorgear.results.tables.comparison import comparison_table
 
     lines = rg.read_rig_lines(rig)
     fmax = 1.15 * max(line.frequency_hz for line in lines)

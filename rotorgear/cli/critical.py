@@ -21,8 +21,8 @@ from rotorgear.cli.common import (
     write_json,
 )
 from rotorgear.cli.speed_options import ToOption, parse_orders
-from rotorgear.cli.tables.campbell import plain_table
 from rotorgear.errors import AnalysisError
+from rotorgear.results.tables.campbell import plain_table
 
 if TYPE_CHECKING:
     from rotorgear.results.critical import CriticalMap, CriticalResult

@@ -48,8 +48,8 @@ def frf(
     import numpy as np
 
     import rotorgear as rg
-    from rotorgear.cli.tables.response import frf_tables
     from rotorgear.results.frequency_response import QUANTITIES
+    from rotorgear.results.tables.response import frf_tables
 
     if quantity not in QUANTITIES:
         raise AnalysisError(f"--quantity: got '{quantity}', expected one of {', '.join(QUANTITIES)}")

@@ -27,8 +27,8 @@ def gear(
 ) -> None:
     """Print the gear sheet: geometry, measures, contact ratios, backlash and stiffness of all teeth."""
     import rotorgear as rg
-    from rotorgear.cli.tables.gear import sheet_parts
     from rotorgear.plots.gear_mesh import draw_mesh, require_picture_name
+    from rotorgear.results.tables.gear import sheet_parts
 
     if picture is not None:
         require_picture_name(picture)

@@ -71,7 +71,7 @@ def mesh(
 ) -> None:
     """Print stiffness, transmission error, load sharing and pressure of one mesh over its cycle."""
     import rotorgear as rg
-    from rotorgear.cli.tables.mesh import mesh_parts
+    from rotorgear.results.tables.mesh import mesh_parts
 
     checked = rg.load(model)
     pinion_torque = parse_torque(torque)

@@ -76,7 +76,7 @@ def modal(
 ) -> None:
     """Natural frequencies and mode shapes; undamped at standstill, or damped and gyroscopic at a --speed."""
     import rotorgear as rg
-    from rotorgear.cli.tables.modal import modal_table
+    from rotorgear.results.tables.modal import modal_table
 
     rig = rg.read_rig_lines(compare) if compare else ()
     chosen = _numbers(shapes)
@@ -99,7 +99,7 @@ def modal(
     out.print(modal_table(result, energies=energies))
     comparison = compare_with_rig(result, rig, tolerance, None if modes else fmax) if rig else None
     if comparison:
-        from rotorgear.cli.tables.comparison import comparison_table
+        from rotorgear.results.tables.comparison import comparison_table
 
         out.print(comparison_table(comparison))
     data = result.to_dict()

@@ -75,7 +75,7 @@ def response(
 ) -> None:
     """Run-up: response to unbalances, transmission errors and stiffness variation, by order and speed."""
     import rotorgear as rg
-    from rotorgear.cli.tables.response import response_tables
+    from rotorgear.results.tables.response import response_tables
 
     built = rg.load(model)
     with progress_bar("response") as progress:

@@ -41,7 +41,7 @@ def static(
 ) -> None:
     """Deflections, bearing and mesh forces, load sharing of branches and helices, assembly condition of loops."""
     import rotorgear as rg
-    from rotorgear.cli.tables.static import static_tables
+    from rotorgear.results.tables.static import static_tables
 
     with progress_bar("static") as progress:
         result = rg.static(rg.load(model), speed=parse_speed(speed), elements=elements, progress=progress)

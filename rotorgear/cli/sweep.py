@@ -86,7 +86,7 @@ def sweep(
     """Bifurcation diagram, Lyapunov exponents and kinds of motion of a model over its parameters."""
     import rotorgear as rg
     from rotorgear.analysis.sweep.axes import axis_of_option
-    from rotorgear.cli.tables.sweep import sweep_table
+    from rotorgear.results.tables.sweep import sweep_table
 
     if resume and save is None:
         raise AnalysisError("--resume needs the --save of the sweep that was interrupted")

@@ -97,7 +97,7 @@ def transient(
 ) -> None:
     """Time response from the static equilibrium: contact forces, transmission error, bearings, spectra."""
     import rotorgear as rg
-    from rotorgear.cli.tables.transient import transient_table
+    from rotorgear.results.tables.transient import transient_table
 
     if rig and not spectrum:
         raise AnalysisError("--rig needs --spectrum: the history whose lines are compared")
@@ -127,13 +127,13 @@ def transient(
     out.print(transient_table(result))
     data = result.to_dict()
     if spectrum:
-        from rotorgear.cli.tables.transient import spectrum_table
+        from rotorgear.results.tables.transient import spectrum_table
 
         lines = rg.spectral_lines(result, spectrum)
         out.print(spectrum_table(lines))
         data["spectrum"] = lines.to_dict()
         if rig:
-            from rotorgear.cli.tables.transient import rig_table
+            from rotorgear.results.tables.transient import rig_table
 
             beside = rg.compare_spectrum(result, lines, rg.read_rig_lines(rig))
             out.print(rig_table(beside))

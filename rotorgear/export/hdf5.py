@@ -5,7 +5,6 @@ Layout: the root's attributes say what it is; every field of the result is a dat
 
 from __future__ import annotations
 
-import sys
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +20,7 @@ from rotorgear.results.response import ResponseResult
 from rotorgear.results.static import StaticResult
 from rotorgear.results.sweep import SweepResult
 from rotorgear.results.transient import TransientResult
+from rotorgear.version import VERSION
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -37,8 +37,6 @@ _KINDS: dict[str, type[Any]] = {
     "transient": TransientResult,
     "sweep": SweepResult,
 }
-# The package is loaded before its modules; importing it from here would turn the house upside down.
-_VERSION: str = sys.modules[__name__.partition(".")[0]].__version__
 
 
 class ReadError(RotorgearError):
@@ -58,7 +56,7 @@ def save(result: Any, path: str | Path) -> Path:
     kind = next(name for name, cls in _KINDS.items() if isinstance(result, cls))
     with replacing(path) as scratch, h5.File(scratch, "w") as file:
         file.attrs.update(
-            {"format": FORMAT, "format_version": FORMAT_VERSION, "kind": kind, "rotorgear_version": _VERSION}
+            {"format": FORMAT, "format_version": FORMAT_VERSION, "kind": kind, "rotorgear_version": VERSION}
         )
         for item in fields(result):
             put_value(h5, file, item.name, getattr(result, item.name))
@@ -87,7 +85,7 @@ def read(path: str | Path) -> Any:
         try:
             return cls(**{item.name: get_value(file[item.name]) for item in fields(cls) if item.name in file})
         except ModelError as error:
-            raise ReadError(path, f"its model does not pass the checks of rotorgear {_VERSION}\n{error}") from None
+            raise ReadError(path, f"its model does not pass the checks of rotorgear {VERSION}\n{error}") from None
         except (KeyError, ValueError, TypeError, AttributeError, OSError, RuntimeError) as error:
             raise ReadError(path, f"it is damaged ({error})") from None
 
@@ -110,7 +108,7 @@ def _kind(path: Path, file: Any) -> type[Any]:
         by = file.attrs.get("rotorgear_version", "another version")
         raise ReadError(
             path,
-            f"it was written by rotorgear {by} in format {version} ({kind}), and this is rotorgear {_VERSION}, which reads "
+            f"it was written by rotorgear {by} in format {version} ({kind}), and this is rotorgear {VERSION}, which reads "
             f"format {FORMAT_VERSION}; use the newer one, or run the analysis again",
         )
     return _KINDS[kind]

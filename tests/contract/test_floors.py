@@ -45,7 +45,6 @@ ROOMS = {
         "teeth": {"common"},
         "rig": {"common"},
     },
-    "cli": {"tables": set(), "": {"tables"}},
     "gears": {
         "geometry": set(),
         "tooth_fe": {"geometry"},
@@ -54,6 +53,7 @@ ROOMS = {
         "": {"geometry", "loaded", "stiffness", "tooth_fe"},
     },
     "model": {"parts": set(), "layout": {"parts"}, "checks": {"layout", "parts"}, "": {"checks", "layout", "parts"}},
+    "results": {"": set(), "tables": {""}},
     "solvers": {
         "sparse": set(),
         "eigen": {"sparse"},

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from rotorgear.cli.tables.common import error_words, table
+from rotorgear.results.tables.common import error_words, table
 
 if TYPE_CHECKING:
     from rotorgear.results.static import StaticResult

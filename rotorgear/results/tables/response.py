@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rotorgear.cli.tables.common import error_words, table
+from rotorgear.results.tables.common import error_words, table
 
 if TYPE_CHECKING:
     from rotorgear.results.frequency_response import FrequencyResponse

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rotorgear.cli.tables.common import table
+from rotorgear.results.tables.common import table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
