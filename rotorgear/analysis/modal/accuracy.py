@@ -57,70 +57,61 @@ def accuracy_ladder(
         progress(number / len(settings), f"{family} {setting:g}")
         if family == "elements" and not System(model, int(setting)).n:
             continue  # so coarse that the supports hold everything
-        result, seconds = _timed(model, speed, modes, options, repeat)
-        error = _error(_elastic(result), truth)
-        before = rungs[-1] if rungs and rungs[-1].family == family == "elements" else None
+        seconds = []
+        for _ in range(max(repeat, 1)):
+            start = time.perf_counter()
+            result = modal(model, speed=speed, modes=modes, **options)
+            seconds.append(time.perf_counter() - start)
+        frequencies = _elastic(result)
+        # A discretisation with too few modes has no answer for the last ones.
+        error = np.inf
+        if len(frequencies) >= len(truth):
+            error = float(np.max(np.abs(frequencies[: len(truth)] / truth - 1.0)))
+        coarser = rungs[-1] if rungs and rungs[-1].family == family == "elements" else None
+        order = None
+        if coarser is not None and np.isfinite(coarser.error) and min(error, coarser.error) >= _ROUNDING:
+            # error ~ h^p with the element length h = L / n: p = log(e_1 / e_2) / log(n_2 / n_1)
+            order = float(np.log(coarser.error / error) / np.log(setting / coarser.setting))
+        words_of = {
+            "elements": f"{setting:g} basic element{'s'[: setting != 1]} a piece",
+            "accuracy": f"accuracy {setting:g}",
+        }
         rungs.append(
             Rung(
-                f"{setting:g} basic element{'s'[: setting != 1]} a piece"
-                if family == "elements"
-                else f"accuracy {setting:g}",
+                words_of[family],
                 family,
                 float(setting),
                 result.dofs,
-                seconds,
+                float(np.median(seconds)),
                 error,
                 float(np.max(result.error_estimate)),
-                _order(before, setting, error),
+                order,
             )
         )
     progress(1.0, "done")
     return AccuracyLadder(model.title or "model", "modal", words, len(truth), tuple(rungs))
 
 
-def _error(found: np.ndarray, truth: np.ndarray) -> float:
-    """Largest relative error; infinite where the discretisation has too few modes."""
-    if len(found) < len(truth):
-        return float("inf")
-    return float(np.max(np.abs(found[: len(truth)] / truth - 1.0)))
-
-
 def _elastic(result: ModalResult) -> np.ndarray:
+    """Natural frequencies in Hz of the modes that are not rigid, nor roots at zero."""
     return result.natural_frequency_hz[~result.rigid & (np.abs(result.eigenvalues) > 0.0)]
 
 
 def _reference(
     model: Model, speed: float | str | None, modes: int, given: Sequence[float] | None
 ) -> tuple[np.ndarray, str]:
+    """Frequencies in Hz that stand for the truth, (m,), and where they come from."""
     finest = modal(model, speed=speed, modes=modes, accuracy=REFERENCE)
-    own = _elastic(finest)
-    if own.size == 0:
+    computed = _elastic(finest)
+    if computed.size == 0:
         raise AnalysisError("the model has no elastic mode among those asked for, so there is no error to measure")
     if given is None:
-        return own, f"the model itself at accuracy {REFERENCE:g}, {finest.dofs} dofs"
+        return computed, f"the model itself at accuracy {REFERENCE:g}, {finest.dofs} dofs"
     truth = np.sort(np.asarray(given, float))
     if truth.size == 0 or not np.all(np.isfinite(truth) & (truth > 0.0)):
         raise AnalysisError("the reference needs positive frequencies in Hz")
-    if truth.size > own.size:
+    if truth.size > computed.size:
         raise AnalysisError(
-            f"the reference has {truth.size} frequencies, but only {own.size} elastic modes are computed; raise modes"
+            f"the reference has {truth.size} frequencies, but only {computed.size} elastic modes are computed; raise modes"
         )
     return truth, f"{truth.size} given frequencies"
-
-
-def _timed(
-    model: Model, speed: float | str | None, modes: int, options: dict[str, Any], repeat: int
-) -> tuple[ModalResult, float]:
-    seconds = []
-    for _ in range(max(repeat, 1)):
-        start = time.perf_counter()
-        result = modal(model, speed=speed, modes=modes, **options)
-        seconds.append(time.perf_counter() - start)
-    return result, float(np.median(seconds))
-
-
-def _order(before: Rung | None, setting: float, error: float) -> float | None:
-    """Order in the element length between two rungs of basic elements."""
-    if before is None or min(error, before.error) < _ROUNDING or not np.isfinite(before.error):
-        return None
-    return float(np.log(before.error / error) / np.log(setting / before.setting))

@@ -18,15 +18,20 @@ from rotorgear.solvers.eigen.quadratic import newton, scaled
 from rotorgear.solvers.eigen.ritz import strain_ritz
 from rotorgear.system.strain_forms import StrainForms
 
-_CLEAN = 1e-10  # rounding of K relative to omega^2 (a bound, rarely met) up to which the assembled matrices do
-_CLEAN_LARGE = (
-    1e-8  # the same for a large group, whose modal coordinates cost more: strains then correct the eigenvalues
-)
-_AS_RIGID = 1e-6  # rounding above which a first round takes a mode as a rigid motion
+# Rounding of K relative to omega^2 (a bound, rarely met) up to which the assembled matrices do.
+_CLEAN = 1e-10
+# The same for a large group, whose modal coordinates cost more: strains then correct the eigenvalues.
+_CLEAN_LARGE = 1e-8
+# Rounding above which a first round takes a mode as a rigid motion.
+_AS_RIGID = 1e-6
+# Dofs up to which all undamped modes are cheap: the basis is then complete, and no approximation.
 _ALL_UP_TO = 120
-_POLISH = 1e-14  # residual in the dofs above which a mode that the matrices do resolve is refined on them
-_NEAR = 1e-6  # a refinement that moves s by more than this share of it has gone to another mode
-_ZERO = 1e-9  # a strain, or a gyroscopic term, of a rigid motion this much smaller than its parts is none
+# Residual in the dofs above which a mode that the matrices do resolve is refined on them.
+_POLISH = 1e-14
+# A refinement that moves s by more than this share of it has gone to another mode.
+_NEAR = 1e-6
+# A strain, or a gyroscopic term, of a rigid motion this much smaller than its parts is none.
+_ZERO = 1e-9
 
 
 def damped_group(problem: DampedProblem, count: int | None, below: float | None) -> tuple[DampedModes, str]:
@@ -102,11 +107,13 @@ def _enriched(
 def _in_coordinates(
     problem: DampedProblem, rigid: np.ndarray, basis: np.ndarray, count: int | None, below: float | None
 ) -> DampedModes:
+    """The damped modes in the coordinates u of q = [R X N] u: rigid motions R, elastic modes X, massless dofs N."""
     assert problem.strain is not None
     S = problem.strain
     M = problem.M
     r = rigid.shape[1]
     squares, X = strain_ritz(lambda V: S @ V, _independent(M, rigid, basis))
+    # A dof without inertia follows the others at once; no undamped mode holds that, so it is a coordinate of its own.
     massless = np.flatnonzero(M.diagonal() <= 0.0)
     N = np.zeros((M.shape[0], massless.size))
     N[massless, np.arange(massless.size)] = 1.0
@@ -114,15 +121,15 @@ def _in_coordinates(
     inertia = np.concatenate([np.ones(r + len(squares)), np.zeros(massless.size)])
     stiffness = np.diag(np.concatenate([np.zeros(r), squares, np.zeros(massless.size)]))
     if massless.size:
-        strained = S @ whole[:, r:]
-        block = strained.T @ (S @ N)
+        strains = S @ whole[:, r:]
+        block = strains.T @ (S @ N)
         stiffness[r:, r + len(squares) :] = block
         stiffness[r + len(squares) :, r:] = block.T
     strained = _without_rounding(problem.forms, whole, r)
     D = strained.T @ (problem.forms.viscosity @ strained) + _inertial(problem.inertial, whole, r)
     K = stiffness + strained.T @ (problem.forms.circulation @ strained)
     lowest = float(np.sqrt(squares[0])) if len(squares) else None
-    found = damped_modes(
+    reduced = damped_modes(
         sp.csc_array(np.diag(inertia)),
         sp.csc_array(D),
         sp.csc_array(K),
@@ -132,7 +139,7 @@ def _in_coordinates(
         frequency_scale=lowest,
         dense=True,
     )
-    return _restored(problem, whole, found, lowest or 1.0)
+    return _restored(problem, whole, reduced, lowest or 1.0)
 
 
 def _independent(M: sp.csc_array, rigid: np.ndarray, basis: np.ndarray) -> np.ndarray:
@@ -187,6 +194,7 @@ def _without_rounding(forms: StrainForms, whole: np.ndarray, rigid: int) -> np.n
 
 
 def _inertial(A: sp.csc_array, whole: np.ndarray, rigid: int) -> np.ndarray:
+    """The part alpha M + spin G in the basis; what rounding leaves among the first `rigid` columns is zero."""
     product = whole.T @ (A @ whole)
     R = whole[:, :rigid]
     size = np.abs(R).T @ (abs(A) @ np.abs(R))

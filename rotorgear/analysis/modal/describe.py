@@ -38,6 +38,7 @@ def describe(
 
 
 def _line(system: System, shape: np.ndarray, ranked: list[tuple[float, tuple[str, str]]]) -> str:
+    """Words for a shape (p, 6) from the shares (share, (shaft, motion)) of its kinetic energy, largest first."""
     if not ranked:
         return "no inertia takes part"
     share, (shaft, motion) = ranked[0]
@@ -75,7 +76,7 @@ def _agree(system: System, shape: np.ndarray, motion: str, first: str, second: s
     dofs = [k for k in MOTION_DOFS[motion] if k in (0, 1, 2, 5)]
     peaks = []
     for name in (first, second):
-        own = shape[system.nodes.on_shaft(name)][:, dofs]
-        peak = own[np.argmax(np.sum(np.abs(own) ** 2, axis=1))]
+        displacements = shape[system.nodes.on_shaft(name)][:, dofs]
+        peak = displacements[np.argmax(np.sum(np.abs(displacements) ** 2, axis=1))]
         peaks.append(peak * (system.train.sense(name) if motion == "torsion" else 1))
     return float(np.real(np.sum(peaks[0].conj() * peaks[1])))

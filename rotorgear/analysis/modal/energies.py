@@ -26,60 +26,58 @@ class Energies:
 
 
 def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray) -> Energies:
-    """Return the energy shares of the shapes q (a, m) of all dofs, complex or real; `rigid` modes (m,) have no strain energy."""
+    """Return the energy shares of the shapes q (a, m) of all dofs, complex or real; `rigid` modes (m,) have no strain energy.
+
+    Twice the kinetic energy of an element is |s|^2 q^H M q, twice its strain energy (B q)^H D (B q); |s|^2 cancels in the shares.
+    """
     modes = q.shape[1]
     kinetic: dict[str, np.ndarray] = {}
     strain: dict[str, np.ndarray] = {}
-    by_motion: dict[str, np.ndarray] = {motion: np.zeros(modes) for motion in system.model.motions}
-    strained: dict[str, np.ndarray] = {}
-    by_shaft: dict[tuple[str, str], np.ndarray] = {}
+    kinetic_by_motion: dict[str, np.ndarray] = {motion: np.zeros(modes) for motion in system.model.motions}
+    strain_by_motion: dict[str, np.ndarray] = {}
+    kinetic_by_shaft: dict[tuple[str, str], np.ndarray] = {}
     for group in system.groups_at(speed):
         local = q[group.dofs]  # (e, d, m)
-        for motion, energy in _kinetic(group, local, system.model.motions):
+        M = group.matrices.mass
+        motions = np.array(group.dof_motions)
+        for motion in system.model.motions:
+            if M is None:
+                break
+            dofs = motions == motion
+            part = local[:, dofs]
+            energy = np.real(np.einsum("edm,edm->m", part.conj(), M[:, dofs][:, :, dofs] @ part))
             _add(kinetic, group.part, energy)
-            _add(by_shaft, (group.shaft, motion), energy)
-            by_motion[motion] += energy
-        for label, energy in _strain(group, local):
+            _add(kinetic_by_shaft, (group.shaft, motion), energy)
+            kinetic_by_motion[motion] += energy
+        for label, energy in _strain_energies(group, local):
             elastic = np.where(rigid, 0.0, energy)
             _add(strain, group.part, elastic)
-            _add(strained, label, elastic)
-    nothing = np.zeros(modes)
-    total = sum(by_motion.values(), nothing)
-    strained_total = sum(strained.values(), nothing)
+            _add(strain_by_motion, label, elastic)
+    kinetic_total = sum(kinetic_by_motion.values(), np.zeros(modes))
+    strain_total = sum(strain_by_motion.values(), np.zeros(modes))
     return Energies(
-        _shares(kinetic, total),
-        _shares(strain, strained_total),
-        _shares(by_motion, total),
-        _shares(strained, strained_total),
-        _shares(by_shaft, total),
+        _shares(kinetic, kinetic_total),
+        _shares(strain, strain_total),
+        _shares(kinetic_by_motion, kinetic_total),
+        _shares(strain_by_motion, strain_total),
+        _shares(kinetic_by_shaft, kinetic_total),
     )
 
 
-def _kinetic(group: ElementGroup, local: np.ndarray, motions: Iterable[str]) -> Iterable[tuple[str, np.ndarray]]:
-    M = group.matrices.mass
-    if M is None:
-        return
-    kinds = np.array(group.dof_motions)
-    for motion in motions:
-        own = kinds == motion
-        part = local[:, own]
-        moved = M[:, own][:, :, own] @ part
-        yield motion, np.real(np.einsum("edm,edm->m", part.conj(), moved))
-
-
-def _strain(group: ElementGroup, local: np.ndarray) -> Iterable[tuple[str, np.ndarray]]:
+def _strain_energies(group: ElementGroup, local: np.ndarray) -> Iterable[tuple[str, np.ndarray]]:
+    """Yield twice the strain energy (m,) of a group's elements: of a shaft by motion, of springs under their kind."""
     B = group.matrices.strain
     D = group.matrices.modulus
     if B is None or D is None:
         return
     strains = B @ local
-    density = np.real(np.sum(strains.conj() * (D @ strains), axis=0))  # (s, m)
+    energy = np.real(np.sum(strains.conj() * (D @ strains), axis=0))  # (s, m), by strain
     if group.strain_motions:
         for motion in dict.fromkeys(group.strain_motions):
-            own = [k for k, name in enumerate(group.strain_motions) if name == motion]
-            yield motion, density[own].sum(axis=0)
+            rows = [k for k, name in enumerate(group.strain_motions) if name == motion]
+            yield motion, energy[rows].sum(axis=0)
     else:
-        yield _SPRING_KINDS[group.part.partition(".")[0]], density.sum(axis=0)
+        yield _SPRING_KINDS[group.part.partition(".")[0]], energy.sum(axis=0)
 
 
 def _add(table: dict[Any, np.ndarray], key: Any, energy: np.ndarray) -> None:

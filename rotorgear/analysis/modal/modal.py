@@ -21,10 +21,11 @@ from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import MOTIONS
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import ModalResult
-from rotorgear.system.plan import PieceKey, Plan
+from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 DEFAULT_MODES = 24
+# Each round raises orders or halves elements where the error is: a model that needs more rounds than this does not converge.
 _ROUNDS = 30
 
 
@@ -93,10 +94,21 @@ def modal(
             if error_estimate:
                 estimate = enriched_errors(system, Wanted(speed, None, None, tuple(only), pruning), found, estimate)
             break
-        plan = _next_plan(system, reach, found, parts, estimate, target)
+        size = np.abs(found.eigenvalues)
+        if reach.modes is not None and len(size) < reach.modes and parts:
+            # The mesh has fewer modes than asked for: every piece must be finer before any error can be estimated.
+            if reach.modes > 2 * MOST_MODES:
+                raise AnalysisError(
+                    f"a flexible shaft has modes without end, and more than {MOST_MODES} are not sought: "
+                    "ask for fewer (--modes)"
+                )
+            plan: Plan | None = all_finer(system)
+        else:
+            watched = reach.watched(size, estimate)
+            plan = refined(system, {piece: part[watched] for piece, part in parts.items()}, target)
         if plan is not None:
             system = _system(system.model, speed, plan)
-        elif reach.is_certain(np.abs(found.eigenvalues), estimate, found.is_complete):
+        elif reach.is_certain(size, estimate, found.is_complete):
             break
         else:
             reach = reach.further()
@@ -127,22 +139,8 @@ def _solved(system: System, wanted: Wanted) -> Modes:
         ) from error
 
 
-def _next_plan(
-    system: System, reach: Reach, found: Modes, parts: dict[PieceKey, np.ndarray], estimate: np.ndarray, target: float
-) -> Plan | None:
-    """Return a finer plan while some watched mode is not within the target, or the mesh has fewer modes than asked for."""
-    size = np.abs(found.eigenvalues)
-    if reach.modes is not None and len(size) < reach.modes and parts:
-        if reach.modes > 2 * MOST_MODES:
-            raise AnalysisError(
-                f"a flexible shaft has modes without end, and more than {MOST_MODES} are not sought: ask for fewer (--modes)"
-            )
-        return all_finer(system)
-    watched = reach.watched(size, estimate)
-    return refined(system, {piece: part[watched] for piece, part in parts.items()}, target)
-
-
 def _system(model: Model | System, speed: float | None, plan: Plan) -> System:
+    """The system of a model, discretised by a plan; a system that was given is taken as it is."""
     system = model if isinstance(model, System) else System(model, plan=plan, direction=direction_of(speed))
     if system.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")

@@ -26,20 +26,18 @@ def expected_modes(model: Model, limit: float) -> float:
             outer, bore = section.stiffness_diameters()[:2]
             area = np.pi / 4.0 * (outer**2 - bore**2)
             inertia = np.pi / 64.0 * (outer**4 - bore**4)
-            waves = _waves(material.youngs_modulus, material.g, material.density, area, inertia, limit)
-            used = sum(waves[motion] for motion in model.motions)
-            count += used * section.length / np.pi
+            E = material.youngs_modulus
+            G = material.g
+            rho = material.density
+            w = limit
+            # a (k^2)^2 - b k^2 + c = 0 for the wave numbers of bending
+            a = E * inertia * _SHEAR * G * area
+            b = (E * inertia * rho * area + _SHEAR * G * area * rho * inertia) * w**2
+            c = rho * area * w**2 * (rho * inertia * w**2 - _SHEAR * G * area)
+            root = np.sqrt(max(b**2 - 4.0 * a * c, 0.0))
+            squares = [(b + root) / (2.0 * a), (b - root) / (2.0 * a)]
+            # A negative square is a near field that decays, not a wave; both planes count.
+            bending = 2.0 * sum(np.sqrt(k) for k in squares if k > 0.0)
+            wave_number = {"bending": bending, "axial": w * np.sqrt(rho / E), "torsion": w * np.sqrt(rho / G)}
+            count += sum(wave_number[motion] for motion in model.motions) * section.length / np.pi
     return count
-
-
-def _waves(E: float, G: float, rho: float, area: float, inertia: float, w: float) -> dict[str, float]:
-    """Sum of the real wave numbers in 1/m of each motion."""
-    bend = E * inertia
-    shear = _SHEAR * G * area
-    a = bend * shear
-    b = (bend * rho * area + shear * rho * inertia) * w**2
-    c = rho * area * w**2 * (rho * inertia * w**2 - shear)
-    root = np.sqrt(max(b**2 - 4.0 * a * c, 0.0))
-    squares = [(b + root) / (2.0 * a), (b - root) / (2.0 * a)]
-    bending = 2.0 * sum(np.sqrt(k) for k in squares if k > 0.0)
-    return {"bending": bending, "axial": w * np.sqrt(rho / E), "torsion": w * np.sqrt(rho / G)}

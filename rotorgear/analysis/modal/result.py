@@ -68,7 +68,10 @@ def modal_result(
 
 
 def _turned(shapes: np.ndarray) -> np.ndarray:
-    """Turn each mode's phase so that its largest displacement is real and positive."""
+    """Turn each mode's phase so that its largest displacement is real and positive.
+
+    An eigenvector has no phase of its own; without this choice the same mode would look different from run to run.
+    """
     if shapes.shape[2] == 0:
         return shapes
     mode = np.arange(shapes.shape[2])
@@ -76,6 +79,7 @@ def _turned(shapes: np.ndarray) -> np.ndarray:
     rows = shapes[:, :3].reshape(-1, len(mode))
     size = np.abs(everything)
     along = np.abs(rows)
+    # A mode that only tilts or twists has no displacement to speak of: its largest rotation is turned then.
     moving = along.max(axis=0, initial=0.0) > 1e-9 * size.max(axis=0, initial=0.0)
     peak = np.where(moving, rows[along.argmax(axis=0), mode], everything[size.argmax(axis=0), mode])
     shapes *= np.where(peak != 0.0, np.conj(peak) / np.where(peak != 0.0, np.abs(peak), 1.0), 1.0)

@@ -15,7 +15,7 @@ from rotorgear.analysis.modal.rigid_basis import sorted_rigid
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen.eigen import UndampedModes, lowest_modes
 from rotorgear.solvers.eigen.shift_invert import shifted_operator
-from rotorgear.solvers.sparse.pencil import LooseDofError
+from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
 from rotorgear.system.components import dof_motions, independent_groups
 from rotorgear.system.strain_forms import StrainForms
 from rotorgear.system.system import System
@@ -53,42 +53,53 @@ def solve(system: System, wanted: Wanted) -> Modes:
         AnalysisError: a dof has neither inertia nor stiffness, or no group has a motion that is asked for.
         ConvergenceError: a guard of a solver was not met.
     """
-    speed = wanted.speed or 0.0
     whole = _problem(system, wanted.speed)
-    used = [A for A in (whole.M, whole.D, whole.K) if A is not None]
-    groups = independent_groups(used) if wanted.pruning else [np.arange(system.n)]
+    # Groups of dofs that no entry of M, D or K couples are eigenproblems of their own.
+    matrices = [A for A in (whole.M, whole.D, whole.K) if A is not None]
+    groups = independent_groups(matrices) if wanted.pruning else [np.arange(system.n)]
     motions = dof_motions(system)
-    chosen = [g for g in groups if not wanted.only or set(motions[g]) & set(wanted.only)]
+    chosen = [group for group in groups if not wanted.only or set(motions[group]) & set(wanted.only)]
     if not chosen:
         raise AnalysisError(f"no dof of the model moves in {' or '.join(wanted.only)}")
     try:
-        found = [_solve_group(_part(whole, g, system.n), wanted, system) for g in chosen]
+        solved = [_solve_group(_part(whole, group, system.n), wanted, system) for group in chosen]
     except LooseDofError as error:
-        raise _loose(system, whole) or AnalysisError(str(error)) from None
-    notes = group_notes(motions, groups, chosen)
-    return _merged(system, chosen, found, wanted, speed, notes)
+        # The solver knows the number of a dof within its group; the whole pencil tells which dofs of the model they are.
+        try:
+            check_pencil(whole.M, whole.K_symmetric)
+        except LooseDofError as loose:
+            names = "; ".join(system.dofs.describe(dof, system.nodes) for dof in loose.dofs[:4])
+            more = f" and {len(loose.dofs) - 4} more" if len(loose.dofs) > 4 else ""
+            remedy = "give the body there its inertia, or hold the motion with a support"
+            raise AnalysisError(f"neither inertia nor stiffness: {names}{more}; {remedy}") from None
+        raise AnalysisError(str(error)) from None
+    return _merged(system, chosen, solved, wanted.modes, group_notes(motions, groups, chosen))
 
 
 def _problem(system: System, speed: float | None) -> _Problem:
+    """M, D, K of a system at a speed in rad/s; without one, undamped at standstill."""
     at = speed or 0.0
-    skew = system.circulatory(at)
-    K = system.stiffness(at)
+    circulatory = system.circulatory(at)
+    K_symmetric = system.stiffness(at)
     D = system.velocity_terms(speed)
-    total = sp.csc_array(K + skew) if skew.nnz else K
-    damped = speed is not None and bool(system.damping(at).nnz)
-    plain = D is None and not skew.nnz
-    inertial, forms = (None, None) if plain else (system.inertial_terms(at), system.strain_forms(at))
+    is_plain = D is None and not circulatory.nnz
+    guess = None
+    if system.n >= _LARGE:
+        # The first elastic eigenvalue of the coarsest mesh saves the search for a shift, which costs a factorisation here.
+        coarse = System(system.model, elements=1, direction=system.direction)
+        guess = shifted_operator(coarse.mass, coarse.stiffness()).elastic if coarse.n else None
     return _Problem(
-        system.mass, D, total, K, system.strain_factor(at), not skew.nnz, damped, inertial, forms, _guess(system)
+        M=system.mass,
+        D=D,
+        K=sp.csc_array(K_symmetric + circulatory) if circulatory.nnz else K_symmetric,
+        K_symmetric=K_symmetric,
+        S=system.strain_factor(at),
+        symmetric=not circulatory.nnz,
+        damped=speed is not None and bool(system.damping(at).nnz),
+        inertial=None if is_plain else system.inertial_terms(at),
+        forms=None if is_plain else system.strain_forms(at),
+        guess=guess,
     )
-
-
-def _guess(system: System) -> float | None:
-    """The first elastic eigenvalue of the coarsest mesh of a large system, in (rad/s)^2: it saves a factorisation."""
-    if system.n < _LARGE:
-        return None
-    coarse = System(system.model, elements=1, direction=system.direction)
-    return shifted_operator(coarse.mass, coarse.stiffness()).elastic if coarse.n else None
 
 
 def _part(whole: _Problem, group: np.ndarray, n: int) -> _Problem:
@@ -116,14 +127,14 @@ def _part(whole: _Problem, group: np.ndarray, n: int) -> _Problem:
 
 def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
     if problem.D is None and problem.symmetric:
-        found = _lowest(problem, wanted.modes, wanted.limit)
-        rigid = np.arange(len(found.eigenvalues)) < found.rigid_count
-        s = 1j * np.where(rigid, 0.0, np.sqrt(found.eigenvalues))
-        highest = np.sqrt(max(found.sturm_shift, 0.0)) / (2.0 * np.pi)
-        method = f"undamped, {found.method}, Sturm count {found.sturm_count} of {found.sturm_expected} below {highest:.6g} Hz"
-        vectors = found.vectors
-        errors = found.backward_error
-        available: int | None = found.available
+        modes = _lowest(problem, wanted.modes, wanted.limit)
+        rigid = np.arange(len(modes.eigenvalues)) < modes.rigid_count
+        s = 1j * np.where(rigid, 0.0, np.sqrt(modes.eigenvalues))
+        highest = np.sqrt(max(modes.sturm_shift, 0.0)) / (2.0 * np.pi)
+        method = f"undamped, {modes.method}, Sturm count {modes.sturm_count} of {modes.sturm_expected} below {highest:.6g} Hz"
+        vectors = modes.vectors
+        errors = modes.backward_error
+        available: int | None = modes.available
     else:
         s, vectors, rigid, errors, available, method = _damped(problem, wanted)
     zeta = system.model.damping.modal_ratio
@@ -141,45 +152,38 @@ def _lowest(problem: _Problem, modes: int | None, limit: float | None) -> Undamp
 def _damped(
     problem: _Problem, wanted: Wanted
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, int | None, str]:
+    """Eigenvalues, vectors of modal mass 1, rigid ones, backward errors, number of modes there are, and the method in words."""
     assert problem.forms is not None
     assert problem.inertial is not None
-    D = sp.csc_array(problem.M.shape) if problem.D is None else problem.D
-    found, coordinates = damped_group(
+    modes, coordinates = damped_group(
         DampedProblem(
-            problem.M,
-            D,
-            problem.K,
-            problem.K_symmetric,
-            problem.inertial,
-            problem.S,
-            problem.forms,
-            lambda count, below: _lowest(problem, count, below),
+            M=problem.M,
+            D=sp.csc_array(problem.M.shape) if problem.D is None else problem.D,
+            K=problem.K,
+            K_symmetric=problem.K_symmetric,
+            inertial=problem.inertial,
+            strain=problem.S,
+            forms=problem.forms,
+            lowest=lambda count, below: _lowest(problem, count, below),
         ),
         wanted.modes,
         wanted.limit,
     )
-    worst = float(found.backward_error.max(initial=0.0))
+    worst = float(modes.backward_error.max(initial=0.0))
     if worst > _LARGEST_RESIDUAL:
         raise ConvergenceError(
             f"a damped mode leaves a residual of {worst:.1e} relative to the matrices, so the modes can't be trusted; ask for "
             "fewer modes, or look for stiffness or damping many decades apart",
-            found,
+            modes,
         )
-    s = np.where(found.rigid, 0.0, found.eigenvalues)
+    s = np.where(modes.rigid, 0.0, modes.eigenvalues)
     if problem.symmetric and not problem.damped:
         s = 1j * np.abs(s)  # gyroscopic terms do no work: without damping every s is imaginary, but for rounding
-    norm = np.sqrt(np.real(np.einsum("nm,nm->m", found.vectors.conj(), problem.M @ found.vectors)))
-    vectors = found.vectors / np.where(norm > 0.0, norm, 1.0)
+    norm = np.sqrt(np.real(np.einsum("nm,nm->m", modes.vectors.conj(), problem.M @ modes.vectors)))
+    vectors = modes.vectors / np.where(norm > 0.0, norm, 1.0)
     kind = " ".join(word for word, there in (("damped", problem.damped), ("gyroscopic", bool(wanted.speed))) if there)
-    available = len(s) if found.complete else None
-    return (
-        s,
-        vectors,
-        found.rigid,
-        found.backward_error,
-        available,
-        f"{kind or 'non-symmetric'} problem{coordinates}, {found.method}",
-    )
+    method = f"{kind or 'non-symmetric'} problem{coordinates}, {modes.method}"
+    return s, vectors, modes.rigid, modes.backward_error, len(s) if modes.complete else None, method
 
 
 def with_modal_damping(s: np.ndarray, zeta: float) -> np.ndarray:
@@ -192,29 +196,25 @@ def with_modal_damping(s: np.ndarray, zeta: float) -> np.ndarray:
 
 
 def _merged(
-    system: System,
-    groups: Sequence[np.ndarray],
-    found: Sequence[Modes],
-    wanted: Wanted,
-    speed: float,
-    notes: tuple[str, ...],
+    system: System, groups: Sequence[np.ndarray], solved: Sequence[Modes], most: int | None, notes: tuple[str, ...]
 ) -> Modes:
     """Put the modes of all groups in one order: rigid first, then by |s|, and no more than were asked for."""
-    s = np.concatenate([part.eigenvalues for part in found])
-    rigid = np.concatenate([part.rigid for part in found])
-    errors = np.concatenate([part.backward_error for part in found])
-    owner = np.concatenate([np.full(len(part.eigenvalues), k) for k, part in enumerate(found)])
-    column = np.concatenate([np.arange(len(part.eigenvalues)) for part in found])
-    order = np.lexsort((np.abs(s), ~rigid))[: wanted.modes]
-    vectors = np.zeros((system.n, len(order)), dtype=np.result_type(*[part.vectors for part in found]))
+    s = np.concatenate([part.eigenvalues for part in solved])
+    rigid = np.concatenate([part.rigid for part in solved])
+    errors = np.concatenate([part.backward_error for part in solved])
+    owner = np.concatenate([np.full(len(part.eigenvalues), k) for k, part in enumerate(solved)])
+    column = np.concatenate([np.arange(len(part.eigenvalues)) for part in solved])
+    order = np.lexsort((np.abs(s), ~rigid))[:most]
+    vectors = np.zeros((system.n, len(order)), dtype=np.result_type(*[part.vectors for part in solved]))
     for place, k in enumerate(order):
-        vectors[groups[owner[k]], place] = found[owner[k]].vectors[:, column[k]]
+        vectors[groups[owner[k]], place] = solved[owner[k]].vectors[:, column[k]]
     if np.sum(rigid[order]) > 1:
+        # Any combination of rigid motions is one: choose those that a person can read.
         vectors[:, rigid[order]] = sorted_rigid(system, np.real(vectors[:, rigid[order]]))
-    counts = [part.available for part in found]
+    counts = [part.available for part in solved]
     available = None if any(count is None for count in counts) else sum(count for count in counts if count is not None)
-    methods = list(dict.fromkeys(part.method for part in found))
-    method = methods[0] if len(found) == 1 else f"{len(found)} groups of dofs; the largest: {methods[0]}"
+    methods = list(dict.fromkeys(part.method for part in solved))
+    method = methods[0] if len(solved) == 1 else f"{len(solved)} groups of dofs; the largest: {methods[0]}"
     return Modes(s[order], vectors, rigid[order], errors[order], method, available, notes)
 
 
@@ -233,17 +233,3 @@ def group_notes(motions: np.ndarray, groups: list[np.ndarray], chosen: list[np.n
             f"coupling between {len(chosen)} groups of dofs that do not act on each other, solved apart: {sizes}{more}"
         )
     return tuple(notes)
-
-
-def _loose(system: System, whole: _Problem) -> AnalysisError | None:
-    """Name the dofs with neither inertia nor stiffness."""
-    from rotorgear.solvers.sparse.pencil import check_pencil
-
-    try:
-        check_pencil(whole.M, whole.K_symmetric)
-    except LooseDofError as error:
-        names = "; ".join(system.dofs.describe(dof, system.nodes) for dof in error.dofs[:4])
-        more = f" and {len(error.dofs) - 4} more" if len(error.dofs) > 4 else ""
-        remedy = "give the body there its inertia, or hold the motion with a support"
-        return AnalysisError(f"neither inertia nor stiffness: {names}{more}; {remedy}")
-    return None

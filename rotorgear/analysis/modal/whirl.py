@@ -46,14 +46,15 @@ def whirl_by_shaft(system: System, shapes: np.ndarray, speed: float) -> dict[str
     """Net sense of precession of each shaft in the sense of its own spin: shaft -> (m,), -1 to 1; 0 for a shaft at rest."""
     if not speed or not system.model.has("bending"):
         return {name: np.zeros(shapes.shape[2]) for name in system.model.shafts}
-    found = {}
+    sense = {}
     inertia = diagonal_inertia(system)
     for name in system.model.shafts:
         swept, size = orbits(system, inertia, shapes, name)
         total = size.sum(axis=0)
         spin = np.sign(system.train.ratio(name) * speed)
-        found[name] = spin * np.where(total > 0.0, swept.sum(axis=0) / np.where(total > 0.0, total, 1.0), 0.0)
-    return found
+        # A mode is forward for this shaft when it precesses as the shaft itself turns, not as the input does.
+        sense[name] = spin * np.where(total > 0.0, swept.sum(axis=0) / np.where(total > 0.0, total, 1.0), 0.0)
+    return sense
 
 
 def whirl_words(
