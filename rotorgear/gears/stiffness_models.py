@@ -69,8 +69,8 @@ def mesh_stiffness(name: str, teeth: ToothPair, load: float | None = None, posit
         )
     module, function = entry.home.split(":")
     model: StiffnessModel = getattr(import_module(module), function)
-    found = model(teeth, load, positions)
-    found.position.flags.writeable = found.transverse.flags.writeable = (
-        False  # the cache hands the same arrays out again
-    )
-    return found
+    curve = model(teeth, load, positions)
+    # The cache hands the same arrays out again: nobody may write into them.
+    curve.position.flags.writeable = False
+    curve.transverse.flags.writeable = False
+    return curve

@@ -41,6 +41,7 @@ def hollow_cylinder(outer_diameter: float, bore: float, width: float, density: f
             f"the bore of {_millimetres(bore)} must be 0 or more and below "
             f"the outer diameter of {_millimetres(outer_diameter)}"
         )
+    # (D - d)(D + d), not D^2 - d^2, which would cancel in a thin ring.
     mass = density * math.pi / 4 * (outer_diameter - bore) * (outer_diameter + bore) * width
     polar = mass * (outer_diameter**2 + bore**2) / 8
     return RigidBody(mass, polar, polar / 2 + mass * width**2 / 12)
@@ -80,7 +81,10 @@ def gear_blank(
 
     Without rim_thickness: a solid ring from the bore to the reference diameter. With it: a rim from
     root_diameter - 2 rim_thickness to the reference diameter, a web of web_thickness, and a hub (hub_width, or as wide
-    as the gear) around the bore; without hub_diameter the web reaches the bore. ValueError for parts that don't fit.
+    as the gear) around the bore; without hub_diameter the web reaches the bore.
+
+    Raises:
+        ValueError: parts that don't fit, or one without another that it needs.
     """
     if rim_thickness is None:
         if any(part is not None for part in (web_thickness, hub_diameter, hub_width)):
@@ -93,44 +97,31 @@ def gear_blank(
     if hub_diameter is None and hub_width is not None:
         raise ValueError("a hub width needs a hub diameter: give it as well, or leave the hub width out")
     _require_positive(face_width=width, rim_thickness=rim_thickness, web_thickness=web_thickness)
-    inner = _rim_inner_diameter(root_diameter, rim_thickness)
-    core = bore if hub_diameter is None else hub_diameter
-    _require_web_fits(inner, core, width, web_thickness)
-    parts = [
-        hollow_cylinder(reference_diameter, inner, width, density),
-        hollow_cylinder(inner, core, web_thickness, density),
-    ]
-    if hub_diameter is not None:
-        parts.append(_hub(hub_diameter, bore, width if hub_width is None else hub_width, web_thickness, density))
-    return stack(parts, [0.0] * len(parts))
 
-
-def _rim_inner_diameter(root_diameter: float, rim_thickness: float) -> float:
-    """Root diameter less twice the rim; ValueError when nothing is left."""
-    inner = root_diameter - 2.0 * rim_thickness
-    if inner <= 0.0:
+    # The rim is measured from the root circle, as gear standards do (s_R of ISO 6336-1).
+    rim_inside = root_diameter - 2.0 * rim_thickness
+    if rim_inside <= 0.0:
         raise ValueError(
             f"a rim {_millimetres(rim_thickness)} thick leaves no room inside "
             f"the root diameter of {_millimetres(root_diameter)}"
         )
-    return inner
-
-
-def _require_web_fits(inner: float, core: float, width: float, web_thickness: float) -> None:
-    """ValueError unless the web has a radial extent and is no thicker than the face width."""
-    if inner <= core:
+    web_inside = bore if hub_diameter is None else hub_diameter
+    if rim_inside <= web_inside:
         raise ValueError(
-            f"the rim's inner diameter of {_millimetres(inner)} must be above the diameter of {_millimetres(core)} "
-            "of the hub or bore inside it: make the rim thinner, or leave it out for a solid blank"
+            f"the rim's inner diameter of {_millimetres(rim_inside)} must be above the diameter of "
+            f"{_millimetres(web_inside)} of the hub or bore inside it: make the rim thinner, or leave it out for a "
+            "solid blank"
         )
     if web_thickness > width:
         raise ValueError(
             f"a web {_millimetres(web_thickness)} thick is wider than the face width of {_millimetres(width)}"
         )
+    rim = hollow_cylinder(reference_diameter, rim_inside, width, density)
+    web = hollow_cylinder(rim_inside, web_inside, web_thickness, density)
+    if hub_diameter is None:
+        return stack([rim, web], [0.0, 0.0])
 
-
-def _hub(hub_diameter: float, bore: float, hub_width: float, web_thickness: float, density: float) -> RigidBody:
-    """The hub as a hollow cylinder; ValueError when it is no larger than the bore or narrower than its web."""
+    hub_width = width if hub_width is None else hub_width
     if hub_diameter <= bore:
         raise ValueError(
             f"the hub diameter of {_millimetres(hub_diameter)} must be above the bore of {_millimetres(bore)}"
@@ -139,4 +130,5 @@ def _hub(hub_diameter: float, bore: float, hub_width: float, web_thickness: floa
         raise ValueError(
             f"a hub {_millimetres(hub_width)} wide is narrower than its web of {_millimetres(web_thickness)}"
         )
-    return hollow_cylinder(hub_diameter, bore, hub_width, density)
+    hub = hollow_cylinder(hub_diameter, bore, hub_width, density)
+    return stack([rim, web, hub], [0.0, 0.0, 0.0])

@@ -43,34 +43,38 @@ class FlankModification:
 
     @property
     def largest(self) -> float:
-        """Sum of the sizes of all deviations: no gap is larger."""
+        """Upper bound (m) of the depth at any point: the sum of all deviations, as if their peaks met."""
         pitch = max((abs(error) for _, error in self.pitch_error), default=0.0)
         return self.tip_relief + self.root_relief + self.crowning + self.end_relief + abs(self.helix_slope) + pitch
 
     def pitch_depth(self, tooth: np.ndarray, teeth: int) -> np.ndarray:
-        """How far the flanks of teeth (any whole numbers, counted round the gear) stand back."""
+        """How far the flanks of some teeth stand back (m); `tooth` holds any whole numbers, counted round the gear."""
         table = np.zeros(teeth)
         for number, error in self.pitch_error:
             table[number % teeth] += error
         return np.asarray(table[np.asarray(tooth) % teeth])
 
     def depth(self, roll: np.ndarray, z: np.ndarray, form: float, tip: float, width: float) -> np.ndarray:
-        """Removed depth at roll lengths and places z from the middle of the face, of one shape.
+        """Removed depth (m) of flank points.
 
         Args:
-            form, tip: roll lengths of the ends of the involute.
-            width: face width.
+            roll: roll lengths (m).
+            z: places from the middle of the face (m), of a shape that broadcasts with `roll`.
+            form: roll length at which the involute begins (m).
+            tip: roll length at which it ends (m).
+            width: face width (m).
         """
-        found = np.zeros(np.broadcast_shapes(np.shape(roll), np.shape(z)))
+        depth = np.zeros(np.broadcast_shapes(np.shape(roll), np.shape(z)))
         if self.tip_relief:
             share = 1.0 - (tip - roll) / self.tip_relief_length
-            found = found + self.tip_relief * np.clip(share, 0.0, 1.0) ** self.relief_exponent
+            depth = depth + self.tip_relief * np.clip(share, 0.0, 1.0) ** self.relief_exponent
         if self.root_relief:
             share = 1.0 - (roll - form) / self.root_relief_length
-            found = found + self.root_relief * np.clip(share, 0.0, 1.0) ** self.relief_exponent
+            depth = depth + self.root_relief * np.clip(share, 0.0, 1.0) ** self.relief_exponent
         if self.crowning:
-            found = found + self.crowning * (2.0 * z / width) ** 2
+            depth = depth + self.crowning * (2.0 * z / width) ** 2
         if self.end_relief:
             share = 1.0 - (0.5 * width - np.abs(z)) / self.end_relief_length
-            found = found + self.end_relief * np.clip(share, 0.0, 1.0)
-        return found + self.helix_slope * z / width
+            depth = depth + self.end_relief * np.clip(share, 0.0, 1.0)
+        # The slope turns the flank about the middle of the face: half of it is added at one end, half taken off at the other.
+        return depth + self.helix_slope * z / width

@@ -13,6 +13,7 @@ from rotorgear.gears.geometry.geometry import GearGeometry
 
 def base_pitch_deviation(g: GearGeometry, grade: int) -> float:
     """f_pb (m) of a gear in a tolerance class."""
+    # The standard's formulas give um for d and m_n in mm: 1e3 and 1e-6 are those units.
     pitch = 0.001 * 1e3 * g.reference_diameter + 0.4 * 1e3 * g.normal_module + 5.0
     return 1e-6 * pitch * _step(grade) * math.cos(g.transverse_pressure_angle)
 
@@ -23,4 +24,5 @@ def profile_form_deviation(g: GearGeometry, grade: int) -> float:
 
 
 def _step(grade: int) -> float:
+    """Ratio of a class's tolerance to that of class 5, in which the formulas are written."""
     return math.sqrt(2.0) ** (grade - 5)

@@ -21,11 +21,19 @@ THIN_TIP = 0.2
 class GearGeometry:
     """Tooth data of one external gear (one helix of a herringbone gear); ISO 21771-1.
 
-    normal_module (m), normal_pressure_angle and helix_angle (rad, at the reference cylinder), profile_shift x and the
-    addendum_factor, dedendum_factor and root_radius_factor (rho_fP) of the basic rack in normal modules. `tip_diameter` (m)
-    is the given one; None means d + 2 m_n (h_a + x), and `effective_tip_diameter` is the one in force. So with the root
-    radius: None is that of ISO 53, and `tool_tip_radius_factor` the one in force. Values without meaning raise
-    AnalysisError; `check_gear` tells which meaningful values make a bad or an impossible tooth.
+    Values without meaning raise AnalysisError; `check_gear` tells which meaningful values make a bad or an impossible tooth.
+
+    Attributes:
+        teeth: z.
+        normal_module: m_n (m).
+        normal_pressure_angle: a_n (rad).
+        helix_angle: b (rad) at the reference cylinder, 0 or positive.
+        profile_shift: x in normal modules.
+        addendum_factor: h_aP of the basic rack in normal modules.
+        dedendum_factor: h_fP of the basic rack in normal modules.
+        tip_diameter: d_a (m) as given; None means d + 2 m_n (h_aP + x). `effective_tip_diameter` is the one in force.
+        root_radius_factor: rho_fP in normal modules as given; None means that of ISO 53. `tool_tip_radius_factor` is the
+            one in force.
     """
 
     teeth: int
@@ -114,6 +122,8 @@ class GearGeometry:
     @property
     def full_radius_factor(self) -> float:
         """Largest rho_fP at which the tool's tip is still as deep as h_fP: its two roundings meet; negative where none is."""
+        # A circle of radius rho that touches the rack's flank and its tip line takes rho (1 - sin a) / cos a of that line; half
+        # of the land, pi/4 - h_fP tan a, is all there is.
         alpha = self.normal_pressure_angle
         half_land = math.pi / 4 - self.dedendum_factor * math.tan(alpha)
         return half_land * math.cos(alpha) / (1.0 - math.sin(alpha))
@@ -152,7 +162,10 @@ class GearGeometry:
     def transverse_thickness(self, diameter: float) -> float:
         """s_yt (m): arc between the two flanks of a tooth at a diameter; negative where they have crossed.
 
-        AnalysisError below the base circle, where there is no involute.
+        s_yt = d_y [(pi/2 + 2 x tan a_n) / z + inv a_t - inv a_yt].
+
+        Raises:
+            AnalysisError: a diameter below the base circle, where there is no involute.
         """
         base = 2.0 * self.base_radius
         if not base <= diameter < math.inf:
@@ -176,7 +189,7 @@ class GearGeometry:
         return self.transverse_tip_thickness * math.cos(math.atan(math.tan(self.helix_angle) * tip))
 
     def base_tangent_length(self, teeth_spanned: int) -> float:
-        """W_k (m): span over `teeth_spanned` teeth, measured normal to them."""
+        """W_k = m_n cos a_n [(k - 1/2) pi + z inv a_t + 2 x tan a_n] (m): span over k teeth, measured normal to them."""
         normal = (teeth_spanned - 0.5) * math.pi + self.teeth * involute(self.transverse_pressure_angle)
         normal += 2.0 * self.profile_shift * math.tan(self.normal_pressure_angle)
         return self.normal_module * math.cos(self.normal_pressure_angle) * normal
@@ -201,22 +214,22 @@ def impossible_teeth(g: GearGeometry) -> list[str]:
 
 def check_gear(g: GearGeometry) -> list[str]:
     """What is impossible or unfavourable about a gear's teeth, one sentence each; empty when nothing is."""
-    if found := impossible_teeth(g):
-        return found
+    if sentences := impossible_teeth(g):
+        return sentences
     thickness = g.normal_tip_thickness
     if thickness <= 0.0:
-        found.append(
+        sentences.append(
             f"The teeth are pointed below the tip diameter of {1e3 * g.effective_tip_diameter:.6g} mm: "
             "reduce the tip diameter, the addendum or the profile shift."
         )
     elif thickness < THIN_TIP * g.normal_module:
-        found.append(
+        sentences.append(
             f"The teeth are nearly pointed: {1e3 * thickness:.3g} mm thick at the tip, "
             f"less than {THIN_TIP:g} normal modules."
         )
     if g.is_undercut:
-        found.append(
+        sentences.append(
             f"The teeth are undercut: the profile shift {g.profile_shift:.4g} is below the least one, "
             f"{g.minimum_profile_shift:.4g}; use more teeth or more profile shift."
         )
-    return found
+    return sentences

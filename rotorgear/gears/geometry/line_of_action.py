@@ -19,9 +19,12 @@ class LineOfAction:
     """Line of action of a pair in the transverse plane; index 0 is the pinion, 1 the gear.
 
     Attributes:
-        base_radius, form, tip: of both gears: base radius, roll length where the involute begins, and at the tip.
-        centre_distance, pressure_angle: a_w and the working transverse pressure angle.
-        base_pitch: transverse.
+        base_radius: r_b of both gears.
+        form: roll lengths of both gears where the involute begins.
+        tip: roll lengths of both gears at the tip.
+        centre_distance: a_w.
+        pressure_angle: a_wt, the working transverse pressure angle.
+        base_pitch: p_bt, transverse.
         base_helix_angle: b_b.
     """
 
@@ -56,24 +59,32 @@ class LineOfAction:
     @property
     def interference(self) -> bool:
         """Whether a tip reaches below the involute of its mate."""
+        # A tip that ends at the form circle, as many are designed to, must not count as interference by rounding.
         slack = 1e-9 * self.length
         return self.length - self.tip[1] < self.form[0] - slack or self.length - self.form[1] < self.tip[0] - slack
 
     def corner(self, gear: int, excess: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Gap along the line of action, and roll length on the mate, of the tip corner of a gear.
+        """Where the tip corner of a gear stands to its mate's flank.
 
         Args:
             gear: whose tip it is; the pinion's leaves contact, the gear's comes into it.
             excess: (k,) how far the nominal contact is beyond that tip on the line of action.
+
+        Returns:
+            The gap (k,) along the line of action, and the roll length (k,) on the mate.
         """
-        own = self.base_radius[gear]
+        base = self.base_radius[gear]
         mate = self.base_radius[1 - gear]
         tip = self.tip[gear]
         excess = np.asarray(excess, float)
-        angle = self.pressure_angle - math.atan(tip / own) - excess / own
-        radius = math.hypot(tip, own)
+
+        # P on the tip circle, as an angle about its own axis from the centre line, and as seen from the mate's axis.
+        angle = self.pressure_angle - math.atan(tip / base) - excess / base
+        radius = math.hypot(tip, base)
         across = radius * np.sin(angle)
         along = self.centre_distance - radius * np.cos(angle)
+
+        # The mate's involute through P. Below its base circle there is none: P is then taken to touch at its foot, t = 0.
         t = np.sqrt(np.maximum((across**2 + along**2) / mate**2 - 1.0, 0.0))
         effective = mate * (self.pressure_angle + np.arctan2(across, along) + t - np.arctan(t))
         return tip + excess + effective - self.length, mate * t

@@ -44,13 +44,15 @@ def ideal_ball_diameter(g: GearGeometry) -> float:
     With the roll angle t of the touched points and T = tan^2 b_b, a_K solves a_K - t - eta_b + (tan a_K - t) T = 0, and
     D = (tan a_K - t) z m_n cos a_n / cos^2 b_b: the normal from the ball's centre is D/2 long, D/2 cos b_b of it transverse.
     """
+    # Where the cylinder d + 2 x m_n lies inside the base circle, the ball touches a thousandth outside it, on the involute.
     middle = max(g.reference_diameter + 2.0 * g.profile_shift * g.normal_module, 2.0 * g.base_radius * (1.0 + 1e-3))
     touch = math.sqrt((middle / (2.0 * g.base_radius)) ** 2 - 1.0)
     slant = math.tan(g.base_helix_angle) ** 2
     space = _space_half_angle(g)
     low = math.atan(touch)
     high = 0.5 * math.pi
-    for _ in range(60):  # it grows with a_K throughout
+    # The left side grows with a_K throughout, from below 0 at a_K = t; bisection to the last digit (2^-60) can't fail.
+    for _ in range(60):
         centre = 0.5 * (low + high)
         if centre - touch - space + (math.tan(centre) - touch) * slant < 0.0:
             low = centre
@@ -112,6 +114,7 @@ def best_span(g: GearGeometry) -> int:
     middle = max(g.reference_diameter + 2.0 * g.profile_shift * g.normal_module, 2.0 * g.base_radius)
     touch = math.sqrt((middle / (2.0 * g.base_radius)) ** 2 - 1.0) / math.cos(g.base_helix_angle) ** 2
     shift = 2.0 * g.profile_shift * math.tan(g.normal_pressure_angle) / g.teeth
+    # A tangent that touches at this cylinder is W_k = z m_n cos a_n tan a_y / cos^2 b_b long; solved for k.
     k = round(g.teeth / math.pi * (touch - shift - involute(g.transverse_pressure_angle)) + 0.5)
     return max(1, min(k, g.teeth - 1)) if g.teeth > 1 else 1
 

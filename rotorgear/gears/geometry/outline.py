@@ -90,6 +90,7 @@ def trochoid(g: GearGeometry, tool_angle: np.ndarray | float) -> tuple[np.ndarra
 
     The angle lies in the normal section: a_n where flank and tip circle of the tool touch, pi/2 at its crest.
     """
+    # Centre of the tool's rounded tip in the normal section, from the middle of the tooth and from the datum line.
     theta = np.asarray(tool_angle, float)
     m = g.normal_module
     alpha = g.normal_pressure_angle
@@ -97,9 +98,11 @@ def trochoid(g: GearGeometry, tool_angle: np.ndarray | float) -> tuple[np.ndarra
     rho = g.tool_tip_radius_factor
     below = g.dedendum_factor - rho
     centre = math.pi / 4 + below * math.tan(alpha) + rho / math.cos(alpha)
+    # The cutting point of the tool in the transverse section, which stretches the circle to an ellipse by 1 / cos b.
     x = m * (centre - rho * np.cos(theta)) / math.cos(beta)
     y = m * (g.profile_shift - below - rho * np.sin(theta))
     reference = 0.5 * g.reference_diameter
+    # Its normal passes through the pitch point after the rack has moved by u; the gear has turned by u / r meanwhile.
     moved = y * np.cos(theta) * math.cos(beta) / np.sin(theta) - x
     across = x + moved
     up = reference + y
@@ -119,7 +122,11 @@ def tooth_outline(g: GearGeometry) -> ToothOutline:
         math.tan(g.transverse_pressure_angle) - g.transverse_pressure_angle
     )
     if g.normal_tip_thickness < LEAST_TIP * g.normal_module:
-        raise AnalysisError(_pointed(g))
+        raise AnalysisError(
+            f"The teeth are pointed at the tip diameter of {1e3 * g.effective_tip_diameter:.6g} mm, or all but "
+            f"(thinner than {LEAST_TIP:g} normal modules): reduce the tip diameter, the addendum or the profile shift."
+        )
+    # The involute begins where the rack's straight flank ends; a negative roll length is that of an undercut tooth.
     roll = g.tool_form_roll_length
     angle = g.normal_pressure_angle
     undercut = False
@@ -133,16 +140,10 @@ def tooth_outline(g: GearGeometry) -> ToothOutline:
             f"{2e3 * tip:.6g} mm: no involute is left; use more teeth, more profile shift or a smaller dedendum."
         )
     outline = ToothOutline(g, tip, 0.5 * g.root_diameter, form, roll, base_half, angle, undercut)
+    # A trochoid that crosses the middle of the tooth has cut it off.
     if np.min(outline.fillet(np.linspace(0.0, 1.0, 101))[1]) <= 0.0:
         raise AnalysisError(_cut_through(g))
     return outline
-
-
-def _pointed(g: GearGeometry) -> str:
-    return (
-        f"The teeth are pointed at the tip diameter of {1e3 * g.effective_tip_diameter:.6g} mm, or all but "
-        f"(thinner than {LEAST_TIP:g} normal modules): reduce the tip diameter, the addendum or the profile shift."
-    )
 
 
 def _cut_through(g: GearGeometry) -> str:
@@ -165,7 +166,9 @@ def _crossing(g: GearGeometry, base_half_angle: float) -> tuple[float, float]:
         turned = roll(theta) / g.base_radius
         return float(trochoid(g, theta)[1]) - (base_half_angle - (turned - math.atan(turned)))
 
-    first = g.normal_pressure_angle  # the scan is dense there: a slight undercut takes place within a small angle
+    # Scan first: there may be two crossings, of which the outermost counts. The cube makes the scan dense at the flank's end,
+    # since a slight undercut takes place within a small angle.
+    first = g.normal_pressure_angle
     angles = first + (0.5 * math.pi - first) * np.linspace(1.0, 0.0, _SCAN) ** 3
     radii, halves = trochoid(g, angles)
     turned = np.sqrt(np.maximum(radii - g.base_radius, 0.0) * (radii + g.base_radius)) / g.base_radius

@@ -73,10 +73,18 @@ def profile_shift_sum(g1: GearGeometry, g2: GearGeometry, centre_distance: float
 class PairGeometry:
     """A parallel-axis pair of external gears at its centre distance, one helix; lengths in m, angles in rad.
 
-    start_of_contact (SAP, tip of gear 2) and end_of_contact (EAP, tip of gear 1) are positions xi on the line of action
-    from the pitch point, positive from the base tangent point of gear 1 towards that of gear 2. With `interference` a
-    tip reaches past the base tangent point of its mate; the contact ratio is then only nominal. transverse_backlash
-    is the arc j_wt at the working pitch circles, negative when the teeth would have to overlap.
+    Attributes:
+        centre_distance: a_w.
+        working_transverse_pressure_angle: a_wt.
+        working_helix_angle: b_w, at the working pitch circles.
+        base_helix_angle: b_b.
+        transverse_contact_ratio: eps_alpha; only nominal with interference.
+        overlap_ratio: eps_beta.
+        start_of_contact: SAP, where the tip of gear 2 meets the flank: xi on the line of action from the pitch point,
+            positive from the base tangent point of gear 1 towards that of gear 2.
+        end_of_contact: EAP, where the tip of gear 1 leaves, as xi.
+        interference: whether a tip reaches past the base tangent point of its mate.
+        transverse_backlash: j_wt, an arc at the working pitch circles; negative where the teeth would have to overlap.
     """
 
     centre_distance: float
@@ -117,6 +125,7 @@ def _path_beyond_pitch_point(g: GearGeometry, angle: float) -> float:
             f"The tip diameter of {2e3 * tip:.6g} mm is not above the base diameter of {2e3 * g.base_radius:.6g} mm: "
             "there is no flank to mesh with."
         )
+    # sqrt(r_a^2 - r_b^2) as a product, which keeps its digits for a short flank.
     return math.sqrt((tip - g.base_radius) * (tip + g.base_radius)) - g.base_radius * math.tan(angle)
 
 
@@ -127,7 +136,9 @@ def pair_geometry(
 
     eps_alpha = (EAP - SAP) / p_bt, eps_beta = width sin b / (pi m_n). The backlash is the working pitch less the two
     working tooth thicknesses, j_wt = 2 a_w [inv a_wt(a_w) - inv a_wt(x1 + x2)]: zero at the working centre distance.
-    AnalysisError when the gears don't mate, the centre distance is too small, or so large that the teeth don't meet.
+
+    Raises:
+        AnalysisError: gears that don't mate, a centre distance too small, or so large that the teeth don't meet.
     """
     if not 0.0 < width < math.inf:
         raise AnalysisError(f"The common face width of a mesh must be positive and finite, not {width:g} m.")
@@ -145,6 +156,7 @@ def pair_geometry(
             f"At a centre distance of {1e3 * distance:.6g} mm the teeth don't meet: "
             "reduce it, or increase the tip diameters."
         )
+    # The lead is the same at every cylinder, so tan b grows with its radius: d_w / d = cos a_t / cos a_wt.
     stretch = math.cos(g1.transverse_pressure_angle) / math.cos(angle)
     return PairGeometry(
         centre_distance=distance,

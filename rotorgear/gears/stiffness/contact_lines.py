@@ -28,9 +28,11 @@ def contact_lines(teeth: ToothPair, positions: np.ndarray) -> tuple[np.ndarray, 
     half = 0.5 * teeth.width
     slope = math.tan(pair.base_helix_angle)
     reach = half * slope
+    # All pairs that touch somewhere on the face at some position 0 <= u < 1, and one more at either end.
     first = math.floor((pair.start_of_contact - reach) / teeth.base_pitch) - 1
     last = math.ceil((pair.end_of_contact + reach) / teeth.base_pitch) + 1
     xi = (np.asarray(positions, float)[:, None] + np.arange(first, last + 1)) * teeth.base_pitch
+    # Lines of spur teeth touch over the whole face or not at all: xi / slope has no value.
     if slope == 0.0:
         inside = (xi >= pair.start_of_contact) & (xi <= pair.end_of_contact)
         return xi, np.where(inside, -half, 0.0), np.where(inside, half, 0.0)
@@ -54,5 +56,6 @@ def contact_line_harmonics(teeth: ToothPair, count: int) -> np.ndarray:
     n = np.arange(1, count + 1)
     middle = 0.5 * (teeth.pair.start_of_contact + teeth.pair.end_of_contact) / teeth.base_pitch
     overlap = teeth.width * math.tan(teeth.pair.base_helix_angle) / teeth.base_pitch
+    # The transform of two boxes, eps_alpha and eps_beta wide, about the middle of the path of contact.
     size = 2.0 * np.sinc(n * teeth.pair.transverse_contact_ratio) * np.sinc(n * overlap)
     return np.asarray(size * np.exp(-2j * np.pi * n * middle))

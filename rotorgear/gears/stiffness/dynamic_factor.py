@@ -24,9 +24,11 @@ _K1_SPUR = (2.1, 3.9, 7.5, 14.9, 26.8, 39.1, 52.8, 76.6, 102.6, 146.3)
 _K1_HELICAL = (1.9, 3.5, 6.7, 13.3, 23.9, 34.8, 47.0, 68.2, 91.4, 130.3)
 _K2_SPUR = 0.0193
 _K2_HELICAL = 0.0087
-# Beyond these of v z1/100 sqrt(u^2/(1+u^2)), in m/s, method C does not hold; below the first, method B is not meant for it.
+# Limits of v z1/100 sqrt(u^2/(1+u^2)) in m/s: method B is meant for faster gears than the first, method C holds up to the second.
 _LEAST_B = 3.0
 _MOST_C = 10.0
+# Running in takes no more than this off a deviation (m).
+_MOST_RUN_IN = 3e-6
 
 
 @dataclass(frozen=True)
@@ -45,13 +47,17 @@ class DynamicMesh:
     """What method B asks for, of one helix: the pinion is the gear with fewer teeth.
 
     Attributes:
-        pinion_teeth, ratio: z1, u = z2 / z1.
-        pinion_speed, pitch_line_velocity: rad/s, m/s.
+        pinion_teeth: z1.
+        ratio: u = z2 / z1.
+        pinion_speed: rad/s.
+        pitch_line_velocity: v (m/s).
         total_contact_ratio: eps_gamma.
-        line_load: F_t K_A / b (N/m).
-        single_stiffness, mesh_stiffness: c' and c_gamma_alpha (N/m^2).
+        line_load: w = F_t K_A / b (N/m).
+        single_stiffness: c' (N/m^2).
+        mesh_stiffness: c_gamma_alpha (N/m^2).
         reduced_mass: m_red per face width (kg/m).
-        base_pitch_deviation, profile_deviation: f_pb and f_fa (m), the larger of both gears.
+        base_pitch_deviation: f_pb (m), the larger of both gears.
+        profile_deviation: f_fa (m), the larger of both gears.
         tip_relief: C_a (m), or the running-in amount C_ay.
         running_in: share of both deviations that running in takes away, at most 3 um each; 0.075 for hardened gears.
     """
@@ -100,12 +106,35 @@ def iso_dynamic_factor(mesh: DynamicMesh) -> DynamicFactor:
         )
     if not mesh.line_load > 0.0:
         raise AnalysisError("K_v of ISO 6336-1 needs a load: give the torque or power that the mesh carries.")
+
+    # B_p, B_f, B_k: deviations that are left after running in, and relief, in terms of the deflection w / c'.
+    left_pitch, left_profile = (
+        deviation - min(mesh.running_in * deviation, _MOST_RUN_IN)
+        for deviation in (mesh.base_pitch_deviation, mesh.profile_deviation)
+    )
+    per_deflection = mesh.single_stiffness / mesh.line_load
+    B_p = per_deflection * left_pitch
+    B_f = per_deflection * left_profile
+    B_k = abs(1.0 - per_deflection * mesh.tip_relief)
+
+    # C_v1 ... C_v7 of the standard's table: one column up to eps_gamma = 2, another above.
+    eps = mesh.total_contact_ratio
+    C1 = 0.32
+    C2 = 0.34 if eps <= 2.0 else 0.57 / (eps - 0.3)
+    C3 = 0.23 if eps <= 2.0 else 0.096 / (eps - 1.56)
+    C4 = 0.90 if eps <= 2.0 else (0.57 - 0.05 * eps) / (eps - 1.44)
+    C5 = 0.47
+    C6 = 0.47 if eps <= 2.0 else 0.12 / (eps - 1.74)
+    C7 = 0.75 if eps <= 1.5 else 1.0 if eps > 2.5 else 0.125 * math.sin(math.pi * (eps - 2.0)) + 0.875
+
+    # N_S: under light load the range of the main resonance begins at a lower speed.
+    light = mesh.line_load < _LOW_LINE_LOAD
+    subcritical_end = 0.5 + 0.35 * math.sqrt(mesh.line_load / _LOW_LINE_LOAD) if light else 0.85
     N = mesh.resonance_ratio
-    limit = _subcritical_limit(mesh.line_load)
-    resonance = _at_resonance(mesh)
-    beyond = _supercritical(mesh)
-    if limit >= N:
-        value = 1.0 + N * _subcritical(mesh)
+    resonance = 1.0 + C1 * B_p + C2 * B_f + C4 * B_k
+    beyond = C5 * B_p + C6 * B_f + C7
+    if subcritical_end >= N:
+        value = 1.0 + N * (C1 * B_p + C2 * B_f + C3 * B_k)
         words = "subcritical"
     elif N <= 1.15:
         value = resonance
@@ -119,40 +148,6 @@ def iso_dynamic_factor(mesh: DynamicMesh) -> DynamicFactor:
     slow = _speed_term(mesh.pitch_line_velocity, mesh.pinion_teeth, mesh.ratio) < _LEAST_B
     note = ("K_v: v z1/100 sqrt(u^2/(1+u^2)) is below 3 m/s, where method B is not meant for use",) if slow else ()
     return DynamicFactor(value, "ISO 6336-1 method B", N, words, note)
-
-
-def _subcritical_limit(line_load: float) -> float:
-    """N_S."""
-    return 0.85 if line_load >= _LOW_LINE_LOAD else 0.5 + 0.35 * math.sqrt(line_load / _LOW_LINE_LOAD)
-
-
-def _parameters(mesh: DynamicMesh) -> tuple[float, float, float]:
-    """B_p, B_f, B_k."""
-    per = mesh.single_stiffness / mesh.line_load
-    pitch, profile = (f - min(mesh.running_in * f, 3e-6) for f in (mesh.base_pitch_deviation, mesh.profile_deviation))
-    return per * pitch, per * profile, abs(1.0 - per * mesh.tip_relief)
-
-
-def _subcritical(mesh: DynamicMesh) -> float:
-    pitch, profile, relief = _parameters(mesh)
-    eps = mesh.total_contact_ratio
-    c2, c3 = (0.34, 0.23) if eps <= 2.0 else (0.57 / (eps - 0.3), 0.096 / (eps - 1.56))
-    return 0.32 * pitch + c2 * profile + c3 * relief
-
-
-def _at_resonance(mesh: DynamicMesh) -> float:
-    pitch, profile, relief = _parameters(mesh)
-    eps = mesh.total_contact_ratio
-    c2, c4 = (0.34, 0.90) if eps <= 2.0 else (0.57 / (eps - 0.3), (0.57 - 0.05 * eps) / (eps - 1.44))
-    return 1.0 + 0.32 * pitch + c2 * profile + c4 * relief
-
-
-def _supercritical(mesh: DynamicMesh) -> float:
-    pitch, profile, _ = _parameters(mesh)
-    eps = mesh.total_contact_ratio
-    c6 = 0.47 if eps <= 2.0 else 0.12 / (eps - 1.74)
-    c7 = 0.75 if eps <= 1.5 else 1.0 if eps > 2.5 else 0.125 * math.sin(math.pi * (eps - 2.0)) + 0.875
-    return 0.47 * pitch + c6 * profile + c7
 
 
 def _speed_term(velocity: float, pinion_teeth: int, ratio: float) -> float:

@@ -14,13 +14,14 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import ToothOutline, tooth_outline
 from rotorgear.gears.stiffness.contact_lines import contact_lines
-from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothBody, ToothPair
+from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 from rotorgear.gears.stiffness.tooth_beam import RING_ANGLE, RING_RATIO, ring_shape, tooth_compliance
 
-# Points of the path of contact at which the compliance is computed; Gauss points along a contact line; positions
-# within an interval of the period over which the stiffness is averaged.
+# Points of the path of contact at which the compliance is computed.
 _PATH = 201
+# Gauss points along a contact line.
 _GAUSS = 12
+# Positions within an interval of the period over which the stiffness is averaged.
 _FINER = 16
 
 
@@ -29,12 +30,14 @@ def slice_stiffness(teeth: ToothPair, position: np.ndarray) -> np.ndarray:
     tangent = math.tan(teeth.pair.working_transverse_pressure_angle)
     outlines = _outlines(teeth)
     bodies = (teeth.first_body, teeth.second_body)
+    # Roll lengths on both flanks: they add up to the distance between the base tangent points.
     first = teeth.first.base_radius * tangent + position
     second = teeth.second.base_radius * tangent - position
     give = sum(
         tooth_compliance(outline, body, roll)
         for outline, body, roll in zip(outlines, bodies, (first, second), strict=True)
     )
+    # Hertz' approach of two cylinders depends on the load by a logarithm only; 2 / (pi E*) is its constant of Yang and Sun.
     contact = 2.0 / math.pi * sum((1.0 - body.poisson_ratio**2) / body.youngs_modulus for body in bodies)
     return np.asarray(1.0 / (give + contact))
 
@@ -56,6 +59,8 @@ def potential_energy_stiffness(teeth: ToothPair, load: float | None, positions: 
         )
     path = np.linspace(teeth.pair.start_of_contact, teeth.pair.end_of_contact, _PATH)
     per_width = slice_stiffness(teeth, path)
+    # Each value is a mean over its interval: a jump, where a pair of spur teeth enters, then counts by the share of the interval
+    # behind it, wherever the positions happen to fall.
     inside = (np.arange(_FINER) + 0.5) / _FINER - 0.5
     start = np.arange(positions) / positions
     u = (start[:, None] + inside / positions).ravel()
@@ -64,7 +69,11 @@ def potential_energy_stiffness(teeth: ToothPair, load: float | None, positions: 
     z = 0.5 * (low + high)[..., None] + 0.5 * (high - low)[..., None] * nodes
     along = np.interp(xi[..., None] + z * math.tan(teeth.pair.base_helix_angle), path, per_width)
     total = np.sum(0.5 * (high - low) * (along @ weights), axis=1).reshape(positions, _FINER).mean(axis=1)
-    bodies = (teeth.first_body, teeth.second_body)
+    # Where the ring was held: its bore, or the end of the range that the ring formula was fitted for.
+    held = [
+        outline.root_radius / min(max(ring_shape(outline, body)[0], RING_RATIO[0]), RING_RATIO[1])
+        for outline, body in zip(_outlines(teeth), (teeth.first_body, teeth.second_body), strict=True)
+    ]
     return MeshStiffness(
         model="potential_energy",
         position=start,
@@ -72,19 +81,15 @@ def potential_energy_stiffness(teeth: ToothPair, load: float | None, positions: 
         definition="secant",
         helices=1,
         load=load,
-        body="; ".join(_body(outline, body) for outline, body in zip(_outlines(teeth), bodies, strict=True)),
+        body="; ".join(f"ring held at radius {1e3 * radius:.4g} mm" for radius in held),
         base_helix_angle=teeth.pair.base_helix_angle,
         warnings=_warnings(teeth),
     )
 
 
-def _body(outline: ToothOutline, body: ToothBody) -> str:
-    inner = outline.root_radius / min(max(ring_shape(outline, body)[0], RING_RATIO[0]), RING_RATIO[1])
-    return f"ring held at radius {1e3 * inner:.4g} mm"
-
-
 def _warnings(teeth: ToothPair) -> tuple[str, ...]:
-    found = []
+    """Where the teeth lie outside what beam and ring formula were made for."""
+    sentences = []
     bodies = (teeth.first_body, teeth.second_body)
     pair = teeth.pair
     tangent = math.tan(pair.working_transverse_pressure_angle)
@@ -95,13 +100,13 @@ def _warnings(teeth: ToothPair) -> tuple[str, ...]:
     for number, (outline, body) in enumerate(zip(_outlines(teeth), bodies, strict=True), 1):
         ratio, angle = ring_shape(outline, body)
         if lowest[number - 1] < outline.form_roll_length - 1e-6 * outline.geometry.base_radius:
-            found.append(f"gear {number}: contact begins in the fillet, which is taken as involute there")
+            sentences.append(f"gear {number}: contact begins in the fillet, which is taken as involute there")
         if ratio < RING_RATIO[0]:
-            found.append(
+            sentences.append(
                 f"gear {number}: the rim is thinner than the ring formula covers (r_f / r_inner = {ratio:.3g})"
             )
         if not RING_ANGLE[0] <= angle <= RING_ANGLE[1]:
-            found.append(
+            sentences.append(
                 f"gear {number}: theta_f = {angle:.3g} rad is outside 0.01 ... 0.12, the range of the ring formula"
             )
-    return tuple(found)
+    return tuple(sentences)

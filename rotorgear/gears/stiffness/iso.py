@@ -19,10 +19,11 @@ from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothBody, ToothPair
 
 UNIT = 1e9  # N/(mm um) in N/m^2
+# C1 ... C9 of the standard's polynomial for q'.
 _C = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
 CORRECTION = 0.8  # C_M, solid disk gears
 LOW_LINE_LOAD = 1e5  # N/m
-_STEEL = 206e9
+_STEEL = 206e9  # Pa, the standard's modulus
 
 
 @dataclass(frozen=True)
@@ -61,9 +62,20 @@ def iso_tooth_stiffness(
     x2 = wheel.profile_shift
     terms = (1.0, 1.0 / zn1, 1.0 / zn2, x1, x1 / zn1, x2, x2 / zn2, x1**2, x2**2)
     theoretical = UNIT * modulus_ratio / sum(c * term for c, term in zip(_C, terms, strict=True))
-    rack = 0.5 * sum(_rack_factor(g) for g in (pinion, wheel))
+    # C_B of a pair whose racks differ: the mean of both.
+    rack = 0.5 * sum(
+        (1.0 + 0.5 * (1.2 - g.dedendum_factor)) * (1.0 - 0.02 * (20.0 - math.degrees(g.normal_pressure_angle)))
+        for g in (pinion, wheel)
+    )
     single = theoretical * CORRECTION * gear_blank_factor * rack * math.cos(pinion.helix_angle)
-    warnings = _outside(pinion, wheel, transverse_contact_ratio)
+
+    warnings: tuple[str, ...] = ()
+    if pinion.profile_shift < wheel.profile_shift or not -0.5 <= pinion.profile_shift + wheel.profile_shift <= 2.0:
+        warnings += ("the profile shifts lie outside the range of ISO 6336-1 (x1 >= x2, -0.5 <= x1 + x2 <= 2)",)
+    if transverse_contact_ratio >= 2.5 or transverse_contact_ratio < 1.2:
+        warnings += (
+            f"eps_alpha = {transverse_contact_ratio:.3g} lies outside 1.2 ... 2.5, the range of ISO 6336-1 for c_gamma",
+        )
     if line_load is not None and line_load < LOW_LINE_LOAD:
         single *= (line_load / LOW_LINE_LOAD) ** 0.25
         warnings += (f"line load {1e-3 * line_load:.3g} N/mm is below 100 N/mm: c' is reduced as ISO 6336-1 has it",)
@@ -71,48 +83,36 @@ def iso_tooth_stiffness(
     return IsoStiffness(theoretical, single, alpha, 0.85 * alpha, warnings)
 
 
-def _rack_factor(g: GearGeometry) -> float:
-    """C_B of one gear; of a pair with two racks the mean is taken."""
-    return (1.0 + 0.5 * (1.2 - g.dedendum_factor)) * (1.0 - 0.02 * (20.0 - math.degrees(g.normal_pressure_angle)))
-
-
-def _outside(pinion: GearGeometry, wheel: GearGeometry, contact_ratio: float) -> tuple[str, ...]:
-    """What lies outside the range that the standard's polynomial was made for."""
-    found = []
-    if pinion.profile_shift < wheel.profile_shift or not -0.5 <= pinion.profile_shift + wheel.profile_shift <= 2.0:
-        found.append("the profile shifts lie outside the range of ISO 6336-1 (x1 >= x2, -0.5 <= x1 + x2 <= 2)")
-    if contact_ratio >= 2.5 or contact_ratio < 1.2:
-        found.append(f"eps_alpha = {contact_ratio:.3g} lies outside 1.2 ... 2.5, the range of ISO 6336-1 for c_gamma")
-    return tuple(found)
-
-
 def pair_iso_stiffness(teeth: ToothPair, line_load: float | None = None) -> IsoStiffness:
     """The standard's stiffness of a pair with its blanks and moduli, at a line load F_t K_A / b (N/m)."""
+    e1 = teeth.first_body.youngs_modulus
+    e2 = teeth.second_body.youngs_modulus
     return iso_tooth_stiffness(
         teeth.first,
         teeth.second,
         teeth.pair.transverse_contact_ratio,
         line_load=line_load,
         gear_blank_factor=blank_factor(teeth),
-        modulus_ratio=_modulus_ratio(teeth),
+        modulus_ratio=2.0 * e1 * e2 / (e1 + e2) / _STEEL,
     )
 
 
 def blank_factor(teeth: ToothPair) -> float:
     """C_R of a pair: the mean of both gears."""
-    bodies = (teeth.first_body, teeth.second_body)
-    return 0.5 * sum(_blank_factor(body, teeth.first.normal_module) for body in bodies)
 
+    def of(body: ToothBody) -> float:
+        if body.rim_thickness is None:
+            return 1.0
+        # Beyond the standard's range its ends are taken: s_R / m_n >= 1 and 0.2 <= b_s / b <= 1.2.
+        rim = max(body.rim_thickness / teeth.first.normal_module, 1.0)
+        return 1.0 + math.log(min(max(body.web_share, 0.2), 1.2)) / (5.0 * math.exp(rim / 5.0))
 
-def _blank_factor(body: ToothBody, module: float) -> float:
-    if body.rim_thickness is None:
-        return 1.0
-    rim = max(body.rim_thickness / module, 1.0)
-    return 1.0 + math.log(min(max(body.web_share, 0.2), 1.2)) / (5.0 * math.exp(rim / 5.0))
+    return 0.5 * (of(teeth.first_body) + of(teeth.second_body))
 
 
 def iso_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshStiffness:
     """Mean mesh stiffness c_gamma_alpha b over the period, without ripple."""
+    # The standard's load is F_t at the reference circle, ours F_bt at the base circle: F_t = F_bt cos a_t.
     line_load = None if load is None else load * math.cos(teeth.first.transverse_pressure_angle) / teeth.width
     values = pair_iso_stiffness(teeth, line_load)
     k = np.full(positions, values.mesh_alpha * teeth.width)
@@ -130,10 +130,3 @@ def iso_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshS
         base_helix_angle=teeth.pair.base_helix_angle,
         warnings=warnings,
     )
-
-
-def _modulus_ratio(teeth: ToothPair) -> float:
-    """E / E_steel of ISO 6336-1, E = 2 E1 E2 / (E1 + E2)."""
-    e1 = teeth.first_body.youngs_modulus
-    e2 = teeth.second_body.youngs_modulus
-    return 2.0 * e1 * e2 / (e1 + e2) / _STEEL

@@ -15,6 +15,7 @@ from rotorgear.gears.stiffness.contact_lines import contact_line_length
 from rotorgear.gears.stiffness.iso import iso_stiffness
 from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 
+# Positions within an interval of the period over which the length is averaged.
 _FINER = 32
 
 
@@ -24,4 +25,5 @@ def contact_line_stiffness(teeth: ToothPair, load: float | None, positions: int)
     inside = (np.arange(_FINER) + 0.5) / _FINER - 0.5
     u = (mean.position[:, None] + inside / positions).ravel()
     length = contact_line_length(teeth, u).reshape(positions, _FINER).mean(axis=1)
+    # Over the mean of the sampled length, not eps_alpha b / cos b_b: the mean stiffness is then that of ISO to the last digit.
     return replace(mean, model="contact_line", transverse=mean.transverse * length / length.mean())

@@ -51,12 +51,17 @@ class ToothPair:
     """One helix of a mesh: all that a stiffness model needs to know.
 
     Attributes:
-        first, second: pinion and gear as the file calls them.
+        first: the pinion, as the file calls it.
+        second: the gear, as the file calls it.
         pair: their geometry at the centre distance.
         width: common face width (m) of one helix.
-        first_body, second_body: what the teeth stand on.
-        first_flank, second_flank: deviations of the flanks; misalignment: of the flanks over the whole face (m), positive
-            where they stand apart at larger z. Only the loaded contact takes them in, as it does `fe`, the FE settings.
+        first_body: what the pinion's teeth stand on.
+        second_body: what the gear's teeth stand on.
+        first_flank: deviations of the pinion's flank; only the loaded contact takes them in.
+        second_flank: deviations of the gear's flank; only the loaded contact takes them in.
+        misalignment: of the flanks over the whole face (m), positive where they stand apart at larger z; only for the loaded
+            contact.
+        fe: settings of the finite-element model; only for the loaded contact.
     """
 
     first: GearGeometry
@@ -79,17 +84,15 @@ class ToothPair:
         """The same teeth with gear 2 as gear 1."""
         p = self.pair
         turned = replace(p, start_of_contact=-p.end_of_contact, end_of_contact=-p.start_of_contact)
-        return ToothPair(
-            self.second,
-            self.first,
-            turned,
-            self.width,
-            self.second_body,
-            self.first_body,
-            self.second_flank,
-            self.first_flank,
-            self.misalignment,
-            self.fe,
+        return replace(
+            self,
+            first=self.second,
+            second=self.first,
+            pair=turned,
+            first_body=self.second_body,
+            second_body=self.first_body,
+            first_flank=self.second_flank,
+            second_flank=self.first_flank,
         )
 
 
@@ -141,6 +144,7 @@ class MeshStiffness:
         """Stiffness along the flank normal in N/m that gives the mean deflection of the period under the mean load."""
         if self.tangent is None:
             return self.mean_normal
+        # At a constant load the deflections F / k are averaged, not the stiffnesses.
         return 1.0 / (float(np.mean(1.0 / self.transverse)) * math.cos(self.base_helix_angle) ** 2)
 
     @property
@@ -181,9 +185,12 @@ class MeshStiffness:
         def ahead(values: np.ndarray) -> np.ndarray:
             return np.interp(self.position + stagger, self.position, values, period=1.0)
 
+        # Stiffness that does not depend on the load: two springs in parallel.
         if self.tangent is None or other.tangent is None:
             both = self.transverse + ahead(other.transverse)
             return replace(self, transverse=both, helices=2 * self.helices, load=load)
+        # Curves at a load: the floating pinion gives each helix half of it, so the approaches are averaged,
+        # (F_1 + F_2) / mean(delta) = 4 / (1/k_1 + 1/k_2).
         secant = 4.0 / (1.0 / self.transverse + ahead(1.0 / other.transverse))
         tangent = 4.0 / (1.0 / self.tangent + ahead(1.0 / other.tangent))
         notes = tuple(dict.fromkeys(self.warnings + other.warnings))

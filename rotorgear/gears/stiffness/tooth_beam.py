@@ -18,6 +18,7 @@ import numpy as np
 from rotorgear.gears.geometry.outline import ToothOutline
 from rotorgear.gears.stiffness.mesh_stiffness import ToothBody
 
+# Points on involute and on fillet, between which the integrals over the tooth's height are trapezoidal.
 _POINTS = 400
 _SHEAR = 1.2  # shear correction of a rectangular section
 # A / theta^2 + B h^2 + C h / theta + D / theta + E h + F for L, M, P, Q.
@@ -55,11 +56,17 @@ def _beam(
     outline: ToothOutline, body: ToothBody, roll: np.ndarray, inclination: np.ndarray, cut: np.ndarray
 ) -> np.ndarray:
     """Bending, shear and compression of the tooth, (n,)."""
-    radii, angles = _contour(outline)
+    # Height and thickness of the tooth from the root circle to the tip.
+    fillet = outline.fillet(np.linspace(1.0, 0.0, _POINTS))
+    flank = outline.involute(np.linspace(outline.form_roll_length, outline.tip_roll_length, _POINTS)[1:])
+    radii = np.concatenate([fillet[0], flank[0]])
+    angles = np.concatenate([fillet[1], flank[1]])
     y = radii * np.cos(angles)
     thickness = 2.0 * radii * np.sin(angles)
     E = body.youngs_modulus
     G = body.youngs_modulus / (2.0 * (1.0 + body.poisson_ratio))
+
+    # I = s^3 / 12 and A = s. (y0 - y)^2 is multiplied out, so that one set of integrals serves every loaded point.
     powers = np.stack([_integral(y, y**k / thickness**3) for k in range(3)])
     slender = _integral(y, 1.0 / thickness)
     radius, half = outline.involute(roll)
@@ -70,13 +77,6 @@ def _beam(
     return np.asarray(bending + rest * np.interp(load, y, slender))
 
 
-def _contour(outline: ToothOutline) -> tuple[np.ndarray, np.ndarray]:
-    """Radii and angles of the flank from the root circle to the tip."""
-    fillet = outline.fillet(np.linspace(1.0, 0.0, _POINTS))
-    flank = outline.involute(np.linspace(outline.form_roll_length, outline.tip_roll_length, _POINTS)[1:])
-    return np.concatenate([fillet[0], flank[0]]), np.concatenate([fillet[1], flank[1]])
-
-
 def _integral(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Integral of y from the first x to each, by the trapezoidal rule, (n,)."""
     return np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(x))])
@@ -84,9 +84,9 @@ def _integral(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 def _ring(outline: ToothOutline, body: ToothBody, inclination: np.ndarray, cut: np.ndarray) -> np.ndarray:
     """Give of the ring below the tooth, (n,)."""
-    ratio, angle = ring_shape(outline, body)
+    # A polynomial says nothing outside the range of h that it was fitted for: the range's end stands in there.
+    ratio, theta = ring_shape(outline, body)
     h = min(max(ratio, RING_RATIO[0]), RING_RATIO[1])
-    theta = angle
     L, M, P, Q = _RING @ np.array([theta**-2, h**2, h / theta, 1.0 / theta, h, 1.0])
     arm = (cut - outline.root_radius) / (2.0 * outline.root_radius * theta)
     tangent = np.tan(inclination)
