@@ -1,0 +1,91 @@
+"""The public names of rotorgear, one a line: type checkers and editors read them here, and so does `rotorgear.lazy`."""
+
+__version__: str
+
+# A model from a file or from parts.
+from rotorgear.model.load import load as load
+from rotorgear.model.load import loads as loads
+from rotorgear.model.load import json_schema as json_schema
+from rotorgear.model.model import Model as Model
+from rotorgear.model.parts.operation import Operation as Operation
+from rotorgear.model.parts.operation import Load as Load
+from rotorgear.model.parts.operation import ModelDamping as ModelDamping
+from rotorgear.model.parts.operation import Point as Point
+from rotorgear.model.parts.shaft import Material as Material
+from rotorgear.model.parts.shaft import Shaft as Shaft
+from rotorgear.model.parts.shaft import Section as Section
+from rotorgear.model.parts.bodies import Disk as Disk
+from rotorgear.model.parts.bodies import PointMass as PointMass
+from rotorgear.model.parts.gear import Gear as Gear
+from rotorgear.model.parts.gear import GearBody as GearBody
+from rotorgear.model.parts.mesh import Mesh as Mesh
+from rotorgear.model.parts.supports import Bearing as Bearing
+from rotorgear.model.parts.supports import TableRow as TableRow
+from rotorgear.model.parts.supports import Pedestal as Pedestal
+from rotorgear.model.parts.supports import Support as Support
+from rotorgear.model.parts.supports import Coupling as Coupling
+from rotorgear.model.parts.supports import StiffnessMatrix as StiffnessMatrix
+from rotorgear.model.parts.supports import DampingMatrix as DampingMatrix
+from rotorgear.model.parts.excitation import ErrorHarmonic as ErrorHarmonic
+from rotorgear.model.parts.excitation import StiffnessHarmonic as StiffnessHarmonic
+from rotorgear.model.parts.excitation import Unbalance as Unbalance
+from rotorgear.system.system import System as System
+
+# The verbs: a model in, a result out.
+from rotorgear.analysis.common.describe_model import describe_model as describe_model
+from rotorgear.analysis.modal.modal import modal as modal
+from rotorgear.analysis.campbell.campbell import campbell as campbell
+from rotorgear.analysis.campbell.critical import critical_speeds as critical_speeds
+from rotorgear.analysis.campbell.critical_map import critical_map as critical_map
+from rotorgear.analysis.static.static import static as static
+from rotorgear.analysis.response.response import response as response
+from rotorgear.analysis.response.frequency_response import frequency_response as frequency_response
+from rotorgear.analysis.transient.transient import transient as transient
+from rotorgear.analysis.sweep.sweep import sweep as sweep
+from rotorgear.analysis.sweep.cluster import cluster as cluster
+from rotorgear.analysis.teeth.gear_sheet import gear_sheet as gear_sheet
+from rotorgear.analysis.teeth.mesh import mesh_analysis as mesh_analysis
+from rotorgear.analysis.modal.accuracy import accuracy_ladder as accuracy_ladder
+from rotorgear.analysis.transient.ladder import transient_ladder as transient_ladder
+from rotorgear.analysis.sweep.ladder import sweep_ladder as sweep_ladder
+from rotorgear.analysis.teeth.ladder import mesh_ladder as mesh_ladder
+from rotorgear.solvers.lanes.flow_exponents import flow_exponents as flow_exponents
+
+# A rig beside them.
+from rotorgear.analysis.rig.compare import compare as compare
+from rotorgear.analysis.rig.compare import read_rig_lines as read_rig_lines
+from rotorgear.analysis.rig.rig_spectrum import compare_spectrum as compare_spectrum
+from rotorgear.analysis.transient.spectra import spectrum as spectrum
+from rotorgear.analysis.transient.spectra import spectral_lines as spectral_lines
+
+# Files of results.
+from rotorgear.export.hdf5 import save as save
+from rotorgear.export.hdf5 import read as read
+from rotorgear.export.stream import stream as stream
+from rotorgear.export.vtk import write_vtk as write_vtk
+from rotorgear.export.vtk_motion import write_motion as write_motion
+from rotorgear.export.vtk_deflection import write_deflections as write_deflections
+
+# The results.
+from rotorgear.results.modal import ModalResult as ModalResult
+from rotorgear.results.campbell import CampbellResult as CampbellResult
+from rotorgear.results.critical import CriticalResult as CriticalResult
+from rotorgear.results.critical import CriticalMap as CriticalMap
+from rotorgear.results.static import StaticResult as StaticResult
+from rotorgear.results.response import ResponseResult as ResponseResult
+from rotorgear.results.frequency_response import FrequencyResponse as FrequencyResponse
+from rotorgear.results.transient import TransientResult as TransientResult
+from rotorgear.results.sweep import SweepResult as SweepResult
+from rotorgear.results.sweep_ladder import SweepLadder as SweepLadder
+from rotorgear.results.portrait import Portraits as Portraits
+from rotorgear.results.gear_sheet import GearSheet as GearSheet
+from rotorgear.results.mesh import MeshResult as MeshResult
+from rotorgear.results.accuracy import AccuracyLadder as AccuracyLadder
+from rotorgear.results.comparison import Comparison as Comparison
+from rotorgear.results.comparison import RigLine as RigLine
+
+# The errors.
+from rotorgear.errors import RotorgearError as RotorgearError
+from rotorgear.errors import ModelError as ModelError
+from rotorgear.errors import AnalysisError as AnalysisError
+from rotorgear.errors import ConvergenceError as ConvergenceError
