@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from typing import Annotated
+import warnings
+from typing import Annotated, Any
 
 import typer
 
@@ -25,10 +26,13 @@ from rotorgear.cli import (
     validate,
     view,
 )
+from rotorgear.cli.old_options import Commands
 from rotorgear.errors import RotorgearError
+from rotorgear.old_names import OldNameWarning
 
 app = typer.Typer(
     name="rotorgear",
+    cls=Commands,
     help="Finite-element rotor-gear analysis: shafts, gears, meshes and bearings from one readable file.",
     no_args_is_help=True,
     add_completion=False,
@@ -69,8 +73,22 @@ def _root(
     """Finite-element rotor-gear analysis: shafts, gears, meshes and bearings from one readable file."""
 
 
+def _show_old_names_as_sentences() -> None:
+    """Former names in a model file are the user's to mend: no path and line of this package before the sentence."""
+    show = warnings.showwarning
+
+    def sentence(message: Warning | str, category: type[Warning], *place: Any, **rest: Any) -> None:
+        if issubclass(category, OldNameWarning):
+            sys.stderr.write(f"Warning: {message}\n")
+        else:
+            show(message, category, *place, **rest)
+
+    warnings.showwarning = sentence
+
+
 def main() -> None:
     """Run the command line."""
+    _show_old_names_as_sentences()
     try:
         app()
     except RotorgearError as error:

@@ -1,13 +1,13 @@
-"""Tooth contact along the flank normal: backlash, k(t), e(t), clamped, unclamped or penetration-proportional damping.
+"""Tooth contact along the flank normal: backlash, k(t), e(t), non-adhesive, adhesive or penetration-proportional damping.
 
-    x = d - e(p) - s     driving flank: depth = x               back flank ("line"): depth = -x - j
-    F = k(p) depth + c depth'   on the driving flank, the opposite on the back flank;   p = order * angle + phase
+    x = d - e(p) - s     working flank: penetration = x     coast flank (dead zone): penetration = -x - j
+    F = k(p) penetration + c penetration'   on the working flank, the opposite on the coast flank;   p = order * angle + phase
 
-`gap = "line"`: both flanks on one line, the dead zone of the literature (Kahraman and Singh, J. Sound Vib. 142 (1990) 49);
-"one-sided": the driving flank alone, so that each flank may have its own normal; "none": teeth that never part (linear).
-Damping: "clamped" never pulls, F >= 0; "unclamped" may pull while the flanks touch; "penetration" grows with the depth,
-c depth/reference (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440), and never pulls. Over the first `ramp` of depth the
-damping grows from zero, so that the force is continuous.
+`gap = "dead zone"`: both flanks on one line of action (Kahraman and Singh, J. Sound Vib. 142 (1990) 49); "unilateral": the
+working flank alone, so that each flank may have its own normal; "bilateral": contact is never lost (linear).
+Damping: "non-adhesive" never pulls, F >= 0; "adhesive" may pull while the flanks touch; "penetration": the coefficient is
+c penetration/reference (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440), and the force never pulls. Over the first `ramp`
+of penetration, the regularisation depth, the damping grows from zero, so that the force is continuous.
 k(p) = k [1 + sum a_n cos(n p) + b_n sin(n p)], or piecewise linear in p; e(p) alike. A half-sine `impact` adds to the force.
 """
 
@@ -22,8 +22,8 @@ import numpy as np
 from rotorgear.forces.law import ForceLaw, parameter, refuse
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
-GAPS = ("line", "one-sided", "none")
-DAMPINGS = ("clamped", "unclamped", "penetration")
+GAPS = ("dead zone", "unilateral", "bilateral")
+DAMPINGS = ("non-adhesive", "adhesive", "penetration")
 _HEAD = 16
 _TURN = 2.0 * pi
 
@@ -84,7 +84,7 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
 
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
-    """Force along the line of contact, positive when the driving flanks are pressed."""
+    """Force along the line of contact, positive when the working flanks are pressed."""
     c = p[1]
     backlash = p[2]
     gap = int(p[3])
@@ -148,8 +148,8 @@ class MeshContact(ForceLaw):
     stiffness: float = parameter("N/m", "mean stiffness k along the flank normal")
     damping: float = parameter("N s/m", "damping coefficient c", 0.0)
     backlash: float = parameter("m", "backlash j along the flank normal", 0.0)
-    gap: str = parameter("", "line, one-sided or none", "line")
-    contact_damping: str = parameter("", "clamped, unclamped or penetration", "clamped")
+    gap: str = parameter("", "dead zone, unilateral or bilateral", "dead zone")
+    contact_damping: str = parameter("", "non-adhesive, adhesive or penetration", "non-adhesive")
     ramp: float = parameter(
         "m", "depth over which the damping grows to c; the reference depth of penetration damping", 1e-9
     )
@@ -259,9 +259,9 @@ class MeshContact(ForceLaw):
         }
         return (
             cls(3e8, 900.0, 40e-6, ramp=2e-6, **ripple),
-            cls(3e8, 900.0, 40e-6, contact_damping="unclamped", ramp=2e-6, **ripple),
-            cls(3e8, 900.0, 40e-6, gap="one-sided", contact_damping="penetration", ramp=2e-5, **ripple),
-            cls(3e8, 900.0, gap="none", **ripple),
+            cls(3e8, 900.0, 40e-6, contact_damping="adhesive", ramp=2e-6, **ripple),
+            cls(3e8, 900.0, 40e-6, gap="unilateral", contact_damping="penetration", ramp=2e-5, **ripple),
+            cls(3e8, 900.0, gap="bilateral", **ripple),
             cls(3e8, 900.0, 10e-6, ramp=2e-6, order=3.0, pieces=((0.0, 0.8, 1.0), (0.4, 1.2, 1.1)), impact=50.0),
         )
 

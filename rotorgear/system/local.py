@@ -124,7 +124,7 @@ def _mesh_parts(system: System) -> list[LocalPart]:
         rubbing = friction_part(system, force, geometry, label, law, dofs, column)
         if rubbing is not None:
             found.append(rubbing)
-        if law.gap == "one-sided":
+        if law.gap == "unilateral":
             other = contact_vector(replace(geometry, torque_sense=-geometry.torque_sense))
             found.append(
                 LocalPart(part, f"{label} back", _back(law), columns_at(system, dofs, other[None]), is_mesh=True)
@@ -151,7 +151,7 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
     error_cos, error_sin = _series(mesh.transmission_error)
     deflection = (force.normal_force / contact.stiffness) or _UNLOADED
     damping = mesh_damping(model, force, geometry, node_bodies(model)) + model.damping.rayleigh_beta * contact.stiffness
-    gap = "none" if mesh.backlash is None else {"line": "line", "own normals": "one-sided"}[mesh.back_flank]
+    gap = "bilateral" if mesh.backlash is None else {"line": "dead zone", "own normals": "unilateral"}[mesh.coast_flank]
     late = mesh.helix_stagger if contact.helix else 0.0
     return MeshContact(
         stiffness=contact.stiffness,
@@ -174,13 +174,13 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
 
 def _ramp(mesh: Mesh, deflection: float) -> float:
     """Depth in m over which the damping grows: given, or from the mean deflection; of penetration damping, that deflection."""
-    if mesh.damping_depth is not None:
-        return mesh.damping_depth
+    if mesh.regularisation_depth is not None:
+        return mesh.regularisation_depth
     return deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP)
 
 
 def _back(law: MeshContact) -> MeshContact:
-    """The back flank on its own normal: what opens the driving flank closes it."""
+    """The coast flank on its own normal: what opens the working flank closes it."""
     return replace(
         law,
         backlash=0.0,

@@ -21,7 +21,7 @@ INTEGRATE = """
 from rotorgear.forces.mesh_contact import MeshContact
 from validation.oscillators import integrate, local_system
 import numpy as np
-system = local_system(np.eye(1), np.zeros((1, 1)), np.eye(1), [0.0], [(MeshContact(3.0, gap="none"), [1.0])])
+system = local_system(np.eye(1), np.zeros((1, 1)), np.eye(1), [0.0], [(MeshContact(3.0, gap="bilateral"), [1.0])])
 print(repr(float(integrate(system, "average acceleration", 0.1, 20, [1.0], [0.0]).q[-1][0])))
 """
 COMPLIANCE = """

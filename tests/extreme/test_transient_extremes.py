@@ -17,9 +17,9 @@ def test_zero_backlash_holds_the_teeth_between_both_flanks() -> None:
     result = transient(spur_pair(meshes__pair__backlash="0 mm", operation__torque="3 N m"), **SHORT)
     assert result.status == "success"
     assert result.contact_time[0, 1] == pytest.approx(0.0, abs=1e-3)  # never apart: one flank hands over to the other
-    linear = transient(spur_pair(meshes__pair__contact_damping="unclamped", operation__torque="3 N m"), **SHORT)
+    linear = transient(spur_pair(meshes__pair__contact_damping="adhesive", operation__torque="3 N m"), **SHORT)
     closed = transient(
-        spur_pair(meshes__pair__backlash="0 mm", meshes__pair__contact_damping="unclamped", operation__torque="3 N m"),
+        spur_pair(meshes__pair__backlash="0 mm", meshes__pair__contact_damping="adhesive", operation__torque="3 N m"),
         **SHORT,
     )
     assert closed.mesh_force.std() == pytest.approx(linear.mesh_force.std(), rel=2e-2)
@@ -49,7 +49,7 @@ def test_a_load_that_reverses_moves_contact_to_the_back_flank(flank: str) -> Non
         operation__torque=None,
         operation__output_shaft=None,
         meshes__pair__backlash="50 um",
-        meshes__pair__back_flank=flank,
+        meshes__pair__coast_flank=flank,
         meshes__pair__transmission_error=[],
         loads={
             "drive": {"shaft": "one", "kind": "input", "torque": "100 N m"},

@@ -20,7 +20,7 @@ def measure(quantity: str, mode: str) -> float:
         return float(motion.q[int(mode), int(quantity.split()[-1]) - 1])
     method, step = mode.split(" at ") if " at " in mode else (mode, "0.5")
     # Half of the stiffness as a local force, so that the condensed Newton iteration is in the loop.
-    system = local_system([[1.0]], [[0.0]], [[0.5]], [0.0], [(MeshContact(0.5, gap="none"), [[1.0]])])
+    system = local_system([[1.0]], [[0.0]], [[0.5]], [0.0], [(MeshContact(0.5, gap="bilateral"), [[1.0]])])
     long = quantity != "frequency over exact"
     motion = integrate(system, _METHOD[method], float(step), 100_000 if long else 2, [1.0], [0.0])
     q = motion.q[:, 0]

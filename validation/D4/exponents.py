@@ -51,7 +51,7 @@ def _lorenz() -> np.ndarray:
 def _orbit(name: str) -> np.ndarray:
     """Both exponents, as the mean over several starts near each other."""
     zeta, mean, amplitude, frequency, parts, (x0, v0), steps, settle, count = ORBITS[name]
-    contact = MeshContact(1.0, backlash=2.0, error_mean=1.0) if parts else MeshContact(1.0, gap="none")
+    contact = MeshContact(1.0, backlash=2.0, error_mean=1.0) if parts else MeshContact(1.0, gap="bilateral")
     laws = [(contact, [[1.0]]), (RotatingForce(amplitude), [[1.0]])]
     system = local_system([[1.0]], [[2.0 * zeta]], [[0.0]], [mean], laws, speed=frequency)
     point = ready(still(system, [Fraction(1)], (name,)), frequency)

@@ -25,7 +25,7 @@ def measure(quantity: str, mode: str) -> float:
 @cache
 def _growth(setting: str, method: str, steps: int) -> float:
     frequency, duty, zeta = map(float, setting.split(", "))
-    law = MeshContact(1.0, gap="none", order=1.0, pieces=((0.0, 1.2, 1.2), (duty, 0.8, 0.8)))
+    law = MeshContact(1.0, gap="bilateral", order=1.0, pieces=((0.0, 1.2, 1.2), (duty, 0.8, 0.8)))
     system = local_system([[1.0]], [[2.0 * zeta]], [[0.0]], [0.0], [(law, [[1.0]])], speed=frequency)
     motion = integrate(system, method, 2.0 * np.pi / frequency / steps, _PERIODS * steps, [1.0], [0.3], every=steps)
     size = np.hypot(motion.q[:, 0], motion.v[:, 0])

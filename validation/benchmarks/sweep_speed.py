@@ -44,7 +44,7 @@ def chain(n: int, m: int, speed: float = _SPEED) -> LocalSystem:
             1.0,
             0.04,
             0.6,
-            contact_damping="unclamped",
+            contact_damping="adhesive",
             ramp=1e-3,
             order=1.0,
             phase=0.3 * j,

@@ -14,6 +14,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+from rotorgear.model.parts.old_names import current_address
 from rotorgear.quantity import nearest
 
 MOST_POINTS = 100_000
@@ -41,6 +42,7 @@ def axis_of(address: str, values: str | Sequence[float | str]) -> Axis:
     Raises:
         AnalysisError: no numbers, two units, or fewer than one value.
     """
+    address = current_address(address)
     if isinstance(values, str) and ":" in values:
         parts = values.split(":")
         if len(parts) != 3 or not parts[2].strip().isdecimal() or int(parts[2]) < 2:

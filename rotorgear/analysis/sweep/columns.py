@@ -17,14 +17,14 @@ def column_of(law: object, place: str, speed: float = 1.0) -> list[tuple[float, 
     Raises:
         AnalysisError: the law is none that sweeps take.
     """
-    from rotorgear.forces.mesh_contact import DAMPINGS, GAPS, MeshContact
+    from rotorgear.forces.mesh_contact import DAMPINGS, MeshContact
     from rotorgear.forces.rotating_force import RotatingForce
     from rotorgear.forces.torque_curve import TorqueCurve
     from rotorgear.solvers.lanes.kernel_parts import LINE, NEVER_PARTS, ONE_SIDED, OWN_LAW, PRESCRIBED
 
     if isinstance(law, MeshContact):
-        gap = {"line": LINE, "one-sided": ONE_SIDED, "none": NEVER_PARTS}[GAPS[GAPS.index(law.gap)]]
-        backlash = np.inf if law.gap == "one-sided" else law.backlash
+        gap = {"dead zone": LINE, "unilateral": ONE_SIDED, "bilateral": NEVER_PARTS}[law.gap]
+        backlash = np.inf if law.gap == "unilateral" else law.backlash
         mode = DAMPINGS.index(law.contact_damping)
         mean = law.mean().stiffness
         return [(gap, mode, mean, law.damping, backlash, 1.0 / law.ramp, law.impact, 1.0)]

@@ -33,7 +33,7 @@ def harmonics(law: LocalLaw) -> int:
 
     if not isinstance(law, MeshContact):
         return 1
-    found = [1, len(law.stiffness_cos), len(law.error_cos), 1 if law.gap == "none" else _PARTING]
+    found = [1, len(law.stiffness_cos), len(law.error_cos), 1 if law.gap == "bilateral" else _PARTING]
     if law.pieces:
         sizes = np.abs(np.fft.rfft([share for _, share, _ in law.pieces]))[1 : HIGHEST + 1]
         found.append(1 + int(np.flatnonzero(sizes >= _SMALL * sizes.max(initial=0.0)).max(initial=0)))

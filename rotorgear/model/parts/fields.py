@@ -8,7 +8,7 @@ from __future__ import annotations
 import numbers
 import re
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -20,10 +20,12 @@ from pydantic import (
     GetJsonSchemaHandler,
     ValidationError,
     WithJsonSchema,
+    model_validator,
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from rotorgear.errors import ModelError
+from rotorgear.model.parts.old_names import KEYS, current_key, with_current_names
 from rotorgear.model.parts.problems import from_validation
 from rotorgear.quantity import DIMENSIONS, LARGEST, QuantityError, parse_quantity
 
@@ -45,6 +47,19 @@ class Part(BaseModel):
     # Tells pydantic that parts inside of parts need no call of __init__, so that all their errors come in one list.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
+    @model_validator(mode="before")
+    @classmethod
+    def _by_current_names(cls, data: Any) -> Any:
+        """Read former keys and values as the present ones."""
+        return with_current_names(cls.__name__, data) if isinstance(data, dict) else data
+
+    if not TYPE_CHECKING:  # a type checker would take any attribute for one that exists
+
+        def __getattr__(self, name: str) -> Any:
+            if name in KEYS.get(type(self).__name__, {}):
+                return getattr(self, current_key(type(self).__name__, name))
+            return super().__getattr__(name)
+
 
 def refuse(text: str) -> PydanticCustomError:
     """The error that says what was expected in place of a value."""
@@ -59,7 +74,7 @@ class Unit:
     bound: str = ""
 
     def parse(self, value: Any) -> float:
-        """Return a value of the file in SI; what pydantic is told otherwise is what was expected."""
+        """Return a value of the file in SI; the error that pydantic gets otherwise says what was expected."""
         try:
             number = parse_quantity(value, self.dimension)
         except QuantityError as error:

@@ -89,20 +89,23 @@ class Mesh(Part):
     backlash: NonNegativeLength | None = Field(
         None, description="backlash along the flank normal; without it the teeth never part in a transient"
     )
-    back_flank: Literal["line", "own normals"] = Field(
-        "line", description="the back flank pushes along the line of the driving flank, or along its own normal"
+    coast_flank: Literal["line", "own normals"] = Field(
+        "line",
+        description="the non-working (coast) flank pushes along the line of action of the working flank, or along its own normal",
     )
     nominal_driver: Literal["pinion", "gear"] | None = Field(
         None,
-        description="which of the two drives on the flanks that responses, transients and sweeps call the driving ones, "
-        "also where the loads press the others; default: the one that the mean torques make drive",
+        description="which of the two drives on the flanks that responses, transients and sweeps call the working ones, "
+        "even where the loads press the other flanks together; default: the one that the mean torques make drive",
     )
-    contact_damping: Literal["clamped", "unclamped", "penetration"] = Field(
-        "clamped",
-        description="clamped: teeth never pull; unclamped: damping may pull; penetration: damping grows with the depth",
+    contact_damping: Literal["non-adhesive", "adhesive", "penetration"] = Field(
+        "non-adhesive",
+        description="non-adhesive: the contact force never pulls; adhesive: damping may pull while the flanks touch; "
+        "penetration: the damping coefficient is proportional to the penetration",
     )
-    damping_depth: PositiveLength | None = Field(
+    regularisation_depth: PositiveLength | None = Field(
         None,
-        description="depth over which contact damping grows from zero to its value, so that the force has no jump; default: 2 % "
-        "of the mean deflection; with penetration: the depth at which it has its value, by default the mean deflection",
+        description="penetration over which contact damping grows from zero to its full value, so that the force is "
+        "continuous; default: 2 % of the mean deflection. With penetration: the penetration at which the coefficient has its "
+        "given value; default: the mean deflection",
     )

@@ -47,13 +47,13 @@ def test_lanes_agree_with_a_scalar_kernel_to_rounding(sizes: tuple[int, int]) ->
 @pytest.mark.parametrize(
     "law",
     [
-        MeshContact(1.0, 0.05, 0.0, gap="none", order=1.0, stiffness_cos=(0.2, 0.05), error_sin=(0.1,)),
+        MeshContact(1.0, 0.05, 0.0, gap="bilateral", order=1.0, stiffness_cos=(0.2, 0.05), error_sin=(0.1,)),
         MeshContact(1.0, 0.0, 0.5, order=1.0, phase=0.4, stiffness_cos=(0.2,), error_cos=(0.3,)),
         MeshContact(1.0, 0.05, 0.5, contact_damping="penetration", ramp=0.1, order=1.0, error_cos=(0.3,)),
         MeshContact(1.0, 0.05, 0.5, ramp=0.05, order=1.0, error_cos=(0.3,), impact=0.2, impact_share=0.5),
-        MeshContact(1.0, 0.05, gap="one-sided", ramp=0.05, order=1.0, error_cos=(0.3,)),
+        MeshContact(1.0, 0.05, gap="unilateral", ramp=0.05, order=1.0, error_cos=(0.3,)),
     ],
-    ids=["never parts", "undamped", "penetration", "clamped with impact", "one-sided"],
+    ids=["never parts", "undamped", "penetration", "non-adhesive with impact", "unilateral"],
 )
 def test_the_kernel_follows_newmark_in_small_steps(law: MeshContact) -> None:
     speed = 0.9
@@ -71,13 +71,13 @@ def test_the_kernel_follows_newmark_in_small_steps(law: MeshContact) -> None:
     motion = integrate(local, "average acceleration", 2.0 * np.pi / speed / fine, fine * periods, q0, np.zeros(n), fine)
     d = motion.q @ local.B.toarray()[:, 0]
     v = motion.v @ local.B.toarray()[:, 0]
-    tolerance = 5e-6 if law.gap == "none" else 2e-4
+    tolerance = 5e-6 if law.gap == "bilateral" else 2e-4
     assert orbit.section[:, 0, 0] == pytest.approx(d[1:], abs=tolerance * np.abs(d).max())
     assert orbit.section[:, 0, 1] == pytest.approx(v[1:], abs=5.0 * tolerance * np.abs(v).max())
 
 
 def test_the_method_is_of_order_four_where_teeth_do_not_part() -> None:
-    law = MeshContact(1.0, 0.05, gap="none", order=1.0, stiffness_cos=(0.2,), error_sin=(0.1,))
+    law = MeshContact(1.0, 0.05, gap="bilateral", order=1.0, stiffness_cos=(0.2,), error_sin=(0.1,))
     local = local_system(np.eye(1), [[0.05]], [[0.4]], [0.1], [(law, [[1.0]])], speed=0.9)
     point = ready(still(local, [Fraction(1)], ("m",)), 0.9)
 
@@ -91,7 +91,7 @@ def test_the_method_is_of_order_four_where_teeth_do_not_part() -> None:
 
 
 def damped_chain(rigid: bool) -> SmallSystem:
-    law = MeshContact(1.0, gap="none", order=1.0)
+    law = MeshContact(1.0, gap="bilateral", order=1.0)
     K = [[0.3, -0.3], [-0.3, 0.3]] if rigid else [[0.5, -0.3], [-0.3, 0.9]]
     local = local_system(
         np.diag([1.0, 3.0]), 0.04 * np.diag([1.0, 3.0]), K, [0.1, -0.1], [(law, [[1.0], [-1.0]])], speed=0.8
@@ -456,7 +456,7 @@ def test_blocks_go_to_other_processes_as_well() -> None:
 
 def test_a_slow_motion_does_not_look_like_growth() -> None:
     # A soft spring to ground: one mode at a thousandth of the mesh frequency, almost undamped.
-    law = MeshContact(1.0, 0.1, gap="none", order=1.0, stiffness_cos=(0.2,), error_cos=(0.1,))
+    law = MeshContact(1.0, 0.1, gap="bilateral", order=1.0, stiffness_cos=(0.2,), error_cos=(0.1,))
     K = [[1e-6, 0.0], [0.0, 1e-6]]
     local = local_system(np.diag([1.0, 1.0]), np.zeros((2, 2)), K, [0.1, -0.1], [(law, [[1.0], [-1.0]])], speed=1.0)
     point = ready(still(local, [Fraction(1)], ("m",)), 1.0)

@@ -39,11 +39,11 @@ def test_a_parameter_that_changes_nothing_is_named() -> None:
     assert idle[0].startswith("gears.pinion.mass ")
 
 
-@pytest.mark.parametrize("damping", ["unclamped", "clamped"])
+@pytest.mark.parametrize("damping", ["adhesive", "non-adhesive"])
 @pytest.mark.parametrize("rpm", [3560, 3300])
 def test_damping_that_sets_in_within_a_step_needs_no_more_steps(damping: str, rpm: int) -> None:
     # The ramp is 22 nm, a fortieth of what flanks pass in a step. Without the impulse from the ends of the steps the pair with
-    # unclamped damping is chaotic at 3560 rpm with 200 steps, from all states.
+    # adhesive damping is chaotic at 3560 rpm with 200 steps, from all states.
     model = rg.load(PAIR)
     mesh = model.meshes["pair"].model_copy(update={"contact_damping": damping})
     model = model.model_copy(update={"meshes": {"pair": mesh}})

@@ -25,7 +25,7 @@ from tests.unit.analysis.spur_pair import spur_pair
 from validation.oscillators import integrate, local_system
 
 MESH = MeshContact(
-    1.0, 0.05, 0.5, contact_damping="unclamped", ramp=0.05, order=1.0, error_cos=(0.3,), stiffness_cos=(0.2,)
+    1.0, 0.05, 0.5, contact_damping="adhesive", ramp=0.05, order=1.0, error_cos=(0.3,), stiffness_cos=(0.2,)
 )
 ROLLING = {
     "kind": "ball",

@@ -38,14 +38,14 @@ def point_of(law: MeshContact, speed: float = 0.9) -> Point:
 
 
 LAWS = {
-    "never parts": MeshContact(1.0, 0.05, 0.0, gap="none", order=1.0, stiffness_cos=(0.2, 0.05), error_sin=(0.1,)),
+    "never parts": MeshContact(1.0, 0.05, 0.0, gap="bilateral", order=1.0, stiffness_cos=(0.2, 0.05), error_sin=(0.1,)),
     "undamped": MeshContact(1.0, 0.0, 0.5, order=1.0, phase=0.4, stiffness_cos=(0.2,), error_cos=(0.3,)),
     "penetration": MeshContact(1.0, 0.05, 0.5, contact_damping="penetration", ramp=0.1, order=1.0, error_cos=(0.3,)),
-    "unclamped": MeshContact(1.0, 0.4, 0.5, contact_damping="unclamped", ramp=0.02, order=1.0, error_cos=(0.3,)),
-    "clamped with impact": MeshContact(
+    "adhesive": MeshContact(1.0, 0.4, 0.5, contact_damping="adhesive", ramp=0.02, order=1.0, error_cos=(0.3,)),
+    "non-adhesive with impact": MeshContact(
         1.0, 0.4, 0.5, ramp=0.02, order=1.0, error_cos=(0.3,), impact=0.2, impact_share=0.5
     ),
-    "one-sided": MeshContact(1.0, 0.05, gap="one-sided", ramp=0.05, order=1.0, error_cos=(0.3,)),
+    "unilateral": MeshContact(1.0, 0.05, gap="unilateral", ramp=0.05, order=1.0, error_cos=(0.3,)),
 }
 
 
@@ -109,7 +109,7 @@ def test_a_linear_forced_oscillator_has_the_lines_of_its_closed_form() -> None:
     damping = 0.1
     w = 0.7
     e = np.array([0.02, 0.005])
-    law = MeshContact(k, c, 0.0, gap="none", order=1.0, error_sin=tuple(e))
+    law = MeshContact(k, c, 0.0, gap="bilateral", order=1.0, error_sin=tuple(e))
     local = local_system(np.eye(1), [[damping]], [[ground]], [0.1], [(law, [[1.0]])], speed=w)
     point = ready(still(local, [Fraction(1)], ("m",)), w)
     table = table_of(point, 400)

@@ -233,9 +233,9 @@ def test_a_dof_without_inertia_is_reduced_away(tmp_path: Path) -> None:
 
 def test_probes_hold_the_harmonics_of_all_meshes_up_to_the_highest_tabulated() -> None:
     parting = MeshContact(1.0, backlash=1.0, order=2.0, error_cos=(0.1,))
-    tied = MeshContact(1.0, gap="none", order=3.0, error_cos=(0.1, 0.0, 0.0, 0.2))
+    tied = MeshContact(1.0, gap="bilateral", order=3.0, error_cos=(0.1, 0.0, 0.0, 0.2))
     pieces = tuple((i / 8, float(np.cos(np.pi * i / 4)), float(np.cos(np.pi * (i + 1) / 4))) for i in range(8))
-    shaken = MeshContact(1.0, gap="none", order=1.0, impact=1.0, impact_share=0.15)
+    shaken = MeshContact(1.0, gap="bilateral", order=1.0, impact=1.0, impact_share=0.15)
     assert [harmonics(law) for law in (parting, tied, shaken)] == [3, 4, 7]
     assert harmonics(replace(tied, error_cos=(), pieces=pieces)) == 1
     unbalance = RotatingForce(1.0, 1.0, plane=True)

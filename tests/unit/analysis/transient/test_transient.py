@@ -64,12 +64,12 @@ def test_a_given_mesh_phase_turns_the_harmonics_by_so_much() -> None:
     assert np.ptp(found[0].mesh_force) > 100.0
 
 
-@pytest.mark.parametrize("kind", ["clamped", "unclamped", "penetration"])
+@pytest.mark.parametrize("kind", ["non-adhesive", "adhesive", "penetration"])
 def test_damping_sets_in_over_the_depth_that_is_given(kind: str) -> None:
     model = spur_pair(
         meshes__pair__backlash="40 um",
         meshes__pair__contact_damping=kind,
-        meshes__pair__damping_depth="3 um",
+        meshes__pair__regularisation_depth="3 um",
         meshes__pair__transmission_error=[],
     )
     law = local_model(System(model), Rotation.constant(1.0), 1.0).local.forces.laws[0]
@@ -110,7 +110,7 @@ def test_contact_is_lost_only_if_there_is_backlash_and_the_response_does_not_dep
 
 def test_own_normals_and_one_line_agree_while_only_the_driving_flank_carries() -> None:
     both = [
-        transient(spur_pair(meshes__pair__backlash="50 um", meshes__pair__back_flank=f), time=0.02, steps=200)
+        transient(spur_pair(meshes__pair__backlash="50 um", meshes__pair__coast_flank=f), time=0.02, steps=200)
         for f in ("line", "own normals")
     ]
     assert both[1].mesh_force[:, 0] == pytest.approx(both[0].mesh_force[:, 0], rel=1e-8)
@@ -121,7 +121,7 @@ def test_the_backlash_of_the_back_flank_is_the_same_on_its_own_normal() -> None:
     # Turned backwards by hand, the pair meets the back flank after the backlash.
     system = System(
         spur_pair(
-            meshes__pair__backlash="50 um", meshes__pair__back_flank="own normals", meshes__pair__transmission_error=[]
+            meshes__pair__backlash="50 um", meshes__pair__coast_flank="own normals", meshes__pair__transmission_error=[]
         )
     )
     local = local_model(system, Rotation.constant(0.0), 0.0).local

@@ -1,0 +1,35 @@
+"""Former names of the command line's options: still read for one version, with a warning that says the new one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+# Command -> former option -> option.
+OPTIONS: dict[str, dict[str, str]] = {}
+
+
+class Commands(TyperGroup):
+    """The commands, told former options by their present names."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> tuple[Any, Any, list[str]]:
+        name, command, rest = super().resolve_command(ctx, args)
+        return name, command, with_current_options(name or "", rest)
+
+
+def with_current_options(command: str, args: list[str]) -> list[str]:
+    """Return the arguments of a command with former options replaced, and warn of each on stderr."""
+    renamed = OPTIONS.get(command, {})
+    current = []
+    for arg in args:
+        option, sign, value = arg.partition("=")
+        if option in renamed:
+            typer.echo(
+                f"Warning: {option} is now {renamed[option]}; the old name is read for the last time in this version",
+                err=True,
+            )
+            option = renamed[option]
+        current.append(option + sign + value)
+    return current
