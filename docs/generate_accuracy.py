@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import rotorgear as rg
-from rotorgear.analysis.modal.accuracy import REFERENCE
+from rotorgear.analysis.modal.convergence import REFERENCE
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -47,13 +47,15 @@ def pages() -> dict[str, str]:
 
 
 def _model(file: Path) -> str:
-    ladder = rg.accuracy_ladder(rg.load(file), modes=MODES)
+    study = rg.convergence_study(rg.load(file), modes=MODES)
     rows = [["discretisation", "dofs", "time", "error", "estimate", "order"]]
-    for rung in ladder.rungs:
+    for rung in study.rungs:
         order = "" if rung.order is None else f"{rung.order:.2f}"
         rows.append(
             [rung.method, str(rung.dofs), f"{rung.seconds:.3f} s", f"{rung.error:.1e}", f"{rung.estimate:.1e}", order]
         )
-    title = f"## {ladder.title}\n\n`rotorgear accuracy models/{file.name}`, {ladder.modes} frequencies that are not rigid:\n"
+    title = (
+        f"## {study.title}\n\n`rotorgear accuracy models/{file.name}`, {study.modes} frequencies that are not rigid:\n"
+    )
     head, *body = [f"| {' | '.join(row)} |" for row in rows]
     return "\n".join([title, head, "|" + "---|" * len(rows[0]), *body]) + "\n"

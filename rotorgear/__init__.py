@@ -13,5 +13,13 @@ from rotorgear.version import VERSION
 
 __version__ = VERSION
 
-__getattr__, __dir__, __all__ = attach(__name__, __file__)
+_FORMER = {
+    "accuracy_ladder": "convergence_study",
+    "transient_ladder": "transient_convergence_study",
+    "mesh_ladder": "mesh_convergence_study",
+    "sweep_ladder": "sweep_convergence_study",
+    "AccuracyLadder": "ConvergenceStudy",
+    "SweepLadder": "SweepConvergenceStudy",
+}
+__getattr__, __dir__, __all__ = attach(__name__, __file__, _FORMER)
 __all__ += ["__version__"]

@@ -45,10 +45,10 @@ from rotorgear.analysis.sweep.sweep import sweep as sweep
 from rotorgear.analysis.sweep.cluster import cluster as cluster
 from rotorgear.analysis.teeth.gear_sheet import gear_sheet as gear_sheet
 from rotorgear.analysis.teeth.mesh import mesh_analysis as mesh_analysis
-from rotorgear.analysis.modal.accuracy import accuracy_ladder as accuracy_ladder
-from rotorgear.analysis.transient.ladder import transient_ladder as transient_ladder
-from rotorgear.analysis.sweep.ladder import sweep_ladder as sweep_ladder
-from rotorgear.analysis.teeth.ladder import mesh_ladder as mesh_ladder
+from rotorgear.analysis.modal.convergence import convergence_study as convergence_study
+from rotorgear.analysis.transient.convergence import transient_convergence_study as transient_convergence_study
+from rotorgear.analysis.sweep.convergence import sweep_convergence_study as sweep_convergence_study
+from rotorgear.analysis.teeth.convergence import mesh_convergence_study as mesh_convergence_study
 from rotorgear.solvers.lanes.flow_exponents import flow_exponents as flow_exponents
 
 # A rig beside them.
@@ -76,11 +76,11 @@ from rotorgear.results.response import ResponseResult as ResponseResult
 from rotorgear.results.frequency_response import FrequencyResponse as FrequencyResponse
 from rotorgear.results.transient import TransientResult as TransientResult
 from rotorgear.results.sweep import SweepResult as SweepResult
-from rotorgear.results.sweep_ladder import SweepLadder as SweepLadder
+from rotorgear.results.sweep_convergence import SweepConvergenceStudy as SweepConvergenceStudy
 from rotorgear.results.portrait import Portraits as Portraits
 from rotorgear.results.gear_sheet import GearSheet as GearSheet
 from rotorgear.results.mesh import MeshResult as MeshResult
-from rotorgear.results.accuracy import AccuracyLadder as AccuracyLadder
+from rotorgear.results.convergence import ConvergenceStudy as ConvergenceStudy
 from rotorgear.results.comparison import Comparison as Comparison
 from rotorgear.results.comparison import RigLine as RigLine
 

@@ -1,4 +1,4 @@
-"""rotorgear accuracy: error against run time of a model over a ladder of discretisations."""
+"""rotorgear accuracy: convergence study of a model: error against run time over a series of discretisations."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rotorgear.cli.common import JsonOption, ModelFile, SpeedOption, console, pa
 from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
-    from rotorgear.results.accuracy import AccuracyLadder
+    from rotorgear.results.convergence import ConvergenceStudy
 
 
 def accuracy(
@@ -46,7 +46,7 @@ def accuracy(
     plot: Annotated[Path | None, typer.Option("--plot", help="Draw it to this PNG or SVG.", show_default=False)] = None,
     json: JsonOption = None,
 ) -> None:
-    """Error against run time and dofs over a ladder of discretisations, with the measured order."""
+    """Convergence study: error against run time and dofs over a series of discretisations, with the measured order."""
     import rotorgear as rg
 
     if analysis == "mesh":
@@ -68,20 +68,20 @@ def accuracy(
     given = [line.frequency_hz for line in rg.read_rig_lines(reference)] if reference else None
     with progress_bar("accuracy") as progress:
         if analysis == "transient":
-            ladder = rg.transient_ladder(
+            study = rg.transient_convergence_study(
                 rg.load(model), speed=parse_speed(speed), time=time, modal_damping=modal_damping, progress=progress
             )
         else:
-            ladder = rg.accuracy_ladder(
+            study = rg.convergence_study(
                 rg.load(model), speed=parse_speed(speed), modes=modes, reference=given, progress=progress
             )
-    for part in table(ladder):
+    for part in table(study):
         console().print(part)
-    write_json(ladder.to_dict(), json)
+    write_json(study.to_dict(), json)
     if plot:
-        from rotorgear.plots.accuracy import draw_accuracy
+        from rotorgear.plots.convergence import draw_convergence
 
-        typer.echo(f"wrote {draw_accuracy(ladder, plot)}")
+        typer.echo(f"wrote {draw_convergence(study, plot)}")
 
 
 def _refuse_modal_options(speed: str | None, reference: Path | None) -> None:
@@ -90,21 +90,21 @@ def _refuse_modal_options(speed: str | None, reference: Path | None) -> None:
 
 
 def _mesh(model: Path, mesh: str | None, torque: str | None, plot: Path | None, json: Path | None) -> None:
-    """The ladder of a mesh."""
+    """The convergence study of a mesh."""
     import rotorgear as rg
     from rotorgear.cli.mesh import parse_torque
-    from rotorgear.results.tables.mesh import ladder_parts
+    from rotorgear.results.tables.mesh import convergence_parts
 
     pinion_torque = parse_torque(torque)
     with progress_bar("accuracy") as progress:
-        ladder = rg.mesh_ladder(rg.load(model), mesh, torque=pinion_torque, progress=progress)
-    for part in ladder_parts(ladder):
+        study = rg.mesh_convergence_study(rg.load(model), mesh, torque=pinion_torque, progress=progress)
+    for part in convergence_parts(study):
         console().print(part)
-    write_json(ladder.to_dict(), json)
+    write_json(study.to_dict(), json)
     if plot:
-        from rotorgear.plots.mesh_ladder import draw_mesh_ladder
+        from rotorgear.plots.mesh_convergence import draw_mesh_convergence
 
-        typer.echo(f"wrote {draw_mesh_ladder(ladder, plot)}")
+        typer.echo(f"wrote {draw_mesh_convergence(study, plot)}")
 
 
 def _refuse_others(time: str | None, modal_damping: float | None, reference: Path | None, plot: Path | None) -> None:
@@ -113,30 +113,30 @@ def _refuse_others(time: str | None, modal_damping: float | None, reference: Pat
 
 
 def _sweep(model: Path, speed: str | None, json: Path | None) -> None:
-    """The ladder of a point of a sweep."""
+    """The convergence study of one point of a sweep."""
     import rotorgear as rg
-    from rotorgear.results.tables.sweep import ladder_table
+    from rotorgear.results.tables.sweep import convergence_table
 
     with progress_bar("accuracy") as progress:
-        ladder = rg.sweep_ladder(rg.load(model), speed=parse_speed(speed), progress=progress)
-    console().print(ladder_table(ladder))
-    write_json(ladder.to_dict(), json)
+        study = rg.sweep_convergence_study(rg.load(model), speed=parse_speed(speed), progress=progress)
+    console().print(convergence_table(study))
+    write_json(study.to_dict(), json)
 
 
-def table(ladder: AccuracyLadder) -> list[Any]:
-    """The ladder as rich renderables that fit 80 columns."""
+def table(study: ConvergenceStudy) -> list[Any]:
+    """The study as rich renderables that fit 80 columns."""
     from rich.table import Table
 
     rows = Table(box=None, pad_edge=False, header_style="bold")
     for name in ("discretisation", "dofs", "seconds", "error", "estimate", "order"):
         rows.add_column(name, justify="left" if name == "discretisation" else "right")
-    for rung in ladder.rungs:
+    for rung in study.rungs:
         order = "" if rung.order is None else f"{rung.order:.2f}"
         rows.add_row(
             rung.method, str(rung.dofs), f"{rung.seconds:.3f} s", f"{rung.error:.1e}", f"{rung.estimate:.1e}", order
         )
-    what = f"largest relative error of {ladder.modes} frequencies"
-    if ladder.analysis == "transient":
-        what = f"rms error of {ladder.modes} contact forces over their change"
-    head = f"[bold]{ladder.title}[/bold]: {what}"
-    return [head, f"against {ladder.reference}", "", rows, ""]
+    what = f"largest relative error of {study.modes} frequencies"
+    if study.analysis == "transient":
+        what = f"rms error of {study.modes} contact forces over their change"
+    head = f"[bold]{study.title}[/bold]: {what}"
+    return [head, f"against {study.reference}", "", rows, ""]

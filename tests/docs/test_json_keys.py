@@ -123,7 +123,7 @@ def test_the_keys_of_transient_are_documented(tmp_path: Path, rig: str) -> None:
     assert set(keys(written(tmp_path, "transient", str(MODEL), *run))) == documented("transient")
 
 
-def test_the_keys_of_sweep_and_of_its_ladder_are_documented(tmp_path: Path) -> None:
+def test_the_keys_of_sweep_and_of_its_convergence_study_are_documented(tmp_path: Path) -> None:
     pair, flexible = (str(ROOT / "models" / f"{name}_pair.toml") for name in ("backlash", "flexible"))
     data = written(
         tmp_path,
@@ -156,8 +156,8 @@ def test_the_keys_of_mesh_are_documented(tmp_path: Path) -> None:
     file = tmp_path / "pair.toml"
     file.write_text(pair_file(mesh='stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'), encoding="utf-8")
     assert set(keys(written(tmp_path, "mesh", str(file), "--loads", "0.5"))) == documented("mesh")
-    ladder = written(tmp_path, "accuracy", str(file), "--analysis", "mesh")
-    assert set(keys(ladder)) == documented("mesh accuracy")
+    study = written(tmp_path, "accuracy", str(file), "--analysis", "mesh")
+    assert set(keys(study)) == documented("mesh accuracy")
 
 
 def test_the_keys_of_campbell_are_documented(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.results.mesh import PLANE, MeshResult
-from rotorgear.results.mesh_ladder import MeshLadder
+from rotorgear.results.mesh_convergence import MeshConvergenceStudy
 
 
 def mesh_parts(found: MeshResult, harmonics: int) -> Iterator[Any]:
@@ -113,15 +113,15 @@ def _loads(found: MeshResult) -> Any:
     return table
 
 
-def ladder_parts(ladder: MeshLadder) -> Iterator[Any]:
-    """The error ladder of a mesh."""
-    yield f"[bold]{ladder.title or 'Mesh'}[/bold]: mesh '{ladder.mesh}', F_bt {ladder.base_force_n:.6g} N on a helix"
-    yield f"body: {ladder.body}"
-    yield f"errors in % against {ladder.reference};"
+def convergence_parts(study: MeshConvergenceStudy) -> Iterator[Any]:
+    """The convergence study of a mesh."""
+    yield f"[bold]{study.title or 'Mesh'}[/bold]: mesh '{study.mesh}', F_bt {study.base_force_n:.6g} N on a helix"
+    yield f"body: {study.body}"
+    yield f"errors in % against {study.reference};"
     yield "after the stroke what the analysis itself estimates"
     yield ""
     table = _table("mesh", "elements", "dofs", "FE", "contact", "k", "k pp", "STE pp")
-    for rung in ladder.rungs:
+    for rung in study.rungs:
         cells = []
         for name in ("mean_stiffness", "peak_to_peak_stiffness", "ste_peak_to_peak"):
             estimate = rung.estimate

@@ -103,8 +103,8 @@ def test_a_mistake_is_answered_with_one_sentence(shaken: str, options: list[str]
     assert "Traceback" not in text
 
 
-def test_the_ladder_of_a_transient_shows_second_order(shaken: str, tmp_path: Path) -> None:
-    target = tmp_path / "ladder.json"
+def test_the_convergence_study_of_a_transient_shows_second_order(shaken: str, tmp_path: Path) -> None:
+    target = tmp_path / "study.json"
     done = CliRunner().invoke(
         app,
         [

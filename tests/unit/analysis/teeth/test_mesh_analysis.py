@@ -153,8 +153,8 @@ def test_an_accuracy_takes_the_cheapest_preset_that_is_estimated_to_reach_it() -
 
 
 def test_estimates_are_larger_than_the_errors_against_a_finer_mesh() -> None:
-    ladder = rg.mesh_ladder(rg.loads(pair_file()))
-    for rung in ladder.rungs:
+    study = rg.mesh_convergence_study(rg.loads(pair_file()))
+    for rung in study.rungs:
         if rung.estimate is not None:
             for name in ("mean_stiffness", "peak_to_peak_stiffness", "ste_peak_to_peak"):
                 assert getattr(rung.error, name) <= 1.5 * getattr(rung.estimate, name)

@@ -58,6 +58,11 @@ def test_every_new_name_is_a_key_of_its_part_and_no_former_one_is() -> None:
         assert set(keys.values()) | set(VALUES.get(part, {})) <= set(parts[part].model_fields)
 
 
+def test_a_function_by_its_former_name_is_the_same_function() -> None:
+    with pytest.warns(OldNameWarning, match="convergence_study"):
+        assert rg.accuracy_ladder is rg.convergence_study  # type: ignore[attr-defined]
+
+
 def test_a_former_argument_is_passed_on_by_its_new_name() -> None:
     @renamed_arguments(old="new")
     def function(new: int = 0) -> int:

@@ -18,7 +18,7 @@ from rotorgear.model.layout.mesh_stiffness import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.mesh import MeshErrors
-from rotorgear.results.mesh_ladder import MeshLadder, MeshRung
+from rotorgear.results.mesh_convergence import MeshConvergenceStudy, MeshRung
 
 POSITIONS = 64
 # Meshes between the presets, and the reference: rows and columns, and thickness of a layer in normal modules.
@@ -35,9 +35,9 @@ class _Run:
     contact_seconds: float
 
 
-def mesh_ladder(
+def mesh_convergence_study(
     model: Model, mesh: str | None = None, *, torque: float | None = None, progress: Progress = silent
-) -> MeshLadder:
+) -> MeshConvergenceStudy:
     """Run the loaded contact of one helix of a mesh over presets and mesh sizes, without stored compliances.
 
     Args:
@@ -68,7 +68,7 @@ def mesh_ladder(
     progress(1.0, "done")
     size = finest.mesh_size(teeth.width / teeth.first.normal_module, space=space)
     words = f"{_words(size)}, {truth.problem.unknowns} dofs, {truth.problem.slices} slices"
-    return MeshLadder(model.title, request.name, truth.problem.body, request.base_force, words, tuple(rungs))
+    return MeshConvergenceStudy(model.title, request.name, truth.problem.body, request.base_force, words, tuple(rungs))
 
 
 def _elements(teeth: ToothPair) -> int:

@@ -1,4 +1,4 @@
-"""Result of the accuracy ladder of a sweep: what one point gives over steps and length, with its uncertainty and cost."""
+"""Result of the convergence study of a sweep: values of one point, their uncertainty and cost over steps and length."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class SweepRung:
 
 
 @dataclass(frozen=True)
-class SweepLadder:
+class SweepConvergenceStudy:
     """Rungs of one model; `runs` is how many states each was run from."""
 
     title: str

@@ -1,4 +1,4 @@
-"""Draws an accuracy ladder: error against seconds and against degrees of freedom."""
+"""Draws a convergence study: error against seconds and against degrees of freedom."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from rotorgear.errors import MissingExtraError
-from rotorgear.results.accuracy import AccuracyLadder
+from rotorgear.results.convergence import ConvergenceStudy
 
 _STYLE = {"elements": ("s", "#777777", "basic elements"), "accuracy": ("o", "#1f5fa8", "refined to an accuracy")}
 
 
-def draw_accuracy(ladder: AccuracyLadder, path: str | Path) -> Path:
-    """Write the ladder as a picture (PNG or SVG by the name's ending) and return its path.
+def draw_convergence(study: ConvergenceStudy, path: str | Path) -> Path:
+    """Write the study as a picture (PNG or SVG by the name's ending) and return its path.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
@@ -23,17 +23,17 @@ def draw_accuracy(ladder: AccuracyLadder, path: str | Path) -> Path:
     except ImportError:
         raise MissingExtraError("A plot", "matplotlib", "plots") from None
     figure = Figure(figsize=(9.0, 4.0), layout="constrained")
-    if ladder.analysis == "transient":
+    if study.analysis == "transient":
         axes = [figure.subplots()]
-        _curve(axes[0], ladder, "seconds", "seconds, integration")
-        axes[0].set_ylabel(f"rms error of {ladder.modes} contact forces over their change")
+        _curve(axes[0], study, "seconds", "seconds, integration")
+        axes[0].set_ylabel(f"rms error of {study.modes} contact forces over their change")
     else:
         axes = list(figure.subplots(1, 2, sharey=True))
-        _curve(axes[0], ladder, "seconds", "seconds, whole analysis")
-        _curve(axes[1], ladder, "dofs", "degrees of freedom")
-        axes[0].set_ylabel(f"largest relative error of {ladder.modes} frequencies")
+        _curve(axes[0], study, "seconds", "seconds, whole analysis")
+        _curve(axes[1], study, "dofs", "degrees of freedom")
+        axes[0].set_ylabel(f"largest relative error of {study.modes} frequencies")
     axes[0].legend(frameon=False)
-    figure.suptitle(ladder.title, fontsize=11)
+    figure.suptitle(study.title, fontsize=11)
     target = Path(path)
     temporary = target.with_name(f".{target.stem}.part{target.suffix}")
     figure.savefig(temporary, dpi=120, metadata={"Date": None} if target.suffix == ".svg" else None)
@@ -41,11 +41,11 @@ def draw_accuracy(ladder: AccuracyLadder, path: str | Path) -> Path:
     return target
 
 
-def _curve(axis: Any, ladder: AccuracyLadder, key: str, label: str) -> None:
-    families = dict.fromkeys(rung.family for rung in ladder.rungs)
+def _curve(axis: Any, study: ConvergenceStudy, key: str, label: str) -> None:
+    families = dict.fromkeys(rung.family for rung in study.rungs)
     others = {family: ("osd^v<>"[i % 7], f"C{i}", family) for i, family in enumerate(families)}
     for family, (marker, colour, name) in {**others, **{key: _STYLE[key] for key in _STYLE if key in families}}.items():
-        own = [rung for rung in ladder.rungs if rung.family == family and rung.error < float("inf")]
+        own = [rung for rung in study.rungs if rung.family == family and rung.error < float("inf")]
         if own:
             # An error of exactly zero has no place on a logarithmic axis.
             x = [getattr(rung, key) for rung in own]

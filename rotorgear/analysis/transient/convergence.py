@@ -12,7 +12,7 @@ from rotorgear.analysis.transient.transient import transient
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.accuracy import AccuracyLadder, Rung
+from rotorgear.results.convergence import ConvergenceStudy, Rung
 from rotorgear.results.transient import TransientResult
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
@@ -28,7 +28,7 @@ _ROUNDING = 1e-9
 _NO_ORDER = 0.1
 
 
-def transient_ladder(
+def transient_convergence_study(
     model: Model,
     *,
     speed: float | str | None = None,
@@ -36,8 +36,8 @@ def transient_ladder(
     modal_damping: float | None = None,
     steps: Sequence[int] = STEPS,
     progress: Progress = silent,
-) -> AccuracyLadder:
-    """Run a transient from its equilibrium over a ladder of steps, methods and numbers of modes.
+) -> ConvergenceStudy:
+    """Run a transient from its equilibrium over a series of steps, methods and numbers of modes.
 
     The error is the root mean square of the difference of all contact forces from the reference, over that of their change; the
     reference is the exponential method with all modes and 5120 steps in a period of the fastest mesh.
@@ -51,7 +51,7 @@ def transient_ladder(
         AnalysisError: a model without meshes, or without excitation.
     """
     if not model.meshes:
-        raise AnalysisError("the ladder of a transient compares contact forces: the model has no mesh")
+        raise AnalysisError("the convergence study of a transient compares contact forces: the model has no mesh")
     system = System(model, plan=Plan(elements=1, order=2))
     fixed: dict[str, Any] = {"speed": speed, "settle": 0.0, "records": _RECORDS, "modal_damping": modal_damping}
     fixed["time"] = time if time is not None else _duration(system, fixed)
@@ -72,7 +72,7 @@ def transient_ladder(
             rungs.append(_rung(name, count, found, truth, rungs))
     progress(1.0, "done")
     words = f"the exponential method with all modes and {REFERENCE_STEPS} steps in a mesh period"
-    return AccuracyLadder(model.title or "model", "transient", words, len(truth.contact), tuple(rungs))
+    return ConvergenceStudy(model.title or "model", "transient", words, len(truth.contact), tuple(rungs))
 
 
 def _duration(system: System, fixed: dict[str, Any]) -> float:

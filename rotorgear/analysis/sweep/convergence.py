@@ -10,7 +10,7 @@ from rotorgear.analysis.sweep.sweep import sweep
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.sweep_ladder import SweepLadder, SweepRung
+from rotorgear.results.sweep_convergence import SweepConvergenceStudy, SweepRung
 
 STEPS = (50, 100, 200, 400)
 COUNTS = (50, 200, 800)
@@ -19,7 +19,7 @@ _SETTLE = 300
 _THROW = 1e-3
 
 
-def sweep_ladder(
+def sweep_convergence_study(
     model: Model,
     *,
     speed: float | str | None = None,
@@ -27,7 +27,7 @@ def sweep_ladder(
     counts: Sequence[int] = COUNTS,
     starts: int = 32,
     progress: Progress = silent,
-) -> SweepLadder:
+) -> SweepConvergenceStudy:
     """Run one point with several steps and lengths, each from many states near the static one, side by side.
 
     The scatter between the runs from different states is a check of the standard error that a single run states: where one motion
@@ -73,4 +73,4 @@ def sweep_ladder(
             )
         )
     progress(1.0, "done")
-    return SweepLadder(model.title or "model", starts, tuple(rungs))
+    return SweepConvergenceStudy(model.title or "model", starts, tuple(rungs))

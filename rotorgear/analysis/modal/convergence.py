@@ -1,4 +1,4 @@
-"""Error against run time: runs an analysis of a model over a ladder of discretisations and compares with a reference."""
+"""Error against run time: runs an analysis of a model over a series of discretisations and compares with a reference."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rotorgear.analysis.modal.modal import modal
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.accuracy import AccuracyLadder, Rung
+from rotorgear.results.convergence import ConvergenceStudy, Rung
 from rotorgear.results.modal import ModalResult
 from rotorgear.system.system import System
 
@@ -23,7 +23,7 @@ REFERENCE = 1e-10
 _ROUNDING = 1e-11
 
 
-def accuracy_ladder(
+def convergence_study(
     model: Model,
     *,
     speed: float | str | None = None,
@@ -33,8 +33,8 @@ def accuracy_ladder(
     reference: Sequence[float] | None = None,
     repeat: int = 3,
     progress: Progress = silent,
-) -> AccuracyLadder:
-    """Run the modal analysis of a model over a ladder of discretisations.
+) -> ConvergenceStudy:
+    """Run the modal analysis of a model over a series of discretisations.
 
     Args:
         model: the model.
@@ -89,7 +89,7 @@ def accuracy_ladder(
             )
         )
     progress(1.0, "done")
-    return AccuracyLadder(model.title or "model", "modal", words, len(truth), tuple(rungs))
+    return ConvergenceStudy(model.title or "model", "modal", words, len(truth), tuple(rungs))
 
 
 def _elastic(result: ModalResult) -> np.ndarray:

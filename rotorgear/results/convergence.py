@@ -1,4 +1,4 @@
-"""Result of an accuracy ladder: error against run time and size over a series of discretisations."""
+"""Result of a convergence study: error against run time and size over a series of discretisations."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Rung:
-    """One discretisation of a ladder.
+    """One discretisation of the study.
 
     Attributes:
         method: what was asked for, such as "4 basic elements a piece" or "accuracy 1e-05".
@@ -33,7 +33,7 @@ class Rung:
 
 
 @dataclass(frozen=True)
-class AccuracyLadder:
+class ConvergenceStudy:
     """Rungs of one model and analysis.
 
     `reference` says what the errors are measured against; `modes` how many frequencies, or contact forces.

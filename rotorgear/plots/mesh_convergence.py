@@ -1,4 +1,4 @@
-"""Draws the error ladder of a mesh: errors of stiffness and transmission error against CPU seconds."""
+"""Draws the convergence study of a mesh: errors of stiffness and transmission error against CPU seconds."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rotorgear.errors import MissingExtraError
 from rotorgear.export.files import replacing
-from rotorgear.results.mesh_ladder import MeshLadder
+from rotorgear.results.mesh_convergence import MeshConvergenceStudy
 
 _CURVES = (
     ("mean_stiffness", "o", "#1f5fa8", "mean stiffness"),
@@ -15,8 +15,8 @@ _CURVES = (
 )
 
 
-def draw_mesh_ladder(ladder: MeshLadder, path: str | Path) -> Path:
-    """Write the ladder as a picture (PNG or SVG by the name's ending) and return its path.
+def draw_mesh_convergence(study: MeshConvergenceStudy, path: str | Path) -> Path:
+    """Write the study as a picture (PNG or SVG by the name's ending) and return its path.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
@@ -29,12 +29,12 @@ def draw_mesh_ladder(ladder: MeshLadder, path: str | Path) -> Path:
     figure = Figure(figsize=(7.5, 4.6), layout="constrained")
     axis = figure.subplots()
     for name, marker, colour, label in _CURVES:
-        seconds = [rung.fe_seconds + rung.contact_seconds for rung in ladder.rungs]
-        errors = [100.0 * max(getattr(rung.error, name), 1e-7) for rung in ladder.rungs]
+        seconds = [rung.fe_seconds + rung.contact_seconds for rung in study.rungs]
+        errors = [100.0 * max(getattr(rung.error, name), 1e-7) for rung in study.rungs]
         axis.loglog(seconds, errors, marker, color=colour, ms=7, label=label)
-        known = [(s, rung.estimate) for s, rung in zip(seconds, ladder.rungs, strict=True) if rung.estimate]
+        known = [(s, rung.estimate) for s, rung in zip(seconds, study.rungs, strict=True) if rung.estimate]
         axis.loglog([s for s, _ in known], [100.0 * getattr(e, name) for _, e in known], "x", color=colour, ms=6)
-    for rung in ladder.rungs:
+    for rung in study.rungs:
         top = 100.0 * rung.error.worst
         place = (rung.fe_seconds + rung.contact_seconds, top)
         axis.annotate(rung.method.removeprefix("preset "), place, (4, 6), textcoords="offset points", fontsize=8)
@@ -43,7 +43,7 @@ def draw_mesh_ladder(ladder: MeshLadder, path: str | Path) -> Path:
     axis.set_ylabel("relative error, %")
     axis.grid(True, which="major", alpha=0.25)
     axis.legend(frameon=False, fontsize=8)
-    axis.set_title(f"{ladder.title}: {ladder.mesh}", fontsize=10)
+    axis.set_title(f"{study.title}: {study.mesh}", fontsize=10)
     target = Path(path)
     with replacing(target) as scratch:
         plain = target.suffix.lower() == ".svg"

@@ -34,7 +34,7 @@ class MeshRung:
 
 
 @dataclass(frozen=True)
-class MeshLadder:
+class MeshConvergenceStudy:
     """Rungs of one mesh at one load; `reference` says what the errors are measured against."""
 
     title: str
