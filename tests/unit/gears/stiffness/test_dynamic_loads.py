@@ -1,31 +1,25 @@
-"""K_v, corner impact and friction laws against hand calculation, kinematics and limits."""
+"""K_v and friction laws against hand calculation and limits."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.geometry.geometry import GearGeometry
-from rotorgear.gears.geometry.outline import tooth_outline
-from rotorgear.gears.geometry.pair import pair_geometry
 from rotorgear.gears.loaded.friction import (
     benedict_kelley_friction,
     mean_mesh_friction,
     saturating_friction,
     xu_kahraman_friction,
 )
-from rotorgear.gears.loaded.impact import corner_contact, corner_gap, corner_impact_force, impulse_force
 from rotorgear.gears.stiffness.dynamic_factor import (
     DynamicMesh,
     iso_dynamic_factor,
     reduced_mass,
     simple_dynamic_factor,
 )
-from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 
 deg = math.radians
 MESH = DynamicMesh(
@@ -95,80 +89,6 @@ def test_no_load_and_a_contact_ratio_of_1_are_refused() -> None:
         iso_dynamic_factor(replace(MESH, total_contact_ratio=1.0))
     with pytest.raises(AnalysisError, match="grades 3 to 12, not 2"):
         simple_dynamic_factor(10.0, 20, 3.0, 1e5, 1.0, 2)
-
-
-def spur() -> ToothPair:
-    g1 = GearGeometry(34, 5e-3, deg(20), 0.0)
-    g2 = GearGeometry(80, 5e-3, deg(20), 0.0)
-    return ToothPair(g1, g2, pair_geometry(g1, g2, 0.054), 0.054)
-
-
-def test_the_tip_corner_lies_on_the_flank_that_rolled_back_by_the_gap() -> None:
-    """Both gears turned by hand to a position before A: how far the driver's flank must turn to reach the corner."""
-    teeth = spur()
-    advance = 2e-3
-    g1 = teeth.first
-    g2 = teeth.second
-    distance = teeth.pair.centre_distance
-    angle = teeth.pair.working_transverse_pressure_angle
-    start = teeth.pair.start_of_contact
-    pitch = g1.base_radius / math.cos(angle)
-    a = np.array([pitch + start * math.sin(angle), start * math.cos(angle)])
-    back = advance / g2.base_radius  # the driven gear turns clockwise; earlier it was turned the other way
-    rotate = np.array([[math.cos(back), -math.sin(back)], [math.sin(back), math.cos(back)]])
-    corner = rotate @ (a - [distance, 0.0]) + [distance, 0.0]
-    outline = tooth_outline(g1)
-    roll = np.linspace(0.0, 0.06, 400001)
-    radius, half = outline.involute(roll)
-    at_a = float(outline.involute(math.sqrt(float(a @ a) - g1.base_radius**2))[1])
-    turned = math.atan2(a[1], a[0]) - at_a - advance / g1.base_radius  # middle of the driver's tooth
-    flank = float(np.interp(np.linalg.norm(corner), radius, half)) + turned
-    gap = g1.base_radius * (math.atan2(corner[1], corner[0]) - flank)
-    assert corner_gap(teeth, advance) == pytest.approx(gap, abs=1e-12)
-
-
-def test_without_separation_the_corner_touches_at_a_without_a_blow() -> None:
-    contact = corner_contact(spur(), 0.0)
-    assert contact.advance == 0.0
-    assert contact.base_radius == pytest.approx(spur().second.base_radius, rel=1e-12)
-    assert contact.approach == pytest.approx(0.0, abs=1e-12)
-
-
-def test_the_approach_velocity_is_how_fast_the_gap_closes() -> None:
-    teeth = spur()
-    contact = corner_contact(teeth, 20e-6)
-    step = 1e-7
-    closing = (corner_gap(teeth, contact.advance + step) - corner_gap(teeth, contact.advance - step)) / (2 * step)
-    assert contact.approach == pytest.approx(
-        closing, rel=1e-2
-    )  # the gap is an arc of base circle 1, v_s along the normal
-
-
-def test_the_impact_force_is_the_energy_of_the_reduced_mass_in_the_springs() -> None:
-    teeth = spur()
-    contact = corner_contact(spur(), 20e-6)
-    given = {"driver_speed": 200.0, "driver_inertia": 0.05, "driven_inertia": 1.3, "hit_compliance": 1e-9}
-    force = corner_impact_force(teeth, 20e-6, **given, carrying_compliance=0.0)
-    mass = 1 / (teeth.first.base_radius**2 / 0.05 + contact.base_radius**2 / 1.3)
-    velocity = 200.0 * teeth.first.base_radius * contact.approach
-    assert 0.5 * force**2 * 1e-9 == pytest.approx(0.5 * mass * velocity**2, rel=1e-12)
-    assert corner_impact_force(teeth, 20e-6, **given, carrying_compliance=1e-9) < force
-    assert impulse_force(mass, velocity, 1e-4) == pytest.approx(mass * velocity / 1e-4, rel=1e-14)
-
-
-def test_a_separation_of_millimetres_and_a_lacking_mass_are_refused() -> None:
-    with pytest.raises(AnalysisError, match="more than a base pitch too early"):
-        corner_contact(spur(), 0.02)
-    with pytest.raises(AnalysisError, match="driven inertia of a corner impact must be positive"):
-        corner_impact_force(
-            spur(),
-            1e-5,
-            driver_speed=1.0,
-            driver_inertia=1.0,
-            driven_inertia=0.0,
-            hit_compliance=1e-9,
-            carrying_compliance=0.0,
-        )
 
 
 def test_friction_grows_and_falls_as_the_regressions_say() -> None:
