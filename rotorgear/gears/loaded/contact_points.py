@@ -17,6 +17,7 @@ import scipy.sparse as sp
 from rotorgear.gears.geometry.line_of_action import LineOfAction
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 
+# Quadrature points of a patch across and along a slice.
 _ACROSS = 24
 _ALONG = 3
 # Pieces of a contact line shorter than this share of a slice are dropped: they carry nothing and spoil the conditioning.
@@ -30,8 +31,10 @@ class Slices:
     """n slices at all positions of a cycle; with q places along each.
 
     Attributes:
-        position: (n,) number of the position in the cycle; pair: (n,) number k of the tooth pair.
-        z: (n, q) places from the middle of the common face; length: (n,) along the axis.
+        position: (n,) number of the position in the cycle.
+        pair: (n,) number k of the tooth pair.
+        z: (n, q) places from the middle of the common face.
+        length: (n,) along the axis.
         weight: (q,) shares of a slice that its places stand for.
         roll: (2, n, q) roll lengths on pinion and gear.
         gap: (n, q) kinematic gap of a corner contact, 0 on the line of action, along the flank normal.
@@ -72,6 +75,8 @@ def contact_slices(
     """
     tangent = float(np.tan(line.base_helix_angle))
     half = 0.5 * width
+
+    # Zone 0: the gear's tip corner before the start of contact; 1: the line of action; 2: the pinion's corner after its end.
     first = line.start - beyond[0]
     last = line.end + beyond[1]
     zones = [(first, line.start), (line.start, line.end), (line.end, last)]
@@ -81,15 +86,39 @@ def contact_slices(
         high = (last + tangent * half - line.pitch_point) / line.base_pitch - u
         for k in range(int(np.ceil(low)), int(np.floor(high)) + 1):
             middle = line.pitch_point + (u + k) * line.base_pitch
-            for zone, ends in enumerate(zones):
-                for z, length in _cut(middle, tangent, ends, half, slices, stations, closed=zone == 1):
-                    pieces.append((p, k, zone, z, length))
+            for number, ends in enumerate(zones):
+                for z, length in _cut(middle, tangent, ends, half, slices, stations, closed=number == 1):
+                    pieces.append((p, k, number, z, length))
     weight = np.array([1.0]) if (tangent == 0.0 and slices == 1) or stations else _legendre()[1]
-    return _gathered(line, pieces, positions, tangent, weight)
+    position, pair, zone = (np.array([piece[i] for piece in pieces], int) for i in range(3))
+    z = np.array([piece[3] for piece in pieces]).reshape(len(pieces), len(weight))
+
+    # On the line of action both roll lengths add up to T1T2; at a corner one gear touches with its tip, off that line.
+    on_pinion = (line.pitch_point + (positions[position] + pair) * line.base_pitch)[:, None] + z * tangent
+    roll = np.stack([on_pinion, line.length - on_pinion])
+    gap = np.zeros(on_pinion.shape)
+    before = zone == 0
+    after = zone == 2
+    for gear, corner, excess in ((1, before, line.start - on_pinion), (0, after, on_pinion - line.end)):
+        if corner.any():
+            gap[corner], mate = line.corner(gear, np.maximum(excess[corner], 0.0))
+            roll[gear, corner] = line.tip[gear]
+            roll[1 - gear, corner] = mate
+    return Slices(
+        position=position,
+        pair=pair,
+        z=z,
+        length=np.array([piece[4] for piece in pieces]),
+        weight=weight,
+        roll=roll,
+        gap=gap * np.cos(line.base_helix_angle),
+        corner=zone != 1,
+    )
 
 
 @cache
 def _legendre() -> tuple[np.ndarray, np.ndarray]:
+    """Gauss-Legendre places on -1 ... 1 along a slice, and their shares of it."""
     x, w = np.polynomial.legendre.leggauss(_ALONG)
     return x, 0.5 * w
 
@@ -101,6 +130,7 @@ def _cut(
     step = 2.0 * half / slices
     if tangent == 0.0 or stations:
         z = -half + step * (np.arange(slices) + 0.5)
+        # The ends of the line of action belong to it, not to the corners: no slice is counted twice.
         roll = middle + z * tangent
         inside = (roll >= ends[0]) & (roll <= ends[1]) if closed else (roll > ends[0]) & (roll < ends[1])
         places = np.array([0.0]) if slices == 1 or stations else _legendre()[0]
@@ -110,39 +140,20 @@ def _cut(
     length = high - low
     if length < _SLIVER * step:
         return []
+    # Slices at least as long as a step: a line as long as the whole face has exactly `slices`, in spite of rounding.
     count = max(1, int(length / step + 1e-9)) if closed else _CORNER_SLICES
     centres = low + length / count * (np.arange(count) + 0.5)
     return [(centre + 0.5 * length / count * _legendre()[0], length / count) for centre in centres]
 
 
-def _gathered(
-    line: LineOfAction,
-    pieces: list[tuple[int, int, int, np.ndarray, float]],
-    positions: np.ndarray,
-    tangent: float,
-    weight: np.ndarray,
-) -> Slices:
-    position, pair, zone = (np.array([piece[i] for piece in pieces], int) for i in range(3))
-    z = np.array([piece[3] for piece in pieces]).reshape(len(pieces), len(weight))
-    middle = line.pitch_point + (positions[position] + pair) * line.base_pitch
-    first = middle[:, None] + z * tangent
-    roll = np.stack([first, line.length - first])
-    gap = np.zeros(first.shape)
-    for gear, number in ((1, 0), (0, 2)):  # before the start the gear's corner touches, after the end the pinion's
-        own = zone == number
-        if own.any():
-            excess = np.maximum(line.start - first[own] if number == 0 else first[own] - line.end, 0.0)
-            gap[own], mate = line.corner(gear, excess)
-            roll[gear, own] = line.tip[gear]
-            roll[1 - gear, own] = mate
-    gap = gap * np.cos(line.base_helix_angle)
-    return Slices(position, pair, z, np.array([piece[4] for piece in pieces]), weight, roll, gap, zone != 1)
-
-
 @dataclass(frozen=True)
 class PatchLoads:
-    """Nodal loads, sparse (n, nodes), of unit normal forces on the slices of one gear, and (n,) the mean logarithm of the
-    patches' half-widths in the transverse section, in normal modules."""
+    """Unit normal forces on the slices of one gear.
+
+    Attributes:
+        loads: nodal loads, sparse (n, nodes).
+        log_width: (n,) mean logarithm of the patches' half-widths in the transverse section, in normal modules.
+    """
 
     loads: sp.csr_array
     log_width: np.ndarray
@@ -154,17 +165,21 @@ def patch_loads(
     """Spread the slices over the flank of one gear.
 
     Args:
-        slices: the slices; gear: 0 or 1, whose roll lengths count.
+        slices: the slices.
+        gear: 0 or 1, whose roll lengths count.
         compliance: of that gear, in normal modules.
         module: normal module (m).
         place: (n, q) places along that gear's face from its middle, in its own direction (m).
         widths: least and largest half-width c of a patch, in normal modules.
     """
+    # Patches are measured along the flank: arc = xi^2 / (2 r_b). They end with the flank, so that no pressure acts beyond it.
     base = compliance.base_radius
     arc = (slices.roll[gear] / module) ** 2 / (2.0 * base)
     low = compliance.flank_start**2 / (2.0 * base)
     high = compliance.flank_end**2 / (2.0 * base)
     c = np.clip(np.minimum(arc - low, high - arc), *widths)
+
+    # Gauss-Chebyshev, second kind: its weight function sqrt(1 - t^2) is the semi-elliptic pressure itself.
     k = np.arange(1, _ACROSS + 1) * np.pi / (_ACROSS + 1)
     spread = np.clip(arc[..., None] + c[..., None] * np.cos(k), low, high)
     weights = 2.0 / (_ACROSS + 1) * np.sin(k) ** 2

@@ -18,8 +18,12 @@ import scipy.linalg as la
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.time.unilateral import unilateral
 
+# Rounds of force and half-width: few are needed as a rule, since a enters by its logarithm only.
 _OUTER_ROUNDS = 80
+# Change of the forces over the load at which they count as resting.
 _FORCE_TOLERANCE = 1e-12
+# Share of the mean load per slice that an unloaded slice counts as carrying: its strip must have a width.
+_TRACE = 1e-6
 # The local part of a slice's compliance is kept above this share of K, so that it stays positive.
 _LEAST_LOCAL = 0.05
 
@@ -29,8 +33,8 @@ class PositionContact:
     """The slices at one position of the mesh cycle.
 
     Attributes:
-        compliance: (n, n) m/N between normal forces and approaches, patches spread over c.
-        gap: (n,) m along the flank normal.
+        compliance: C without its local part (n, n) (m/N) between normal forces and approaches, patches spread over c.
+        gap: (n,) along the flank normal before loading (m).
         length: (n,) length of each slice's contact line, dz / cos b_b (m).
         local: (n, 2) K of both bodies (m^2/N).
         log_width: (n, 2) logarithm of the patches' half-widths across the contact line (m).
@@ -49,15 +53,21 @@ class PositionContact:
 
 @dataclass(frozen=True)
 class ContactState:
-    """Solution at one position: normal forces (n,), approach along the flank normal, tangent stiffness along it (N/m),
-    half-widths (n,) of the Hertz strips (0 where unloaded), KKT residual (m) and the number of solves."""
+    """Solution at one position.
+
+    Attributes:
+        force: (n,) normal forces (N).
+        approach: of the gears along the flank normal (m).
+        tangent: stiffness at the load along the flank normal (N/m).
+        strip: (n,) half-widths of the Hertz strips (m), 0 where unloaded.
+        residual: largest violation of the contact conditions (m).
+    """
 
     force: np.ndarray
     approach: float
     tangent: float
     strip: np.ndarray
     residual: float
-    rounds: int
 
 
 def hertz_half_width(load: np.ndarray, radius: np.ndarray, modulus: float) -> np.ndarray:
@@ -74,36 +84,41 @@ def solve_contact(contact: PositionContact, total: float) -> ContactState:
     n = len(contact.gap)
     force = np.full(n, total / n)
     start: np.ndarray | None = None
-    for count in range(1, _OUTER_ROUNDS + 1):
+    for _ in range(_OUTER_ROUNDS):
         C = contact.compliance + np.diag(_local(contact, force, total, tangent=False))
-        found, approach = unilateral(C, contact.gap, total, start)
-        change = float(np.abs(found - force).max()) / total
-        force = found
-        start = found > 0.0
+        previous = force
+        force, approach = unilateral(C, contact.gap, total, start)
+        start = force > 0.0  # the slices in contact hardly change between rounds
+        change = float(np.abs(force - previous).max()) / total
         if change <= _FORCE_TOLERANCE:
-            return _state(contact, C, force, approach, total, count)
-    raise ConvergenceError(
-        f"The loaded contact did not come to rest in {_OUTER_ROUNDS} rounds; the last change was {change:.1e} of the load. "
-        "Use a finer preset or a smaller misalignment."
+            break
+    else:
+        raise ConvergenceError(
+            f"The loaded contact did not come to rest in {_OUTER_ROUNDS} rounds; the last change was {change:.1e} of the "
+            "load. Use a finer preset or a smaller misalignment."
+        )
+
+    # Contact conditions: no opening where a force acts, no overlap anywhere.
+    opening = C @ force + contact.gap - approach
+    loaded = np.flatnonzero(force > 0.0)
+    residual = max(float(np.abs(opening[loaded]).max()), float(np.maximum(-opening, 0.0).max()))
+
+    # Tangent stiffness dF / d delta = 1^T C_t^-1 1 over the slices in contact: all of them approach alike.
+    C_t = contact.compliance[np.ix_(loaded, loaded)] + np.diag(_local(contact, force, total, tangent=True)[loaded])
+    tangent = float(la.solve(C_t, np.ones(len(loaded)), assume_a="pos", check_finite=False).sum())
+    return ContactState(
+        force=force,
+        approach=approach,
+        tangent=tangent,
+        strip=hertz_half_width(force / contact.length, contact.radius, contact.modulus),
+        residual=residual,
     )
 
 
 def _local(contact: PositionContact, force: np.ndarray, total: float, *, tangent: bool) -> np.ndarray:
     """Local compliance (n,) of the slices, secant or tangent; an unloaded slice counts as carrying a trace of the load."""
-    load = np.maximum(force, 1e-6 * total / len(force)) / contact.length
+    load = np.maximum(force, _TRACE * total / len(force)) / contact.length
     a = hertz_half_width(load, contact.radius, contact.modulus)
+    # d(F' ln 1/a)/dF' takes 1/2 off the secant's 1/4 + ln(c/a), because a grows as sqrt(F').
     share = (-0.25 if tangent else 0.25) + contact.log_width - np.log(a)[:, None]
     return np.asarray(np.sum(contact.local * np.maximum(share, _LEAST_LOCAL), axis=1) / contact.length)
-
-
-def _state(
-    contact: PositionContact, C: np.ndarray, force: np.ndarray, approach: float, total: float, count: int
-) -> ContactState:
-    open_by = C @ force + contact.gap - approach
-    loaded = force > 0.0
-    residual = max(float(np.abs(open_by[loaded]).max()), float(np.maximum(-open_by, 0.0).max()))
-    index = np.flatnonzero(loaded)
-    Ct = contact.compliance[np.ix_(index, index)] + np.diag(_local(contact, force, total, tangent=True)[index])
-    tangent = float(la.solve(Ct, np.ones(len(index)), assume_a="pos", check_finite=False).sum())
-    strip = hertz_half_width(force / contact.length, contact.radius, contact.modulus)
-    return ContactState(force, approach, tangent, strip, residual, count)

@@ -10,26 +10,20 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, mesh_cycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
-from rotorgear.progress import Progress, listener, silent
+from rotorgear.progress import Progress, listener, part_of, silent
 
-_problem = lru_cache(maxsize=8)(contact_problem)
+_kept_problem = lru_cache(maxsize=8)(contact_problem)
 
 
 def loaded_cycle(
     teeth: ToothPair, load: float, positions: np.ndarray, progress: Progress = silent
 ) -> tuple[ContactProblem, MeshCycle]:
     """Loaded contact of one helix at positions u (p,) for F_bt = load (N); the compliance comes first."""
-
-    def contact(fraction: float, text: str) -> None:
-        progress(0.8 + 0.2 * fraction, text)
-
-    problem = _prepared(teeth, lambda fraction, text: progress(0.8 * fraction, text))
-    return problem, mesh_cycle(problem, load, positions, contact)
-
-
-def _prepared(teeth: ToothPair, progress: Progress) -> ContactProblem:
-    contact_problem(teeth, progress)  # fills the store of compliances, with progress
-    return _problem(teeth)
+    # The compliance takes most of the time. It is computed here, with progress, and kept by its own key; the
+    # second call only puts the problem together, and keeps it by the teeth alone (a listener is no key).
+    contact_problem(teeth, part_of(progress, 0.0, 0.8))
+    problem = _kept_problem(teeth)
+    return problem, mesh_cycle(problem, load, positions, part_of(progress, 0.8, 1.0))
 
 
 def tooth_fe_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshStiffness:

@@ -9,6 +9,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.flank import FlankModification
+from rotorgear.gears.geometry.geometry import THIN_TIP
 from rotorgear.gears.geometry.line_of_action import LineOfAction
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.loaded.contact_points import Slices
@@ -19,7 +20,6 @@ from rotorgear.progress import Progress, silent
 
 # Stations of the preview along the face.
 _STATIONS = 48
-_THIN_TIP = 0.2
 
 
 @dataclass(frozen=True)
@@ -27,14 +27,22 @@ class ContactProblem:
     """One helix, ready for any load and position; index 0 is the pinion, 1 the gear.
 
     Attributes:
-        line: line of action. width: common face width (m). module: normal module (m).
+        line: line of action.
+        width: common face width (m).
+        module: normal module (m).
         compliance: of both gears in normal modules, for a Young's modulus of 1.
         scale: (2,) factors that bring it to m/N (space) or m^2/N (plane).
-        local: (2,) K = 2 (1 - nu^2)/(pi E) of both gears; modulus: E*.
-        plane: whether the compliance is that of a unit width. uncoupled: whether slices along the face don't feel each other.
-        slices: of a contact line over the whole face. patch: largest half-width of a patch in normal modules.
-        flanks: deviations of both flanks. teeth: numbers of teeth. misalignment: over the whole face (m).
-        body: what the teeth stand on. unknowns: of both finite-element models together.
+        local: (2,) K = 2 (1 - nu^2)/(pi E) of both gears (m^2/N).
+        modulus: E* (Pa).
+        plane: whether the compliance is that of a unit width.
+        uncoupled: whether slices along the face don't feel each other.
+        slices: of a contact line over the whole face.
+        patch: largest half-width of a patch in normal modules.
+        flanks: deviations of both flanks.
+        teeth: numbers of teeth.
+        misalignment: over the whole face (m).
+        body: what the teeth stand on, in words.
+        unknowns: of both finite-element models together.
         warnings: sentences.
     """
 
@@ -67,15 +75,15 @@ class ContactProblem:
 
     def gap(self, slices: Slices) -> np.ndarray:
         """Gap (n,) of each slice along the flank normal before loading (m)."""
-        found = slices.gap + self.misalignment * slices.z / self.width
+        gap = slices.gap + self.misalignment * slices.z / self.width
         for i, flank in enumerate(self.flanks):
             form = self.line.form[i]
             tip = self.line.tip[i]
-            found = found + flank.depth(slices.roll[i], slices.z, form, tip, self.width)
+            gap = gap + flank.depth(slices.roll[i], slices.z, form, tip, self.width)
             if flank.pitch_error:
                 # Pair -n comes into mesh n periods after pair 0.
-                found = found + flank.pitch_depth(-slices.pair, self.teeth[i])[:, None]
-        return np.asarray(np.sum(found * slices.weight, axis=1))
+                gap = gap + flank.pitch_depth(-slices.pair, self.teeth[i])[:, None]
+        return np.asarray(np.sum(gap * slices.weight, axis=1))
 
 
 def line_of_action(teeth: ToothPair) -> LineOfAction:
@@ -121,9 +129,9 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
     space, uncoupled = in_space(teeth)
     module = teeth.first.normal_module
     bodies = (teeth.first_body, teeth.second_body)
-    found = []
+    compliances = []
     scale = []
-    inner = []
+    held_radii = []
     for i, (g, body) in enumerate(zip((teeth.first, teeth.second), bodies, strict=True)):
         key = compliance_key(g, fe, body.poisson_ratio, teeth.width, body.inner_radius, space=space)
         name = ("pinion", "gear")[i]
@@ -132,56 +140,59 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
             progress(0.5 * (i + fraction), f"{name}: {text}")
 
         told(0.0, "teeth")
-        found.append(_without_torsion(gear_compliance(key, told, fresh=fresh), key, teeth, i))
-        inner.append(module * key.inner_radius)
+        compliances.append(_without_torsion(gear_compliance(key, told, fresh=fresh), key, teeth, i))
+        held_radii.append(module * key.inner_radius)
+        # A plane model is that of a unit width in the transverse section: cos b_b of the force, and again of the displacement,
+        # lie in that section. In space the compliance of a body grows as 1 / (E m_n).
         scale.append((math.cos(line.base_helix_angle) ** 2 if not space else 1.0 / module) / body.youngs_modulus)
     size = fe.mesh_size(teeth.width / module, space=space)
     slices = _STATIONS if uncoupled else (fe.slices or 2 * size.face if space else 1)
     plane_strain = [(1.0 - body.poisson_ratio**2) / body.youngs_modulus for body in bodies]
     return ContactProblem(
-        line,
-        teeth.width,
-        module,
-        (found[0], found[1]),
-        (scale[0], scale[1]),
-        np.array([2.0 * value / math.pi for value in plane_strain]),
-        1.0 / sum(plane_strain),
-        not space,
-        uncoupled,
-        slices,
-        fe.patch_width,
-        flanks,
-        (teeth.first.teeth, teeth.second.teeth),
-        teeth.misalignment,
-        fe.body_text(fe.arc, (inner[0], inner[1])),
-        sum(item.unknowns for item in found),
-        _warnings(teeth, line),
+        line=line,
+        width=teeth.width,
+        module=module,
+        compliance=(compliances[0], compliances[1]),
+        scale=(scale[0], scale[1]),
+        local=np.array([2.0 * value / math.pi for value in plane_strain]),
+        modulus=1.0 / sum(plane_strain),
+        plane=not space,
+        uncoupled=uncoupled,
+        slices=slices,
+        patch=fe.patch_width,
+        flanks=flanks,
+        teeth=(teeth.first.teeth, teeth.second.teeth),
+        misalignment=teeth.misalignment,
+        body=fe.body_text(fe.arc, (held_radii[0], held_radii[1])),
+        unknowns=sum(compliance.unknowns for compliance in compliances),
+        warnings=_warnings(teeth, line),
     )
 
 
-def _without_torsion(found: GearCompliance, key: ComplianceKey, teeth: ToothPair, gear: int) -> GearCompliance:
+def _without_torsion(compliance: GearCompliance, key: ComplianceKey, teeth: ToothPair, gear: int) -> GearCompliance:
     """A ring's compliance without the wind-up of its disc between the held circle and the root, if that is asked for.
 
     A torque r_b per unit of width turns the root against the bore by r_b (1/r_i^2 - 1/r_f^2)/(4 pi G), all flanks alike.
     """
     if not (teeth.fe.exclude_torsion and teeth.fe.body == "ring"):
-        return found
+        return compliance
     g = key.geometry
     shear = 0.5 / (1.0 + key.poisson_ratio)
     twist = (1.0 / key.inner_radius**2 - 4.0 / g.root_diameter**2) / (4.0 * math.pi * shear)
     wind_up = g.base_radius**2 * twist
     if key.width:
         wind_up *= math.cos(g.base_helix_angle) ** 2 / key.width
-    return replace(found, flexibility=found.flexibility - wind_up)
+    return replace(compliance, flexibility=compliance.flexibility - wind_up)
 
 
 def _warnings(teeth: ToothPair, line: LineOfAction) -> tuple[str, ...]:
+    """What is unfavourable about the teeth, or cut off their model."""
     notes = []
     if line.interference:
         notes.append("a tip reaches below the involute of its mate: contact is taken to end at the form circle")
     for name, g in (("pinion", teeth.first), ("gear", teeth.second)):
-        if g.normal_tip_thickness < _THIN_TIP * g.normal_module:
-            notes.append(f"the teeth of the {name} are thinner than {_THIN_TIP:g} normal modules at the tip")
+        if g.normal_tip_thickness < THIN_TIP * g.normal_module:
+            notes.append(f"the teeth of the {name} are thinner than {THIN_TIP:g} normal modules at the tip")
         if g.tool_tip_radius_factor >= g.full_radius_factor * (1.0 - 1e-12):
             notes.append(f"{name}: the rack's tip is fully rounded, rho = {g.tool_tip_radius_factor:.3f} m_n")
     return tuple(notes)

@@ -25,7 +25,13 @@ _NEIGHBOURS = 2
 
 @dataclass(frozen=True)
 class TeethSolution:
-    """Displacements (t, n, d) of the nodes of t pitches, each in the frame of its own tooth, and the pitch itself."""
+    """Displacements in the teeth near the loaded ones.
+
+    Attributes:
+        teeth: (t,) numbers of the pitches.
+        displacement: (t, n, d) of the nodes of each pitch, in the frame of its own tooth.
+        pitch: the pitch itself.
+    """
 
     teeth: np.ndarray
     displacement: np.ndarray
@@ -38,6 +44,7 @@ def solve_teeth(key: ComplianceKey, loads: dict[int, np.ndarray], progress: Prog
     Args:
         key: the gear.
         loads: forces (f,) along the outward normal at the flank nodes by tooth, in the order of the gear's compliance.
+        progress: told how far it is.
     """
     mesh = pitch_of(key)[1]
     layers = key.size.face if key.width else 0
@@ -47,6 +54,8 @@ def solve_teeth(key: ComplianceKey, loads: dict[int, np.ndarray], progress: Prog
         sector = layered_sector(mesh, key.poisson_ratio, key.width, layers, part_of(progress, 0.0, 0.3))
     else:
         sector = plane_sector(mesh, key.poisson_ratio)
+
+    # Motions of the cuts: one loaded tooth at a time, its chain of pitches moved to where it stands, all of them added up.
     near = min(_NEIGHBOURS, (count - 1) // 2)
     teeth = np.arange(min(loads) - near, max(loads) + near + 1)
     cuts = np.zeros((len(teeth) + 1, sector.cut))
@@ -56,33 +65,28 @@ def solve_teeth(key: ComplianceKey, loads: dict[int, np.ndarray], progress: Prog
         inside = np.ones(len(place), bool) if ring else (place >= 0) & (place < len(moved))
         cuts[inside] += moved[place[inside] % len(moved)]
     progress(0.4, "inside of the teeth")
+
+    # Inside of each pitch: K_rr u_r = f_r - K_rh u_h, with the cuts moved and the inner circle at rest.
     pitch = whole_pitch(mesh, key.poisson_ratio, key.width, layers)
-    found = _inside(pitch, teeth, cuts, loads, part_of(progress, 0.4, 1.0))
-    return TeethSolution(teeth, found, pitch)
-
-
-def _inside(
-    pitch: Pitch, teeth: np.ndarray, cuts: np.ndarray, loads: dict[int, np.ndarray], progress: Progress
-) -> np.ndarray:
-    """Displacements (t, n, d) with the cuts given and the flanks loaded."""
     d = pitch.dimension
     n = len(pitch.points)
 
     def of(nodes: np.ndarray) -> np.ndarray:
         return np.asarray((d * nodes[:, None] + np.arange(d)).ravel())
 
-    held = np.concatenate([of(pitch.left), of(pitch.right)])
-    rest = np.setdiff1d(np.arange(d * n), np.concatenate([held, of(pitch.inner)]))
+    moved_dofs = np.concatenate([of(pitch.left), of(pitch.right)])
+    rest = np.setdiff1d(np.arange(d * n), np.concatenate([moved_dofs, of(pitch.inner)]))
     K = pitch.stiffness
     factor = splu(sp.csc_matrix(K[rest][:, rest]), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-    couple = K[rest][:, held]
-    found = np.zeros((len(teeth), d * n))
-    for i, tooth in enumerate(teeth):
-        progress(0.5 + 0.5 * i / len(teeth), f"tooth {tooth}")
-        own = np.concatenate([pitch.left_frame(cuts[i]), pitch.right_frame(cuts[i + 1])])
+    couple = K[rest][:, moved_dofs]
+    told = part_of(progress, 0.7, 1.0)
+    displacement = np.zeros((len(teeth), d * n))
+    for i, number in enumerate(teeth.tolist()):
+        told(i / len(teeth), f"tooth {number}")
+        at_cuts = np.concatenate([pitch.left_frame(cuts[i]), pitch.right_frame(cuts[i + 1])])
         force = np.zeros(d * n)
-        if int(tooth) in loads:
-            force[of(pitch.flank)] = (loads[int(tooth)][:, None] * pitch.normal).ravel()
-        found[i, held] = own
-        found[i, rest] = factor.solve(force[rest] - couple @ own)
-    return found.reshape(len(teeth), n, d)
+        if number in loads:
+            force[of(pitch.flank)] = (loads[number][:, None] * pitch.normal).ravel()
+        displacement[i, moved_dofs] = at_cuts
+        displacement[i, rest] = factor.solve(force[rest] - couple @ at_cuts)
+    return TeethSolution(teeth, displacement.reshape(len(teeth), n, d), pitch)

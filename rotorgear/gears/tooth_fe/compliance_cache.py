@@ -23,8 +23,9 @@ from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 
 # Where compliances are computed: entries of other sources are passed over.
 MAKERS = ("gears/tooth_fe",)
-_KEPT: dict[str, GearCompliance] = {}
+# A process keeps this many compliances in memory; one in 3D takes several MB.
 _MOST_KEPT = 16
+_KEPT: dict[str, GearCompliance] = {}
 
 
 def cache_folder() -> Path:
@@ -46,14 +47,14 @@ def cached(key: Any, compute: Callable[[], GearCompliance]) -> GearCompliance:
     name = entry_name(key)
     if name not in _KEPT:
         path = cache_folder() / f"{name}.npz"
-        found = _read(path, key)
-        if found is None:
-            found = compute()
-            with suppress(OSError):
-                _write(path, key, found)
+        compliance = _read(path, key)
+        if compliance is None:
+            compliance = compute()
+            with suppress(OSError):  # a full disk or a folder that can't be written costs time only
+                _write(path, key, compliance)
         while len(_KEPT) >= _MOST_KEPT:
-            _KEPT.pop(next(iter(_KEPT)))
-        _KEPT[name] = found
+            _KEPT.pop(next(iter(_KEPT)))  # the oldest: dicts keep their order
+        _KEPT[name] = compliance
     return _KEPT[name]
 
 
@@ -75,6 +76,7 @@ def _read(path: Path, key: Any) -> GearCompliance | None:
     try:
         with np.load(path, allow_pickle=False) as stored:
             values = {field.name: stored[field.name] for field in fields(GearCompliance)}
+            # The name is a hash only; the text of the key decides.
             good = str(stored["key"]) == f"{fingerprint(*MAKERS)} {key!r}" and str(stored["checksum"]) == _checksum(
                 values
             )
@@ -86,9 +88,10 @@ def _read(path: Path, key: Any) -> GearCompliance | None:
     return GearCompliance(**plain)
 
 
-def _write(path: Path, key: Any, found: GearCompliance) -> None:
+def _write(path: Path, key: Any, compliance: GearCompliance) -> None:
+    """Write an entry under a name of its own and move it into place: other runs see all of it or nothing."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    values = {field.name: np.asarray(getattr(found, field.name)) for field in fields(GearCompliance)}
+    values = {field.name: np.asarray(getattr(compliance, field.name)) for field in fields(GearCompliance)}
     scratch = path.with_name(f".{path.stem}.{uuid.uuid4().hex}")
     try:
         with scratch.open("wb") as file:

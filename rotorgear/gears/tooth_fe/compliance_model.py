@@ -27,7 +27,13 @@ REACH = 4
 class ComplianceKey:
     """All that the compliance of a gear depends on; lengths in normal modules.
 
-    `inner_radius` is that of the held circle, `width` is 0 for a plane model, `arc` 0 for a full ring.
+    Attributes:
+        geometry: of the gear, with a normal module of 1.
+        size: of the mesh.
+        inner_radius: of the held circle.
+        poisson_ratio: of the material.
+        width: of the face; 0 for a plane model.
+        arc: pitches of a rim; 0 for a full ring.
     """
 
     geometry: GearGeometry
@@ -41,7 +47,16 @@ class ComplianceKey:
 def compliance_key(
     geometry: GearGeometry, fe: ToothFe, poisson_ratio: float, width: float, bore_radius: float, *, space: bool
 ) -> ComplianceKey:
-    """What to compute for a gear (m) with a face `width` (m) and a body that is held at `bore_radius` (m) if it is a ring."""
+    """What to compute for a gear.
+
+    Args:
+        geometry: in m.
+        fe: settings of the model.
+        poisson_ratio: of the material.
+        width: of the face (m).
+        bore_radius: where a ring is held (m); 0 for a solid shaft and gear.
+        space: whether the model is three-dimensional.
+    """
     m = geometry.normal_module
     tip = geometry.effective_tip_diameter / m
     unit = replace(

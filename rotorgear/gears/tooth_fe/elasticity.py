@@ -21,8 +21,9 @@ def lame(poisson_ratio: float) -> tuple[float, float]:
 def element_matrices(basis: Any, poisson_ratio: float) -> np.ndarray:
     """Stiffness of all elements of a scalar basis, (e, n d, n d); the d components of a node follow each other."""
     lam, mu = lame(poisson_ratio)
-    grads = np.stack([np.asarray(found[0].grad) for found in basis.basis])  # (n, d, e, q)
+    grads = np.stack([np.asarray(shape[0].grad) for shape in basis.basis])  # (n, d, e, q)
     n, d, e, q = grads.shape
+    # H as one product of matrices an element, summed over the quadrature points: BLAS does it.
     flat = np.ascontiguousarray(grads.transpose(2, 0, 1, 3)).reshape(e, n * d, q)
     H = ((flat * basis.dx[:, None, :]) @ flat.transpose(0, 2, 1)).reshape(e, n, d, n, d)
     trace = np.einsum("eaibi->eab", H)

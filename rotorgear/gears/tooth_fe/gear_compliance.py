@@ -27,7 +27,8 @@ class GearCompliance:
             next one clockwise, on the side of the loaded flank. Reciprocal: entry m - o is the transpose of m + o.
         roll: (r,) roll lengths of the flank nodes in normal modules, rising.
         height: (h,) places of the planes along the face in normal modules from its middle; one plane of 0 in two dimensions.
-        flank_start, flank_end: roll lengths where the involute ends.
+        flank_start: roll length where the involute begins.
+        flank_end: roll length where it ends, at the tip.
         base_radius: in normal modules.
         unknowns: degrees of freedom of the whole finite-element model, before condensation.
         asymmetry: largest relative difference from reciprocity before it was made exact.
@@ -62,21 +63,25 @@ def chained(sector: Sector, teeth: int, reach: int, *, ring: bool) -> tuple[np.n
     c = sector.cut
     S = sector.stiffness
     factor = la.cho_factor(S[2 * c :, 2 * c :], lower=True, check_finite=False)
-    own = la.cho_solve(factor, np.eye(sector.flank))
+    held_cuts = la.cho_solve(
+        factor, np.eye(sector.flank)
+    )  # S_ff^-1: flexibility of the loaded tooth with its cuts at rest
     carried = la.cho_solve(factor, S[2 * c :, : 2 * c])  # S_ff^-1 S_fc
     cuts = _cut_motions(S[: 2 * c, : 2 * c] - S[: 2 * c, 2 * c :] @ carried, carried.T, teeth, c, ring)
     middle = teeth // 2
-    found = []
+    G = np.zeros((2 * reach + 1, sector.flank, sector.flank))
     for o in range(-reach, reach + 1):
         left = middle + o
         right = (left + 1) % len(cuts) if ring else left + 1
         inside = left >= 0 and left + 1 < len(cuts) + (1 if ring else 0)
-        if not inside:
-            found.append(np.zeros_like(own))
-            continue
-        moved = np.vstack([cuts[left], cuts[right]])
-        found.append((own if o == 0 else 0.0) - carried @ moved)
-    return _reciprocal(np.array(found))
+        if inside:
+            moved = np.vstack([cuts[left], cuts[right]])
+            G[reach + o] = (held_cuts if o == 0 else 0.0) - carried @ moved
+
+    # Maxwell: entry -o is the transpose of entry o. Rounding breaks it; the contact needs it exact, for a symmetric matrix.
+    mirrored = G[::-1].transpose(0, 2, 1)
+    asymmetry = float(np.abs(G - mirrored).max()) / float(np.abs(G).max())
+    return 0.5 * (G + mirrored), asymmetry
 
 
 def cut_motions(sector: Sector, force: np.ndarray, teeth: int, *, ring: bool) -> np.ndarray:
@@ -98,6 +103,8 @@ def _cut_motions(K: np.ndarray, load: np.ndarray, teeth: int, c: int, ring: bool
     n = load.shape[1]
     if ring:
         return _closed(A + D, B, -load, middle, teeth, c)
+
+    # A rim: block-tridiagonal, diagonal blocks D + A, right neighbours B. The loaded pitch stands between cuts m and m + 1.
     diagonal = D + A
     moved = np.zeros((teeth + 1, c, n))
     rhs = np.zeros((teeth + 1, c, n))
@@ -109,7 +116,7 @@ def _cut_motions(K: np.ndarray, load: np.ndarray, teeth: int, c: int, ring: bool
         if cut > 1:
             rhs[cut] -= B.T @ la.cho_solve(factors[-1], rhs[cut - 1])
         factors.append(la.cho_factor(pivot, lower=True, check_finite=False))
-    for cut in range(teeth - 1, 0, -1):
+    for cut in range(teeth - 1, 0, -1):  # back substitution from the right
         right = rhs[cut] - (B @ moved[cut + 1] if cut + 1 < teeth else 0.0)
         moved[cut] = la.cho_solve(factors[cut - 1], right)
     return moved
@@ -127,14 +134,8 @@ def _closed(diagonal: np.ndarray, B: np.ndarray, load: np.ndarray, middle: int, 
         system = diagonal + B * turn + B.T * np.conj(turn)
         rhs = first * np.exp(-1j * angle * middle) + second * np.exp(-1j * angle * (middle + 1))
         amplitude = np.linalg.solve(system, rhs)
+        # Real motions: harmonics h and z - h are conjugate, so only those up to z/2 are solved and the others counted double.
         weight = 1.0 if harmonic == 0 or 2 * harmonic == teeth else 2.0
         for k in index:
             moved[k] += weight / teeth * (amplitude * np.exp(1j * angle * k)).real
     return moved
-
-
-def _reciprocal(G: np.ndarray) -> tuple[np.ndarray, float]:
-    """Make entry m - o the transpose of m + o, and say by how much it was not."""
-    other = G[::-1].transpose(0, 2, 1)
-    scale = float(np.abs(G).max())
-    return 0.5 * (G + other), float(np.abs(G - other).max()) / scale

@@ -32,9 +32,12 @@ class PitchMesh:
         points: (p, 2) nodes in normal modules.
         cells: (9, e) nodes of the elements in scikit-fem's order.
         mesh: the scikit-fem mesh (MeshQuad2) itself.
-        lattice: (p, 2) doubled lattice numbers of the nodes.
-        inner, left, right: nodes on the inner circle, and on the two cuts by rising radius, without the inner circle.
-        flank: nodes of the loaded involute by rising roll length; `roll` (k,) are their roll lengths.
+        lattice: (p, 2) doubled lattice numbers of the nodes, so that middle nodes have whole numbers too.
+        inner: nodes on the inner circle.
+        left: nodes on the left cut by rising radius, without the inner circle.
+        right: nodes on the right cut, likewise.
+        flank: (k,) nodes of the loaded involute by rising roll length.
+        roll: (k,) roll lengths of the flank nodes.
         normal: (k, 2) outward unit normals at the flank nodes.
     """
 
@@ -88,19 +91,28 @@ def pitch_mesh(outline: ToothOutline, size: MeshSize, inner_radius: float) -> Pi
             f"{outline.root_radius:.4g}."
         )
     skfem = scikit_fem()
+
+    # Elements on the lattice; every node, also in the middle of an edge or cell, is then mapped onto its place.
     corners, cells = _cells(size)
     straight = skfem.MeshQuad2.from_mesh(
         skfem.MeshQuad(np.ascontiguousarray(corners.T, float), np.ascontiguousarray(cells.T))
     )
     lattice = np.rint(2.0 * straight.doflocs.T).astype(int)
-    grids = rim_points(outline, size, inner_radius), tooth_points(outline, size)
-    points = _mapped(lattice, grids, size)
+    rim = rim_points(outline, size, inner_radius)
+    tooth = tooth_points(outline, size)
+    in_rim = lattice[:, 1] <= 2 * size.rim
+    in_tooth = lattice[~in_rim]
+    points = np.empty(lattice.shape)
+    points[in_rim] = rim[lattice[in_rim, 1], lattice[in_rim, 0]]
+    points[~in_rim] = tooth[in_tooth[:, 1] - 2 * size.rim, in_tooth[:, 0] - 2 * size.land]
     mesh = skfem.MeshQuad2(np.ascontiguousarray(points.T), straight.t)
     low = 2 * (size.rim + size.fillet)
     flank = _on(lattice, (lattice[:, 0] == 2 * (size.land + size.tooth)) & (lattice[:, 1] >= low), 1)
     roll = flank_rolls(outline, size)
-    g = outline.base_half_angle - roll / outline.geometry.base_radius
-    found = PitchMesh(
+
+    # The normal of an involute is tangent to the base circle, at the angle eta_b - xi / r_b from the tooth's middle.
+    normal_angle = outline.base_half_angle - roll / outline.geometry.base_radius
+    pitch = PitchMesh(
         outline=outline,
         points=points,
         cells=mesh.dofs.element_dofs,
@@ -110,11 +122,19 @@ def pitch_mesh(outline: ToothOutline, size: MeshSize, inner_radius: float) -> Pi
         right=_on(lattice, (lattice[:, 0] == 2 * size.columns) & (lattice[:, 1] > 0), 1),
         flank=flank,
         roll=roll,
-        normal=np.stack([np.cos(g), -np.sin(g)], -1),
+        normal=np.stack([np.cos(normal_angle), -np.sin(normal_angle)], -1),
         mesh=mesh,
     )
-    _require_sound(found)
-    return found
+
+    # A Jacobian that is not positive at a quadrature point: the flank of a deep undercut folds the mapped elements over.
+    jacobian = skfem.Basis(mesh, skfem.ElementQuad2(), intorder=4).dx
+    if not jacobian.min() > 0.0:
+        g = outline.geometry
+        raise AnalysisError(
+            f"The teeth of a gear with z = {g.teeth}, x = {g.profile_shift:.4g} are undercut so deeply that they can't be "
+            "meshed: use more teeth or more profile shift."
+        )
+    return pitch
 
 
 def _cells(size: MeshSize) -> tuple[np.ndarray, np.ndarray]:
@@ -132,25 +152,3 @@ def _on(lattice: np.ndarray, chosen: np.ndarray, axis: int) -> np.ndarray:
     """Numbers of chosen nodes, by rising lattice number along an axis."""
     nodes = np.flatnonzero(chosen)
     return nodes[np.argsort(lattice[nodes, axis], kind="stable")]
-
-
-def _mapped(lattice: np.ndarray, grids: tuple[np.ndarray, np.ndarray], size: MeshSize) -> np.ndarray:
-    rim, tooth = grids
-    inside = lattice[:, 1] <= 2 * size.rim
-    points = np.empty(lattice.shape)
-    points[inside] = rim[lattice[inside, 1], lattice[inside, 0]]
-    above = lattice[~inside]
-    points[~inside] = tooth[above[:, 1] - 2 * size.rim, above[:, 0] - 2 * size.land]
-    return points
-
-
-def _require_sound(found: PitchMesh) -> None:
-    """AnalysisError where an element is turned over or nearly so."""
-    skfem = scikit_fem()
-    determinant = skfem.Basis(found.mesh, skfem.ElementQuad2(), intorder=4).dx
-    if not determinant.min() > 0.0:
-        g = found.outline.geometry
-        raise AnalysisError(
-            f"The teeth of a gear with z = {g.teeth}, x = {g.profile_shift:.4g} are undercut so deeply that they can't be "
-            "meshed: use more teeth or more profile shift."
-        )

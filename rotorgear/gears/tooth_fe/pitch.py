@@ -22,13 +22,19 @@ class Pitch:
     """All nodes of a pitch, plane by plane along the face (one plane for a spur gear in plane strain).
 
     Attributes:
-        points: (n, d); cells: (c, e, k) nodes of the elements of each layer, in scikit-fem's order.
+        points: (n, d).
+        cells: (c, e, k) nodes of the elements of each layer, in scikit-fem's order.
         stiffness: sparse (d n, d n).
-        inner, left, right, flank: nodes, plane by plane as in the plane mesh; normal: (f, d) outward at the flank.
+        inner: nodes on the inner circle, plane by plane as in the plane mesh; so are the next three.
+        left: nodes on the left cut.
+        right: nodes on the right cut.
+        flank: nodes on the loaded involute.
         fillet: nodes of the fillet and half the root on the loaded side.
-        turn: (planes, d, d) rotation of each plane against the middle of the face; layer_turn: (c, d, d) of each layer
-            against the first one.
+        normal: (f, d) outward at the flank.
+        turn: (planes, d, d) rotation of each plane against the middle of the face.
+        layer_turn: (c, d, d) rotation of each layer against the first one.
         pitch_turn: (d, d) rotation of the next pitch.
+        poisson_ratio: of the material.
         basis: of one layer, at its nodes.
     """
 
@@ -69,14 +75,14 @@ class Pitch:
         lam, mu = lame(self.poisson_ratio)
         d = self.dimension
         n = len(self.points)
-        gradients = np.stack([np.asarray(found[0].grad) for found in self.basis.basis])  # (k, d, e, q)
+        gradients = np.stack([np.asarray(shape[0].grad) for shape in self.basis.basis])  # (k, d, e, q)
         mises = np.zeros(n)
         largest = np.zeros(n)
         count = np.zeros(n)
         for cells, turn in zip(self.cells, self.layer_turn, strict=True):
             u = displacement[cells] @ turn  # into the frame of the first layer
             du = np.einsum("kieq,ekj->eqij", gradients, u)
-            strain = np.zeros((*du.shape[:2], 3, 3))
+            strain = np.zeros((*du.shape[:2], 3, 3))  # plane strain has stress along the face too: always 3 x 3
             strain[..., :d, :d] = 0.5 * (du + du.swapaxes(-1, -2))
             trace = np.trace(strain, axis1=-2, axis2=-1)
             stress = 2.0 * mu * strain + lam * trace[..., None, None] * np.eye(3)
@@ -91,7 +97,9 @@ def whole_pitch(mesh: PitchMesh, poisson_ratio: float, width: float, layers: int
     """A pitch of face `width` in so many layers; 0 layers: plane strain, unit width."""
     skfem = scikit_fem()
     p = len(mesh.points)
-    size = mesh.outline.geometry
+    g = mesh.outline.geometry
+
+    # Fillet: from the foot of the involute down the loaded column, then along the root to the cut.
     low, high = mesh.tooth_rows
     column = mesh.loaded_column
     inside = (mesh.lattice[:, 0] == column) & (mesh.lattice[:, 1] >= low) & (mesh.lattice[:, 1] <= high)
@@ -101,26 +109,27 @@ def whole_pitch(mesh: PitchMesh, poisson_ratio: float, width: float, layers: int
         basis, at_nodes = _bases(mesh.mesh, element)
         cells = mesh.cells.T[None]
         K = assembled(element_matrices(basis, poisson_ratio), component_dofs(mesh.cells, 2), 2 * p)
-        one = np.eye(2)[None]
-        none = np.eye(2)
+        unturned = np.eye(2)[None]
         return Pitch(
-            mesh.points,
-            cells,
-            K,
-            mesh.inner,
-            mesh.left,
-            mesh.right,
-            mesh.flank,
-            fillet,
-            mesh.normal,
-            one,
-            one,
-            none @ clockwise(mesh.pitch_angle, 2),
-            poisson_ratio,
-            at_nodes,
+            points=mesh.points,
+            cells=cells,
+            stiffness=K,
+            inner=mesh.inner,
+            left=mesh.left,
+            right=mesh.right,
+            flank=mesh.flank,
+            fillet=fillet,
+            normal=mesh.normal,
+            turn=unturned,
+            layer_turn=unturned,
+            pitch_turn=clockwise(mesh.pitch_angle, 2),
+            poisson_ratio=poisson_ratio,
+            basis=at_nodes,
         )
+
+    # Planes and layers turn with the helix about the middle of the face; quadratic elements have a plane in their middle.
     height = width / layers
-    twist = np.tan(size.base_helix_angle) / size.base_radius
+    twist = np.tan(g.base_helix_angle) / g.base_radius
     hexes, place_of = layer_mesh(mesh, height, twist)
     basis, at_nodes = _bases(hexes, skfem.ElementHex2())
     first = place_of[hexes.dofs.element_dofs].T
@@ -130,29 +139,37 @@ def whole_pitch(mesh: PitchMesh, poisson_ratio: float, width: float, layers: int
     layer_turn = turn[0] @ np.array([clockwise(twist * height * i, 3) for i in range(layers)])
     points = np.einsum("pij,nj->pni", turn[:, :2, :2], mesh.points)
     points = np.concatenate([points, np.broadcast_to(z[:, None, None], (*points.shape[:2], 1))], -1).reshape(-1, 3)
-    tilt = np.hstack(
-        [np.cos(size.base_helix_angle) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(size.base_helix_angle))]
+    tilted = np.hstack(
+        [np.cos(g.base_helix_angle) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(g.base_helix_angle))]
     )
-    K = _stacked(element_matrices(basis, poisson_ratio), cells, layer_turn, len(points))
+
+    # Every layer has the element matrices of the first one, turned: K = R K_1 R^T node by node.
+    blocks = element_matrices(basis, poisson_ratio)
+    e, k = cells.shape[1:]
+    blocks = blocks.reshape(e, k, 3, k, 3)
+    K = sp.csc_array((3 * len(points), 3 * len(points)))
+    for of_layer, R in zip(cells, layer_turn, strict=True):
+        turned = np.einsum("ij,eajbl,ml->eaibm", R, blocks, R, optimize=True).reshape(e, 3 * k, 3 * k)
+        K = K + assembled(turned, component_dofs(of_layer.T, 3), 3 * len(points))
 
     def planes(nodes: np.ndarray) -> np.ndarray:
         return np.asarray((nodes[None] + p * np.arange(len(z))[:, None]).ravel())
 
     return Pitch(
-        points,
-        cells,
-        K,
-        planes(mesh.inner),
-        planes(mesh.left),
-        planes(mesh.right),
-        planes(mesh.flank),
-        planes(fillet),
-        np.einsum("pij,nj->pni", turn, tilt).reshape(-1, 3),
-        turn,
-        layer_turn,
-        clockwise(mesh.pitch_angle, 3),
-        poisson_ratio,
-        at_nodes,
+        points=points,
+        cells=cells,
+        stiffness=K,
+        inner=planes(mesh.inner),
+        left=planes(mesh.left),
+        right=planes(mesh.right),
+        flank=planes(mesh.flank),
+        fillet=planes(fillet),
+        normal=np.einsum("pij,nj->pni", turn, tilted).reshape(-1, 3),
+        turn=turn,
+        layer_turn=layer_turn,
+        pitch_turn=clockwise(mesh.pitch_angle, 3),
+        poisson_ratio=poisson_ratio,
+        basis=at_nodes,
     )
 
 
@@ -162,14 +179,3 @@ def _bases(mesh: Any, element: Any) -> tuple[Any, Any]:
     places = np.array(element.doflocs, float).T
     at_nodes = skfem.Basis(mesh, element, quadrature=(places, np.ones(places.shape[1])))
     return skfem.Basis(mesh, element, intorder=4), at_nodes
-
-
-def _stacked(elements: np.ndarray, cells: np.ndarray, turn: np.ndarray, nodes: int) -> sp.csc_array:
-    """Stiffness of all layers, each with the element matrices (e, 3 k, 3 k) of the first one turned."""
-    e, k = cells.shape[1:]
-    total = sp.csc_array((3 * nodes, 3 * nodes))
-    blocks = elements.reshape(e, k, 3, k, 3)
-    for own, R in zip(cells, turn, strict=True):
-        turned = np.einsum("ij,eajbl,ml->eaibm", R, blocks, R, optimize=True).reshape(e, 3 * k, 3 * k)
-        total = total + assembled(turned, component_dofs(own.T, 3), 3 * nodes)
-    return total

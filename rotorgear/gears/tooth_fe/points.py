@@ -24,8 +24,11 @@ class MeshSize:
     """Elements of one pitch and along the face.
 
     Attributes:
-        involute, fillet, rim: rows on the involute, on half a fillet, and below the teeth.
-        tooth, land: columns across the tooth, and on each side of it across the land between the teeth.
+        involute: rows on the involute.
+        fillet: rows on half a fillet.
+        tooth: columns across the tooth.
+        land: columns on each side of it across the land between the teeth.
+        rim: rows below the teeth.
         face: layers along the face width (3D only).
     """
 
@@ -49,16 +52,10 @@ class MeshSize:
 
 def _halves(knots: np.ndarray) -> np.ndarray:
     """Knots with the middle of each interval between them."""
-    found = np.empty(2 * len(knots) - 1)
-    found[::2] = knots
-    found[1::2] = 0.5 * (knots[1:] + knots[:-1])
-    return found
-
-
-def _graded_ends(count: int) -> np.ndarray:
-    """Knots from 0 to 1 that are denser at both ends."""
-    t = np.linspace(0.0, 1.0, count + 1)
-    return t - 0.5 * np.sin(2.0 * np.pi * t) / (2.0 * np.pi)
+    with_middles = np.empty(2 * len(knots) - 1)
+    with_middles[::2] = knots
+    with_middles[1::2] = 0.5 * (knots[1:] + knots[:-1])
+    return with_middles
 
 
 def _geometric(count: int, ratio: float) -> np.ndarray:
@@ -68,10 +65,13 @@ def _geometric(count: int, ratio: float) -> np.ndarray:
 
 
 def flank_rolls(outline: ToothOutline, size: MeshSize) -> np.ndarray:
-    """Roll lengths of the nodes on the involute, equal to the arc length's grading: arc = xi^2 / (2 r_b)."""
+    """Roll lengths of the nodes on the involute, graded by arc length xi^2 / (2 r_b)."""
     low = outline.form_roll_length**2
     high = outline.tip_roll_length**2
-    return np.sqrt(low + (high - low) * _halves(_graded_ends(size.involute)))
+    # Denser at both ends, where contact begins and tip corners touch.
+    t = np.linspace(0.0, 1.0, size.involute + 1)
+    share = _halves(t - 0.5 * np.sin(2.0 * np.pi * t) / (2.0 * np.pi))
+    return np.sqrt(low + (high - low) * share)
 
 
 def _cartesian(radius: np.ndarray, angle: np.ndarray) -> np.ndarray:
@@ -90,6 +90,7 @@ def _base_curve(outline: ToothOutline, across: np.ndarray) -> np.ndarray:
 
 
 def _across(size: MeshSize) -> np.ndarray:
+    """Columns of the tooth from 0 on the left to 1 on the loaded flank, where they are densest."""
     return _halves(_geometric(size.tooth, _COLUMN_RATIO))
 
 
@@ -104,9 +105,11 @@ def rim_points(outline: ToothOutline, size: MeshSize, inner_radius: float) -> np
     wanted = np.linspace(0.0, length[-1], 2 * size.land + 1)
     side = np.stack([np.interp(wanted, length, half[:, k]) for k in (0, 1)], -1)
     top = np.concatenate([_mirror(side)[:-1], _base_curve(outline, _across(size)), side[::-1][1:]])
+    # Halfway between the angles of the root and even ones: neither cells sheared at the root nor uneven at the inner circle.
     arc = np.unwrap(np.arctan2(top[:, 0], top[:, 1]))
     even = np.linspace(-0.5 * pitch, 0.5 * pitch, len(arc))
     bottom = _cartesian(np.full(len(arc), inner_radius), 0.5 * (arc + even))
+    # Rows of a deep rim grow towards the inner circle, where the stresses of the teeth have died away.
     depth = outline.root_radius - inner_radius
     ratio = max(1.0, (depth / 3.0) ** (1.0 / size.rim)) if depth > 3.0 else 1.0
     t = _halves(_geometric(size.rim, ratio))[:, None, None]
@@ -125,6 +128,7 @@ def tooth_points(outline: ToothOutline, size: MeshSize) -> np.ndarray:
     s = across[None, :, None]
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(right, axis=0), axis=1))])
     t = (length / length[-1])[:, None, None]
+    # Coons patch: both ruled surfaces less the bilinear one through the corners, which they count twice.
     ruled = (1.0 - s) * left[:, None] + s * right[:, None] + (1.0 - t) * base[None] + t * tip[None]
     corners = (1.0 - t) * ((1.0 - s) * base[0] + s * base[-1]) + t * ((1.0 - s) * tip[0] + s * tip[-1])
     return np.asarray(ruled - corners)

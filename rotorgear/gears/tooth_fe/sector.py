@@ -26,9 +26,15 @@ _DENSE_LIMIT = 3000
 
 @dataclass(frozen=True)
 class Sector:
-    """Condensed stiffness (n, n) of one pitch; unknowns: left cut, right cut (in the next pitch's frame), flank normals.
+    """Superelement of one pitch; unknowns: left cut, right cut (in the next pitch's frame), flank normals.
 
     The flank unknowns are displacements along the outward normal, ordered plane by plane, within a plane by roll length.
+
+    Attributes:
+        stiffness: (n, n), condensed.
+        cut: unknowns of one cut.
+        flank: unknowns of the flank.
+        unknowns: degrees of freedom before condensation.
     """
 
     stiffness: np.ndarray
@@ -58,6 +64,7 @@ def plane_sector(mesh: PitchMesh, poisson_ratio: float) -> Sector:
     if len(inside) <= _DENSE_LIMIT:
         condensed = _condensed(np.block([[A.toarray(), B], [B.T, D]]), len(inside))
     else:
+        # Minimum degree on A + A^T: A is symmetric, and its pivots on the diagonal keep that pattern.
         condensed = D - B.T @ sp.linalg.splu(sp.csc_matrix(A), permc_spec="MMD_AT_PLUS_A").solve(B)
     cut = 2 * len(mesh.left)
     return Sector(0.5 * (condensed + condensed.T), cut, len(keep) - 2 * cut, len(free))
@@ -72,13 +79,15 @@ def layered_sector(
     height = width / layers
     twist = np.tan(g.base_helix_angle) / g.base_radius
     hexes, place_of = layer_mesh(mesh, height, twist)
+
+    # One layer, turned at each of its three planes into that plane's frame: all layers then have the same matrix.
     K_e = element_matrices(skfem.Basis(hexes, skfem.ElementHex2(), intorder=4), poisson_ratio)
     p = 3 * len(mesh.points)
     K = assembled(K_e, component_dofs(place_of[hexes.dofs.element_dofs], 3), 3 * p)
-    tilt = np.hstack(
+    tilted = np.hstack(
         [np.cos(g.base_helix_angle) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(g.base_helix_angle))]
     )
-    frame, free, inside, keep = _frames(mesh, tilt)
+    frame, free, inside, keep = _frames(mesh, tilted)
     turn = [
         sp.csc_array(sp.kron(sp.eye_array(len(mesh.points)), clockwise(twist * h, 3))) @ frame
         for h in (0.0, 0.5 * height, height)
@@ -95,22 +104,21 @@ def layer_mesh(mesh: PitchMesh, height: float, twist: float) -> tuple[Any, np.nd
     corners = 1 + int(quads.max())  # the corners come first among the nodes
     flat = mesh.lattice[:corners].T.astype(float)
     ends = np.hstack([np.vstack([flat, np.full((1, corners), z)]) for z in (0.0, 2.0)])
-    straight = skfem.MeshHex2.from_mesh(skfem.MeshHex(np.ascontiguousarray(ends), _hexahedra(quads, corners)))
+    # Counter-clockwise quadrangles below, the same `corners` later above, in scikit-fem's order of a hexahedron's corners.
+    a, b, c, d = quads
+    hexahedra = np.vstack([a, d, b, a + corners, c, d + corners, b + corners, c + corners])
+    straight = skfem.MeshHex2.from_mesh(skfem.MeshHex(np.ascontiguousarray(ends), hexahedra))
     lattice = np.rint(straight.doflocs.T).astype(int)
     number = {tuple(place): k for k, place in enumerate(mesh.lattice)}
     below = np.array([number[tuple(place)] for place in lattice[:, :2]])
+
+    # The plane's nodes, turned clockwise with the helix as z rises.
     z = 0.5 * height * lattice[:, 2]
-    c = np.cos(twist * z)
-    s = np.sin(twist * z)
+    cosine = np.cos(twist * z)
+    sine = np.sin(twist * z)
     x, y = mesh.points[below].T
-    points = np.vstack([c * x + s * y, c * y - s * x, z])
+    points = np.vstack([cosine * x + sine * y, cosine * y - sine * x, z])
     return skfem.MeshHex2(points, straight.t), lattice[:, 2] * len(mesh.points) + below
-
-
-def _hexahedra(quads: np.ndarray, above: int) -> np.ndarray:
-    """Hexahedra over counter-clockwise quadrangles (4, e), corners in scikit-fem's order; the upper ones are `above` later."""
-    a, b, c, d = quads
-    return np.vstack([a, d, b, a + above, c, d + above, b + above, c + above])
 
 
 def _frames(mesh: PitchMesh, normal: np.ndarray) -> tuple[sp.csc_array, np.ndarray, np.ndarray, np.ndarray]:
@@ -119,6 +127,8 @@ def _frames(mesh: PitchMesh, normal: np.ndarray) -> tuple[sp.csc_array, np.ndarr
     count = len(mesh.points)
     blocks = np.tile(np.eye(d), (count, 1, 1))
     blocks[mesh.right] = clockwise(mesh.pitch_angle, d)
+    # A flank node's first unknown is its displacement along the normal; the others complete an orthogonal frame, and are
+    # condensed, so that any frame will do.
     for node, direction in zip(mesh.flank, normal, strict=True):
         q, _ = np.linalg.qr(np.column_stack([direction, np.eye(d)[:, : d - 1] + 0.1]))
         q[:, 0] = direction  # qr keeps it up to its sign
@@ -156,6 +166,8 @@ def _stacked(
     k = len(keep)
     order = np.concatenate([p + inside, inside, 2 * p + inside, keep, p + keep, 2 * p + keep])
     block = _condensed(K[order][:, order].toarray(), i)  # bottom and top inside, then what is kept of its planes
+
+    # Binary digits of the number of layers: `block` is doubled, and put below the stack for each digit that is 1.
     stack: np.ndarray | None = None
     rest = layers
     done = 0

@@ -15,8 +15,8 @@ from rotorgear.gears.tooth_fe.points import MeshSize
 Preset = Literal["preview", "default", "fine"]
 Body = Literal["rim", "ring"]
 PRESETS: tuple[Preset, ...] = ("preview", "default", "fine")
-ARC = 7
-RIM = 3.0
+ARC = 7  # pitches of a rim
+RIM = 3.0  # depth of a rim below the root circle, in normal modules
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,7 @@ _SPACE = {
     "default": (MeshSize(8, 3, 6, 3, 4), 1.08),
     "fine": (MeshSize(10, 3, 6, 3, 4), 0.77),
 }
+# A narrow face has so many layers at least.
 _LEAST_LAYERS = 4
 
 # The mesh that the error of a preset is estimated by, in its plane and in space.
@@ -107,13 +108,13 @@ def coarser_size(fe: ToothFe, width: float, *, space: bool) -> MeshSize:
             max(2, round(0.7 * n)) for n in (given.involute, given.fillet, given.tooth, given.land, given.rim)
         )
         return MeshSize(involute, fillet, tooth, land, rim, max(2, round(0.7 * given.face)) if given.face else 0)
-    own = sized(fe, _COARSER[fe.preset][1 if space else 0], width).size
-    assert own is not None
-    return own
+    coarser = sized(fe, _COARSER[fe.preset][1 if space else 0], width).size
+    assert coarser is not None
+    return coarser
 
 
 def sized(fe: ToothFe, size: MeshSize | tuple[MeshSize, float], width: float) -> ToothFe:
-    """Settings with a mesh of one's own: for a plane model, or with the thickness of a layer, for a face of `width` modules."""
+    """Settings with a given mesh: for a plane model, or with the thickness of a layer, for a face of `width` modules."""
     if isinstance(size, MeshSize):
         return replace(fe, size=size)
     return replace(fe, size=replace(size[0], face=max(_LEAST_LAYERS - 1, round(width / size[1]))))
