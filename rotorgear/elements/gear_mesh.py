@@ -30,7 +30,10 @@ class ContactGeometry:
         base_helix_angle: b.
         hand: h, +1/-1 for a right/left hand of the pinion's helix, 0 for spur.
         torque_sense: s, sense about +z of the torque that the pinion's shaft puts into the pinion.
-        pinion_offset, gear_offset: z of the contact's plane minus z of the node.
+        pinion_base_radius: r_b1.
+        gear_base_radius: r_b2.
+        pinion_offset: z of the contact's plane minus z of the pinion's node.
+        gear_offset: z of the contact's plane minus z of the gear's node.
         contact_position: xi, from the pitch point along the line of action.
     """
 
@@ -50,9 +53,9 @@ def flank_normal(geometry: ContactGeometry) -> np.ndarray:
     """Direction of the force on the gear, a unit vector (3,)."""
     g = geometry
     e, t = _frame(g.psi)
-    transverse = g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e
+    n_t = g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e
     axial = np.array([0.0, 0.0, -g.torque_sense * g.hand * sin(g.base_helix_angle)])
-    return cos(g.base_helix_angle) * transverse + axial
+    return cos(g.base_helix_angle) * n_t + axial
 
 
 def contact_vector(geometry: ContactGeometry) -> np.ndarray:
@@ -60,20 +63,22 @@ def contact_vector(geometry: ContactGeometry) -> np.ndarray:
     g = geometry
     e, t = _frame(g.psi)
     n = flank_normal(g)
-    transverse = g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e
+    n_t = g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e
     k = np.array([0.0, 0.0, 1.0])
-    along = g.contact_position * transverse
+
+    # Arms from both nodes to the same contact point: working radius r_w = r_b / cos a, then xi along the line of action.
+    along = g.contact_position * n_t
     pinion = g.pinion_base_radius / cos(g.pressure_angle) * e + along + g.pinion_offset * k
     gear = -g.gear_base_radius / cos(g.pressure_angle) * e + along + g.gear_offset * k
     return np.concatenate([n, np.cross(pinion, n), -n, -np.cross(gear, n)])
 
 
 def sliding_vectors(geometry: ContactGeometry) -> np.ndarray:
-    """What the dofs of pinion and gear add to the sliding of the flanks, shape (2, 12).
+    """What the dofs of pinion and gear add to the sliding of the flanks.
 
-    The first row is the displacement across the line of action (along k x n_t) at the pitch point, of the pinion
-    relative to the gear; the second
-    what a contact at xi adds for each metre of xi.
+    Returns:
+        Shape (2, 12). First row: displacement across the line of action (along k x n_t) of the pinion relative to the gear,
+        at the pitch point. Second row: what a contact at xi adds to it for each metre of xi.
     """
     g = geometry
     e, t = _frame(g.psi)
@@ -81,6 +86,7 @@ def sliding_vectors(geometry: ContactGeometry) -> np.ndarray:
     across = np.cross(k, g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e)
     pinion = g.pinion_base_radius / cos(g.pressure_angle) * e + g.pinion_offset * k
     gear = -g.gear_base_radius / cos(g.pressure_angle) * e + g.gear_offset * k
+    # A rotation theta_z carries a point that lies xi along n_t by xi theta_z across it; theta_x and theta_y do not.
     turned = np.concatenate([np.zeros(3), k, np.zeros(3), -k])
     return np.array([np.concatenate([across, np.cross(pinion, across), -across, -np.cross(gear, across)]), turned])
 
@@ -110,11 +116,12 @@ def equivalent_mass_general(geometry: ContactGeometry, first: np.ndarray, second
     """
     v = contact_vector(geometry)
     inertia = np.concatenate([first, second])
-    moved = v != 0.0
+    moved = v != 0.0  # a mesh of spur teeth does not move z, and such a direction may be without inertia
     if np.any(inertia[moved] <= 0.0):
         return 0.0
     return float(1.0 / np.sum(v[moved] ** 2 / inertia[moved]))
 
 
 def _frame(psi: float) -> tuple[np.ndarray, np.ndarray]:
+    """e from pinion to gear, and t across it, each (3,)."""
     return np.array([cos(psi), sin(psi), 0.0]), np.array([-sin(psi), cos(psi), 0.0])

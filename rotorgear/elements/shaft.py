@@ -7,8 +7,9 @@ theta, the mid moment m and the shear force V, M(s) = m + V (L/2 - s):
     [ theta_2 - theta_1                         ]       [ int 1/EI          int (L/2-s)/EI                  ] [ m ]
     [ w_2 - w_1 - L (theta_1 + theta_2)/2       ]   =   [ int (L/2-s)/EI    int (L/2-s)^2/EI + 1/(kappa G A) ] [ V ]
 
-The inverse of that flexibility is the modulus D of the two bending strains on the left. Inertia is consistent: rho A for
-displacements, rho I for tilts, 2 rho I for spin and gyroscopic terms (Nelson and McVaugh, ASME J. Eng. Ind. 98, 1976).
+The inverse of that flexibility is the constitutive matrix D of the two bending strains on the left. Inertia is consistent:
+rho A for displacements, rho I for theta_x and theta_y, 2 rho I for theta_z and gyroscopic terms (Nelson and McVaugh, ASME J.
+Eng. Ind. 98, 1976).
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ _NODAL_STRAINS = ("axial", "torsion", "bending", "bending", "bending", "bending"
 def shaft_elements(
     data: ShaftElements, *, order: int = 1, lumped: bool = False, internal_damping: float = 0.0
 ) -> ElementMatrices:
-    """Return the matrices of all elements in the order x1 y1 z1 tx1 ty1 tz1 x2 ... tz2, then the bubbles.
+    """Return the matrices of all elements in the order x1 y1 z1 theta_x1 theta_y1 theta_z1 x2 ... theta_z2, then the bubbles.
 
     Args:
         data: sizes and material of e elements.
@@ -51,6 +52,7 @@ def shaft_elements(
         lumped: half of the mass and inertia at each node instead of consistent inertia; of order 1 only.
         internal_damping: eta in s of the rotating damping C = eta K.
     """
+    # Shafts are made of many equal elements: compute each kind once.
     kinds, which = data.unique()
     one = distinct_elements(kinds, order=order, lumped=lumped, internal_damping=internal_damping)
     terms = {name: getattr(one, name) for name in one.__dataclass_fields__}
@@ -63,23 +65,36 @@ def distinct_elements(
     """The same as `shaft_elements`, computed for every element as if no two were equal."""
     points = point_count(kinds, order)
     strain, modulus, fields, weights = _statics(kinds, points)
-    turn = _strain_turn()
+
+    # `quarter_turn` R in terms of strains, B R = P B: the strains of the two planes of bending change places.
+    turn = np.zeros((6, 6))
+    turn[2:4, 4:6] = -np.eye(2)
+    turn[4:6, 2:4] = np.eye(2)
     if order > 1 and not lumped:
         bubbles = shaft_bubbles(kinds, order, points)
         fields = np.concatenate([fields, bubbles.fields], axis=3)
         strain = _block(strain, bubbles.strain)
-        modulus = _block(modulus, np.eye(bubbles.strain.shape[1])[None])
+        modulus = _block(modulus, np.eye(bubbles.strain.shape[1])[None])  # their stiffness is R^T R already
         turn = _block(turn[None], bubbles.turn[None])[0]
     mass, gyroscopic = _lumped(kinds, points) if lumped else _consistent(kinds, fields, weights)
+
+    # Damping in the rotating material, eta d(strain)/dt there: seen from rest, C = eta K and a circulation -W eta B^T D P B.
     viscosity = circulation = None
     if internal_damping > 0.0:
         viscosity = internal_damping * modulus
         circulation = -internal_damping * modulus @ turn
-    return ElementMatrices(strain, modulus, mass, viscosity, gyroscopic, None, circulation)
+    return ElementMatrices(
+        strain=strain,
+        modulus=modulus,
+        mass=mass,
+        viscosity=viscosity,
+        gyroscopic=gyroscopic,
+        circulation_per_speed=circulation,
+    )
 
 
 def inner_fields(data: ShaftElements, order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Places between the nodes (g,) from 0 to 1, and the displacements x y z tx ty tz there from the dofs, (6, e, g, d)."""
+    """Places between the nodes (g,) from 0 to 1, and the displacements x ... theta_z there from the dofs, (6, e, g, d)."""
     points = point_count(data, order)
     fields = _statics(data, points)[2]
     if order > 1:
@@ -111,16 +126,12 @@ def quarter_turn() -> np.ndarray:
     return R
 
 
-def _strain_turn() -> np.ndarray:
-    """What `quarter_turn` does to the strains, B R = P B: those of the two planes change places. Shape (6, 6)."""
-    P = np.zeros((6, 6))
-    P[2:4, 4:6] = -np.eye(2)
-    P[4:6, 2:4] = np.eye(2)
-    return P
-
-
 def _statics(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Strains B (e, 6, 12), modulus D (e, 6, 6), fields (6, e, g, 12) of x y z tx ty tz at the points, weights (e, g)."""
+    """What follows from statics of e elements at g Gauss points.
+
+    Returns:
+        B (e, 6, 12), D (e, 6, 6), the fields x ... theta_z at the points from the dofs (6, e, g, 12), weights (e, g) in m.
+    """
     points, weights, cumulative = gauss(count)
     L = data.length[:, None]
     area, inertia, ratio = section(data.stiffness_diameters, points)
@@ -128,10 +139,12 @@ def _statics(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray, n
     kappa = np.where(np.isnan(given), cowper(data.poisson_ratio[:, None], ratio), given)
     E = data.youngs_modulus[:, None]
     G = data.shear_modulus[:, None]
+
+    # Flexibilities per length, and the constitutive matrix as the inverse of their integrals.
     bend = 1.0 / (E * inertia)
     shear = 1.0 / (kappa * G * area)
     stretch = 1.0 / (E * area)
-    twist = 1.0 / (2.0 * G * inertia)
+    twist = 1.0 / (2.0 * G * inertia)  # J = 2 I of a circle
     arm = L * (0.5 - points)  # lever of the shear force about the mid-point
     W = L * weights
     D = np.zeros((len(data.length), 6, 6))
@@ -146,71 +159,24 @@ def _statics(data: ShaftElements, count: int) -> tuple[np.ndarray, np.ndarray, n
     plane = np.stack([np.stack([a2, -a1], -1), np.stack([-a1, a0], -1)], -2) / determinant[:, None, None]
     D[:, 2:4, 2:4] = D[:, 4:6, 4:6] = plane
     B = _strains(data.length)
-    shape = _bending_shapes(
-        data.length,
-        points,
-        plane,
-        (L * (bend @ cumulative.T), L * ((bend * arm) @ cumulative.T)),
-        L * (shear @ cumulative.T),
-        cumulative,
-    )
-    return (
-        B,
-        D,
-        _fields(shape, L * (stretch @ cumulative.T) * D[:, :1, 0], L * (twist @ cumulative.T) * D[:, 1:2, 1]),
-        W,
-    )
 
-
-def _strains(L: np.ndarray) -> np.ndarray:
-    """B: stretch, twist, then change of slope and mean shear in the xz plane and in the yz plane."""
-    B = np.zeros((len(L), 6, 12))
-    B[:, 0, [2, 8]] = (-1.0, 1.0)
-    B[:, 1, [5, 11]] = (-1.0, 1.0)
-    # plane xz: w = x, slope = ty; plane yz: w = y, slope = -tx
-    for row, (w, t, sign) in {2: (0, 4, 1.0), 4: (1, 3, -1.0)}.items():
-        B[:, row, t] = -sign
-        B[:, row, t + 6] = sign
-        B[:, row + 1, w] = -1.0
-        B[:, row + 1, w + 6] = 1.0
-        B[:, row + 1, t] = B[:, row + 1, t + 6] = -sign * 0.5 * L
-    return B
-
-
-def _bending_shapes(
-    length: np.ndarray,
-    points: np.ndarray,
-    plane: np.ndarray,
-    slopes: tuple[np.ndarray, np.ndarray],
-    shear: np.ndarray,
-    cumulative: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Deflection and slope at the points, each (e, g, 4), from (w1, theta1, w2, theta2)."""
-    e = len(length)
-    g = len(points)
-    L = length[:, None, None]
-    strain = np.zeros((e, 2, 4))  # change of slope and mean shear from the four dofs
-    strain[:, 0, 1] = -1.0
-    strain[:, 0, 3] = 1.0
-    strain[:, 1, 0] = -1.0
-    strain[:, 1, 2] = 1.0
-    strain[:, 1, 1] = strain[:, 1, 3] = -0.5 * length
-    force = plane @ strain  # mid moment and shear force
-    slope = np.stack(slopes, -1) @ force
-    deflection = L * (cumulative @ slope) + shear[:, :, None] * force[:, 1:2]
-    rigid = np.zeros((e, g, 4))
+    # Bending shapes of one plane from (w1, theta1, w2, theta2), each (e, g, 4). Its strains make m and V, those bend and shear
+    # the element from its left end on; the motion of that end itself is rigid.
+    force = plane @ B[:, 2:4, [0, 4, 6, 10]]
+    slope = np.stack([L * (bend @ cumulative.T), L * ((bend * arm) @ cumulative.T)], -1) @ force
+    deflection = L[:, :, None] * (cumulative @ slope) + (L * (shear @ cumulative.T))[:, :, None] * force[:, 1:2]
+    rigid = np.zeros((len(data.length), len(points), 4))
     rigid[:, :, 0] = 1.0
-    rigid[:, :, 1] = length[:, None] * points
+    rigid[:, :, 1] = L * points
     deflection += rigid
     slope[:, :, 1] += 1.0
-    return deflection, slope
 
+    # Shares of the axial displacement and of the twist that come from the right node.
+    axial = L * (stretch @ cumulative.T) * D[:, :1, 0]
+    torsion = L * (twist @ cumulative.T) * D[:, 1:2, 1]
 
-def _fields(shape: tuple[np.ndarray, np.ndarray], axial: np.ndarray, torsion: np.ndarray) -> np.ndarray:
-    """Fields x y z tx ty tz at the points from the 12 dofs, shape (6, e, g, 12)."""
-    deflection, slope = shape
-    e, g, _ = deflection.shape
-    fields = np.zeros((6, e, g, 12))
+    # Plane xz: slope = theta_y. Plane yz: slope = -theta_x, so its rotations enter and leave with the other sign.
+    fields = np.zeros((6, len(data.length), len(points), 12))
     xz = [0, 4, 6, 10]
     yz = [1, 3, 7, 9]
     sign = np.array([1.0, -1.0, 1.0, -1.0])
@@ -222,19 +188,35 @@ def _fields(shape: tuple[np.ndarray, np.ndarray], axial: np.ndarray, torsion: np
     fields[2][:, :, 8] = axial
     fields[5][:, :, 5] = 1.0 - torsion
     fields[5][:, :, 11] = torsion
-    return fields
+    return B, D, fields, W
+
+
+def _strains(L: np.ndarray) -> np.ndarray:
+    """B (e, 6, 12): stretch, twist, then change of slope and mean shear in the xz plane and in the yz plane."""
+    B = np.zeros((len(L), 6, 12))
+    B[:, 0, [2, 8]] = (-1.0, 1.0)
+    B[:, 1, [5, 11]] = (-1.0, 1.0)
+    # Plane xz: w = x, slope = theta_y. Plane yz: w = y, slope = -theta_x.
+    for row, (w, t, sign) in {2: (0, 4, 1.0), 4: (1, 3, -1.0)}.items():
+        B[:, row, t] = -sign
+        B[:, row, t + 6] = sign
+        B[:, row + 1, w] = -1.0
+        B[:, row + 1, w + 6] = 1.0
+        B[:, row + 1, t] = B[:, row + 1, t + 6] = -sign * 0.5 * L
+    return B
 
 
 def _consistent(data: ShaftElements, fields: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Consistent mass and gyroscopic matrices, each (e, d, d)."""
     points, _, _ = gauss(fields.shape[2])
-    area, inertia, _ = section(data.mass_diameters, points)
+    area, inertia, _ = section(data.mass_diameters, points)  # a shrunk-on sleeve may add mass but no stiffness
     translation = weights * data.density[:, None] * area
     tilt = weights * data.density[:, None] * inertia
     M = np.zeros((len(data.length), fields.shape[3], fields.shape[3]))
     for number, weight in enumerate([translation, translation, translation, tilt, tilt, 2.0 * tilt]):
         N = fields[number]
         M += np.swapaxes(N, 1, 2) @ (weight[:, :, None] * N)
+    # G of a slice is 2 rho I (theta_x theta_y' - theta_y theta_x'): one product, less its transpose.
     half = np.swapaxes(fields[3], 1, 2) @ (2.0 * tilt[:, :, None] * fields[4])
     return 0.5 * (M + np.swapaxes(M, 1, 2)), half - np.swapaxes(half, 1, 2)
 

@@ -1,10 +1,9 @@
 """Internal shape functions of a shaft element of order p: polynomials that vanish at both nodes ("bubbles").
 
 With the Legendre polynomials P_k on -1..1 and phi_k(x) = sqrt((2k-1)/2) int_{-1}^x P_{k-1}, k >= 2 (Szabo and Babuska, Finite
-Element
-Analysis, 1991): deflection k = 2..p+1, slope, stretch and twist k = 2..p. The nodal functions are exact static ones, so their
-strain energy with any bubble is zero: the stiffness of the bubbles stands beside that of the nodes, and only inertia joins
-them. Without shear deformation the slope is the derivative of the deflection, whose bubbles are int int P_k, k = 2..p.
+Element Analysis, 1991): deflection k = 2..p+1, slope, stretch and twist k = 2..p. The nodal functions are exact static ones, so
+their strain energy with any bubble is zero: the stiffness of the bubbles stands beside that of the nodes, and only inertia
+joins them. Without shear deformation the slope is the derivative of the deflection, whose bubbles are int int P_k, k = 2..p.
 """
 
 from __future__ import annotations
@@ -22,10 +21,10 @@ class Bubbles:
     """Bubbles of e elements.
 
     Attributes:
-        fields: x y z tx ty tz at g points, (6, e, g, b).
-        strain: R (e, b, b) with stiffness K = R^T R.
+        fields: x y z theta_x theta_y theta_z at g points, (6, e, g, b).
+        strain: R (e, b, b), the strain-displacement matrix with D = 1: stiffness K = R^T R.
         motions: motion of each.
-        turn: (b, b), turns displacements and slopes, and just so the strains, by +90 degrees about z.
+        turn: (b, b), turns displacements and slopes by +90 degrees about z, and the strains likewise.
     """
 
     fields: np.ndarray
@@ -61,6 +60,7 @@ def bubble_places(order: int, richer: int, shear: bool) -> np.ndarray:
 
 def shaft_bubbles(data: ShaftElements, order: int, points: int) -> Bubbles:
     """Return the bubbles of elements of one order >= 2 at a number of Gauss points."""
+    # NaN stands for Cowper's coefficient, which is finite; an infinite one switches shear deformation off.
     shear = bool(np.all(np.isfinite(data.shear_coefficient) | np.isnan(data.shear_coefficient)))
     at, weights, _ = gauss(points)
     L = data.length[:, None]
@@ -68,8 +68,14 @@ def shaft_bubbles(data: ShaftElements, order: int, points: int) -> Bubbles:
     E = data.youngs_modulus[:, None]
     G = data.shear_modulus[:, None]
     W = L * weights
-    value, slope = _lobatto(2.0 * at - 1.0, order + 1)
-    derivative = (2.0 / data.length)[:, None, None] * slope  # (e, g, k)
+
+    # phi_k and d phi_k / dz for k = 2 ... p+1: (g, k) and (e, g, k).
+    x = 2.0 * at - 1.0
+    P = legendre.legvander(x, order + 1)
+    k = np.arange(2, order + 2)
+    value = (P[:, k] - P[:, k - 2]) / np.sqrt(2.0 * (2 * k - 1))
+    slope = np.sqrt((2 * k - 1) / 2.0) * P[:, k - 1]
+    derivative = (2.0 / data.length)[:, None, None] * slope
     deflection, tilt, bent, sheared = _plane(data, order, at, value, derivative, shear)
     kappa = np.where(
         np.isnan(data.shear_coefficient)[:, None],
@@ -84,7 +90,29 @@ def shaft_bubbles(data: ShaftElements, order: int, points: int) -> Bubbles:
     spin = derivative[:, :, : order - 1]
     axial_root = _triangle(np.sqrt(W * E * area)[:, :, None] * spin)
     twist_root = _triangle(np.sqrt(W * 2.0 * G * inertia)[:, :, None] * spin)
-    return _gathered(order, shear, (deflection, tilt), along, (plane_root, axial_root, twist_root))
+
+    # Their order: plane xz, plane yz (slope -theta_x), axial, torsion.
+    e, g, b = deflection.shape
+    count = 2 * b + 2 * (order - 1)
+    xz = slice(0, b)
+    yz = slice(b, 2 * b)
+    z = slice(2 * b, 2 * b + order - 1)
+    theta_z = slice(2 * b + order - 1, count)
+    fields = np.zeros((6, e, g, count))
+    fields[0][:, :, xz] = deflection
+    fields[4][:, :, xz] = tilt
+    fields[1][:, :, yz] = deflection
+    fields[3][:, :, yz] = -tilt
+    fields[2][:, :, z] = fields[5][:, :, theta_z] = along
+    strain = np.zeros((e, count, count))
+    strain[:, xz, xz] = plane_root
+    strain[:, yz, yz] = plane_root
+    strain[:, z, z] = axial_root
+    strain[:, theta_z, theta_z] = twist_root
+    turn = np.zeros((count, count))
+    turn[xz, yz] = -np.eye(b)
+    turn[yz, xz] = np.eye(b)
+    return Bubbles(fields, strain, bubble_motions(order, shear), turn)
 
 
 def _plane(
@@ -106,13 +134,6 @@ def _plane(
     return w, t, bent, rising - t
 
 
-def _lobatto(x: np.ndarray, highest: int) -> tuple[np.ndarray, np.ndarray]:
-    """phi_k and its derivative at x for k = 2..highest, each (g, highest - 1)."""
-    P = legendre.legvander(x, highest)
-    k = np.arange(2, highest + 1)
-    return (P[:, k] - P[:, k - 2]) / np.sqrt(2.0 * (2 * k - 1)), np.sqrt((2 * k - 1) / 2.0) * P[:, k - 1]
-
-
 def _hermite(x: np.ndarray, highest: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """int int P_k, int P_k and P_k at x for k = 2..highest, scaled to unit curvature energy, each (g, highest - 1)."""
     P = legendre.legvander(x, highest + 2)
@@ -128,29 +149,3 @@ def _hermite(x: np.ndarray, highest: int) -> tuple[np.ndarray, np.ndarray, np.nd
 def _triangle(rows: np.ndarray) -> np.ndarray:
     """Upper triangle R (e, b, b) with R^T R = rows^T rows; QR keeps the small strains exact."""
     return np.asarray(np.linalg.qr(rows, mode="r"))
-
-
-def _gathered(
-    order: int, shear: bool, plane: tuple[np.ndarray, np.ndarray], along: np.ndarray, roots: tuple[np.ndarray, ...]
-) -> Bubbles:
-    deflection, tilt = plane
-    e, g, b = deflection.shape
-    k = order - 1
-    count = 2 * b + 2 * k
-    xz = slice(0, b)
-    yz = slice(b, 2 * b)
-    z = slice(2 * b, 2 * b + k)
-    tz = slice(2 * b + k, count)
-    fields = np.zeros((6, e, g, count))
-    fields[0][:, :, xz] = deflection
-    fields[4][:, :, xz] = tilt
-    fields[1][:, :, yz] = deflection
-    fields[3][:, :, yz] = -tilt
-    fields[2][:, :, z] = fields[5][:, :, tz] = along
-    strain = np.zeros((e, count, count))
-    for own, root in ((xz, roots[0]), (yz, roots[0]), (z, roots[1]), (tz, roots[2])):
-        strain[:, own, own] = root
-    turn = np.zeros((count, count))
-    turn[xz, yz] = -np.eye(b)
-    turn[yz, xz] = np.eye(b)
-    return Bubbles(fields, strain, bubble_motions(order, shear), turn)

@@ -35,8 +35,11 @@ def rigid_transfer(arm: np.ndarray) -> np.ndarray:
 
 
 def _spring(relative: np.ndarray, K: np.ndarray, C: np.ndarray) -> ElementMatrices:
+    """Spring K and damper C (6, 6) on the relative displacements (6, d)."""
+    # Only a symmetric stiffness has a strain energy; the rest (cross-coupling of a fluid film) is circulation.
     symmetric = 0.5 * (K + K.T)
     skew = 0.5 * (K - K.T)
+    # Directions without stiffness and damping leave no strain behind: a free direction must not look like a spring of 0 N/m.
     touched = (K != 0.0) | (K.T != 0.0) | (C != 0.0) | (C.T != 0.0)
     used = np.flatnonzero(touched.any(axis=1))
 
