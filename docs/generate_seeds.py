@@ -43,7 +43,7 @@ time on the back side. With the model's file alone, at the load ratios 0.3, 0.6 
 
 ```console
 $ rotorgear sweep models/marine_dual_turbine.toml --over "loads.lp.torque=6923.077 N m,11250 N m,15000 N m" \\
-    --settle 2000 --count 200 --steps 40 --json regions.json
+    --discard 2000 --sample 200 --steps 40 --json regions.json
 ```
 
 There `points[].runs[]` has `lyapunov` (over a period of the first stage), and its `contacts[]` named `first_lp` has
@@ -51,7 +51,7 @@ There `points[].runs[]` has `lyapunov` (over a period of the first stage), and i
 
 ```console
 $ rotorgear sweep models/marine_dual_turbine.toml --over "loads.lp.torque=11.3 kN m:16.3 kN m:51" \\
-    --settle 400 --count 200 --steps 40 --plot pictures
+    --discard 400 --sample 200 --steps 40 --plot pictures
 ```
 
 ![LP first stage over the LP torque: chaos with back-side contact, then order again](pictures/seeds_marine.png)
@@ -76,7 +76,7 @@ peak to peak deflection, "chaotic" that the largest Lyapunov exponent is above 0
 
 ```console
 $ rotorgear sweep models/herringbone_pair_24dof.toml --over "operation.speed=4600 rpm:6000 rpm:57" \\
-    --settle 250 --count 64 --steps 160 --plot pictures
+    --discard 250 --sample 64 --steps 160 --plot pictures
 ```
 
 ![Set 1 over the speed: one period, two, chaos](pictures/seeds_pair24.png)

@@ -31,7 +31,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "static": ("static",),
     "response": ("response", "--from", "1000 rpm", "--to", "4000 rpm", "--points", "4"),
     "gear": ("gear",),
-    "transient": ("transient", "--time", "0.002 s", "--settle", "0.001 s", "--no-error-estimate"),
+    "transient": ("transient", "--time", "0.002 s", "--discard", "0.001 s", "--no-error-estimate"),
 }
 # What differs between two runs of the same program.
 NOT_COMPARED = ("seconds",)

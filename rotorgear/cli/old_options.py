@@ -8,7 +8,10 @@ import typer
 from typer.core import TyperGroup
 
 # Command -> former option -> option.
-OPTIONS: dict[str, dict[str, str]] = {}
+OPTIONS: dict[str, dict[str, str]] = {
+    "sweep": {"--starts": "--initial-conditions", "--settle": "--discard", "--count": "--sample"},
+    "transient": {"--settle": "--discard"},
+}
 
 
 class Commands(TyperGroup):

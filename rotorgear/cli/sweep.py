@@ -1,4 +1,4 @@
-"""rotorgear sweep: Poincare sections, Lyapunov exponents and kinds of motion over one or two parameters."""
+"""rotorgear sweep: Poincare sections, Lyapunov exponents and response types over one or two parameters."""
 
 from __future__ import annotations
 
@@ -29,25 +29,30 @@ def sweep(
     direction: Annotated[
         str, typer.Option("--direction", help="each (from its static state), up, down or both.")
     ] = "each",
-    starts: Annotated[int, typer.Option("--starts", help="Runs of each point from different states.")] = 1,
-    settle: Annotated[int, typer.Option("--settle", help="Common mesh periods that do not count.")] = 300,
-    count: Annotated[int, typer.Option("--count", help="Common mesh periods that count.")] = 200,
+    initial_conditions: Annotated[
+        int,
+        typer.Option("--initial-conditions", help="Runs at each point: one from rest, the others from random states."),
+    ] = 1,
+    discard: Annotated[
+        int, typer.Option("--discard", help="Transient periods discarded (least common periods).")
+    ] = 300,
+    sample: Annotated[int, typer.Option("--sample", help="Periods sampled after them.")] = 200,
     exponents: Annotated[int, typer.Option("--exponents", help="Lyapunov exponents; 0 for none.")] = 1,
     steps: Annotated[
         int | None, typer.Option("--steps", help="Steps in a period of the fastest mesh.", show_default=False)
     ] = None,
     tolerance: Annotated[
-        float, typer.Option("--tolerance", help="Share of the peak to peak within which a motion repeats.")
+        float, typer.Option("--tolerance", help="Share of the peak-to-peak value within which a response repeats.")
     ] = 0.02,
     chaos: Annotated[
-        float, typer.Option("--chaos", help="Exponent per mesh period above which a motion is chaotic.")
+        float, typer.Option("--chaos", help="Lyapunov exponent per mesh period above which a response is chaotic.")
     ] = 0.02,
-    seed: Annotated[int, typer.Option("--seed", help="Of the random states of --starts.")] = 1,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of the random states of --initial-conditions.")] = 1,
     modes: Annotated[
-        int | None, typer.Option("--modes", help="Reduce the model to so many modes.", show_default=False)
+        int | None, typer.Option("--modes", help="Number of modes to reduce the model to.", show_default=False)
     ] = None,
     reduction_error: Annotated[
-        float, typer.Option("--reduction-error", help="Largest error of the reduction of a large model.")
+        float, typer.Option("--reduction-error", help="Largest FRF error of the reduction of a large model.")
     ] = 0.01,
     elements: Annotated[
         int | None, typer.Option("--elements", help="Elements in each piece of shaft (default: 1).", show_default=False)
@@ -83,7 +88,7 @@ def sweep(
         Path | None, typer.Option("--plot", help="Draw pictures of the result to this folder.", show_default=False)
     ] = None,
 ) -> None:
-    """Bifurcation diagram, Lyapunov exponents and kinds of motion of a model over its parameters."""
+    """Bifurcation diagram, Lyapunov exponents and response types of a model over its parameters."""
     import rotorgear as rg
     from rotorgear.analysis.sweep.axes import axis_of_option
     from rotorgear.results.tables.sweep import sweep_table
@@ -106,9 +111,9 @@ def sweep(
                 read,
                 {axis.address: [axis.text(value) for value in axis.values] for axis in axes},
                 direction=direction,
-                starts=starts,
-                settle=settle,
-                count=count,
+                initial_conditions=initial_conditions,
+                discard=discard,
+                sample=sample,
                 exponents=exponents,
                 steps=steps,
                 tolerance=tolerance,

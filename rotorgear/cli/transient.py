@@ -25,17 +25,16 @@ def transient(
     speed_to: Annotated[
         str | None,
         typer.Option(
-            "--speed-to", help="Run up (or down) to this speed within the time that counts.", show_default=False
+            "--speed-to", help="Run up (or down) to this speed within the time evaluated.", show_default=False
         ),
     ] = None,
     time: Annotated[
         str | None,
-        typer.Option(
-            "--time", help="Time that counts, such as '0.2 s' (default: 30 mesh periods).", show_default=False
-        ),
+        typer.Option("--time", help="Time evaluated, such as '0.2 s' (default: 30 mesh periods).", show_default=False),
     ] = None,
-    settle: Annotated[
-        str | None, typer.Option("--settle", help="Time before it that does not count.", show_default=False)
+    discard: Annotated[
+        str | None,
+        typer.Option("--discard", help="Time of the transient before it, which is discarded.", show_default=False),
     ] = None,
     accuracy: Annotated[
         float | None,
@@ -60,7 +59,11 @@ def transient(
     ] = None,
     modes: Annotated[
         int | None,
-        typer.Option("--modes", help="Exponential: so many modes and residual vectors, not all.", show_default=False),
+        typer.Option(
+            "--modes",
+            help="Exponential: number of modes kept, with residual vectors (default: all).",
+            show_default=False,
+        ),
     ] = None,
     modal_damping: Annotated[
         float | None,
@@ -107,9 +110,9 @@ def transient(
     with progress_bar("transient") as progress:
         result = rg.transient(
             rg.load(model),
-            speed=_speeds(rg.load(model), speed, speed_to, time, settle),
+            speed=_speeds(rg.load(model), speed, speed_to, time, discard),
             time=time,
-            settle=settle,
+            discard=discard,
             accuracy=accuracy,
             steps=steps,
             records=records,
@@ -145,7 +148,7 @@ def transient(
         raise typer.Exit(1)
 
 
-def _speeds(model: object, speed: str | None, speed_to: str | None, time: str | None, settle: str | None):  # type: ignore[no-untyped-def]
+def _speeds(model: object, speed: str | None, speed_to: str | None, time: str | None, discard: str | None):  # type: ignore[no-untyped-def]
     """One speed, or the pairs of a run-up."""
     from rotorgear.quantity import QuantityError, parse_quantity
 
@@ -158,10 +161,10 @@ def _speeds(model: object, speed: str | None, speed_to: str | None, time: str | 
         raise AnalysisError("--speed-to needs a --speed to start from and a --time for the run-up")
     last = parse_speed(speed_to)
     try:
-        begin = parse_quantity(settle, "time") if settle else 0.0
+        begin = parse_quantity(discard, "time") if discard else 0.0
         end = begin + parse_quantity(time, "time")
     except QuantityError as error:
-        raise AnalysisError(f"--time and --settle: expected {error}") from None
+        raise AnalysisError(f"--time and --discard: expected {error}") from None
     return [(begin, first), (end, last)]
 
 

@@ -10,7 +10,7 @@ from rotorgear.analysis.transient.transient import transient
 from rotorgear.errors import ModelError
 from tests.unit.analysis.spur_pair import spur_pair
 
-SHORT = {"time": 0.05, "settle": 0.1, "steps": 400, "error_estimate": False}
+SHORT = {"time": 0.05, "discard": 0.1, "steps": 400, "error_estimate": False}
 
 
 def test_zero_backlash_holds_the_teeth_between_both_flanks() -> None:
@@ -34,7 +34,7 @@ def test_a_millimetre_of_backlash_under_load_is_one_sided() -> None:
 
 def test_zero_load_rattles_in_the_gap_and_the_mean_force_vanishes() -> None:
     model = spur_pair(meshes__pair__backlash="4 um", operation__torque="0 N m")
-    result = transient(model, time=0.2, settle=0.3, steps=400)
+    result = transient(model, time=0.2, discard=0.3, steps=400)
     assert result.status == "success"
     assert np.all(result.contact_time[0] > 0.01)
     own = result.mesh_force[result.counted]
@@ -73,7 +73,7 @@ def test_a_mesh_of_1e12_newton_a_metre_carries_the_static_force_exactly_and_the_
         time=0.01,
     )
     assert still.mesh_force == pytest.approx(200.0 / (0.048 * np.cos(np.radians(20.0))), rel=1e-6)
-    shaken = transient(spur_pair(meshes__pair__stiffness="1e12 N/m"), time=0.02, settle=0.02, accuracy=0.02)
+    shaken = transient(spur_pair(meshes__pair__stiffness="1e12 N/m"), time=0.02, discard=0.02, accuracy=0.02)
     assert shaken.status == "success"
     assert shaken.error_estimate < 0.1 or any("accuracy" in note for note in shaken.warnings)
 
@@ -88,8 +88,8 @@ def test_a_bearing_that_is_never_loaded_does_nothing() -> None:
         "clearance": "0.9 mm",
     }
     spare = {"shaft": "one", "at": "30 mm", "stiffness": {"radial": "1e8 N/m"}, "rolling": rolling}
-    with_it = transient(spur_pair(bearings__spare=spare), time=0.02, settle=0.05, steps=200)
-    without = transient(spur_pair(), time=0.02, settle=0.05, steps=200)
+    with_it = transient(spur_pair(bearings__spare=spare), time=0.02, discard=0.05, steps=200)
+    without = transient(spur_pair(), time=0.02, discard=0.05, steps=200)
     assert np.all(with_it.history("bearings.spare force x") == 0.0)
     assert with_it.mesh_force.std() == pytest.approx(without.mesh_force.std(), rel=1e-2)
 
@@ -112,7 +112,7 @@ def test_torques_that_do_not_balance_are_refused_in_the_model_and_drift_is_told_
             "b": {"shaft": "two", "kind": "output"},
         },
     )
-    result = transient(model, time=0.02, settle=0.05, steps=200)
+    result = transient(model, time=0.02, discard=0.05, steps=200)
     assert any("balance" in note for note in result.warnings)
 
 

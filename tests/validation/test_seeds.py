@@ -77,7 +77,7 @@ def test_the_three_regions_of_the_marine_train() -> None:
 
 def test_the_file_of_the_marine_train_gives_the_impact_time_ratio_over_the_torque_as_it_is() -> None:
     over = {"loads.lp.torque": [30e3 * gamma / (1.0 + gamma) for gamma in (0.3, 0.6, 1.0)]}
-    found = rg.sweep(loaded(marine.MODEL), over, steps=marine.STEPS, settle=400, count=200)
+    found = rg.sweep(loaded(marine.MODEL), over, steps=marine.STEPS, discard=400, sample=200)
     back = found.back[:, 0, found.contact.index("first_lp")]
     assert back[0] > 0.5 > back[1] > 0.1 > back[2]
 
@@ -127,7 +127,7 @@ def test_transient_and_sweep_agree_on_a_motion_with_loss_of_contact() -> None:
         speed=5800.0 * math.pi / 30.0,
         method="newmark",
         steps=640,
-        settle=250 * period,
+        discard=250 * period,
         time=64 * period,
         error_estimate=False,
     )

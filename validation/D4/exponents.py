@@ -44,7 +44,7 @@ def _lorenz() -> np.ndarray:
         return np.moveaxis(np.array(rows), 2, 0)
 
     states = np.array([1.0, 1.0, 20.0]) + np.random.default_rng(3).standard_normal((60, 3))
-    return flow_exponents(slope, jacobian, states, 0.01, settle=2000, count=6000)[0]
+    return flow_exponents(slope, jacobian, states, 0.01, discard=2000, sample=6000)[0]
 
 
 @cache

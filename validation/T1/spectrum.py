@@ -38,6 +38,6 @@ def excited() -> rg.Model:
 @cache
 def run() -> tuple[SpectralLines, RigSpectrum]:
     """Lines of the spectrum with the printed harmonics of the transmission error, and the rig lines beside them."""
-    result = rg.transient(excited(), modal_damping=0.02, steps=80, settle="20 ms", time="60 ms", error_estimate=False)
+    result = rg.transient(excited(), modal_damping=0.02, steps=80, discard="20 ms", time="60 ms", error_estimate=False)
     lines = rg.spectral_lines(result, _NAME)
     return lines, rg.compare_spectrum(result, lines, rg.read_rig_lines(_MODELS / "split_torque_rig.csv"))

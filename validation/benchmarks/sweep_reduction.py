@@ -26,7 +26,7 @@ ALL = 83
 def run(modes: int | None) -> tuple[SweepResult, float]:
     """A sweep with so many modes, and its seconds."""
     begun = time.perf_counter()
-    found = rg.sweep(rg.load(MODEL), OVER, settle=300, count=100, modes=modes, workers=1)
+    found = rg.sweep(rg.load(MODEL), OVER, discard=300, sample=100, modes=modes, workers=1)
     return found, time.perf_counter() - begun
 
 
@@ -50,7 +50,7 @@ def row(found: SweepResult, seconds: float, whole: SweepResult) -> str:
 
 def main() -> None:
     """Print the table."""
-    rg.sweep(rg.load(MODEL), {"operation.speed": ["6000 rpm"]}, settle=1, count=1)  # compiles
+    rg.sweep(rg.load(MODEL), {"operation.speed": ["6000 rpm"]}, discard=1, sample=1)  # compiles
     whole, longest = run(ALL)
     print("modes coordinates   receptances   peak to p.  force      apart      kinds   steps  seconds")
     for modes in MODES:

@@ -73,8 +73,8 @@ def contact(
         loaded(MODEL),
         {"load ratio": list(gammas)},
         steps=STEPS,
-        settle=settle,
-        count=count,
+        discard=settle,
+        sample=count,
         change=lambda _, at: operating(at[0], total, table_stiffness=table_stiffness),
     )
     i = result.contact.index("first_lp")
@@ -127,8 +127,8 @@ def _way(total: float) -> str:
         loaded(MODEL),
         {"load ratio": ratios},
         steps=STEPS,
-        settle=SETTLE,
-        count=COUNT,
+        discard=SETTLE,
+        sample=COUNT,
         change=lambda _, at: operating(at[0], total),
     )
     names = [kind if kind in ("1T", "2T") else "others" for kind in (result.motion_at(p) for p in range(len(ratios)))]

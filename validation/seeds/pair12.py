@@ -73,7 +73,7 @@ def at_ratio(
 def run(model: rg.Model) -> rg.TransientResult:
     """60 mesh periods after 120 of settling, 200 steps each."""
     period = 60.0 / (2000.0 * 17.0)
-    return rg.transient(model, steps=200, records=100, settle=120 * period, time=60 * period, error_estimate=False)
+    return rg.transient(model, steps=200, records=100, discard=120 * period, time=60 * period, error_estimate=False)
 
 
 def vibration(model: rg.Model) -> tuple[float, float]:

@@ -113,7 +113,7 @@ def run(model: rg.Model) -> tuple[float, float, float]:
     speed = model.operation.speed if model.operation else 0.0
     period = 2.0 * math.pi / ((speed or 0.0) * (model.gears["pinion_left"].teeth or 1))
     result = rg.transient(
-        model, steps=STEPS, records=STEPS, settle=SETTLE * period, time=COUNT * period, error_estimate=False
+        model, steps=STEPS, records=STEPS, discard=SETTLE * period, time=COUNT * period, error_estimate=False
     )
     force = result.mesh_force[result.counted, 0]
     return float(force.max() / force.mean()), float(force.mean()), float(force.max())

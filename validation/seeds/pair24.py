@@ -32,7 +32,7 @@ STARTS = 16
 def route(name: str, speeds: Sequence[float], settle: int = SETTLE) -> rg.SweepResult:
     """Motions over speeds in rpm, each from its own static start."""
     return rg.sweep(
-        loaded(name), {"operation.speed": [f"{rpm} rpm" for rpm in speeds]}, steps=STEPS, settle=settle, count=KEPT
+        loaded(name), {"operation.speed": [f"{rpm} rpm" for rpm in speeds]}, steps=STEPS, discard=settle, sample=KEPT
     )
 
 
@@ -60,9 +60,9 @@ def apart(
         base,
         {"point": list(range(len(points)))},
         steps=STEPS,
-        settle=LONG_SETTLE,
-        count=LONG_KEPT,
-        starts=STARTS,
+        discard=LONG_SETTLE,
+        sample=LONG_KEPT,
+        initial_conditions=STARTS,
         change=changed_to,
     )
     kinds = [Counter(result.motion_at(p, r) for r in range(STARTS)).most_common(1)[0][0] for p in range(len(points))]

@@ -36,8 +36,8 @@ def marine_ratio() -> tuple[np.ndarray, dict[float, rg.SweepResult]]:
             loaded(marine.MODEL),
             {"load ratio": list(ratios)},
             steps=marine.STEPS,
-            settle=marine.SETTLE,
-            count=marine.COUNT,
+            discard=marine.SETTLE,
+            sample=marine.COUNT,
             change=lambda _, at, total=total: marine.operating(at[0], total),
         )
         for total in (30e3, 35e3)
@@ -122,7 +122,7 @@ def pair24_over(name: str) -> tuple[np.ndarray, rg.SweepResult]:
         return changed(base, loads=loads, meshes={"left": mesh, "right": mesh})
 
     return values, rg.sweep(
-        base, {name: list(values)}, change=at, steps=pair24.STEPS, settle=pair24.LONG_SETTLE, count=150, exponents=0
+        base, {name: list(values)}, change=at, steps=pair24.STEPS, discard=pair24.LONG_SETTLE, sample=150, exponents=0
     )
 
 

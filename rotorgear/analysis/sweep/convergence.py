@@ -50,7 +50,13 @@ def sweep_convergence_study(
     for number, (n, count) in enumerate(plans):
         progress(number / len(plans), f"{n} steps, {count} periods")
         found = sweep(
-            model, {"operation.speed": [given]}, starts=starts, throw=_THROW, steps=n, settle=_SETTLE, count=count
+            model,
+            {"operation.speed": [given]},
+            initial_conditions=starts,
+            throw=_THROW,
+            steps=n,
+            discard=_SETTLE,
+            sample=count,
         )
         worst = int(np.argmax(found.peak_to_peak[0].mean(axis=0)))
         exponents = found.lyapunov[0, :, 0]

@@ -38,7 +38,7 @@ def notes(
         )
     unsettled = sum(kind == "not settled" for kind in motion)
     if unsettled:
-        found.append(f"{unsettled} of {len(motion)} runs had not settled: ask for more periods of --settle or --count")
+        found.append(f"{unsettled} of {len(motion)} runs had not settled: ask for more periods (--discard, --sample)")
     found += [
         f"{axis.address} changes nothing in this model: its points are all the same" for axis in idle(axes, points)
     ]
@@ -97,5 +97,5 @@ def _slow(motion: Sequence[str], settle: int, orbits: dict[tuple[int, int], Orbi
         return ()
     return (
         f"{slow} of {len(several)} runs with 2T or longer forget their start more slowly than the {settle} periods that settled: "
-        "their period may change with more --settle",
+        "their period may change with more --discard",
     )

@@ -16,7 +16,12 @@ from rotorgear.solvers.lanes.small_system import SmallSystem, steps_needed, step
 DIRECTIONS = ("each", "up", "down", "both")
 MOST_STEPS = 5000
 LEAST_STEPS = 200
-_NUMBERS = {"starts": 1000, "settle": 10_000_000, "count": 10_000_000}
+# Field: the argument's name, least and most.
+_NUMBERS = {
+    "starts": ("initial_conditions", 1, 1000),
+    "settle": ("discard", 0, 10_000_000),
+    "count": ("sample", 1, 10_000_000),
+}
 
 
 @dataclass(frozen=True)
@@ -40,10 +45,9 @@ class Request:
     def __post_init__(self) -> None:
         if self.direction not in DIRECTIONS:
             raise AnalysisError(f"direction: got '{self.direction}', expected one of {', '.join(DIRECTIONS)}")
-        for name, most in _NUMBERS.items():
-            least = 0 if name == "settle" else 1
-            if not least <= getattr(self, name) <= most:
-                raise AnalysisError(f"{name}: got {getattr(self, name)}, expected {least} to {most}")
+        for field, (name, least, most) in _NUMBERS.items():
+            if not least <= getattr(self, field) <= most:
+                raise AnalysisError(f"{name}: got {getattr(self, field)}, expected {least} to {most}")
         for name in ("exponents", "seed"):
             if getattr(self, name) < 0:
                 raise AnalysisError(f"{name}: got {getattr(self, name)}, expected 0 or more")

@@ -22,6 +22,7 @@ from rotorgear.analysis.sweep.shrink import shrunk
 from rotorgear.analysis.transient.histories import Stream
 from rotorgear.errors import RotorgearError
 from rotorgear.model.model import Model
+from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.sweep import SweepResult
 from rotorgear.solvers.lanes.lanes import Orbit, Plan, Start
@@ -31,15 +32,16 @@ from rotorgear.solvers.sparse.factor import single_thread
 _READY = 0.1
 
 
+@renamed_arguments(starts="initial_conditions", settle="discard", count="sample")
 def sweep(
     model: Model,
     over: Mapping[str, str | Sequence[float | str]],
     *,
     change: Callable[[Model, tuple[float, ...]], Model] | None = None,
     direction: str = "each",
-    starts: int = 1,
-    settle: int = 300,
-    count: int = 200,
+    initial_conditions: int = 1,
+    discard: int = 300,
+    sample: int = 200,
     exponents: int = 1,
     steps: int | None = None,
     tolerance: float = TOLERANCE,
@@ -63,8 +65,9 @@ def sweep(
             address means all names there.
         change: returns the model at a point from the model and the values, in place of the addresses, which are then only names.
         direction: each: every point starts from its own static state; up, down: from where the point before ended; both.
-        starts: so many runs of each point: the first from the static state, the others thrown off it at random.
-        settle, count: common periods of all meshes that are passed over, and that count.
+        initial_conditions: number of runs at each point: the first from the static equilibrium, the others from random
+            initial conditions.
+        discard: transient periods discarded; sample: periods sampled after them. Both count least common periods of all meshes.
         exponents: how many Lyapunov exponents are found; 0 for none.
         steps: of the Runge-Kutta method of order 4 in a period of the fastest mesh; where not given, the highest frequency of the
             model decides.
@@ -86,9 +89,9 @@ def sweep(
     begun = clock.perf_counter()
     request = Request(
         direction,
-        starts,
-        settle,
-        count,
+        initial_conditions,
+        discard,
+        sample,
         exponents,
         steps,
         tolerance,

@@ -53,7 +53,7 @@ def transient_convergence_study(
     if not model.meshes:
         raise AnalysisError("the convergence study of a transient compares contact forces: the model has no mesh")
     system = System(model, plan=Plan(elements=1, order=2))
-    fixed: dict[str, Any] = {"speed": speed, "settle": 0.0, "records": _RECORDS, "modal_damping": modal_damping}
+    fixed: dict[str, Any] = {"speed": speed, "discard": 0.0, "records": _RECORDS, "modal_damping": modal_damping}
     fixed["time"] = time if time is not None else _duration(system, fixed)
     damped = model.damping.modal_ratio if modal_damping is None else modal_damping
     truth = transient(system, method="exponential", steps=REFERENCE_STEPS, error_estimate=False, **fixed)

@@ -17,6 +17,7 @@ from rotorgear.analysis.transient.statistics import Statistics, compared, statis
 from rotorgear.analysis.transient.task import Task, damped, fine_enough, prepare, run_task, skipping
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
+from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.time.explicit import Explicit
@@ -27,12 +28,13 @@ from rotorgear.system.system import System
 DEFAULT_ACCURACY = 0.01
 
 
+@renamed_arguments(settle="discard")
 def transient(
     model: Model | System,
     *,
     speed: float | str | Sequence[tuple[float, float | str]] | None = None,
     time: float | str | None = None,
-    settle: float | str | None = None,
+    discard: float | str | None = None,
     steps: int | None = None,
     records: int | None = None,
     accuracy: float | None = None,
@@ -53,8 +55,8 @@ def transient(
     Args:
         model: a model, or its assembled system.
         speed: of the input shaft in rad/s or as a text, or pairs (time, speed), linear in between. None: the operating speed.
-        time: duration that counts in s or as a text; 30 periods of the slowest mesh where it is not given.
-        settle: time before it, whose response does not count.
+        time: duration that is evaluated, in s or as a text; 30 periods of the slowest mesh where it is not given.
+        discard: duration of the transient before it, which is computed but not evaluated.
         steps: steps in a period of the fastest mesh; without it the step is halved until the accuracy is reached.
         records: records in a period of the fastest mesh; 40 where not given.
         accuracy: wanted relative accuracy of the statistics; 0.01 where neither it nor `steps` is given.
@@ -82,7 +84,7 @@ def transient(
     if frames < 0:
         raise AnalysisError(f"frames: got {frames}, expected 0 or more")
     task = prepare(damped(model, modal_damping), speed, elements)
-    duration = [None if x is None else quantity(x, "time", name) for x, name in ((time, "time"), (settle, "settle"))]
+    duration = [None if x is None else quantity(x, "time", name) for x, name in ((time, "time"), (discard, "discard"))]
     grid = grid_of(
         task.local.local, base_frequencies(task.local.system, task.largest), duration[0], duration[1], steps, records
     )

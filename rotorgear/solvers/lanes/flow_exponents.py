@@ -11,12 +11,14 @@ from collections.abc import Callable
 import numpy as np
 
 from rotorgear.errors import AnalysisError
+from rotorgear.old_names import renamed_arguments
 
 Field = Callable[[np.ndarray], np.ndarray]
 
 
+@renamed_arguments(settle="discard", count="sample")
 def flow_exponents(
-    slope: Field, jacobian: Field, states: np.ndarray, step: float, *, settle: int, count: int, every: int = 10
+    slope: Field, jacobian: Field, states: np.ndarray, step: float, *, discard: int, sample: int, every: int = 10
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return all exponents (n,), largest first, and their standard errors (n,), per unit time.
 
@@ -24,7 +26,7 @@ def flow_exponents(
         slope: f of states (w, n), returns (w, n). jacobian: J of states (w, n), returns (w, n, n).
         states: where w >= 2 trajectories start, (w, n).
         step: of the Runge-Kutta method of order 4.
-        settle, count: steps that do not count, and that count.
+        discard: steps of the transient discarded; sample: steps evaluated after them.
         every: steps between two orthonormalisations.
 
     Raises:
@@ -37,19 +39,19 @@ def flow_exponents(
     Y = np.broadcast_to(np.eye(n), (w, n, n)).copy()
     growth = np.zeros((w, n))
     counted = 0
-    for number in range(1, settle + count + 1):
+    for number in range(1, discard + sample + 1):
         y, Y = _step(slope, jacobian, y, Y, step)
-        if number % every == 0 or number == settle + count:
+        if number % every == 0 or number == discard + sample:
             Y, R = np.linalg.qr(Y)
             if not np.all(np.isfinite(y)):
                 raise AnalysisError(f"a trajectory left all bounds after {number} steps: take a smaller step")
-            if number > settle:
+            if number > discard:
                 growth += np.log(np.abs(np.diagonal(R, axis1=1, axis2=2)))
                 counted = number
-        if number == settle:
+        if number == discard:
             Y = np.linalg.qr(Y)[0]
             growth[:] = 0.0
-    rates = growth / ((counted - settle) * step)
+    rates = growth / ((counted - discard) * step)
     return rates.mean(axis=0), rates.std(axis=0, ddof=1) / np.sqrt(w)
 
 

@@ -21,7 +21,7 @@ from tests.paths import ROOT
 
 PAIR = str(ROOT / "models" / "backlash_pair.toml")
 _DRAWN = ("bifurcation_1.png", "sections.png", "portraits_1.png", "spectra_1.png")
-QUICK = ["--settle", "40", "--count", "40"]
+QUICK = ["--discard", "40", "--sample", "40"]
 
 
 def run(*arguments: str) -> tuple[int, str]:
@@ -69,7 +69,7 @@ def test_two_parameters_give_a_map(tmp_path: Path) -> None:
 
 
 def test_portraits_of_chosen_points_are_listed_by_their_lines(tmp_path: Path) -> None:
-    over = ["--over", "operation.speed=3000 rpm:4000 rpm:5", "--settle", "300", "--count", "60", "--steps", "400"]
+    over = ["--over", "operation.speed=3000 rpm:4000 rpm:5", "--discard", "300", "--sample", "60", "--steps", "400"]
     code, text = run(PAIR, *over, "--portrait", "3250", "--portrait", "3490 rpm", "--json", str(tmp_path / "s.json"))
     assert code == 0
     table = text.split("Strongest lines")[1]
@@ -88,7 +88,7 @@ def test_portraits_of_chosen_points_are_listed_by_their_lines(tmp_path: Path) ->
         (["--over", "meshes.pear.backlash=1 um"], "did you mean 'pair'"),
         (["--over", "operation.speed=6000 rpm", "--resume"], "--resume needs the --save"),
         (["--over", "operation.speed=6000 rpm", "--workers", "0"], "--workers"),
-        (["--over", "operation.speed=6000 rpm", "--count", "0"], "count: got 0"),
+        (["--over", "operation.speed=6000 rpm", "--sample", "0"], "sample: got 0"),
         (["--over", "operation.speed=6000 mm"], "rotational speed"),
         (["--over", "operation.speed=1 rpm:9 rpm:3", "--portrait", "10"], "from 1 to 9 rpm"),
         (["--over", "operation.speed=1 rpm:9 rpm:3", "--portrait", "x"], "portrait: got 'x', expected a number in rpm"),
@@ -111,9 +111,9 @@ def test_a_killed_sweep_goes_on_to_the_same_file(tmp_path: Path) -> None:
         PAIR,
         "--over",
         "operation.speed=3000 rpm:9000 rpm:128",
-        "--settle",
+        "--discard",
         "200",
-        "--count",
+        "--sample",
         "100",
         "--workers",
         "1",
@@ -138,7 +138,7 @@ def test_a_killed_sweep_goes_on_to_the_same_file(tmp_path: Path) -> None:
 def test_a_large_model_says_what_it_was_reduced_to_and_keeps_that_in_files(tmp_path: Path) -> None:
     flexible = str(ROOT / "models" / "flexible_pair.toml")
     files = [str(tmp_path / name) for name in ("s.json", "s.h5")]
-    few = ["--over", "operation.speed=5000 rpm,6000 rpm", "--settle", "9", "--count", "9"]
+    few = ["--over", "operation.speed=5000 rpm,6000 rpm", "--discard", "9", "--sample", "9"]
     code, text = run(flexible, *few, "--modes", "12", "--elements", "2", "--json", files[0], "--save", files[1])
     assert code == 0
     words = " ".join(text.split())

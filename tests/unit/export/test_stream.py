@@ -21,7 +21,7 @@ from rotorgear.export.stream import read_chunk
 from tests.paths import ROOT
 from tests.unit.analysis.spur_pair import spur_pair
 
-SETTINGS: dict[str, Any] = {"time": 0.1, "settle": 0.02, "steps": 160, "error_estimate": False}
+SETTINGS: dict[str, Any] = {"time": 0.1, "discard": 0.02, "steps": 160, "error_estimate": False}
 
 
 class _StopError(Exception):
@@ -91,7 +91,7 @@ def test_what_kill_leaves_is_readable_and_goes_on(tmp_path: Path) -> None:
 
     program = (
         "import rotorgear as rg\nfrom tests.unit.analysis.spur_pair import spur_pair\n"
-        f"rg.transient(spur_pair(), time=20.0, settle=0.0, steps=160, error_estimate=False, method='newmark', "
+        f"rg.transient(spur_pair(), time=20.0, discard=0.0, steps=160, error_estimate=False, method='newmark', "
         f"stream=rg.stream({str(tmp_path / 'run.h5')!r}))\n"
     )
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}

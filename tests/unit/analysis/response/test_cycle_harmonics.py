@@ -62,7 +62,7 @@ def test_the_response_is_that_of_the_transient(mesh: dict[str, Any], pinion_driv
         }
     model = spur_pair(meshes__pair__transmission_error=[], **changes)
     run = rg.transient(
-        model, method="exponential", settle=0.3, time=0.05, steps=1200, records=240, error_estimate=False
+        model, method="exponential", discard=0.3, time=0.05, steps=1200, records=240, error_estimate=False
     )
     lines = 2.0 * np.fft.rfft(run.mesh_force[-7200:, 0]) / 7200.0  # 30 whole periods
     found = rg.response(model, speeds=["1500 rpm" if pinion_drives else "1000 rpm"])

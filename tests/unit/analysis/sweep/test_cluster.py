@@ -244,7 +244,16 @@ def test_two_processes_end_with_the_same_data_although_a_worker_dies(tmp_path: P
 
 @pytest.mark.long
 def test_the_command_prints_the_same_table(tmp_path: Path) -> None:
-    command = ["sweep", str(PAIR), "--over", "operation.speed=3000 rpm:9000 rpm:70", "--settle", "40", "--count", "40"]
+    command = [
+        "sweep",
+        str(PAIR),
+        "--over",
+        "operation.speed=3000 rpm:9000 rpm:70",
+        "--discard",
+        "40",
+        "--sample",
+        "40",
+    ]
     outputs = [CliRunner().invoke(app, [*command, *more]).output for more in ([], ["--cluster", "local:2"])]
     tables = [[line for line in text.splitlines() if " s; " not in line] for text in outputs]
     assert len(tables[0]) > 60

@@ -25,7 +25,7 @@ from validation.benchmarks.sweep_speed import apart
 from validation.oscillators import integrate, local_system
 
 PAIR = ROOT / "models" / "backlash_pair.toml"
-SHORT: dict[str, Any] = {"settle": 40, "count": 40}
+SHORT: dict[str, Any] = {"discard": 40, "sample": 40}
 # Fields that tell the cost of a run, not its outcome.
 COST = ("seconds",)
 
@@ -116,10 +116,10 @@ def test_all_exponents_sum_up_to_the_trace_and_a_rigid_motion_is_left_out(rigid:
 
 def test_statistics_of_a_sweep_are_those_of_the_transient() -> None:
     model = rg.load(PAIR)
-    swept = rg.sweep(model, {"operation.speed": ["8000 rpm"]}, settle=300, count=40, steps=400)
+    swept = rg.sweep(model, {"operation.speed": ["8000 rpm"]}, discard=300, sample=40, steps=400)
     mesh = 40 * 8000 / 60.0
     run = rg.transient(
-        model, speed="8000 rpm", settle=300 / mesh, time=40 / mesh, steps=800, method="newmark", error_estimate=False
+        model, speed="8000 rpm", discard=300 / mesh, time=40 / mesh, steps=800, method="newmark", error_estimate=False
     )
     row = run.to_dict()["contacts"][0]
     assert swept.motion == ("1T",)
@@ -135,7 +135,7 @@ def test_statistics_of_a_sweep_are_those_of_the_transient() -> None:
 
 def test_the_pair_goes_from_one_period_to_two_and_chaos() -> None:
     result = rg.sweep(
-        rg.load(PAIR), {"operation.speed": "2600 rpm,3300 rpm,3500 rpm,3900 rpm,4000 rpm"}, settle=1000, count=200
+        rg.load(PAIR), {"operation.speed": "2600 rpm,3300 rpm,3500 rpm,3900 rpm,4000 rpm"}, discard=1000, sample=200
     )
     assert result.motion == ("1T", "2T", "4T", "chaotic", "chaotic")
     assert np.all(result.lyapunov[:3, 0, 0] < -0.03)
@@ -163,12 +163,12 @@ def test_workers_do_not_change_the_result_and_an_interrupted_sweep_ends_the_same
     rg.save(resumed, path)
     assert same(whole, rg.read(path))
     with pytest.raises(rg.RotorgearError, match="other settings"):
-        rg.sweep(model, over, stream=rg.stream(path, resume=True), settle=40, count=41)
+        rg.sweep(model, over, stream=rg.stream(path, resume=True), discard=40, sample=41)
 
 
 def test_up_and_down_keep_their_own_attractor_and_resume_too(tmp_path: Path) -> None:
     over = {"operation.speed": "5000 rpm:9000 rpm:9"}
-    both = rg.sweep(rg.load(PAIR), over, direction="both", settle=100, count=40)
+    both = rg.sweep(rg.load(PAIR), over, direction="both", discard=100, sample=40)
     assert both.run == ("up", "down")
     kinds = np.array(both.motion).reshape(9, 2)
     assert any(up != down for up, down in kinds)  # two attractors side by side
@@ -182,14 +182,14 @@ def test_up_and_down_keep_their_own_attractor_and_resume_too(tmp_path: Path) -> 
 
     with pytest.raises(KeyboardInterrupt):
         rg.sweep(
-            rg.load(PAIR), over, direction="both", settle=100, count=40, stream=rg.stream(path), progress=stop_late
+            rg.load(PAIR), over, direction="both", discard=100, sample=40, stream=rg.stream(path), progress=stop_late
         )
-    again = rg.sweep(rg.load(PAIR), over, direction="both", settle=100, count=40, stream=rg.stream(path, resume=True))
+    again = rg.sweep(rg.load(PAIR), over, direction="both", discard=100, sample=40, stream=rg.stream(path, resume=True))
     assert same(both, again)
 
 
 def test_many_starts_show_coexisting_motions() -> None:
-    result = rg.sweep(rg.load(PAIR), {"operation.speed": ["8000 rpm"]}, starts=24, settle=400, count=60)
+    result = rg.sweep(rg.load(PAIR), {"operation.speed": ["8000 rpm"]}, initial_conditions=24, discard=400, sample=60)
     assert result.run[:2] == ("static", "start 2")
     sizes = result.peak_to_peak[0, :, 0]
     assert sizes.max() > 2.0 * sizes.min()
@@ -414,11 +414,11 @@ stiffness_variation = [{ harmonic = 1, amplitude = 0.15, phase = "60 deg" }]
 
 def test_two_stages_over_their_common_period_are_those_of_the_transient() -> None:
     model = rg.loads(TWO_STAGES)
-    swept = rg.sweep(model, {"operation.speed": ["4000 rpm"]}, settle=30, count=2, steps=200)
+    swept = rg.sweep(model, {"operation.speed": ["4000 rpm"]}, discard=30, sample=2, steps=200)
     # 24/34 of the first shaft's turns, 20 teeth: orders 24 and 240/17, together after 17 periods of the first mesh.
     assert swept.turns.tolist() == [17]
     period = 17 / swept.frequency[0]
-    run = rg.transient(model, settle=30 * period, time=2 * period, steps=400, method="newmark", error_estimate=False)
+    run = rg.transient(model, discard=30 * period, time=2 * period, steps=400, method="newmark", error_estimate=False)
     assert swept.apart[0, 0].max() > 0.01
     for i, row in enumerate(run.to_dict()["contacts"]):
         assert swept.contact[i] == row["name"]
@@ -434,9 +434,9 @@ def test_unstable_motions_are_no_chaos() -> None:
     model = rg.load(PAIR)
     mesh = model.meshes["pair"].model_copy(update={"backlash": None})
     linear = model.model_copy(update={"meshes": {"pair": mesh}})
-    with_bounds = rg.sweep(model, {"operation.speed": ["8500 rpm"]}, starts=2, **SHORT)
-    slow = rg.sweep(linear, {"operation.speed": ["8500 rpm"]}, settle=0, count=60)
-    long = rg.sweep(linear, {"operation.speed": ["8500 rpm", "12000 rpm"]}, settle=2000, count=60)
+    with_bounds = rg.sweep(model, {"operation.speed": ["8500 rpm"]}, initial_conditions=2, **SHORT)
+    slow = rg.sweep(linear, {"operation.speed": ["8500 rpm"]}, discard=0, sample=60)
+    long = rg.sweep(linear, {"operation.speed": ["8500 rpm", "12000 rpm"]}, discard=2000, sample=60)
     assert not any(with_bounds.failure)
     assert slow.lyapunov[0, 0, 0] > 0.02
     assert slow.motion == ("not settled",)

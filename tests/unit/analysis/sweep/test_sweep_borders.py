@@ -17,7 +17,7 @@ PAIR = MODELS / "backlash_pair.toml"
 
 
 def test_whole_numbers_of_the_file_are_swept_and_others_fail_alone() -> None:
-    found = rg.sweep(rg.load(PAIR), {"gears.*.teeth": "20,30.5,40"}, settle=20, count=20)
+    found = rg.sweep(rg.load(PAIR), {"gears.*.teeth": "20,30.5,40"}, discard=20, sample=20)
     assert [bool(reason) for reason in found.failure] == [False, True, False]
     assert "whole number" in found.failure[1]
     assert found.frequency[2] == pytest.approx(2.0 * found.frequency[0])
@@ -25,7 +25,7 @@ def test_whole_numbers_of_the_file_are_swept_and_others_fail_alone() -> None:
 
 def test_a_point_does_not_depend_on_the_points_beside_it() -> None:
     model = rg.load(PAIR)
-    few = {"settle": 0, "count": 20}
+    few = {"discard": 0, "sample": 20}
     alone = rg.sweep(model, {"operation.speed": "3000 rpm"}, **few)  # type: ignore[arg-type]
     second = rg.sweep(model, {"operation.speed": "2600 rpm,3000 rpm"}, **few)  # type: ignore[arg-type]
     assert np.array_equal(alone.section[0], second.section[1])
@@ -33,7 +33,7 @@ def test_a_point_does_not_depend_on_the_points_beside_it() -> None:
 
 def test_a_parameter_that_changes_nothing_is_named() -> None:
     over = {"gears.pinion.mass": "1 kg,2 kg", "operation.torque": "10 N m,20 N m"}
-    found = rg.sweep(rg.load(PAIR), over, settle=5, count=5)
+    found = rg.sweep(rg.load(PAIR), over, discard=5, sample=5)
     idle = [note for note in found.warnings if "changes nothing" in note]
     assert len(idle) == 1
     assert idle[0].startswith("gears.pinion.mass ")
@@ -48,7 +48,8 @@ def test_damping_that_sets_in_within_a_step_needs_no_more_steps(damping: str, rp
     mesh = model.meshes["pair"].model_copy(update={"contact_damping": damping})
     model = model.model_copy(update={"meshes": {"pair": mesh}})
     few, many = (
-        rg.sweep(model, {"operation.speed": f"{rpm} rpm"}, steps=steps, settle=1000, count=200) for steps in (200, 1600)
+        rg.sweep(model, {"operation.speed": f"{rpm} rpm"}, steps=steps, discard=1000, sample=200)
+        for steps in (200, 1600)
     )
     assert few.motion == many.motion == ("4T" if rpm == 3560 else "2T",)
     assert few.peak_to_peak == pytest.approx(many.peak_to_peak, rel=3e-3)
@@ -59,10 +60,10 @@ def test_damping_that_sets_in_within_a_step_needs_no_more_steps(damping: str, rp
 def test_runs_that_still_remember_their_start_are_warned_about() -> None:
     marine = rg.load(PAIR.with_name("marine_dual_turbine.toml"))  # decays by 5e-4 a period
     over = {"loads.lp.torque": "15.1 kN m,15.4 kN m"}
-    early = rg.sweep(marine, over, settle=400, steps=40)
+    early = rg.sweep(marine, over, discard=400, steps=40)
     assert early.motion != ("2T", "2T")
     assert any("forget their start" in note for note in early.warnings)
-    late = rg.sweep(marine, over, settle=20000, steps=40)
+    late = rg.sweep(marine, over, discard=20000, steps=40)
     assert late.motion == ("2T", "2T")
     assert not any("forget their start" in note for note in late.warnings)
 
@@ -78,7 +79,7 @@ def test_scatter_is_no_period() -> None:
     ("request_", "words"),
     [
         ({"seed": -1}, "seed: got -1, expected 0 or more"),
-        ({"settle": -1}, "settle: got -1, expected 0 to"),
+        ({"discard": -1}, "discard: got -1, expected 0 to"),
         ({"throw": float("nan")}, "throw: got nan"),
     ],
 )

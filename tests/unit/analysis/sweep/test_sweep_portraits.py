@@ -141,7 +141,7 @@ def test_a_line_between_two_bins_is_found_in_its_place_and_height() -> None:
 @pytest.fixture(scope="module")
 def swept() -> rg.SweepResult:
     over = {"operation.speed": "3000 rpm:4000 rpm:5"}
-    return rg.sweep(rg.load(PAIR), over, settle=1000, count=64, steps=400, portraits=[3000.0, "3250 rpm", 3500, 4000])
+    return rg.sweep(rg.load(PAIR), over, discard=1000, sample=64, steps=400, portraits=[3000.0, "3250 rpm", 3500, 4000])
 
 
 def test_subharmonics_stand_at_the_fractions_that_the_kind_of_motion_says(swept: rg.SweepResult) -> None:
@@ -178,7 +178,7 @@ def test_portraits_go_on_where_the_counted_run_ended_and_have_its_statistics(swe
 
 
 def test_portraits_do_not_change_the_sweep_and_are_kept_in_the_file(swept: rg.SweepResult, tmp_path: Path) -> None:
-    plain = rg.sweep(rg.load(PAIR), {"operation.speed": "3000 rpm:4000 rpm:5"}, settle=1000, count=64, steps=400)
+    plain = rg.sweep(rg.load(PAIR), {"operation.speed": "3000 rpm:4000 rpm:5"}, discard=1000, sample=64, steps=400)
     assert plain.portraits is None
     assert plain.to_dict()["portraits"] == []
     assert np.array_equal(plain.section, swept.section)
@@ -196,7 +196,13 @@ def test_two_parameters_two_directions_and_failed_points() -> None:
         "operation.speed": ["8000 rpm", "0 rpm", "300 rpm"],
     }
     result = rg.sweep(
-        rg.load(PAIR), over, settle=60, count=40, direction="both", starts=2, portraits=[(20, 8000), "39,310", (40, 0)]
+        rg.load(PAIR),
+        over,
+        discard=60,
+        sample=40,
+        direction="both",
+        initial_conditions=2,
+        portraits=[(20, 8000), "39,310", (40, 0)],
     )
     own = result.portraits
     assert own is not None
@@ -206,7 +212,7 @@ def test_two_parameters_two_directions_and_failed_points() -> None:
     assert own.records[0] < own.records[1]
     assert np.isnan(own.values[0, :, len(own.trajectory(0)) :]).all()
     assert all(np.isfinite(own.trajectory(k, j)).all() for k in (0, 1) for j in (0, 1))
-    spreadout = rg.sweep(rg.load(PAIR), over, settle=60, count=40, portraits=9).portraits
+    spreadout = rg.sweep(rg.load(PAIR), over, discard=60, sample=40, portraits=9).portraits
     assert spreadout is not None
     assert spreadout.point.tolist() == [0, 2, 3, 5]
 

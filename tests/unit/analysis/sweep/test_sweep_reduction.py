@@ -60,7 +60,7 @@ def test_a_reduced_sweep_shows_the_motions_of_the_whole_one_with_and_without_con
     speeds = [800, 1400, 2000, 2600, 4400, 5000, 5600, 6200, 6800]
     model = pair(tmp_path)
     over = {"operation.speed": [f"{rpm} rpm" for rpm in speeds]}
-    how: dict[str, Any] = {"settle": 120, "count": 40}
+    how: dict[str, Any] = {"discard": 120, "sample": 40}
     whole = rg.sweep(model, over, **how)
     part = rg.sweep(model, over, modes=18, **how)
     assert whole.reduction is None
@@ -80,7 +80,7 @@ def test_a_reduced_sweep_shows_the_motions_of_the_whole_one_with_and_without_con
 def test_more_modes_come_nearer_in_receptance_and_in_motion(tmp_path: Path) -> None:
     model = pair(tmp_path)
     over = {"operation.speed": ["2000 rpm", "7000 rpm"]}
-    how: dict[str, Any] = {"settle": 200, "count": 10, "exponents": 0, "steps": 1200}
+    how: dict[str, Any] = {"discard": 200, "sample": 10, "exponents": 0, "steps": 1200}
     whole = rg.sweep(model, over, **how).peak_to_peak
     found = [rg.sweep(model, over, modes=n, **how) for n in (4, 10, 20, 35)]
     stated = [result.reduction.error for result in found if result.reduction]
@@ -98,11 +98,11 @@ def test_more_modes_come_nearer_in_receptance_and_in_motion(tmp_path: Path) -> N
 def test_a_large_model_agrees_with_its_own_transient_where_teeth_part() -> None:
     model = rg.load(FLEXIBLE)
     mesh = 23 * 8250 / 60.0
-    swept = rg.sweep(model, {"operation.speed": ["8250 rpm"]}, settle=400, count=40, exponents=0)
+    swept = rg.sweep(model, {"operation.speed": ["8250 rpm"]}, discard=400, sample=40, exponents=0)
     run = rg.transient(
         model,
         speed="8250 rpm",
-        settle=400 / mesh,
+        discard=400 / mesh,
         time=40 / mesh,
         steps=400,
         method="newmark",
@@ -126,7 +126,7 @@ def test_without_clearance_the_amplitude_is_that_of_the_harmonic_response(rpm: f
     table = model.meshes["stage"].model_dump(mode="json", exclude_none=True)
     table.update(backlash=None, stiffness_variation=[], transmission_error=[{"harmonic": 1, "amplitude": "3 um"}])
     model = model.model_copy(update={"meshes": {"stage": type(model.meshes["stage"])(**table)}})
-    swept = rg.sweep(model, {"operation.speed": [f"{rpm} rpm"]}, elements=6, settle=600, count=5, exponents=0)
+    swept = rg.sweep(model, {"operation.speed": [f"{rpm} rpm"]}, elements=6, discard=600, sample=5, exponents=0)
     forced = rg.response(model, speeds=[rpm * np.pi / 30.0], elements=6, method="direct")
     assert swept.reduction is not None
     assert swept.reduction.dofs > 400 > 100 > swept.dofs
@@ -177,8 +177,8 @@ def test_continuation_goes_on_in_another_basis(tmp_path: Path) -> None:
         {"meshes.pair.stiffness": ["8e8 N/m", "9e8 N/m"]},
         direction="up",
         modes=9,
-        settle=20,
-        count=20,
+        discard=20,
+        sample=20,
         exponents=0,
     )
     assert up.reduction is not None
@@ -188,7 +188,7 @@ def test_continuation_goes_on_in_another_basis(tmp_path: Path) -> None:
 
 def test_points_that_differ_in_speed_and_torque_share_a_basis_and_results_do_not_depend_on_workers() -> None:
     over = {"operation.speed": ["5000 rpm", "6000 rpm"], "operation.torque": ["40 N m", "80 N m"]}
-    how: dict[str, Any] = {"settle": 20, "count": 20}
+    how: dict[str, Any] = {"discard": 20, "sample": 20}
     one, two = (rg.sweep(rg.load(FLEXIBLE), over, workers=n, **how) for n in (1, 2))
     assert one.reduction is not None
     assert one.reduction.bases == 1
@@ -198,7 +198,7 @@ def test_points_that_differ_in_speed_and_torque_share_a_basis_and_results_do_not
 
 def test_small_models_are_left_as_they_are() -> None:
     result = rg.sweep(
-        rg.load(ROOT / "models" / "backlash_pair.toml"), {"operation.speed": ["8000 rpm"]}, settle=5, count=5
+        rg.load(ROOT / "models" / "backlash_pair.toml"), {"operation.speed": ["8000 rpm"]}, discard=5, sample=5
     )
     assert result.reduction is None
     assert result.dofs == 2
@@ -208,8 +208,8 @@ def test_no_basis_is_refused_and_a_number_by_hand_is_warned_of() -> None:
     model = rg.load(FLEXIBLE)
     over = {"operation.speed": ["8000 rpm"]}
     with pytest.raises(RotorgearError, match=r"444 dofs can't be reduced: with 160 coordinates .* lower the speed"):
-        rg.sweep(model, over, elements=6, reduction_error=1e-12, settle=1, count=1)
-    few = rg.sweep(model, over, modes=3, settle=5, count=5)
+        rg.sweep(model, over, elements=6, reduction_error=1e-12, discard=1, sample=1)
+    few = rg.sweep(model, over, modes=3, discard=5, sample=5)
     assert any("ask for more modes" in text for text in few.warnings)
     bads: list[dict[str, Any]] = [{"modes": 0}, {"modes": 1000}, {"reduction_error": 0.0}, {"elements": 0}]
     for bad in bads:
@@ -255,7 +255,7 @@ def test_probes_hold_the_harmonics_of_all_meshes_up_to_the_highest_tabulated() -
 def test_bearings_with_rolling_elements_and_friction_act_in_a_reduced_system(changes: dict[str, Any]) -> None:
     model = spur_pair(meshes__pair__backlash="50 um", **changes)
     over = {"operation.speed": ["3000 rpm"]}
-    how: dict[str, Any] = {"settle": 15, "count": 5, "exponents": 0}
+    how: dict[str, Any] = {"discard": 15, "sample": 5, "exponents": 0}
     whole = rg.sweep(model, over, **how)
     part = rg.sweep(model, over, modes=10, **how)
     assert part.dofs < whole.dofs
@@ -269,8 +269,8 @@ def test_a_long_block_tells_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> No
     rg.sweep(
         rg.load(ROOT / "models" / "backlash_pair.toml"),
         {"operation.speed": ["6000 rpm"]},
-        settle=9000,
-        count=10,
+        discard=9000,
+        sample=10,
         progress=lambda share, text: told.append((share, text)),
     )
     inside = [share for share, text in told if text.startswith("about")]
@@ -283,8 +283,8 @@ def test_a_basis_tells_how_far_it_is() -> None:
     rg.sweep(
         rg.load(FLEXIBLE),
         {"operation.speed": ["6000 rpm"]},
-        settle=1,
-        count=1,
+        discard=1,
+        sample=1,
         progress=lambda _, text: told.append(text),
     )
     assert sum("coordinates" in text for text in told) > 5

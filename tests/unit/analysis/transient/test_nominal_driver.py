@@ -32,7 +32,7 @@ def braked(driver: str | None, error: list[dict[str, Any]], **changes: Any) -> r
 
 @pytest.mark.parametrize("backlash", [None, "30 um", "0 um"])
 def test_a_transient_is_the_same_motion_with_the_signs_of_the_other_flanks(backlash: str | None) -> None:
-    run: dict[str, Any] = {"time": 0.02, "settle": 0.02, "steps": 200}
+    run: dict[str, Any] = {"time": 0.02, "discard": 0.02, "steps": 200}
     plain = rg.transient(braked(None, _CLOSES, meshes__pair__backlash=backlash), **run)
     named = rg.transient(braked("pinion", _OPENS, meshes__pair__backlash=backlash), **run)
     assert plain.mesh_force.min() > 0.0 > named.mesh_force.max()

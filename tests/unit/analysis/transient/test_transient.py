@@ -37,7 +37,7 @@ def harmonic_force(model: rg.Model, number: int) -> complex:
 def test_teeth_that_never_part_give_the_frequency_response(method: str) -> None:
     model = spur_pair()
     result = transient(
-        System(model), method=method, settle=0.2, time=0.05, steps=1200, records=40, error_estimate=False
+        System(model), method=method, discard=0.2, time=0.05, steps=1200, records=40, error_estimate=False
     )
     lines = np.fft.rfft(result.mesh_force[-1200:, 0]) / 600.0  # 30 whole periods
     for number in (1, 2):
@@ -78,7 +78,7 @@ def test_damping_sets_in_over_the_depth_that_is_given(kind: str) -> None:
 
 
 def test_bearing_forces_carry_the_mesh_force_in_the_mean() -> None:
-    result = transient(spur_pair(), time=0.1, settle=0.2)
+    result = transient(spur_pair(), time=0.1, discard=0.2)
     force = {
         axis: sum(result.history(f"bearings.{b} force {axis}")[result.counted].mean() for b in "ab") for axis in "xy"
     }
@@ -90,7 +90,7 @@ def test_bearing_forces_carry_the_mesh_force_in_the_mean() -> None:
 
 def test_the_methods_agree_within_their_error_estimates_while_teeth_part() -> None:
     model = spur_pair(meshes__pair__backlash="40 um", operation__torque="3 N m")
-    found = [transient(model, method=m, time=0.05, settle=0.1, accuracy=2e-3) for m in ("newmark", "exponential")]
+    found = [transient(model, method=m, time=0.05, discard=0.1, accuracy=2e-3) for m in ("newmark", "exponential")]
     assert found[0].contact_losses[0] > 5
     for i, name in enumerate(found[0].quantity):
         (a, b), (ea, eb) = ([getattr(r, key)[i] for r in found] for key in ("quantity_value", "quantity_error"))
@@ -102,7 +102,7 @@ def test_the_methods_agree_within_their_error_estimates_while_teeth_part() -> No
 
 def test_contact_is_lost_only_if_there_is_backlash_and_the_response_does_not_depend_on_it_before() -> None:
     quiet = [
-        transient(spur_pair(meshes__pair__backlash=j), time=0.02, settle=0.05, steps=200) for j in ("20 um", "1 mm")
+        transient(spur_pair(meshes__pair__backlash=j), time=0.02, discard=0.05, steps=200) for j in ("20 um", "1 mm")
     ]
     assert quiet[0].contact_losses.sum() == 0
     assert quiet[1].mesh_force == pytest.approx(quiet[0].mesh_force, rel=1e-9)
@@ -135,7 +135,7 @@ def test_the_backlash_of_the_back_flank_is_the_same_on_its_own_normal() -> None:
 
 
 def test_a_run_up_uses_newmark_and_names_the_reason() -> None:
-    result = transient(spur_pair(), speed=[(0.0, "1000 rpm"), (0.2, "2000 rpm")], time=0.2, settle=0.0, steps=60)
+    result = transient(spur_pair(), speed=[(0.0, "1000 rpm"), (0.2, "2000 rpm")], time=0.2, discard=0.0, steps=60)
     assert "Newmark" in result.method
     assert "speed changes" in result.reason
     assert result.speed[[0, -1]] == pytest.approx(np.array([1000.0, 2000.0]) * np.pi / 30.0, rel=2e-3)
@@ -151,7 +151,7 @@ def test_an_unbalance_gives_the_closed_form_whirl() -> None:
         operation__output_shaft=None,
         unbalances={"u": {"shaft": "one", "at": "60 mm", "magnitude": "500 g mm"}},
     )
-    result = transient(model, time=0.16, settle=0.4, steps=100, records=20)
+    result = transient(model, time=0.16, discard=0.4, steps=100, records=20)
     system = System(model)
     local = local_model(system, Rotation.constant(model.operation.speed), model.operation.speed).local
     w = model.operation.speed
@@ -180,7 +180,7 @@ def test_rolling_bearings_settle_at_the_deflection_of_their_law_under_the_mean_f
         meshes__pair__transmission_error=[],
         meshes__pair__backlash="50 um",
     )
-    result = transient(model, time=0.05, settle=0.2, steps=100)
+    result = transient(model, time=0.05, discard=0.2, steps=100)
     x, y, fx, fy = (
         result.history(f"bearings.a {what} {axis}")[-1] for what in ("displacement", "force") for axis in "xy"
     )
@@ -209,7 +209,7 @@ def test_varying_compliance_shakes_at_the_rate_of_passing_balls() -> None:
         "clearance": "20 um",
     }
     model = spur_pair(bearings__a__rolling=rolling, meshes__pair__transmission_error=[])
-    result = transient(model, time=0.2, settle=0.2, steps=100)
+    result = transient(model, time=0.2, discard=0.2, steps=100)
     passing = 12 * 0.5 * (1.0 - 8.0 / 60.0) * 25.0
     lines = rg.spectral_lines(result, "bearings.a displacement y")
     strongest = lines.frequency_hz[np.argmax(lines.amplitude)]
@@ -217,11 +217,11 @@ def test_varying_compliance_shakes_at_the_rate_of_passing_balls() -> None:
 
 
 def test_friction_shakes_at_the_mesh_frequency_and_takes_the_power_of_an_involute_pair() -> None:
-    smooth = transient(spur_pair(meshes__pair__transmission_error=[]), time=0.05, settle=0.1, steps=400)
+    smooth = transient(spur_pair(meshes__pair__transmission_error=[]), time=0.05, discard=0.1, steps=400)
     rough = transient(
         spur_pair(meshes__pair__transmission_error=[], meshes__pair__friction_coefficient=0.06),
         time=0.05,
-        settle=0.1,
+        discard=0.1,
         steps=400,
     )
     assert smooth.mesh_force.std() < 1e-6 * smooth.mesh_force.mean()
@@ -252,7 +252,7 @@ def test_two_helices_half_a_pitch_apart_cancel_the_first_harmonic_of_an_even_err
     found = []
     for stagger in (0.0, 0.5):
         model = spur_pair(**changes, meshes__pair__helix_stagger=stagger, meshes__pair__transmission_error=only_first)
-        result = transient(model, time=0.05, settle=0.2, steps=200)
+        result = transient(model, time=0.05, discard=0.2, steps=200)
         found.append(result.mesh_force[result.counted].sum(axis=1).std())
         assert result.mesh_force[result.counted].std(axis=0).min() > 10.0
     assert found[1] < 1e-3 * found[0]
@@ -285,7 +285,7 @@ def test_an_unknown_history_is_answered_with_the_nearest_one() -> None:
 
 @pytest.mark.parametrize("window", ["flattop", "hann"])
 def test_a_spectrum_is_true_in_amplitude(window: str) -> None:
-    result = transient(spur_pair(), time=0.2, settle=0.2, steps=200)
+    result = transient(spur_pair(), time=0.2, discard=0.2, steps=200)
     lines = rg.spectral_lines(result, "force pair", window=window)
     strongest = np.argmax(lines.amplitude)
     assert lines.frequency_hz[strongest] == pytest.approx(2.0 * MESH, rel=1e-3)
@@ -330,5 +330,5 @@ def test_a_stiffness_model_shakes_the_pair_with_its_curve() -> None:
         for u in curve.position
     ]
     assert k == pytest.approx(normal, rel=1e-6)
-    result = transient(model, time=0.02, settle=0.02, steps=100)
+    result = transient(model, time=0.02, discard=0.02, steps=100)
     assert result.mesh_force.std() > 0.01 * result.mesh_force.mean()
