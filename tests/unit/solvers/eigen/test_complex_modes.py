@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy.linalg as la
+import scipy.sparse as sp
 
 import rotorgear as rg
 from rotorgear.solvers.eigen.complex_modes import complex_modes
@@ -30,3 +32,16 @@ def test_modes_with_the_rigid_motions_answer_an_impulse_as_the_inertia_does(name
     assert np.abs(np.real(found.shapes @ gains)).max() < 1e-9 * (np.abs(found.shapes) @ np.abs(gains)).max()
     vectors = np.hstack([found.rigid, found.basis])
     assert vectors.T @ (system.M @ vectors) == pytest.approx(np.eye(system.n), abs=1e-8)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.03, 0.3])
+def test_a_modal_ratio_makes_every_mode_decay_at_that_ratio_of_its_frequency(ratio: float) -> None:
+    M = np.diag([1.0, 2.0, 0.5])
+    K = np.array([[700.0, -300.0, 0.0], [-300.0, 500.0, -200.0], [0.0, -200.0, 900.0]])
+    own = 1e-4 * K  # beside the damping of the structure itself
+    matrices = [sp.csc_array(A) for A in (M, own, K)]
+    found = complex_modes(*matrices, np.eye(3), modal_ratio=ratio)
+    w = np.sqrt(la.eigvalsh(K, M))
+    rate = (ratio + 0.5e-4 * w) * w
+    assert np.sort(-found.s.real) == pytest.approx(np.sort(rate), rel=1e-9)
+    assert np.sort(np.abs(found.s)) == pytest.approx(w, rel=1e-9)

@@ -53,3 +53,16 @@ def test_a_compliance_that_is_not_positive_is_refused() -> None:
     C = np.array([[1.0, 2.0], [2.0, 1.0]])
     with pytest.raises(ConvergenceError, match="not positive definite"):
         unilateral(C, np.zeros(2), 1.0)
+
+
+@pytest.mark.parametrize("away", [1e3, 1e6])
+def test_bodies_that_start_farther_apart_meet_with_the_same_forces(away: float) -> None:
+    C = compliance(20, 6)
+    gap = 3.0 * np.random.default_rng(7).normal(size=20)
+    start = np.zeros(20, bool)
+    start[np.argmin(gap)] = True
+    force, approach = unilateral(C, gap, 2.0)
+    assert np.sum(force > 0.0) > 1
+    other, farther = unilateral(C, gap + away, 2.0, start)
+    assert other == pytest.approx(force, abs=1e-13 * away * 2.0)
+    assert farther - away == pytest.approx(approach, abs=1e-9 * away)

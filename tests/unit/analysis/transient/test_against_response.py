@@ -1,0 +1,96 @@
+"""Steady transients against the response in frequency, amplitude and phase: two methods that share the matrices only.
+
+Nothing stands at a value without a sense: phases are not 0, the stagger is a quarter of a pitch, the second shaft turns
+against the first at another speed, and the gear drives as well.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.results.response import ResponseResult
+from rotorgear.results.transient import TransientResult
+from tests.unit.analysis.spur_pair import spur_pair
+
+HEAVY = {name: {"radial": "2e4 N s/m", "axial": "1e4 N s/m"} for name in "abcd"}
+
+
+def herringbone(**changes: Any) -> rg.Model:
+    """A herringbone pair whose helices are a quarter of a pitch apart, with unbalances on both shafts."""
+    gear = {"kind": "herringbone", "helix_angle": "25 deg", "gap": "20 mm", "nodes": 2}
+    own = {f"gears__{name}__{key}": value for name in ("pinion", "wheel") for key, value in gear.items()}
+    own |= {
+        "gears__pinion__hand": "right",
+        "gears__wheel__hand": "left",
+        "shafts__two__position": ["100 mm", "86.7801 mm"],
+        "meshes__pair__transmission_error": [
+            {"harmonic": 1, "amplitude": "2 um", "phase": "35 deg"},
+            {"harmonic": 2, "amplitude": "1 um", "phase": "-70 deg"},
+        ],
+        "meshes__pair__damping_ratio": None,
+        "meshes__pair__damping": "6e3 N s/m",
+        "meshes__pair__helix_stagger": 0.25,
+        "damping__rayleigh_beta": None,
+        "damping__rayleigh_alpha": "60 1/s",
+        "unbalances": {
+            "u": {"shaft": "one", "at": "40 mm", "magnitude": "300 g mm", "phase": "50 deg"},
+            "w": {"shaft": "two", "at": "80 mm", "magnitude": "500 g mm", "phase": "-20 deg"},
+        },
+    }
+    own |= {f"bearings__{name}__damping": value for name, value in HEAVY.items()}
+    for shaft, d in (("one", "40 mm"), ("two", "50 mm")):
+        own[f"shafts__{shaft}__sections"] = [{"length": "120 mm", "outer_diameter": d}]
+    return spur_pair(**{**own, **changes})
+
+
+def amplitudes(result: TransientResult, values: np.ndarray, frequencies: np.ndarray) -> np.ndarray:
+    """Complex amplitudes (f, c) of Re(x e^{iwt}) in values (t, c) beside their mean, by least squares."""
+    t = result.time[result.counted]
+    angle = 2.0 * np.pi * np.outer(t, frequencies)
+    waves = np.hstack([np.ones((t.size, 1)), np.cos(angle), -np.sin(angle)])
+    found = np.linalg.lstsq(waves, values[result.counted], rcond=None)[0][1:]
+    return np.asarray(found[: len(frequencies)] + 1j * found[len(frequencies) :])
+
+
+def assert_agree(model: rg.Model, speed: float, orders: int, rel: float) -> None:
+    """Mesh and bearing forces of every order; what an order hardly moves is held to the size of the others."""
+    linear: ResponseResult = rg.response(model, speeds=[speed], elements=1, method="direct")
+    assert len(linear.orders) == orders
+    result = rg.transient(
+        model,
+        speed=speed,
+        time=0.06,
+        settle=0.1,
+        steps=100,
+        records=25,
+        method="newmark",
+        elements=1,
+        error_estimate=False,
+    )
+    assert result.contact_losses.sum() == 0
+    frequencies = linear.frequency_hz[:, 0]
+    mesh = amplitudes(result, result.mesh_force, frequencies)
+    held = np.array([result.history(f"bearings.{name} force {axis}") for name in linear.bearings for axis in "xy"]).T
+    bearing = amplitudes(result, held, frequencies)  # of the shaft on the bearing
+    for kind, found, expected in (
+        ("mesh", mesh, linear.mesh_force[:, 0]),
+        ("bearing", bearing, -linear.bearing_force[:, 0, :, :2].reshape(orders, -1)),
+    ):
+        for o, name in enumerate(linear.orders):
+            size = max(np.abs(expected[o]).max(), 0.02 * np.abs(expected).max())
+            assert np.abs(found[o] - expected[o]).max() < rel * size, (kind, name)
+
+
+@pytest.mark.parametrize("driver", ["one", "two"])
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_steady_transient_is_the_response_in_amplitude_and_phase(driver: str, sense: float) -> None:
+    model = herringbone(
+        operation__input_shaft=driver,
+        operation__output_shaft={"one": "two", "two": "one"}[driver],
+        operation__torque="300 N m",
+    )
+    assert_agree(model, sense * 300.0 * (1.0 if driver == "one" else 24.0 / 36.0), 4, 0.02)

@@ -1,0 +1,118 @@
+"""The contact of a mesh as rigid kinematics: where its force acts, how its flanks slide, whichever gear drives."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, flank_normal, sliding_vectors
+from rotorgear.elements.spring import rigid_transfer
+from rotorgear.system.system import System
+from tests.contract.small_models import lumped_gear, lumped_pair, pair_points, random_contact
+
+Z = np.array([0.0, 0.0, 1.0])
+
+
+def line_of_action(g: ContactGeometry) -> np.ndarray:
+    """Unit vector in the transverse plane along the normal of the flanks, towards the gear."""
+    n = flank_normal(g) * [1.0, 1.0, 0.0]
+    return np.asarray(n / np.linalg.norm(n))
+
+
+def contact_point(g: ContactGeometry) -> np.ndarray:
+    """Where the flanks touch, from the pinion's axis in the plane of the contact: the pitch point and xi along the line."""
+    share = g.pinion_base_radius / (g.pinion_base_radius + g.gear_base_radius)
+    pitch_point = share * (pair_points(g)[1] - pair_points(g)[0]) * [1.0, 1.0, 0.0]
+    return np.asarray(pitch_point + g.contact_position * line_of_action(g))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_turn_of_one_gear_about_the_point_of_contact_does_not_press_the_flanks(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    g = random_contact(rng)
+    v = contact_vector(g)
+    P = contact_point(g)
+    for part, node in zip((v[:6], v[6:]), pair_points(g), strict=True):
+        turn = rng.normal(size=3)
+        motion = np.concatenate([np.cross(turn, node - P), turn])
+        assert abs(part @ motion) < 1e-15
+    assert v[:3] == pytest.approx(flank_normal(g))
+    assert v[6:9] == pytest.approx(-flank_normal(g))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_flanks_slide_by_the_difference_of_both_gears_motions_where_they_touch(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    g = random_contact(rng)
+    motion = rng.normal(size=12)
+    P = contact_point(g)
+    moved = [rigid_transfer(P - node)[:3] @ q for node, q in zip(pair_points(g), motion.reshape(2, 6), strict=True)]
+    across = np.cross(Z, line_of_action(g))
+    # Out of the plane the arm of xi tilts the flanks; that share is no sliding across the line of action.
+    first, second = sliding_vectors(g)
+    own = (first + g.contact_position * second) @ motion
+    assert own == pytest.approx(across @ (moved[0] - moved[1]), abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_pair_that_moves_as_one_body_does_not_slide(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    g = random_contact(rng)
+    together = np.vstack([rigid_transfer(node) for node in pair_points(g)])
+    assert np.abs(sliding_vectors(g) @ together).max() < 1e-14
+
+
+@pytest.mark.parametrize(
+    ("driver", "speed", "side", "hand"),
+    list(itertools.product(("one", "two"), (50.0, -50.0), (3e-3, -2e-3), ("right", "left"))),
+)
+def test_recess_lies_where_the_contact_goes_whichever_gear_drives(
+    driver: str, speed: float, side: float, hand: str
+) -> None:
+    """The contact runs along the line of action as the force pushes the driven gear; positions count from the pitch point."""
+    other = {"right": "left", "left": "right"}[hand]
+    mesh: dict[str, Any] = {"contact_position": side, "centre_line_angle": 0.3, "pressure_angle": 0.4}
+    operation = {
+        "input_shaft": driver,
+        "output_shaft": {"one": "two", "two": "one"}[driver],
+        "torque": 100.0,
+        "speed": speed,
+    }
+    model = lumped_pair(lumped_gear("one", 0.06, hand), lumped_gear("two", 0.15, other), mesh, operation=operation)
+    system = System(model)
+    strain = next(group.matrices.strain for group in system.groups if group.part == "meshes.pair")
+    assert strain is not None
+    v = strain[0, 0]
+    e = np.array([np.cos(0.3), np.sin(0.3), 0.0])
+    t = np.cross(Z, e)
+    # The force on the driven gear: away from the driver, and with a moment in the sense in which the driven gear turns.
+    away = e if driver == "one" else -e
+    spin = -speed  # of the driven shaft
+    arm = -away  # from its axis towards the other gear
+    along = max((s * t for s in (1.0, -1.0)), key=lambda w: float(np.cross(arm, w)[2] * spin))
+    runs = np.sin(0.4) * away + np.cos(0.4) * along
+    P = 0.06 / np.cos(0.4) * e + side * runs
+    for part, node in ((v[:6], np.zeros(3)), (v[6:], 0.21 / np.cos(0.4) * e)):
+        assert part[3:] == pytest.approx(np.cross(P - node, part[:3]), abs=1e-14)
+    push = v[:3] if driver == "one" else v[6:9]  # normal force over F of the driver on the driven gear
+    assert push @ runs > 0.0
+
+
+def test_the_given_damping_of_a_herringbone_mesh_is_that_of_both_helices() -> None:
+    from tests.contract.test_conventions_of_the_mesh import contacts, herringbone_pair
+
+    for nodes in (1, 2):
+        model = herringbone_pair(nodes)
+        data = {name: getattr(model, name) for name in ("materials", "shafts", "gears", "operation")}
+        mesh = {"pinion": "pinion", "gear": "wheel", "stiffness": 6e8, "damping": 350.0}
+        system = System(rg.Model(**data, meshes={"pair": mesh}))
+        turn = np.zeros(6 * len(system.nodes))
+        turn[[6 * node + 5 for node in system.nodes.on_shaft("one")]] = 1.0
+        rate = np.linalg.lstsq(system.dofs.transform.toarray(), turn, rcond=None)[0]
+        line = contacts(model, "pair")[0]
+        expected = 350.0 * (line.pinion_base_radius * np.cos(line.base_helix_angle)) ** 2
+        assert rate @ (system.damping() @ rate) == pytest.approx(expected, rel=1e-9)

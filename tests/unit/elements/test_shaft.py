@@ -1,0 +1,93 @@
+"""The shaft element at speed, with lumped mass too, and the terms that a short thick shaft shows."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.elements.shaft import shaft_elements
+from rotorgear.elements.spring import linking_spring, rigid_transfer
+from tests.contract.small_models import RHO, STEEL, elements
+
+
+@pytest.mark.parametrize("lumped", [True, False])
+def test_a_turning_element_that_tilts_has_the_angular_momentum_of_its_polar_inertia(lumped: bool) -> None:
+    """A rigid tilt rate about x of a body that spins takes a moment W J_p about y, whatever the distribution of its mass."""
+    L = 0.2
+    outer = 0.12
+    inner = 0.05
+    matrices = shaft_elements(elements(L, outer, inner), lumped=lumped)
+    polar = RHO * np.pi / 32 * (outer**4 - inner**4) * L
+    about_x = np.zeros(12)
+    about_x[[3, 9]] = 1.0
+    about_x[[1, 7]] = 0.5 * L, -0.5 * L  # y = -tx z about the middle
+    about_y = np.zeros(12)
+    about_y[[4, 10]] = 1.0
+    about_y[[0, 6]] = -0.5 * L, 0.5 * L
+    assert matrices.gyroscopic is not None
+    assert about_x @ matrices.gyroscopic[0] @ about_y == pytest.approx(polar, rel=1e-12)
+
+
+@pytest.mark.parametrize("speed", [0.0, 8000.0])
+def test_many_lumped_elements_turn_as_a_few_consistent_ones(speed: float) -> None:
+    def frequencies(kind: str, count: int) -> np.ndarray:
+        model = rg.Model(
+            motions=["bending"],
+            materials=STEEL,
+            shafts={"rotor": {"mass_matrix": kind, "sections": [{"length": 0.6, "outer_diameter": 0.15}]}},
+            bearings={end: {"shaft": "rotor", "at": end, "stiffness": {"radial": 5e8}} for end in ("start", "end")},
+            operation={"input_shaft": "rotor", "speed": 100.0},
+        )
+        found = rg.modal(model, speed=speed, modes=4, elements=count, error_estimate=False)
+        return np.asarray(found.frequency_hz)
+
+    exact = frequencies("consistent", 12)
+    lumped = frequencies("lumped", 60)
+    assert lumped == pytest.approx(exact, rel=2e-3)
+    if speed:  # both whirls of a pair are apart by their gyroscopic moment
+        split = exact[1::2] - exact[::2]
+        assert split.min() > 5.0
+        assert lumped[1::2] - lumped[::2] == pytest.approx(split, rel=0.02)
+
+
+def test_the_mass_of_a_lumped_element_is_that_of_the_consistent_one_in_every_rigid_motion() -> None:
+    one, other = (shaft_elements(elements(0.2, 0.12, 0.05), lumped=lumped).mass for lumped in (True, False))
+    assert one is not None
+    assert other is not None
+    for dof in (0, 1, 2, 5):
+        shift = np.zeros(12)
+        shift[[dof, dof + 6]] = 1.0
+        assert shift @ one[0] @ shift == pytest.approx(shift @ other[0] @ shift, rel=1e-12)
+
+
+def test_a_round_shaft_has_its_bending_modes_in_equal_pairs_of_both_planes() -> None:
+    from rotorgear.system.plan import Plan
+    from rotorgear.system.system import System
+
+    model = rg.Model(
+        motions=["bending"],
+        materials=STEEL,
+        shafts={
+            "rotor": {
+                "sections": [
+                    {"length": 0.3, "outer_diameter": 0.15},
+                    {"length": 0.2, "outer_diameter": 0.1, "outer_diameter_end": 0.05},
+                ]
+            }
+        },
+        bearings={end: {"shaft": "rotor", "at": end, "stiffness": {"radial": 5e8}} for end in ("start", "end")},
+    )
+    for order in (2, 3):
+        found = rg.modal(System(model, plan=Plan(1, order)), modes=8, error_estimate=False).frequency_hz
+        assert found[1::2] == pytest.approx(found[::2], rel=1e-9)
+
+
+def test_two_points_on_different_axes_joined_by_a_coupling_are_free_in_all_rigid_motions() -> None:
+    rng = np.random.default_rng(3)
+    first = np.array([0.1, -0.2, 0.3])
+    second = np.array([-0.2, 0.1, 0.9])
+    link = linking_spring(np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]), np.zeros((6, 6)), first, second)
+    both = np.vstack([rigid_transfer(first), rigid_transfer(second)])
+    assert link.strain is not None
+    assert np.abs(link.strain[0] @ both @ rng.normal(size=6)).max() < 1e-14
