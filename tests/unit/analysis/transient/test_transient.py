@@ -9,6 +9,7 @@ import rotorgear as rg
 from rotorgear.analysis.transient.transient import transient
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.ball_bearing import BallBearing
+from rotorgear.solvers.time.contact_equilibrium import equilibrium
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.local import local_model
 from rotorgear.system.system import System
@@ -332,3 +333,22 @@ def test_a_stiffness_model_shakes_the_pair_with_its_curve() -> None:
     assert k == pytest.approx(normal, rel=1e-6)
     result = transient(model, time=0.02, discard=0.02, steps=100)
     assert result.mesh_force.std() > 0.01 * result.mesh_force.mean()
+
+
+def test_a_pair_under_torque_stands_in_equilibrium_at_any_stiffness() -> None:
+    # Where the teeth are stiff, the transmission error at the start lies beyond the deflection: the flanks stand apart in the
+    # linear start, and nothing but the torque says where to go.
+    for factor in 10.0 ** np.arange(-6.0, 10.0, 1.0):
+        for direction in (1.0, -1.0):
+            model = spur_pair(
+                meshes__pair__stiffness=2e8 * factor,
+                meshes__pair__backlash="40 um",
+                meshes__pair__transmission_error=[{"harmonic": 1, "amplitude": "3 um"}],
+            )
+            local = local_model(System(model, direction=int(direction)), Rotation.constant(direction), direction).local
+            rest = equilibrium(local)
+            assert rest.converged, factor
+            # Of deflections of teeth a billion times as stiff, displacements of the shafts leave few digits.
+            digits = max(1e-8, 1e-12 * factor)
+            assert rest.force == pytest.approx(200.0 / (0.048 * np.cos(np.radians(20.0))), rel=digits)
+            assert np.all(np.abs(rest.drift) < digits * np.abs(rest.free.T) @ np.abs(local.load))

@@ -1,0 +1,133 @@
+"""Equilibrium of a linear structure with local forces, K q + B F(B^T q) = f, by Newton's method on the m local displacements.
+
+About any stiffness k of the laws, q = q0 + X (k d - F(d)) with q0 = (K + B k B^T)^-1 f and X = (K + B k B^T)^-1 B. So
+
+    r(d) = d - d0 + A (F(d) - k d) = 0,    d0 = B^T q0,    A = B^T X,    dr/dd = 1 + A (dF/dd - k)
+
+Whatever k is, the solution is the same; where the forces are k d, the start d0 is the solution.
+
+Where Newton's method stops short, as with teeth that stand apart (nothing pushes them, so no tangent says where to go), the
+laws get dampers in proportion to k and d creeps to rest: with s = (time step)^-1 each step solves r(d) + s A k (d - d_last) = 0
+and s falls until nothing of it is left. A gap is crossed however soft or stiff its walls are, because a tenfold step
+is taken with each solution. A stable equilibrium is reached, an unstable one is left.
+Kelley and Keyes, Convergence analysis of pseudo-transient continuation, SIAM J. Numer. Anal. 35 (1998) 508.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+# Forces (m,) and tangents (m, m) at local displacements (m,).
+Laws = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+_ITERATIONS = 80
+_TOLERANCE = 1e-10
+# Rounding of d - d0 + A (F - k d) in units of its terms: no iteration gets below.
+_ROUNDING = 16.0 * np.finfo(float).eps
+# Where rounding would hide more than this share of the forces there is no equilibrium: displacements run away.
+_WORST = 1e-4
+# Iterations in a row that do not bring the residual down.
+_STUCK = 3
+# Steps of the continuation: each ten times as long as the last, and a fifth as long again where it was too long to be solved.
+_STEPS = 120
+_LONGER = 10.0
+_SHORTER = 5.0
+
+
+@dataclass(frozen=True)
+class Settled:
+    """Local displacements and forces (m,), tangents (m, m) there, whether they are in equilibrium, and the steps it took.
+
+    `steps` counts Newton's iterations, `crept` the steps of the continuation.
+    """
+
+    d: np.ndarray
+    force: np.ndarray
+    tangent: np.ndarray
+    converged: bool
+    steps: int = 0
+    crept: int = 0
+
+
+def settle(d0: np.ndarray, A: np.ndarray, k: np.ndarray, laws: Laws) -> Settled:
+    """Return the local displacements in equilibrium.
+
+    Args:
+        d0: (m,) displacements under the loads with the laws linear at k.
+        A: (m, m) receptance of the local displacements with the laws linear at k.
+        k: (m, m) that stiffness.
+        laws: forces and tangents.
+    """
+    size = float(np.abs(d0).max(initial=0.0))
+
+    def residual(d: np.ndarray, F: np.ndarray) -> np.ndarray:
+        return np.asarray(d - d0 + A @ (F - k @ d))
+
+    def small(d: np.ndarray, F: np.ndarray, r: np.ndarray) -> bool:
+        largest = size + np.abs(A @ F).max(initial=0.0)
+        noise = _ROUNDING * (np.abs(d) + np.abs(A) @ (np.abs(F) + np.abs(k) @ np.abs(d))).max(initial=0.0)
+        return bool(noise <= _WORST * largest and np.abs(r).max(initial=0.0) <= max(_TOLERANCE * largest, noise))
+
+    found = _newton(d0, A, k, laws, residual, small)
+    if found.converged:
+        return found
+
+    d = d0
+    s = 1.0
+    steps = found.steps
+    for crept in range(1, _STEPS + 1):
+        last = d
+
+        def damped(d: np.ndarray, F: np.ndarray, last: np.ndarray = last, s: float = s) -> np.ndarray:
+            return np.asarray(residual(d, F) + s * (A @ (k @ (d - last))))
+
+        step = _newton(d, A, (1.0 - s) * k, laws, damped, small)
+        steps += step.steps
+        if not step.converged:
+            s *= _SHORTER
+            continue
+        d = step.d
+        if small(d, step.force, residual(d, step.force)):
+            return Settled(d, step.force, step.tangent, True, steps, crept)
+        s /= _LONGER
+    F, tangent = laws(d0)
+    return Settled(d0, F, tangent, False, steps, _STEPS)
+
+
+def _newton(
+    start: np.ndarray,
+    A: np.ndarray,
+    k: np.ndarray,
+    laws: Laws,
+    residual: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    small: Callable[[np.ndarray, np.ndarray, np.ndarray], bool],
+) -> Settled:
+    """Newton's method for a residual of derivative 1 + A (dF/dd - k); a step is halved until it brings the residual down."""
+    d = start.copy()
+    F, tangent = laws(d)
+    r = residual(d, F)
+    stuck = 0
+    for steps in range(_ITERATIONS):
+        if not np.all(np.isfinite(r)):
+            break
+        if small(d, F, r):
+            return Settled(d, F, tangent, True, steps)
+        # Least squares: contacts that stand apart leave directions in which nothing changes.
+        step = np.linalg.lstsq(np.eye(d.size) + A @ (tangent - k), -r, rcond=1e-14)[0]
+        share = 1.0
+        before = np.linalg.norm(r)
+        while True:
+            trial = d + share * step
+            F, tangent = laws(trial)
+            r = residual(trial, F)
+            if np.linalg.norm(r) < (1.0 - 1e-4 * share) * before or share < 1e-3:
+                break
+            share *= 0.5
+        d = trial
+        stuck = stuck + 1 if not np.linalg.norm(r) <= (1.0 - 1e-6) * before else 0
+        if stuck == _STUCK:
+            break
+    return Settled(d, F, tangent, small(d, F, r) if np.all(np.isfinite(r)) else False, _ITERATIONS)

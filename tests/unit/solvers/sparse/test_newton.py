@@ -1,0 +1,81 @@
+"""Equilibrium with local forces by Newton's method and continuation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rotorgear.solvers.sparse.newton import Laws, settle
+
+
+def contacts(k: np.ndarray, gap: np.ndarray) -> Laws:
+    """Springs that push beyond a gap to each side."""
+
+    def laws(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        beyond = d - np.clip(d, -gap, gap)
+        return k * beyond, np.diag(np.where(beyond != 0.0, k, 0.0))
+
+    return laws
+
+
+def condensed(S: np.ndarray, k: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """d0 and A of a structure with the stiffness S between its local displacements."""
+    A = np.linalg.inv(S + k)
+    return A @ load, A
+
+
+def test_linear_forces_are_settled_without_a_step() -> None:
+    k = np.diag([3.0, 5.0])
+    d0, A = condensed(np.array([[2.0, -1.0], [-1.0, 2.0]]), k, np.array([1.0, -2.0]))
+    found = settle(d0, A, k, lambda d: (k @ d, k))
+    assert found.converged
+    assert found.steps == found.crept == 0
+    assert np.array_equal(found.d, d0)
+
+
+def test_any_stiffness_to_expand_about_leads_to_the_same_equilibrium() -> None:
+    S = np.array([[4.0, -1.0], [-1.0, 3.0]])
+    load = np.array([2.0, 1.0])
+
+    def laws(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return d + d**3, np.diag(1.0 + 3.0 * d**2)
+
+    for size in (1e-3, 1.0, 1e3):
+        k = size * np.eye(2)
+        found = settle(*condensed(S, k, load), k, laws)
+        assert found.converged
+        assert S @ found.d + laws(found.d)[0] == pytest.approx(load, rel=1e-8)
+
+
+def test_gaps_in_a_free_structure_are_crossed_however_stiff_their_walls_are() -> None:
+    # Nothing but the contact holds the motion, and the linear start lies within the gap.
+    for stiffness in 10.0 ** np.arange(-6.0, 10.0):
+        for load in (1.0, -1.0):
+            k = np.array([[stiffness]])
+            d0, A = condensed(np.zeros((1, 1)), k, np.array([load]))
+            found = settle(d0, A, k, contacts(np.array([stiffness]), np.array([3e-2])))
+            assert found.converged, stiffness
+            assert found.force == pytest.approx([load], rel=1e-5)
+
+
+def test_many_contacts_find_the_one_minimum_of_their_energy() -> None:
+    # Convex energies have one minimum, and there the forces balance: random networks, some of them only just held.
+    generator = np.random.default_rng(3)
+    for _ in range(60):
+        m = int(generator.integers(1, 9))
+        shape = generator.standard_normal((m, m))
+        S = shape[:, : max(1, m // 2)] @ shape[:, : max(1, m // 2)].T + 1e-6 * np.eye(m)
+        k = 10.0 ** generator.uniform(-2, 4, m)
+        laws = contacts(k, generator.uniform(0.0, 1.0, m))
+        load = generator.standard_normal(m)
+        found = settle(*condensed(S, np.diag(k), load), np.diag(k), laws)
+        assert found.converged
+        assert S @ found.d + laws(found.d)[0] == pytest.approx(load, abs=1e-6)
+
+
+def test_an_equilibrium_that_does_not_exist_is_said_not_to_be_found() -> None:
+    k = np.eye(1)
+    found = settle(
+        np.array([2.0]), np.eye(1), k, lambda d: (np.tanh(d), np.diag(1.0 / np.cosh(np.clip(d, -50, 50)) ** 2))
+    )
+    assert not found.converged
