@@ -55,7 +55,12 @@ def sweep(
         float, typer.Option("--reduction-error", help="Largest FRF error of the reduction of a large model.")
     ] = 0.01,
     elements: Annotated[
-        int | None, typer.Option("--elements", help="Elements in each piece of shaft (default: 1).", show_default=False)
+        int | None,
+        typer.Option(
+            "--elements",
+            help="Basic elements in each piece of shaft (default: one of second order).",
+            show_default=False,
+        ),
     ] = None,
     portrait: Annotated[
         list[str] | None,

@@ -46,10 +46,10 @@ def notes(
 
 
 def coarse_shafts(model: Model, elements: int | None) -> tuple[str, ...]:
-    """A sentence where shafts have one element in each piece because nothing else was asked for."""
+    """A sentence where shafts are cut as little as they can be because nothing else was asked for."""
     if elements is not None or not any(shaft.sections for shaft in model.shafts.values()):
         return ()
-    return ("the shafts have one element in each piece: --elements 4, say, shows what that changes",)
+    return ("the shafts have one element of second order in each piece: --elements 8, say, shows what that changes",)
 
 
 def idle(axes: Sequence[Axis], points: Sequence[Point | None]) -> list[Axis]:

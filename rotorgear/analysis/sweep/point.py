@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.sweep.columns import column_of, columns_of, is_rolling, shape_of
 from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
 from rotorgear.analysis.sweep.reduce import Large, Reduced, Wanted
@@ -20,7 +21,6 @@ from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.local_system import LocalSystem
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.local import local_model
-from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ class PointMaker:
         return replace(known, speed=speed) if isinstance(known, Large) else ready(known, speed, modal_ratio)
 
     def _still(self, model: Model, speed: float) -> Still | Large:
-        system = System(model, plan=Plan(self._elements) if self._elements else None)
+        system = System(model, plan=plan_in_time(self._elements))
         if system.n == 0:
             raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
         found = local_model(system, Rotation.constant(speed), speed)

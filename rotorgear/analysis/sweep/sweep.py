@@ -75,7 +75,7 @@ def sweep(
         seed: of the random states. throw: their size; at 1 contacts are thrown by up to some backlashes.
         modes: reduce the model to so many elastic modes and the static shapes of contacts and loads, whatever the error.
         reduction_error: largest relative error of the receptances at the contacts that a reduction may make.
-        elements: basic elements in each piece of shaft; one where not given.
+        elements: basic elements in each piece of shaft; one of second order where not given, as in `transient`.
         portraits: how many points, spread over the sweep, keep their trajectory over some periods more; or the values of the
             parameters, in their units, next to which points do: 3250.0 or "3250 rpm", with two parameters (3250.0, 20.0).
         workers: threads; all cores where not given. The result does not depend on it.

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.transient.transient import transient
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.convergence import ConvergenceStudy, Rung
 from rotorgear.results.transient import TransientResult
-from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 STEPS = (40, 80, 160, 320, 640)
@@ -52,7 +52,7 @@ def transient_convergence_study(
     """
     if not model.meshes:
         raise AnalysisError("the convergence study of a transient compares contact forces: the model has no mesh")
-    system = System(model, plan=Plan(elements=1, order=2))
+    system = System(model, plan=plan_in_time())
     fixed: dict[str, Any] = {"speed": speed, "discard": 0.0, "records": _RECORDS, "modal_damping": modal_damping}
     fixed["time"] = time if time is not None else _duration(system, fixed)
     damped = model.damping.modal_ratio if modal_damping is None else modal_damping

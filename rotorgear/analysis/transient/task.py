@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.transient.channels import Channels, channels
 from rotorgear.analysis.transient.histories import Histories, Stream, integrate
 from rotorgear.analysis.transient.request import Grid, mesh_frequencies, rotation_of
@@ -18,11 +19,8 @@ from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium,
 from rotorgear.solvers.time.local_system import Integrator, state_at_rest
 from rotorgear.solvers.time.run import Schedule
 from rotorgear.system.local import LocalModel, local_model
-from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
-# One element of this order a piece, unless elements are asked for.
-_PLAN = Plan(elements=1, order=2)
 _HALVINGS = 6
 # The search for a step runs over so many steps at most.
 _PROBE = 60_000
@@ -48,9 +46,7 @@ def prepare(
     Raises:
         AnalysisError: nothing is free to move, or the speed makes no sense.
     """
-    if elements is not None and elements < 1:
-        raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
-    given = model if isinstance(model, System) else System(model, plan=Plan(elements) if elements else _PLAN)
+    given = model if isinstance(model, System) else System(model, plan=plan_in_time(elements))
     rotation = rotation_of(given, speed)
     largest = float(rotation.speeds[np.argmax(np.abs(rotation.speeds))])
     direction = -1 if largest < 0.0 else 1
