@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 from pydantic import BaseModel, Field, ValidationError
@@ -9,6 +10,8 @@ from pydantic import BaseModel, Field, ValidationError
 from rotorgear.errors import ModelError
 from rotorgear.model.checks.check import find_problems
 from rotorgear.model.checks.repair import repaired
+from rotorgear.model.layout.layout import Layout
+from rotorgear.model.layout.mean_load import MeanLoad, torque_flow
 from rotorgear.model.parts.fields import MOTIONS, Name
 from rotorgear.model.parts.shaft import Shaft
 from rotorgear.model.parts.tables import Tables
@@ -32,10 +35,35 @@ class Model(Tables):
             BaseModel.__init__(self, **data)
         except ValidationError:
             problems, rest, broken = repaired(data)
-            raise ModelError([*problems, *find_problems(rest, broken)]) from None
-        problems = find_problems(self)
+            raise ModelError([*problems, *find_problems(Layout(rest), broken)]) from None
+        problems = find_problems(self.layout)
         if problems:
             raise ModelError(problems)
+
+    @cached_property
+    def layout(self) -> Layout:
+        """What follows from the parts before any load."""
+        return Layout(self)
+
+    @cached_property
+    def mean_loads(self) -> dict[int, MeanLoad]:
+        """The mean loads that were asked for, by direction."""
+        return {}
+
+    def mean_load(self, direction: int | None = None) -> MeanLoad:
+        """Forces, working flanks and mesh stiffnesses of the torque flow, made once for each sense of rotation.
+
+        Args:
+            direction: +1 or -1, sense about +z in which the reference shaft turns. None: that of the operating speed.
+
+        Raises:
+            AnalysisError: a stiffness model that can't do its teeth.
+            ConvergenceError: in a loop, mesh stiffness and torque split don't come to agree.
+        """
+        sense = direction or self.layout.direction
+        if sense not in self.mean_loads:
+            self.mean_loads[sense] = torque_flow(self.layout, sense)
+        return self.mean_loads[sense]
 
 
 __all__ = ["MOTIONS", "SCHEMA_VERSION", "Model"]

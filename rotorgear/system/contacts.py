@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.model.layout.torque_flow import MeshForce
+from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.system.system import System
 
 
@@ -38,7 +38,7 @@ class ContactLines:
 
 def contact_lines(system: System) -> ContactLines:
     """Return the contacts of a system as vectors over its free degrees of freedom."""
-    states = system.flow.forces
+    states = system.load.forces
     groups = [group for group in system.groups if group.part.startswith("meshes.")]
     count = len(states)
     size = system.dofs.transform.shape[0]
@@ -73,10 +73,6 @@ def _quarter_turn(vector: np.ndarray) -> np.ndarray:
 
 
 def _gaps(system: System, states: tuple[MeshForce, ...]) -> np.ndarray:
-    meshes = system.model.meshes
-    return np.array(
-        [
-            meshes[s.contact.mesh].index_error + (meshes[s.contact.mesh].helix_index_error if s.contact.helix else 0.0)
-            for s in states
-        ]
-    )
+    parts = [system.layout.mesh(state.contact.mesh).part for state in states]
+    late = [part.helix_index_error if state.contact.helix else 0.0 for part, state in zip(parts, states, strict=True)]
+    return np.array([part.index_error + more for part, more in zip(parts, late, strict=True)])

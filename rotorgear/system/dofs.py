@@ -13,7 +13,8 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.elements.spring import rigid_transfer
-from rotorgear.model.model import Model
+from rotorgear.model.layout.layout import Layout
+from rotorgear.model.parts.tables import Tables
 from rotorgear.system.nodes import Nodes
 
 MOTION_DOFS = {"bending": (0, 1, 3, 4), "axial": (2,), "torsion": (5,)}
@@ -54,16 +55,17 @@ class DofMap:
         return f"{('x', 'y', 'z', 'tilt_x', 'tilt_y', 'torsion')[k]} of shaft '{nodes.shaft[node]}' at z = {nodes.z[node]:.6g} m"
 
 
-def map_dofs(model: Model, nodes: Nodes) -> DofMap:
+def map_dofs(layout: Layout, nodes: Nodes) -> DofMap:
     """Return the map of free degrees of freedom from motions, fixed supports, pedestals and rigid sections."""
+    model = layout.model
     count = len(nodes)
     held = np.zeros((count, 6), dtype=bool)
     for motion, dofs in MOTION_DOFS.items():
         if not model.has(motion):
             held[:, dofs] = True
     by_motion = int(held.sum())
-    for support in model.supports.values():
-        node = nodes.at(support.shaft, model.shafts[support.shaft].station(support.at))
+    for name, support in model.supports.items():
+        node = nodes.at(*layout.place(f"supports.{name}"))
         for direction in support.fixed:
             held[node, _FIXED[direction]] = True
     for name, bearing in model.bearings.items():
@@ -89,7 +91,7 @@ def _selection(held: np.ndarray, counts: dict[str, int]) -> DofMap:
     return DofMap(T, column, True, counts)
 
 
-def rigid_groups(model: Model, nodes: Nodes) -> list[list[int]]:
+def rigid_groups(model: Tables, nodes: Nodes) -> list[list[int]]:
     """List the runs of neighbouring nodes joined by rigid sections."""
     groups: list[list[int]] = []
     for name, elements in nodes.elements.items():

@@ -19,11 +19,10 @@ from rotorgear.elements.shaft import ShaftElements, shaft_elements, strain_motio
 from rotorgear.elements.shaft_bubbles import bubble_motions
 from rotorgear.elements.spring import grounded_spring, linking_spring
 from rotorgear.errors import AnalysisError
-from rotorgear.model.layout.inertia import NodeBody, node_bodies
-from rotorgear.model.layout.torque_flow import MeshForce, TorqueFlow
-from rotorgear.model.layout.train import Train
-from rotorgear.model.model import Model
+from rotorgear.model.layout.layout import Layout
+from rotorgear.model.layout.mean_load import MeanLoad, MeshForce
 from rotorgear.model.parts.supports import Bearing, DampingMatrix, StiffnessMatrix
+from rotorgear.model.parts.tables import Tables
 from rotorgear.system.nodes import Element, Nodes
 
 # Motion of the six dofs of a node.
@@ -63,38 +62,39 @@ def node_dofs(*nodes: int) -> np.ndarray:
     return np.concatenate([6 * node + np.arange(6) for node in nodes])[None]
 
 
-def constant_groups(model: Model, train: Train, flow: TorqueFlow, nodes: Nodes) -> list[ElementGroup]:
+def constant_groups(layout: Layout, load: MeanLoad, nodes: Nodes) -> list[ElementGroup]:
     """Groups that do not depend on speed, except through gyroscopic and circulatory terms in proportion to it."""
-    found = [group for name in model.shafts for group in _shaft(model, train, nodes, name)]
-    for body in node_bodies(model):
+    model = layout.model
+    found = [group for name in model.shafts for group in _shaft(layout, nodes, name)]
+    for body in layout.bodies:
         b = body.body
         matrices = rigid_body(b.mass, b.polar_inertia, b.diametral_inertia)
         node = nodes.at(body.shaft, body.z)
-        found.append(ElementGroup(body.part, body.shaft, matrices, node_dofs(node), train.ratio(body.shaft)))
-    found += list(_meshes(model, flow, nodes))
+        found.append(ElementGroup(body.part, body.shaft, matrices, node_dofs(node), layout.train.ratio(body.shaft)))
+    found += list(_meshes(layout, load, nodes))
     for name, bearing in model.bearings.items():
-        found += list(_pedestal(model, nodes, name, bearing))
+        found += list(_pedestal(nodes, name, bearing))
         if not bearing.table:
-            found.append(_bearing(model, nodes, name, bearing, _rows(bearing.stiffness), _rows(bearing.damping)))
+            found.append(_bearing(layout, nodes, name, bearing, _rows(bearing.stiffness), _rows(bearing.damping)))
     for name, support in model.supports.items():
-        node = nodes.at(support.shaft, model.shafts[support.shaft].station(support.at))
+        node = nodes.at(*layout.place(f"supports.{name}"))
         matrices = grounded_spring(_rows(support.stiffness), _rows(support.damping))
         found.append(ElementGroup(f"supports.{name}", support.shaft, matrices, node_dofs(node)))
-    found += list(_couplings(model, nodes))
+    found += list(_couplings(layout, nodes))
     return found
 
 
-def table_groups(model: Model, train: Train, nodes: Nodes, speed: float) -> list[ElementGroup]:
+def table_groups(layout: Layout, nodes: Nodes, speed: float) -> list[ElementGroup]:
     """Bearings with tables at a speed of the reference shaft in rad/s.
 
     Raises:
         AnalysisError: the speed of a bearing's shaft lies outside its table.
     """
     found = []
-    for name, bearing in model.bearings.items():
+    for name, bearing in layout.model.bearings.items():
         if bearing.table:
-            own = abs(train.ratio(bearing.shaft) * speed)
-            found.append(_bearing(model, nodes, name, bearing, *table_values(name, bearing, own)))
+            own = abs(layout.train.ratio(bearing.shaft) * speed)
+            found.append(_bearing(layout, nodes, name, bearing, *table_values(name, bearing, own)))
     return found
 
 
@@ -125,9 +125,10 @@ def table_values(name: str, bearing: Bearing, speed: float) -> tuple[np.ndarray,
     )
 
 
-def _shaft(model: Model, train: Train, nodes: Nodes, name: str) -> Iterator[ElementGroup]:
+def _shaft(layout: Layout, nodes: Nodes, name: str) -> Iterator[ElementGroup]:
+    model = layout.model
     shaft = model.shafts[name]
-    ratio = train.ratio(name)
+    ratio = layout.train.ratio(name)
     for rigid, order, chosen in alike(model, nodes, name):
         matrices = shaft_elements(
             element_data(model, name, chosen),
@@ -142,7 +143,7 @@ def _shaft(model: Model, train: Train, nodes: Nodes, name: str) -> Iterator[Elem
         yield ElementGroup(f"shafts.{name}", name, matrices, dofs, ratio, motions)
 
 
-def alike(model: Model, nodes: Nodes, shaft: str) -> Iterator[tuple[bool, int, list[Element]]]:
+def alike(model: Tables, nodes: Nodes, shaft: str) -> Iterator[tuple[bool, int, list[Element]]]:
     """Yield (rigid, order, elements) for the elements of a shaft that share both."""
     sections = model.shafts[shaft].sections
     found: dict[tuple[bool, int], list[Element]] = {}
@@ -162,7 +163,7 @@ def shaft_dofs(nodes: Nodes, elements: list[Element], shear: bool) -> np.ndarray
     return np.hstack([6 * left[:, None] + k, 6 * right[:, None] + k, first[:, None] + inside])
 
 
-def element_data(model: Model, name: str, elements: list[Element]) -> ShaftElements:
+def element_data(model: Tables, name: str, elements: list[Element]) -> ShaftElements:
     """Sizes and material of some elements of a shaft."""
     shaft = model.shafts[name]
     table = []
@@ -188,7 +189,7 @@ def element_data(model: Model, name: str, elements: list[Element]) -> ShaftEleme
     return ShaftElements(length, stiffness, mass, E, G, nu, rho, kappas)
 
 
-def contact_geometry(model: Model, force: MeshForce) -> ContactGeometry:
+def contact_geometry(force: MeshForce) -> ContactGeometry:
     """Geometry of one contact with its driving flank."""
     c = force.contact
     # Recess follows the driving flank; the element measures from the pitch point towards where the pinion would recede.
@@ -207,31 +208,28 @@ def contact_geometry(model: Model, force: MeshForce) -> ContactGeometry:
     )
 
 
-def _meshes(model: Model, flow: TorqueFlow, nodes: Nodes) -> Iterator[ElementGroup]:
-    bodies = node_bodies(model)
-    for force in flow.forces:
+def _meshes(layout: Layout, load: MeanLoad, nodes: Nodes) -> Iterator[ElementGroup]:
+    for force in load.forces:
         c = force.contact
-        pinion = model.gears[c.pinion].shaft
-        gear = model.gears[c.gear].shaft
-        geometry = contact_geometry(model, force)
-        damping = mesh_damping(model, force, geometry, bodies)
-        dofs = node_dofs(nodes.at(pinion, c.pinion_z), nodes.at(gear, c.gear_z))
+        geometry = contact_geometry(force)
+        damping = mesh_damping(layout, force, geometry)
+        dofs = node_dofs(nodes.at(c.pinion_shaft, c.pinion_z), nodes.at(c.gear_shaft, c.gear_z))
         yield ElementGroup(f"meshes.{c.mesh}", "", gear_mesh(geometry, c.stiffness, damping), dofs)
 
 
-def mesh_damping(model: Model, force: MeshForce, geometry: ContactGeometry, bodies: list[NodeBody]) -> float:
+def mesh_damping(layout: Layout, force: MeshForce, geometry: ContactGeometry) -> float:
     """Damping coefficient of one helix in N s/m: given, or from the ratio and the inertia of that helix' share of the gears."""
-    mesh = model.meshes[force.contact.mesh]
-    helices = 2 if model.gears[mesh.pinion].kind == "herringbone" else 1
+    both = layout.mesh(force.contact.mesh)
+    mesh = both.part
     if mesh.damping is not None:
-        return mesh.damping / helices
+        return mesh.damping / both.helices
     if mesh.damping_ratio == 0.0:
         return 0.0
     diagonals = []
-    for name in (mesh.pinion, mesh.gear):
-        own = [body.body for body in bodies if body.part == f"gears.{name}"]
+    for gear in both.gears:
+        own = [node.body for node in gear.node_bodies]
         mass, polar, tilt = (
-            sum(getattr(b, key) for b in own) / helices for key in ("mass", "polar_inertia", "diametral_inertia")
+            sum(getattr(b, key) for b in own) / both.helices for key in ("mass", "polar_inertia", "diametral_inertia")
         )
         diagonals.append(np.array([mass, mass, mass, tilt, tilt, polar]))
     if mesh.equivalent_mass == "general":
@@ -244,9 +242,9 @@ def mesh_damping(model: Model, force: MeshForce, geometry: ContactGeometry, bodi
 
 
 def _bearing(
-    model: Model, nodes: Nodes, name: str, bearing: Bearing, stiffness: np.ndarray, damping: np.ndarray
+    layout: Layout, nodes: Nodes, name: str, bearing: Bearing, stiffness: np.ndarray, damping: np.ndarray
 ) -> ElementGroup:
-    node = nodes.at(bearing.shaft, model.shafts[bearing.shaft].station(bearing.at))
+    node = nodes.at(*layout.place(f"bearings.{name}"))
     part = f"bearings.{name}"
     if bearing.pedestal is None:
         return ElementGroup(part, bearing.shaft, grounded_spring(stiffness, damping), node_dofs(node))
@@ -255,7 +253,7 @@ def _bearing(
     return ElementGroup(part, bearing.shaft, matrices, node_dofs(nodes.of_pedestal(name), node))
 
 
-def _pedestal(model: Model, nodes: Nodes, name: str, bearing: Bearing) -> Iterator[ElementGroup]:
+def _pedestal(nodes: Nodes, name: str, bearing: Bearing) -> Iterator[ElementGroup]:
     if bearing.pedestal is None:
         return
     dofs = node_dofs(nodes.of_pedestal(name))
@@ -266,12 +264,11 @@ def _pedestal(model: Model, nodes: Nodes, name: str, bearing: Bearing) -> Iterat
         yield ElementGroup(part, bearing.shaft, rigid_body(bearing.pedestal.mass, 0.0, 0.0), dofs)
 
 
-def _couplings(model: Model, nodes: Nodes) -> Iterator[ElementGroup]:
-    for name, coupling in model.couplings.items():
-        first_z = model.shafts[coupling.from_shaft].station(coupling.from_at)
-        second_z = model.shafts[coupling.to_shaft].station(coupling.to_at)
+def _couplings(layout: Layout, nodes: Nodes) -> Iterator[ElementGroup]:
+    for name, coupling in layout.model.couplings.items():
+        first, second = layout.places(f"couplings.{name}")
         matrices = linking_spring(
-            _rows(coupling.stiffness), _rows(coupling.damping), np.array([0, 0, first_z]), np.array([0, 0, second_z])
+            _rows(coupling.stiffness), _rows(coupling.damping), np.array([0, 0, first.z]), np.array([0, 0, second.z])
         )
-        dofs = node_dofs(nodes.at(coupling.from_shaft, first_z), nodes.at(coupling.to_shaft, second_z))
+        dofs = node_dofs(nodes.at(*first), nodes.at(*second))
         yield ElementGroup(f"couplings.{name}", "", matrices, dofs)

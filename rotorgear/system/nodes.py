@@ -5,7 +5,6 @@ Places closer than 1e-9 of the shaft's length are one node.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -13,8 +12,8 @@ import numpy as np
 
 from rotorgear.elements.shaft_bubbles import bubble_motions
 from rotorgear.errors import AnalysisError
-from rotorgear.model.layout.mesh_geometry import node_positions
-from rotorgear.model.model import Model
+from rotorgear.model.layout.layout import Layout
+from rotorgear.model.parts.tables import Tables
 from rotorgear.system.plan import Plan
 
 MERGE_DISTANCE = 1e-9
@@ -81,53 +80,55 @@ class Nodes:
         return self._on_shaft[shaft][0]
 
 
-def places(model: Model) -> dict[str, list[tuple[float, str]]]:
+def places(layout: Layout) -> dict[str, list[tuple[float, str]]]:
     """List (z, what) of all places that need a node, for every shaft."""
+    model = layout.model
     found: dict[str, list[tuple[float, str]]] = {}
     for name, shaft in model.shafts.items():
         ends = np.cumsum([shaft.start, *[section.length for section in shaft.sections]])
         found[name] = [(float(ends[0]), "start")]
         found[name] += [(float(z), f"end of section {number}") for number, z in enumerate(ends[1:])]
-    for name, gear in model.gears.items():
-        found[gear.shaft] += [(z, f"gears.{name}") for z in node_positions(model, name)]
-    for owner, what, at in _stations(model):
-        found[owner].append((model.shafts[owner].station(at), what))
+    for table in (
+        "gears",
+        "disks",
+        "point_masses",
+        "bearings",
+        "supports",
+        "couplings",
+        "loads",
+        "unbalances",
+        "points",
+    ):
+        for name, part in getattr(model, table).items():
+            # Torques without a place stand at an end of their shaft, a point on a part where that part has its node.
+            if table in ("loads", "points") and (part.shaft is None or part.at is None):
+                continue
+            for shaft, z in layout.places(f"{table}.{name}"):
+                found[shaft].append((z, f"{table}.{name}"))
     return found
 
 
-def _stations(model: Model) -> Iterator[tuple[str, str, float | str]]:
-    """Yield (shaft, address, at) of all parts but gears."""
-    for table in ("disks", "point_masses", "bearings", "supports"):
-        for name, part in getattr(model, table).items():
-            yield part.shaft, f"{table}.{name}", part.at
-    for name, coupling in model.couplings.items():
-        yield coupling.from_shaft, f"couplings.{name}", coupling.from_at
-        yield coupling.to_shaft, f"couplings.{name}", coupling.to_at
-    for table in ("loads", "unbalances", "points"):
-        for name, item in getattr(model, table).items():
-            if item.shaft is not None and item.at is not None:
-                yield item.shaft, f"{table}.{name}", item.at
-
-
-def discretise(model: Model, plan: Plan) -> Nodes:
+def discretise(layout: Layout, plan: Plan) -> Nodes:
     """Return nodes and shaft elements of a model as a plan cuts it.
 
     Raises:
         AnalysisError: a plan with more elements than a computer of this time can take.
     """
+    model = layout.model
     nodes = Nodes()
-    wanted = places(model)
+    wanted = places(layout)
     for name in model.shafts:
         _add_shaft(nodes, model, name, wanted[name], plan)
     for name, bearing in model.bearings.items():
         if bearing.pedestal is not None:
-            nodes.shaft.append(bearing.shaft)
-            nodes.z.append(model.shafts[bearing.shaft].station(bearing.at))
+            place = layout.place(f"bearings.{name}")
+            nodes.shaft.append(place.shaft)
+            nodes.z.append(place.z)
             nodes.pedestal.append(name)
     return nodes
 
 
-def _merged_places(model: Model, shaft: str, wanted: list[tuple[float, str]]) -> tuple[list[float], list[str]]:
+def _merged_places(model: Tables, shaft: str, wanted: list[tuple[float, str]]) -> tuple[list[float], list[str]]:
     """Return the different places of a shaft in order, and sentences about those that were merged."""
     own = model.shafts[shaft]
     tolerance = MERGE_DISTANCE * own.length
@@ -144,7 +145,7 @@ def _merged_places(model: Model, shaft: str, wanted: list[tuple[float, str]]) ->
     return [z for z, _ in kept], notes
 
 
-def _add_shaft(nodes: Nodes, model: Model, shaft: str, wanted: list[tuple[float, str]], plan: Plan) -> None:
+def _add_shaft(nodes: Nodes, model: Tables, shaft: str, wanted: list[tuple[float, str]], plan: Plan) -> None:
     own = model.shafts[shaft]
     breaks, notes = _merged_places(model, shaft, wanted)
     nodes.merged += notes

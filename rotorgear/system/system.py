@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.model.layout.torque_flow import TorqueFlow, torque_flow
-from rotorgear.model.layout.train import Train, walk
+from rotorgear.model.layout.mean_load import MeanLoad
+from rotorgear.model.layout.train import Train
 from rotorgear.model.model import Model
 from rotorgear.system.assembly import assemble, strain_factor
 from rotorgear.system.dofs import DofMap, map_dofs, rigid_groups
@@ -42,10 +41,7 @@ class System:
         model: a checked model.
         elements: basic elements in each piece of shaft.
         plan: how finely each piece is cut, in place of `elements`.
-        direction: +1 or -1, sense in which the input shaft turns; it decides the driving flanks. None: as the operating speed.
-        flow: mean mesh forces and driving flanks, where they are known better than from torsion alone.
-        mesh: which stiffness a loaded tooth contact has: "dynamic", its tangent at the mean load, for small motions; "static",
-            its secant, for the deflection under that load. The others have one only.
+        load: mean forces, working flanks and mesh stiffnesses. None: those of the torque flow at the operating speed.
     """
 
     def __init__(
@@ -54,22 +50,40 @@ class System:
         elements: int | None = None,
         *,
         plan: Plan | None = None,
-        direction: int | None = None,
-        flow: TorqueFlow | None = None,
-        mesh: Literal["dynamic", "static"] = "dynamic",
+        load: MeanLoad | None = None,
     ) -> None:
         self.model = model
+        self.layout = model.layout
         self.plan = plan or Plan(elements or 1)
-        self.train: Train = walk(model)[0]
-        speed = model.operation.speed if model.operation else None
-        self.direction = direction or (-1 if speed is not None and speed < 0.0 else 1)
-        self.mesh: Literal["dynamic", "static"] = mesh
-        self.flow: TorqueFlow = (flow or torque_flow(model, self.train, self.direction)).with_stiffness(mesh)
-        self.nodes: Nodes = discretise(model, self.plan)
-        self.dofs: DofMap = map_dofs(model, self.nodes)
+        self.load = load or model.mean_load()
+        self.nodes: Nodes = discretise(self.layout, self.plan)
+        self.dofs: DofMap = map_dofs(self.layout, self.nodes)
         self._last: tuple[float, Matrices] | None = None
         self._last_damping: tuple[float, sp.csc_array] | None = None
         self._last_stiffness: tuple[float, sp.csc_array] | None = None
+
+    def with_plan(self, plan: Plan) -> System:
+        """The same model under the same load on another mesh."""
+        return System(self.model, plan=plan, load=self.load)
+
+    def with_load(self, load: MeanLoad) -> System:
+        """The same mesh about another mean state: its contacts have the flanks and stiffnesses of that load."""
+        return System(self.model, plan=self.plan, load=load)
+
+    @property
+    def train(self) -> Train:
+        """Speed and sense of every shaft."""
+        return self.layout.train
+
+    @property
+    def flow(self) -> MeanLoad:
+        """Old name of `load`."""
+        return self.load
+
+    @property
+    def direction(self) -> int:
+        """+1 or -1: sense in which the reference shaft turns."""
+        return self.load.direction
 
     @property
     def n(self) -> int:
@@ -79,11 +93,11 @@ class System:
     @cached_property
     def groups(self) -> list[ElementGroup]:
         """Element groups without the bearings that have tables."""
-        return constant_groups(self.model, self.train, self.flow, self.nodes)
+        return constant_groups(self.layout, self.load, self.nodes)
 
     def groups_at(self, speed: float) -> list[ElementGroup]:
         """All element groups at a reference speed in rad/s."""
-        return self.groups + table_groups(self.model, self.train, self.nodes, speed)
+        return self.groups + table_groups(self.layout, self.nodes, speed)
 
     @cached_property
     def mass(self) -> sp.csc_array:

@@ -16,24 +16,26 @@ from rotorgear.model.checks.places import coupled_points, stations
 from rotorgear.model.checks.references import PartName, part_of, sound, without
 from rotorgear.model.checks.sizes import materials, matrices, motions, sections
 from rotorgear.model.checks.train import operating_point, train_problems
+from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.tables import Tables
 
 
-def find_problems(model: Tables, broken: Iterable[PartName] = ()) -> list[Problem]:
+def find_problems(layout: Layout, broken: Iterable[PartName] = ()) -> list[Problem]:
     """List every problem of a model whose single fields are in order.
 
     Args:
-        model: the model, without the parts whose own fields are wrong.
+        layout: of the model, without the parts whose own fields are wrong.
         broken: (table, name) of those parts; what refers to them is in order.
     """
+    model = layout.model
     dropped = set(broken)
     found: list[Problem] = []
     if not model.shafts and not any(table == "shafts" for table, _ in dropped):
         found.append(Problem("shafts", "", "missing", "a model has at least one shaft, such as [shafts.input]"))
         dropped.add(("shafts", ""))
     found += _by_themselves(model, dropped)
-    stages: tuple[Callable[[Tables], Iterable[Problem]], ...] = (
-        lambda rest: [*stations(rest), *coupled_points(rest)],
+    stages: tuple[Callable[[Layout], Iterable[Problem]], ...] = (
+        lambda rest: [*stations(rest.model), *coupled_points(rest.model)],
         mesh_problems,
         lambda rest: [*inertia_problems(rest), *train_problems(rest, dropped)],
         massless_gears,
@@ -41,7 +43,8 @@ def find_problems(model: Tables, broken: Iterable[PartName] = ()) -> list[Proble
     for stage in stages:
         # A material that is not there does not keep its part from being checked: `without` puts in the default.
         dropped |= {part_of(problem.address) for problem in found if not problem.address.endswith(".material")}
-        found += stage(without(model, dropped))
+        # The layout of a sound model is the one that its analyses go on with.
+        found += stage(Layout(without(model, dropped)) if found or dropped else layout)
     return found
 
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from rotorgear.errors import Problem, RotorgearError
 from rotorgear.gears.geometry.geometry import impossible_teeth
 from rotorgear.model.checks.teeth import tooth_problems
-from rotorgear.model.layout.inertia import disk_body, gear_body, inertia_is_given
-from rotorgear.model.layout.mesh_geometry import gear_geometry
+from rotorgear.model.layout.bodies import inertia_is_given
+from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.bodies import Disk
 from rotorgear.model.parts.gear import Gear, GearBody
 from rotorgear.model.parts.tables import Tables
@@ -69,7 +69,7 @@ def _toothed_gear(address: str, gear: Gear) -> Iterator[Problem]:
     found += _helix(address, gear, "helix_angle")
     found += pressure_angle_problems(f"{address}.normal_pressure_angle", gear.normal_pressure_angle)
     yield from found
-    geometry = None if found else gear_geometry(gear)
+    geometry = None if found else gear.geometry
     if geometry and (wrong := list(impossible_teeth(geometry))):
         yield from (Problem(address, "", text) for text in wrong)
     elif geometry:
@@ -118,22 +118,23 @@ def _helix(address: str, gear: Gear, key: str) -> Iterator[Problem]:
             yield _unwanted(f"{address}.nodes", "2", "only a herringbone gear has two nodes")
 
 
-def inertia_problems(model: Tables) -> Iterator[Problem]:
+def inertia_problems(layout: Layout) -> Iterator[Problem]:
     """Yield what is missing or impossible in the mass and inertias of gears and disks on their shafts."""
-    for name, gear in model.gears.items():
-        yield from _body(model, f"gears.{name}", gear)
-    for name, disk in model.disks.items():
-        yield from _body(model, f"disks.{name}", disk)
+    for name, gear in layout.model.gears.items():
+        yield from _body(layout, f"gears.{name}", name, gear)
+    for name, disk in layout.model.disks.items():
+        yield from _body(layout, f"disks.{name}", name, disk)
 
 
-def _body(model: Tables, address: str, part: Gear | Disk) -> Iterator[Problem]:
+def _body(layout: Layout, address: str, name: str, part: Gear | Disk) -> Iterator[Problem]:
     """Mass and inertias: all that the motions of the model need, or the sizes to compute them from."""
+    model = layout.model
     found = list(_given_inertia(model, address, part) if inertia_is_given(part) else _sizes(address, part))
     yield from found
     if found:
         return
     try:
-        body = disk_body(model, part) if isinstance(part, Disk) else gear_body(model, address.removeprefix("gears."))
+        body = layout.disk_body(name) if isinstance(part, Disk) else layout.gear(name).body
     except (ValueError, RotorgearError) as error:
         own_bore = part.bore if isinstance(part, Disk) else part.body.bore
         bored = own_bore is None and "bore" in str(error)

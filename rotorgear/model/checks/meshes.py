@@ -8,15 +8,8 @@ from collections.abc import Iterator
 from rotorgear.errors import Problem, RotorgearError
 from rotorgear.gears.geometry.pair import working_centre_distance
 from rotorgear.model.checks.gears import degrees, missing, pressure_angle_problems
-from rotorgear.model.layout.inertia import node_bodies
-from rotorgear.model.layout.mesh_geometry import (
-    base_radius,
-    centre_line,
-    gear_geometry,
-    helix_planes,
-    mesh_pair,
-    overlap,
-)
+from rotorgear.model.layout.layout import Layout
+from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.model.parts.tables import Tables
@@ -43,20 +36,21 @@ def mesh_settings(model: Tables) -> Iterator[Problem]:
             yield Problem(f"{address}.stagger", f"{mesh.stagger:g}", "a share of the mesh period, from 0 to below 1")
 
 
-def mesh_problems(model: Tables) -> Iterator[Problem]:
+def mesh_problems(layout: Layout) -> Iterator[Problem]:
     """Yield what keeps two gears from meshing: kind, module, angle, hand, faces, axes."""
-    for name, mesh in model.meshes.items():
-        pinion = model.gears[mesh.pinion]
-        gear = model.gears[mesh.gear]
-        address = f"meshes.{name}"
+    for both in layout.meshes:
+        mesh = both.part
+        pinion = both.pinion.part
+        gear = both.gear.part
+        address = f"meshes.{both.name}"
         if mesh.pinion == mesh.gear:
             yield Problem(address, f"gear '{mesh.gear}' with itself", "two gears")
         elif pinion.shaft == gear.shaft:
             yield Problem(address, f"two gears on shaft '{pinion.shaft}'", "gears on two shafts")
         else:
             yield from _excitations(address, mesh, pinion, gear)
-            found = [*_mates(address, pinion, gear), *_faces(model, address, mesh), *_teeth(address, mesh, pinion)]
-            yield from found or _axes(model, address, name)
+            found = [*_mates(address, pinion, gear), *_faces(address, both), *_teeth(address, mesh, pinion)]
+            yield from found or _axes(address, both, in_bending=layout.model.has("bending"))
 
 
 def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator[Problem]:
@@ -83,7 +77,7 @@ def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator
                 "friction between gears without teeth",
                 "teeth, module and width of both gears: they place the contacts",
             )
-    for key in ("helix_index_error", "helix_stagger"):
+    for key in ("helix_index_error",):
         if getattr(mesh, key) and pinion.kind != "herringbone":
             yield Problem(f"{address}.{key}", "a value", "nothing here", "only a herringbone pair has two helices")
 
@@ -121,13 +115,11 @@ def _mates(address: str, pinion: Gear, gear: Gear) -> Iterator[Problem]:
         yield Problem(address, f"two {pinion.hand}-hand gears", "a right-hand and a left-hand one", hint)
 
 
-def _faces(model: Tables, address: str, mesh: Mesh) -> Iterator[Problem]:
-    first = model.gears[mesh.pinion]
-    second = model.gears[mesh.gear]
-    if first.kind != second.kind:
+def _faces(address: str, mesh: MeshLayout) -> Iterator[Problem]:
+    if mesh.pinion.part.kind != mesh.gear.part.kind:
         return
-    for one, other in zip(helix_planes(model, mesh.pinion), helix_planes(model, mesh.gear), strict=True):
-        face = overlap(first, second, one, other)
+    for helix, (one, other) in enumerate(zip(mesh.pinion.planes, mesh.gear.planes, strict=True)):
+        face = mesh.face(helix)
         if face is None and abs(one - other) > 1e-9 + 1e-6 * max(abs(one), abs(other)):
             text = f"gears at z = {millimetres(one)} and z = {millimetres(other)}, not both with a width"
             yield Problem(address, text, "gears at one z, or widths that say where the faces meet")
@@ -141,14 +133,13 @@ def _faces(model: Tables, address: str, mesh: Mesh) -> Iterator[Problem]:
             return
 
 
-def _axes(model: Tables, address: str, name: str) -> Iterator[Problem]:
-    mesh = model.meshes[name]
-    line = centre_line(model, name)
-    found = list(_no_axes(model, address, mesh) if line is None else _given_twice(address, mesh))
+def _axes(address: str, mesh: MeshLayout, *, in_bending: bool) -> Iterator[Problem]:
+    line = mesh.centre_line
+    found = list(_no_axes(address, mesh, in_bending=in_bending) if line is None else _given_twice(address, mesh.part))
     try:
-        found += [] if line is None else _distance(model, address, mesh, line[0])
+        found += [] if line is None else _distance(address, mesh, line[0])
         if not found:
-            mesh_pair(model, name)
+            _ = mesh.pair  # derived here, so that teeth that can't mesh are told now
     except RotorgearError as error:
         found.append(Problem(address, "", str(error)))
     yield from found
@@ -162,11 +153,18 @@ def _given_twice(address: str, mesh: Mesh) -> Iterator[Problem]:
             )
 
 
-def _distance(model: Tables, address: str, mesh: Mesh, given: float) -> Iterator[Problem]:
-    pinion = model.gears[mesh.pinion]
-    gear = model.gears[mesh.gear]
-    bases = base_radius(pinion) + base_radius(gear)
-    wanted, slack = _centre_distance(pinion, gear)
+def _distance(address: str, mesh: MeshLayout, given: float) -> Iterator[Problem]:
+    """Axes that lie as far apart as the teeth want, so far as that may be missed."""
+    bases = mesh.pinion.base_radius + mesh.gear.base_radius
+    first = mesh.pinion.geometry
+    second = mesh.gear.geometry
+    if first and second:
+        wanted = working_centre_distance(first, second)
+        slack = CENTRE_DISTANCE_TOLERANCE * first.normal_module
+    else:
+        angle = mesh.pinion.part.transverse_pressure_angle or mesh.gear.part.transverse_pressure_angle
+        wanted = bases / math.cos(angle) if angle else 0.0
+        slack = LUMPED_TOLERANCE * wanted
     if given <= bases or (wanted and abs(given - wanted) > slack):
         text = (
             f"a centre distance of {millimetres(wanted)}"
@@ -174,42 +172,28 @@ def _distance(model: Tables, address: str, mesh: Mesh, given: float) -> Iterator
             else f"more than both base radii, {millimetres(bases)}"
         )
         hint = "check the positions of the shafts, the teeth, the module and the profile shifts"
-        yield Problem(address, f"axes {millimetres(given)} apart", text, "" if pinion.lumped else hint)
+        yield Problem(address, f"axes {millimetres(given)} apart", text, "" if mesh.pinion.part.lumped else hint)
 
 
-def _centre_distance(pinion: Gear, gear: Gear) -> tuple[float, float]:
-    """Return the distance of the axes that two gears want and how far it may be missed, in m; 0 where they want none."""
-    first = gear_geometry(pinion)
-    second = gear_geometry(gear)
-    if first and second:
-        return working_centre_distance(first, second), CENTRE_DISTANCE_TOLERANCE * first.normal_module
-    angle = pinion.transverse_pressure_angle or gear.transverse_pressure_angle
-    wanted = (base_radius(pinion) + base_radius(gear)) / math.cos(angle) if angle else 0.0
-    return wanted, LUMPED_TOLERANCE * wanted
-
-
-def _no_axes(model: Tables, address: str, mesh: Mesh) -> Iterator[Problem]:
-    pinion = model.gears[mesh.pinion]
-    gear = model.gears[mesh.gear]
-    if not model.has("bending"):
+def _no_axes(address: str, mesh: MeshLayout, *, in_bending: bool) -> Iterator[Problem]:
+    pinion = mesh.pinion.part
+    if not in_bending:
         return
-    if mesh.centre_line_angle is None:
+    if mesh.part.centre_line_angle is None:
         yield missing(f"{address}.centre_line_angle", "positions of both shafts, or the angle of the centre line here")
-    angles = (pinion.transverse_pressure_angle, gear.transverse_pressure_angle, mesh.pressure_angle)
+    angles = (pinion.transverse_pressure_angle, mesh.gear.part.transverse_pressure_angle, mesh.part.pressure_angle)
     if pinion.lumped and all(angle is None for angle in angles):
         yield missing(
             f"{address}.pressure_angle", "positions of both shafts, or the working transverse pressure angle here"
         )
 
 
-def massless_gears(model: Tables) -> Iterator[Problem]:
+def massless_gears(layout: Layout) -> Iterator[Problem]:
     """A damping ratio needs the inertia of both gears."""
-    inertia: dict[str, float] = {}
-    for node in node_bodies(model):
-        inertia[node.part] = inertia.get(node.part, 0.0) + node.body.polar_inertia
-    for name, mesh in model.meshes.items():
-        empty = [gear for gear in (mesh.pinion, mesh.gear) if not inertia[f"gears.{gear}"]]
-        if mesh.damping_ratio and empty:
-            text = f"{mesh.damping_ratio:g} with gear '{empty[0]}' of no polar inertia"
+    for mesh in layout.meshes:
+        ratio = mesh.part.damping_ratio
+        empty = [gear.name for gear in mesh.gears if ratio and not gear.body.polar_inertia]
+        if empty:
+            text = f"{ratio:g} with gear '{empty[0]}' of no polar inertia"
             hint = "c = 2 zeta sqrt(k m_e) needs the inertia of both gears"
-            yield Problem(f"meshes.{name}.damping_ratio", text, "a damping coefficient, damping, instead", hint)
+            yield Problem(f"meshes.{mesh.name}.damping_ratio", text, "a damping coefficient, damping, instead", hint)

@@ -1,28 +1,19 @@
-"""What the model says of two gears as teeth: their allowances and backlash, and what is odd where they meet."""
+"""What is odd where the teeth of two gears meet, and the ball that a gear is measured over."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 
-from rotorgear.errors import AnalysisError
-from rotorgear.gears.geometry.backlash import Allowance, Backlash, normal_backlash
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.measure import ideal_ball_diameter
-from rotorgear.model.layout.mesh_geometry import gear_geometry, mesh_pair
+from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.parts.gear import Gear
-from rotorgear.model.parts.tables import Tables
 
 # The ideal ball is rounded up to a multiple of this (m), or of a fortieth of a smaller module.
 _BALL_STEP = 0.25e-3
 # Less clearance between tip and root than this share of the module is worth a word (ISO 53 has 0.25).
 _LEAST_CLEARANCE = 0.1
-
-
-def allowance(gear: Gear) -> Allowance:
-    """Allowances of the normal tooth thickness of a gear."""
-    upper = gear.upper_thickness_allowance
-    return Allowance(upper, upper if gear.lower_thickness_allowance is None else gear.lower_thickness_allowance)
 
 
 def ball_diameter(gear: Gear, geometry: GearGeometry) -> float:
@@ -33,40 +24,21 @@ def ball_diameter(gear: Gear, geometry: GearGeometry) -> float:
     return step * math.ceil(ideal_ball_diameter(geometry) / step - 1e-9)
 
 
-def mesh_backlash(model: Tables, name: str) -> Backlash:
-    """Normal backlash of a mesh from its centre distance and the allowances.
-
-    Raises:
-        AnalysisError: gears that are given by their base radius.
-    """
-    mesh = model.meshes[name]
-    pinion = model.gears[mesh.pinion]
-    gear = model.gears[mesh.gear]
-    first = gear_geometry(pinion)
-    second = gear_geometry(gear)
-    pair = mesh_pair(model, name)
-    if first is None or second is None or pair is None:
-        raise AnalysisError(f"meshes.{name}: gears given by their base radius have no backlash of their own; give one.")
-    return normal_backlash(
-        first, second, pair.centre_distance, allowance(pinion), allowance(gear), mesh.centre_distance_allowance
-    )
-
-
-def mesh_findings(model: Tables, name: str) -> Iterator[str]:
+def mesh_findings(mesh: MeshLayout) -> Iterator[str]:
     """Sentences on a mesh whose teeth meet where they shouldn't, or hardly."""
     from rotorgear.gears.geometry.outline import tooth_outline
 
-    mesh = model.meshes[name]
-    pair = mesh_pair(model, name)
-    first, second = (gear_geometry(model.gears[gear]) for gear in (mesh.pinion, mesh.gear))
+    pair = mesh.pair
+    first = mesh.pinion.geometry
+    second = mesh.gear.geometry
     if pair is None or first is None or second is None:
         return
     if pair.interference:
         yield "a tip reaches below its mate's base tangent point (interference); contact ratios are nominal"
     active = pair.active_root_diameters(first, second)
     for own, mate, g, h, used in (
-        (mesh.pinion, mesh.gear, first, second, active[0]),
-        (mesh.gear, mesh.pinion, second, first, active[1]),
+        (mesh.pinion.name, mesh.gear.name, first, second, active[0]),
+        (mesh.gear.name, mesh.pinion.name, second, first, active[1]),
     ):
         form = 2.0 * tooth_outline(g).form_radius
         if not pair.interference and used < form * (1.0 - 1e-6):
@@ -79,7 +51,6 @@ def mesh_findings(model: Tables, name: str) -> Iterator[str]:
             yield f"between the tip of '{mate}' and the root of '{own}' are only {1e3 * clearance:.3g} mm"
     if pair.total_contact_ratio < 1.0:
         yield f"total contact ratio {pair.total_contact_ratio:.3g} is below 1, the teeth lose contact"
-    backlash = mesh_backlash(model, name)
-    if backlash.least < -1e-9:
-        jam = f"{-1e6 * backlash.least:.3g} um along the flank normal"
+    if mesh.backlash.least < -1e-9:
+        jam = f"{-1e6 * mesh.backlash.least:.3g} um along the flank normal"
         yield f"the axes are too close: the teeth would jam by {jam}; give allowances, or move the axes apart"

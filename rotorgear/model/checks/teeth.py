@@ -9,7 +9,7 @@ from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.measure import ball_contact_diameter, ideal_ball_diameter, with_allowance
 from rotorgear.gears.geometry.outline import ToothOutline, tooth_outline
 from rotorgear.model.checks.flank import flank_problems
-from rotorgear.model.checks.pairs import allowance, ball_diameter
+from rotorgear.model.checks.pairs import ball_diameter
 from rotorgear.model.parts.gear import Gear
 from rotorgear.quantity import millimetres
 
@@ -35,7 +35,7 @@ def tooth_problems(address: str, gear: Gear, geometry: GearGeometry) -> Iterator
 
 def _ball(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem]:
     """The ball must touch the flanks of the thinnest tooth below its tip."""
-    thinnest = with_allowance(geometry, allowance(gear).lower)
+    thinnest = with_allowance(geometry, gear.allowance.lower)
     key = "ball_diameter" if gear.ball_diameter is not None else "lower_thickness_allowance"
     try:
         touched = ball_contact_diameter(thinnest, ball_diameter(gear, geometry))
@@ -48,7 +48,7 @@ def _ball(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem]
 
 
 def _allowances(address: str, gear: Gear) -> Iterator[Problem]:
-    own = allowance(gear)
+    own = gear.allowance
     for key, value, most, what in (
         ("upper_thickness_allowance", own.upper, 0.0, "0 or a negative length"),
         ("lower_thickness_allowance", own.lower, own.upper, "a length not above the upper allowance"),

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator
 from rotorgear.errors import Problem
 from rotorgear.model.checks.references import PartName
 from rotorgear.model.layout.applied_torques import applied_torques
-from rotorgear.model.layout.train import walk
+from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.operation import Load, Operation
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import LARGEST
@@ -40,12 +40,13 @@ def operating_point(model: Tables, broken: Collection[PartName]) -> Iterator[Pro
             yield Problem(f"{address}.power", value, "a speed under [operation]", "or give a torque")
 
 
-def train_problems(model: Tables, broken: Collection[PartName]) -> Iterator[Problem]:
+def train_problems(layout: Layout, broken: Collection[PartName]) -> Iterator[Problem]:
     """Loops with two ratios, speed ratios against the train, torques out of balance."""
+    model = layout.model
     if not model.shafts or model.reference_shaft not in model.shafts:
         return
-    train, problems = walk(model)
+    problems = layout.train_problems
     if _OF_THE_TRAIN.isdisjoint(table for table, _ in broken):
-        yield from problems or applied_torques(model, train)[1]
+        yield from problems or applied_torques(layout)[1]
     else:  # a loop that is there has its two ratios; a shaft's own ratio may be wrong only because of the mistake before
         yield from (problem for problem in problems if not problem.address.startswith("shafts."))

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rotorgear.errors import Problem
-from rotorgear.model.layout.train import Train
+from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.operation import Load
-from rotorgear.model.parts.tables import Tables
 
 
 @dataclass(frozen=True)
@@ -20,30 +19,26 @@ class AppliedTorque:
     torque: float
 
 
-def applied_torques(model: Tables, train: Train) -> tuple[list[AppliedTorque], list[Problem]]:
+def applied_torques(layout: Layout) -> tuple[list[AppliedTorque], list[Problem]]:
     """Return the torques that drive and load the train, balanced in power, and the problems where they can't be."""
-    loads, problems = _loads(model, train)
+    loads, problems = _loads(layout)
     found: list[AppliedTorque] = []
     open_ends: list[tuple[str, Load]] = []
     for name, load in loads.items():
-        torque = _size(model, train, load)
-        z = model.shafts[load.shaft].station(load.at if load.at is not None else _default_end(load.kind))
+        torque = _size(layout, load)
         if torque is None:
             open_ends.append((name, load))
         else:
-            sign = train.sense(load.shaft) * (1 if load.kind == "input" else -1)
-            found.append(AppliedTorque(name, load.shaft, z, sign * torque))
+            sign = layout.train.sense(load.shaft) * (1 if load.kind == "input" else -1)
+            found.append(AppliedTorque(name, *layout.load_place(load), sign * torque))
     if problems or not loads:
         return found, problems
-    return _balanced(model, train, found, open_ends)
+    return _balanced(layout, found, open_ends)
 
 
-def _default_end(kind: str) -> str:
-    return "start" if kind == "input" else "end"
-
-
-def _loads(model: Tables, train: Train) -> tuple[dict[str, Load], list[Problem]]:
+def _loads(layout: Layout) -> tuple[dict[str, Load], list[Problem]]:
     """Merge [operation] and [loads]; loads on shafts that are not driven are problems."""
+    model = layout.model
     loads = {f"loads.{name}": load for name, load in model.loads.items()}
     operation = model.operation
     if operation and (operation.power is not None or operation.torque is not None):
@@ -60,22 +55,24 @@ def _loads(model: Tables, train: Train) -> tuple[dict[str, Load], list[Problem]]
             "no mesh or coupling leads to it from the input shaft",
         )
         for name, load in loads.items()
-        if train.ratios[load.shaft] == 0
+        if layout.train.ratios[load.shaft] == 0
     ]
     return ({} if problems else loads), problems
 
 
-def _size(model: Tables, train: Train, load: Load) -> float | None:
+def _size(layout: Layout, load: Load) -> float | None:
     """Size of a load's torque in N m, given or from its power; None where it takes the rest."""
-    if load.power is None or model.operation is None or not model.operation.speed:
+    operation = layout.model.operation
+    if load.power is None or operation is None or not operation.speed:
         return load.torque
-    return load.power / abs(model.operation.speed * train.ratio(load.shaft))
+    return load.power / abs(operation.speed * layout.train.ratio(load.shaft))
 
 
 def _balanced(
-    model: Tables, train: Train, found: list[AppliedTorque], open_ends: list[tuple[str, Load]]
+    layout: Layout, found: list[AppliedTorque], open_ends: list[tuple[str, Load]]
 ) -> tuple[list[AppliedTorque], list[Problem]]:
     """Close the balance of power of each connected part of the train with its one open end, or refuse."""
+    train = layout.train
     problems: list[Problem] = []
     for group in sorted(
         {train.group[item.shaft] for item in found} | {train.group[load.shaft] for _, load in open_ends}
@@ -91,14 +88,13 @@ def _balanced(
             )
         elif ends:
             name, load = ends[0]
-            z = model.shafts[load.shaft].station(load.at if load.at is not None else _default_end(load.kind))
             torque = -excess / train.ratio(load.shaft)
             wanted = train.sense(load.shaft) * (1 if load.kind == "input" else -1)
             if torque * wanted < 0.0:
                 text = f"to balance the other loads this {load.kind} would need {abs(torque):.6g} N m against its sense"
                 other = "output" if load.kind == "input" else "input"
                 problems.append(Problem(name, "", text, f"change the other torques, or make it an {other}"))
-            found.append(AppliedTorque(name, load.shaft, z, torque))
+            found.append(AppliedTorque(name, *layout.load_place(load), torque))
         elif abs(excess) > 1e-6 * scale:
             problems.append(
                 Problem(

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.applied_torques import AppliedTorque
-from rotorgear.model.layout.mesh_geometry import Contact
+from rotorgear.model.layout.layout import Layout
+from rotorgear.model.layout.mesh_layout import Contact
+from rotorgear.model.layout.places import Place
 from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.tables import Tables
 
@@ -25,7 +27,7 @@ _SAME_PLACE = 1e-9
 class _Network:
     """Nodes in torsion by number and the springs between them. Places that a rigid stretch of shaft joins are one node."""
 
-    def __init__(self, model: Tables, places: Sequence[tuple[str, float]]) -> None:
+    def __init__(self, model: Tables, places: Sequence[Place]) -> None:
         from rotorgear.elements.shaft import torsional_flexibility
 
         self.size = 0
@@ -52,14 +54,11 @@ class _Network:
         return self._nodes[shaft][0][1] if self._nodes[shaft] else None
 
 
-def contact_forces(
-    model: Tables, train: Train, applied: Sequence[AppliedTorque], lines: Sequence[Contact]
-) -> list[float]:
+def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequence[Contact]) -> list[float]:
     """Signed normal force of each contact in N: positive where the pinion is turned positively into the gear.
 
     Args:
-        model: a checked model.
-        train: its train, for the groups that turn together.
+        layout: of a checked model.
         applied: torques that balance in each group.
         lines: the contacts.
 
@@ -68,13 +67,15 @@ def contact_forces(
     """
     import numpy as np
 
-    couplings = _torsional_couplings(model)
-    ends = [
-        ((model.gears[line.pinion].shaft, line.pinion_z), (model.gears[line.gear].shaft, line.gear_z)) for line in lines
+    couplings = [
+        (layout.places(f"couplings.{name}"), coupling.stiffness.as_rows()[5][5])
+        for name, coupling in layout.model.couplings.items()
+        if coupling.turns_both
     ]
-    places = [place for pair in (*ends, *(pair for *pair, _ in couplings)) for place in pair]
-    network = _Network(model, [*places, *((item.shaft, item.z) for item in applied)])
-    network.springs += [(network.node(*first), network.node(*second), k) for first, second, k in couplings]
+    ends = [(Place(line.pinion_shaft, line.pinion_z), Place(line.gear_shaft, line.gear_z)) for line in lines]
+    places = [place for pair in (*ends, *(pair for pair, _ in couplings)) for place in pair]
+    network = _Network(layout.model, [*places, *(Place(item.shaft, item.z) for item in applied)])
+    network.springs += [(network.node(*first), network.node(*second), k) for (first, second), k in couplings]
 
     squeeze = np.zeros(
         (len(lines), network.size)
@@ -87,7 +88,7 @@ def contact_forces(
     for item in applied:
         torques[network.node(item.shaft, item.z)] += item.torque
     K = _stiffness_of_springs(network) + (squeeze.T * stiffness) @ squeeze
-    return [float(force) for force in stiffness * (squeeze @ _twist(K, torques, _held(network, train)))]
+    return [float(force) for force in stiffness * (squeeze @ _twist(K, torques, _held(network, layout.train)))]
 
 
 def _stiffness_of_springs(network: _Network) -> np.ndarray:
@@ -116,19 +117,6 @@ def _twist(K: np.ndarray, torques: np.ndarray, held: list[int]) -> np.ndarray:
             "than numbers can hold. Check the smallest and the largest of them."
         ) from None
     return twist
-
-
-def _torsional_couplings(model: Tables) -> list[tuple[tuple[str, float], tuple[str, float], float]]:
-    """Both places and the torsional stiffness of each coupling that has one."""
-    return [
-        (
-            (item.from_shaft, model.shafts[item.from_shaft].station(item.from_at)),
-            (item.to_shaft, model.shafts[item.to_shaft].station(item.to_at)),
-            item.stiffness.as_rows()[5][5],
-        )
-        for item in model.couplings.values()
-        if item.stiffness.as_rows()[5][5] > 0.0
-    ]
 
 
 def _held(network: _Network, train: Train) -> list[int]:

@@ -77,7 +77,7 @@ def links(model: Tables) -> list[Link]:
         if ratio is not None:
             found.append(Link(f"meshes.{name}", pinion.shaft, gear.shaft, ratio))
     for name, coupling in model.couplings.items():
-        if coupling.stiffness.as_rows()[5][5] > 0.0:
+        if coupling.turns_both:
             found.append(Link(f"couplings.{name}", coupling.from_shaft, coupling.to_shaft, Fraction(1)))
     return [link for link in found if link.from_shaft in model.shafts and link.to_shaft in model.shafts]
 
@@ -174,11 +174,3 @@ def _contradictions(model: Tables, train: Train) -> list[Problem]:
             )
         )
     return found
-
-
-def mesh_frequency(model: Tables, train: Train, mesh: str, speed: float) -> float | None:
-    """Mesh frequency in Hz at a speed of the reference shaft in rad/s; None where no teeth are given."""
-    gear = model.gears[model.meshes[mesh].pinion]
-    if gear.teeth is None:
-        return None
-    return abs(train.ratio(gear.shaft) * speed) * gear.teeth / (2.0 * math.pi)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numbers
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import (
     AfterValidator,
@@ -59,6 +59,31 @@ class Part(BaseModel):
             if name in KEYS.get(type(self).__name__, {}):
                 return getattr(self, current_key(type(self).__name__, name))
             return super().__getattr__(name)
+
+    # What a part derives from its fields (cached properties) stands in __dict__ beside them, where pydantic would copy and
+    # pickle it: a copy with other fields would go on to answer with the old values, and lazy containers don't pickle.
+    def __copy__(self) -> Self:
+        twin = super().__copy__()
+        for name in twin.__dict__.keys() - type(self).model_fields.keys():
+            del twin.__dict__[name]
+        return twin
+
+    def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
+        return BaseModel.__deepcopy__(self.__copy__(), memo)
+
+    def __getstate__(self) -> dict[Any, Any]:
+        state = super().__getstate__()
+        fields = type(self).model_fields
+        return {**state, "__dict__": {name: value for name, value in self.__dict__.items() if name in fields}}
+
+    def __eq__(self, other: object) -> bool:
+        # Field by field: pydantic compares what is derived as well where both have derived it.
+        return type(self) is type(other) and all(
+            getattr(self, name) == getattr(other, name) for name in type(self).model_fields
+        )
+
+    def __hash__(self) -> int:
+        return hash((type(self), *(getattr(self, name) for name in type(self).model_fields)))
 
 
 def refuse(text: str) -> PydanticCustomError:

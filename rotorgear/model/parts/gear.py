@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Literal
 
 from pydantic import Field
 
+from rotorgear.gears.geometry.backlash import Allowance
+from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.model.parts.fields import (
     Angle,
     Inertia,
@@ -93,6 +96,29 @@ class Gear(Part):
     def lumped(self) -> bool:
         """Whether the gear is given by its base radius instead of its teeth."""
         return self.base_radius is not None
+
+    @cached_property
+    def geometry(self) -> GearGeometry | None:
+        """ISO 21771 geometry of a gear given by its teeth; None for a lumped gear or one with missing data."""
+        if self.lumped or self.teeth is None or self.normal_module is None:
+            return None
+        return GearGeometry(
+            teeth=self.teeth,
+            normal_module=self.normal_module,
+            normal_pressure_angle=self.normal_pressure_angle,
+            helix_angle=self.helix_angle or 0.0,
+            profile_shift=self.profile_shift,
+            addendum_factor=self.addendum_factor,
+            dedendum_factor=self.dedendum_factor,
+            tip_diameter=self.tip_diameter,
+            root_radius_factor=self.root_radius_factor,
+        )
+
+    @property
+    def allowance(self) -> Allowance:
+        """Allowances of the normal tooth thickness."""
+        upper = self.upper_thickness_allowance
+        return Allowance(upper, upper if self.lower_thickness_allowance is None else self.lower_thickness_allowance)
 
     @property
     def node_count(self) -> int:

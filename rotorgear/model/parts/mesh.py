@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal
+import warnings
+from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
 from rotorgear.model.parts.fields import (
@@ -17,6 +18,7 @@ from rotorgear.model.parts.fields import (
     PositiveRatio,
     Ratio,
     Viscosity,
+    refuse,
 )
 from rotorgear.model.parts.flank import ToothFeTable
 from rotorgear.model.parts.stiffness_field import StiffnessValue
@@ -44,7 +46,9 @@ class Mesh(Part):
     )
     application_factor: PositiveRatio = Field(1.0, description="application factor K_A of ISO 6336, for K_v")
     stagger: Ratio = Field(
-        0.0, description="herringbone: lead of the helix at larger z in mesh periods, 0 or 0.5 as a rule"
+        0.0,
+        description="herringbone: share of a pitch by which the pinion's teeth at the larger z are ahead, where the input shaft "
+        "turns about +z; 0 in phase, 0.5 staggered",
     )
     misalignment: Length = Field(
         0.0, description="distance of the flanks at the end of larger z of the common face less that at its other end"
@@ -65,10 +69,6 @@ class Mesh(Part):
     )
     helix_index_error: Length = Field(
         0.0, description="gap that the helix at the larger z of a herringbone has beside that"
-    )
-    helix_stagger: Ratio = Field(
-        0.0,
-        description="herringbone: by how many pitches the teeth at the larger z are ahead; 0 in phase, 0.5 staggered",
     )
     phase: Angle | None = Field(
         None,
@@ -109,3 +109,17 @@ class Mesh(Part):
         "continuous; default: 2 % of the mean deflection. With penetration: the penetration at which the coefficient has its "
         "given value; default: the mean deflection",
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read_old_key(cls, data: Any) -> Any:
+        """`helix_stagger` was the phase of the helices, `stagger` that of their stiffness only: one physical number."""
+        if not isinstance(data, dict) or "helix_stagger" not in data:
+            return data
+        rest = {key: value for key, value in data.items() if key != "helix_stagger"}
+        old = data["helix_stagger"]
+        if rest.setdefault("stagger", old) != old:
+            raise refuse("stagger only: helix_stagger is its old name, and the two differ")
+        mesh = f"mesh of '{data.get('pinion')}' and '{data.get('gear')}'"
+        warnings.warn(f"{mesh}: the key helix_stagger is now called stagger", FutureWarning, stacklevel=2)
+        return rest

@@ -157,3 +157,8 @@ class Coupling(Part):
     to_at: Station = Field("start", description="z on the second shaft; default: its start")
     stiffness: StiffnessMatrix = Field(description="stiffness; with a torsional one, both shafts turn at one speed")
     damping: DampingMatrix | None = Field(None, description="damping; default: none")
+
+    @property
+    def turns_both(self) -> bool:
+        """Whether its torsional stiffness makes both shafts turn at one speed."""
+        return self.stiffness.as_rows()[5][5] > 0.0

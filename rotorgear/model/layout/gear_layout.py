@@ -1,0 +1,165 @@
+"""A gear on its shaft: what follows from the gear, the shaft and the material, before any load.
+
+Each fact is derived when it is first asked for and then kept, so that checks may ask for those that the sound parts of a
+broken file allow.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from rotorgear.gears.geometry.blank import RigidBody, gear_blank
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.model.layout.bodies import NodeBody, given_body, inertia_is_given
+from rotorgear.model.layout.places import Place
+from rotorgear.model.parts.flank import Flank
+from rotorgear.model.parts.tables import Tables
+
+if TYPE_CHECKING:
+    from rotorgear.gears.geometry.flank import FlankModification
+    from rotorgear.gears.stiffness.mesh_stiffness import ToothBody
+
+
+class GearLayout:
+    """One gear of a model.
+
+    Attributes:
+        name, part: its name and what the file says of it.
+        shaft: name of its shaft; shaft_part: that shaft.
+        material: of its blank and teeth.
+    """
+
+    def __init__(self, model: Tables, name: str) -> None:
+        self.name = name
+        self.part = model.gears[name]
+        self.shaft = self.part.shaft
+        self.shaft_part = model.shafts[self.shaft]
+        self.material = model.material_of(self.shaft, name=self.part.material)
+
+    @property
+    def geometry(self) -> GearGeometry | None:
+        """ISO 21771 geometry; None for a lumped gear."""
+        return self.part.geometry
+
+    @property
+    def base_radius(self) -> float:
+        """r_b in m, given or from the teeth."""
+        return self.geometry.base_radius if self.geometry else (self.part.base_radius or 0.0)
+
+    @property
+    def base_helix_angle(self) -> float:
+        """b_b in rad, given or from the teeth; 0 for a spur gear."""
+        return self.geometry.base_helix_angle if self.geometry else (self.part.base_helix_angle or 0.0)
+
+    @property
+    def hand(self) -> int:
+        """+1 for a right-hand helix (of a herringbone: that at the smaller z), -1 for a left-hand one, 0 for a spur gear."""
+        return 0 if self.part.kind == "spur" else {"right": 1, "left": -1, None: 0}[self.part.hand]
+
+    @property
+    def helices(self) -> int:
+        """2 for a herringbone, else 1."""
+        return 2 if self.part.kind == "herringbone" else 1
+
+    @property
+    def z(self) -> float:
+        """z of the gear's middle in m."""
+        return self.shaft_part.station(self.part.at)
+
+    @property
+    def planes(self) -> tuple[float, ...]:
+        """z in m of the mid-plane of each helix, from left to right."""
+        offset = self.part.helix_offset
+        return (self.z - offset, self.z + offset) if self.helices == 2 else (self.z,)
+
+    @property
+    def places(self) -> tuple[Place, ...]:
+        """Where its nodes stand: one, or one for each helix from left to right."""
+        z = self.planes if self.part.node_count == 2 else (self.z,)
+        return tuple(Place(self.shaft, at) for at in z)
+
+    @property
+    def bore(self) -> float:
+        """Bore in m: given, or the shaft's diameter there."""
+        if self.part.body.bore is not None:
+            return self.part.body.bore
+        return max(self.shaft_part.diameter_at(place.z) for place in self.places)
+
+    @cached_property
+    def body(self) -> RigidBody:
+        """Mass and inertias of the whole gear about its middle, given or from its blank.
+
+        Raises:
+            ValueError: the sizes make no blank; the text is what was expected.
+        """
+        gear = self.part
+        if inertia_is_given(gear):
+            return given_body(gear)
+        if self.geometry is None or not gear.width:
+            raise ValueError("mass and inertias, or teeth, module and width to compute them from")
+        helix = gear_blank(
+            self.geometry.reference_diameter,
+            self.bore,
+            gear.width,
+            self.material.density,
+            root_diameter=self.geometry.root_diameter,
+            rim_thickness=gear.body.rim_thickness,
+            web_thickness=gear.body.web_thickness,
+            hub_diameter=gear.body.hub_diameter,
+            hub_width=gear.body.hub_width,
+        )
+        if self.helices == 1:
+            return helix
+        steiner = helix.mass * gear.helix_offset**2
+        return RigidBody(2.0 * helix.mass, 2.0 * helix.polar_inertia, 2.0 * (helix.diametral_inertia + steiner))
+
+    @property
+    def node_bodies(self) -> tuple[NodeBody, ...]:
+        """The body at each node. Two halves at +-offset have the mass and inertias of the whole when tied rigidly."""
+        body = self.body
+        if len(self.places) == 2:
+            tilt = 0.5 * (body.diametral_inertia - body.mass * self.part.helix_offset**2)
+            body = RigidBody(0.5 * body.mass, 0.5 * body.polar_inertia, tilt)
+        return tuple(NodeBody(f"gears.{self.name}", *place, body) for place in self.places)
+
+    @cached_property
+    def flank(self) -> FlankModification:
+        """Modifications of the flank along roll length and face; none for a lumped gear."""
+        from rotorgear.gears.geometry.flank import FlankModification
+        from rotorgear.gears.geometry.outline import tooth_outline
+
+        geometry = self.geometry
+        given = self.part.flank
+        if geometry is None or (given == Flank() and not self.part.tip_relief):
+            return FlankModification()
+        outline = tooth_outline(geometry)
+
+        def roll(diameter: float | None) -> float:
+            return math.sqrt(max(0.25 * (diameter or 0.0) ** 2 - geometry.base_radius**2, 0.0))
+
+        return FlankModification(
+            tip_relief=self.part.tip_relief,
+            tip_relief_length=outline.tip_roll_length - roll(self.part.tip_relief_diameter),
+            root_relief=given.root_relief,
+            root_relief_length=roll(given.root_relief_diameter) - outline.form_roll_length,
+            crowning=given.crowning,
+            end_relief=given.end_relief,
+            end_relief_length=given.end_relief_length,
+            helix_slope=given.helix_slope,
+            pitch_error=tuple((int(tooth), error) for tooth, error in sorted(given.pitch_errors.items())),
+        )
+
+    @property
+    def tooth_body(self) -> ToothBody:
+        """Material and blank that carry its teeth."""
+        from rotorgear.gears.stiffness.mesh_stiffness import ToothBody
+
+        rim = self.part.body.rim_thickness
+        web = self.part.body.web_thickness
+        inner = 0.5 * self.bore
+        if rim is not None and self.geometry is not None:
+            inner = 0.5 * self.geometry.root_diameter - rim
+        share = 1.0 if web is None or not self.part.width else web / self.part.width
+        return ToothBody(self.material.youngs_modulus, self.material.nu, inner, share, rim)

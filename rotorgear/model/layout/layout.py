@@ -1,0 +1,146 @@
+"""The layout of a model: everything that follows from it before any load flows, each fact derived once.
+
+A fact is derived when it is first asked for. So checks ask the same objects as the analyses do, for as much as the sound
+parts of a broken file allow.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from functools import cached_property
+from typing import Any
+
+from rotorgear.errors import Problem
+from rotorgear.gears.geometry.blank import RigidBody
+from rotorgear.model.layout.assembly import Assembly, put_together
+from rotorgear.model.layout.bodies import NodeBody, disk_body
+from rotorgear.model.layout.gear_layout import GearLayout
+from rotorgear.model.layout.mesh_layout import MeshLayout
+from rotorgear.model.layout.places import Place
+from rotorgear.model.layout.train import Train, walk
+from rotorgear.model.parts.operation import Load
+from rotorgear.model.parts.tables import Tables
+
+
+class Layout:
+    """What follows from the parts of a model alone. What depends on loads is a `MeanLoad`.
+
+    Attributes:
+        model: the parts; those that the layout is asked for must be in order.
+    """
+
+    def __init__(self, model: Tables) -> None:
+        self.model = model
+        self._gears: dict[str, GearLayout] = {}
+        self._meshes: dict[str, MeshLayout] = {}
+
+    # Derived values are cheaper to derive again than to carry to another process.
+    def __reduce__(self) -> tuple[Callable[[Tables], Layout], tuple[Tables]]:
+        return Layout, (self.model,)
+
+    def gear(self, name: str) -> GearLayout:
+        """A gear on its shaft."""
+        if name not in self._gears:
+            self._gears[name] = GearLayout(self.model, name)
+        return self._gears[name]
+
+    def mesh(self, name: str) -> MeshLayout:
+        """Two gears in mesh."""
+        if name not in self._meshes:
+            part = self.model.meshes[name]
+            self._meshes[name] = MeshLayout(name, part, self.gear(part.pinion), self.gear(part.gear))
+        return self._meshes[name]
+
+    @property
+    def gears(self) -> Iterator[GearLayout]:
+        """All gears in the order of the file."""
+        return (self.gear(name) for name in self.model.gears)
+
+    @property
+    def meshes(self) -> Iterator[MeshLayout]:
+        """All meshes in the order of the file."""
+        return (self.mesh(name) for name in self.model.meshes)
+
+    @cached_property
+    def _walked(self) -> tuple[Train, list[Problem]]:
+        return walk(self.model)
+
+    @property
+    def train(self) -> Train:
+        """Speed and sense of every shaft."""
+        return self._walked[0]
+
+    @property
+    def train_problems(self) -> list[Problem]:
+        """Loops with two ratios, and given speed ratios that contradict the train."""
+        return self._walked[1]
+
+    @property
+    def direction(self) -> int:
+        """+1 or -1: sense in which the reference shaft turns at the operating speed; +1 where the file gives none."""
+        speed = self.model.operation.speed if self.model.operation else None
+        return -1 if speed is not None and speed < 0.0 else 1
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """Angles of all gears, and how loops close."""
+        rigid = [(c.from_shaft, c.to_shaft) for c in self.model.couplings.values() if c.turns_both]
+        clocking = {name: gear.clocking for name, gear in self.model.gears.items() if gear.clocking is not None}
+        return put_together(self.train, self.meshes, rigid, clocking)
+
+    def mesh_frequency(self, mesh: str, speed: float) -> float | None:
+        """Mesh frequency in Hz at a speed of the reference shaft in rad/s; None where no teeth are given."""
+        pinion = self.mesh(mesh).pinion
+        if pinion.part.teeth is None:
+            return None
+        return abs(self.train.ratio(pinion.shaft) * speed) * pinion.part.teeth / (2.0 * math.pi)
+
+    def places(self, address: str) -> tuple[Place, ...]:
+        """Where a part stands, such as "bearings.left": both ends of a coupling, both nodes of a herringbone gear, else one.
+
+        A load without a place is at the start of its shaft if it is an input, else at the end. A point on another part is
+        where that part's first node is.
+        """
+        table, _, name = address.partition(".")
+        part: Any = getattr(self.model, table)[name]
+        if table == "gears":
+            return self.gear(name).places
+        if table == "couplings":
+            return self.at(part.from_shaft, part.from_at), self.at(part.to_shaft, part.to_at)
+        if table == "loads":
+            return (self.load_place(part),)
+        if table == "points" and part.on is not None:
+            return self.places(part.on)[:1]
+        return (self.at(part.shaft, part.at),)
+
+    def place(self, address: str) -> Place:
+        """The (first) place of a part."""
+        return self.places(address)[0]
+
+    def at(self, shaft: str, at: float | str) -> Place:
+        """A place on a shaft: z in m, or "start" or "end"."""
+        return Place(shaft, self.model.shafts[shaft].station(at))
+
+    def load_place(self, load: Load) -> Place:
+        """Where a torque acts."""
+        end = "start" if load.kind == "input" else "end"
+        return self.at(load.shaft, end if load.at is None else load.at)
+
+    def disk_body(self, name: str) -> RigidBody:
+        """Mass and inertias of a disk.
+
+        Raises:
+            ValueError: the sizes make no disk; the text is what was expected.
+        """
+        return disk_body(self.model, self.model.disks[name])
+
+    @cached_property
+    def bodies(self) -> tuple[NodeBody, ...]:
+        """The rigid bodies of all gears, disks and point masses, one for each node."""
+        found = [body for gear in self.gears for body in gear.node_bodies]
+        others = {f"disks.{name}": self.disk_body(name) for name in self.model.disks}
+        for name, point in self.model.point_masses.items():
+            others[f"point_masses.{name}"] = RigidBody(point.mass, 0.0, 0.0)
+        found += [NodeBody(address, *self.place(address), body) for address, body in others.items()]
+        return tuple(found)

@@ -1,0 +1,323 @@
+"""Two gears in mesh: what follows from them, their axes and the mesh, before any load.
+
+The working pressure angle follows from the distance of the axes, cos a = (r_b1 + r_b2)/a_w (ISO 21771), the contact's
+plane from the overlap of the faces. Signs of flank and hand are left to `elements/gear_mesh.py`.
+
+What a file gives as stiffness acts along the flank normal of both helices together; a stiffness model answers in the
+transverse plane for one helix. Here the two are brought to one `MeshStiffness` for each helix.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.backlash import Backlash, normal_backlash
+from rotorgear.gears.geometry.pair import PairGeometry, pair_geometry, working_pressure_angle_from_shifts
+from rotorgear.model.layout.gear_layout import GearLayout
+from rotorgear.model.parts.mesh import Mesh
+
+if TYPE_CHECKING:
+    from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
+
+# Positions in a mesh period at which a stiffness model is asked.
+POSITIONS = 64
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One helix of a mesh, as the assembly needs it (m, rad, N/m).
+
+    Attributes:
+        mesh: name of the mesh.
+        helix: 0 for the only one or that at the smaller z, 1 for the other of a herringbone.
+        pinion, gear: names of the gears; pinion_shaft, gear_shaft: of their shafts.
+        pinion_z, gear_z: z of the two gear nodes.
+        contact_z: z of the middle of the common face.
+        hand: +1 right, -1 left hand of the pinion's helix, 0 for a spur gear.
+        psi: direction from pinion to gear from +x.
+        pressure_angle: working transverse pressure angle.
+        stiffness: along the flank normal; NaN where a contact stands for its geometry only.
+    """
+
+    mesh: str
+    helix: int
+    pinion: str
+    gear: str
+    pinion_shaft: str
+    gear_shaft: str
+    pinion_z: float
+    gear_z: float
+    contact_z: float
+    hand: int
+    psi: float
+    pressure_angle: float
+    base_helix_angle: float
+    pinion_base_radius: float
+    gear_base_radius: float
+    stiffness: float
+    contact_position: float
+
+
+class MeshLayout:
+    """One mesh of a model.
+
+    Attributes:
+        name, part: its name and what the file says of it.
+        pinion, gear: the two gears, as the file calls them.
+    """
+
+    def __init__(self, name: str, part: Mesh, pinion: GearLayout, gear: GearLayout) -> None:
+        self.name = name
+        self.part = part
+        self.pinion = pinion
+        self.gear = gear
+
+    @property
+    def gears(self) -> tuple[GearLayout, GearLayout]:
+        """Pinion and gear."""
+        return self.pinion, self.gear
+
+    @property
+    def helices(self) -> int:
+        """Helices of the mesh: 2 for a herringbone pair."""
+        return self.pinion.helices
+
+    @property
+    def has_teeth(self) -> bool:
+        """Whether both gears give their number of teeth."""
+        return bool(self.pinion.part.teeth and self.gear.part.teeth)
+
+    @cached_property
+    def centre_line(self) -> tuple[float, float] | None:
+        """Centre distance in m and direction from pinion to gear in rad; None where the shafts have no positions."""
+        first = self.pinion.shaft_part.position
+        second = self.gear.shaft_part.position
+        if first is None or second is None:
+            return None
+        dx = second[0] - first[0]
+        dy = second[1] - first[1]
+        return math.hypot(dx, dy), math.atan2(dy, dx)
+
+    @property
+    def psi(self) -> float:
+        """Direction from pinion to gear from +x in rad."""
+        return self.centre_line[1] if self.centre_line else (self.part.centre_line_angle or 0.0)
+
+    @cached_property
+    def pressure_angle(self) -> float:
+        """Working transverse pressure angle in rad."""
+        if self.centre_line is not None:
+            return math.acos(min((self.pinion.base_radius + self.gear.base_radius) / self.centre_line[0], 1.0))
+        if self.part.pressure_angle is not None:
+            return self.part.pressure_angle
+        if self.pinion.geometry and self.gear.geometry:
+            return working_pressure_angle_from_shifts(self.pinion.geometry, self.gear.geometry)
+        return self.pinion.part.transverse_pressure_angle or self.gear.part.transverse_pressure_angle or 0.0
+
+    @property
+    def width(self) -> float:
+        """Common face width in m of one helix: the smaller one given, 0 where none is."""
+        return min((gear.part.width for gear in self.gears if gear.part.width), default=0.0)
+
+    @cached_property
+    def pair(self) -> PairGeometry | None:
+        """Contact ratios and working circles; None for lumped gears.
+
+        Raises:
+            AnalysisError: gears that can't mesh on these axes.
+        """
+        if self.pinion.geometry is None or self.gear.geometry is None:
+            return None
+        distance = self.centre_line[0] if self.centre_line else None
+        return pair_geometry(self.pinion.geometry, self.gear.geometry, centre_distance=distance, width=self.width)
+
+    @cached_property
+    def backlash(self) -> Backlash:
+        """Normal backlash from the centre distance and the allowances.
+
+        Raises:
+            AnalysisError: gears that are given by their base radius.
+        """
+        if self.pinion.geometry is None or self.gear.geometry is None or self.pair is None:
+            raise AnalysisError(
+                f"meshes.{self.name}: gears given by their base radius have no backlash of their own; give one."
+            )
+        return normal_backlash(
+            self.pinion.geometry,
+            self.gear.geometry,
+            self.pair.centre_distance,
+            self.pinion.part.allowance,
+            self.gear.part.allowance,
+            self.part.centre_distance_allowance,
+        )
+
+    def face(self, helix: int) -> tuple[float, float] | None:
+        """z range in m where the two gears of one helix face each other; None where a width is missing."""
+        pinion = self.pinion.part.width
+        gear = self.gear.part.width
+        if not pinion or not gear:
+            return None
+        first = self.pinion.planes[helix]
+        second = self.gear.planes[helix]
+        return max(first - 0.5 * pinion, second - 0.5 * gear), min(first + 0.5 * pinion, second + 0.5 * gear)
+
+    @cached_property
+    def contacts(self) -> tuple[Contact, ...]:
+        """The contacts of the mesh, without stiffness: one, or two for a herringbone pair from left to right."""
+        found = []
+        for helix in range(self.helices):
+            pinion = self.pinion.places[helix if len(self.pinion.places) == 2 else 0]
+            gear = self.gear.places[helix if len(self.gear.places) == 2 else 0]
+            low, high = self.face(helix) or (self.pinion.planes[helix], self.gear.planes[helix])
+            contact = Contact(
+                mesh=self.name,
+                helix=helix,
+                pinion=self.pinion.name,
+                gear=self.gear.name,
+                pinion_shaft=pinion.shaft,
+                gear_shaft=gear.shaft,
+                pinion_z=pinion.z,
+                gear_z=gear.z,
+                contact_z=0.5 * (low + high),
+                hand=self.pinion.hand if helix == 0 else -self.pinion.hand,
+                psi=self.psi,
+                pressure_angle=self.pressure_angle,
+                base_helix_angle=self.pinion.base_helix_angle,
+                pinion_base_radius=self.pinion.base_radius,
+                gear_base_radius=self.gear.base_radius,
+                stiffness=math.nan,
+                contact_position=self.part.contact_position,
+            )
+            found.append(contact)
+        return tuple(found)
+
+    @property
+    def half_tooth(self) -> float:
+        """Half the angle of the pinion's tooth at the working circle in rad: a quarter of the pitch, and the profile shift."""
+        geometry = self.pinion.geometry
+        if geometry is None:
+            return 0.5 * math.pi / (self.pinion.part.teeth or 1)
+        working = 2.0 * geometry.base_radius / math.cos(self.pressure_angle)
+        return geometry.transverse_thickness(working) / working
+
+    @cached_property
+    def teeth(self) -> ToothPair:
+        """One helix with its teeth and blanks.
+
+        Raises:
+            AnalysisError: gears that are given by their base radius.
+        """
+        from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+        from rotorgear.gears.tooth_fe.settings import ToothFe
+
+        if self.pinion.geometry is None or self.gear.geometry is None or self.pair is None:
+            raise AnalysisError(f"meshes.{self.name}: gears given by their base radius have no teeth to look at.")
+        fe = self.part.tooth_fe
+        return ToothPair(
+            self.pinion.geometry,
+            self.gear.geometry,
+            self.pair,
+            self.width,
+            self.pinion.tooth_body,
+            self.gear.tooth_body,
+            self.pinion.flank,
+            self.gear.flank,
+            self.part.misalignment,
+            ToothFe(fe.preset, fe.body, fe.rim_thickness, fe.pitches, fe.exclude_torsion),
+        )
+
+    @property
+    def is_modelled(self) -> bool:
+        """Whether the file names a stiffness model."""
+        return isinstance(self.part.stiffness, str)
+
+    @property
+    def varies(self) -> bool:
+        """Whether the stiffness changes over the mesh period by itself: a list, a series or a model."""
+        return not isinstance(self.part.stiffness, int | float)
+
+    @property
+    def given_mean(self) -> float | None:
+        """Mean stiffness along the flank normal (N/m, both helices) that the file gives; None where it names a model."""
+        given = self.part.stiffness
+        if isinstance(given, str):
+            return None
+        return sum(given) / len(given) if isinstance(given, tuple) else given
+
+    def lead(self, helix: int, direction: int) -> float:
+        """By which share of a mesh period the teeth of a helix are ahead in time of those of the first one.
+
+        The stagger is how far the pinion's teeth at the larger z are ahead where the reference shaft turns about +z; turned
+        the other way, the same teeth are behind.
+        """
+        return direction * self.part.stagger if helix else 0.0
+
+    def helix_senses(self, sense: int = 1) -> tuple[int, ...]:
+        """For each helix +1 where contact runs ahead at larger z (the pinion's teeth lead there), -1 where it runs behind.
+
+        A right-hand helix is farther round about +z at larger z, so its flanks that push about +z (torque sense +1) lead
+        there. A spur gear counts as +1.
+        """
+        first = self.pinion.hand * sense if self.pinion.hand else 1
+        return (first, -first)[: self.helices]
+
+    def helix_stiffness(
+        self, normal_force: float | None = None, positions: int = POSITIONS, name: str | None = None, sense: int = 1
+    ) -> tuple[MeshStiffness, ...]:
+        """Stiffness of each helix over one mesh period, each counted from where its own teeth touch at the pitch point.
+
+        Args:
+            normal_force: mean force (N) along the flank normal on one helix; None where none flows.
+            positions: how many positions of one mesh period, for a stiffness model.
+            name: a stiffness model in place of what the file says.
+            sense: of the torque on the pinion about +z; it matters where flanks differ along the face.
+
+        Raises:
+            AnalysisError: teeth or a load that the stiffness model can't do.
+        """
+        from rotorgear.gears.stiffness.given import given_stiffness
+        from rotorgear.gears.stiffness_models import mesh_stiffness
+
+        given = name or self.part.stiffness
+        angle = self.pinion.base_helix_angle
+        # Rounding of the torque flow must not make another load: equal meshes are solved once.
+        load = None if not normal_force else float(f"{normal_force * math.cos(angle):.12g}")
+        if not isinstance(given, str):
+            values = given if isinstance(given, tuple) else (given,)
+            # A file gives both helices together, in phase: half of it is one helix.
+            one = given_stiffness([value / self.helices for value in values], angle, 1, load, positions)
+            return (one,) * self.helices
+        teeth = self.teeth
+        try:
+            return tuple(
+                mesh_stiffness(given, teeth if ahead > 0 else mirrored(teeth), load, positions)
+                for ahead in self.helix_senses(sense)
+            )
+        except AnalysisError as error:
+            raise AnalysisError(f"meshes.{self.name}: {error}") from None
+
+    def both_helices(self, helices: tuple[MeshStiffness, ...], lead: float | None = None) -> MeshStiffness:
+        """Stiffness of the whole mesh from that of its helices.
+
+        `lead` is the share of a mesh period by which the second helix is ahead along the path of contact, the stagger if
+        not given; where the gear drives, the path is run through backwards and it has the other sign.
+        """
+        if len(helices) == 1:
+            return helices[0]
+        return helices[0].of_both_helices(self.part.stagger if lead is None else lead, helices[1])
+
+    def stiffness(
+        self, normal_force: float | None = None, positions: int = POSITIONS, name: str | None = None, sense: int = 1
+    ) -> MeshStiffness:
+        """Stiffness of the whole mesh over one mesh period; arguments and errors as of `helix_stiffness`."""
+        return self.both_helices(self.helix_stiffness(normal_force, positions, name, sense))
+
+
+def mirrored(teeth: ToothPair) -> ToothPair:
+    """The pair seen from the other end of the face: that of the other hand, or with the other flanks in contact."""
+    flanks = [replace(flank, helix_slope=-flank.helix_slope) for flank in (teeth.first_flank, teeth.second_flank)]
+    return replace(teeth, misalignment=-teeth.misalignment, first_flank=flanks[0], second_flank=flanks[1])
