@@ -50,8 +50,8 @@ def _place_neighbours(model: Model, axes: dict[str, Axis], envelopes: dict[str, 
                 return True
     for mesh in model.meshes.values():
         for one, other in _both_ways(mesh.pinion, mesh.gear):
-            known = model.gears[one].shaft
-            new = model.gears[other].shaft
+            known = model.layout.gear(one).shaft
+            new = model.layout.gear(other).shaft
             if known not in axes or new in axes:
                 continue
             turn = math.pi if one == mesh.gear else 0.0

@@ -12,7 +12,6 @@ from rotorgear.export.attachment import Attachment, Skeleton
 from rotorgear.export.sizes import ball_radius, disk_size, helix_width, hidden_hole, pitch_radius
 from rotorgear.export.surface import Surface, ball, hollow_cylinder, join, make_surface, revolve, twisted_prism
 from rotorgear.export.teeth import DISK_GROOVES, contour_of, grooved_contour, tooth_phases, twist_rates
-from rotorgear.model.layout.mesh_geometry import gear_geometry, helix_planes, node_positions
 from rotorgear.model.model import Model
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.shaft import Shaft
@@ -108,20 +107,17 @@ def _stripe(outer: np.ndarray, angle: float) -> Surface:
 def gear_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
     """Yield the helices of each gear with their teeth, and the web and hub of one that has them."""
     phases = tooth_phases(model, skeleton.axes)
-    for name, gear in model.gears.items():
-        planes = helix_planes(model, name)
-        nodes = node_positions(model, name)
-        rates = twist_rates(model, name)
-        for number, (plane, rate) in enumerate(zip(planes, rates, strict=True)):
-            surface = _helix(model, name, plane, rate, phases[name], detail)
+    for gear in model.layout.gears:
+        for number, (plane, rate) in enumerate(zip(gear.planes, twist_rates(gear), strict=True)):
+            surface = _helix(model, gear.name, plane, rate, phases[gear.name], detail)
             placed = surface.moved((*skeleton.axes[gear.shaft], 0.0))
-            node = nodes[number if len(nodes) == 2 else 0]
-            attachment = skeleton.rigid(gear.shaft, node, placed.points)
-            yield Piece(f"gears.{name}", "gear", gear.shaft, placed, attachment)
+            place = gear.places[number if len(gear.places) == 2 else 0]
+            attachment = skeleton.rigid(*place, placed.points)
+            yield Piece(f"gears.{gear.name}", "gear", gear.shaft, placed, attachment)
 
 
 def _helix(model: Model, name: str, plane: float, rate: float, phase: float, detail: Detail) -> Surface:
-    gear = model.gears[name]
+    gear = model.layout.gear(name).part
     half = 0.5 * helix_width(model, name)
     angles, radii = contour_of(model, name, pitch_radius(model, name), detail.flank_points, detail.arc_points)
     steps = max(math.ceil(abs(rate) * 2.0 * half / detail.twist_step), 1)
@@ -142,7 +138,7 @@ def _hole(model: Model, shaft: str, low: float, high: float, bore: float | None,
 
 def _rim_radius(gear: Gear) -> float | None:
     """Inner radius of the rim; None for a solid gear."""
-    geometry = gear_geometry(gear)
+    geometry = gear.geometry
     if geometry is None or gear.body.rim_thickness is None:
         return None
     return 0.5 * geometry.root_diameter - gear.body.rim_thickness
@@ -162,19 +158,18 @@ def disk_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Pi
     """Yield each disk as a cylinder with four grooves, by which its rotation is seen."""
     for name, disk in model.disks.items():
         size = disk_size(model, name)
-        shaft = model.shafts[disk.shaft]
         angles, radii = grooved_contour(0.5 * size.diameter, DISK_GROOVES, 3 * detail.arc_points)
         hole = _hole(model, disk.shaft, size.low, size.high, disk.bore, float(radii.min()))
         surface = twisted_prism(angles, radii, np.array([size.low, size.high]), np.zeros(2), hole)
         placed = surface.moved((*skeleton.axes[disk.shaft], 0.0))
-        attachment = skeleton.rigid(disk.shaft, shaft.station(disk.at), placed.points)
+        attachment = skeleton.rigid(*model.layout.place(f"disks.{name}"), placed.points)
         yield Piece(f"disks.{name}", "disk", disk.shaft, placed, attachment)
 
 
 def point_mass_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
     """Yield each point mass as a ball."""
     for name, point in model.point_masses.items():
-        z = model.shafts[point.shaft].station(point.at)
+        z = model.layout.place(f"point_masses.{name}").z
         placed = ball(ball_radius(model, name), detail.segments).moved((*skeleton.axes[point.shaft], z))
         attachment = skeleton.rigid(point.shaft, z, placed.points)
         yield Piece(f"point_masses.{name}", "point mass", point.shaft, placed, attachment)

@@ -31,7 +31,7 @@ _SLEEVE = 1.15
 def bearing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
     """Yield each bearing as a ring between shaft and housing, and a foot between housing and ground."""
     for name, bearing in model.bearings.items():
-        z = model.shafts[bearing.shaft].station(bearing.at)
+        z = model.layout.place(f"bearings.{name}").z
         radius = 0.5 * shaft_diameter(model, bearing.shaft, bearing.at)
         half = _RING_HALF * radius
         housing = _RING * radius
@@ -55,7 +55,7 @@ def _standing(skeleton: Skeleton, pedestal: str | None, points: np.ndarray) -> A
 def support_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
     """Yield each support as the sign for the ground below the shaft."""
     for name, support in model.supports.items():
-        z = model.shafts[support.shaft].station(support.at)
+        z = model.layout.place(f"supports.{name}").z
         radius = 0.5 * shaft_diameter(model, support.shaft, support.at)
         bottom = -(1.0 + _SIGN_HEIGHT) * radius
         thickness = _SIGN_THICKNESS * radius
@@ -74,7 +74,7 @@ def coupling_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterato
         first_side = -1.0 if middles[0] <= middles[1] else 1.0
         radius = 0.5 * max(shaft_diameter(model, *end) for end in ends)
         for (shaft, at), side in zip(ends, (first_side, -first_side), strict=True):
-            z = model.shafts[shaft].station(at)
+            z = model.layout.at(shaft, at).z
             low, high = sorted((z, z + side * _FLANGE_WIDTH * radius))
             hole = 0.45 * model.shafts[shaft].diameter_at(z)
             flange = hollow_cylinder(_FLANGE * radius, hole, low, high, detail.segments)
@@ -89,7 +89,7 @@ def _link(
 ) -> Iterator[Piece]:
     """Yield a sleeve between flanges that face each other, or a bar to a shaft that is shown beside the first."""
     shafts = coupling.from_shaft, coupling.to_shaft
-    z = [model.shafts[s].station(at) for s, at in zip(shafts, (coupling.from_at, coupling.to_at), strict=True)]
+    z = [place.z for place in model.layout.places(f"couplings.{name}")]
     start, end = (np.array([*skeleton.axes[s], place]) for s, place in zip(shafts, z, strict=True))
     if np.allclose(start, end, rtol=0.0, atol=1e-6 * radius):
         return

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from rotorgear.model.layout.mesh_geometry import base_radius, gear_geometry, helix_planes, pressure_angle
 from rotorgear.model.model import Model
 from rotorgear.model.parts.bodies import Disk
 
@@ -31,25 +30,25 @@ class BodySize:
 
 def pitch_radius(model: Model, name: str) -> float:
     """Working pitch radius in m of a gear in its first mesh; without a mesh that of its own pressure angle."""
-    gear = model.gears[name]
-    for mesh_name, mesh in model.meshes.items():
-        if name in (mesh.pinion, mesh.gear):
-            return base_radius(gear) / math.cos(pressure_angle(model, mesh_name))
-    geometry = gear_geometry(gear)
-    angle = geometry.transverse_pressure_angle if geometry else gear.transverse_pressure_angle or 0.0
-    return base_radius(gear) / math.cos(angle)
+    gear = model.layout.gear(name)
+    for mesh in model.layout.meshes:
+        if gear in mesh.gears:
+            return gear.base_radius / math.cos(mesh.pressure_angle)
+    geometry = gear.geometry
+    angle = geometry.transverse_pressure_angle if geometry else gear.part.transverse_pressure_angle or 0.0
+    return gear.base_radius / math.cos(angle)
 
 
 def helix_width(model: Model, name: str) -> float:
     """Width in m of one helix as it is shown."""
-    return model.gears[name].width or LUMPED_WIDTH * pitch_radius(model, name)
+    return model.layout.gear(name).part.width or LUMPED_WIDTH * pitch_radius(model, name)
 
 
 def gear_size(model: Model, name: str) -> BodySize:
     """Tip cylinder of a gear over all its helices."""
-    geometry = gear_geometry(model.gears[name])
+    geometry = model.layout.gear(name).geometry
     diameter = geometry.effective_tip_diameter if geometry else 2.0 * pitch_radius(model, name)
-    planes = helix_planes(model, name)
+    planes = model.layout.gear(name).planes
     half = 0.5 * helix_width(model, name)
     return BodySize(diameter, planes[0] - half, planes[-1] + half)
 
@@ -58,7 +57,7 @@ def disk_size(model: Model, name: str) -> BodySize:
     """Cylinder of a disk, never thinner than the shaft it sits on."""
     disk = model.disks[name]
     shaft = model.shafts[disk.shaft]
-    z = shaft.station(disk.at)
+    z = model.layout.place(f"disks.{name}").z
     diameter, width = _cylinder(disk, model.material_of(disk.shaft, name=disk.material).density)
     diameter = max(diameter, 1.3 * shaft.diameter_at(z)) or NOMINAL_DIAMETER
     width = width or 0.2 * diameter
@@ -91,7 +90,7 @@ def ball_radius(model: Model, name: str) -> float:
 def shaft_diameter(model: Model, shaft: str, at: float | str) -> float:
     """Diameter in m of a shaft at a place, or a nominal one for a shaft without sections; never 0."""
     own = model.shafts[shaft]
-    found = own.diameter_at(own.station(at))
+    found = own.diameter_at(model.layout.at(shaft, at).z)
     if found:
         return found
     bodies = [body.diameter for body in bodies_on(model, shaft)]

@@ -11,14 +11,8 @@ import math
 import numpy as np
 
 from rotorgear.gears.geometry.geometry import GearGeometry
-from rotorgear.model.layout.mesh_geometry import (
-    Contact,
-    base_helix_angle,
-    base_radius,
-    contacts,
-    gear_geometry,
-    helix_planes,
-)
+from rotorgear.model.layout.gear_layout import GearLayout
+from rotorgear.model.layout.mesh_layout import Contact
 from rotorgear.model.model import Model
 
 # Grooves of a plain cylinder, and their width in rad and depth relative to the radius, by which its rotation is seen.
@@ -59,14 +53,10 @@ def grooved_contour(radius: float, grooves: int, arc_points: int) -> tuple[np.nd
     return angles.reshape(-1, 1), np.tile(radius * (1.0 - depth), grooves).reshape(-1, 1)
 
 
-def twist_rates(model: Model, name: str) -> tuple[float, ...]:
+def twist_rates(gear: GearLayout) -> tuple[float, ...]:
     """d angle/dz in rad/m of each helix of a gear from left to right, positive for a right-hand one."""
-    gear = model.gears[name]
-    if gear.kind == "spur":
-        return (0.0,)
-    rate = math.tan(base_helix_angle(gear)) / base_radius(gear)
-    hand = -1.0 if gear.hand == "left" else 1.0
-    return (hand * rate,) if gear.kind == "helical" else (hand * rate, -hand * rate)
+    rate = gear.hand * math.tan(gear.base_helix_angle) / gear.base_radius
+    return (rate, -rate)[: gear.helices]
 
 
 def tooth_phases(model: Model, axes: dict[str, tuple[float, float]]) -> dict[str, float]:
@@ -75,7 +65,7 @@ def tooth_phases(model: Model, axes: dict[str, tuple[float, float]]) -> dict[str
     `axes` says where the shafts are shown, shaft -> (x, y). Where meshes close a loop of gears, its last mesh is left as it is.
     """
     phases: dict[str, float] = {}
-    first = [contacts(model, name)[0] for name, mesh in model.meshes.items() if model.gears[mesh.pinion].teeth]
+    first = [mesh.contacts[0] for mesh in model.layout.meshes if mesh.pinion.part.teeth]
     for start in model.gears:
         phases.setdefault(start, 0.0)
         while contact := next((c for c in first if (c.pinion in phases) != (c.gear in phases)), None):
@@ -85,25 +75,26 @@ def tooth_phases(model: Model, axes: dict[str, tuple[float, float]]) -> dict[str
 
 def _place_mate(model: Model, contact: Contact, axes: dict[str, tuple[float, float]], phases: dict[str, float]) -> None:
     """Set the phase of the mate of a gear that has one."""
-    known, new = (contact.pinion, contact.gear) if contact.pinion in phases else (contact.gear, contact.pinion)
-    here = axes[model.gears[known].shaft]
-    there = axes[model.gears[new].shaft]
+    names = (contact.pinion, contact.gear) if contact.pinion in phases else (contact.gear, contact.pinion)
+    known, new = (model.layout.gear(name) for name in names)
+    here = axes[known.shaft]
+    there = axes[new.shaft]
     out = math.atan2(there[1] - here[1], there[0] - here[0])
-    pitch, mate_pitch = (2.0 * math.pi / (model.gears[name].teeth or 1) for name in (known, new))
-    ahead = (out - phases[known] - _turn(model, known, contact.contact_z)) / pitch
+    pitch, mate_pitch = (2.0 * math.pi / (gear.part.teeth or 1) for gear in (known, new))
+    ahead = (out - phases[known.name] - _turn(known, contact.contact_z)) / pitch
     # The mate turns the other way: what lies a share of the pitch back here lies the same share ahead there.
     gap = out + math.pi + ahead * mate_pitch
-    phases[new] = gap + 0.5 * mate_pitch - _turn(model, new, contact.contact_z)
+    phases[new.name] = gap + 0.5 * mate_pitch - _turn(new, contact.contact_z)
 
 
-def _turn(model: Model, name: str, z: float) -> float:
+def _turn(gear: GearLayout, z: float) -> float:
     """How far the first helix of a gear has turned from its middle plane to z."""
-    return twist_rates(model, name)[0] * (z - helix_planes(model, name)[0])
+    return twist_rates(gear)[0] * (z - gear.planes[0])
 
 
 def contour_of(
     model: Model, name: str, radius: float, flank_points: int, arc_points: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Contour of a gear: its teeth, or the grooved pitch cylinder of a lumped one."""
-    geometry = gear_geometry(model.gears[name])
+    geometry = model.layout.gear(name).geometry
     return toothed_contour(geometry, flank_points) if geometry else grooved_contour(radius, GEAR_GROOVES, arc_points)

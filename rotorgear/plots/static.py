@@ -76,11 +76,12 @@ def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> None:
         z = 1e3 * result.nodes.position[own, 2]
         for dof, label in enumerate("xy"):
             axis.plot(z, 1e6 * result.displacement[own, dof], color=COLOURS[dof], label=label, lw=1.6)
-        own_parts = [(p.shaft, p.at, "#999999") for p in result.model.gears.values()]
-        own_parts += [(p.shaft, p.at, "#009E73") for p in result.model.bearings.values()]
+        layout = result.model.layout
+        own_parts = [(gear.shaft, gear.z, "#999999") for gear in layout.gears]
+        own_parts += [(*layout.place(f"bearings.{bearing}"), "#009E73") for bearing in result.model.bearings]
         for shaft, at, colour in own_parts:
             if shaft == name:
-                axis.axvline(1e3 * result.model.shafts[name].station(at), color=colour, lw=0.8, ls=":")
+                axis.axvline(1e3 * at, color=colour, lw=0.8, ls=":")
         axis.set_ylabel(f"{name}\num", fontsize=9)
         plain_axis(axis)
     axes[0].legend(frameon=False, fontsize=8, ncols=2, loc="best")

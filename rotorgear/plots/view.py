@@ -133,7 +133,7 @@ def _nodes(model: Model) -> NodeTable:
     rows = [(name, z, "") for name, shaft in model.shafts.items() for z in dict.fromkeys((shaft.start, shaft.end))]
     for name, bearing in model.bearings.items():
         if bearing.pedestal is not None:
-            rows.append((bearing.shaft, model.shafts[bearing.shaft].station(bearing.at), name))
+            rows.append((*model.layout.place(f"bearings.{name}"), name))
     shafts, z, pedestals = zip(*rows, strict=True)
     position = np.column_stack([np.zeros((len(rows), 2)), z])
     return NodeTable(tuple(shafts), position, tuple(pedestals))

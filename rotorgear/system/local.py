@@ -1,7 +1,7 @@
 """The system as time integrators take it: the linear structure without its meshes, and each tooth contact as a local law.
 
 Per flank and helix one relative displacement d = v^T q (elements/gear_mesh.py); phases of k(t) and e(t) follow from tooth
-numbers and centre lines (model/layout/mesh_phases.py). Nothing here becomes a sign that elements/gear_mesh.py does not give.
+numbers and centre lines (model/layout/mean_load.py). Nothing here becomes a sign that elements/gear_mesh.py does not give.
 """
 
 from __future__ import annotations
@@ -13,10 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector
-from rotorgear.model.layout.inertia import node_bodies
-from rotorgear.model.layout.mesh_phases import mesh_phases
-from rotorgear.model.layout.mesh_stiffness import stiffness_of_mesh
-from rotorgear.model.layout.torque_flow import MeshForce, about_nominal_flanks
+from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.solvers.time.local_system import LocalSystem
@@ -94,7 +91,7 @@ def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
 def torque_load(system: System) -> np.ndarray:
     """Torques of the operating point that never change, on all dofs, (a,)."""
     f = np.zeros(system.dofs.transform.shape[0])
-    for item in system.flow.applied:
+    for item in system.load.applied:
         if varying_load(system, item.name) is not None:
             continue
         f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
@@ -108,15 +105,14 @@ def _weight(system: System) -> np.ndarray:
 
 
 def _mesh_parts(system: System) -> list[LocalPart]:
-    flow = about_nominal_flanks(system.model, system.flow)
-    phases = mesh_phases(system.model, system.train, flow, system.direction).phase
+    load = system.load.about_nominal_flanks
     found = []
-    for force in flow.forces:
-        geometry = contact_geometry(system.model, force)
+    for force in load.forces:
+        geometry = contact_geometry(force)
         label = f"{force.contact.mesh} helix {force.contact.helix + 1}"
-        if len(flow.of_mesh(force.contact.mesh)) == 1:
+        if len(load.of_mesh(force.contact.mesh)) == 1:
             label = force.contact.mesh
-        law = _mesh_law(system, force, geometry, phases[force.contact.mesh] or 0.0)
+        law = _mesh_law(system, force, geometry, load.phase(force.contact) or 0.0)
         part = f"meshes.{force.contact.mesh}"
         dofs = _dofs(system, force)
         column = columns_at(system, dofs, contact_vector(geometry)[None])
@@ -134,8 +130,8 @@ def _mesh_parts(system: System) -> list[LocalPart]:
 
 def _dofs(system: System, force: MeshForce) -> np.ndarray:
     contact = force.contact
-    pinion, gear = (system.model.gears[name].shaft for name in (contact.pinion, contact.gear))
-    return node_dofs(system.nodes.at(pinion, contact.pinion_z), system.nodes.at(gear, contact.gear_z))[0]
+    pinion = system.nodes.at(contact.pinion_shaft, contact.pinion_z)
+    return node_dofs(pinion, system.nodes.at(contact.gear_shaft, contact.gear_z))[0]
 
 
 def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase: float) -> MeshContact:
@@ -143,16 +139,15 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
 
     model = system.model
     contact = force.contact
-    mesh = model.meshes[contact.mesh]
-    pinion = model.gears[contact.pinion]
-    teeth = pinion.teeth or 0
+    mesh = system.layout.mesh(contact.mesh).part
+    pinion = system.layout.gear(contact.pinion)
+    teeth = pinion.part.teeth or 0
     order = teeth * abs(system.train.ratio(pinion.shaft)) * system.direction
     stiffness_cos, stiffness_sin = _series(mesh.stiffness_variation)
     error_cos, error_sin = _series(mesh.transmission_error)
     deflection = (force.normal_force / contact.stiffness) or _UNLOADED
-    damping = mesh_damping(model, force, geometry, node_bodies(model)) + model.damping.rayleigh_beta * contact.stiffness
+    damping = mesh_damping(system.layout, force, geometry) + model.damping.rayleigh_beta * contact.stiffness
     gap = "bilateral" if mesh.backlash is None else {"line": "dead zone", "own normals": "unilateral"}[mesh.coast_flank]
-    late = mesh.helix_stagger if contact.helix else 0.0
     return MeshContact(
         stiffness=contact.stiffness,
         damping=damping,
@@ -161,7 +156,7 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         contact_damping=mesh.contact_damping,
         ramp=_ramp(mesh, deflection),
         order=order,
-        phase=phase + 2.0 * np.pi * late,
+        phase=phase,
         stiffness_cos=stiffness_cos,
         stiffness_sin=stiffness_sin,
         error_mean=mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0),
@@ -192,11 +187,10 @@ def _back(law: MeshContact) -> MeshContact:
 
 
 def cycle_pieces(system: System, force: MeshForce) -> tuple[tuple[float, float, float], ...]:
-    """Straight pieces of k over its mean in a mesh cycle, where the file gives a curve or a stiffness model."""
-    name = force.contact.mesh
-    if isinstance(system.model.meshes[name].stiffness, int | float):
+    """Straight pieces of k over its mean in the mesh cycle of one helix, where the file gives a curve or a stiffness model."""
+    if not system.layout.mesh(force.contact.mesh).varies:
         return ()
-    curve = system.flow.stiffness.get(name) or stiffness_of_mesh(system.model, name, force.normal_force or None)
+    curve = system.load.curve(force)
     share = curve.transverse / curve.transverse.mean()
     if (
         not force.pinion_drives

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rotorgear.elements.gear_mesh import ContactGeometry, sliding_vectors
-from rotorgear.model.layout.mesh_geometry import gear_geometry, mesh_pair
-from rotorgear.model.layout.torque_flow import MeshForce
+from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.model.parts.operation import Load
 from rotorgear.model.parts.supports import Bearing
 from rotorgear.system.groups import ElementGroup, node_dofs
@@ -57,7 +56,7 @@ def bearing_parts(system: System) -> Iterator[LocalPart]:
             continue
         law = _bearing_law(bearing, float(system.train.ratio(bearing.shaft)))
         rows = np.eye(6)[: law.components]
-        dofs = node_dofs(system.nodes.at(bearing.shaft, system.model.shafts[bearing.shaft].station(bearing.at)))[0]
+        dofs = node_dofs(system.nodes.at(*system.layout.place(f"bearings.{name}")))[0]
         if bearing.pedestal is not None:
             dofs = np.concatenate([dofs, node_dofs(system.nodes.of_pedestal(name))[0]])
             rows = np.hstack([rows, -rows])
@@ -106,19 +105,17 @@ def friction_part(
     """Friction of one helix; None where the mesh has none."""
     from rotorgear.forces.mesh_friction import MeshFriction
 
-    model = system.model
-    name = force.contact.mesh
-    mesh = model.meshes[name]
-    pair = mesh_pair(model, name)
+    both = system.layout.mesh(force.contact.mesh)
+    mesh = both.part
+    pair = both.pair
     if not (mesh.friction_coefficient or mesh.lubricant_viscosity) or pair is None:
         return None
-    teeth = gear_geometry(model.gears[mesh.pinion])
+    teeth = both.pinion.geometry
     assert teeth is not None
     # With the gear driving, the contacts run from the end of the path to its start: mirror them.
     sense = 1.0 if force.pinion_drives else -1.0
     ends = sorted((sense * pair.start_of_contact, sense * pair.end_of_contact))
-    pinion, gear = (float(system.train.ratio(model.gears[g].shaft)) for g in (mesh.pinion, mesh.gear))
-    widths = [w for w in (model.gears[mesh.pinion].width, model.gears[mesh.gear].width) if w]
+    pinion, gear = (float(system.train.ratio(g.shaft)) for g in both.gears)
     base_pitch = 2.0 * np.pi * teeth.base_radius / teeth.teeth
     rolling = 2.0 * teeth.base_radius * np.tan(geometry.pressure_angle) * abs(pinion)
     law = MeshFriction(
@@ -130,11 +127,11 @@ def friction_part(
         coefficient=mesh.friction_coefficient,
         overlap=pair.overlap_ratio,
         viscosity=1e3 * (mesh.lubricant_viscosity or 0.0),
-        line_load=force.normal_force / min(widths),
+        line_load=force.normal_force / both.width,
         rolling=float(rolling),
     )
     across = columns_at(system, dofs, np.array([[1.0], [sense]]) * sliding_vectors(geometry))
-    return LocalPart(f"meshes.{name}", f"{label} friction", law, np.hstack([column, across]))
+    return LocalPart(f"meshes.{both.name}", f"{label} friction", law, np.hstack([column, across]))
 
 
 def unbalance_parts(system: System) -> Iterator[LocalPart]:
@@ -142,7 +139,7 @@ def unbalance_parts(system: System) -> Iterator[LocalPart]:
     from rotorgear.forces.rotating_force import RotatingForce
 
     for name, item in system.model.unbalances.items():
-        node = system.nodes.at(item.shaft, system.model.shafts[item.shaft].station(item.at))
+        node = system.nodes.at(*system.layout.place(f"unbalances.{name}"))
         law = RotatingForce(item.magnitude, float(system.train.ratio(item.shaft)), item.phase, 2.0, plane=True)
         yield LocalPart(f"unbalances.{name}", name, law, columns_at(system, node_dofs(node)[0], np.eye(6)[:2]))
 
@@ -153,7 +150,7 @@ def load_parts(system: System) -> Iterator[LocalPart]:
 
     operation = system.model.operation
     speed = abs(operation.speed) if operation and operation.speed else 0.0
-    for item in system.flow.applied:
+    for item in system.load.applied:
         load = varying_load(system, item.name)
         if load is None:
             continue

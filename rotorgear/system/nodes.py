@@ -103,8 +103,8 @@ def places(layout: Layout) -> dict[str, list[tuple[float, str]]]:
             # Torques without a place stand at an end of their shaft, a point on a part where that part has its node.
             if table in ("loads", "points") and (part.shaft is None or part.at is None):
                 continue
-            for shaft, z in layout.places(f"{table}.{name}"):
-                found[shaft].append((z, f"{table}.{name}"))
+            for place in layout.places(f"{table}.{name}"):
+                found[place.shaft].append((place.z, f"{table}.{name}"))
     return found
 
 

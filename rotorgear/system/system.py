@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -42,6 +43,7 @@ class System:
         elements: basic elements in each piece of shaft.
         plan: how finely each piece is cut, in place of `elements`.
         load: mean forces, working flanks and mesh stiffnesses. None: those of the torque flow at the operating speed.
+        direction: old way to ask for the load of one sense of rotation.
     """
 
     def __init__(
@@ -51,11 +53,14 @@ class System:
         *,
         plan: Plan | None = None,
         load: MeanLoad | None = None,
+        direction: int | None = None,
     ) -> None:
+        if direction is not None:
+            warnings.warn("System(direction=...) is now load=model.mean_load(direction)", FutureWarning, stacklevel=2)
         self.model = model
         self.layout = model.layout
         self.plan = plan or Plan(elements or 1)
-        self.load = load or model.mean_load()
+        self.load = load or model.mean_load(direction)
         self.nodes: Nodes = discretise(self.layout, self.plan)
         self.dofs: DofMap = map_dofs(self.layout, self.nodes)
         self._last: tuple[float, Matrices] | None = None

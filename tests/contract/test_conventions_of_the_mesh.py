@@ -13,7 +13,6 @@ import scipy.optimize as optimize
 
 import rotorgear as rg
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, flank_normal, gear_mesh
-from rotorgear.model.layout.mesh_geometry import contacts
 from rotorgear.system.system import System
 from tests.contract.small_models import (
     STEEL,
@@ -159,7 +158,7 @@ def test_c15_a_right_hand_pinion_that_drives_counter_clockwise_is_pushed_to_plus
     operation = {"input_shaft": "one", "output_shaft": "two", "torque": 100.0, "speed": 100.0 * speed}
     model = lumped_pair(lumped_gear("one", 0.06, hand), lumped_gear("two", 0.15, other), {}, operation=operation)
     system = System(model)
-    (v,), (force,) = vectors(system), system.flow.forces
+    (v,), (force,) = vectors(system), system.load.forces
     on_bodies = -force.normal_force * v
     assert on_bodies[2] == pytest.approx(sign * force.normal_force * np.sin(0.4), rel=1e-12)
     assert on_bodies[8] == pytest.approx(-on_bodies[2], rel=1e-12)
@@ -212,7 +211,7 @@ def herringbone_pair(nodes: int, hand: str = "right", rigid: bool = True, **shaf
 @pytest.mark.parametrize("nodes", [1, 2])
 def test_c16_a_symmetric_herringbone_has_no_net_axial_force(nodes: int) -> None:
     system = System(herringbone_pair(nodes))
-    forces = [-force.normal_force * v for force, v in zip(system.flow.forces, vectors(system), strict=True)]
+    forces = [-force.normal_force * v for force, v in zip(system.load.forces, vectors(system), strict=True)]
     total = np.sum(forces, axis=0)
     assert abs(forces[0][2]) > 100.0
     assert abs(total[2]) < 1e-12 * abs(forces[0][2])
@@ -222,7 +221,7 @@ def test_c16_a_symmetric_herringbone_has_no_net_axial_force(nodes: int) -> None:
 
 def test_c16_the_hand_of_a_herringbone_is_that_of_the_helix_at_the_smaller_z() -> None:
     for hand, first in (("right", 1), ("left", -1)):
-        low, high = contacts(herringbone_pair(2, hand), "pair")
+        low, high = herringbone_pair(2, hand).layout.mesh("pair").contacts
         assert low.contact_z < high.contact_z
         assert (low.hand, high.hand) == (first, -first)
         system = System(herringbone_pair(2, hand))
@@ -279,7 +278,7 @@ def test_c17_the_stiffness_of_a_herringbone_is_that_of_both_helices_together() -
         name: shaft.model_copy(update={"sections": tuple(s.model_copy(update={"rigid": True}) for s in shaft.sections)})
         for name, shaft in model.shafts.items()
     }
-    line = contacts(model, "pair")[0]
+    line = model.layout.mesh("pair").contacts[0]
     twist = twist_of_the_pinion(rg.Model(**{**data, "shafts": rigid}, supports=held), 80.0)
     expected = 80.0 / (6e8 * (line.pinion_base_radius * np.cos(line.base_helix_angle)) ** 2)
     assert twist == pytest.approx(expected, rel=1e-9)
@@ -303,10 +302,10 @@ def toothed_pair(distance: float, shift: float, **mesh: Any) -> rg.Model:
 
 def test_c18_the_working_pressure_angle_follows_from_the_distance_of_the_axes() -> None:
     bases = 0.5 * 0.004 * 60 * np.cos(np.radians(20.0))
-    (at_reference,) = contacts(toothed_pair(0.12, 0.0), "pair")
+    (at_reference,) = toothed_pair(0.12, 0.0).layout.mesh("pair").contacts
     assert at_reference.pressure_angle == pytest.approx(np.radians(20.0), rel=1e-12)
     assert at_reference.psi == pytest.approx(-np.pi / 2, rel=1e-15)
-    (shifted,) = contacts(toothed_pair(0.1219, 0.5), "pair")
+    (shifted,) = toothed_pair(0.1219, 0.5).layout.mesh("pair").contacts
     assert shifted.pressure_angle == pytest.approx(np.arccos(bases / 0.1219), rel=1e-12)
     assert shifted.pressure_angle > np.radians(21.0)
 

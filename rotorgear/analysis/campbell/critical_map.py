@@ -81,7 +81,7 @@ def critical_map(
     rows: list[dict[str, list[float]]] = []
     for k, value in enumerate(values):
         progress(0.1 + 0.9 * k / len(values), f"{value:.3g} N/m")
-        system = System(with_radial_stiffness(model, float(value)), plan=stiffest.plan, direction=stiffest.direction)
+        system = System(with_radial_stiffness(model, float(value)), plan=stiffest.plan, load=stiffest.load)
         rows.append(_by_whirl(system, line.order, top))
     clock.lap("critical speeds")
     tables = {kind: _padded([row[kind] for row in rows]) for kind in ("forward", "backward", "other")}

@@ -37,14 +37,14 @@ def system_for_speeds(
     if elements is not None:
         if elements < 1:
             raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
-        return System(model, plan=Plan(elements), direction=direction)
+        return System(model, plan=Plan(elements), load=model.mean_load(direction))
     cuts: list[dict[PieceKey, tuple[int, int]]] = []
     for k, speed in enumerate(dict.fromkeys(speeds)):
         progress(0.1 * k, "refining the mesh")
         found = modal(model, speed=speed, modes=modes, fmax=fmax, accuracy=accuracy, only=only)
         cuts.append(cut_of(found.discretisation))
     finest = {key: max(cut[key] for cut in cuts) for key in cuts[0]}
-    return System(model, plan=Plan(cut=finest), direction=direction)
+    return System(model, plan=Plan(cut=finest), load=model.mean_load(direction))
 
 
 def cut_of(pieces: Iterable[Piece]) -> dict[PieceKey, tuple[int, int]]:

@@ -65,7 +65,7 @@ class SpeedFamily:
 
     def _table(self, speed: float) -> tuple[sp.csc_array, sp.csc_array]:
         """Damping and stiffness of the bearings with tables at a speed, sparse (n, n)."""
-        own = table_groups(self.system.model, self.system.train, self.system.nodes, float(speed))
+        own = table_groups(self.system.layout, self.system.nodes, float(speed))
         K = assemble(own, self.system.dofs, _whole_stiffness)
         C = assemble(own, self.system.dofs, lambda g: g.matrices.damping)
         beta = self.system.model.damping.rayleigh_beta

@@ -8,8 +8,6 @@ import numpy as np
 
 from rotorgear.analysis.common.model_warnings import model_warnings
 from rotorgear.analysis.common.notes import left_out
-from rotorgear.model.layout.mesh_geometry import base_radius, centre_line, mesh_pair
-from rotorgear.model.layout.train import mesh_frequency
 from rotorgear.model.model import Model
 from rotorgear.results.description import MeshRow, ModelDescription, ShaftRow, TorqueRow
 from rotorgear.system.system import System
@@ -81,34 +79,34 @@ def _shaft(system: System, name: str, speed: float | None) -> ShaftRow:
 
 
 def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
-    model = system.model
-    mesh = system.model.meshes[name]
-    pinion = model.gears[mesh.pinion]
-    gear = model.gears[mesh.gear]
-    forces = system.flow.of_mesh(name)
+    mesh = system.layout.mesh(name)
+    pinion = mesh.pinion.part
+    gear = mesh.gear.part
+    forces = system.load.of_mesh(name)
     contact = forces[0].contact
-    line = centre_line(model, name)
-    pair = mesh_pair(model, name)
+    line = mesh.centre_line
+    pair = mesh.pair
     damping = [
         float(group.matrices.viscosity[0, 0, 0])
         for group in system.groups
         if group.part == f"meshes.{name}" and group.matrices.viscosity is not None
     ]
-    teeth = pinion.teeth and gear.teeth
     return MeshRow(
         name=name,
-        pinion=mesh.pinion,
-        gear=mesh.gear,
-        ratio=gear.teeth / pinion.teeth if teeth else base_radius(gear) / base_radius(pinion),  # type: ignore[operator]
+        pinion=mesh.pinion.name,
+        gear=mesh.gear.name,
+        ratio=gear.teeth / pinion.teeth
+        if gear.teeth and pinion.teeth
+        else mesh.gear.base_radius / mesh.pinion.base_radius,
         centre_distance_m=line[0] if line else (pair.centre_distance if pair else None),
         centre_line_deg=math.degrees(contact.psi),
         pressure_angle_deg=math.degrees(contact.pressure_angle),
         base_helix_angle_deg=math.degrees(contact.base_helix_angle),
         transverse_contact_ratio=pair.transverse_contact_ratio if pair else None,
         overlap_ratio=pair.overlap_ratio if pair else None,
-        mesh_frequency_hz=None if speed is None else mesh_frequency(model, system.train, name, speed),
+        mesh_frequency_hz=None if speed is None else system.layout.mesh_frequency(name, speed),
         normal_force_n=tuple(force.normal_force for force in forces),
-        driver=mesh.pinion if forces[0].pinion_drives else mesh.gear,
+        driver=(mesh.pinion if forces[0].pinion_drives else mesh.gear).name,
         flank_assumed=any(force.assumed for force in forces),
         stiffness_n_per_m=sum(force.contact.stiffness for force in forces),
         damping_n_s_per_m=sum(damping),
@@ -117,7 +115,7 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
 
 def _torques(system: System, speed: float | None) -> tuple[TorqueRow, ...]:
     rows = []
-    for item in system.flow.applied:
+    for item in system.load.applied:
         power = None if speed is None else item.torque * system.train.ratio(item.shaft) * speed
         rows.append(TorqueRow(item.name, item.shaft, item.torque, power))
     return tuple(rows)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from rotorgear.model.layout.train import Train, mesh_frequency, walk
 from rotorgear.model.model import Model
 from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.comparison import ExcitationLine
@@ -34,7 +33,7 @@ def excitation_orders(
         shaft_orders, mesh_orders: multiples of the speed of each shaft, of the frequency of each mesh.
         sidebands: so many at each side of every mesh order, at the distance of the speed of both shafts of the mesh.
     """
-    train, _ = walk(model)
+    train = model.layout.train
     found: dict[tuple[str, str, float], list[str]] = {}
 
     def add(kind: str, label: str, order: float, name: str) -> None:
@@ -45,10 +44,10 @@ def excitation_orders(
         for order in shaft_orders:
             add("shaft", f"{order:g}x", order * abs(train.ratio(name)), name)
     for name in model.meshes:
-        once = mesh_frequency(model, train, name, 2.0 * math.pi) or 0.0
+        once = model.layout.mesh_frequency(name, 2.0 * math.pi) or 0.0
         for order in mesh_orders:
             add("mesh", f"{order:g}x", order * once, name)
-            for label, distance in _sidebands(model, train, name, sidebands) if once else ():
+            for label, distance in _sidebands(model, name, sidebands) if once else ():
                 add("sideband", f"{order:g}x {label}", order * once + distance, name)
     return tuple(
         ExcitationOrder(
@@ -58,11 +57,10 @@ def excitation_orders(
     )
 
 
-def _sidebands(model: Model, train: Train, mesh: str, count: int) -> list[tuple[str, float]]:
+def _sidebands(model: Model, mesh: str, count: int) -> list[tuple[str, float]]:
     found = []
-    for gear in (model.meshes[mesh].pinion, model.meshes[mesh].gear):
-        shaft = model.gears[gear].shaft
+    for gear in model.layout.mesh(mesh).gears:
         for k in range(1, count + 1):
-            step = k * abs(train.ratio(shaft))
-            found += [(f"+ {k}x {shaft}", step), (f"- {k}x {shaft}", -step)]
+            step = k * abs(model.layout.train.ratio(gear.shaft))
+            found += [(f"+ {k}x {gear.shaft}", step), (f"- {k}x {gear.shaft}", -step)]
     return found

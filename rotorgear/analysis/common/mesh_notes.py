@@ -18,9 +18,9 @@ def mesh_stiffness_left_out(system: System) -> Iterator[str]:
             share = (max(mesh.stiffness) - min(mesh.stiffness)) / mean
             ripple = f"ripple of the given stiffness, {100.0 * share:.3g} % peak to peak"
             yield f"meshes.{name}: {ripple}; its mean {mean:.4g} N/m is taken"
-        elif name in system.flow.stiffness:
-            taken = sum(force.contact.stiffness for force in system.flow.of_mesh(name))
-            yield f"meshes.{name}: {_of_model(system.flow.stiffness[name].about_load, taken)}"
+        elif curve := system.load.whole_curve(name):
+            taken = sum(force.contact.stiffness for force in system.load.of_mesh(name))
+            yield f"meshes.{name}: {_of_model(curve.about_load, taken)}"
 
 
 def _of_model(curve: MeshStiffness, taken: float) -> str:
@@ -38,5 +38,6 @@ def _of_model(curve: MeshStiffness, taken: float) -> str:
 
 def mesh_stiffness_warnings(system: System) -> Iterator[str]:
     """Yield what the stiffness models themselves warn about."""
-    for name, curve in system.flow.stiffness.items():
-        yield from (f"meshes.{name}: {sentence}" for sentence in curve.warnings)
+    for name, helices in system.load.curves.items():
+        sentences = dict.fromkeys(sentence for curve in helices for sentence in curve.warnings)
+        yield from (f"meshes.{name}: {sentence}" for sentence in sentences)

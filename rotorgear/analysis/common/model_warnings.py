@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_warnings
 from rotorgear.gears.geometry.geometry import check_gear
 from rotorgear.model.checks.pairs import mesh_findings
-from rotorgear.model.layout.mesh_geometry import base_radius, gear_geometry
 from rotorgear.system.system import System
 
 
@@ -22,23 +21,22 @@ def model_warnings(system: System) -> Iterator[str]:
 
 def _gears(system: System) -> Iterator[str]:
     for name, gear in system.model.gears.items():
-        geometry = gear_geometry(gear)
-        for sentence in check_gear(geometry) if geometry else ():
+        for sentence in check_gear(gear.geometry) if gear.geometry else ():
             yield f"gears.{name}: {sentence}"
 
 
 def _meshes(system: System) -> Iterator[str]:
-    model = system.model
-    for name, mesh in model.meshes.items():
-        pinion = model.gears[mesh.pinion]
-        gear = model.gears[mesh.gear]
-        yield from (f"meshes.{name}: {sentence}" for sentence in mesh_findings(model, name))
+    for mesh in system.layout.meshes:
+        pinion = mesh.pinion.part
+        gear = mesh.gear.part
+        yield from (f"meshes.{mesh.name}: {sentence}" for sentence in mesh_findings(mesh))
         if pinion.lumped and pinion.teeth and gear.teeth:
-            off = base_radius(gear) / base_radius(pinion) * pinion.teeth / gear.teeth - 1.0
+            off = mesh.gear.base_radius / mesh.pinion.base_radius * pinion.teeth / gear.teeth - 1.0
             if abs(off) > 1e-6:
-                yield f"meshes.{name}: the base radii's ratio is {100 * off:+.3g} % off that of the teeth, which set the speeds"
-        if system.flow.applied and any(force.assumed for force in system.flow.of_mesh(name)):
-            yield f"meshes.{name}: no torque flows through it; its driving flank is taken from the sense of rotation"
+                said = f"the base radii's ratio is {100 * off:+.3g} % off that of the teeth, which set the speeds"
+                yield f"meshes.{mesh.name}: {said}"
+        if system.load.applied and any(force.assumed for force in system.load.of_mesh(mesh.name)):
+            yield f"meshes.{mesh.name}: no torque flows through it; its driving flank is taken from the sense of rotation"
 
 
 def _train(system: System) -> Iterator[str]:
@@ -48,7 +46,7 @@ def _train(system: System) -> Iterator[str]:
         if train.ratios[name] == 0:
             by = f"nothing drives it from shaft '{train.reference}', so it stands still"
             yield f"shafts.{name}: {by}; give speed_ratio if it turns"
-    if not system.flow.applied and model.meshes:
+    if not system.load.applied and model.meshes:
         yield "no torque is given: driving flanks follow from the sense of rotation, power flowing out from the input shaft"
     for name, bearing in model.bearings.items():
         if bearing.table and model.operation and model.operation.speed is not None:
@@ -59,8 +57,7 @@ def _train(system: System) -> Iterator[str]:
 
 def _couplings(system: System) -> Iterator[str]:
     for name, coupling in system.model.couplings.items():
-        first = system.model.shafts[coupling.from_shaft].station(coupling.from_at)
-        second = system.model.shafts[coupling.to_shaft].station(coupling.to_at)
+        first, second = (place.z for place in system.layout.places(f"couplings.{name}"))
         length = max(system.model.shafts[coupling.from_shaft].length, system.model.shafts[coupling.to_shaft].length)
         if length and abs(second - first) > 0.25 * length:
             gap = 1e3 * abs(second - first)

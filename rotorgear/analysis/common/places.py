@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.model.layout.mesh_geometry import node_positions
 from rotorgear.system.system import System
 
 
@@ -13,13 +12,13 @@ def part_nodes(system: System) -> dict[str, int]:
     model = system.model
     nodes = system.nodes
     found = {}
-    for name, gear in model.gears.items():
-        places = node_positions(model, name)
-        for z, side in zip(places, (" left", " right") if len(places) == 2 else ("",), strict=True):
-            found[f"gears.{name}{side}"] = nodes.at(gear.shaft, z)
+    for gear in system.layout.gears:
+        sides = (" left", " right") if len(gear.places) == 2 else ("",)
+        for place, side in zip(gear.places, sides, strict=True):
+            found[f"gears.{gear.name}{side}"] = nodes.at(*place)
     for table in ("disks", "bearings"):
-        for name, part in getattr(model, table).items():
-            found[f"{table}.{name}"] = nodes.at(part.shaft, model.shafts[part.shaft].station(part.at))
+        for name in getattr(model, table):
+            found[f"{table}.{name}"] = nodes.at(*system.layout.place(f"{table}.{name}"))
     return found
 
 

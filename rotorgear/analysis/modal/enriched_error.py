@@ -26,7 +26,7 @@ def enriched_errors(system: System, wanted: Wanted, found: Modes, estimate: np.n
     rough = ~found.rigid & np.isfinite(estimate) & (estimate > ROUGH)
     if not rough.any() or system.n > _LARGEST:
         return estimate
-    finer = System(system.model, plan=_much_finer(system), direction=system.direction)
+    finer = system.with_plan(_much_finer(system))
     asked = Wanted(wanted.speed, len(found.eigenvalues), None, wanted.only, wanted.pruning)
     try:
         truth = solve(finer, asked)

@@ -141,7 +141,7 @@ def _solved(system: System, wanted: Wanted) -> Modes:
 
 def _system(model: Model | System, speed: float | None, plan: Plan) -> System:
     """The system of a model, discretised by a plan; a system that was given is taken as it is."""
-    system = model if isinstance(model, System) else System(model, plan=plan, direction=direction_of(speed))
+    system = model if isinstance(model, System) else System(model, plan=plan, load=model.mean_load(direction_of(speed)))
     if system.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     return system

@@ -17,6 +17,7 @@ from rotorgear.solvers.eigen.eigen import UndampedModes, lowest_modes
 from rotorgear.solvers.eigen.shift_invert import shifted_operator
 from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
 from rotorgear.system.components import dof_motions, independent_groups
+from rotorgear.system.plan import Plan
 from rotorgear.system.strain_forms import StrainForms
 from rotorgear.system.system import System
 
@@ -86,7 +87,7 @@ def _problem(system: System, speed: float | None) -> _Problem:
     guess = None
     if system.n >= _LARGE:
         # The first elastic eigenvalue of the coarsest mesh saves the search for a shift, which costs a factorisation here.
-        coarse = System(system.model, elements=1, direction=system.direction)
+        coarse = system.with_plan(Plan(1))
         guess = shifted_operator(coarse.mass, coarse.stiffness()).elastic if coarse.n else None
     return _Problem(
         M=system.mass,

@@ -11,7 +11,6 @@ from rotorgear.analysis.response.plant import Plant, Readings
 from rotorgear.analysis.response.run_up import solve_orders
 from rotorgear.analysis.static.mean_state import Setup
 from rotorgear.system.contacts import contact_lines
-from rotorgear.system.system import System
 
 _CHECKED_ON_FINER = 4
 # A resonance shows its height to this share when its half-power width spans so many speeds.
@@ -30,7 +29,7 @@ def mesh_error(
     system = plant.system
     if not system.nodes.elements or not any(system.nodes.elements.values()):
         return 0.0
-    finer = System(system.model, plan=all_finer(system), direction=system.direction, flow=system.flow)
+    finer = system.with_plan(all_finer(system))
     lines = contact_lines(finer)
     zeta, limit = damping
     rich = Plant(finer, lines, (*damped_modes(finer, limit, float(speeds[-1])), zeta) if zeta else None)

@@ -63,11 +63,11 @@ def frequency_response(
     _check(hz, inputs, outputs, damping_ratio)
     places = {text: named_place(model, text) for text in (*inputs, *outputs)}
     zeta = damping_ratio + model.damping.modal_ratio
-    first = mean_state(System(model, direction=direction_of(turns), mesh="static"), turns)
+    first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
     limit = 2.0 * np.pi * DAMPED * float(hz[-1])
     progress(0.02, "discretisation")
     plan = plan_up_to(at_speed(model, turns), MARGIN * float(hz[-1]), elements, accuracy)
-    system = System(model, plan=plan, direction=first.system.direction, flow=first.system.flow)
+    system = System(model, plan=plan, load=first.system.load.of_kind("dynamic"))
 
     def solve(system: System, hz: np.ndarray, progress: Progress) -> tuple[np.ndarray, float]:
         modes = (*damped_modes(system, limit, turns), zeta) if zeta else None
@@ -80,7 +80,7 @@ def frequency_response(
     estimate = 0.0
     if any(system.nodes.elements.values()):
         at = _strongest(receptance)
-        finer = System(model, plan=all_finer(system), direction=system.direction, flow=system.flow)
+        finer = system.with_plan(all_finer(system))
         there, _ = solve(finer, hz[at], silent)
         largest = np.abs(there).max(axis=0)
         estimate = float(np.max(np.abs(there - receptance[at]) / np.where(largest > 0.0, largest, 1.0)))

@@ -10,7 +10,6 @@ from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.modal.modes import Wanted
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START
 from rotorgear.analysis.modal.solve import solve
-from rotorgear.model.layout.train import walk
 from rotorgear.model.model import Model
 from rotorgear.model.parts.supports import StiffnessMatrix
 from rotorgear.results.modal import ModalResult
@@ -51,7 +50,7 @@ def at_speed(model: Model, speed: float) -> Model:
     Raises:
         AnalysisError: the speed lies outside a table.
     """
-    train = walk(model)[0]
+    train = model.layout.train
     changed: dict[str, dict[str, Any]] = {}
     for table in ("bearings", "supports", "couplings"):
         for name, part in getattr(model, table).items():
@@ -75,7 +74,7 @@ def damped_modes(system: System, limit: float, speed: float) -> tuple[np.ndarray
     """
     model = at_speed(system.model, speed)
     if model is not system.model:
-        system = System(model, plan=system.plan, direction=system.direction, flow=system.flow)
+        system = System(model, plan=system.plan, load=system.load)
     found = solve(system, Wanted(None, None, limit))
     keep = np.flatnonzero(found.vectors.any(axis=0))
     return np.real(found.vectors[:, keep]), np.where(found.rigid, 0.0, np.abs(found.eigenvalues))[keep]

@@ -5,7 +5,7 @@ Re(f e^{i w t}) with w = |W_i| that is f_x = U W_i^2 e^{i s a}, f_y = -i s U W_i
 
 A transmission error e(t) and a stiffness k (1 + a(t)) turn the force of a contact under the mean force F_0 into
 F = k (v.q - e) + c (v.q' - e') + F_0 a to first order; a may follow from a model of the teeth, and an impact adds to the last
-term. Mesh phases: model/layout/mesh_phases.py.
+term. Mesh phases: model/layout/mean_load.py.
 """
 
 from __future__ import annotations
@@ -17,8 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.analysis.response.cycle_harmonics import harmonics_of_pieces, harmonics_of_pulse, strong
-from rotorgear.model.layout.mesh_phases import MeshPhases, mesh_phases
-from rotorgear.model.layout.torque_flow import MeshForce, about_nominal_flanks, carries_on_back_flanks
+from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.system.contacts import ContactLines
 from rotorgear.system.local import cycle_pieces
@@ -52,19 +51,15 @@ class Order:
 
 
 def orders_of(system: System, lines: ContactLines, mean_force: np.ndarray) -> list[Order]:
-    """Return all orders of a system with the phases that follow from its teeth; `mean_force` (c,) in N."""
-    flow = about_nominal_flanks(system.model, system.flow)
-    phases = mesh_phases(system.model, system.train, flow, system.direction)
-    return excitation_orders(system, lines, mean_force, phases)
+    """Return all orders of a system, lowest ratio first; what has one frequency is one order, with its phases.
 
-
-def excitation_orders(system: System, lines: ContactLines, mean_force: np.ndarray, phases: MeshPhases) -> list[Order]:
-    """Return all orders of a model, lowest ratio first; what has one frequency is one order, with its phases."""
+    `mean_force` (c,) in N is that of the contacts. Phases follow from the teeth.
+    """
     found: dict[tuple[str, int, float], tuple[list[str], Order]] = {}
     for shaft, ratio, load in _unbalances(system):
         key = ("shaft", 1, round(ratio, 9))
         _add(found, key, shaft, ratio, load, np.zeros((2, len(lines.stiffness)), complex))
-    for mesh, harmonic, ratio, terms in _meshes(system, lines, mean_force, phases):
+    for mesh, harmonic, ratio, terms in _meshes(system, lines, mean_force):
         key = ("mesh", harmonic, round(ratio, 9))
         _add(found, key, mesh, ratio, np.zeros(system.n, complex), terms)
     orders = [
@@ -94,13 +89,13 @@ def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:
     """(shaft, size of its speed ratio, force per square of the reference speed) of every unbalance that turns."""
     model = system.model
     nodes = system.nodes
-    for item in model.unbalances.values():
+    for name, item in model.unbalances.items():
         ratio = system.train.ratio(item.shaft)
         if ratio == 0.0:
             continue
         sense = system.direction * system.train.sense(item.shaft)
         f = np.zeros(system.dofs.transform.shape[0], complex)
-        node = nodes.at(item.shaft, model.shafts[item.shaft].station(item.at))
+        node = nodes.at(*system.layout.place(f"unbalances.{name}"))
         size = item.magnitude * ratio**2 * cmath.exp(1j * sense * item.phase)
         f[6 * node] = size
         f[6 * node + 1] = -1j * sense * size
@@ -108,30 +103,27 @@ def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:
 
 
 def _meshes(
-    system: System, lines: ContactLines, mean_force: np.ndarray, phases: MeshPhases
+    system: System, lines: ContactLines, mean_force: np.ndarray
 ) -> Iterable[tuple[str, int, float, np.ndarray]]:
     """(mesh, harmonic, ratio, [errors; forces] of all contacts) of every harmonic that a mesh is given."""
-    model = system.model
-    for name, mesh in model.meshes.items():
-        phase = phases.phase[name]
-        pinion = model.gears[mesh.pinion]
-        if phase is None or not pinion.teeth or system.train.ratio(pinion.shaft) == 0.0:
+    load = system.load.about_nominal_flanks
+    for k, state in enumerate(lines.states):
+        mesh = system.layout.mesh(state.contact.mesh)
+        phase = load.phase(state.contact)
+        teeth = mesh.pinion.part.teeth
+        ratio = abs(system.train.ratio(mesh.pinion.shaft)) * (teeth or 0)
+        if phase is None or ratio == 0.0:
             continue
-        ratio = abs(system.train.ratio(pinion.shaft)) * pinion.teeth
-        for k, state in enumerate(lines.states):
-            if state.contact.mesh != name:
-                continue
-            ahead = 2.0 * np.pi * mesh.helix_stagger if state.contact.helix else 0.0
-            for row, harmonic, amplitude in _harmonics(system, mesh, state, float(mean_force[k])):
-                terms = np.zeros((2, len(lines.states)), complex)
-                terms[row, k] = amplitude * cmath.exp(1j * harmonic * (phase + ahead))
-                yield name, harmonic, harmonic * ratio, terms
+        for row, harmonic, amplitude in _harmonics(system, mesh.part, state, float(mean_force[k])):
+            terms = np.zeros((2, len(lines.states)), complex)
+            terms[row, k] = amplitude * cmath.exp(1j * harmonic * phase)
+            yield mesh.name, harmonic, harmonic * ratio, terms
 
 
 def _harmonics(system: System, mesh: Mesh, state: MeshForce, mean_force: float) -> Iterable[tuple[int, int, complex]]:
     """(0: error in m, 1: force in N; harmonic; amplitude) of everything that varies in a contact over the mesh cycle."""
     # What opens the nominal flanks closes the others.
-    opens = -1.0 if carries_on_back_flanks(system.model, state) else 1.0
+    opens = 1.0 if system.load.is_nominal(state) else -1.0
     for item in mesh.transmission_error:
         yield 0, item.harmonic, opens * item.amplitude * cmath.exp(1j * item.phase)
     for share in mesh.stiffness_variation:

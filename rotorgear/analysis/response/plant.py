@@ -9,7 +9,6 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.common.places import part_nodes
-from rotorgear.analysis.common.points import point_place
 from rotorgear.analysis.response.orders import Order
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.frequency.harmonic import Dynamics, LowRankDamping
@@ -131,7 +130,7 @@ class Plant:
 
 def _row(system: System, name: str) -> np.ndarray:
     """Row that gives the displacement of a named point along its direction, (n,)."""
-    shaft, z = point_place(system.model, name)
+    shaft, z = system.layout.place(f"points.{name}")
     return dof_row(system, shaft, z, system.model.points[name].direction)
 
 

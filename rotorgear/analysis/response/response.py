@@ -66,7 +66,9 @@ def response(
     chosen = _speeds(model, speeds)
     _check(method, damping_ratio, fmax, elements, accuracy)
     zeta = damping_ratio + model.damping.modal_ratio
-    first = mean_state(System(model, direction=direction_of(chosen[-1]), mesh="static"), float(chosen[-1]))
+    first = mean_state(
+        System(model, load=model.mean_load(direction_of(chosen[-1])).of_kind("static")), float(chosen[-1])
+    )
     orders, left = _within(orders_of(first.system, first.lines, first.mean_force), chosen, fmax)
     top = max(order.ratio for order in orders) * float(np.max(np.abs(chosen)))
     progress(0.02, "discretisation")
@@ -121,7 +123,7 @@ def response(
 
 def _discretised(first: Setup, plan: Plan, orders: list[Order]) -> tuple[Setup, list[Order]]:
     """The same state on another mesh, with the orders of the same names."""
-    system = System(first.system.model, plan=plan, direction=first.system.direction, flow=first.system.flow)
+    system = System(first.system.model, plan=plan, load=first.system.load.of_kind("dynamic"))
     setup = replace(first, system=system, lines=contact_lines(system))
     names = {order.name for order in orders}
     return setup, [o for o in orders_of(system, setup.lines, setup.mean_force) if o.name in names]

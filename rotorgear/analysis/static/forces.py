@@ -53,7 +53,7 @@ def support_forces(found: Equilibrated) -> dict[str, np.ndarray]:
         if group.part.startswith("supports."):
             forces[group.part.removeprefix("supports.")] = -_inner(group, q)[0, -6:]
     for name, support in system.model.supports.items():
-        node = system.nodes.at(support.shaft, system.model.shafts[support.shaft].station(support.at))
+        node = system.nodes.at(*system.layout.place(f"supports.{name}"))
         held = [k for k, dof in enumerate(DOF_NAMES) if dof in support.fixed or "all" in support.fixed]
         if held:
             wrench = _at_node(system.nodes, found, rest, node)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -31,7 +31,7 @@ def mean_state(system: System, speed: float) -> Setup:
     index = any(mesh.index_error or mesh.helix_index_error for mesh in system.model.meshes.values())
     operation = system.model.operation
     weight = bool(operation and operation.gravity and any(operation.gravity))
-    if not system.flow.forces or not (system.flow.applied or index or weight):
+    if not system.load.forces or not (system.load.applied or index or weight):
         lines = contact_lines(system)
         meshes = system.model.meshes.items()
         varied = [name for name, m in meshes if m.stiffness_variation or not isinstance(m.stiffness, int | float)]
@@ -48,9 +48,5 @@ def mean_state(system: System, speed: float) -> Setup:
             f"meshes.{name} carries nothing under the mean loads, so there is no linear response about them; give more torque or "
             "a smaller index error"
         )
-    forces = tuple(
-        replace(state, normal_force=float(force)) for state, force in zip(found.lines.states, found.force, strict=True)
-    )
-    flow = replace(found.system.flow, forces=forces)
-    settled = System(system.model, plan=system.plan, direction=system.direction, flow=flow, mesh=system.mesh)
+    settled = found.system.with_load(found.system.load.with_forces(found.force))
     return Setup(settled, contact_lines(settled), found.force, ())

@@ -12,7 +12,6 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
-from rotorgear.model.layout.torque_flow import MeshForce
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.sparse.equilibrium import Equilibrium
 from rotorgear.solvers.sparse.static import UnbalancedLoadError
@@ -49,12 +48,12 @@ def equilibrate(system: System, speed: float) -> Equilibrated:
     Raises:
         AnalysisError: no loads, a motion that nothing holds and the loads push, or flanks that can't be settled.
     """
-    closed = np.ones(len(system.flow.forces), bool)
+    closed = np.ones(len(system.load.forces), bool)
     tried: set[tuple[object, ...]] = set()
     while True:
-        state = (tuple(force.torque_sense for force in system.flow.forces), tuple(closed))
+        state = (tuple(force.torque_sense for force in system.load.forces), tuple(closed))
         if state in tried:
-            names = ", ".join(dict.fromkeys(force.contact.mesh for force in system.flow.forces))
+            names = ", ".join(dict.fromkeys(force.contact.mesh for force in system.load.forces))
             raise AnalysisError(
                 f"no set of flanks carries the loads: meshes {names} open and close in turn; check index errors and loads"
             )
@@ -80,16 +79,10 @@ def _released(system: System, speed: float, closed: np.ndarray, worst: int) -> t
     try:
         _solve(system, speed, opened)
     except _PushedMotionError:
-        mesh = system.flow.forces[worst].contact.mesh
-        turned = tuple(_turned(force) if force.contact.mesh == mesh else force for force in system.flow.forces)
+        mesh = system.load.forces[worst].contact.mesh
         opened[worst] = True
-        flow = replace(system.flow, forces=turned)
-        return System(system.model, plan=system.plan, direction=system.direction, flow=flow, mesh=system.mesh), opened
+        return system.with_load(system.load.on_other_flank(mesh)), opened
     return system, opened
-
-
-def _turned(force: MeshForce) -> MeshForce:
-    return replace(force, torque_sense=-force.torque_sense, pinion_drives=not force.pinion_drives)
 
 
 class _PushedMotionError(AnalysisError):

@@ -16,7 +16,8 @@ from rotorgear.analysis.static.sensitivity import Sensitivity, sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError
-from rotorgear.model.layout.mesh_phases import MeshPhases, mesh_phases
+from rotorgear.model.layout.layout import Layout
+from rotorgear.model.layout.mean_load import MeanLoad
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.static import LoopAssembly, StaticResult
@@ -53,7 +54,7 @@ def static(
     if elements is not None and elements < 1:
         raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
     plan = Plan(elements or DEFAULT_ELEMENTS)
-    system = System(model, plan=plan, direction=direction_of(given), mesh="static")
+    system = System(model, plan=plan, load=model.mean_load(direction_of(given)).of_kind("static"))
     _check_loaded(system)
     progress(0.1, f"solving {system.n} dofs")
     found = equilibrate(system, given or 0.0)
@@ -72,7 +73,7 @@ def _check_loaded(system: System) -> None:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     gravity = model.operation.gravity if model.operation else None
     index = any(mesh.index_error or mesh.helix_index_error for mesh in model.meshes.values())
-    if not system.flow.applied and not (gravity and any(gravity)) and not index:
+    if not system.load.applied and not (gravity and any(gravity)) and not index:
         raise AnalysisError(
             "nothing loads the model in statics: give [operation] a power or torque with its output_shaft, [loads], or gravity"
         )
@@ -80,13 +81,7 @@ def _check_loaded(system: System) -> None:
 
 def _estimate(found: Equilibrated, speed: float) -> float:
     """Relative change of all forces when every element is halved."""
-    finer = System(
-        found.system.model,
-        plan=Plan(2 * found.system.plan.elements),
-        direction=found.system.direction,
-        flow=found.system.flow,
-        mesh="static",
-    )
+    finer = found.system.with_plan(Plan(2 * found.system.plan.elements))
     other = equilibrate(finer, speed)
     here = np.concatenate([found.force, *bearing_forces(found).values(), *support_forces(found).values()])
     there = np.concatenate([other.force, *bearing_forces(other).values(), *support_forces(other).values()])
@@ -101,7 +96,6 @@ def _result(
     states = found.lines.states
     q = system.dofs.expand(found.q)
     nodes, moved = shapes_at_stations(system, q[:, None])
-    phases = mesh_phases(system.model, system.train, system.flow, system.direction)
     shares, share_change = share_rows(found, change.force)
     approach = found.lines.vectors.T @ found.q - found.lines.gap
     return StaticResult(
@@ -124,16 +118,16 @@ def _result(
         parameter_unit=change.unit,
         force_derivative=change.force,
         share_derivative=share_change,
-        mesh_phase=phases_in_pitches(phases),
-        assembly=_assembly(phases),
-        torque={item.name: item.torque for item in system.flow.applied},
+        mesh_phase=phases_in_pitches(system.load),
+        assembly=_assembly(system.layout),
+        torque={item.name: item.torque for item in system.load.applied},
         point_displacement={n: float(v[0]) for n, v in point_amplitudes(system, moved).items()},
         imbalance=imbalance(found),
         error_estimate=estimate,
         dofs=system.n,
         seconds={"total": time.perf_counter() - start},
         left_out=(*_left_out(found), *change.left_out),
-        warnings=(*system.nodes.merged, *_warnings(found, phases)),
+        warnings=(*system.nodes.merged, *_warnings(found)),
         method=f"direct, sparse LU; {_free(found)}",
         place_displacement=displacement_places(system, moved[:, :, 0]),
     )
@@ -148,13 +142,14 @@ def _free(found: Equilibrated) -> str:
     )
 
 
-def phases_in_pitches(phases: MeshPhases) -> dict[str, float]:
+def phases_in_pitches(load: MeanLoad) -> dict[str, float]:
     """Phase of each mesh in pitches, 0 to 1; NaN where teeth are missing."""
-    return {name: math.nan if phi is None else phi / (2.0 * math.pi) for name, phi in phases.phase.items()}
+    return {name: math.nan if phi is None else phi / (2.0 * math.pi) for name, phi in load.phases.items()}
 
 
-def _assembly(phases: MeshPhases) -> tuple[LoopAssembly, ...]:
-    return tuple(LoopAssembly(loop.mesh, loop.gear, math.degrees(loop.clocking), loop.rest) for loop in phases.loops)
+def _assembly(layout: Layout) -> tuple[LoopAssembly, ...]:
+    loops = layout.assembly.loops
+    return tuple(LoopAssembly(loop.mesh, loop.gear, math.degrees(loop.clocking), loop.rest) for loop in loops)
 
 
 def _left_out(found: Equilibrated) -> tuple[str, ...]:
@@ -169,11 +164,11 @@ def _left_out(found: Equilibrated) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _warnings(found: Equilibrated, phases: MeshPhases) -> list[str]:
+def _warnings(found: Equilibrated) -> list[str]:
     notes = []
     flow = {
         (force.contact.mesh, force.contact.helix): force.torque_sense
-        for force in System(found.system.model, direction=found.system.direction).flow.forces
+        for force in found.system.model.mean_load(found.system.direction).forces
     }
     for state, closed in zip(found.lines.states, found.closed, strict=True):
         contact = state.contact
@@ -182,7 +177,7 @@ def _warnings(found: Equilibrated, phases: MeshPhases) -> list[str]:
             notes.append(f"{which} carries nothing: its flanks stand apart under these loads and index errors")
         elif state.torque_sense != flow[contact.mesh, contact.helix]:
             notes.append(f"{which} carries on the other flank than the torque flow in torsion says")
-    open_loops = [loop for loop in phases.loops if not loop.gear and abs(loop.rest) > 1e-6]
+    open_loops = [loop for loop in found.system.layout.assembly.loops if not loop.gear and abs(loop.rest) > 1e-6]
     return notes + [
         f"meshes.{loop.mesh} closes a loop that can't be put together: {loop.rest:+.4f} pitches are missing with the clockings "
         "given; leave out the clocking of one of its gears and it closes the loop"

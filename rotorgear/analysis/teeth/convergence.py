@@ -14,7 +14,7 @@ from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.settings import PRESETS, sized
-from rotorgear.model.layout.mesh_stiffness import mirrored
+from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.mesh import MeshErrors

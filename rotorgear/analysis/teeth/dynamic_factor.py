@@ -15,9 +15,6 @@ from rotorgear.gears.stiffness.dynamic_factor import (
 )
 from rotorgear.gears.stiffness.iso import pair_iso_stiffness
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-from rotorgear.model.layout.inertia import gear_body
-from rotorgear.model.layout.mesh_stiffness import helix_count, tooth_pair
-from rotorgear.model.layout.train import walk
 from rotorgear.model.model import Model
 
 
@@ -29,26 +26,28 @@ def mesh_dynamic_factor(model: Model, name: str, base_force: float | None) -> Dy
         name: of a mesh between gears with teeth.
         base_force: F_bt (N) of one helix; None where no load is known.
     """
-    mesh = model.meshes[name]
+    mesh = model.layout.mesh(name)
     speed = model.operation.speed if model.operation else None
-    grades = [model.gears[gear].accuracy_grade for gear in (mesh.pinion, mesh.gear)]
+    grades = [gear.part.accuracy_grade for gear in mesh.gears]
     if grades[0] is None or grades[1] is None:
         return "K_v: give accuracy_grade of both gears"
     if not speed or not base_force:
         return "K_v: give the speed and the load of the operating point"
-    teeth = tooth_pair(model, name)
-    order = (mesh.pinion, mesh.gear)
+    teeth = mesh.teeth
+    order = mesh.gears
     if teeth.first.teeth > teeth.second.teeth:
         teeth = teeth.swapped()
         order = order[::-1]
         grades = grades[::-1]
-    spin = abs(walk(model)[0].ratio(model.gears[order[0]].shaft) * speed)
-    line_load = mesh.application_factor * base_force * math.cos(teeth.first.transverse_pressure_angle) / teeth.width
+    spin = abs(model.layout.train.ratio(order[0].shaft) * speed)
+    line_load = (
+        mesh.part.application_factor * base_force * math.cos(teeth.first.transverse_pressure_angle) / teeth.width
+    )
     velocity = 0.5 * teeth.first.reference_diameter * spin
-    inertias = [gear_body(model, gear).polar_inertia / helix_count(model, name) for gear in order]
+    inertias = [gear.body.polar_inertia / mesh.helices for gear in order]
     try:
         if min(inertias) > 0.0:
-            relief = min(model.gears[gear].tip_relief for gear in order)
+            relief = min(gear.part.tip_relief for gear in order)
             return iso_dynamic_factor(_method_b(teeth, spin, velocity, line_load, inertias, grades, relief))
         ratio = teeth.second.teeth / teeth.first.teeth
         worst = max(grade for grade in grades if grade is not None)

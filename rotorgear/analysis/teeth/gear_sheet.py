@@ -23,11 +23,8 @@ from rotorgear.gears.stiffness.contact_lines import contact_line_length, mean_co
 from rotorgear.gears.stiffness.dynamic_factor import DynamicFactor
 from rotorgear.gears.stiffness.iso import pair_iso_stiffness
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-from rotorgear.model.checks.pairs import allowance, ball_diameter, mesh_backlash, mesh_findings
-from rotorgear.model.layout.mesh_geometry import gear_geometry
-from rotorgear.model.layout.mesh_stiffness import helix_count, stiffness_of_mesh, tooth_pair
-from rotorgear.model.layout.torque_flow import MeshForce, torque_flow
-from rotorgear.model.layout.train import walk
+from rotorgear.model.checks.pairs import ball_diameter, mesh_findings
+from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.model import Model
 from rotorgear.model.parts.gear import Gear
 from rotorgear.results.gear_sheet import GearRow, GearSheet, MeshSheetRow
@@ -47,30 +44,27 @@ def gear_sheet(model: Model, mesh: str | None = None) -> GearSheet:
     """
     if mesh is not None and mesh not in model.meshes:
         raise AnalysisError(f"There is no mesh '{mesh}': the model has {', '.join(model.meshes) or 'none'}.")
-    meshes = [name for name in model.meshes if mesh in (None, name)]
-    wanted = (
-        [name for m in meshes for name in (model.meshes[m].pinion, model.meshes[m].gear)] if mesh else list(model.gears)
-    )
-    toothed = [name for name in model.gears if name in wanted and gear_geometry(model.gears[name])]
+    meshes = [item for item in model.layout.meshes if mesh in (None, item.name)]
+    wanted = [gear.name for item in meshes for gear in item.gears] if mesh else list(model.gears)
+    toothed = [gear for gear in model.layout.gears if gear.name in wanted and gear.geometry]
     if not toothed:
         raise AnalysisError("The model has no gears with teeth: those given by base_radius have no tooth geometry.")
-    pairs = {name: tooth_pair(model, name) for name in meshes if model.meshes[name].pinion in toothed}
-    flow = torque_flow(model, walk(model)[0])
-    lumped = [name for name in model.gears if name in wanted and name not in toothed]
+    whole = [item for item in meshes if item.pinion.geometry]
+    lumped = [name for name, gear in model.gears.items() if name in wanted and not gear.geometry]
     return GearSheet(
         title=model.title,
-        gears=tuple(_gear(name, model.gears[name]) for name in toothed),
-        meshes=tuple(_mesh(model, name, teeth, flow.of_mesh(name)) for name, teeth in pairs.items()),
+        gears=tuple(_gear(gear.name, gear.part) for gear in toothed),
+        meshes=tuple(_mesh(model, item) for item in whole),
         left_out=tuple(f"gears.{name}: given by its base radius, without teeth" for name in lumped),
-        pairs=pairs,
+        pairs={item.name: item.teeth for item in whole},
     )
 
 
 def _gear(name: str, gear: Gear) -> GearRow:
-    g = gear_geometry(gear)
+    g = gear.geometry
     assert g is not None
     outline = tooth_outline(g)
-    own = allowance(gear)
+    own = gear.allowance
     ball = ball_diameter(gear, g)
     k = best_span(g)
     thick = with_allowance(g, own.upper)
@@ -118,29 +112,30 @@ def _gear(name: str, gear: Gear) -> GearRow:
     )
 
 
-def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ...]) -> MeshSheetRow:
+def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
+    teeth = mesh.teeth
+    forces = model.mean_load().of_mesh(mesh.name)
     g1 = teeth.first
     g2 = teeth.second
     pair = teeth.pair
-    mesh = model.meshes[name]
-    backlash = mesh_backlash(model, name)
+    backlash = mesh.backlash
     lines = contact_line_length(teeth, (np.arange(_POSITIONS) + 0.5) / _POSITIONS)
     iso = pair_iso_stiffness(teeth)
     force = sum(force.normal_force for force in forces) / len(forces)
-    curve = stiffness_of_mesh(model, name, force or None, sense=forces[0].torque_sense).about_load
+    curve = mesh.stiffness(force or None, sense=forces[0].torque_sense).about_load
     base = math.cos(pair.base_helix_angle)
-    dynamic = mesh_dynamic_factor(model, name, force * base or None)
+    dynamic = mesh_dynamic_factor(model, mesh.name, force * base or None)
     factor = dynamic if isinstance(dynamic, DynamicFactor) else None
     return MeshSheetRow(
-        name=name,
-        pinion=mesh.pinion,
-        gear=mesh.gear,
+        name=mesh.name,
+        pinion=mesh.pinion.name,
+        gear=mesh.gear.name,
         ratio=g2.teeth / g1.teeth,
         centre_distance_m=pair.centre_distance,
         reference_centre_distance_m=standard_centre_distance(g1, g2),
         profile_shift_sum=profile_shift_sum(g1, g2, pair.centre_distance),
         common_width_m=teeth.width,
-        helices=helix_count(model, name),
+        helices=mesh.helices,
         working_pressure_angle_deg=math.degrees(pair.working_transverse_pressure_angle),
         working_helix_angle_deg=math.degrees(pair.working_helix_angle),
         base_helix_angle_deg=math.degrees(pair.base_helix_angle),
@@ -169,30 +164,29 @@ def _mesh(model: Model, name: str, teeth: ToothPair, forces: tuple[MeshForce, ..
         stiffness_peak_to_peak_n_per_m=curve.peak_to_peak / base**2,
         stiffness_definition=curve.definition,
         stiffness_body=curve.body,
-        pitch_line_velocity_m_per_s=_velocity(model, mesh.pinion, g1),
+        pitch_line_velocity_m_per_s=_velocity(model, mesh.pinion.shaft, g1),
         tangential_force_n=force * base * math.cos(g1.transverse_pressure_angle) if force else None,
         base_tangential_force_n=force * base if force else None,
         dynamic_factor=factor.value if factor else None,
         resonance_ratio=factor.resonance_ratio if factor else None,
         dynamic_factor_method=dynamic if isinstance(dynamic, str) else dynamic.method,
-        warnings=(*mesh_findings(model, name), *curve.warnings, *(_of_factor(model, name, factor) if factor else ())),
+        warnings=(*mesh_findings(mesh), *curve.warnings, *(_of_factor(model, mesh, factor) if factor else ())),
     )
 
 
-def _of_factor(model: Model, name: str, factor: DynamicFactor) -> Iterator[str]:
+def _of_factor(model: Model, own: MeshLayout, factor: DynamicFactor) -> Iterator[str]:
     """Warnings of K_v, and a sentence for a gear with further mates, whose resonances method B doesn't know."""
     yield from factor.warnings
-    own = model.meshes[name]
-    for gear in (own.pinion, own.gear):
+    for gear in (own.part.pinion, own.part.gear):
         if factor.resonance_ratio and sum(gear in (mesh.pinion, mesh.gear) for mesh in model.meshes.values()) > 1:
             yield f"K_v: '{gear}' has other mates too; N and K_v are those of this pair by itself"
 
 
-def _velocity(model: Model, name: str, g: GearGeometry) -> float | None:
+def _velocity(model: Model, shaft: str, g: GearGeometry) -> float | None:
     """v (m/s) at the reference circle at the speed of the operating point."""
     if model.operation is None or not model.operation.speed:
         return None
-    spin = walk(model)[0].ratio(model.gears[name].shaft) * model.operation.speed
+    spin = model.layout.train.ratio(shaft) * model.operation.speed
     return 0.5 * g.reference_diameter * abs(spin)
 
 

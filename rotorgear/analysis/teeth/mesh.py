@@ -16,7 +16,7 @@ from rotorgear.gears.loaded.stiffness import loaded_cycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
 from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 from rotorgear.gears.tooth_fe.settings import PRESETS
-from rotorgear.model.layout.mesh_stiffness import mirrored, stiffness_of_mesh
+from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.mesh import HelixContact, LoadPoint, MeshErrors, MeshResult
@@ -85,7 +85,7 @@ def mesh_analysis(
         return _other(model, request, positions, clock)
     assert request.teeth is not None
     u = np.arange(positions * _periods(request.teeth, periods)) / positions
-    stagger = model.meshes[request.name].stagger
+    stagger = request.mesh.lead_on_path(request.sense)
     if accuracy is None:
         teeth = request.teeth
         found, errors = _with_errors(request, teeth, u, stagger, estimate, progress)
@@ -180,15 +180,15 @@ def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> 
     """A mesh with another stiffness model: its curve, and the transmission error that follows from it at the load."""
     normal = request.load.normal_force_n / request.helices if request.load else None
     name = None if request.model == "given" else request.model
-    curve: MeshStiffness = stiffness_of_mesh(model, request.name, normal, positions, name=name, sense=request.senses[0])
+    curve: MeshStiffness = request.mesh.stiffness(normal, positions, name=name, sense=request.sense)
     error = None if request.load is None else request.load.base_force_n / curve.transverse
     clock.lap("stiffness")
-    width = request.teeth.width if request.teeth else model.gears[model.meshes[request.name].pinion].width or 0.0
+    width = request.teeth.width if request.teeth else request.mesh.pinion.part.width or 0.0
     return MeshResult(
         model.title,
         request.name,
-        model.meshes[request.name].pinion,
-        model.meshes[request.name].gear,
+        request.mesh.pinion.name,
+        request.mesh.gear.name,
         curve.model,
         None,
         curve.definition,
@@ -196,7 +196,7 @@ def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> 
         request.helices,
         width,
         curve.base_helix_angle,
-        model.meshes[request.name].stagger,
+        request.mesh.part.stagger,
         request.load,
         curve.position,
         curve.transverse,
@@ -223,7 +223,6 @@ def _result(
     loads: tuple[LoadPoint, ...],
     clock: Clock,
 ) -> MeshResult:
-    mesh = model.meshes[request.name]
     notes = [*found.problem.warnings]
     for cycle in found.cycles:
         notes += cycle.warnings
@@ -234,8 +233,8 @@ def _result(
     return MeshResult(
         model.title,
         request.name,
-        mesh.pinion,
-        mesh.gear,
+        request.mesh.pinion.name,
+        request.mesh.gear.name,
         "tooth_fe",
         teeth.fe.preset,
         "secant",
@@ -243,7 +242,7 @@ def _result(
         request.helices,
         teeth.width,
         teeth.pair.base_helix_angle,
-        mesh.stagger,
+        request.mesh.part.stagger,
         request.load,
         u,
         found.stiffness,

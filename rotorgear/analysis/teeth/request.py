@@ -10,10 +10,7 @@ from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.stiffness_models import MODELS
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.model.layout.applied_torques import applied_torques
-from rotorgear.model.layout.mesh_geometry import base_helix_angle, base_radius
-from rotorgear.model.layout.mesh_stiffness import helix_count, helix_senses, tooth_pair
-from rotorgear.model.layout.torque_flow import torque_flow
-from rotorgear.model.layout.train import walk
+from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.model import Model
 from rotorgear.quantity import nearest
 from rotorgear.results.mesh import MeshLoad
@@ -24,18 +21,29 @@ class MeshRequest:
     """A mesh of a model, ready to be solved.
 
     Attributes:
-        name: of the mesh; model: its stiffness model, "given" for numbers of the file.
-        teeth: one helix; None for gears without teeth. helices: 1 or 2.
+        mesh: what it is; model: its stiffness model, "given" for numbers of the file.
+        teeth: one helix with the settings asked for; None for gears without teeth.
+        sense: of the torque on the pinion about +z.
         senses: for each helix, +1 where the contact runs ahead at larger z, -1 where it runs behind.
         load: what it carries; None where nothing flows.
     """
 
-    name: str
+    mesh: MeshLayout
     model: str
     teeth: ToothPair | None
-    helices: int
+    sense: int
     senses: tuple[int, ...]
     load: MeshLoad | None
+
+    @property
+    def name(self) -> str:
+        """Name of the mesh."""
+        return self.mesh.name
+
+    @property
+    def helices(self) -> int:
+        """1 or 2."""
+        return self.mesh.helices
 
     @property
     def base_force(self) -> float:
@@ -57,23 +65,23 @@ def mesh_request(
     Raises:
         AnalysisError: no such mesh or model, no teeth, or no load where one is needed.
     """
-    name = _mesh_name(model, name)
-    given = model.meshes[name].stiffness
+    mesh = model.layout.mesh(_mesh_name(model, name))
+    given = mesh.part.stiffness
     chosen = stiffness or (given if isinstance(given, str) else "tooth_fe")
     if chosen not in (*MODELS, "given"):
         guess = nearest(chosen, [*MODELS, "given"])
         hint = f"did you mean '{guess}'?" if guess else "there are " + ", ".join((*MODELS, "given"))
         raise AnalysisError(f"--stiffness: there is no stiffness model '{chosen}': {hint}.")
     if chosen == "given" and isinstance(given, str):
-        raise AnalysisError(f"--stiffness given: meshes.{name} names the model '{given}' and gives no numbers.")
-    teeth = None if chosen == "given" else _with(tooth_pair(model, name), fe)
-    load, sense = _load(model, name, torque)
+        raise AnalysisError(f"--stiffness given: meshes.{mesh.name} names the model '{given}' and gives no numbers.")
+    teeth = None if chosen == "given" else _with(mesh.teeth, fe)
+    load, sense = _load(model, mesh, torque)
     if load is None and chosen in MODELS and MODELS[chosen].needs_load:
         raise AnalysisError(
-            f"meshes.{name} carries no torque, and the stiffness of loaded teeth needs one: give --torque, or power or loads in "
-            "the model."
+            f"meshes.{mesh.name} carries no torque, and the stiffness of loaded teeth needs one: give --torque, or power or "
+            "loads in the model."
         )
-    return MeshRequest(name, chosen, teeth, helix_count(model, name), helix_senses(model, name, sense), load)
+    return MeshRequest(mesh, chosen, teeth, sense, mesh.helix_senses(sense), load)
 
 
 def _mesh_name(model: Model, name: str | None) -> str:
@@ -97,21 +105,18 @@ def _with(teeth: ToothPair, fe: dict[str, object]) -> ToothPair:
     return replace(teeth, fe=settings)
 
 
-def _load(model: Model, name: str, torque: float | None) -> tuple[MeshLoad | None, int]:
+def _load(model: Model, mesh: MeshLayout, torque: float | None) -> tuple[MeshLoad | None, int]:
     """Load and sense of the torque on the pinion."""
-    pinion = model.gears[model.meshes[name].pinion]
-    lever = base_radius(pinion)
-    cosine = math.cos(base_helix_angle(pinion))
+    lever = mesh.pinion.base_radius
+    cosine = math.cos(mesh.pinion.base_helix_angle)
     if torque is not None:
         if torque == 0.0 or not math.isfinite(torque):
             raise AnalysisError(f"--torque: got {torque:g} N m, expected one that is not zero")
         force = abs(torque) / lever
         return MeshLoad(torque, force, force / cosine, "given"), 1 if torque > 0.0 else -1
-    train = walk(model)[0]
-    if not applied_torques(model, train)[0]:
+    if not applied_torques(model.layout)[0]:
         return None, 1
-    speed = model.operation.speed if model.operation else None
-    forces = torque_flow(model, train, -1 if speed is not None and speed < 0.0 else 1).of_mesh(name)
+    forces = model.mean_load().of_mesh(mesh.name)
     normal = sum(force.normal_force for force in forces)
     sense = forces[0].torque_sense
     if not normal:

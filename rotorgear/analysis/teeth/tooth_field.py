@@ -20,7 +20,7 @@ from rotorgear.gears.loaded.tooth_solution import TeethSolution, solve_teeth
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, compliance_key
 from rotorgear.gears.tooth_fe.sector import clockwise
-from rotorgear.model.layout.mesh_stiffness import mirrored
+from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.tooth_field import ContactField, ToothField, ToothFields
@@ -53,7 +53,7 @@ def tooth_fields(
             "The preview of a pair that changes along the face has no body to show: take --preset default."
         )
     problem, cycle = loaded_cycle(teeth, request.base_force, np.array([at]), part_of(progress, 0.0, 0.4))
-    names = (model.meshes[request.name].pinion, model.meshes[request.name].gear)
+    names = tuple(gear.name for gear in request.mesh.gears)
     found = [
         _gear(names[i], teeth, problem, cycle, at, i, part_of(progress, 0.4 + 0.3 * i, 0.7 + 0.3 * i)) for i in (0, 1)
     ]

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.analysis.common.points import point_place
-from rotorgear.model.layout.mesh_geometry import node_positions
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.time.local_system import Fields
 from rotorgear.system.local import LocalModel
@@ -86,7 +84,7 @@ def _points(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
     found = []
     for name, point in local.system.model.points.items():
         dof = DOF_NAMES.index(point.direction)
-        row = _row(local, local.system.nodes.at(*point_place(local.system.model, name)), dof)
+        row = _row(local, local.system.nodes.at(*local.system.layout.place(f"points.{name}")), dof)
         unit = "m" if dof < 3 else "rad"
         for kind, what, per in (("q", "displacement", ""), ("v", "velocity", "/s"), ("a", "acceleration", "/s^2")):
             found.append((f"points.{name} {what}", unit + per, {kind: row}))
@@ -97,8 +95,8 @@ def _orbits(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
     """x and y of the shaft in each bearing."""
     model = local.system.model
     found = []
-    for name, bearing in model.bearings.items():
-        node = local.system.nodes.at(bearing.shaft, model.shafts[bearing.shaft].station(bearing.at))
+    for name in model.bearings:
+        node = local.system.nodes.at(*local.system.layout.place(f"bearings.{name}"))
         for dof, axis in ((0, "x"), (1, "y")):
             row = _row(local, node, dof)
             if row.any():
@@ -110,8 +108,8 @@ def _rotations(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]
     """Fluctuation of the speed of each gear."""
     model = local.system.model
     found = []
-    for name, gear in model.gears.items():
-        row = _row(local, local.system.nodes.at(gear.shaft, node_positions(model, name)[0]), 5)
+    for name in model.gears:
+        row = _row(local, local.system.nodes.at(*local.system.layout.place(f"gears.{name}")), 5)
         if row.any():
             found.append((f"gears.{name} speed fluctuation", "rad/s", {"v": row}))
     return found

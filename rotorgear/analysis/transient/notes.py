@@ -75,9 +75,7 @@ def _held(model: Model) -> str:
 
 def _drifting(result: TransientResult) -> list[str]:
     """Compare the speed of each gear at the end with the prescribed one."""
-    from rotorgear.model.layout.train import walk
-
-    train, _ = walk(result.model)
+    train = result.model.layout.train
     worst = 0.0
     name = ""
     for gear, part in result.model.gears.items():

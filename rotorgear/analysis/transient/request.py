@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.model.layout.train import mesh_frequency
 from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import Integrator, LocalSystem
@@ -62,7 +61,7 @@ def rotation_of(system: System, speed: float | str | Sequence[tuple[float, float
 
 def mesh_frequencies(system: System, speed: float) -> dict[str, float]:
     """Mesh frequency in Hz of every mesh whose teeth are known."""
-    found = {name: mesh_frequency(system.model, system.train, name, speed) for name in system.model.meshes}
+    found = {name: system.layout.mesh_frequency(name, speed) for name in system.model.meshes}
     return {name: value for name, value in found.items() if value}
 
 

@@ -51,7 +51,7 @@ def prepare(
     largest = float(rotation.speeds[np.argmax(np.abs(rotation.speeds))])
     direction = -1 if largest < 0.0 else 1
     if direction != given.direction:
-        given = System(given.model, plan=given.plan, direction=direction)
+        given = given.with_load(given.model.mean_load(direction))
     if given.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     local = local_model(given, rotation, largest)
@@ -69,7 +69,7 @@ def damped(model: Model | System, modal_damping: float | None) -> Model | System
     own = model.model if isinstance(model, System) else model
     damping = own.damping.model_copy(update={"modal_ratio": modal_damping})
     own = own.model_copy(update={"damping": damping})
-    return System(own, plan=model.plan, direction=model.direction) if isinstance(model, System) else own
+    return System(own, plan=model.plan, load=model.load) if isinstance(model, System) else own
 
 
 def run_task(

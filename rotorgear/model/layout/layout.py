@@ -49,7 +49,9 @@ class Layout:
         """Two gears in mesh."""
         if name not in self._meshes:
             part = self.model.meshes[name]
-            self._meshes[name] = MeshLayout(name, part, self.gear(part.pinion), self.gear(part.gear))
+            self._meshes[name] = MeshLayout(
+                name, part, self.gear(part.pinion), self.gear(part.gear), lambda: self.train
+            )
         return self._meshes[name]
 
     @property

@@ -149,6 +149,12 @@ class MeanLoad:
             return None
         return phase + 2.0 * math.pi * self.layout.mesh(contact.mesh).lead(contact.helix, self.direction)
 
+    def whole_curve(self, mesh: str) -> MeshStiffness | None:
+        """Stiffness of both helices together; None where the file names no stiffness model."""
+        if mesh not in self.curves:
+            return None
+        return self.layout.mesh(mesh).both_helices(self.curves[mesh], self.of_mesh(mesh)[0].torque_sense)
+
     def curve(self, force: MeshForce) -> MeshStiffness:
         """Stiffness of one helix over its mesh period, along the path of contact of the pinion."""
         mesh = self.layout.mesh(force.contact.mesh)

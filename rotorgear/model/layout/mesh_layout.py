@@ -10,6 +10,7 @@ transverse plane for one helix. Here the two are brought to one `MeshStiffness` 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -18,6 +19,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.backlash import Backlash, normal_backlash
 from rotorgear.gears.geometry.pair import PairGeometry, pair_geometry, working_pressure_angle_from_shifts
 from rotorgear.model.layout.gear_layout import GearLayout
+from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.mesh import Mesh
 
 if TYPE_CHECKING:
@@ -70,11 +72,19 @@ class MeshLayout:
         pinion, gear: the two gears, as the file calls them.
     """
 
-    def __init__(self, name: str, part: Mesh, pinion: GearLayout, gear: GearLayout) -> None:
+    def __init__(
+        self, name: str, part: Mesh, pinion: GearLayout, gear: GearLayout, train_of: Callable[[], Train]
+    ) -> None:
+        self._train_of = train_of
         self.name = name
         self.part = part
         self.pinion = pinion
         self.gear = gear
+
+    @property
+    def train(self) -> Train:
+        """The train that the mesh is part of, walked when it is asked for: checks look at meshes before."""
+        return self._train_of()
 
     @property
     def gears(self) -> tuple[GearLayout, GearLayout]:
@@ -300,21 +310,22 @@ class MeshLayout:
         except AnalysisError as error:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
 
-    def both_helices(self, helices: tuple[MeshStiffness, ...], lead: float | None = None) -> MeshStiffness:
-        """Stiffness of the whole mesh from that of its helices.
+    def lead_on_path(self, sense: int) -> float:
+        """By which share of a mesh period the second helix is ahead along the path of contact of the pinion, 0 to 1.
 
-        `lead` is the share of a mesh period by which the second helix is ahead along the path of contact, the stagger if
-        not given; where the gear drives, the path is run through backwards and it has the other sign.
+        The path runs from approach to recess of a pinion that a torque of the given sense about +z drives.
         """
-        if len(helices) == 1:
-            return helices[0]
-        return helices[0].of_both_helices(self.part.stagger if lead is None else lead, helices[1])
+        return (sense * self.train.sense(self.pinion.shaft) * self.part.stagger) % 1.0
+
+    def both_helices(self, helices: tuple[MeshStiffness, ...], sense: int = 1) -> MeshStiffness:
+        """Stiffness of the whole mesh from that of its helices, which stand in parallel, one ahead of the other."""
+        return helices[0] if len(helices) == 1 else helices[0].of_both_helices(self.lead_on_path(sense), helices[1])
 
     def stiffness(
         self, normal_force: float | None = None, positions: int = POSITIONS, name: str | None = None, sense: int = 1
     ) -> MeshStiffness:
         """Stiffness of the whole mesh over one mesh period; arguments and errors as of `helix_stiffness`."""
-        return self.both_helices(self.helix_stiffness(normal_force, positions, name, sense))
+        return self.both_helices(self.helix_stiffness(normal_force, positions, name, sense), sense)
 
 
 def mirrored(teeth: ToothPair) -> ToothPair:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import warnings
-from typing import Any, Literal
+from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
 from rotorgear.model.parts.fields import (
@@ -18,7 +17,6 @@ from rotorgear.model.parts.fields import (
     PositiveRatio,
     Ratio,
     Viscosity,
-    refuse,
 )
 from rotorgear.model.parts.flank import ToothFeTable
 from rotorgear.model.parts.stiffness_field import StiffnessValue
@@ -109,17 +107,3 @@ class Mesh(Part):
         "continuous; default: 2 % of the mean deflection. With penetration: the penetration at which the coefficient has its "
         "given value; default: the mean deflection",
     )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _read_old_key(cls, data: Any) -> Any:
-        """`helix_stagger` was the phase of the helices, `stagger` that of their stiffness only: one physical number."""
-        if not isinstance(data, dict) or "helix_stagger" not in data:
-            return data
-        rest = {key: value for key, value in data.items() if key != "helix_stagger"}
-        old = data["helix_stagger"]
-        if rest.setdefault("stagger", old) != old:
-            raise refuse("stagger only: helix_stagger is its old name, and the two differ")
-        mesh = f"mesh of '{data.get('pinion')}' and '{data.get('gear')}'"
-        warnings.warn(f"{mesh}: the key helix_stagger is now called stagger", FutureWarning, stacklevel=2)
-        return rest

@@ -12,7 +12,7 @@ from rotorgear.old_names import warn_old
 
 # Class -> former key -> key.
 KEYS: dict[str, dict[str, str]] = {
-    "Mesh": {"back_flank": "coast_flank", "damping_depth": "regularisation_depth"},
+    "Mesh": {"back_flank": "coast_flank", "damping_depth": "regularisation_depth", "helix_stagger": "stagger"},
 }
 # Class -> key -> former value -> value.
 VALUES: dict[str, dict[str, dict[str, str]]] = {
@@ -43,13 +43,14 @@ def current_address(address: str) -> str:
 def with_current_names(part: str, data: Mapping[str, Any]) -> dict[str, Any]:
     """Return the data of a part by present keys and values.
 
-    A former key beside the new one stays, so that the check for unknown keys reports it.
+    A former key beside the new one stays, so that the check for unknown keys reports it, unless both say the same.
     """
     keys = KEYS.get(part, {})
     values = VALUES.get(part, {})
     current: dict[str, Any] = {}
     for key, value in data.items():
-        name = current_key(part, key) if key in keys and keys[key] not in data else key
+        clashes = key in keys and keys[key] in data and data[keys[key]] != value
+        name = key if clashes or key not in keys else current_key(part, key)
         renamed = values.get(name, {}).get(value) if isinstance(value, str) else None
         if renamed is not None:
             warn_old(f"{part}: {name} =", value, renamed, stacklevel=4)

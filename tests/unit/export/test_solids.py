@@ -8,7 +8,6 @@ from rotorgear.export.parts import FINE, LIGHT, Detail
 from rotorgear.export.solids import KINDS, LARGEST_TURN, Solids, build_solids
 from rotorgear.export.surface import make_surface
 from rotorgear.export.teeth import contour_of, tooth_phases, twist_rates
-from rotorgear.model.layout.mesh_geometry import contacts, gear_geometry, helix_planes
 from rotorgear.model.load import loads
 from rotorgear.results.modal import NodeTable
 from tests.unit.export.small_models import CHAIN, HERRINGBONE, PAIR, model_of, modes_of
@@ -39,7 +38,7 @@ def test_a_stepped_hollow_conical_shaft_has_its_volume():
 def test_a_gear_has_its_root_and_tip_circles_its_width_and_its_number_of_teeth():
     solids = solids_of(HERRINGBONE, FINE)
     model = model_of(HERRINGBONE)
-    geometry = gear_geometry(model.gears["wheel"])
+    geometry = model.gears["wheel"].geometry
     points = solids.points[only(solids, "gears.wheel", "gear")[0]]
     x, y, z = (points - np.array([0.0, 0.12, 0.0])).T
     radius = np.hypot(x, y)
@@ -58,10 +57,10 @@ def test_flanks_lean_to_the_hand_that_the_mesh_element_works_with(hand):
         PAIR if hand == 1 else PAIR.replace('"right"', '"other"').replace('"left"', '"right"').replace("other", "left")
     )
     model = loads(text)
-    contact = contacts(model, "pair")[0]
+    contact = model.layout.mesh("pair").contacts[0]
     assert contact.hand == hand
-    rate = twist_rates(model, "pinion")[0]
-    radius = 0.5 * gear_geometry(model.gears["pinion"]).reference_diameter
+    rate = twist_rates(model.layout.gear("pinion"))[0]
+    radius = 0.5 * model.gears["pinion"].geometry.reference_diameter
     along = np.array([0.0, rate * radius, 1.0])  # a flank line at angle 0: (radial, tangential, axial)
     drawn = np.cross(along, [1.0, 0.0, 0.0])  # at right angles to it and to the radius
     drawn *= np.sign(drawn[1])
@@ -72,7 +71,7 @@ def test_flanks_lean_to_the_hand_that_the_mesh_element_works_with(hand):
 def test_the_right_hand_helix_of_the_solids_turns_counter_clockwise_towards_positive_z():
     solids = solids_of(PAIR, FINE)
     model = model_of(PAIR)
-    geometry = gear_geometry(model.gears["pinion"])
+    geometry = model.gears["pinion"].geometry
     points = solids.points[only(solids, "gears.pinion", "gear")[0]]
     x, y, z = points[np.hypot(points[:, 0], points[:, 1]) > 0.4999999 * geometry.effective_tip_diameter].T
     angle = np.unwrap(np.sort(np.arctan2(y, x)[z == z.min()]))
@@ -110,10 +109,10 @@ def test_teeth_stand_in_the_gaps_of_their_mates_all_along_the_face(text):
     for z in (0.0, 0.011, -0.013):
         share = []
         for name, gear, direction in (("pinion", one, out), ("wheel", two, out + np.pi)):
-            place = phases[name] + twist_rates(model, name)[0] * z  # at a distance z from the middle plane
+            place = phases[name] + twist_rates(model.layout.gear(name))[0] * z  # at a distance z from the middle plane
             share.append((direction - place) / (2.0 * np.pi / gear.teeth))
         assert (share[0] + share[1]) % 1.0 == pytest.approx(0.5)
-    assert helix_planes(model, "pinion") == pytest.approx(helix_planes(model, "wheel"))
+    assert model.layout.gear("pinion").planes == pytest.approx(model.layout.gear("wheel").planes)
 
 
 def test_teeth_in_mesh_do_not_cut_into_each_other():

@@ -9,8 +9,6 @@ import pytest
 
 from rotorgear.errors import ModelError
 from rotorgear.gears.geometry.blank import RigidBody, hollow_cylinder
-from rotorgear.model.layout.inertia import gear_body, node_bodies
-from rotorgear.model.layout.mesh_geometry import gear_geometry
 from rotorgear.model.model import Model
 
 Data = dict[str, Any]
@@ -18,12 +16,12 @@ STEEL = 7850.0
 
 
 def bodies(model: Model, part: str) -> list[tuple[float, RigidBody]]:
-    return [(node.z, node.body) for node in node_bodies(model) if node.part == part]
+    return [(node.z, node.body) for node in model.layout.bodies if node.part == part]
 
 
 def test_a_gear_without_a_body_is_solid_down_to_its_shaft(pair: Data) -> None:
     model = Model(**pair)
-    geometry = gear_geometry(model.gears["pinion"])
+    geometry = model.gears["pinion"].geometry
     assert geometry is not None
     ((z, body),) = bodies(model, "gears.pinion")
     assert z == pytest.approx(0.1)
@@ -67,7 +65,7 @@ def test_a_point_mass_has_no_moments(everything: Data) -> None:
 
 def test_the_halves_of_a_herringbone_tied_rigidly_are_the_whole(split: Data) -> None:
     model = Model(**split)
-    whole = gear_body(model, "wheel_a")
+    whole = model.layout.gear("wheel_a").body
     (left, one), (right, two) = bodies(model, "gears.wheel_a")
     assert (left, right) == pytest.approx((-0.045, 0.045))
     assert one == two
@@ -78,25 +76,25 @@ def test_the_halves_of_a_herringbone_tied_rigidly_are_the_whole(split: Data) -> 
 
 
 def test_a_herringbone_blank_is_two_single_helices_side_by_side(split: Data) -> None:
-    double = gear_body(Model(**split), "pinion")
+    double = Model(**split).layout.gear("pinion").body
     split["gears"]["pinion"] |= {"kind": "helical", "gap": "0 mm"}
     del split["meshes"]["first_a"], split["meshes"]["first_b"], split["operation"]
-    single = gear_body(Model(**split), "pinion")
+    single = Model(**split).layout.gear("pinion").body
     assert double.mass == pytest.approx(2 * single.mass)
     assert double.diametral_inertia == pytest.approx(2 * (single.diametral_inertia + single.mass * 0.045**2))
 
 
 def test_a_herringbone_in_one_node_keeps_its_whole_body_there(split: Data) -> None:
-    two = gear_body(Model(**split), "wheel_a")
+    two = Model(**split).layout.gear("wheel_a").body
     split["gears"]["wheel_a"]["nodes"] = 1
     model = Model(**split)
     assert bodies(model, "gears.wheel_a") == [(0.0, two)]
 
 
 def test_a_rim_and_a_web_weigh_less_than_a_solid_wheel(split: Data) -> None:
-    light = gear_body(Model(**split), "wheel_a")
+    light = Model(**split).layout.gear("wheel_a").body
     del split["gears"]["wheel_a"]["body"]
-    solid = gear_body(Model(**split), "wheel_a")
+    solid = Model(**split).layout.gear("wheel_a").body
     assert light.mass < 0.8 * solid.mass
     # The rim is far out: the inertia falls by less than the mass.
     assert light.polar_inertia / solid.polar_inertia > light.mass / solid.mass

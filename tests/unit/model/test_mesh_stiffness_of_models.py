@@ -11,9 +11,6 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import ModelError
-from rotorgear.model.layout.mesh_stiffness import stiffness_of_mesh, tooth_pair
-from rotorgear.model.layout.torque_flow import torque_flow
-from rotorgear.model.layout.train import walk
 from rotorgear.model.model import Model
 
 
@@ -26,24 +23,24 @@ def with_stiffness(data: dict[str, Any], value: Any) -> Model:
 @pytest.mark.parametrize("name", ["iso", "contact_line", "potential_energy"])
 def test_modes_with_a_model_are_those_with_its_mean_typed_in(pair: dict[str, Any], name: str) -> None:
     named = with_stiffness(pair, name)
-    curve = torque_flow(named, walk(named)[0]).stiffness["stage"]
+    curve = named.mean_load().whole_curve("stage")
     typed = with_stiffness(pair, curve.mean_normal)
     got, want = (rg.modal(model, modes=12, elements=2).frequency_hz for model in (named, typed))
     assert got == pytest.approx(want, rel=1e-9, abs=1e-6)
     assert curve.load == pytest.approx(
-        20e3 / (1500 * math.pi / 30) / tooth_pair(named, "stage").first.base_radius, rel=1e-9
+        20e3 / (1500 * math.pi / 30) / named.layout.mesh("stage").teeth.first.base_radius, rel=1e-9
     )
 
 
 def test_a_table_over_the_mesh_period_counts_with_its_mean(pair: dict[str, Any]) -> None:
     table = with_stiffness(pair, ["3e8 N/m", "4e8 N/m", 5e8])
-    assert torque_flow(table, walk(table)[0]).forces[0].contact.stiffness == pytest.approx(4e8, rel=1e-14)
-    assert stiffness_of_mesh(table, "stage").normal == pytest.approx([3e8, 4e8, 5e8], rel=1e-14)
+    assert table.mean_load().forces[0].contact.stiffness == pytest.approx(4e8, rel=1e-14)
+    assert table.layout.mesh("stage").stiffness().normal == pytest.approx([3e8, 4e8, 5e8], rel=1e-14)
 
 
 def test_a_fourier_series_keeps_its_mean_amplitudes_and_phases(pair: dict[str, Any]) -> None:
     series = {"mean": "4e8 N/m", "amplitudes": [0.2, 0.0, 0.05], "phases": ["30 deg", 0.0, "-90 deg"]}
-    curve = stiffness_of_mesh(with_stiffness(pair, series), "stage")
+    curve = with_stiffness(pair, series).layout.mesh("stage").stiffness()
     assert curve.mean_normal == pytest.approx(4e8, rel=1e-13)
     got = curve.harmonics(4) / curve.mean
     want = [0.2 * cmath.exp(1j * math.pi / 6), 0.0, -0.05j, 0.0]
@@ -69,10 +66,10 @@ def test_a_series_that_makes_no_sense_is_refused(pair: dict[str, Any], series: d
 
 def test_both_helices_of_a_herringbone_share_the_load_and_add_up(split: dict[str, Any]) -> None:
     model = with_stiffness(split, "contact_line")
-    flow = torque_flow(model, walk(model)[0])
+    flow = model.mean_load()
     for name in model.meshes:
         forces = flow.of_mesh(name)
-        curve = flow.stiffness[name]
+        curve = flow.whole_curve(name)
         assert curve.helices == len(forces)
         base = math.cos(curve.base_helix_angle)
         assert curve.load == pytest.approx(sum(force.normal_force for force in forces) * base, rel=1e-6)
@@ -82,19 +79,19 @@ def test_both_helices_of_a_herringbone_share_the_load_and_add_up(split: dict[str
 def test_a_light_load_in_a_loop_is_iterated_with_its_stiffness(split: dict[str, Any]) -> None:
     split["operation"]["power"] = "200 W"  # far below 100 N/mm: c' depends on the load
     model = with_stiffness(split, "iso")
-    flow = torque_flow(model, walk(model)[0])
+    flow = model.mean_load()
     for name in model.meshes:
         forces = [force.normal_force for force in flow.of_mesh(name)]
-        assert stiffness_of_mesh(model, name, sum(forces) / len(forces)).mean == pytest.approx(
-            flow.stiffness[name].mean, rel=1e-7
+        assert model.layout.mesh(name).stiffness(sum(forces) / len(forces)).mean == pytest.approx(
+            flow.whole_curve(name).mean, rel=1e-7
         )
-        assert flow.stiffness[name].warnings
+        assert flow.whole_curve(name).warnings
 
 
 def test_without_a_load_a_model_that_needs_none_still_answers(pair: dict[str, Any]) -> None:
     del pair["operation"]["power"], pair["operation"]["output_shaft"]
     model = with_stiffness(pair, "iso")
-    assert torque_flow(model, walk(model)[0]).stiffness["stage"].load is None
+    assert model.mean_load().whole_curve("stage").load is None
 
 
 def test_the_result_says_which_mean_stiffness_was_taken_at_which_load(pair: dict[str, Any]) -> None:

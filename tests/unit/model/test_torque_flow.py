@@ -8,8 +8,7 @@ from typing import Any
 import pytest
 
 from rotorgear.errors import ModelError
-from rotorgear.model.layout.torque_flow import TorqueFlow, torque_flow
-from rotorgear.model.layout.train import walk
+from rotorgear.model.layout.mean_load import MeanLoad
 from rotorgear.model.model import Model
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.mesh import Mesh
@@ -20,15 +19,15 @@ from rotorgear.model.parts.supports import Coupling, StiffnessMatrix
 Data = dict[str, Any]
 
 
-def flow_of(model: Model, direction: int = 1) -> TorqueFlow:
-    return torque_flow(model, walk(model)[0], direction)
+def flow_of(model: Model, direction: int = 1) -> MeanLoad:
+    return model.mean_load(direction)
 
 
 def lumped(shaft: str, at: float, radius: float) -> Gear:
     return Gear(shaft=shaft, at=at, kind="spur", base_radius=radius, mass=1, polar_inertia=1, diametral_inertia=1)
 
 
-def torque_balance(model: Model, flow: TorqueFlow) -> dict[str, float]:
+def torque_balance(model: Model, flow: MeanLoad) -> dict[str, float]:
     """Sum of the torques on each shaft about +z: applied ones, and those of its meshes."""
     total = dict.fromkeys(model.shafts, 0.0)
     for item in flow.applied:
@@ -202,7 +201,7 @@ def test_several_inputs_drive_one_output(split: Data) -> None:
     }
     model = Model(**split)
     flow = flow_of(model)
-    train = walk(model)[0]
+    train = model.layout.train
     speed = 16350 * math.pi / 30
     assert sum(item.torque * train.ratio(item.shaft) for item in flow.applied) * speed == pytest.approx(0.0, abs=1e-3)
     assert {item.name: item.torque for item in flow.applied}["loads.rotor"] == pytest.approx(

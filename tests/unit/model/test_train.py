@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rotorgear.errors import ModelError
-from rotorgear.model.layout.train import Train, links, mesh_frequency, walk
+from rotorgear.model.layout.train import Train, links, walk
 from rotorgear.model.model import Model
 from rotorgear.model.parts.bodies import Disk
 from rotorgear.model.parts.gear import Gear
@@ -170,12 +170,11 @@ def test_a_chain_beyond_all_trains_is_refused_instead_of_overflowing() -> None:
 
 def test_mesh_frequencies_are_one_for_both_gears_and_none_without_teeth(pair: Data, everything: Data) -> None:
     model = Model(**pair)
-    train = train_of(model)
     speed = 2.0 * math.pi * 25.0
-    assert mesh_frequency(model, train, "stage", speed) == pytest.approx(25.0 * 24)
-    assert mesh_frequency(model, train, "stage", -speed) == pytest.approx(25.0 * 24)
+    assert model.layout.mesh_frequency("stage", speed) == pytest.approx(25.0 * 24)
+    assert model.layout.mesh_frequency("stage", -speed) == pytest.approx(25.0 * 24)
     lumped = Model(**everything)
-    assert mesh_frequency(lumped, train_of(lumped), "lumped", speed) is None
+    assert lumped.layout.mesh_frequency("lumped", speed) is None
 
 
 def test_links_are_the_meshes_and_the_stiff_couplings(everything: Data) -> None:

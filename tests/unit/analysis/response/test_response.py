@@ -192,7 +192,7 @@ def test_a_staggered_herringbone_shakes_along_its_axis_and_one_in_phase_turns(st
     data = tomllib.loads((ROOT / "models" / "split_torque.toml").read_text(encoding="utf-8"))
     for name, mesh in data["meshes"].items():
         own = ({"harmonic": 1, "amplitude": 1e-6},) if name == "stage_1a" else ()
-        mesh.update(helix_stagger=stagger, transmission_error=own)
+        mesh.update(stagger=stagger, transmission_error=own)
     data["unbalances"] = {}
     result = rg.response(rg.Model(**data), speeds=[0.5], damping_ratio=0.05, elements=1)
     left, right = result.mesh_force[0, 0, result.contacts_of("stage_1a")]

@@ -12,7 +12,6 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.elements.shaft import cowper
-from rotorgear.model.layout.mesh_geometry import contacts
 from rotorgear.results.static import StaticResult
 from tests.paths import ROOT
 
@@ -87,7 +86,7 @@ def test_a_shaft_with_cross_coupled_bearings_moves_sideways_under_its_weight() -
 def test_the_forces_of_a_helical_pair_are_those_of_the_text_book() -> None:
     result = rg.static(rg.load(ROOT / "models" / "helical_pair.toml"))
     torque = 60e3 / (2970 * math.pi / 30)
-    (contact,) = contacts(result.model, "stage")
+    (contact,) = result.model.layout.mesh("stage").contacts
     tangential = torque / (contact.pinion_base_radius / math.cos(contact.pressure_angle))
     radial = tangential * math.tan(contact.pressure_angle)
     axial = torque / contact.pinion_base_radius * math.tan(contact.base_helix_angle)
@@ -103,7 +102,7 @@ def test_the_axial_force_of_a_helical_mesh_is_right_where_ross_has_36_percent_of
     result = rg.static(rg.load(ROOT / "models" / "helical_pair.toml"))
     torque = 60e3 / (2970 * math.pi / 30)
     # By hand, at the working circle: F_a = F_t tan(beta_w), tan(beta_w) = tan(beta) r_w / r.
-    (contact,) = contacts(result.model, "stage")
+    (contact,) = result.model.layout.mesh("stage").contacts
     r = 0.5 * 23 * 3e-3 / math.cos(math.radians(20))
     r_w = contact.pinion_base_radius / math.cos(contact.pressure_angle)
     by_hand = torque / r_w * math.tan(math.radians(20)) * r_w / r
@@ -128,7 +127,7 @@ def test_every_shaft_and_the_whole_are_in_equilibrium(name: str) -> None:
 def test_the_forces_of_a_split_torque_box_carry_the_torque_of_every_shaft() -> None:
     result = rg.static(rg.load(ROOT / "models" / "split_torque.toml"))
     torque = 2.5e6 / (16350 * math.pi / 30)
-    lines = [c for mesh in result.model.meshes for c in contacts(result.model, mesh)]
+    lines = [c for mesh in result.model.layout.meshes for c in mesh.contacts]
     pull = result.mesh_force * np.array([math.cos(c.base_helix_angle) for c in lines])
     mesh = np.array(result.contact_mesh)
     input_torque = sum(

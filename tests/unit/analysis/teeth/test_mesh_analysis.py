@@ -11,8 +11,6 @@ import scipy.sparse.linalg as spl
 
 import rotorgear as rg
 from rotorgear.analysis.static.mean_state import mean_state
-from rotorgear.model.layout.torque_flow import torque_flow
-from rotorgear.model.layout.train import walk
 from rotorgear.system.system import System
 from tests.paths import MODELS
 from tests.unit.analysis.geared import pair_file
@@ -28,7 +26,7 @@ def mesh_of(text: str, **options: Any) -> rg.MeshResult:
 def deflection_of_rotor_model(text: str) -> float:
     """Approach of the flanks along the normal in the rotor model under the torque of the file, mean of the helices."""
     model = rg.loads(text)
-    system = System(model, elements=2, mesh="static")
+    system = System(model, elements=2, load=model.mean_load().of_kind("static"))
     K = system.stiffness()
     groups = [group for group in system.groups if group.part == "meshes.pair"]
     # Both shafts are driven against each other by torques in balance; the free rotation is held by a soft spring.
@@ -70,7 +68,7 @@ def test_small_motions_meet_the_tangent_stiffness() -> None:
     model = rg.loads(pair_file(mesh=NAMED))
     found = rg.mesh_analysis(model, estimate=False)
     assert found.tangent is not None
-    force = System(model).flow.of_mesh("pair")[0]
+    force = System(model).load.of_mesh("pair")[0]
     assert force.contact.stiffness == pytest.approx(float(found.tangent.mean()), rel=1e-9)
 
 
@@ -211,9 +209,9 @@ def test_the_result_is_plain_json() -> None:
 
 def test_a_response_about_the_mean_state_meets_the_tangent_stiffness() -> None:
     model = rg.loads(pair_file(mesh=NAMED))
-    state = mean_state(System(model, mesh="static"), 100.0)
-    again = System(model, flow=state.system.flow)
-    tangent, secant = (s.flow.of_mesh("pair")[0].contact.stiffness for s in (again, state.system))
+    state = mean_state(System(model, load=model.mean_load().of_kind("static")), 100.0)
+    again = state.system.with_load(state.system.load.of_kind("dynamic"))
+    tangent, secant = (s.load.of_mesh("pair")[0].contact.stiffness for s in (again, state.system))
     found = rg.mesh_analysis(model, estimate=False)
     assert found.tangent is not None
     assert tangent == pytest.approx(float(found.tangent.mean()), rel=1e-9)
@@ -225,9 +223,9 @@ def test_in_a_loop_of_meshes_split_and_stiffness_agree() -> None:
     for number in ("5.63e8 N/m", "1.2e9 N/m"):
         text = text.replace(f'stiffness = "{number}"', f'stiffness = "tooth_fe"\n{PREVIEW}')
     model = rg.loads(text)
-    flow = torque_flow(model, walk(model)[0])
-    assert set(flow.stiffness) == {"stage_1a", "stage_1b", "stage_2a", "stage_2b"}
-    assert flow.stiffness["stage_1a"].mean == pytest.approx(flow.stiffness["stage_1b"].mean, rel=1e-6)
+    flow = model.mean_load()
+    assert set(flow.curves) == {"stage_1a", "stage_1b", "stage_2a", "stage_2b"}
+    assert flow.whole_curve("stage_1a").mean == pytest.approx(flow.whole_curve("stage_1b").mean, rel=1e-6)
     torque = 2.5e6 / (16350 * np.pi / 30.0)
     radius = flow.of_mesh("stage_1a")[0].contact.pinion_base_radius
     base = flow.of_mesh("stage_1a")[0].contact.base_helix_angle

@@ -252,7 +252,7 @@ def test_two_helices_half_a_pitch_apart_cancel_the_first_harmonic_of_an_even_err
     only_first = [{"harmonic": 1, "amplitude": "4 um"}]
     found = []
     for stagger in (0.0, 0.5):
-        model = spur_pair(**changes, meshes__pair__helix_stagger=stagger, meshes__pair__transmission_error=only_first)
+        model = spur_pair(**changes, meshes__pair__stagger=stagger, meshes__pair__transmission_error=only_first)
         result = transient(model, time=0.05, discard=0.2, steps=200)
         found.append(result.mesh_force[result.counted].sum(axis=1).std())
         assert result.mesh_force[result.counted].std(axis=0).min() > 10.0
@@ -324,7 +324,7 @@ def test_a_stiffness_model_shakes_the_pair_with_its_curve() -> None:
     system = System(model)
     local = local_model(system, Rotation.constant(model.operation.speed), model.operation.speed).local
     law = local.forces.laws[0]
-    curve = system.flow.stiffness["pair"]
+    curve = system.load.whole_curve("pair")
     normal = curve.transverse / np.cos(0.0) ** 2
     k = [
         law.evaluate([1e-5], angle=(2.0 * np.pi * u - law.phase) / law.order, speed=100.0).in_displacement[0, 0]
