@@ -5,7 +5,7 @@ __version__: str
 # A model from a file or from parts.
 from rotorgear.model.load import load as load
 from rotorgear.model.load import loads as loads
-from rotorgear.model.load import json_schema as json_schema
+from rotorgear.model.load import schema as schema
 from rotorgear.model.model import Model as Model
 from rotorgear.model.parts.operation import Operation as Operation
 from rotorgear.model.parts.operation import Load as Load
@@ -32,19 +32,21 @@ from rotorgear.model.parts.excitation import Unbalance as Unbalance
 from rotorgear.system.system import System as System
 
 # The verbs: a model in, a result out.
-from rotorgear.analysis.common.describe_model import describe_model as describe_model
+from rotorgear.analysis.common.describe_model import check as check
 from rotorgear.analysis.modal.modal import modal as modal
 from rotorgear.analysis.campbell.campbell import campbell as campbell
-from rotorgear.analysis.campbell.critical import critical_speeds as critical_speeds
+from rotorgear.analysis.campbell.critical import critical as critical
 from rotorgear.analysis.campbell.critical_map import critical_map as critical_map
 from rotorgear.analysis.static.static import static as static
 from rotorgear.analysis.response.response import response as response
-from rotorgear.analysis.response.frequency_response import frequency_response as frequency_response
+from rotorgear.analysis.response.frequency_response import frf as frf
 from rotorgear.analysis.transient.transient import transient as transient
 from rotorgear.analysis.sweep.sweep import sweep as sweep
 from rotorgear.analysis.sweep.cluster import cluster as cluster
-from rotorgear.analysis.teeth.gear_sheet import gear_sheet as gear_sheet
-from rotorgear.analysis.teeth.mesh import mesh_analysis as mesh_analysis
+from rotorgear.analysis.teeth.gear_sheet import gear as gear
+from rotorgear.analysis.teeth.mesh import mesh as mesh
+from rotorgear.plots.view import view as view
+from rotorgear.analysis.accuracy import accuracy as accuracy
 from rotorgear.analysis.modal.convergence import convergence_study as convergence_study
 from rotorgear.analysis.transient.convergence import transient_convergence_study as transient_convergence_study
 from rotorgear.analysis.sweep.convergence import sweep_convergence_study as sweep_convergence_study
@@ -52,8 +54,8 @@ from rotorgear.analysis.teeth.convergence import mesh_convergence_study as mesh_
 from rotorgear.solvers.lanes.flow_exponents import flow_exponents as flow_exponents
 
 # A rig beside them.
-from rotorgear.analysis.rig.compare import compare as compare
-from rotorgear.analysis.rig.compare import read_rig_lines as read_rig_lines
+from rotorgear.analysis.rig.compare_result import compare as compare
+from rotorgear.analysis.rig.rig_file import read_rig_lines as read_rig_lines
 from rotorgear.analysis.rig.rig_spectrum import compare_spectrum as compare_spectrum
 from rotorgear.analysis.transient.spectra import spectrum as spectrum
 from rotorgear.analysis.transient.spectra import spectral_lines as spectral_lines

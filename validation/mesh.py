@@ -27,7 +27,7 @@ def is_of_mesh(quantity: str) -> bool:
 @lru_cache(maxsize=32)
 def _solved(file: Path, mesh: str) -> tuple[dict[str, Any], float]:
     start = time.perf_counter()
-    found = rg.mesh_analysis(rg.load(file), mesh, estimate=False)
+    found = rg.mesh(rg.load(file), mesh, estimate=False)
     return found.to_dict(), time.perf_counter() - start
 
 

@@ -27,7 +27,7 @@ def measure_sheet(folder: Path, model: str, quantity: str) -> tuple[float, float
     """
     start = time.perf_counter()
     table, name, key = quantity.removeprefix(KIND).split(".")
-    rows = [row for row in rg.gear_sheet(rg.load(folder / model)).to_dict()[table] if row["name"] == name]
+    rows = [row for row in rg.gear(rg.load(folder / model)).to_dict()[table] if row["name"] == name]
     if not rows or rows[0].get(key) is None:
         raise AnalysisError(f"{model}: the gear sheet has no {quantity.removeprefix(KIND)}")
     return float(rows[0][key]), time.perf_counter() - start

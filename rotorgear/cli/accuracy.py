@@ -7,11 +7,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rotorgear.cli.common import JsonOption, ModelFile, SpeedOption, console, parse_speed, progress_bar, write_json
+from rotorgear.cli.common import (
+    JsonOption,
+    ModelFile,
+    PlotOption,
+    SpeedOption,
+    console,
+    parse_speed,
+    progress_bar,
+    write_json,
+)
 from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
     from rotorgear.results.convergence import ConvergenceStudy
+    from rotorgear.results.mesh_convergence import MeshConvergenceStudy
+    from rotorgear.results.sweep_convergence import SweepConvergenceStudy
 
 
 def accuracy(
@@ -27,7 +38,12 @@ def accuracy(
         typer.Option("--torque", help="With --analysis mesh: torque on the pinion.", show_default=False),
     ] = None,
     speed: SpeedOption = None,
-    modes: Annotated[int, typer.Option("--modes", min=1, help="Number of modes that are compared.")] = 24,
+    modes: Annotated[
+        int | None,
+        typer.Option(
+            "--modes", min=1, help="Modal: number of modes that are compared (default 24).", show_default=False
+        ),
+    ] = None,
     reference: Annotated[
         Path | None,
         typer.Option(
@@ -43,84 +59,58 @@ def accuracy(
         float | None,
         typer.Option("--modal-damping", help="Transient: damping ratio of every elastic mode.", show_default=False),
     ] = None,
-    plot: Annotated[Path | None, typer.Option("--plot", help="Draw it to this PNG or SVG.", show_default=False)] = None,
+    plot: PlotOption = None,
     json: JsonOption = None,
 ) -> None:
     """Convergence study: error against run time and dofs over a series of discretisations, with the measured order."""
     import rotorgear as rg
 
-    if analysis == "mesh":
-        _refuse_modal_options(speed, reference)
-        _mesh(model, mesh, torque, plot, json)
-        return
-    if analysis not in ("modal", "transient", "sweep"):
-        raise AnalysisError(f"--analysis: got '{analysis}', expected modal, mesh, transient or sweep")
-    if mesh is not None or torque is not None:
-        raise AnalysisError("--mesh and --torque belong to --analysis mesh.")
-    if analysis == "sweep":
-        _refuse_others(time, modal_damping, reference, plot)
-        _sweep(model, speed, json)
-        return
-    if analysis == "modal" and (time or modal_damping is not None):
-        raise AnalysisError("--time and --modal-damping belong to --analysis transient")
-    if analysis == "transient" and reference:
-        raise AnalysisError("--reference belongs to --analysis modal: a transient is compared with its own finest run")
+    if analysis == "sweep" and plot:
+        raise AnalysisError("--plot: the study of a sweep has no picture; --json writes its numbers")
     given = [line.frequency_hz for line in rg.read_rig_lines(reference)] if reference else None
     with progress_bar("accuracy") as progress:
-        if analysis == "transient":
-            study = rg.transient_convergence_study(
-                rg.load(model), speed=parse_speed(speed), time=time, modal_damping=modal_damping, progress=progress
-            )
-        else:
-            study = rg.convergence_study(
-                rg.load(model), speed=parse_speed(speed), modes=modes, reference=given, progress=progress
-            )
-    for part in table(study):
+        study = rg.accuracy(
+            rg.load(model),
+            analysis,
+            speed=parse_speed(speed),
+            modes=modes,
+            reference=given,
+            mesh=mesh,
+            torque=torque,
+            time=time,
+            modal_damping=modal_damping,
+            progress=progress,
+        )
+    for part in _parts(study):
         console().print(part)
     write_json(study.to_dict(), json)
     if plot:
-        from rotorgear.plots.convergence import draw_convergence
-
-        typer.echo(f"wrote {draw_convergence(study, plot)}")
+        typer.echo(f"wrote {_draw(study, plot)}")
 
 
-def _refuse_modal_options(speed: str | None, reference: Path | None) -> None:
-    if speed is not None or reference is not None:
-        raise AnalysisError("--speed and --reference belong to --analysis modal.")
+def _parts(study: ConvergenceStudy | MeshConvergenceStudy | SweepConvergenceStudy) -> list[Any]:
+    from rotorgear.results.convergence import ConvergenceStudy
+    from rotorgear.results.mesh_convergence import MeshConvergenceStudy
 
+    if isinstance(study, ConvergenceStudy):
+        return table(study)
+    if isinstance(study, MeshConvergenceStudy):
+        from rotorgear.results.tables.mesh import convergence_parts
 
-def _mesh(model: Path, mesh: str | None, torque: str | None, plot: Path | None, json: Path | None) -> None:
-    """The convergence study of a mesh."""
-    import rotorgear as rg
-    from rotorgear.cli.mesh import parse_torque
-    from rotorgear.results.tables.mesh import convergence_parts
-
-    pinion_torque = parse_torque(torque)
-    with progress_bar("accuracy") as progress:
-        study = rg.mesh_convergence_study(rg.load(model), mesh, torque=pinion_torque, progress=progress)
-    for part in convergence_parts(study):
-        console().print(part)
-    write_json(study.to_dict(), json)
-    if plot:
-        from rotorgear.plots.mesh_convergence import draw_mesh_convergence
-
-        typer.echo(f"wrote {draw_mesh_convergence(study, plot)}")
-
-
-def _refuse_others(time: str | None, modal_damping: float | None, reference: Path | None, plot: Path | None) -> None:
-    if time or modal_damping is not None or reference or plot:
-        raise AnalysisError("--analysis sweep takes --speed and --json, and no other option")
-
-
-def _sweep(model: Path, speed: str | None, json: Path | None) -> None:
-    """The convergence study of one point of a sweep."""
-    import rotorgear as rg
+        return list(convergence_parts(study))
     from rotorgear.results.tables.sweep import convergence_table
 
-    with progress_bar("accuracy") as progress:
-        study = rg.sweep_convergence_study(rg.load(model), speed=parse_speed(speed), progress=progress)
-    console().print(convergence_table(study))
-    write_json(study.to_dict(), json)
+    return [convergence_table(study)]
+
+
+def _draw(study: Any, plot: Path) -> Path:
+    from rotorgear.plots.convergence import draw_convergence
+    from rotorgear.plots.mesh_convergence import draw_mesh_convergence
+    from rotorgear.results.mesh_convergence import MeshConvergenceStudy
+
+    return (
+        draw_mesh_convergence(study, plot) if isinstance(study, MeshConvergenceStudy) else draw_convergence(study, plot)
+    )
 
 
 def table(study: ConvergenceStudy) -> list[Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -12,22 +12,21 @@ from rotorgear.cli.common import (
     ElementsOption,
     JsonOption,
     ModelFile,
+    OnlyOption,
     PlotOption,
     SaveOption,
     console,
+    parse_speed,
     progress_bar,
+    words_of,
     write_json,
 )
 from rotorgear.cli.speed_options import (
     FromOption,
     ToOption,
+    parse_mesh_orders,
     parse_orders,
-    speeds_between,
 )
-from rotorgear.errors import AnalysisError
-
-if TYPE_CHECKING:
-    from rotorgear.results.campbell import CampbellResult
 
 
 def campbell(
@@ -43,9 +42,7 @@ def campbell(
     ] = None,
     accuracy: AccuracyOption = None,
     elements: ElementsOption = None,
-    only: Annotated[
-        str | None, typer.Option("--only", help="Only modes reached by bending, axial or torsion.", show_default=False)
-    ] = None,
+    only: OnlyOption = None,
     shaft_orders: Annotated[
         str | None, typer.Option("--shaft-orders", help="Orders of every shaft (default 1,2).", show_default=False)
     ] = None,
@@ -70,34 +67,24 @@ def campbell(
     from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS
     from rotorgear.results.tables.campbell import campbell_table
 
-    built = rg.load(model)
-    whole = parse_orders(mesh_orders, "--mesh-orders", MESH_ORDERS)
-    if any(order != int(order) for order in whole):
-        raise AnalysisError(f"--mesh-orders: got '{mesh_orders}', expected whole numbers such as 1,2,3")
     with progress_bar("campbell") as progress:
         result = rg.campbell(
-            built,
-            speeds=speeds_between(built, start, stop, points).tolist(),
+            rg.load(model),
+            start=parse_speed(start, "--from") or 0.0,
+            stop=parse_speed(stop, "--to"),
+            points=points,
             modes=modes,
             fmax=fmax,
             elements=elements,
             accuracy=accuracy,
-            only=[word.strip() for word in only.split(",")] if only else (),
+            only=words_of(only),
             shaft_orders=parse_orders(shaft_orders, "--shaft-orders", SHAFT_ORDERS),
-            mesh_orders=[int(v) for v in whole],
+            mesh_orders=parse_mesh_orders(mesh_orders, MESH_ORDERS),
             sidebands=sidebands,
             progress=progress,
         )
     console().print(campbell_table(result, crossings=crossings))
     write_json(result.to_dict(), json)
-    _write(result, save, plot, colour, vtk, branch)
-
-
-def _write(
-    result: CampbellResult, save: Path | None, plot: Path | None, colour: str, vtk: Path | None, branch: int
-) -> None:
-    import rotorgear as rg
-
     if save:
         rg.save(result, save)
         typer.echo(f"saved {save}")

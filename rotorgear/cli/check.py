@@ -25,7 +25,7 @@ def check(model: ModelFile, elements: ElementsOption = None, json: JsonOption = 
     """Say what a model file describes: speeds, mesh frequencies, torques, contact ratios, masses, dofs, warnings."""
     import rotorgear as rg
 
-    description = rg.describe_model(rg.load(model), elements=elements)
+    description = rg.check(rg.load(model), elements=elements)
     out = console()
     for part in _parts(description):
         out.print(part)

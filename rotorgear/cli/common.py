@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 ModelFile = Annotated[Path, typer.Argument(help="Model file (TOML).", show_default=False)]
+ModelOrResult = Annotated[
+    Path, typer.Argument(help="Model file (TOML), or a result saved by modal --save (HDF5).", show_default=False)
+]
 JsonOption = Annotated[
     Path | None, typer.Option("--json", help="Write the result as JSON to this file.", show_default=False)
 ]
@@ -40,6 +43,23 @@ SpeedOption = Annotated[
         "--speed", help="Speed of the input shaft, such as '16350 rpm': damped and gyroscopic.", show_default=False
     ),
 ]
+ModalDampingOption = Annotated[
+    float, typer.Option("--modal-damping", help="Damping ratio added to every elastic mode, such as 0.01.")
+]
+DeflectionOption = Annotated[
+    Path | None, typer.Option("--vtk", help="Write deflection shapes for ParaView to this folder.", show_default=False)
+]
+ToleranceOption = Annotated[
+    float, typer.Option("--tolerance", help="Largest relative difference of a match with the rig.")
+]
+OnlyOption = Annotated[
+    str | None, typer.Option("--only", help="Only modes reached by bending, axial or torsion.", show_default=False)
+]
+
+
+def is_saved(path: Path) -> bool:
+    """Whether a path names a saved result; anything else is a model file."""
+    return path.suffix.lower() in (".h5", ".hdf5")
 
 
 def console() -> Console:
@@ -65,6 +85,11 @@ def parse_speed(text: str | None, option: str = "--speed") -> float | None:
         return parse_quantity(text, "speed")
     except QuantityError as error:
         raise AnalysisError(f"{option}: got '{text}', expected {error}") from None
+
+
+def words_of(text: str | None) -> list[str]:
+    """The words of a list with commas."""
+    return [word.strip() for word in text.split(",") if word.strip()] if text else []
 
 
 def write_json(data: dict[str, Any], path: Path | None) -> None:

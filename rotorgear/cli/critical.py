@@ -20,7 +20,7 @@ from rotorgear.cli.common import (
     progress_bar,
     write_json,
 )
-from rotorgear.cli.speed_options import ToOption, parse_orders
+from rotorgear.cli.speed_options import ToOption, parse_mesh_orders, parse_orders
 from rotorgear.errors import AnalysisError
 from rotorgear.results.tables.campbell import plain_table
 
@@ -39,7 +39,9 @@ def critical(
     mesh_orders: Annotated[
         str | None, typer.Option("--mesh-orders", help="Orders of every mesh (default none).", show_default=False)
     ] = None,
-    undamped: Annotated[bool, typer.Option("--undamped", help="Leave out damping and circulatory terms.")] = False,
+    damped: Annotated[
+        bool, typer.Option("--damped/--undamped", help="With all damping and circulatory terms, or without.")
+    ] = True,
     fmax: Annotated[
         float | None, typer.Option("--fmax", help="Only frequencies up to this many Hz.", show_default=False)
     ] = None,
@@ -63,17 +65,15 @@ def critical(
     if (plot or shaft) and not stiffness_map:
         raise AnalysisError("--plot and --map-shaft belong to --map; rotorgear campbell --plot draws modes over speed")
     built = rg.load(model)
-    whole = parse_orders(mesh_orders, "--mesh-orders", ())
-    if any(order != int(order) for order in whole):
-        raise AnalysisError(f"--mesh-orders: got '{mesh_orders}', expected whole numbers such as 1,2,3")
+    top = parse_speed(stop, "--to")
     chart = None
     with progress_bar("critical") as progress:
-        result = rg.critical_speeds(
+        result = rg.critical(
             built,
-            top_speed=parse_speed(stop),
+            stop=top,
             shaft_orders=parse_orders(shaft_orders, "--shaft-orders", SHAFT_ORDERS),
-            mesh_orders=[int(v) for v in whole],
-            damped=not undamped,
+            mesh_orders=parse_mesh_orders(mesh_orders, ()),
+            damped=damped,
             fmax=fmax,
             elements=elements,
             accuracy=accuracy,
@@ -81,7 +81,7 @@ def critical(
         )
         if stiffness_map:
             chart = rg.critical_map(
-                built, shaft=shaft, top_speed=parse_speed(stop), elements=elements, accuracy=accuracy, progress=progress
+                built, shaft=shaft, stop=top, elements=elements, accuracy=accuracy, progress=progress
             )
     _print(result, chart)
     data = result.to_dict()

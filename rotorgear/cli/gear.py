@@ -15,11 +15,11 @@ def gear(
     mesh: Annotated[
         str | None, typer.Option("--mesh", help="Only this mesh and its two gears.", show_default=False)
     ] = None,
-    picture: Annotated[
+    plot: Annotated[
         Path | None,
         typer.Option(
-            "--picture",
-            help="Draw the teeth of --mesh, or of the first mesh, into this file (.png or .svg).",
+            "--plot",
+            help="Draw the teeth of --mesh, or of the first mesh, to this PNG, SVG or PDF.",
             show_default=False,
         ),
     ] = None,
@@ -30,12 +30,12 @@ def gear(
     from rotorgear.plots.gear_mesh import draw_mesh, require_picture_name
     from rotorgear.results.tables.gear import sheet_parts
 
-    if picture is not None:
-        require_picture_name(picture)
-    sheet = rg.gear_sheet(rg.load(model), mesh=mesh)
+    if plot is not None:
+        require_picture_name(plot)
+    sheet = rg.gear(rg.load(model), mesh=mesh)
     out = console()
     for part in sheet_parts(sheet):
         out.print(part)
     write_json(sheet.to_dict(), json)
-    if picture is not None:
-        out.print(f"drawn: {draw_mesh(sheet, picture, mesh=mesh)}")
+    if plot is not None:
+        out.print(f"drawn: {draw_mesh(sheet, plot, mesh=mesh)}")

@@ -37,23 +37,27 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},  # every command inherits it
 )
-app.command()(modal.modal)
-app.command()(campbell.campbell)
-app.command()(critical.critical)
-app.command()(compare.compare)
-app.command()(static.static)
-app.command()(response.response)
-app.command()(frf.frf)
-app.command()(transient.transient)
-app.command()(sweep.sweep)
-app.command()(check.check)
-app.command()(gear.gear)
-app.command()(mesh.mesh)
-app.command()(accuracy.accuracy)
-app.command()(view.view)
-app.command()(schema.schema)
-app.command()(validate.validate)
+for command in (
+    modal.modal,
+    campbell.campbell,
+    critical.critical,
+    compare.compare,
+    static.static,
+    response.response,
+    frf.frf,
+    transient.transient,
+    sweep.sweep,
+    check.check,
+    gear.gear,
+    mesh.mesh,
+    accuracy.accuracy,
+    view.view,
+    schema.schema,
+    validate.validate,
+):
+    app.command()(command)
 
 
 def _version(wanted: bool) -> None:

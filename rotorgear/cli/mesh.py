@@ -49,9 +49,11 @@ def mesh(
             "--periods", help="Mesh periods; default 1, or until all pitch errors have passed.", show_default=False
         ),
     ] = None,
-    loads: Annotated[
+    load_factors: Annotated[
         str | None,
-        typer.Option("--loads", help="Also solve at these multiples of the load: '0.1,0.5,2'.", show_default=False),
+        typer.Option(
+            "--load-factors", help="Also solve at these multiples of the load: '0.1,0.5,2'.", show_default=False
+        ),
     ] = None,
     harmonics: Annotated[int, typer.Option("--harmonics", min=0, help="Mesh orders that are listed.")] = 5,
     plot: Annotated[
@@ -74,19 +76,18 @@ def mesh(
     from rotorgear.results.tables.mesh import mesh_parts
 
     checked = rg.load(model)
-    pinion_torque = parse_torque(torque)
     with progress_bar("mesh") as progress:
-        found = rg.mesh_analysis(
+        found = rg.mesh(
             checked,
             mesh,
             stiffness=stiffness,
-            torque=pinion_torque,
+            torque=torque,
             preset=preset,
             body=body,
             accuracy=accuracy,
             positions=positions,
             periods=periods,
-            load_factors=parse_factors(loads),
+            load_factors=parse_factors(load_factors),
             progress=progress,
         )
     for part in mesh_parts(found, harmonics):
@@ -102,26 +103,10 @@ def mesh(
 
         with progress_bar("vtk") as progress:
             fields = tooth_fields(
-                checked, found.mesh, torque=pinion_torque, preset=found.preset, body=body, at=at, progress=progress
+                checked, found.mesh, torque=torque, preset=found.preset, body=body, at=at, progress=progress
             )
         for path in write_tooth_vtk(fields, vtk):
             console().print(f"wrote {path}")
-
-
-def parse_torque(text: str | None) -> float | None:
-    """Torque in N m from the command line.
-
-    Raises:
-        AnalysisError: not a torque.
-    """
-    from rotorgear.quantity import QuantityError, parse_quantity
-
-    if text is None:
-        return None
-    try:
-        return parse_quantity(text, "torque")
-    except QuantityError as error:
-        raise AnalysisError(f"--torque: got '{text}', expected {error}") from None
 
 
 def parse_factors(text: str | None) -> tuple[float, ...]:
@@ -135,4 +120,4 @@ def parse_factors(text: str | None) -> tuple[float, ...]:
     try:
         return tuple(float(part) for part in text.split(","))
     except ValueError:
-        raise AnalysisError(f"--loads: got '{text}', expected factors with commas, such as 0.1,0.5,2") from None
+        raise AnalysisError(f"--load-factors: got '{text}', expected factors with commas, such as 0.1,0.5,2") from None

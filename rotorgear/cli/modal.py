@@ -12,29 +12,27 @@ from rotorgear.cli.common import (
     ElementsOption,
     JsonOption,
     ModelFile,
+    OnlyOption,
+    SaveOption,
     SpeedOption,
+    ToleranceOption,
     console,
     parse_speed,
     progress_bar,
+    words_of,
     write_json,
 )
 from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
-    from rotorgear.results.comparison import Comparison, RigLine
     from rotorgear.results.modal import ModalResult
 
-# With a rig list and no other wish, modes are found up to this much above its highest line.
-_ABOVE_RIG = 1.15
 # Shapes of so many modes are written unless --shapes says otherwise.
 _DEFAULT_SHAPES = 24
 
 ModesOption = Annotated[int | None, typer.Option("--modes", help="Number of modes (default 24).", show_default=False)]
 FmaxOption = Annotated[
     float | None, typer.Option("--fmax", help="All modes up to this frequency in Hz.", show_default=False)
-]
-ToleranceOption = Annotated[
-    float, typer.Option("--tolerance", help="Largest relative difference of a match with the rig.")
 ]
 
 
@@ -52,37 +50,35 @@ def modal(
     energies: Annotated[
         bool, typer.Option("--energies", help="Also list the energy shares of each mode by part.")
     ] = False,
-    only: Annotated[
-        str | None,
-        typer.Option("--only", help="Only modes reached by bending, axial or torsion.", show_default=False),
-    ] = None,
+    only: OnlyOption = None,
     pruning: Annotated[
         bool, typer.Option("--pruning/--no-pruning", help="Solve independent groups of dofs apart.")
     ] = True,
     json: JsonOption = None,
-    save: Annotated[Path | None, typer.Option("--save", help="Save the result (HDF5).", show_default=False)] = None,
+    save: SaveOption = None,
     vtk: Annotated[
         Path | None, typer.Option("--vtk", help="Write mode shapes for ParaView to this folder.", show_default=False)
     ] = None,
-    picture: Annotated[
-        Path | None, typer.Option("--picture", help="Render PNGs of the modes to this folder.", show_default=False)
+    plot: Annotated[
+        Path | None, typer.Option("--plot", help="Render PNGs of the modes to this folder.", show_default=False)
     ] = None,
     shapes: Annotated[
         str | None,
         typer.Option(
-            "--shapes", help="Modes for --vtk and --picture, such as 1,6,9-12 (default 1-24).", show_default=False
+            "--shapes", help="Modes for --vtk and --plot, such as 1,6,9-12 (default 1-24).", show_default=False
         ),
     ] = None,
 ) -> None:
     """Natural frequencies and mode shapes; undamped at standstill, or damped and gyroscopic at a --speed."""
     import rotorgear as rg
+    from rotorgear.analysis.rig.compare_result import ABOVE_RIG
     from rotorgear.results.tables.modal import modal_table
 
     rig = rg.read_rig_lines(compare) if compare else ()
     chosen = _numbers(shapes)
     built = rg.load(model)
     if rig and modes is None and fmax is None:
-        fmax = _ABOVE_RIG * max(line.frequency_hz for line in rig)
+        fmax = ABOVE_RIG * max(line.frequency_hz for line in rig)
     with progress_bar("modal") as progress:
         result = rg.modal(
             built,
@@ -91,13 +87,15 @@ def modal(
             fmax=fmax,
             elements=elements,
             accuracy=accuracy,
-            only=[word.strip() for word in only.split(",")] if only else (),
+            only=words_of(only),
             pruning=pruning,
             progress=progress,
         )
     out = console()
     out.print(modal_table(result, energies=energies))
-    comparison = compare_with_rig(result, rig, tolerance, None if modes else fmax) if rig else None
+    # So many modes say nothing of where the next one lies; a highest frequency does.
+    known_to_hz = None if modes else fmax
+    comparison = rg.compare(result, rig, tolerance=tolerance, known_to_hz=known_to_hz) if rig else None
     if comparison:
         from rotorgear.results.tables.comparison import comparison_table
 
@@ -106,38 +104,17 @@ def modal(
     if comparison:
         data["comparison"] = comparison.to_dict()
     write_json(data, json)
-    _write(result, save, vtk, picture, _within(chosen, len(result)))
+    _write(result, save, vtk, plot, _within(chosen, len(result)))
 
 
-def compare_with_rig(
-    result: ModalResult, rig: tuple[RigLine, ...], tolerance: float, known_to_hz: float | None = None
-) -> Comparison:
-    """Compare modes with rig lines; excitation lines are those at the analysis' speed, else at the operating point."""
-    from rotorgear.analysis.common.excitation import excitation_lines
-    from rotorgear.analysis.rig.compare import compare
-
-    operation = result.model.operation
-    speed = result.speed if result.speed is not None else (operation.speed if operation else None)
-    return compare(
-        result.frequency_hz,
-        result.description,
-        rig,
-        rigid=result.rigid,
-        damping_ratio=result.damping_ratio if result.speed is not None else None,
-        excitations=excitation_lines(result.model, speed) if speed else (),
-        tolerance=tolerance,
-        known_to_hz=known_to_hz,
-    )
-
-
-def _write(result: ModalResult, save: Path | None, vtk: Path | None, picture: Path | None, chosen: list[int]) -> None:
+def _write(result: ModalResult, save: Path | None, vtk: Path | None, plot: Path | None, chosen: list[int]) -> None:
     """Write the files that were asked for and say where they are."""
     import rotorgear as rg
 
     if save:
         rg.save(result, save)
         typer.echo(f"saved {save}")
-    for folder, what in ((vtk, "vtk"), (picture, "picture")):
+    for folder, what in ((vtk, "vtk"), (plot, "plot")):
         if folder is None:
             continue
         with progress_bar(what) as progress:

@@ -9,7 +9,17 @@ from typer.core import TyperGroup
 
 # Command -> former option -> option.
 OPTIONS: dict[str, dict[str, str]] = {
-    "sweep": {"--starts": "--initial-conditions", "--settle": "--discard", "--count": "--sample"},
+    "modal": {"--picture": "--plot"},
+    "gear": {"--picture": "--plot"},
+    "response": {"--damping": "--modal-damping"},
+    "frf": {"--damping": "--modal-damping", "--from": "--inputs", "--to": "--outputs"},
+    "mesh": {"--loads": "--load-factors"},
+    "sweep": {
+        "--starts": "--initial-conditions",
+        "--settle": "--discard",
+        "--count": "--sample",
+        "--portrait": "--portraits",
+    },
     "transient": {"--settle": "--discard"},
 }
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from rotorgear.cli.common import (
     AccuracyOption,
+    DeflectionOption,
     ElementsOption,
     JsonOption,
+    ModalDampingOption,
     ModelFile,
     PlotOption,
     SaveOption,
@@ -19,17 +21,6 @@ from rotorgear.cli.common import (
     progress_bar,
     write_json,
 )
-from rotorgear.errors import AnalysisError
-
-if TYPE_CHECKING:
-    from rotorgear.model.model import Model
-
-DampingOption = Annotated[
-    float, typer.Option("--damping", help="Damping ratio added to every elastic mode, such as 0.01.")
-]
-VtkOption = Annotated[
-    Path | None, typer.Option("--vtk", help="Write deflection shapes for ParaView to this folder.", show_default=False)
-]
 
 
 def response(
@@ -46,7 +37,7 @@ def response(
         float | None,
         typer.Option("--fmax", help="Leave out orders above this frequency in Hz.", show_default=False),
     ] = None,
-    damping: DampingOption = 0.0,
+    modal_damping: ModalDampingOption = 0.0,
     method: Annotated[str, typer.Option("--method", help="modal, direct or auto.")] = "auto",
     elements: ElementsOption = None,
     accuracy: AccuracyOption = None,
@@ -71,19 +62,20 @@ def response(
             show_default=False,
         ),
     ] = None,
-    vtk: VtkOption = None,
+    vtk: DeflectionOption = None,
 ) -> None:
     """Run-up: response to unbalances, transmission errors and stiffness variation, by order and speed."""
     import rotorgear as rg
     from rotorgear.results.tables.response import response_tables
 
-    built = rg.load(model)
     with progress_bar("response") as progress:
         result = rg.response(
-            built,
-            speeds=_speeds(built, start, stop, points),
+            rg.load(model),
+            start=parse_speed(start, "--from"),
+            stop=parse_speed(stop, "--to"),
+            points=points,
             fmax=fmax,
-            damping_ratio=damping,
+            modal_damping=modal_damping,
             method=method,
             elements=elements,
             accuracy=accuracy,
@@ -108,21 +100,3 @@ def response(
         with progress_bar("vtk") as progress:
             paths = rg.write_deflections(result, vtk, progress=progress)
         typer.echo(f"wrote {len(paths)} files to {vtk}")
-
-
-def _speeds(model: Model, start: str | None, stop: str | None, points: int) -> list[float]:
-    """Evenly spaced speeds in rad/s."""
-    import numpy as np
-
-    from rotorgear.analysis.response.response import HIGHEST, LOWEST
-
-    operating = model.operation.speed if model.operation else None
-    low = parse_speed(start, "--from")
-    high = parse_speed(stop, "--to")
-    if (low is None or high is None) and not operating:
-        raise AnalysisError("--from and --to: give both, since the model has no operating speed")
-    if points < 1:
-        raise AnalysisError(f"--points: got {points}, expected at least 1")
-    low = LOWEST * (operating or 0.0) if low is None else low
-    high = HIGHEST * (operating or 0.0) if high is None else high
-    return [float(value) for value in np.linspace(low, high, points)]

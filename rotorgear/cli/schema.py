@@ -20,7 +20,7 @@ def schema(
 
     import rotorgear as rg
 
-    data = rg.json_schema()
+    data = rg.schema()
     if json is None:
         typer.echo(json_module.dumps(data, indent=2))
     else:

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from rotorgear.cli.common import (
+    DeflectionOption,
     ElementsOption,
     JsonOption,
     ModelFile,
@@ -17,7 +18,6 @@ from rotorgear.cli.common import (
     progress_bar,
     write_json,
 )
-from rotorgear.cli.response import VtkOption
 
 
 def static(
@@ -37,7 +37,7 @@ def static(
     json: JsonOption = None,
     save: SaveOption = None,
     plot: PlotOption = None,
-    vtk: VtkOption = None,
+    vtk: DeflectionOption = None,
 ) -> None:
     """Deflections, bearing and mesh forces, load sharing of branches and helices, assembly condition of loops."""
     import rotorgear as rg

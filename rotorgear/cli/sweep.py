@@ -62,10 +62,10 @@ def sweep(
             show_default=False,
         ),
     ] = None,
-    portrait: Annotated[
+    portraits: Annotated[
         list[str] | None,
         typer.Option(
-            "--portrait",
+            "--portraits",
             help="Keep the trajectory of the point next to this VALUE (VALUE,VALUE of two parameters); once or more. "
             "With --plot nine points where not given.",
             show_default=False,
@@ -127,7 +127,7 @@ def sweep(
                 modes=modes,
                 reduction_error=reduction_error,
                 elements=elements,
-                portraits=portrait or (_PORTRAITS if plot else 0),
+                portraits=portraits or (_PORTRAITS if plot else 0),
                 workers=workers,
                 executor=elsewhere,
                 stream=rg.stream(save, resume=resume) if save else None,

@@ -110,7 +110,8 @@ def transient(
     with progress_bar("transient") as progress:
         result = rg.transient(
             rg.load(model),
-            speed=_speeds(rg.load(model), speed, speed_to, time, discard),
+            speed=parse_speed(speed),
+            speed_to=parse_speed(speed_to, "--speed-to"),
             time=time,
             discard=discard,
             accuracy=accuracy,
@@ -146,26 +147,6 @@ def transient(
     if result.status != "success":
         typer.echo("the run ended early: what it gave so far stands above", err=True)
         raise typer.Exit(1)
-
-
-def _speeds(model: object, speed: str | None, speed_to: str | None, time: str | None, discard: str | None):  # type: ignore[no-untyped-def]
-    """One speed, or the pairs of a run-up."""
-    from rotorgear.quantity import QuantityError, parse_quantity
-
-    first = parse_speed(speed)
-    if speed_to is None:
-        return first
-    if first is None:
-        first = model.operation.speed if getattr(model, "operation", None) else None  # type: ignore[attr-defined]
-    if first is None or time is None:
-        raise AnalysisError("--speed-to needs a --speed to start from and a --time for the run-up")
-    last = parse_speed(speed_to)
-    try:
-        begin = parse_quantity(discard, "time") if discard else 0.0
-        end = begin + parse_quantity(time, "time")
-    except QuantityError as error:
-        raise AnalysisError(f"--time and --discard: expected {error}") from None
-    return [(begin, first), (end, last)]
 
 
 def _write(result: TransientResult, save: Path | None, plot: Path | None, vtk: Path | None) -> None:

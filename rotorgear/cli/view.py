@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from rotorgear.cli.common import AccuracyOption, ElementsOption, SpeedOption, parse_speed, progress_bar
+from rotorgear.cli.common import (
+    AccuracyOption,
+    ElementsOption,
+    ModelOrResult,
+    SpeedOption,
+    is_saved,
+    parse_speed,
+    progress_bar,
+)
 
 
 def view(
-    source: Annotated[
-        Path, typer.Argument(help="Model file (TOML), or a result saved by modal --save (HDF5).", show_default=False)
-    ],
+    source: ModelOrResult,
     mode: Annotated[int, typer.Option("--mode", min=1, help="Mode to begin with.")] = 1,
     modes: Annotated[int, typer.Option("--modes", min=1, help="Number of modes to find in a model.")] = 24,
     speed: SpeedOption = None,
@@ -22,9 +27,8 @@ def view(
 ) -> None:
     """Open a window that shows the gearbox and animates its modes."""
     import rotorgear as rg
-    from rotorgear.plots.view import view as show
 
-    if source.suffix.lower() in (".h5", ".hdf5"):
+    if is_saved(source):
         result = rg.read(source)
     else:
         with progress_bar("modal") as progress:
@@ -36,4 +40,4 @@ def view(
                 elements=elements,
                 progress=progress,
             )
-    show(result, mode=mode - 1)
+    rg.view(result, mode=mode - 1)

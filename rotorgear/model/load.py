@@ -69,13 +69,13 @@ def _syntax_problem(source: str, message: str, text: str) -> Problem:
     return Problem(source, "", f"not valid TOML: {message}{quoted}", hint)
 
 
-def json_schema() -> dict[str, Any]:
+def schema() -> dict[str, Any]:
     """Return the JSON Schema of the model file, for editors with completion and checking."""
-    schema = Model.model_json_schema()
-    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
-    schema["$id"] = f"model-{SCHEMA_VERSION}.schema.json"
-    schema["title"] = "rotorgear model"
-    return schema
+    data = Model.model_json_schema()
+    data["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    data["$id"] = f"model-{SCHEMA_VERSION}.schema.json"
+    data["title"] = "rotorgear model"
+    return data
 
 
 def _neighbours(path: Path) -> str:

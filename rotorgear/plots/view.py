@@ -120,7 +120,7 @@ def _require_display() -> None:
     """RenderError where no window can open; a broken display would crash this process, so another one tries it."""
     if not sys.platform.startswith("linux"):
         return
-    remedy = "; use modal --picture for PNGs, or modal --vtk and ParaView on another machine"
+    remedy = "; use modal --plot for PNGs, or modal --vtk and ParaView on another machine"
     if not os.environ.get("DISPLAY"):
         raise RenderError(f"a window needs a display, and there is none here (DISPLAY is not set){remedy}")
     failure = can_render("vtkXOpenGLRenderWindow")

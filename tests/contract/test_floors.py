@@ -43,7 +43,8 @@ ROOMS = {
         "transient": {"common", "static"},
         "sweep": {"common", "static", "transient"},
         "teeth": {"common"},
-        "rig": {"common"},
+        "rig": {"common", "modal"},
+        "": {"modal", "sweep", "teeth", "transient"},
     },
     "gears": {
         "geometry": set(),

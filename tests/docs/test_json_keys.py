@@ -135,7 +135,7 @@ def test_the_keys_of_sweep_and_of_its_convergence_study_are_documented(tmp_path:
         "9",
         "--sample",
         "9",
-        "--portrait",
+        "--portraits",
         "8000",
     )
     data["warnings"] = ["one"]  # this sweep has none, or one
@@ -155,7 +155,7 @@ def test_the_keys_of_accuracy_are_documented(tmp_path: Path) -> None:
 def test_the_keys_of_mesh_are_documented(tmp_path: Path) -> None:
     file = tmp_path / "pair.toml"
     file.write_text(pair_file(mesh='stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'), encoding="utf-8")
-    assert set(keys(written(tmp_path, "mesh", str(file), "--loads", "0.5"))) == documented("mesh")
+    assert set(keys(written(tmp_path, "mesh", str(file), "--load-factors", "0.5"))) == documented("mesh")
     study = written(tmp_path, "accuracy", str(file), "--analysis", "mesh")
     assert set(keys(study)) == documented("mesh accuracy")
 
@@ -187,7 +187,7 @@ def test_the_keys_of_response_are_documented(tmp_path: Path) -> None:
 
 
 def test_the_keys_of_frf_are_documented(tmp_path: Path) -> None:
-    places = ("--from", "gears.bull:y", "--to", "output_bearing_y")
+    places = ("--inputs", "gears.bull:y", "--outputs", "output_bearing_y")
     data = written(tmp_path, "frf", str(MODEL), *places, "--fmax", "50", "--points", "3", "--elements", "1")
     data["left_out"] = ["one"]  # this model has none
     assert set(keys(data)) == documented("frf")

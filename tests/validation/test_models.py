@@ -39,7 +39,7 @@ def test_the_helical_pair_is_pushed_as_its_comment_says_and_checks_without_a_war
     assert force.pinion_drives
     assert mesh is not None
     assert -force.normal_force * mesh[0, 0, 2] > 1000.0  # the pinion, to +z
-    assert not rg.describe_model(model).warnings
+    assert not rg.check(model).warnings
 
 
 def test_the_meshes_of_the_marine_model_are_rigid_to_1_6_in_10_000() -> None:

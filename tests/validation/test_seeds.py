@@ -56,7 +56,7 @@ def test_all_bodies_of_the_marine_train_turn_together_in_its_rigid_mode() -> Non
 
 
 def test_check_shows_a_given_damping_whatever_the_direction_of_the_line_of_action() -> None:
-    meshes = {row["name"]: row for row in rg.describe_model(loaded("marine_dual_turbine")).to_dict()["meshes"]}
+    meshes = {row["name"]: row for row in rg.check(loaded("marine_dual_turbine")).to_dict()["meshes"]}
     assert meshes["first_lp"]["damping_n_s_per_m"] == pytest.approx(143457.3)
 
 
@@ -83,7 +83,7 @@ def test_the_file_of_the_marine_train_gives_the_impact_time_ratio_over_the_torqu
 
 
 def test_the_branch_below_its_drag_carries_on_the_other_flanks() -> None:
-    sheet = rg.describe_model(marine.operating(0.3)).to_dict()
+    sheet = rg.check(marine.operating(0.3)).to_dict()
     torques = {row["name"]: row["torque_n_m"] for row in sheet["torques"]}
     assert torques["loads.lp"] + torques["loads.lp_drag"] == pytest.approx(-4276.923, rel=1e-6)
 

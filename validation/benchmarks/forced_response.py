@@ -27,7 +27,7 @@ ALLOWED = 1e-4
 def timed(model: rg.Model, speeds: np.ndarray, fmax: float, method: str) -> tuple[float, rg.ResponseResult]:
     """CPU seconds and the result."""
     start = time.process_time()
-    result = rg.response(model, speeds=list(speeds), fmax=fmax, damping_ratio=0.02, method=method)
+    result = rg.response(model, speeds=list(speeds), fmax=fmax, modal_damping=0.02, method=method)
     return time.process_time() - start, result
 
 

@@ -62,9 +62,9 @@ def main(preset: str = "default") -> None:
         transverse = math.atan(math.tan(math.radians(alpha)) / math.cos(math.radians(beta)))
         torque = 2.0 * (LINE_LOAD * width * 1e-3 * radius * math.cos(transverse) if name in "ab" else TORQUE)
         start = time.perf_counter()
-        found = rg.mesh_analysis(own, torque=torque, preset=preset, estimate=False)
+        found = rg.mesh(own, torque=torque, preset=preset, estimate=False)
         seconds = time.perf_counter() - start
-        iso = rg.mesh_analysis(own, torque=torque, stiffness="iso")
+        iso = rg.mesh(own, torque=torque, stiffness="iso")
         assert found.load is not None
         assert found.tangent is not None
         assert found.transmission_error is not None

@@ -152,8 +152,8 @@ def quick() -> dict[str, float | str]:
     model = loaded(MODEL)
     modes = rg.modal(model)
     free = operating(0.6, drag=1e-9)
-    loads = rg.describe_model(free).to_dict()["torques"]
-    frequencies = rg.describe_model(model).to_dict()["meshes"]
+    loads = rg.check(free).to_dict()["torques"]
+    frequencies = rg.check(model).to_dict()["meshes"]
     hz = {row["name"]: row["mesh_frequency_hz"] for row in frequencies}
     m_e = 1.0 / (0.075**2 / 15.8 + 0.240**2 / 5.2)
     return {

@@ -119,7 +119,7 @@ def quick() -> dict[str, float | str]:
         "zeta": _damping_ratio(),
         "inertia_pinion": 2.0 * (base.gears["pinion_left"].polar_inertia or 0.0),
         "inertia_gear": 2.0 * (base.gears["gear_left"].polar_inertia or 0.0),
-        "mesh_hz": rg.describe_model(base).to_dict()["meshes"][0]["mesh_frequency_hz"],
+        "mesh_hz": rg.check(base).to_dict()["meshes"][0]["mesh_frequency_hz"],
         "eps_alpha": mesh.transverse_contact_ratio,
         "eps_beta": mesh.overlap_ratio,
         "alpha_t": math.degrees(one.transverse_pressure_angle),

@@ -202,7 +202,7 @@ def _loaded_teeth() -> dict[str, float]:
     """Mean and peak to peak of the stiffness of a helix along the flank normal (N/m), by finite elements."""
     found = {}
     for name, file in FILES.items():
-        teeth = rg.mesh_analysis(loaded(file), "left", stiffness="tooth_fe", torque=1000.0, estimate=False)
+        teeth = rg.mesh(loaded(file), "left", stiffness="tooth_fe", torque=1000.0, estimate=False)
         normal = 1.0 / math.cos(teeth.base_helix_angle) ** 2
         found[f"fe_mean_{name}"] = normal * teeth.mean_stiffness
         found[f"fe_pp_{name}"] = normal * teeth.peak_to_peak_stiffness

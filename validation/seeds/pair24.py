@@ -86,9 +86,9 @@ def summary(result: rg.SweepResult) -> str:
 
 def quick() -> dict[str, float | str]:
     """What follows without a run."""
-    sheet = rg.describe_model(loaded(MODEL)).to_dict()
+    sheet = rg.check(loaded(MODEL)).to_dict()
     mesh = sheet["meshes"][0]
-    sheets = {gear["name"]: gear for gear in rg.gear_sheet(loaded(MODEL)).to_dict()["gears"]}
+    sheets = {gear["name"]: gear for gear in rg.gear(loaded(MODEL)).to_dict()["gears"]}
     gears = [sheets[f"{name}_left"] for name in ("pinion", "gear")]
     return {
         "dofs": float(sheet["dofs"]),

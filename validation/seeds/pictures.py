@@ -165,7 +165,7 @@ def draw_split_spectrum(figure: Any) -> None:
     )
     axes.set_yscale("log")
     axes.set_ylim(1e-4 * lines.amplitude[keep].max(), 3.0 * lines.amplitude[keep].max())
-    meshes = rg.describe_model(loaded("split_torque")).to_dict()["meshes"]
+    meshes = rg.check(loaded("split_torque")).to_dict()["meshes"]
     hz = {row["name"]: row["mesh_frequency_hz"] for row in meshes}
     for stage, mesh, count, style in ((2, "stage_2a", 5, ":"), (1, "stage_1a", 2, "--")):
         for number in range(1, count + 1):

@@ -23,7 +23,7 @@ def printed_frequencies() -> list[float]:
 
 def quick() -> dict[str, float | str]:
     """Speeds, torques and frequencies."""
-    sheet = rg.describe_model(loaded(MODEL)).to_dict()
+    sheet = rg.check(loaded(MODEL)).to_dict()
     speeds = {row["name"]: row["speed_rpm"] for row in sheet["shafts"]}
     hz = {row["name"]: row["mesh_frequency_hz"] for row in sheet["meshes"]}
     torques = {row["name"]: abs(row["torque_n_m"]) for row in sheet["torques"]}
@@ -58,10 +58,7 @@ def values() -> dict[str, float | str]:
     """Modes beside the printed frequencies and chance."""
     result = rg.modal(loaded(MODEL), fmax=RANGE)
     printed = printed_frequencies()
-    lines = [rg.RigLine(f) for f in printed]
-    beside = rg.compare(
-        result.frequency_hz, result.description, lines, rigid=result.rigid, tolerance=TOLERANCE, known_to_hz=RANGE
-    )
+    beside = rg.compare(result, printed, tolerance=TOLERANCE, known_to_hz=RANGE)
     found: dict[str, float | str] = {f"mode_{i}": "none within 7 %" for i in range(1, len(printed) + 1)}
     for match in beside.matches:
         number = printed.index(match.rig.frequency_hz) + 1

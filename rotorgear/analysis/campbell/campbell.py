@@ -15,7 +15,7 @@ from rotorgear.analysis.campbell.crossings import Chain, crossings, margins, roo
 from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.snapshot_basis import Request, Snapshot, SpeedModes
 from rotorgear.analysis.campbell.speed_family import merged
-from rotorgear.analysis.campbell.speeds import chosen_speeds, operating_speed
+from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, operating_speed
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.notes import left_out
@@ -34,6 +34,9 @@ DEFAULT_MODES = 24
 def campbell(
     model: Model | System,
     *,
+    start: float | str = 0.0,
+    stop: float | str | None = None,
+    points: int = DEFAULT_SPEEDS,
     speeds: Sequence[float | str] | None = None,
     modes: int | None = None,
     fmax: float | None = None,
@@ -50,8 +53,10 @@ def campbell(
 
     Args:
         model: a model, or its assembled system, which is then taken as it is.
-        speeds: of the input shaft, all of one sense; numbers are rad/s, texts carry their unit. None: 51 speeds from 0 to
+        start, stop: lowest and highest speed of the input shaft; numbers are rad/s, texts carry their unit. Without `stop` up to
             1.25 times the operating speed.
+        points: number of speeds between them, evenly spaced.
+        speeds: these, all of one sense, in place of an evenly spaced range.
         modes: a branch is returned when it is among the lowest so many oscillating modes at one of the speeds; 24 where neither
             `modes` nor `fmax` is given.
         fmax: the same for all modes up to this many Hz.
@@ -64,7 +69,7 @@ def campbell(
         AnalysisError: no speeds, speeds of both senses, a speed outside of a bearing's table, nothing that oscillates.
         ConvergenceError: a guard of a solver was not met.
     """
-    asked = chosen_speeds(model.model if isinstance(model, System) else model, speeds)
+    asked = chosen_speeds(model.model if isinstance(model, System) else model, speeds, start, stop, points)
     if modes is None and fmax is None:
         modes = DEFAULT_MODES
     _check(modes, fmax, sidebands)

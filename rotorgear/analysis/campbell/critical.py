@@ -19,6 +19,7 @@ from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.modal.branch_shapes import BasisShapes
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.critical import CriticalResult, CriticalSpeed
@@ -28,10 +29,11 @@ from rotorgear.system.system import System
 SHAFT_ORDERS = (1.0,)
 
 
-def critical_speeds(
+@renamed_arguments(top_speed="stop")
+def critical(
     model: Model | System,
     *,
-    top_speed: float | str | None = None,
+    stop: float | str | None = None,
     shaft_orders: Sequence[float] = SHAFT_ORDERS,
     mesh_orders: Sequence[int] = (),
     damped: bool = True,
@@ -40,11 +42,11 @@ def critical_speeds(
     accuracy: float | None = None,
     progress: Progress = silent,
 ) -> CriticalResult:
-    """Return all speeds of the input shaft up to `top_speed` at which a line meets a mode.
+    """Return all speeds of the input shaft up to `stop` at which a line meets a mode.
 
     Args:
         model: a model, or its assembled system, which is then taken as it is.
-        top_speed: rad/s, or a text with its unit; negative turns the other way. None: 1.25 times the operating speed.
+        stop: rad/s, or a text with its unit; negative turns the other way. None: 1.25 times the operating speed.
         shaft_orders, mesh_orders: multiples of the speed of every shaft, and of the frequency of every mesh.
         damped: with all damping and circulatory terms, where the damped frequency has to meet the line; or without.
         fmax: only those with a frequency up to this many Hz.
@@ -56,7 +58,7 @@ def critical_speeds(
         ConvergenceError: a root doesn't settle, or is missing by count.
     """
     parts = model.model if isinstance(model, System) else model
-    top = highest_speed(parts, top_speed)
+    top = highest_speed(parts, stop)
     lines = excitation_orders(parts, shaft_orders, mesh_orders)
     if not lines or top == 0.0:
         raise AnalysisError(

@@ -21,6 +21,7 @@ from rotorgear.analysis.modal.branch_shapes import BasisShapes
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.model.parts.supports import Bearing
+from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.critical import CriticalMap
 from rotorgear.system.system import System
@@ -30,13 +31,14 @@ _DECADES = 2.0
 _POINTS = 33
 
 
+@renamed_arguments(top_speed="stop")
 def critical_map(
     model: Model,
     *,
     stiffness: Sequence[float] | None = None,
     shaft: str | None = None,
     order: float = 1.0,
-    top_speed: float | str | None = None,
+    stop: float | str | None = None,
     elements: int | None = None,
     accuracy: float | None = None,
     progress: Progress = silent,
@@ -50,7 +52,7 @@ def critical_map(
         model: a model with at least one bearing.
         stiffness: in N/m, positive; None: 33 values from two decades below the softest bearing to two above the stiffest.
         shaft: whose order excites, the input shaft for None; order: its multiple.
-        top_speed, elements, accuracy, progress: as in `critical_speeds`.
+        stop, elements, accuracy, progress: as in `critical`.
 
     Raises:
         AnalysisError: no bearings, no such shaft, a stiffness that is not positive.
@@ -66,7 +68,7 @@ def critical_map(
     values = np.sort(np.asarray(stiffness if stiffness is not None else _default(own), float))
     if not values.size or not np.all(np.isfinite(values) & (values > 0.0)):
         raise AnalysisError("the support stiffness must be positive, in N/m")
-    top = highest_speed(model, top_speed)
+    top = highest_speed(model, stop)
     clock = Clock()
     stiffest = system_for_speeds(
         with_radial_stiffness(model, float(values[-1])),

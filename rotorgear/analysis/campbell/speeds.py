@@ -42,15 +42,27 @@ def speed_range(start: float, stop: float, points: int = DEFAULT_SPEEDS) -> np.n
     return np.linspace(start, stop, points)
 
 
-def chosen_speeds(model: Model, given: Sequence[float | str] | None) -> np.ndarray:
-    """Speeds in rad/s (k,), ascending in size, each once; None gives 51 from 0 to 1.25 times the operating speed.
+def chosen_speeds(
+    model: Model,
+    given: Sequence[float | str] | None,
+    start: float | str = 0.0,
+    stop: float | str | None = None,
+    points: int = DEFAULT_SPEEDS,
+) -> np.ndarray:
+    """Speeds in rad/s (k,), ascending in size, each once.
+
+    Args:
+        model: whose operating speed ends a range that has no end.
+        given: the speeds; None: evenly spaced ones.
+        start, stop, points: of these; `stop` is 1.25 times the operating speed where not given.
 
     Raises:
         AnalysisError: fewer than two different speeds, or speeds of both senses.
     """
-    speeds = (
-        speed_range(0.0, highest_speed(model)) if given is None else np.array([speed_in_si(v) for v in given], float)
-    )
+    if given is None:
+        speeds = speed_range(speed_in_si(start), highest_speed(model, stop), points)
+    else:
+        speeds = np.array([speed_in_si(value) for value in given], float)
     if speeds.size and (speeds.min() < 0.0 < speeds.max()):
         raise AnalysisError(
             "the speeds go through zero into the other sense of rotation, which loads other flanks: analyse each sense by itself"

@@ -27,7 +27,7 @@ _COUNTED = (
 )
 
 
-def describe_model(model: Model, *, elements: int | None = None) -> ModelDescription:
+def check(model: Model, *, elements: int | None = None) -> ModelDescription:
     """Return speeds, mesh frequencies, torques, contact ratios, masses, dofs and warnings of a model.
 
     Args:

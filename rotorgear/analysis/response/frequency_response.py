@@ -19,23 +19,29 @@ from rotorgear.analysis.response.plant import Plant, dof_row
 from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.system import System
 
+POINTS = 1000
 _CHECKED_ON_FINER = 8
 
 
-def frequency_response(
+@renamed_arguments(damping_ratio="modal_damping")
+def frf(
     model: Model,
-    frequencies: Sequence[float] | np.ndarray,
+    frequencies: Sequence[float] | np.ndarray | None = None,
     *,
     inputs: Sequence[str],
     outputs: Sequence[str],
+    fmax: float | None = None,
+    fmin: float | None = None,
+    points: int = POINTS,
     speed: float | str | None = None,
-    damping_ratio: float = 0.0,
+    modal_damping: float = 0.0,
     elements: int | None = None,
     accuracy: float | None = None,
     progress: Progress = silent,
@@ -44,10 +50,12 @@ def frequency_response(
 
     Args:
         model: any model; contacts are closed, on the flanks that its loads choose.
-        frequencies: in Hz, positive, (f,).
+        frequencies: in Hz, positive, (f,), in place of an evenly spaced range.
         inputs, outputs: names of points, or a part and a direction such as "bearings.left:x".
+        fmax, fmin: highest and lowest frequency of the range in Hz; `fmin` is one step where not given.
+        points: number of frequencies between them, evenly spaced.
         speed: of the input shaft in rad/s or with its unit; None: standstill.
-        damping_ratio: added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
+        modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
         elements: so many basic elements in each piece of shaft. None: refined as for modes up to the highest frequency.
         accuracy: relative error of the frequencies of these modes; 1e-3 where neither this nor `elements` is given.
         progress: callable that is told fraction and step.
@@ -58,11 +66,13 @@ def frequency_response(
     """
     clock = time.perf_counter()
     turns = speed_in_si(speed) or 0.0
+    if frequencies is None:
+        frequencies = _evenly_spaced(fmin, fmax, points)
     hz = np.sort(np.asarray(frequencies, float).ravel())
     check_request(turns, None, None, elements, accuracy)
-    _check(hz, inputs, outputs, damping_ratio)
+    _check(hz, inputs, outputs, modal_damping)
     places = {text: named_place(model, text) for text in (*inputs, *outputs)}
-    zeta = damping_ratio + model.damping.modal_ratio
+    zeta = modal_damping + model.damping.modal_ratio
     first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
     limit = 2.0 * np.pi * DAMPED * float(hz[-1])
     progress(0.02, "discretisation")
@@ -106,13 +116,27 @@ def frequency_response(
     )
 
 
-def _check(hz: np.ndarray, inputs: Sequence[str], outputs: Sequence[str], damping_ratio: float) -> None:
+def _evenly_spaced(fmin: float | None, fmax: float | None, points: int) -> np.ndarray:
+    """Frequencies in Hz; without a lowest one the range starts one step above 0, where a free rotation has no receptance."""
+    if points < 2:
+        raise AnalysisError(f"points: got {points}, expected at least 2")
+    if fmax is None:
+        raise AnalysisError(
+            "a frequency response needs its frequencies, or fmax (--fmax), the highest of a range in Hz"
+        )
+    low = fmax / points if fmin is None else fmin
+    if not 0.0 < low < fmax < float("inf"):
+        raise AnalysisError(f"fmin and fmax: got {low:g} and {fmax:g} Hz, expected 0 < fmin < fmax")
+    return np.linspace(low, fmax, points)
+
+
+def _check(hz: np.ndarray, inputs: Sequence[str], outputs: Sequence[str], modal_damping: float) -> None:
     if not hz.size or not np.all(np.isfinite(hz)) or hz[0] <= 0.0:
         raise AnalysisError("frequencies: expected at least one, all of them positive, in Hz")
     if not inputs or not outputs:
         raise AnalysisError("a frequency response needs at least one place of the force and one of the response")
-    if not 0.0 <= damping_ratio < 1.0:
-        raise AnalysisError(f"damping_ratio: got {damping_ratio:g}, expected 0 to less than 1")
+    if not 0.0 <= modal_damping < 1.0:
+        raise AnalysisError(f"modal_damping: got {modal_damping:g}, expected 0 to less than 1")
 
 
 def _row(system: System, text: str, place: tuple[str, float, str]) -> np.ndarray:

@@ -19,6 +19,7 @@ from rotorgear.analysis.response.run_up import choose_method, direct_sweep, moda
 from rotorgear.analysis.static.mean_state import Setup, mean_state
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.modal import NodeTable
 from rotorgear.results.response import ResponseResult
@@ -30,15 +31,19 @@ METHODS = ("auto", "modal", "direct")
 # A run-up without speeds goes from a tenth of the operating speed to a fifth above it.
 LOWEST = 0.1
 HIGHEST = 1.2
-_POINTS = 221
+POINTS = 221
 
 
+@renamed_arguments(damping_ratio="modal_damping")
 def response(
     model: Model,
     *,
+    start: float | str | None = None,
+    stop: float | str | None = None,
+    points: int = POINTS,
     speeds: Sequence[float] | Sequence[str] | None = None,
     fmax: float | None = None,
-    damping_ratio: float = 0.0,
+    modal_damping: float = 0.0,
     method: str = "auto",
     elements: int | None = None,
     accuracy: float | None = None,
@@ -49,9 +54,12 @@ def response(
 
     Args:
         model: a model with unbalances, or meshes with harmonics of transmission error or stiffness.
-        speeds: of the input shaft, in rad/s or with units; None: 221 from 10 to 120 % of the operating speed.
+        start, stop: lowest and highest speed of the input shaft, in rad/s or with units; where not given 10 and 120 % of
+            the operating speed.
+        points: number of speeds between them, evenly spaced.
+        speeds: these, in place of an evenly spaced range.
         fmax: orders above this frequency in Hz at the highest speed are left out; None: none is.
-        damping_ratio: added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
+        modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
         method: "modal", "direct" or "auto".
         elements: so many basic elements in each piece of shaft. None: refined as for modes up to the highest frequency.
         accuracy: relative error of the frequencies of these modes; 1e-3 where neither this nor `elements` is given.
@@ -63,9 +71,9 @@ def response(
         ConvergenceError: the modal solution does not reach its tolerance, or an undamped resonance is hit exactly.
     """
     clock = time.perf_counter()
-    chosen = _speeds(model, speeds)
-    _check(method, damping_ratio, fmax, elements, accuracy)
-    zeta = damping_ratio + model.damping.modal_ratio
+    chosen = _speeds(model, speeds, start, stop, points)
+    _check(method, modal_damping, fmax, elements, accuracy)
+    zeta = modal_damping + model.damping.modal_ratio
     first = mean_state(
         System(model, load=model.mean_load(direction_of(chosen[-1])).of_kind("static")), float(chosen[-1])
     )
@@ -148,14 +156,27 @@ def _stacked(readings: list[Readings]) -> list[np.ndarray]:
     return [np.stack([getattr(item, name) for item in readings], axis=1) for name in names]
 
 
-def _speeds(model: Model, given: Sequence[float] | Sequence[str] | None) -> np.ndarray:
+def _speeds(
+    model: Model,
+    given: Sequence[float] | Sequence[str] | None,
+    start: float | str | None,
+    stop: float | str | None,
+    points: int,
+) -> np.ndarray:
     """Speeds in rad/s, in rising order of size, all of one sense."""
     if given is None:
         operating = model.operation.speed if model.operation else None
-        if not operating:
-            raise AnalysisError("no speeds: give them, or [operation] a speed, and the run-up goes to a fifth above it")
-        return operating * np.linspace(LOWEST, HIGHEST, _POINTS)
-    found = np.array([speed_in_si(speed) for speed in given], float)
+        if not operating and (start is None or stop is None):
+            raise AnalysisError(
+                "no speeds: give start and stop (--from, --to), or [operation] a speed: the run-up then goes to a fifth above it"
+            )
+        if points < 1:
+            raise AnalysisError(f"points: got {points}, expected at least 1")
+        low = LOWEST * (operating or 0.0) if start is None else speed_in_si(start)
+        high = HIGHEST * (operating or 0.0) if stop is None else speed_in_si(stop)
+        found = np.linspace(low, high, points)
+    else:
+        found = np.array([speed_in_si(speed) for speed in given], float)
     if not found.size or not np.all(np.isfinite(found)):
         raise AnalysisError("speeds: got none, expected at least one rotational speed")
     if np.any(found == 0.0) or np.any(np.sign(found) != np.sign(found[0])):
@@ -163,11 +184,11 @@ def _speeds(model: Model, given: Sequence[float] | Sequence[str] | None) -> np.n
     return found[np.argsort(np.abs(found), kind="stable")]
 
 
-def _check(method: str, damping_ratio: float, fmax: float | None, elements: int | None, accuracy: float | None) -> None:
+def _check(method: str, modal_damping: float, fmax: float | None, elements: int | None, accuracy: float | None) -> None:
     if method not in METHODS:
         raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
-    if not 0.0 <= damping_ratio < 1.0:
-        raise AnalysisError(f"the damping ratio must lie between 0 and 1, got {damping_ratio:g}")
+    if not 0.0 <= modal_damping < 1.0:
+        raise AnalysisError(f"the modal damping ratio must lie between 0 and 1, got {modal_damping:g}")
     check_request(None, None, fmax, elements, accuracy)
 
 

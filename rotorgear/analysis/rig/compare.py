@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rotorgear.analysis.rig.chance import estimate_chance
-from rotorgear.analysis.rig.rig_file import read_rig_lines
 from rotorgear.errors import AnalysisError
 from rotorgear.results.comparison import (
     Candidate,
@@ -27,13 +26,11 @@ from rotorgear.results.comparison import (
 )
 from rotorgear.solvers.eigen.assignment import ROUNDING, assign
 
-__all__ = ["compare", "read_rig_lines"]
-
 # A rig line that states no uncertainty is not trusted beyond this when two modes compete for it.
 READING_ACCURACY = 1e-3
 
 
-def compare(
+def compare_lines(
     frequency_hz: ArrayLike,
     descriptions: Sequence[str],
     rig_lines: Sequence[RigLine],

@@ -36,12 +36,12 @@ class _Run:
 
 
 def mesh_convergence_study(
-    model: Model, mesh: str | None = None, *, torque: float | None = None, progress: Progress = silent
+    model: Model, mesh: str | None = None, *, torque: float | str | None = None, progress: Progress = silent
 ) -> MeshConvergenceStudy:
     """Run the loaded contact of one helix of a mesh over presets and mesh sizes, without stored compliances.
 
     Args:
-        model, mesh, torque: as for `mesh_analysis`.
+        model, mesh, torque: as for `mesh`.
         progress: callable that is told fraction and step.
 
     Raises:

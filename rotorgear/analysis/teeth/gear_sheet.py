@@ -32,7 +32,7 @@ from rotorgear.results.gear_sheet import GearRow, GearSheet, MeshSheetRow
 _POSITIONS = 256
 
 
-def gear_sheet(model: Model, mesh: str | None = None) -> GearSheet:
+def gear(model: Model, mesh: str | None = None) -> GearSheet:
     """Return the sheet of all gears and meshes with teeth, or of one mesh and its two gears.
 
     Args:

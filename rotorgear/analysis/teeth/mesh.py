@@ -39,12 +39,12 @@ class _Solved:
     no_load: np.ndarray
 
 
-def mesh_analysis(
+def mesh(
     model: Model,
     mesh: str | None = None,
     *,
     stiffness: str | None = None,
-    torque: float | None = None,
+    torque: float | str | None = None,
     preset: str | None = None,
     body: str | None = None,
     accuracy: float | None = None,
@@ -60,7 +60,7 @@ def mesh_analysis(
         model: a checked model.
         mesh: name of the mesh; None where there is only one.
         stiffness: a stiffness model in place of the file's, or "given"; a mesh with a number in the file takes "tooth_fe".
-        torque: N m on the pinion in place of the torque flow's.
+        torque: on the pinion, in N m or as a text such as "2000 N m", in place of the torque flow's.
         preset, body: of the finite elements, in place of the file's.
         accuracy: take the cheapest preset whose estimated relative errors are within it.
         positions: in one mesh period; periods: how many (default 1, or enough for all teeth with pitch errors).

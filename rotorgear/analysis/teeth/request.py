@@ -12,7 +12,7 @@ from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.model.layout.applied_torques import applied_torques
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.model import Model
-from rotorgear.quantity import nearest
+from rotorgear.quantity import QuantityError, nearest, parse_quantity
 from rotorgear.results.mesh import MeshLoad
 
 
@@ -52,14 +52,14 @@ class MeshRequest:
 
 
 def mesh_request(
-    model: Model, name: str | None, stiffness: str | None, torque: float | None, fe: dict[str, object]
+    model: Model, name: str | None, stiffness: str | None, torque: float | str | None, fe: dict[str, object]
 ) -> MeshRequest:
     """Look up a mesh, its stiffness model and its load.
 
     Args:
         name: of the mesh; None where the model has only one.
         stiffness: a stiffness model in place of the file's; a number in the file makes it "tooth_fe".
-        torque: N m on the pinion, positive about +z, in place of the torque flow's.
+        torque: on the pinion, in N m or a text with its unit, positive about +z, in place of the torque flow's.
         fe: settings of `ToothFe` in place of the file's.
 
     Raises:
@@ -105,11 +105,15 @@ def _with(teeth: ToothPair, fe: dict[str, object]) -> ToothPair:
     return replace(teeth, fe=settings)
 
 
-def _load(model: Model, mesh: MeshLayout, torque: float | None) -> tuple[MeshLoad | None, int]:
+def _load(model: Model, mesh: MeshLayout, given: float | str | None) -> tuple[MeshLoad | None, int]:
     """Load and sense of the torque on the pinion."""
     lever = mesh.pinion.base_radius
     cosine = math.cos(mesh.pinion.base_helix_angle)
-    if torque is not None:
+    if given is not None:
+        try:
+            torque = parse_quantity(given, "torque")
+        except QuantityError as error:
+            raise AnalysisError(f"--torque: got {given!r}, expected {error}") from None
         if torque == 0.0 or not math.isfinite(torque):
             raise AnalysisError(f"--torque: got {torque:g} N m, expected one that is not zero")
         force = abs(torque) / lever

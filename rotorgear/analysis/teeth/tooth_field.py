@@ -30,7 +30,7 @@ def tooth_fields(
     model: Model,
     mesh: str | None = None,
     *,
-    torque: float | None = None,
+    torque: float | str | None = None,
     preset: str | None = None,
     body: str | None = None,
     at: float = 0.0,
@@ -39,7 +39,7 @@ def tooth_fields(
     """Solve the inside of the teeth of the first helix of a mesh at one position.
 
     Args:
-        model, mesh, torque, preset, body: as for `mesh_analysis`.
+        model, mesh, torque, preset, body: as for `mesh`.
         at: position in mesh periods.
 
     Raises:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.model.model import Model
 from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import Integrator, LocalSystem
@@ -57,6 +58,30 @@ def rotation_of(system: System, speed: float | str | Sequence[tuple[float, float
         return Rotation.constant(quantity(speed, "speed", "speed"))
     pairs = [(quantity(t, "time", "speed"), quantity(w, "speed", "speed")) for t, w in speed]
     return Rotation(np.array([t for t, _ in pairs]), np.array([w for _, w in pairs]))
+
+
+def run_up(
+    model: Model | System,
+    speed: float | str | Sequence[tuple[float, float | str]] | None,
+    speed_to: float | str,
+    time: float | None,
+    discard: float | None,
+) -> list[tuple[float, float | str]]:
+    """Pairs of time in s and speed: `speed` while the transient is discarded, then linear to `speed_to`.
+
+    Raises:
+        AnalysisError: no speed to start from, or no time for the run-up.
+    """
+    if isinstance(speed, Sequence) and not isinstance(speed, str):
+        raise AnalysisError("speed_to: goes with one speed to start from, not with pairs of time and speed")
+    operation = (model.model if isinstance(model, System) else model).operation
+    first = speed if speed is not None else (operation.speed if operation else None)
+    if first is None or time is None:
+        raise AnalysisError(
+            "speed_to (--speed-to) needs a speed to start from (--speed) and a time for the run-up (--time)"
+        )
+    start = discard or 0.0
+    return [(start, first), (start + time, speed_to)]
 
 
 def mesh_frequencies(system: System, speed: float) -> dict[str, float]:

@@ -12,7 +12,7 @@ from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.transient.histories import Histories, Stream
 from rotorgear.analysis.transient.notes import transient_left_out, transient_warnings
-from rotorgear.analysis.transient.request import Grid, base_frequencies, grid_of, integrator_of, quantity
+from rotorgear.analysis.transient.request import Grid, base_frequencies, grid_of, integrator_of, quantity, run_up
 from rotorgear.analysis.transient.statistics import Statistics, compared, statistics
 from rotorgear.analysis.transient.task import Task, damped, fine_enough, prepare, run_task, skipping
 from rotorgear.errors import AnalysisError, ConvergenceError
@@ -33,6 +33,7 @@ def transient(
     model: Model | System,
     *,
     speed: float | str | Sequence[tuple[float, float | str]] | None = None,
+    speed_to: float | str | None = None,
     time: float | str | None = None,
     discard: float | str | None = None,
     steps: int | None = None,
@@ -55,6 +56,7 @@ def transient(
     Args:
         model: a model, or its assembled system.
         speed: of the input shaft in rad/s or as a text, or pairs (time, speed), linear in between. None: the operating speed.
+        speed_to: run up (or down) from `speed` to this one within the duration that is evaluated, which `time` has to say.
         time: duration that is evaluated, in s or as a text; 30 periods of the slowest mesh where it is not given.
         discard: duration of the transient before it, which is computed but not evaluated.
         steps: steps in a period of the fastest mesh; without it the step is halved until the accuracy is reached.
@@ -83,8 +85,10 @@ def transient(
         raise AnalysisError(f"the accuracy must lie between 1e-8 and 1, got {accuracy:g}")
     if frames < 0:
         raise AnalysisError(f"frames: got {frames}, expected 0 or more")
-    task = prepare(damped(model, modal_damping), speed, elements)
     duration = [None if x is None else quantity(x, "time", name) for x, name in ((time, "time"), (discard, "discard"))]
+    if speed_to is not None:
+        speed = run_up(model, speed, speed_to, *duration)
+    task = prepare(damped(model, modal_damping), speed, elements)
     grid = grid_of(
         task.local.local, base_frequencies(task.local.system, task.largest), duration[0], duration[1], steps, records
     )

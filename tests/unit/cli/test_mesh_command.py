@@ -32,7 +32,7 @@ def run(*arguments: object) -> str:
 
 
 def test_it_prints_stiffness_load_body_and_errors_in_eighty_columns(spur: Path) -> None:
-    text = run("mesh", spur, "--loads", "0.1,1")
+    text = run("mesh", spur, "--load-factors", "0.1,1")
     for word in (
         "secant",
         "rim: arc of 7 pitches",
@@ -99,7 +99,7 @@ def test_vtk_files_hold_meshes_that_touch_and_stresses(helix: float, tmp_path: P
     ("arguments", "said"),
     [
         (("--torque", "5 mm"), "--torque: got '5 mm'"),
-        (("--loads", "a,b"), "--loads: got 'a,b'"),
+        (("--load-factors", "a,b"), "--load-factors: got 'a,b'"),
         (("--preset", "best"), "preset: got 'best'"),
         (("--plot", "curves.jpg"), "ends with .png or .svg"),
     ],
@@ -118,7 +118,7 @@ def test_the_preview_of_a_helical_pair_has_no_body_to_write(tmp_path: Path) -> N
 
 
 def test_options_of_one_accuracy_analysis_are_refused_by_the_other(spur: Path) -> None:
-    with pytest.raises(RotorgearError, match="belong to --analysis mesh"):
+    with pytest.raises(RotorgearError, match="--mesh belongs to --analysis mesh"):
         run("accuracy", spur, "--mesh", "pair")
-    with pytest.raises(RotorgearError, match="belong to --analysis modal"):
+    with pytest.raises(RotorgearError, match="--speed belongs to --analysis modal"):
         run("accuracy", spur, "--analysis", "mesh", "--speed", "100 rpm")

@@ -70,7 +70,7 @@ def test_two_parameters_give_a_map(tmp_path: Path) -> None:
 
 def test_portraits_of_chosen_points_are_listed_by_their_lines(tmp_path: Path) -> None:
     over = ["--over", "operation.speed=3000 rpm:4000 rpm:5", "--discard", "300", "--sample", "60", "--steps", "400"]
-    code, text = run(PAIR, *over, "--portrait", "3250", "--portrait", "3490 rpm", "--json", str(tmp_path / "s.json"))
+    code, text = run(PAIR, *over, "--portraits", "3250", "--portraits", "3490 rpm", "--json", str(tmp_path / "s.json"))
     assert code == 0
     table = text.split("Strongest lines")[1]
     assert max(len(line) for line in text.splitlines()) <= 80
@@ -90,9 +90,12 @@ def test_portraits_of_chosen_points_are_listed_by_their_lines(tmp_path: Path) ->
         (["--over", "operation.speed=6000 rpm", "--workers", "0"], "--workers"),
         (["--over", "operation.speed=6000 rpm", "--sample", "0"], "sample: got 0"),
         (["--over", "operation.speed=6000 mm"], "rotational speed"),
-        (["--over", "operation.speed=1 rpm:9 rpm:3", "--portrait", "10"], "from 1 to 9 rpm"),
-        (["--over", "operation.speed=1 rpm:9 rpm:3", "--portrait", "x"], "portrait: got 'x', expected a number in rpm"),
-        (["--over", "operation.speed=1 rpm:9 rpm:3", "--portrait", "3,4"], "expected a value of operation.speed"),
+        (["--over", "operation.speed=1 rpm:9 rpm:3", "--portraits", "10"], "from 1 to 9 rpm"),
+        (
+            ["--over", "operation.speed=1 rpm:9 rpm:3", "--portraits", "x"],
+            "portrait: got 'x', expected a number in rpm",
+        ),
+        (["--over", "operation.speed=1 rpm:9 rpm:3", "--portraits", "3,4"], "expected a value of operation.speed"),
     ],
 )
 def test_mistakes_are_named_in_a_sentence(arguments: list[str], words: str) -> None:

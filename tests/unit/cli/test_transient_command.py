@@ -89,7 +89,7 @@ def test_a_run_up_draws_a_spectrogram(shaken: str, tmp_path: Path) -> None:
     ("options", "words"),
     [
         (["--resume"], "--resume needs the --save"),
-        (["--speed-to", "100 rpm"], "needs a --speed"),
+        (["--speed-to", "100 rpm"], "needs a speed to start from"),
         (["--rig", "rig.csv"], "--rig needs --spectrum"),
         (["--method", "magic"], "method: got 'magic'"),
         (["--time", "3 kg"], "a time"),

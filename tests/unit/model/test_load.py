@@ -13,7 +13,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from rotorgear.errors import ModelError
-from rotorgear.model.load import json_schema, load, loads
+from rotorgear.model.load import load, loads
+from rotorgear.model.load import schema as json_schema
 from rotorgear.model.model import Model
 from tests import paths
 

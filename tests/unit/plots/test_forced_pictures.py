@@ -22,7 +22,7 @@ GEARBOX = ROOT / "models" / "split_torque.toml"
 
 @pytest.fixture(scope="module")
 def run_up() -> rg.ResponseResult:
-    return rg.response(rg.load(GEARBOX), speeds=[900.0, 1300.0, 1712.0], fmax=3000.0, damping_ratio=0.02, elements=1)
+    return rg.response(rg.load(GEARBOX), speeds=[900.0, 1300.0, 1712.0], fmax=3000.0, modal_damping=0.02, elements=1)
 
 
 @pytest.fixture(scope="module")
@@ -67,9 +67,7 @@ def test_a_wrong_ending_is_refused_and_leaves_nothing(run_up: rg.ResponseResult,
 def test_statics_and_frequency_responses_are_drawn(tmp_path: Path) -> None:
     model = rg.load(GEARBOX)
     assert draw_static(rg.static(model), tmp_path / "static.png").exists()
-    result = rg.frequency_response(
-        model, [10.0, 20.0, 30.0], inputs=["gears.bull:y"], outputs=["output_bearing_y"], elements=1
-    )
+    result = rg.frf(model, [10.0, 20.0, 30.0], inputs=["gears.bull:y"], outputs=["output_bearing_y"], elements=1)
     assert draw_frf(result, tmp_path / "frf.svg", quantity="mobility").exists()
 
 
@@ -103,19 +101,22 @@ def test_the_static_deflection_in_vtk_is_true_in_metres(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["response", str(GEARBOX), "--points", "0"], "--points"),
+        (["response", str(GEARBOX), "--points", "0"], "points: got"),
         (["response", str(GEARBOX), "--from", "10 mm"], "--from: got"),
         (["response", str(GEARBOX), "--from", "0", "--points", "2"], "none of them 0"),
         (["response", str(ROOT / "models" / "geared_pair.toml"), "--points", "2"], "nothing excites"),
-        (["frf", str(GEARBOX), "--from", "x", "--to", "y", "--fmax", "10"], "'x' is no place"),
-        (["frf", str(GEARBOX), "--from", "output_bearing_y", "--to", "output_bearing_y", "--fmax", "-1"], "--fmax"),
+        (["frf", str(GEARBOX), "--inputs", "x", "--outputs", "y", "--fmax", "10"], "'x' is no place"),
+        (
+            ["frf", str(GEARBOX), "--inputs", "output_bearing_y", "--outputs", "output_bearing_y", "--fmax", "-1"],
+            "fmin < fmax",
+        ),
         (
             [
                 "frf",
                 str(GEARBOX),
-                "--from",
+                "--inputs",
                 "output_bearing_y",
-                "--to",
+                "--outputs",
                 "output_bearing_y",
                 "--fmax",
                 "9",

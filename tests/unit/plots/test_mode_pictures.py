@@ -113,7 +113,7 @@ def test_without_pyvista_the_extra_to_install_is_named(tmp_path, monkeypatch):
 def test_without_a_display_the_window_says_what_works_instead(monkeypatch):
     monkeypatch.delenv("DISPLAY", raising=False)
     for shown in (modes_of(PAIR), modes_of(PAIR).model):
-        with pytest.raises(RenderError, match=r"there is none here \(DISPLAY is not set\); use modal --picture"):
+        with pytest.raises(RenderError, match=r"there is none here \(DISPLAY is not set\); use modal --plot"):
             view.view(shown)
     monkeypatch.setenv("DISPLAY", ":987")
     with pytest.raises(RenderError, match=r"no window can open on the display :987"):

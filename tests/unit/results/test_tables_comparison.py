@@ -8,7 +8,7 @@ import sys
 
 from rich.console import Console
 
-from rotorgear.analysis.rig.compare import compare
+from rotorgear.analysis.rig.compare import compare_lines as compare
 from rotorgear.results.comparison import ExcitationLine, RigLine
 from rotorgear.results.tables.comparison import comparison_table
 

@@ -50,7 +50,7 @@ def test_whirl_of_a_tilting_disk_splits_as_its_gyroscopic_moment_says() -> None:
 
 def test_critical_speeds_of_a_tilting_disk_are_those_of_the_closed_form() -> None:
     """w = W: W^2 (I_d -+ I_p) = 2 k l^2 has a backward root only, since I_p > I_d; translation has sqrt(2 k / m) twice."""
-    result = rg.critical_speeds(rigid_rotor(), top_speed=2000.0, damped=False)
+    result = rg.critical(rigid_rotor(), stop=2000.0, damped=False)
     speeds = np.array(
         [item.speed for item in result.speeds if item.whirl in ("forward", "backward", "planar", "mixed")]
     )
@@ -112,7 +112,7 @@ def test_internal_damping_makes_forward_whirl_unstable_where_it_should() -> None
 
 def test_critical_speeds_are_where_branches_cross_the_line() -> None:
     model = rg.load(MODELS / "jeffcott.toml")
-    direct = rg.critical_speeds(model, top_speed=1500.0)
+    direct = rg.critical(model, stop=1500.0)
     diagram = rg.campbell(model, speeds=np.linspace(0.0, 1500.0, 31).tolist(), shaft_orders=[1.0])
     crossed = np.array([item.speed for item in diagram.crossings])
     assert len(direct) >= 2
@@ -138,7 +138,7 @@ def test_branches_of_a_coarse_grid_end_where_those_of_a_fine_one_do(count: int) 
 
 def test_a_result_comes_back_from_hdf5(tmp_path: Path) -> None:
     model = rg.load(MODELS / "jeffcott.toml")
-    for result in (rg.campbell(model, speeds=[0.0, 100.0, 200.0], modes=4), rg.critical_speeds(model, top_speed=800.0)):
+    for result in (rg.campbell(model, speeds=[0.0, 100.0, 200.0], modes=4), rg.critical(model, stop=800.0)):
         back = rg.read(rg.save(result, tmp_path / "result.h5"))
         assert back.to_dict() == result.to_dict()
 

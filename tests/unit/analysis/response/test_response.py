@@ -109,7 +109,7 @@ def test_a_stiffness_variation_acts_through_the_mean_force() -> None:
 def test_the_peak_of_a_mode_with_a_damping_ratio_is_the_closed_form() -> None:
     model = torsional_pair(transmission_error=[{"harmonic": 1, "amplitude": 1e-6}])
     zeta = 0.03
-    result = rg.response(model, speeds=[W_N / 24.0], damping_ratio=zeta)
+    result = rg.response(model, speeds=[W_N / 24.0], modal_damping=zeta)
     # M_E (x'' + 2 zeta W_N x' + W_N^2 x) = K e
     assert abs(result.transmission_error[0, 0, 0]) == pytest.approx(1e-6 / (2.0 * zeta), rel=1e-9)
 
@@ -173,7 +173,7 @@ def two_wheels(teeth: int, harmonic: int) -> ResponseResult:
         },
         bearings={name: {"shaft": name, "at": "start", "stiffness": {"radial": 1e8, "tilt": 1e6}} for name in shafts},
     )
-    return rg.response(model, speeds=[300.0], damping_ratio=0.01)
+    return rg.response(model, speeds=[300.0], modal_damping=0.01)
 
 
 @pytest.mark.parametrize(("teeth", "harmonic", "in_phase"), [(24, 1, True), (25, 1, False), (25, 2, True)])
@@ -194,7 +194,7 @@ def test_a_staggered_herringbone_shakes_along_its_axis_and_one_in_phase_turns(st
         own = ({"harmonic": 1, "amplitude": 1e-6},) if name == "stage_1a" else ()
         mesh.update(stagger=stagger, transmission_error=own)
     data["unbalances"] = {}
-    result = rg.response(rg.Model(**data), speeds=[0.5], damping_ratio=0.05, elements=1)
+    result = rg.response(rg.Model(**data), speeds=[0.5], modal_damping=0.05, elements=1)
     left, right = result.mesh_force[0, 0, result.contacts_of("stage_1a")]
     turns = np.angle(right / left)
     assert abs(turns) < 0.3 if stagger == 0.0 else abs(abs(turns) - math.pi) < 0.3
@@ -281,7 +281,7 @@ def test_a_damping_ratio_needs_no_symmetric_bearings() -> None:
         },
         unbalances={"u": {"shaft": "r", "at": "start", "magnitude": 1e-4}},
     )
-    result = rg.response(model, speeds=[w], damping_ratio=0.05)
+    result = rg.response(model, speeds=[w], modal_damping=0.05)
     c = 2.0 * 0.05 * math.sqrt(k * m)
     x = 1e-4 * w**2 / (k - m * w**2 + 1j * (c * w - cross))
     assert result.displacement[0, 0, 0, 0] == pytest.approx(x, rel=1e-9)
@@ -303,8 +303,8 @@ def test_a_bearing_of_huge_stiffness_is_a_pin() -> None:
 
 def test_receptances_of_a_gearbox_at_standstill_are_reciprocal() -> None:
     places = ["gears.bull:y", "bearings.input_left:x", "gears.wheel_a:torsion", "gears.pinion_2b:z"]
-    result = rg.frequency_response(
-        split_torque(), [40.0, 333.0, 1500.0], inputs=places, outputs=places, damping_ratio=0.01, elements=1
+    result = rg.frf(
+        split_torque(), [40.0, 333.0, 1500.0], inputs=places, outputs=places, modal_damping=0.01, elements=1
     )
     H = result.receptance
     assert pytest.approx(H.transpose(0, 2, 1), rel=1e-8, abs=1e-10 * np.abs(H).max()) == H
@@ -317,16 +317,14 @@ def test_a_turning_rotor_is_reciprocal_with_one_that_turns_the_other_way() -> No
     model = rg.load(ROOT / "models" / "jeffcott.toml")
     places = ["disks.disk:x", "bearings.left:y"]
     one, other = (
-        rg.frequency_response(model, [15.0, 30.0, 90.0], inputs=places, outputs=places, speed=s, elements=2)
+        rg.frf(model, [15.0, 30.0, 90.0], inputs=places, outputs=places, speed=s, elements=2)
         for s in ("6000 rpm", "-6000 rpm")
     )
     assert one.receptance == pytest.approx(other.receptance.transpose(0, 2, 1), rel=1e-8, abs=1e-18)
 
 
 def test_a_receptance_is_that_of_mass_spring_and_dashpot_and_meets_statics() -> None:
-    result = rg.frequency_response(
-        jeffcott(), [0.01, 5.0, 14.161], inputs=["disks.disk:x"], outputs=["disks.disk:x"], elements=1
-    )
+    result = rg.frf(jeffcott(), [0.01, 5.0, 14.161], inputs=["disks.disk:x"], outputs=["disks.disk:x"], elements=1)
     w = 2.0 * math.pi * result.frequency_hz
     exact = 1.0 / (79168.13487 - 10.0 * w**2 + 1j * w * 35.59059)
     assert result.receptance[:, 0, 0] == pytest.approx(exact, rel=1e-6)
@@ -370,9 +368,9 @@ def test_a_contact_that_is_open_in_the_mean_state_is_refused() -> None:
 
 def test_an_unknown_place_is_refused_with_those_that_are_there() -> None:
     with pytest.raises(rg.AnalysisError, match="output_bearing_y"):
-        rg.frequency_response(split_torque(), [10.0], inputs=["nowhere"], outputs=["output_bearing_y"])
+        rg.frf(split_torque(), [10.0], inputs=["nowhere"], outputs=["output_bearing_y"])
     with pytest.raises(rg.AnalysisError, match="can't move"):
-        rg.frequency_response(jeffcott(), [10.0], inputs=["disks.disk:z"], outputs=["disks.disk:x"])
+        rg.frf(jeffcott(), [10.0], inputs=["disks.disk:z"], outputs=["disks.disk:x"])
 
 
 def test_an_undamped_run_up_says_that_its_peaks_are_accidents() -> None:
@@ -397,7 +395,7 @@ def test_speeds_that_step_over_a_resonance_are_warned_about() -> None:
 
 def test_results_come_back_from_their_files(tmp_path: Path) -> None:
     run = rg.response(jeffcott(), speeds=[60.0, 61.0])
-    frf = rg.frequency_response(jeffcott(), [5.0, 6.0], inputs=["disks.disk:x"], outputs=["disks.disk:y"])
+    frf = rg.frf(jeffcott(), [5.0, 6.0], inputs=["disks.disk:x"], outputs=["disks.disk:y"])
     for result in (run, frf):
         back = rg.read(rg.save(result, tmp_path / "result.h5"))
         assert back.to_dict() == result.to_dict()

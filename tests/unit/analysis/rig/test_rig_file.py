@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rotorgear.analysis.rig.compare import read_rig_lines
+from rotorgear.analysis.rig.rig_file import read_rig_lines
 from rotorgear.errors import ModelError
 from rotorgear.results.comparison import RigLine
 

@@ -119,7 +119,7 @@ def test_every_shaft_and_the_whole_are_in_equilibrium(name: str) -> None:
     result = rg.static(rg.Model(**data))
     assert result.imbalance < 1e-11
     assert result.error_estimate < 1e-9
-    weight = 9.81 * rg.describe_model(result.model).total_mass_kg
+    weight = 9.81 * rg.check(result.model).total_mass_kg
     total = sum(value[:3] for value in result.bearing_force.values())
     assert total == pytest.approx([0.0, weight, 0.0], abs=1e-7 * max(weight, 1e5))
 

@@ -32,23 +32,23 @@ def test_all_lines_fit_in_80_columns_and_no_cell_is_broken() -> None:
 
 
 def test_one_mesh_shows_its_two_gears_only() -> None:
-    sheet = rg.gear_sheet(rg.load(MODELS / "split_torque.toml"), mesh="stage_2a")
+    sheet = rg.gear(rg.load(MODELS / "split_torque.toml"), mesh="stage_2a")
     assert [row.name for row in sheet.meshes] == ["stage_2a"]
     assert {row.name for row in sheet.gears} == {"pinion_2a", "bull"}
 
 
 def test_the_factor_k_v_needs_the_accuracy_of_both_gears_and_then_comes_by_method_b() -> None:
     data = tomllib.loads(PAIR.read_text(encoding="utf-8"))
-    without = rg.gear_sheet(rg.Model(**data)).meshes[0]
+    without = rg.gear(rg.Model(**data)).meshes[0]
     assert (without.dynamic_factor, without.dynamic_factor_method) == (None, "K_v: give accuracy_grade of both gears")
     for gear in data["gears"].values():
         gear["accuracy_grade"] = 6
-    row = rg.gear_sheet(rg.Model(**data)).meshes[0]
+    row = rg.gear(rg.Model(**data)).meshes[0]
     assert row.dynamic_factor_method == "ISO 6336-1 method B"
     assert row.dynamic_factor is not None
     assert 1.0 < row.dynamic_factor < 1.6
     data["gears"]["pinion"]["accuracy_grade"] = 10
-    worse = rg.gear_sheet(rg.Model(**data)).meshes[0].dynamic_factor
+    worse = rg.gear(rg.Model(**data)).meshes[0].dynamic_factor
     assert worse is not None
     assert worse > row.dynamic_factor
 
@@ -57,7 +57,7 @@ def test_the_drawn_contours_touch_at_the_contact_points_and_never_overlap() -> N
     """On the line of action the signed distance of both gears is zero; elsewhere the gap between them is positive."""
     from matplotlib.path import Path as Polygon
 
-    sheet = rg.gear_sheet(rg.load(PAIR))
+    sheet = rg.gear(rg.load(PAIR))
     teeth = sheet.pairs["stage"]
     first = gear_contour(teeth, 1)
     second = gear_contour(teeth, 2)
@@ -78,7 +78,7 @@ def test_the_drawn_contours_touch_at_the_contact_points_and_never_overlap() -> N
 
 @pytest.mark.parametrize("ending", [".png", ".svg"])
 def test_a_drawing_is_written_whole(tmp_path: Path, ending: str) -> None:
-    target = draw_mesh(rg.gear_sheet(rg.load(PAIR)), tmp_path / f"mesh{ending}")
+    target = draw_mesh(rg.gear(rg.load(PAIR)), tmp_path / f"mesh{ending}")
     assert target.stat().st_size > 10_000
     assert list(tmp_path.iterdir()) == [target]
 
@@ -86,7 +86,7 @@ def test_a_drawing_is_written_whole(tmp_path: Path, ending: str) -> None:
 def test_what_is_refused_leaves_nothing_behind(tmp_path: Path) -> None:
     for arguments, words in (
         ((str(PAIR), "--mesh", "stge"), "There is no mesh 'stge'"),
-        ((str(PAIR), "--picture", str(tmp_path / "mesh.jpg")), "A picture ends with .png or .svg"),
+        ((str(PAIR), "--plot", str(tmp_path / "mesh.jpg")), "A picture ends with .png or .svg"),
         ((str(MODELS / "jeffcott.toml"),), "has no gears with teeth"),
     ):
         from rotorgear.errors import RotorgearError
@@ -112,7 +112,7 @@ def test_a_pinion_with_two_mates_is_told_that_k_v_knows_one() -> None:
     data = tomllib.loads((MODELS / "split_torque.toml").read_text(encoding="utf-8"))
     for gear in data["gears"].values():
         gear["accuracy_grade"] = 5
-    rows = {row.name: row for row in rg.gear_sheet(rg.Model(**data)).meshes}
+    rows = {row.name: row for row in rg.gear(rg.Model(**data)).meshes}
     assert "'pinion_1' has other mates too" in " ".join(rows["stage_1a"].warnings)
     assert "'wheel_a'" not in " ".join(rows["stage_1a"].warnings)
     assert rows["stage_1a"].dynamic_factor == pytest.approx(rows["stage_1b"].dynamic_factor, rel=1e-6)

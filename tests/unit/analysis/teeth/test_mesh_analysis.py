@@ -20,7 +20,7 @@ NAMED = f'stiffness = "tooth_fe"\n{PREVIEW}'
 
 
 def mesh_of(text: str, **options: Any) -> rg.MeshResult:
-    return rg.mesh_analysis(rg.loads(text), positions=16, **options)
+    return rg.mesh(rg.loads(text), positions=16, **options)
 
 
 def deflection_of_rotor_model(text: str) -> float:
@@ -50,7 +50,7 @@ def deflection_of_rotor_model(text: str) -> float:
 )
 def test_the_rotor_model_deflects_as_the_loaded_teeth_do(helix: float, kind: str, extra: str) -> None:
     text = pair_file(helix, kind, mesh=f"{NAMED}\n{extra}")
-    found = rg.mesh_analysis(rg.loads(text), estimate=False)
+    found = rg.mesh(rg.loads(text), estimate=False)
     assert found.transmission_error is not None
     mean = float(found.transmission_error.mean()) * np.cos(found.base_helix_angle)
     assert deflection_of_rotor_model(text) == pytest.approx(mean, rel=1e-6)
@@ -58,7 +58,7 @@ def test_the_rotor_model_deflects_as_the_loaded_teeth_do(helix: float, kind: str
 
 def test_statics_press_the_teeth_together_as_loaded_contact_does() -> None:
     model = rg.loads(pair_file(20.86, "helical", mesh=NAMED))
-    found = rg.mesh_analysis(model, estimate=False)
+    found = rg.mesh(model, estimate=False)
     assert found.transmission_error is not None
     mean = float(found.transmission_error.mean()) * np.cos(found.base_helix_angle)
     assert rg.static(model).mesh_deflection[0] == pytest.approx(mean, rel=1e-6)
@@ -66,7 +66,7 @@ def test_statics_press_the_teeth_together_as_loaded_contact_does() -> None:
 
 def test_small_motions_meet_the_tangent_stiffness() -> None:
     model = rg.loads(pair_file(mesh=NAMED))
-    found = rg.mesh_analysis(model, estimate=False)
+    found = rg.mesh(model, estimate=False)
     assert found.tangent is not None
     force = System(model).load.of_mesh("pair")[0]
     assert force.contact.stiffness == pytest.approx(float(found.tangent.mean()), rel=1e-9)
@@ -176,8 +176,8 @@ def test_a_mesh_without_load_says_what_to_give() -> None:
 def test_gears_without_teeth_are_refused() -> None:
     model = rg.load(MODELS / "geared_pair.toml")
     with pytest.raises(rg.AnalysisError, match="given by their base radius have no teeth"):
-        rg.mesh_analysis(model, torque=100.0)
-    assert rg.mesh_analysis(model, stiffness="given").mean_normal_stiffness == pytest.approx(1e8)
+        rg.mesh(model, torque=100.0)
+    assert rg.mesh(model, stiffness="given").mean_normal_stiffness == pytest.approx(1e8)
 
 
 @pytest.mark.parametrize(
@@ -212,7 +212,7 @@ def test_a_response_about_the_mean_state_meets_the_tangent_stiffness() -> None:
     state = mean_state(System(model, load=model.mean_load().of_kind("static")), 100.0)
     again = state.system.with_load(state.system.load.of_kind("dynamic"))
     tangent, secant = (s.load.of_mesh("pair")[0].contact.stiffness for s in (again, state.system))
-    found = rg.mesh_analysis(model, estimate=False)
+    found = rg.mesh(model, estimate=False)
     assert found.tangent is not None
     assert tangent == pytest.approx(float(found.tangent.mean()), rel=1e-9)
     assert secant == pytest.approx(1.0 / float(np.mean(1.0 / found.stiffness)), rel=1e-9)

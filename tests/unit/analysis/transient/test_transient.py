@@ -303,7 +303,7 @@ def test_gravity_bends_the_shafts_and_its_force_arrives_at_the_bearings() -> Non
     )
     result = transient(model, time=0.005, steps=100)
     total = sum(result.history(f"bearings.{name} force y")[0] for name in "abcd")
-    mass = rg.describe_model(model).total_mass_kg
+    mass = rg.check(model).total_mass_kg
     assert total == pytest.approx(-9.81 * mass, rel=1e-9)
 
 
