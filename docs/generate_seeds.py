@@ -36,7 +36,7 @@ SYSTEMS = {
 turbines, two stages, in torsion with backlash. The printed equations have no equilibrium; the model is the chain that they
 must have meant, with quill shafts between the stages. Stiffness, drag of the LP turbine, mesh frequency, errors and phases
 are fitted to the three printed regions: that shows that they can be reached, and predicts nothing. Runs start from rest on
-the flanks that carry; where the net torque of the LP turbine is negative (load ratio 0.3) those are the back flanks. 2000
+the flanks that carry; where the net torque of the LP turbine is negative (load ratio 0.3) those are the coast flanks. 2000
 periods of 8 first-stage mesh periods settle, 200 count, 40 steps a mesh period. The amplitude indicator is the peak to peak
 deflection of the LP first stage over 16.67 um, the static deflection at 15 kN m; the impact time ratio is the share of the
 time on the back side. With the model's file alone, at the load ratios 0.3, 0.6 and 1.0:

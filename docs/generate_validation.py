@@ -20,7 +20,7 @@ Run them in a checkout with `rotorgear validate`, or some of them with `rotorgea
 
 The tolerance stands before the result, and no number is tuned to meet it. A line without tolerance is shown, not judged; the
 last column says why. *Error* is relative, absolute where the tolerance says "abs". Pairs such as 1+2 are the two planes of a
-rotationally symmetric rotor and must agree to 1e-10. "40 el." stands for as many basic elements in each piece of shaft
+rotationally symmetric rotor and must agree to 1e-10. "40 el." stands for that number of basic elements in each shaft segment
 (`--elements 40`), "accuracy 1e-07" for a mesh refined as `--accuracy 1e-7` asks, "20 > 40 el." for an order measured on
 two meshes.
 

@@ -28,7 +28,7 @@ PlotOption = Annotated[Path | None, typer.Option("--plot", help="Draw it to this
 ElementsOption = Annotated[
     int | None,
     typer.Option(
-        "--elements", help="So many basic elements in each piece of shaft, instead of an accuracy.", show_default=False
+        "--elements", help="Basic elements in each shaft segment, instead of an accuracy.", show_default=False
     ),
 ]
 AccuracyOption = Annotated[

@@ -58,7 +58,7 @@ def sweep(
         int | None,
         typer.Option(
             "--elements",
-            help="Basic elements in each piece of shaft (default: one of second order).",
+            help="Basic elements in each shaft segment (default: one of second order).",
             show_default=False,
         ),
     ] = None,

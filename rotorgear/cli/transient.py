@@ -71,7 +71,7 @@ def transient(
     ] = None,
     elements: Annotated[
         int | None,
-        typer.Option("--elements", help="Basic elements in each piece of shaft.", show_default=False),
+        typer.Option("--elements", help="Basic elements in each shaft segment.", show_default=False),
     ] = None,
     error_estimate: Annotated[
         bool, typer.Option("--error-estimate/--no-error-estimate", help="Compare with a run of twice the step.")

@@ -54,7 +54,7 @@ def cowper(nu: np.ndarray | float, ratio: np.ndarray | float) -> np.ndarray:
 def torsional_flexibility(
     lengths: Sequence[float], diameters: Sequence[tuple[float, float, float, float]], moduli: Sequence[float]
 ) -> float:
-    """Sum of the integrals of dz/(G J) over pieces of shaft in rad/(N m); 0 for no pieces."""
+    """Sum of the integrals of dz/(G J) over shaft segments in rad/(N m); 0 for no pieces."""
     if not lengths:
         return 0.0
     points, weights, _ = gauss(POINTS_CONE)

@@ -79,7 +79,7 @@ def draw_bifurcation(result: SweepResult, figure: Any, contact: int = 0) -> None
         axes[1].axhline(0.0, color="k", lw=0.6)
         axes[1].set_ylabel("LE per mesh\nperiod")
     whose = f" ({result.run[0]})" if len(result.run) > 1 else ""
-    for values, name, colour in ((result.apart, "apart", 0), (result.back, "back flank", 1)):
+    for values, name, colour in ((result.apart, "contact loss", 0), (result.back, "coast flank", 1)):
         axes[-1].plot(
             result.values[:, 0],
             100.0 * values[:, 0, contact],
@@ -127,7 +127,7 @@ def draw_sections(result: SweepResult, figure: Any) -> None:
 
 
 def draw_map(result: SweepResult, figure: Any) -> None:
-    """Kinds of motion, and the largest exponent, over both parameters."""
+    """Response types, and the largest exponent, over both parameters."""
     from matplotlib.colors import BoundaryNorm, ListedColormap
 
     n1, n2 = (int(n) for n in result.shape)

@@ -70,7 +70,7 @@ def draw_spectra(result: SweepResult, figure: Any, contact: int = 0) -> None:
 
 
 def _panels(result: SweepResult, figure: Any) -> tuple[Portraits, list[Any]]:
-    """One pair of axes for each point, named by its values and kinds of motion."""
+    """One pair of axes for each point, named by its values and response types."""
     own = result.portraits
     assert own is not None
     count = len(own.point)

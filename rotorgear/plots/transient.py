@@ -137,7 +137,7 @@ def draw_orbits(result: TransientResult, figure: Any) -> None:
 
 
 def draw_energy(result: TransientResult, figure: Any) -> None:
-    """The terms of the energy ledger since the start, and below what the integration made or lost."""
+    """The terms of the energy ledger since the start, and below the energy error of the integration."""
     e = result.energy
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
     stored = e.strain + e.contact
@@ -153,7 +153,7 @@ def draw_energy(result: TransientResult, figure: Any) -> None:
     upper.set_ylabel("energy since the start, J")
     upper.legend(fontsize=7)
     lower.plot(1e3 * e.time, e.numerical, lw=1.0, color="tab:red")
-    lower.set_ylabel("made or lost, J")
+    lower.set_ylabel("energy error, J")
     lower.set_xlabel("time, ms")
     for axes in (upper, lower):
         axes.grid(alpha=0.3)

@@ -12,7 +12,7 @@ class Rung:
     """One discretisation of the study.
 
     Attributes:
-        method: what was asked for, such as "4 basic elements a piece" or "accuracy 1e-05".
+        method: what was asked for, such as "4 basic elements per segment" or "accuracy 1e-05".
         family: rungs of one family form a curve: "elements" or "accuracy".
         setting: the number that was asked for.
         dofs: number of degrees of freedom solved in the last step.

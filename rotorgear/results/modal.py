@@ -65,7 +65,7 @@ class ModalResult:
         whirl_by_shaft: shaft -> (m,), -1 (backward circle) to +1 (forward circle), in the sense of that shaft's own spin.
         description: one line a person can read for each mode.
         backward_error: (m,) residual relative to the matrices.
-        dofs: number of degrees of freedom; discretisation: how each piece of shaft was cut.
+        dofs: number of degrees of freedom; discretisation: how each shaft segment was cut.
         seconds: wall time by step. left_out: sentences about what the model did not need. warnings: sentences.
         method: solver, and what its guards said.
     """

@@ -27,7 +27,7 @@ class Portraits:
 
     Attributes:
         point: (k,) numbers of the points. run: (j,) numbers of the runs.
-        turns: (k,) periods of the fastest mesh in a common period T. periods: (k,) common periods that were recorded.
+        turns: (k,) periods of the fastest mesh in a least common period T. periods: (k,) least common periods that were recorded.
         records: (k,) records in one of them, at even times; the first is a Poincare point.
         values: displacement in m and velocity in m/s of the contacts along their normal (without the transmission error), and
             force in N, (k, j, s, c, 3); NaN behind the last record of a point, and where a run failed.

@@ -1,4 +1,4 @@
-"""How the systems of a sweep were reduced, and what that costs in accuracy."""
+"""How the systems of a sweep were reduced, and the FRF error of the reduction."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ class Reduction:
 
     Attributes:
         dofs: before. coordinates: after. modes: elastic modes among them; highest: frequency of the highest of these in Hz.
-        rigid: rigid motions. static: static shapes of contacts and loads.
-        closed, apart: largest relative differences of the receptances at the contacts from those of the whole system, with all
-            contacts closed and with all of them apart; see solvers/frequency/receptance.py.
+        rigid: rigid-body modes. static: static shapes of contacts and loads.
+        closed, apart: FRF error: largest relative difference of the receptances at the contacts from those of the whole system,
+            with all contacts closed and with all of them open; see solvers/frequency/receptance.py.
         up_to: Hz up to which they were compared. frequencies: how many. bases: how many bases there are.
         seconds: to find and check them.
     """
@@ -39,12 +39,12 @@ class Reduction:
 
     @property
     def sentence(self) -> str:
-        """The reduction in words."""
+        """One sentence that describes the reduction."""
         parts = [f"{self.modes} modes up to {_hertz(self.highest)}"] if self.modes else []
         parts += [f"{self.rigid} rigid"] if self.rigid else []
         parts += [f"{self.static} static shapes"] if self.static else []
         return (
-            f"{self.dofs} dofs reduced to {self.coordinates} ({', '.join(parts)}): receptances at the contacts within "
+            f"{self.dofs} dofs reduced to {self.coordinates} ({', '.join(parts)}): FRF error at the contacts "
             f"{100.0 * self.error:.2g} % up to {_hertz(self.up_to)}"
         )
 

@@ -1,4 +1,4 @@
-"""Result of a sweep: Poincare sections, Lyapunov exponents, kinds of motion and indicators over one or two parameters."""
+"""Result of a sweep: Poincare sections, Lyapunov exponents, response types and indicators over one or two parameters."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ class SweepResult:
         contact: names of the contacts.
         frequency: (p,) of the fastest mesh in Hz; turns: (p,) its periods in the common one of all meshes.
         section: displacement in m and velocity in m/s of the contacts along their normal (without the transmission error) at the
-            end of each common period, (p, r, s, c, 2).
+            end of each least common period, (p, r, s, c, 2).
         motion: (p * r) kinds: "1T", "2T", ..., "quasi-periodic", "chaotic", "not settled", "not periodic", "failed".
         lyapunov, lyapunov_error: (p, r, t) exponents and their standard errors, per period of the fastest mesh.
         peak_to_peak: of the approach d - e, amplitude: of d itself, rms: of d about its mean, (p, r, c) in m.
         mean_force, rms_force, largest_force: (p, r, c) in N, the rms about the mean; static_force: (p, c) in N;
             static_deflection: (p, c) in m.
-        driving, apart, back: (p, r, c) shares of the time; losses: (p, r, c) losses of contact in a period of the fastest mesh.
+        driving, apart, back: (p, r, c) shares of the time; losses: (p, r, c) contact losses in a period of the fastest mesh.
         failure: (p,) why a point failed, "" where it did not.
-        steps: (p,) in a period of the fastest mesh; settle, count: common periods that settled and counted.
+        steps: (p,) in a period of the fastest mesh; settle, count: least common periods that settled and counted.
         tolerance, chaos: of the criterion, see analysis/sweep/classify.py.
         dofs, seconds, method, warnings: cost, and sentences. reduction: how large systems were reduced; None where none was.
         portraits: trajectories of some points, where they were asked for.
@@ -83,18 +83,18 @@ class SweepResult:
 
     @property
     def period_words(self) -> str:
-        """The common period T in words."""
+        """The least common period T in words."""
         turns = sorted({int(n) for n in self.turns if n})
         if turns == [1]:
             return "the mesh period"
         return f"{turns[0]}{f' to {turns[-1]}' if len(turns) > 1 else ''} periods of the fastest mesh"
 
     def motion_at(self, point: int, run: int = 0) -> str:
-        """Kind of motion of a run."""
+        """Response type of a run."""
         return self.motion[point * len(self.run) + run]
 
     def route(self, run: int = 0) -> list[tuple[str, int, int]]:
-        """Kinds of motion along the points with the first and last point of each."""
+        """Response types along the points with the first and last point of each."""
         found: list[tuple[str, int, int]] = []
         for p in range(len(self.values)):
             kind = self.motion_at(p, run)

@@ -39,9 +39,9 @@ class TransientResult:
         time: (r,) in s. angle, speed: (r,) of the reference shaft in rad and rad/s.
         settle: time in s from which statistics count; start_step: first record from there on.
         contact: names of the contacts. deflection: (r, c) approach of the flanks along their normal in m, without the
-            transmission error (the dynamic transmission error). mesh_force: (r, c) in N, positive on the driving flank.
+            transmission error (the dynamic transmission error). mesh_force: (r, c) in N, positive on the working flank.
         mean_force: (c,) static mean force of each contact in N.
-        contact_time: (c, 3) share of the time on the driving flank, apart, on the back flank; contact_losses: (c,) how often.
+        contact_time: (c, 3) share of the time on the working flank, apart, on the coast flank; contact_losses: (c,) how often.
         channel, unit: names and units of the channels; values: (r, p).
         quantity: names of the statistics with an error; quantity_value, quantity_error: (s,), the error absolute.
         energy: ledger. step: h in s; steps: of the run; every: of them one record.

@@ -44,7 +44,7 @@ class _Bubbles:
 
 
 def bubble_errors(system: System, speed: float | None, s: np.ndarray, x: np.ndarray) -> dict[PieceKey, np.ndarray]:
-    """Return the estimated relative error of |s| that each piece of shaft brings: piece -> (m,), infinite where it is too coarse.
+    """Return the estimated relative error of |s| that each shaft segment brings: piece -> (m,), infinite where it is too coarse.
 
     Args:
         system: the discretised model.

@@ -1,4 +1,4 @@
-"""How finely each piece of shaft is cut: elements and their order.
+"""How finely each shaft segment is cut: elements and their order.
 
 A *piece* is a stretch of one section between two neighbouring places. Order 1 is the basic element, p >= 2 adds internal
 polynomials.

@@ -1,6 +1,6 @@
 """Motions of a system that strain nothing, from its geometry: what is left to move in statics.
 
-Between its nodes a shaft is free of strain in its six rigid motions only. So the null space of the stiffness lies in the
+Between its nodes a shaft is free of strain in its six rigid-body motions only. So the null space of the stiffness lies in the
 span of these motions of every shaft (and of single pedestals), where it is small, and it does not depend on how many
 decades the stiffnesses span.
 """

@@ -40,7 +40,7 @@ class System:
 
     Args:
         model: a checked model.
-        elements: basic elements in each piece of shaft.
+        elements: basic elements in each shaft segment.
         plan: how finely each piece is cut, in place of `elements`.
         load: mean forces, working flanks and mesh stiffnesses. None: those of the torque flow at the operating speed.
         direction: old way to ask for the load of one sense of rotation.

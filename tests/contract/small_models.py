@@ -78,7 +78,7 @@ def static(model: rg.Model, shaft: str, z: float, load: dict[int, float], count:
 
 
 def rigid_motions(points: np.ndarray) -> np.ndarray:
-    """The six rigid motions at the dofs of nodes at `points` (p, 3): shape (6 p, 6), about the origin."""
+    """The six rigid-body motions at the dofs of nodes at `points` (p, 3): shape (6 p, 6), about the origin."""
     from rotorgear.elements.spring import rigid_transfer
 
     return np.vstack([rigid_transfer(point) for point in points])

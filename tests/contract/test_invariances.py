@@ -125,7 +125,7 @@ def test_the_modes_stay_when_only_the_view_changes(
 
 
 def test_the_flow_of_power_changes_the_modes_of_a_contact_beside_the_pitch_point() -> None:
-    """So the test above does see the driving flank and the side of the contact."""
+    """So the test above does see the working flank and the side of the contact."""
     driving = eigenvalues(along_x_and_y(helical_pair(), 3.0))
     driven = eigenvalues(driven_by_the_wheel(along_x_and_y(helical_pair(), 3.0)))
     assert np.max(np.abs(driven[2:] / driving[2:] - 1.0)) > 1e-4

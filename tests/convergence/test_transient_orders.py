@@ -24,7 +24,7 @@ def gearbox() -> LocalSystem:
 
 
 def forces(system: LocalSystem, method: Integrator, finer: int) -> tuple[np.ndarray, np.ndarray]:
-    """Contact forces at the coarse steps, and losses of contact, with a step so many times finer than the coarse one."""
+    """Contact forces at the coarse steps, and contact losses, with a step so many times finer than the coarse one."""
     h = COARSE * step_of(system) / finer
     state = state_at_rest(system, h, equilibrium(system).q)
     stepper = method.prepare(system, h, float(system.rotation.speeds[0]), 1e-12)

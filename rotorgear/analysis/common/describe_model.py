@@ -32,7 +32,7 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
 
     Args:
         model: a checked model.
-        elements: basic elements in each piece of shaft, for the number of dofs; 1 where it is not given.
+        elements: basic elements in each shaft segment, for the number of dofs; 1 where it is not given.
     """
     system = System(model, elements)
     speed = model.operation.speed if model.operation else None
@@ -47,7 +47,7 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
         counts={table: len(getattr(model, table)) for table in _COUNTED if getattr(model, table)},
         nodes=len(system.nodes),
         dofs=system.n,
-        mesh=f"{elements or 1} basic element{'s'[: (elements or 1) != 1]} a piece of shaft, before any refinement",
+        mesh=f"{elements or 1} basic element{'s'[: (elements or 1) != 1]} per shaft segment, before any refinement",
         left_out=left_out(system, speed),
         warnings=(*system.nodes.merged, *model_warnings(system)),
     )

@@ -7,7 +7,7 @@ from rotorgear.system.plan import Plan
 
 
 def plan_in_time(elements: int | None = None) -> Plan:
-    """Return one element of second order for each piece of shaft, or as many basic ones as were asked for.
+    """Return one element of second order for each shaft segment, or as many basic ones as were asked for.
 
     Basic elements are exact in statics only. In flexible_pair.toml one of them a piece puts a mode of the shafts 0.5 % off, and
     the largest contact force near its resonance 0.9 %.

@@ -7,7 +7,7 @@ from rotorgear.system.system import System
 
 
 def pieces(system: System) -> tuple[Piece, ...]:
-    """Say how each piece of shaft was cut."""
+    """Say how each shaft segment was cut."""
     found = []
     for shaft, elements in system.nodes.elements.items():
         for number in sorted({element.piece for element in elements}):

@@ -78,6 +78,6 @@ def _described(system: System, group: ElementGroup, element: int, local: int) ->
     section = system.model.shafts[name].sections[own.section]
     whole = abs(own.length * count - section.length) <= 1e-9 * section.length
     z = system.nodes.z[own.left]
-    what = f"section {number} of shaft {name}" if whole else f"a piece of shaft {name} at z = {millimetres(z)}"
+    what = f"section {number} of shaft {name}" if whole else f"a segment of shaft {name} at z = {millimetres(z)}"
     cut = "" if count == 1 else f" in {count} elements"
     return f"{what} is {millimetres(own.length * count)} long{cut}"

@@ -40,7 +40,7 @@ def convergence_study(
         model: the model.
         speed: as for `modal`.
         modes: how many modes are compared (rigid ones count, but have no error).
-        elements: numbers of basic elements in each piece of shaft.
+        elements: numbers of basic elements in each shaft segment.
         accuracies: relative accuracies to refine to.
         reference: natural frequencies in Hz of the modes that are not rigid; None for the model's own finest (accuracy 1e-10).
         repeat: runs of each rung; the median time counts.
@@ -73,7 +73,7 @@ def convergence_study(
             # error ~ h^p with the element length h = L / n: p = log(e_1 / e_2) / log(n_2 / n_1)
             order = float(np.log(coarser.error / error) / np.log(setting / coarser.setting))
         words_of = {
-            "elements": f"{setting:g} basic element{'s'[: setting != 1]} a piece",
+            "elements": f"{setting:g} basic element{'s'[: setting != 1]} per segment",
             "accuracy": f"accuracy {setting:g}",
         }
         rungs.append(

@@ -22,7 +22,7 @@ from rotorgear.system.strain_forms import StrainForms
 _CLEAN = 1e-10
 # The same for a large group, whose modal coordinates cost more: strains then correct the eigenvalues.
 _CLEAN_LARGE = 1e-8
-# Rounding above which a first round takes a mode as a rigid motion.
+# Rounding above which a first round takes a mode as a rigid-body motion.
 _AS_RIGID = 1e-6
 # Dofs up to which all undamped modes are cheap: the basis is then complete, and no approximation.
 _ALL_UP_TO = 120
@@ -30,7 +30,7 @@ _ALL_UP_TO = 120
 _POLISH = 1e-14
 # A refinement that moves s by more than this share of it has gone to another mode.
 _NEAR = 1e-6
-# A strain, or a gyroscopic term, of a rigid motion this much smaller than its parts is none.
+# A strain, or a gyroscopic term, of a rigid-body motion this much smaller than its parts is none.
 _ZERO = 1e-9
 
 
@@ -107,7 +107,7 @@ def _enriched(
 def _in_coordinates(
     problem: DampedProblem, rigid: np.ndarray, basis: np.ndarray, count: int | None, below: float | None
 ) -> DampedModes:
-    """The damped modes in the coordinates u of q = [R X N] u: rigid motions R, elastic modes X, massless dofs N."""
+    """The damped modes in the coordinates u of q = [R X N] u: rigid-body motions R, elastic modes X, massless dofs N."""
     assert problem.strain is not None
     S = problem.strain
     M = problem.M
@@ -143,7 +143,7 @@ def _in_coordinates(
 
 
 def _independent(M: sp.csc_array, rigid: np.ndarray, basis: np.ndarray) -> np.ndarray:
-    """Columns (n, k) that span the basis beside the rigid motions, M-orthonormal, without directions that are there already.
+    """Columns (n, k) that span the basis beside the rigid-body motions, M-orthonormal, without directions that are there already.
 
     One column after the other: a soft mode that was turned among stiff ones would lose the accuracy of its small strains.
     """
@@ -169,7 +169,7 @@ def _independent(M: sp.csc_array, rigid: np.ndarray, basis: np.ndarray) -> np.nd
 
 
 def _by_damping(forms: StrainForms, rigid: np.ndarray) -> np.ndarray:
-    """The rigid motions turned so that those which hardly move a strong damper stand apart from those which do."""
+    """The rigid-body motions turned so that those which hardly move a strong damper stand apart from those which do."""
     V = sp.coo_array(forms.viscosity)
     if not rigid.shape[1] or not V.nnz or np.any(V.row != V.col):
         return rigid
@@ -181,7 +181,7 @@ def _by_damping(forms: StrainForms, rigid: np.ndarray) -> np.ndarray:
 def _without_rounding(forms: StrainForms, whole: np.ndarray, rigid: int) -> np.ndarray:
     """Strains of the basis; what rounding leaves in the first `rigid` columns is zero.
 
-    A rigid motion has no strain that meets a stiffness by itself. Of other strains, those of dampers or of full 6 x 6 matrices,
+    A rigid-body motion alone has no strain that meets a stiffness. Of other strains, those of dampers or of full 6 x 6 matrices,
     the ones far below their parts are taken for rounding.
     """
     strained = forms.strain @ whole

@@ -1,4 +1,4 @@
-"""Refines the pieces of shafts until every requested frequency is estimated to be within the wanted accuracy.
+"""Refines the shaft segmentss until every requested frequency is estimated to be within the wanted accuracy.
 
 Order first (the error falls exponentially), then twice the elements. Only pieces that bring a share of the error are refined:
 a piece that no requested mode bends stays as it is.

@@ -1,4 +1,4 @@
-"""A basis of the rigid motions that a person can read: motions and shafts that do not move each other stand apart."""
+"""A basis of the rigid-body motions that a person can read: motions and shafts that do not move each other stand apart."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rotorgear.system.system import System
 
 
 def sorted_rigid(system: System, R: np.ndarray) -> np.ndarray:
-    """Turn a basis of the rigid motions so that motions and shafts which do not move each other stand apart."""
+    """Turn a basis of the rigid-body motions so that motions and shafts which do not move each other stand apart."""
     q = system.dofs.expand(R)[: 6 * len(system.nodes)].reshape(len(system.nodes), 6, -1)
     shafts = {name: k for k, name in enumerate(system.model.shafts)}
     weight = np.array([1.0 + shafts[name] for name in system.nodes.shaft])

@@ -56,7 +56,7 @@ def frf(
         points: number of frequencies between them, evenly spaced.
         speed: of the input shaft in rad/s or with its unit; None: standstill.
         modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
-        elements: so many basic elements in each piece of shaft. None: refined as for modes up to the highest frequency.
+        elements: basic elements in each shaft segment. None: refined as for modes up to the highest frequency.
         accuracy: relative error of the frequencies of these modes; 1e-3 where neither this nor `elements` is given.
         progress: callable that is told fraction and step.
 

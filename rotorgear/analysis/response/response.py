@@ -61,7 +61,7 @@ def response(
         fmax: orders above this frequency in Hz at the highest speed are left out; None: none is.
         modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
         method: "modal", "direct" or "auto".
-        elements: so many basic elements in each piece of shaft. None: refined as for modes up to the highest frequency.
+        elements: basic elements in each shaft segment. None: refined as for modes up to the highest frequency.
         accuracy: relative error of the frequencies of these modes; 1e-3 where neither this nor `elements` is given.
         shape_speed: where the deflection shapes are kept; None: the operating speed, else the speed of the largest force.
         progress: callable that is told fraction and step.

@@ -39,9 +39,9 @@ def static(
 
     Args:
         model: a model with torques, gravity or index errors.
-        speed: of the input shaft in rad/s or with its unit; it chooses the driving flanks and the values of bearings with
+        speed: of the input shaft in rad/s or with its unit; it chooses the working flanks and the values of bearings with
             tables. None: the operating speed.
-        elements: basic elements in each piece of shaft; 4 where it is not given. They are exact in statics.
+        elements: basic elements in each shaft segment; 4 where it is not given. They are exact in statics.
         progress: callable that is told fraction and step.
 
     Raises:

@@ -1,12 +1,13 @@
-"""What kind of motion a Poincare section shows, and a largest Lyapunov exponent with its statistical uncertainty.
+"""Response type from a Poincare section, and the Lyapunov exponents with their statistical uncertainty.
 
-With x the displacements of the contacts at the end of each common period T, p their peak to peak (with or without the
-transmission error, whichever is larger) and L the exponent per period of the fastest mesh, the first of these that holds:
+With x the displacements of the contacts at the end of each least common period T, p their peak-to-peak value over time (with or
+without the transmission error, whichever is larger) and L the largest exponent per period of the fastest mesh, the first
+criterion that holds decides:
 
     chaotic         L > chaos (0.02), L > 2 standard errors, and x does not grow from one half of the section to the other
-    kT              all x that lie k T apart stay within tolerance (0.02) of max(p, 0.05 um), for the least k up to 32;
-                    contacts that spread wider than that as a whole, within half of their spread at most
-    chaotic         as above, but L > 1 standard error: what does not repeat needs less evidence
+    kT              any two x that are k T apart differ by at most tolerance (0.02) of max(p, 0.05 um), for the least k up to 32;
+                    where the range of all x is larger than that, by at most half that range
+    chaotic         as above with L > 1 standard error: a response that does not repeat needs less evidence
     quasi-periodic  |L| <= chaos, and the two halves of the section cover the same range to 10 %
     not settled     anything else
 """
@@ -22,7 +23,8 @@ TOLERANCE = 0.02
 CHAOS = 0.02
 _SMALLEST = 0.05e-6  # m, peak to peak
 _SAME_RANGE = 0.1
-# Of the spread of all x: scatter is no wider among every k-th of few than among all of them, periods are.
+# Largest range of x that are k periods apart, relative to the range of all x. For a period-k response that ratio is small. For
+# scattered x, picking every k-th of a few samples hardly narrows the range, so a scattered response is not taken for periodic.
 _APART = 0.5
 _GROWTH = 5.0
 # Batches of consecutive periods whose means are taken as independent.
@@ -36,7 +38,7 @@ FAILED = "failed"
 
 @dataclass(frozen=True)
 class Motion:
-    """Its kind, and its period in common periods; 0 where it has none."""
+    """The response type, and its period in least common periods; 0 where it has none."""
 
     kind: str
     period: int
@@ -62,12 +64,12 @@ def classify(
     tolerance: float = TOLERANCE,
     chaos: float = CHAOS,
 ) -> Motion:
-    """Return the kind of motion.
+    """Return the response type.
 
     Args:
-        x: (p, c) displacements of the contacts at the section; extent: (c,) their peak to peak p over time.
+        x: (p, c) displacements of the contacts at the section; extent: (c,) their peak-to-peak value over time.
         exponent, error: largest Lyapunov exponent per period of the fastest mesh; None where it is not known.
-        tolerance, chaos: of the criterion above.
+        tolerance, chaos: the bounds in the criteria above.
     """
     if exponent is not None and exponent > max(chaos, 2.0 * error):
         return Motion(NOT_SETTLED if _grows(x) else CHAOTIC, 0)
@@ -84,7 +86,7 @@ def classify(
 
 
 def period_of(x: np.ndarray, extent: np.ndarray, tolerance: float = TOLERANCE) -> int:
-    """Least number of common periods after which x (p, c) repeats; 0 where it does not."""
+    """Least number k of least common periods after which x (p, c) repeats; 0 where it does not."""
     allowed = tolerance * np.maximum(extent, _SMALLEST)
     spread = np.ptp(x, axis=0)
     allowed = np.where(spread > allowed, np.minimum(allowed, _APART * spread), allowed)
@@ -95,12 +97,12 @@ def period_of(x: np.ndarray, extent: np.ndarray, tolerance: float = TOLERANCE) -
 
 
 def period_in(kind: str) -> int:
-    """Common periods after which a kind of motion repeats; 1 where it does not."""
+    """Least common periods after which a response type repeats; 1 where it does not."""
     return int(kind[:-1]) if kind.endswith("T") else 1
 
 
 def _grows(x: np.ndarray) -> bool:
-    """Whether the second half of a section is far wider than the first: an unstable motion, which is no chaos."""
+    """Whether the range of the second half of a section is far larger than that of the first: unstable, not chaotic."""
     half = len(x) // 2
     return bool(np.any(np.ptp(x[half:], axis=0) > _GROWTH * np.ptp(x[:half], axis=0)))
 

@@ -35,7 +35,7 @@ def sweep_convergence_study(
 
     Args:
         model: a small model. speed: in rad/s or as a text; the operating speed where not given.
-        steps: in a period of the fastest mesh. counts: common periods that count. starts: states, at least 2.
+        steps: in a period of the fastest mesh. counts: least common periods that count. starts: states, at least 2.
 
     Raises:
         AnalysisError: fewer than two states, or a model that sweeps don't take.

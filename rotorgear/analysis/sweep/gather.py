@@ -118,7 +118,7 @@ def gathered(
         chaos=request.chaos,
         dofs=max(q.system.n for q in sound),
         seconds=laps,
-        method="Runge-Kutta of order 4 in lanes of 32 points",
+        method="Runge-Kutta of order 4 in SIMD batches of 32 points",
         warnings=notes(axes, points, failed, motion, request.settle, orbits) + _reduction(reduction, request),
         portraits=None,
         reduction=reduction,

@@ -1,4 +1,4 @@
-"""Warnings of a sweep: what failed or had not settled, and parameters that change nothing."""
+"""Warnings of a sweep: points that failed or had not settled, parameters without effect, slow transients."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rotorgear.analysis.sweep.point import Point
 from rotorgear.model.model import Model
 from rotorgear.solvers.lanes.lanes import Orbit
 
-# Logarithm by which the start of a run must have decayed: 5 % of it.
+# Decay exponent over the periods discarded: exp(-3) = 5 % of the initial deviation is left.
 _FORGOTTEN = 3.0
 
 
@@ -34,22 +34,20 @@ def notes(
         found.append("the torques do not balance at some points: the shafts drift off the prescribed rotation there")
     if any(q.rolling for q in points if q):
         found.append(
-            "rolling elements pass beside the meshes and never repeat with them: a motion that they drive shows as quasi-periodic"
+            "bearing cages never repeat with the teeth: a response that rolling elements drive shows as quasi-periodic"
         )
     unsettled = sum(kind == "not settled" for kind in motion)
     if unsettled:
         found.append(f"{unsettled} of {len(motion)} runs had not settled: ask for more periods (--discard, --sample)")
-    found += [
-        f"{axis.address} changes nothing in this model: its points are all the same" for axis in idle(axes, points)
-    ]
+    found += [f"{axis.address} has no effect on this model: all its points are the same" for axis in idle(axes, points)]
     return (*found, *_slow(motion, settle, orbits, len(motion) // max(1, len(points))))
 
 
 def coarse_shafts(model: Model, elements: int | None) -> tuple[str, ...]:
-    """A sentence where shafts are cut as little as they can be because nothing else was asked for."""
+    """A warning where shafts have the default discretisation, whose error a sweep does not estimate."""
     if elements is not None or not any(shaft.sections for shaft in model.shafts.values()):
         return ()
-    return ("the shafts have one element of second order in each piece: --elements 8, say, shows what that changes",)
+    return ("each shaft segment has one element of second order: compare with --elements 8, say",)
 
 
 def idle(axes: Sequence[Axis], points: Sequence[Point | None]) -> list[Axis]:
@@ -88,7 +86,7 @@ def _digest(point: Point) -> bytes:
 
 
 def _slow(motion: Sequence[str], settle: int, orbits: dict[tuple[int, int], Orbit], runs: int) -> tuple[str, ...]:
-    """A warning where what a run started with is still there when it counts, and may be why it repeats after several periods."""
+    """A warning where the transient has not decayed when sampling begins, which may be why a response repeats after several T."""
     several = {
         key: o for key, o in orbits.items() if period_in(motion[key[0] * runs + key[1]]) > 1 and o.growth.shape[1]
     }
@@ -96,6 +94,6 @@ def _slow(motion: Sequence[str], settle: int, orbits: dict[tuple[int, int], Orbi
     if not slow:
         return ()
     return (
-        f"{slow} of {len(several)} runs with 2T or longer forget their start more slowly than the {settle} periods that settled: "
+        f"{slow} of {len(several)} runs with 2T or longer have a transient that outlasts the {settle} periods discarded: "
         "their period may change with more --discard",
     )

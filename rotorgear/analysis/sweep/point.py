@@ -93,7 +93,7 @@ class PointMaker:
 
     Args:
         wanted: of reductions, which all models get where it asks for modes, and else those that are large or have dofs without
-            inertia. elements: in each piece of shaft.
+            inertia. elements: in each shaft segment.
     """
 
     def __init__(self, wanted: Wanted | None = None, elements: int | None = None) -> None:

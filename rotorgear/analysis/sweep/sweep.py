@@ -57,7 +57,7 @@ def sweep(
     stream: Stream | None = None,
     progress: Progress = silent,
 ) -> SweepResult:
-    """Return Poincare sections, Lyapunov exponents, kinds of motion and indicators over one or two parameters of a model.
+    """Return Poincare sections, Lyapunov exponents, response types and indicators over one or two parameters of a model.
 
     Args:
         model: a model with meshes that have teeth. Beyond 80 degrees of freedom it is reduced (analysis/sweep/reduce.py).
@@ -71,11 +71,11 @@ def sweep(
         exponents: how many Lyapunov exponents are found; 0 for none.
         steps: of the Runge-Kutta method of order 4 in a period of the fastest mesh; where not given, the highest frequency of the
             model decides.
-        tolerance, chaos: of the criterion that tells the kinds of motion apart (analysis/sweep/classify.py).
+        tolerance, chaos: of the criterion that tells the response types apart (analysis/sweep/classify.py).
         seed: of the random states. throw: their size; at 1 contacts are thrown by up to some backlashes.
         modes: reduce the model to so many elastic modes and the static shapes of contacts and loads, whatever the error.
         reduction_error: largest relative error of the receptances at the contacts that a reduction may make.
-        elements: basic elements in each piece of shaft; one of second order where not given, as in `transient`.
+        elements: basic elements in each shaft segment; one of second order where not given, as in `transient`.
         portraits: how many points, spread over the sweep, keep their trajectory over some periods more; or the values of the
             parameters, in their units, next to which points do: 3250.0 or "3250 rpm", with two parameters (3250.0, 20.0).
         workers: threads; all cores where not given. The result does not depend on it.
@@ -213,7 +213,7 @@ def _run(
 
 
 def _most(point: Point) -> int:
-    """All exponents that a system has beside its rigid motions."""
+    """All exponents that a system has beside its rigid-body motions."""
     return 2 * (point.system.n - len(point.system.rigid))
 
 

@@ -22,7 +22,7 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
     open_ended = [name for name, mesh in meshes.items() if mesh.backlash is None]
     notes = []
     if open_ended:
-        notes.append(f"loss of contact in {', '.join(open_ended)}: no backlash is given, so their teeth never part")
+        notes.append(f"contact loss in {', '.join(open_ended)}: no backlash is given, so their teeth never part")
     still = [name for name, mesh in meshes.items() if not mesh.transmission_error and not mesh.stiffness_variation]
     if still:
         notes.append(f"excitation by {', '.join(still)}: neither transmission error nor stiffness variation is given")
@@ -52,7 +52,7 @@ def transient_warnings(
         notes.append("there is no error estimate: the run with twice the step, or with more modes, did not end well")
     if result.energy.share > ENERGY_BOUND:
         notes.append(
-            f"integration made or lost {100.0 * result.energy.share:.2g} % of the energy; "
+            f"energy error: the integration added or removed {100.0 * result.energy.share:.2g} % of the energy; "
             "take a smaller step or record more often"
         )
     if not local.local.rotation.is_constant and _held(result.model):

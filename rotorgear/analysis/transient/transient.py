@@ -67,7 +67,7 @@ def transient(
         modal_damping: damping ratio added to every elastic mode, in place of the one in the model; exponential method only.
         rho_inf: for hht and generalised-alpha: what remains of the highest frequencies after a step, 0 to 1.
         beta, gamma: for newmark; 1/4 and 1/2 where not given.
-        elements: basic elements in each piece of shaft; one of second order where not given.
+        elements: basic elements in each shaft segment; one of second order where not given.
         error_estimate: False leaves the comparison with twice the step out.
         frames: so many records at the end keep the motion of all nodes, for an animation.
         stream: keeps chunks while the run goes on (`rotorgear.stream`), and starts an interrupted run again.

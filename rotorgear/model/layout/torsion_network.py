@@ -132,7 +132,7 @@ def _held(network: _Network, train: Train) -> list[int]:
 def _stretch(
     model: Tables, shaft: str, left: float, right: float
 ) -> tuple[list[float], list[tuple[float, float, float, float]], list[float]]:
-    """Lengths, end diameters and shear moduli of the flexible pieces of a shaft between two places."""
+    """Lengths, end diameters and shear moduli of the flexible segments of a shaft between two places."""
     lengths = []
     diameters = []
     moduli = []

@@ -60,7 +60,7 @@ LIBRARY = {
 
 
 class Section(Part):
-    """A piece of a shaft between two values of z, cylindrical or conical."""
+    """Part of a shaft between two values of z, cylindrical or conical."""
 
     length: PositiveLength = Field(description="length along z")
     outer_diameter: PositiveLength = Field(description="outer diameter (at the left end of a cone)")

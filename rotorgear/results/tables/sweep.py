@@ -45,7 +45,7 @@ def _title(result: SweepResult) -> str:
 
 
 def _route(result: SweepResult, run: int) -> str:
-    """Kinds of motion along the parameter: "1T 4600 to 4900, chaotic from 4950"."""
+    """Response types along the parameter: "1T 4600 to 4900, chaotic from 4950"."""
 
     def at(p: int) -> str:
         return f"{result.values[p, 0]:.6g}"
@@ -62,8 +62,8 @@ def _points(result: SweepResult, rows: range) -> Any:
     several = len(result.run) > 1
     names = [f"{a.rpartition('.')[2]} {u}".strip() for a, u in zip(result.address, result.unit, strict=True)]
     names += ["start"] if several else []
-    names += ["motion"] + (["LE", "+-"] if result.lyapunov.shape[2] else [])
-    out = table(*names, "p-p um", "K_dyn", "apart %", "back %", left=0)
+    names += ["response"] + (["LE", "+-"] if result.lyapunov.shape[2] else [])
+    out = table(*names, "p-p um", "K_dyn", "loss %", "coast %", left=0)
     for row in rows:
         p, r = divmod(row, len(result.run))
         cells = [f"{x:.6g}" for x in result.values[p]] + ([result.run[r]] if several else [])
@@ -90,7 +90,7 @@ def _portraits(result: SweepResult) -> list[Any]:
     several = len(own.run) > 1
     names = [f"{a.rpartition('.')[2]} {u}".strip() for a, u in zip(result.address, result.unit, strict=True)]
     most = _LINES - len(names) - several
-    out = table(*names, *(["start"] if several else []), "motion", *["f: um"] * most, left=0)
+    out = table(*names, *(["start"] if several else []), "response", *["f: um"] * most, left=0)
     for k, p in enumerate(own.point.tolist()):
         for j, r in enumerate(own.run.tolist()):
             worst = int(np.nanargmax(np.nan_to_num(result.peak_to_peak[p, r])))
@@ -111,7 +111,7 @@ def _number(value: float, form: str) -> str:
 
 
 def _notes(result: SweepResult) -> list[str]:
-    what = "p-p, K_dyn, apart and back: of the worst contact"
+    what = "p-p, K_dyn, contact loss and coast flank: of the worst contact"
     if result.lyapunov.shape[2]:
         what = f"LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; {what}"
     sound = result.steps[result.steps > 0]
@@ -121,9 +121,10 @@ def _notes(result: SweepResult) -> list[str]:
     lines = [
         "",
         what,
-        f"T is {result.period_words}; {result.settle} settled, {result.count} counted; repeats within "
+        f"T is {result.period_words}; {result.settle} periods discarded, {result.count} sampled; repeats within "
         f"{100.0 * result.tolerance:g} % of the peak to peak; chaotic: LE > {result.chaos:g}",
-        f"{result.dofs} dofs, {steps} steps a mesh period, {result.seconds['total']:.2f} s; {result.method}",
+        f"{result.dofs} dofs, {steps} steps a mesh period, {result.seconds['total']:.2f} s",
+        result.method,
     ]
     lines += [result.reduction.sentence] if result.reduction else []
     return lines + [f"Warning: {note}" for note in result.warnings]

@@ -46,7 +46,7 @@ def _table(title: str = "") -> Any:
 def _contacts(result: TransientResult) -> Any:
     table = _table()
     table.add_column("contact", overflow="fold")
-    for name in ("static N", "mean", "rms", "largest", "K_dyn", "DTE um", "apart %", "back %", "losses"):
+    for name in ("static N", "mean", "rms", "largest", "K_dyn", "DTE um", "loss %", "coast %", "losses"):
         table.add_column(name, justify="right")
     for row in result.to_dict()["contacts"]:
         table.add_row(
@@ -100,7 +100,7 @@ def _notes(result: TransientResult) -> list[str]:
             f"error: statistics within {result.error_estimate:.1e}, from a run of twice the step"
             + (", and one of more modes" if "modes with" in result.method else "")
         )
-    lines.append(f"energy: integration made or lost {result.energy.share:.1e} of the largest term")
+    lines.append(f"energy error: {result.energy.share:.1e} of the largest term")
     lines += [f"left out: {note}" for note in result.left_out]
     lines += [f"Warning: {note}" for note in result.warnings]
     return lines

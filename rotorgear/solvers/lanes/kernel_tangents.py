@@ -1,4 +1,4 @@
-"""Compiled: tangents of the lanes of kernel_lanes.py, freed of rigid motions and made orthonormal once in a period.
+"""Compiled: tangents of the lanes of kernel_lanes.py, freed of rigid-body motions and made orthonormal once in a period.
 
 Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15 (1980) 9.
 """
@@ -35,7 +35,7 @@ def weigh(root, tangents, weighed, at):
 
 @compiled(fast=True)
 def orthonormal(tangents, weighed, root, rigid, growth):
-    """Free tangents (t, 2 n, w) of rigid motions (r, n, w), make them orthonormal, add the logarithms of their sizes to growth.
+    """Free tangents (t, 2 n, w) of rigid-body motions (r, n, w), orthonormalise them, add the logarithms of their size to growth.
 
     Sizes are energies, which vibrations in a linear system keep: slow motions would seem to grow in most other norms.
     """

@@ -1,9 +1,8 @@
 """Reference integrator for small models: explicit Runge-Kutta of order 8 with its own step control (DOP853).
 
 Its steps are far smaller than those of the others, because they follow the highest frequency of the structure; it
-shares nothing with them but
-the force laws, and so it checks them. Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I (Springer
-1993), II.5.
+shares only the force laws with them, and so it checks them. Hairer, Norsett and Wanner, Solving Ordinary Differential
+Equations I (Springer 1993), II.5.
 """
 
 from __future__ import annotations

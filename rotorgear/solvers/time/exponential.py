@@ -1,8 +1,7 @@
 """The exponential integrator: exact for the linear part in complex modes, second order in the local forces, speed constant.
 
 The local forces are split into their linear reference k d + c v, which goes into the modes, and the rest u, which is
-linear within a
-step and found by Newton's method on m unknowns. Hochbruck and Ostermann, Acta Numerica 19 (2010) 209.
+linear within a step and found by Newton's method on m unknowns. Hochbruck and Ostermann, Acta Numerica 19 (2010) 209.
 """
 
 from __future__ import annotations

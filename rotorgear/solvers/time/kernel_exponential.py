@@ -1,8 +1,8 @@
 """Compiled: the loop of the exponential integrator in complex modes, with forces linear within a step.
 
-With z' = s z + w^T (B u + f) and u linear from u0 to u1, the exact step is z1 = e z0 + Q0 u0 + Q1 u1 + g. In y = z -
-Q1 u it reads
-y1 = e y + (e Q1 + Q0) u0 + g, so that one pass over the modes serves the step; d and v at its end are C y1 + A u1.
+With z' = s z + w^T (B u + f) and u linear from u0 to u1, the exact step is z1 = e z0 + Q0 u0 + Q1 u1 + g. In
+y = z - Q1 u it reads y1 = e y + (e Q1 + Q0) u0 + g, so that one pass over the modes serves the step; d and v at its end are
+C y1 + A u1.
 Motions without stiffness and damping follow r1 = r + h r' + h^2 (u0/3 + u1/6), r1' = r' + h (u0 + u1)/2.
 Hochbruck and Ostermann, Acta Numerica 19 (2010) 209.
 """

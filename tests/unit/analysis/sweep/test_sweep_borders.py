@@ -62,10 +62,10 @@ def test_runs_that_still_remember_their_start_are_warned_about() -> None:
     over = {"loads.lp.torque": "15.1 kN m,15.4 kN m"}
     early = rg.sweep(marine, over, discard=400, steps=40)
     assert early.motion != ("2T", "2T")
-    assert any("forget their start" in note for note in early.warnings)
+    assert any("have a transient that outlasts" in note for note in early.warnings)
     late = rg.sweep(marine, over, discard=20000, steps=40)
     assert late.motion == ("2T", "2T")
-    assert not any("forget their start" in note for note in late.warnings)
+    assert not any("have a transient that outlasts" in note for note in late.warnings)
 
 
 def test_scatter_is_no_period() -> None:

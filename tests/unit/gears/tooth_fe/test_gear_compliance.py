@@ -81,7 +81,7 @@ def test_all_teeth_loaded_alike_twist_a_ring_as_the_closed_form_says() -> None:
 def test_the_condensed_pitch_is_symmetric_and_positive(space: bool) -> None:
     stiffness = sector_of(key_of(space=space)).stiffness
     assert np.array_equal(stiffness, stiffness.T)
-    assert np.linalg.eigvalsh(stiffness)[0] > 0.0  # the held inner circle leaves no rigid motion
+    assert np.linalg.eigvalsh(stiffness)[0] > 0.0  # the held inner circle leaves no rigid-body motion
 
 
 def test_the_unit_of_a_gear_does_not_matter() -> None:

@@ -174,7 +174,7 @@ def test_rigid_copies_count_once_each_in_the_sparse_solver():
 
 def test_a_rigid_motion_that_was_not_given_is_refused():
     M, K, _ = bar(20)
-    with pytest.raises(AnalysisError, match="rigid motion"):
+    with pytest.raises(AnalysisError, match="rigid-body motion"):
         damped_modes(M, 0.01 * K, K, count=3)
 
 

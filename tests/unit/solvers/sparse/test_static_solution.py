@@ -69,7 +69,7 @@ def test_a_load_that_pushes_a_free_body_is_refused():
 
 def test_a_rigid_motion_that_was_not_given_is_refused():
     M, K, _ = bar(10)
-    with pytest.raises(AnalysisError, match="rigid motion"):
+    with pytest.raises(AnalysisError, match="rigid-body motion"):
         static_solution(K, M, np.ones(10), None)
 
 
