@@ -11,6 +11,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.forces.law import ForceLaw
+from rotorgear.forces.mesh_friction import MeshFriction
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.local import local_model
 from rotorgear.system.system import System
@@ -96,7 +97,7 @@ def test_friction_by_a_lubricant_is_that_of_speeds_and_loads_computed_by_hand(ch
         math.sqrt((r + 0.004) ** 2 - (r * math.cos(alpha)) ** 2) - r * math.sin(alpha) for r in (0.048, 0.072)
     )
     start, end = (-leave, reach) if changes else (-reach, leave)
-    for angle in (0.0, 0.02, 0.05):
+    for angle in np.linspace(0.0, 0.26, 27):
         phase = law.contact.order * angle + law.contact.phase
         there = [xi for n in range(-4, 5) if start <= (xi := (phase / (2.0 * math.pi) + n) * pitch) <= end]
         assert 1 <= len(there) <= 2
@@ -113,6 +114,23 @@ def test_friction_by_a_lubricant_is_that_of_speeds_and_loads_computed_by_hand(ch
         assert abs(found.force[2]) == pytest.approx(moment, rel=1e-6)
         power = sum(mu * normal / len(there) * abs(xi) * (pinion + wheel) for mu, xi in zip(mus, there, strict=True))
         assert found.dissipated == pytest.approx(power, rel=1e-6)
+
+
+@pytest.mark.parametrize("changes", [{}, BACKWARDS, {"operation__speed": "-1500 rpm"}])
+def test_the_mean_rotation_slides_the_flanks_as_the_friction_law_takes_it(changes: dict[str, Any]) -> None:
+    """Both gears roll on each other: nothing closes, nothing slides at the pitch point, and xi W slides away from it."""
+    model = spur_pair(meshes__pair__transmission_error=[], meshes__pair__friction_coefficient=0.05, **changes)
+    assert model.operation is not None
+    speed = model.operation.speed or 0.0
+    system = System(model)
+    found = local_model(system, Rotation.constant(speed), speed)
+    (part,) = [part for part in found.parts if "friction" in part.label]
+    rolling = np.zeros(system.dofs.transform.shape[0])
+    for shaft in ("one", "two"):
+        rolling[[6 * node + 5 for node in system.nodes.on_shaft(shaft)]] = float(system.train.ratio(shaft)) * speed
+    assert isinstance(part.law, MeshFriction)
+    rates = part.columns.T @ rolling
+    assert rates == pytest.approx([0.0, 0.0, part.law.closing * speed], abs=1e-9)
 
 
 def test_the_cage_of_a_rolling_bearing_turns_with_its_own_shaft() -> None:
