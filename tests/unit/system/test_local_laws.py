@@ -32,7 +32,7 @@ def test_a_transient_at_rest_shares_the_load_of_the_helices_as_statics_does() ->
     model = herringbone(**errors, meshes__pair__transmission_error=[], unbalances={}, operation__torque="600 N m")
     static = rg.static(model, elements=1).mesh_force
     assert abs(static[1] / static[0] - 1.0) > 0.05  # so the error of the second helix can be seen
-    result = rg.transient(model, time=0.002, settle=0.0, steps=50, elements=1, error_estimate=False)
+    result = rg.transient(model, time=0.002, discard=0.0, steps=50, elements=1, error_estimate=False)
     assert result.mesh_force[0] == pytest.approx(static, rel=1e-6)
     assert result.mesh_force[-1] == pytest.approx(static, rel=1e-6)
 
@@ -42,7 +42,7 @@ def test_both_flanks_on_their_own_normals_leave_the_play_of_one_line_whatever_th
     for flank in ("line", "own normals"):
         model = spur_pair(
             meshes__pair__backlash="50 um",
-            meshes__pair__back_flank=flank,
+            meshes__pair__coast_flank=flank,
             meshes__pair__index_error="7 um",
             meshes__pair__transmission_error=[{"harmonic": 1, "amplitude": "3 um", "phase": "30 deg"}],
         )

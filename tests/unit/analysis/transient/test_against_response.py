@@ -33,7 +33,7 @@ def herringbone(**changes: Any) -> rg.Model:
         ],
         "meshes__pair__damping_ratio": None,
         "meshes__pair__damping": "6e3 N s/m",
-        "meshes__pair__helix_stagger": 0.25,
+        "meshes__pair__stagger": 0.25,
         "damping__rayleigh_beta": None,
         "damping__rayleigh_alpha": "60 1/s",
         "unbalances": {
@@ -64,7 +64,7 @@ def assert_agree(model: rg.Model, speed: float, orders: int, rel: float) -> None
         model,
         speed=speed,
         time=0.06,
-        settle=0.1,
+        discard=0.1,
         steps=100,
         records=25,
         method="newmark",
