@@ -11,6 +11,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.forces.law import ForceLaw
+from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.mesh_friction import MeshFriction
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.local import local_model
@@ -167,3 +168,34 @@ def test_a_propeller_on_the_second_shaft_follows_the_speed_of_that_shaft(sense: 
     assert np.sign(-full) == -np.sign(own)  # it takes power
     faster = law.evaluate([0.0], [0.1 * own], speed=sense * 1500.0 * math.pi / 30.0).force[0]
     assert faster == pytest.approx(1.21 * full, rel=1e-9)
+
+
+@pytest.mark.parametrize("driver", ["one", "two"])
+@pytest.mark.parametrize("speed", [300.0, -300.0])
+def test_teeth_of_the_second_helix_are_ahead_by_the_stagger_where_the_input_turns_about_z(
+    driver: str, speed: float
+) -> None:
+    """Turned the other way, the same teeth come later. Both helices together have the stiffness that the mesh has as a whole."""
+    values = [
+        3e8 * (1.0 + 0.1 * math.sin(2.0 * math.pi * i / 12) + 0.05 * math.cos(4.0 * math.pi * i / 12))
+        for i in range(12)
+    ]
+    model = herringbone(
+        meshes__pair__stiffness=values,
+        operation__input_shaft=driver,
+        operation__output_shaft={"one": "two", "two": "one"}[driver],
+        operation__torque="300 N m",
+        operation__speed=speed,
+    )
+    first, second = (law for name, law in laws_of(model) if name.startswith("pair") and isinstance(law, MeshContact))
+    ahead = (second.phase - first.phase) / (2.0 * math.pi)
+    assert (ahead - math.copysign(0.25, speed)) % 1.0 == pytest.approx(0.0, abs=1e-9)
+    assert first.order == second.order
+    system = System(model)
+    (force, _) = system.flow.forces
+    whole = system.layout.mesh("pair").stiffness(sense=force.torque_sense)
+    for u, k in zip(whole.position, whole.normal, strict=True):
+        later = u if driver == "one" else -u
+        angle = (2.0 * math.pi * later - first.phase) / first.order
+        both = sum(law.evaluate([1e-3], angle=angle).in_displacement[0, 0] for law in (first, second))
+        assert both == pytest.approx(k, rel=1e-6)
