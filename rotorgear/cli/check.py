@@ -33,9 +33,11 @@ def check(model: ModelFile, elements: ElementsOption = None, json: JsonOption = 
 
 
 def _parts(d: ModelDescription) -> list[Any]:
+    from rotorgear.model.parts.tables import counted
+
     speed = "no speed given" if d.speed_rpm is None else f"input shaft '{d.reference_shaft}' at {d.speed_rpm:.6g} rpm"
     mass = f"total mass {d.total_mass_kg:.6g} kg; " if d.total_mass_kg else ""
-    counts = ", ".join(_counted(number, name) for name, number in d.counts.items())
+    counts = ", ".join(counted(number, name) for name, number in d.counts.items())
     parts: list[Any] = [f"[bold]{d.title or 'Model'}[/bold]", f"{speed}; {counts}", ""]
     parts.append(_shafts(d))
     if d.meshes:
@@ -49,11 +51,6 @@ def _parts(d: ModelDescription) -> list[Any]:
     parts += [f"left out: {note}" for note in d.left_out]
     parts += [f"Warning: {note}" for note in d.warnings]
     return [*parts, ""]
-
-
-def _counted(number: int, table: str) -> str:
-    words = table.replace("_", " ")
-    return f"{number} {words if number != 1 else words.removesuffix('es' if words.endswith(('meshes', 'masses')) else 's')}"
 
 
 def _table(*columns: tuple[str, str]) -> Any:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
+from html import escape
 from typing import Any
 
 from pydantic import BaseModel, Field, ValidationError
 
 from rotorgear.errors import ModelError
+from rotorgear.model.address import with_values
 from rotorgear.model.checks.check import find_problems
 from rotorgear.model.checks.repair import repaired
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mean_load import MeanLoad, torque_flow
 from rotorgear.model.parts.fields import MOTIONS, Name
 from rotorgear.model.parts.shaft import Shaft
-from rotorgear.model.parts.tables import Tables
+from rotorgear.model.parts.tables import Tables, counted
 
 SCHEMA_VERSION = 1
 
@@ -39,6 +42,39 @@ class Model(Tables):
         problems = find_problems(self.layout)
         if problems:
             raise ModelError(problems)
+
+    def with_(self, address: str | Mapping[str, Any], value: Any = None) -> Model:
+        """Return this model with another value at an address, or with several; checked like a new one.
+
+            model.with_("bearings.left.stiffness", "2e8 N/m")
+            model.with_({"shafts.rotor.sections[0].length": "80 mm", "operation.speed": "3000 rpm"})
+
+        Args:
+            address: of a value or a table, as errors write it; "*" stands for all names or places there. Or several addresses,
+                each with its value.
+            value: as in a model file: a number in SI, a text with its unit, a table or a part; None takes away what is there.
+
+        Returns:
+            A new model. Nothing that was derived from this one goes along.
+
+        Raises:
+            ModelError: an address that leads nowhere, or values that don't fit, all at once.
+        """
+        values = {address: value} if isinstance(address, str) else address
+        return Model(**with_values(self, values))
+
+    def __repr__(self) -> str:
+        return f"Model({self.title!r}: {self._counts()})"
+
+    def _repr_html_(self) -> str:
+        return f"<b>{escape(self.title) or 'Model'}</b><br>{escape(self._counts())}"
+
+    def _counts(self) -> str:
+        """How many parts of each kind there are."""
+        tables = {name: getattr(self, name) for name in type(self).model_fields}
+        return ", ".join(
+            counted(len(value), name) for name, value in tables.items() if isinstance(value, dict) and value
+        )
 
     @cached_property
     def layout(self) -> Layout:

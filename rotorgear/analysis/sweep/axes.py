@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, ModelError
+from rotorgear.model.address import Place, changed, places_of, tables_of, value_at
 from rotorgear.model.model import Model
 from rotorgear.model.parts.old_names import current_address
-from rotorgear.quantity import nearest
 
 MOST_POINTS = 100_000
 _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*\Z")
@@ -116,9 +115,9 @@ class Family:
     """A model whose parameters at some addresses change."""
 
     def __init__(self, model: Model, axes: Sequence[Axis]) -> None:
-        self._data: dict[str, Any] = json.loads(model.model_dump_json(exclude_none=True))
+        self._data = tables_of(model)
         self._axes = axes
-        self._places = [places_of(self._data, axis.address) for axis in axes]
+        self._places = [number_places(self._data, axis.address) for axis in axes]
 
     def at(self, values: Sequence[float]) -> Model:
         """Return the model at a point.
@@ -126,65 +125,25 @@ class Family:
         Raises:
             ModelError: it does not pass the checks.
         """
-        data: dict[str, Any] = json.loads(json.dumps(self._data))
-        for axis, places, value in zip(self._axes, self._places, values, strict=True):
-            for place in places:
-                owner: Any = data
-                for key in place[:-1]:
-                    owner = owner[key]
-                owner[place[-1]] = _as_before(owner, place[-1], axis.text(value))
-        return Model(**data)
+        texts = [axis.text(value) for axis, value in zip(self._axes, values, strict=True)]
+        return Model(**changed(self._data, zip(self._places, texts, strict=True)))
 
 
-def _as_before(owner: Any, key: Any, value: float | str) -> float | str:
-    """A value, as a whole number where one stands: teeth, harmonics."""
-    old = owner[key] if isinstance(owner, list) else owner.get(key)
-    whole = isinstance(old, int) and isinstance(value, float) and value.is_integer()
-    return int(value) if whole else value
-
-
-def places_of(data: dict[str, Any], address: str) -> list[tuple[str | int, ...]]:
-    """Where an address leads; a part "*" stands for all names there.
+def number_places(data: dict[str, Any], address: str) -> list[Place]:
+    """Where the address of a number leads.
 
     Raises:
-        AnalysisError: it leads nowhere, or to no number.
+        AnalysisError: it leads nowhere, or to a table.
     """
-    found: list[tuple[str | int, ...]] = [()]
-    parts = address.split(".")
-    for depth, part in enumerate(parts):
-        longer: list[tuple[str | int, ...]] = []
-        for place in found:
-            longer += [(*place, key) for key in _keys(_value(data, place), part, address, last=depth == len(parts) - 1)]
-        found = longer
-    for place in found:
-        value = _value(data, place[:-1])
-        if isinstance(value, dict) and isinstance(value.get(place[-1]), dict | list):
+    try:
+        places = places_of(data, address)
+    except ModelError as error:
+        problem = error.problems[0]
+        raise AnalysisError(
+            f"over {address}: {problem.expected}{f'; {problem.hint}' if problem.hint else ''}"
+        ) from None
+    for place in places:
+        owner = value_at(data, place[:-1])
+        if isinstance(owner, dict) and isinstance(owner.get(place[-1]), dict | list):
             raise AnalysisError(f"over {address}: it is a table, expected the address of a number")
-    if not found:
-        raise AnalysisError(f"over {address}: the model has nothing there")
-    return found
-
-
-def _value(data: Any, place: tuple[str | int, ...]) -> Any:
-    for key in place:
-        data = data[key]
-    return data
-
-
-def _keys(value: Any, part: str, address: str, *, last: bool) -> list[str | int]:
-    """Keys of a table, or places of a list, that a part of an address means."""
-    if isinstance(value, list):
-        if part == "*":
-            return list(range(len(value)))
-        if part.isdecimal() and int(part) < len(value):
-            return [int(part)]
-        raise AnalysisError(f"over {address}: '{part}' is no place in a list of {len(value)} (the first is 0)")
-    if isinstance(value, dict):
-        if part == "*":
-            return list(value)
-        if part in value or last:  # a key with its default may be missing; the checks of the model know all names
-            return [part]
-        guess = nearest(part, list(value))
-        hint = f"did you mean '{guess}'?" if guess else "there are " + (", ".join(value) or "none")
-        raise AnalysisError(f"over {address}: the model has no '{part}' there; {hint}")
-    raise AnalysisError(f"over {address}: nothing lies below a number")
+    return places

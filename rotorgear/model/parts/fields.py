@@ -32,6 +32,9 @@ from rotorgear.quantity import DIMENSIONS, LARGEST, QuantityError, parse_quantit
 MOTIONS = ("bending", "axial", "torsion")
 DOF_NAMES = ("x", "y", "z", "tilt_x", "tilt_y", "torsion")
 
+# Longest list or table that the repr of a part writes out.
+_SHORT = 3
+
 
 class Part(BaseModel):
     """Base of every part of a model: frozen, without unknown keys, without coercion of strings."""
@@ -81,6 +84,20 @@ class Part(BaseModel):
         return type(self) is type(other) and all(
             getattr(self, name) == getattr(other, name) for name in type(self).model_fields
         )
+
+    def __repr__(self) -> str:
+        """What differs from the defaults; long lists and tables by their length."""
+        texts = []
+        for name, field in type(self).model_fields.items():
+            value = getattr(self, name)
+            if isinstance(value, tuple | dict) and len(value) > _SHORT:
+                texts.append(f"{len(value)} {name}")
+            elif value != field.get_default(call_default_factory=True):
+                texts.append(f"{name}={f'{value:.6g}' if isinstance(value, float) else repr(value)}")
+        return f"{type(self).__name__}({', '.join(texts)})"
+
+    def __str__(self) -> str:
+        return repr(self)
 
     def __hash__(self) -> int:
         return hash((type(self), *(getattr(self, name) for name in type(self).model_fields)))

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.sweep.axes import Family, axis_of, axis_of_option, places_of, points_of
+from rotorgear.analysis.sweep.axes import Family, axis_of, axis_of_option, number_places, points_of
 from rotorgear.analysis.sweep.blocks import waves
 from rotorgear.analysis.sweep.classify import classify, exponents, period_of
 from rotorgear.analysis.sweep.period import common_period
@@ -296,8 +296,8 @@ def test_mistakes_in_axes_are_named(text: str, words: str) -> None:
 
 def test_addresses_lead_to_numbers_with_stars_and_places() -> None:
     data = {"meshes": {"a": {"k": 1.0, "e": [{"amplitude": 2.0}]}, "b": {"k": 1.0, "e": []}}}
-    assert places_of(data, "meshes.*.k") == [("meshes", "a", "k"), ("meshes", "b", "k")]
-    assert places_of(data, "meshes.a.e.0.amplitude") == [("meshes", "a", "e", 0, "amplitude")]
+    assert number_places(data, "meshes.*.k") == [("meshes", "a", "k"), ("meshes", "b", "k")]
+    assert number_places(data, "meshes.a.e.0.amplitude") == [("meshes", "a", "e", 0, "amplitude")]
     for address, words in (
         ("mesh.a.k", "did you mean 'meshes'"),
         ("meshes.a.e.1.amplitude", "no place in a list"),
@@ -305,7 +305,7 @@ def test_addresses_lead_to_numbers_with_stars_and_places() -> None:
         ("meshes.a.k.x", "below a number"),
     ):
         with pytest.raises(AnalysisError, match=words):
-            places_of(data, address)
+            number_places(data, address)
 
 
 def test_what_sweeps_do_not_take_is_refused_in_a_sentence() -> None:

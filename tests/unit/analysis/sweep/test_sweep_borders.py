@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.sweep.axes import axis_of, places_of
+from rotorgear.analysis.sweep.axes import axis_of, number_places
 from rotorgear.analysis.sweep.classify import period_of
 from rotorgear.errors import AnalysisError, RotorgearError
 from tests.paths import MODELS
@@ -94,7 +94,7 @@ def test_too_many_points_and_odd_digits_are_refused_before_memory_ends() -> None
     with pytest.raises(AnalysisError, match="FROM:TO:COUNT"):
         axis_of("operation.speed", "1 rpm:2 rpm:²")
     with pytest.raises(AnalysisError, match="'²' is no place in a list of 3"):
-        places_of({"a": [1.0, 2.0, 3.0]}, "a.²")
+        number_places({"a": [1.0, 2.0, 3.0]}, "a.²")
 
 
 def test_a_folder_in_place_of_the_result_is_refused_before_the_sweep(tmp_path: Path) -> None:

@@ -1,0 +1,112 @@
+"""Addresses of values in a model, such as "bearings.left.stiffness" or "shafts.rotor.sections[0].length", as errors write them.
+
+A place in a list may also be written with a dot, "sections.0.length", and "*" stands for all names or places there.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from rotorgear.errors import ModelError, Problem
+from rotorgear.model.parts.old_names import current_address
+from rotorgear.model.parts.tables import Tables
+from rotorgear.quantity import nearest
+
+Place = tuple[str | int, ...]
+
+
+def tables_of(model: Tables) -> dict[str, Any]:
+    """The tables of a model as plain values in SI, as a file would hold them; what is not given is not there."""
+    data: dict[str, Any] = json.loads(model.model_dump_json(exclude_none=True))
+    return data
+
+
+def places_of(data: Mapping[str, Any], address: str) -> list[Place]:
+    """Where an address leads in the tables of a model; several places where it has a "*".
+
+    The last key may be missing: it may have its default, and the checks of the model know all names.
+
+    Raises:
+        ModelError: it leads nowhere, with the nearest valid name.
+    """
+    parts = re.sub(r"\[(.*?)\]", r".\1", address).split(".")
+    places: list[Place] = [()]
+    for depth, part in enumerate(parts):
+        last = depth == len(parts) - 1
+        places = [(*place, key) for place in places for key in _keys(value_at(data, place), part, address, last)]
+    if not places:
+        raise _nowhere(address, "the model has nothing there")
+    return places
+
+
+def value_at(data: Any, place: Place) -> Any:
+    """The value or table at a place."""
+    for key in place:
+        data = data[key]
+    return data
+
+
+def changed(data: Mapping[str, Any], changes: Iterable[tuple[list[Place], Any]]) -> dict[str, Any]:
+    """A copy of the tables of a model with other values at some places; None takes a key away."""
+    # Through text and back: the fastest deep copy of plain values.
+    copy: dict[str, Any] = json.loads(json.dumps(data))
+    for places, value in changes:
+        for place in places:
+            owner = value_at(copy, place[:-1])
+            if value is None and isinstance(owner, dict):
+                owner.pop(place[-1], None)
+            else:
+                owner[place[-1]] = _as_before(owner, place[-1], value)
+    return copy
+
+
+def with_values(model: Tables, values: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables of a model with other values at some addresses.
+
+    Raises:
+        ModelError: addresses that lead nowhere, all at once.
+    """
+    data = tables_of(model)
+    changes = []
+    problems: list[Problem] = []
+    for address, value in values.items():
+        try:
+            changes.append((places_of(data, current_address(address)), value))
+        except ModelError as error:
+            problems += error.problems
+    if problems:
+        raise ModelError(problems)
+    return changed(data, changes)
+
+
+def _as_before(owner: Any, key: Any, value: Any) -> Any:
+    """A value, as a whole number where one stands: teeth and harmonics swept in floats."""
+    old = owner[key] if isinstance(owner, list) else owner.get(key)
+    whole = isinstance(old, int) and isinstance(value, float) and value.is_integer()
+    return int(value) if whole else value
+
+
+def _keys(value: Any, part: str, address: str, last: bool) -> list[str | int]:
+    """Keys of a table, or places of a list, that a part of an address means."""
+    if isinstance(value, list):
+        if part == "*":
+            return list(range(len(value)))
+        if part.isdecimal() and int(part) < len(value):
+            return [int(part)]
+        raise _nowhere(address, f"'{part}' is no place in a list of {len(value)} (the first is 0)")
+    if isinstance(value, dict):
+        if part == "*":
+            return list(value)
+        if part in value or last:
+            return [part]
+        guess = nearest(part, list(value))
+        hint = f"did you mean '{guess}'?" if guess else "there are " + (", ".join(value) or "none")
+        raise _nowhere(address, f"the model has no '{part}' there", hint)
+    raise _nowhere(address, "nothing lies below a number or a text")
+
+
+def _nowhere(address: str, text: str, hint: str = "") -> ModelError:
+    return ModelError([Problem(address, "", text, hint)])
