@@ -53,6 +53,14 @@ from rotorgear.analysis.sweep.convergence import sweep_convergence_study as swee
 from rotorgear.analysis.teeth.convergence import mesh_convergence_study as mesh_convergence_study
 from rotorgear.solvers.lanes.flow_exponents import flow_exponents as flow_exponents
 
+# A force law of your own.
+from rotorgear.forces.law import ForceLaw as ForceLaw
+from rotorgear.forces.law import parameter as parameter
+from rotorgear.forces.registry import register_law as register_law
+from rotorgear.solvers.time.compiled import force_function as force_function
+from rotorgear.solvers.time.compiled import schedule_function as schedule_function
+from rotorgear.solvers.time.kernel_contact import no_schedule as no_schedule
+
 # A rig beside them.
 from rotorgear.analysis.rig.compare_result import compare as compare
 from rotorgear.analysis.rig.rig_file import read_rig_lines as read_rig_lines

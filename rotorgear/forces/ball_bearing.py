@@ -20,28 +20,32 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.hertz import point_contact
-from rotorgear.forces.law import ForceLaw, parameter, refuse
+from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 _COMPONENTS = 5
+TURN = 2.0 * np.pi
+# Of the parameters; and of the state.
+BALLS, CONTACT, DISTANCE, RADIAL, AXIAL, ORDER, PHASE, ARM = range(8)
+CAGE, CAGE_SPEED = range(2)
 
 
 @schedule_function
 def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     """Fill the angle of the first ball, and the speed of the cage."""
-    s[0] = p[5] * angle + p[6]
-    s[1] = p[5] * speed
+    s[CAGE] = p[ORDER] * angle + p[PHASE]
+    s[CAGE_SPEED] = p[ORDER] * speed
 
 
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Forces along x, y, z and moments about x, y of the inner ring on the balls."""
-    count = int(p[0])
-    cp = p[1]
-    distance = p[2]
-    radial = p[3]
-    axial = p[4]
-    arm = p[7]
+    count = int(p[BALLS])
+    cp = p[CONTACT]
+    distance = p[DISTANCE]
+    radial = p[RADIAL]
+    axial = p[AXIAL]
+    arm = p[ARM]
     for i in range(5):
         F[i] = 0.0
     for i in range(25):
@@ -54,7 +58,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     a = np.zeros(5)
     b = np.zeros(5)
     for j in range(count):
-        phi = s[0] + 6.283185307179586 * j / count
+        phi = s[CAGE] + TURN * j / count
         c = np.cos(phi)
         n = np.sin(phi)
         a[0] = c
@@ -84,7 +88,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         stored += 0.4 * cp * delta * delta * root
         du = -d[0] * n + d[1] * c
         dw = arm * (d[3] * c + d[4] * n)
-        turned += Q * (cosine * du + sine * dw) * s[1]
+        turned += Q * (cosine * du + sine * dw) * s[CAGE_SPEED]
     energy[0] = stored
     energy[1] = turned
     energy[2] = 0.0
@@ -97,30 +101,27 @@ class BallBearing(ForceLaw):
 
     title: ClassVar[str] = "ball bearing"
 
-    balls: int = parameter("", "number of balls Z")
-    ball_diameter: float = parameter("m", "diameter D_w of a ball")
-    pitch_diameter: float = parameter("m", "pitch diameter D_pw")
-    inner_groove: float = parameter("", "groove radius of the inner ring over D_w", 0.52)
-    outer_groove: float = parameter("", "groove radius of the outer ring over D_w", 0.53)
+    balls: int = parameter("", "number of balls Z", least=3)
+    ball_diameter: float = parameter("m", "diameter D_w of a ball", above=0.0)
+    pitch_diameter: float = parameter("m", "pitch diameter D_pw", above=0.0)
+    inner_groove: float = parameter("", "groove radius of the inner ring over D_w", 0.52, above=0.5)
+    outer_groove: float = parameter("", "groove radius of the outer ring over D_w", 0.53, above=0.5)
     clearance: float = parameter("m", "radial internal clearance s (whole play along a diameter)", 0.0)
     contact_angle: float = parameter(
         "rad", "free contact angle of an angular contact bearing; its sign is that of the axial load it takes", 0.0
     )
-    youngs_modulus: float = parameter("Pa", "of balls and rings", 210e9)
-    poisson_ratio: float = parameter("", "of balls and rings", 0.3)
+    youngs_modulus: float = parameter("Pa", "of balls and rings", 210e9, above=0.0)
+    poisson_ratio: float = parameter("", "of balls and rings", 0.3, above=-1.0, below=0.5)
     order: float = parameter("rad/rad", "turns of the cage for each turn of the reference", 0.0)
     phase: float = parameter("rad", "angle of a ball at angle 0", 0.0)
     reference: tuple[float, ...] = parameter(
         "N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * _COMPONENTS
     )
 
-    def __post_init__(self) -> None:
-        if self.balls < 3:
-            raise refuse(self, "balls", "at least 3")
-        if not 0.0 < self.ball_diameter < self.pitch_diameter:
-            raise refuse(self, "ball_diameter", "a positive diameter below the pitch diameter")
-        if min(self.inner_groove, self.outer_groove) <= 0.5:
-            raise refuse(self, "inner_groove" if self.inner_groove <= 0.5 else "outer_groove", "more than 0.5")
+    def check(self) -> None:
+        """Balls fit into the bearing, and the clearance into the grooves."""
+        if not self.ball_diameter < self.pitch_diameter:
+            raise refuse(self, "ball_diameter", "a diameter below the pitch diameter")
         if not self.clearance < 2.0 * self.distance:
             raise refuse(self, "clearance", "less than what parts the grooves")
 
@@ -172,6 +173,14 @@ class BallBearing(ForceLaw):
     def reference_stiffness(self) -> np.ndarray:
         """The linear stiffness that is given with the bearing."""
         return np.diag(self.reference)
+
+    def repeats(self) -> tuple[Repeats, ...]:
+        """The cage, which repeats with nothing else."""
+        return (Repeats(abs(self.order), common=False),) if self.order else ()
+
+    def cycle(self) -> float:
+        """From one ball to the next."""
+        return 2.0 * np.pi / (self.balls * abs(self.order)) if self.order else 0.0
 
     @classmethod
     def examples(cls) -> tuple[BallBearing, ...]:

@@ -1,7 +1,50 @@
-"""What every force law is: declared parameters, and compiled functions of relative displacements d and velocities v.
+"""What every force law is and answers: the tutorial for a law of your own.
 
-A law is a frozen dataclass; each field is declared by `parameter(unit, meaning)`. Its module names two compiled functions,
-`schedule` and `force`, as solvers/time/local_forces.py describes them.
+A law tells the force F along k relative displacements d of two places, or of one place against ground, from d, the velocities v,
+and the angle, speed and time of the reference shaft. F acts against d: a spring has F = k d. Laws know nothing of degrees of
+freedom, of solvers or of analyses; analyses know nothing of laws but what is written here, so a law of one file works in all.
+
+1. **Compiled functions.** `schedule(angle, speed, time, p, s)` fills the state s with what depends on time only, once a step.
+   `force(p, s, d, v, F, Kd, Kv, energy)` fills F (k,), its tangents dF/dd and dF/dv (k*k, row by row), and energy = [stored,
+   power that prescribed motion puts in, power dissipated, contact: 1, 0 apart, -1 on the other side].
+2. **Parameters.** The law is a frozen dataclass; each field is declared with its SI unit, its meaning and its bounds, which are
+   checked when a law is made. `p` holds the fields in the order of their declaration, unless `parameters` says otherwise.
+3. **A name.** `@rg.register_law("name")` makes it known to model files and to `registry.law_of`.
+
+A stop with a damper, whole:
+
+    from dataclasses import dataclass
+    import rotorgear as rg
+
+    STIFFNESS, DAMPING, GAP = range(3)
+
+    @rg.force_function
+    def force(p, s, d, v, F, Kd, Kv, energy):
+        depth = max(d[0] - p[GAP], 0.0)
+        F[0] = p[STIFFNESS] * depth + p[DAMPING] * v[0]
+        Kd[0] = p[STIFFNESS] if depth > 0.0 else 0.0
+        Kv[0] = p[DAMPING]
+        energy[:] = 0.5 * p[STIFFNESS] * depth**2, 0.0, p[DAMPING] * v[0] ** 2, 1.0 if depth > 0.0 else 0.0
+
+    @rg.register_law("stop")
+    @dataclass(frozen=True)
+    class Stop(rg.ForceLaw):
+        title = "stop"
+        stiffness: float = rg.parameter("N/m", "k", least=0.0)
+        damping: float = rg.parameter("N s/m", "c", 0.0, least=0.0)
+        gap: float = rg.parameter("m", "clearance", 0.0, least=0.0)
+
+        def functions(self):
+            return rg.no_schedule, force
+
+        @classmethod
+        def examples(cls):
+            return (cls(1e7, 10.0, 1e-5),)
+
+The rest of `ForceLaw` has answers that hold for any law; a law says more where it knows more: what repeats as the reference turns
+(`repeats`), about which stiffness and damping solvers may expand (`reference_stiffness`), what remains without what varies
+(`mean`), and, so that sweeps take it in whole vector registers rather than one system at a time, its `columns` and `table`.
+tests/contract/test_force_laws.py holds every law of the registry to what it says, on its `examples`.
 """
 
 from __future__ import annotations
@@ -13,11 +56,71 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.errors import AnalysisError
+from rotorgear.solvers.lanes.columns import OWN_LAW, TABLE_ROWS, Column
+from rotorgear.solvers.time.local_forces import Repeats
+
+__all__ = ["ForceLaw", "LawValue", "LawValues", "Linearised", "Parameter", "Repeats", "parameter", "refuse"]
 
 
-def parameter(unit: str, meaning: str, default: Any = MISSING) -> Any:
-    """Declare a parameter of a law: its SI unit, what it means, and its default."""
-    about = {"unit": unit, "meaning": meaning}
+@dataclass(frozen=True)
+class Parameter:
+    """What a law declares of a parameter.
+
+    Attributes:
+        unit: SI; meaning: in words; default: None where one must be given.
+        least, most: bounds that are allowed themselves; above, below: bounds that are not.
+        choices: the words allowed, of a parameter that is a word.
+    """
+
+    unit: str
+    meaning: str
+    default: Any = None
+    least: float | None = None
+    above: float | None = None
+    most: float | None = None
+    below: float | None = None
+    choices: tuple[str, ...] = ()
+
+    @property
+    def expected(self) -> str:
+        """The bounds in words, "a number of at least 0"."""
+        if self.choices:
+            return "one of " + ", ".join(self.choices)
+        words = {"of at least": self.least, "above": self.above, "of at most": self.most, "below": self.below}
+        given = [f"{word} {bound:g}" for word, bound in words.items() if bound is not None]
+        return "a finite number" + (" " if given else "") + " and ".join(given)
+
+    def allows(self, value: Any) -> bool:
+        """Whether a value lies within the bounds; of a sequence, all that it holds. Other objects are not judged."""
+        if self.choices:
+            return value in self.choices
+        if isinstance(value, tuple | list):
+            return all(self.allows(each) for each in value)
+        if not isinstance(value, int | float):
+            return not isinstance(value, str)
+        return bool(
+            np.isfinite(value)
+            and (self.least is None or value >= self.least)
+            and (self.above is None or value > self.above)
+            and (self.most is None or value <= self.most)
+            and (self.below is None or value < self.below)
+        )
+
+
+def parameter(
+    unit: str,
+    meaning: str,
+    default: Any = MISSING,
+    *,
+    least: float | None = None,
+    above: float | None = None,
+    most: float | None = None,
+    below: float | None = None,
+    choices: tuple[str, ...] = (),
+) -> Any:
+    """Declare a parameter of a law: its SI unit, what it means, its default and its bounds; see `Parameter`."""
+    known = None if default is MISSING else default
+    about = {"parameter": Parameter(unit, meaning, known, least, above, most, below, choices)}
     return field(metadata=about) if default is MISSING else field(default=default, metadata=about)
 
 
@@ -35,12 +138,48 @@ class LawValue:
 
 
 @dataclass(frozen=True)
+class LawValues:
+    """The same at r instants: force (r, k), tangents (r, k, k), energies and powers (r,), state of contact (r,)."""
+
+    force: np.ndarray
+    in_displacement: np.ndarray
+    in_velocity: np.ndarray
+    stored: np.ndarray
+    power_in: np.ndarray
+    dissipated: np.ndarray
+    contact: np.ndarray
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """Mean force (k,), stiffness dF/dd and damping dF/dv (k, k) of a law about a state."""
+
+    force: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+
+
+@dataclass(frozen=True)
 class ForceLaw(ABC):
-    """Base of all laws."""
+    """Base of all laws. What a law must answer is abstract; the rest has answers that hold for any law."""
 
     title: ClassVar[str]
     # Whether the force alone can't bring energy into the structure while nothing prescribed moves.
     passive: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        """Hold all parameters to their declared bounds, then to what the law itself checks.
+
+        Raises:
+            AnalysisError: a parameter is out of its bounds.
+        """
+        for name, about in self.declared().items():
+            if not about.allows(getattr(self, name)):
+                raise refuse(self, name, about.expected)
+        self.check()
+
+    def check(self) -> None:  # noqa: B027  most laws have nothing to check
+        """Refuse parameters that do not go together, by `raise refuse(...)`."""
 
     @property
     def components(self) -> int:
@@ -52,29 +191,93 @@ class ForceLaw(ABC):
         """Whether force or energy depend on the velocities v."""
         return True
 
+    # The compiled side.
+
     @abstractmethod
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
 
-    @abstractmethod
     def parameters(self) -> np.ndarray:
-        """Return the parameters as the compiled functions read them."""
+        """Return p as the compiled functions read it: the fields in the order of their declaration."""
+        return np.array([getattr(self, name) for name in self.declared()], dtype=float)
 
     def state_size(self) -> int:
-        """Length of what the schedule fills."""
+        """Length of the state s that the schedule fills."""
         return 0
 
+    # About which state solvers may expand.
+
     def reference_stiffness(self) -> np.ndarray:
-        """Linear stiffness (k, k) about which a solver may expand."""
+        """Linear stiffness (k, k) about which a solver may expand; nothing of the result depends on it."""
         return np.zeros((self.components, self.components))
 
     def reference_damping(self) -> np.ndarray:
-        """Linear damping (k, k) about which a solver may expand."""
+        """Linear damping (k, k) about which a solver may expand; nothing of the result depends on it."""
         return np.zeros((self.components, self.components))
+
+    def closed_stiffness(self) -> np.ndarray:
+        """Mean stiffness (k, k) with all contacts closed: the measure of compliances at this place."""
+        return self.reference_stiffness()
+
+    def linearised(self, d: Any = 0.0, v: Any = 0.0, *, speed: float = 0.0) -> Linearised:
+        """Mean force, stiffness and damping about displacements d and velocities v (k,), as linear analyses take them.
+
+        What varies in time is left out (`mean`); rolling elements and the like are averaged over a `cycle`, because a linear
+        analysis may not depend on where one of them happens to stand.
+        """
+        still = self.mean()
+        k = self.components
+        angles = still.cycle() * np.arange(_CYCLE_POINTS) / _CYCLE_POINTS if still.cycle() else np.zeros(1)
+        d, v = (np.broadcast_to(np.asarray(x, float), (angles.size, k)) for x in (d, v))
+        values = still.evaluate_many(d, v, angle=angles, speed=speed)
+        return Linearised(
+            values.force.mean(axis=0), values.in_displacement.mean(axis=0), values.in_velocity.mean(axis=0)
+        )
+
+    # What varies as the reference turns.
+
+    def repeats(self) -> tuple[Repeats, ...]:
+        """What of the law varies with the angle of the reference; nothing by default."""
+        return ()
 
     def mean(self) -> ForceLaw:
         """Return the law without anything that varies in time."""
         return self
+
+    def cycle(self) -> float:
+        """Radians of the reference after which the mean law is the same again; 0 where it does not depend on the angle."""
+        return 0.0
+
+    def unsettled(self) -> str:
+        """Why the law allows no settled motion, as a clause; empty where it does."""
+        return ""
+
+    def impulse(self, d: Any, *, angle: float = 0.0) -> np.ndarray:
+        """Momentum (k,) that damping takes up between the free state and displacements d, whatever the velocity on the way.
+
+        It serves where damping sets in so suddenly that no step of a sensible length sees it: J = int F_v dt, F_v = f(d) d'.
+        Zero for laws whose damping has no such jump.
+        """
+        return np.zeros(self.components)
+
+    # How sweeps take the law: by whole vector registers where its columns say how, else by its compiled functions.
+
+    def columns(self, speed: float = 1.0) -> tuple[Column, ...]:
+        """How each of the k displacements acts in a sweep at a speed of the reference in rad/s."""
+        return (Column(OWN_LAW),) * self.components
+
+    def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
+        """What varies in the columns, (r, k, 4) in the rows of solvers/lanes/columns.py.
+
+        Args:
+            angles: of the reference, (r,). states: of the schedule there at unit speed, (r, s).
+            order: radians of the sweep's time for each of the reference.
+        """
+        return np.zeros((len(angles), self.components, TABLE_ROWS))
+
+    def table_key(self) -> bytes:
+        """Bytes that two laws share where their tables are the same."""
+        return b""
 
     @classmethod
     @abstractmethod
@@ -82,9 +285,9 @@ class ForceLaw(ABC):
         """Laws with sensible parameters, for the contract tests."""
 
     @classmethod
-    def declared(cls) -> dict[str, tuple[str, str]]:
-        """Name -> (unit, meaning) of every parameter."""
-        return {item.name: (item.metadata["unit"], item.metadata["meaning"]) for item in fields(cls)}
+    def declared(cls) -> dict[str, Parameter]:
+        """Name -> unit, meaning, default and bounds of every parameter."""
+        return {item.name: item.metadata["parameter"] for item in fields(cls)}
 
     def evaluate(self, d: Any, v: Any = 0.0, *, time: float = 0.0, angle: float = 0.0, speed: float = 0.0) -> LawValue:
         """Return force and tangents at displacements d and velocities v (k,), a time, and angle and speed of the reference."""
@@ -101,6 +304,46 @@ class ForceLaw(ABC):
         force(p, state, d, v, F, Kd, Kv, energy)
         stored, power_in, dissipated, contact = map(float, energy)
         return LawValue(F, Kd.reshape(k, k), Kv.reshape(k, k), stored, power_in, dissipated, int(contact))
+
+    def evaluate_many(self, d: Any, v: Any = 0.0, *, time: Any = 0.0, angle: Any = 0.0, speed: Any = 0.0) -> LawValues:
+        """`evaluate` at r instants in one compiled loop: d and v (r, k); time, angle and speed (r,) or the same for all."""
+        from rotorgear.solvers.time.kernel_contact import evaluate_instants, no_force, no_schedule
+
+        schedule, force = self.functions()
+        k = self.components
+        r = len(d)
+        # Copies: what numpy broadcasts is read-only, for which numba would compile the loop once more.
+        d, v = (np.array(np.broadcast_to(np.asarray(x, float), (r, k)), order="C") for x in (d, v))
+        time, angle, speed = (np.array(np.broadcast_to(np.asarray(x, float), r)) for x in (time, angle, speed))
+        p = np.ascontiguousarray(self.parameters(), dtype=float)
+        F = np.zeros((r, k))
+        Kd = np.zeros((r, k * k))
+        Kv = np.zeros((r, k * k))
+        energy = np.zeros((r, 4))
+        # As tuples of two, so that numba takes the functions by pointer and keeps the loop on disk, whatever the law.
+        evaluate_instants(
+            (schedule, no_schedule),
+            (force, no_force),
+            self.state_size(),
+            p,
+            angle,
+            speed,
+            time,
+            d,
+            v,
+            F,
+            Kd,
+            Kv,
+            energy,
+        )
+        stored, power_in, dissipated, contact = energy.T
+        return LawValues(
+            F, Kd.reshape(r, k, k), Kv.reshape(r, k, k), stored, power_in, dissipated, contact.astype(np.int64)
+        )
+
+
+# Places of a rolling element in its pitch over which a linearisation averages.
+_CYCLE_POINTS = 32
 
 
 def refuse(law: ForceLaw, name: str, expected: str) -> AnalysisError:

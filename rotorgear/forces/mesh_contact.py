@@ -19,11 +19,19 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rotorgear.forces.law import ForceLaw, parameter, refuse
+from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
+from rotorgear.solvers.contact.kinds import ADHESIVE, BILATERAL, DEAD_ZONE, NON_ADHESIVE, PENETRATION, UNILATERAL
+from rotorgear.solvers.lanes.columns import ERROR, PUSH, SLOPE, STIFFNESS, TABLE_ROWS, Column
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
-GAPS = ("dead zone", "unilateral", "bilateral")
-DAMPINGS = ("non-adhesive", "adhesive", "penetration")
+# The words of model files, and the kinds of contact and damping that compiled code branches on.
+GAPS = {"dead zone": DEAD_ZONE, "unilateral": UNILATERAL, "bilateral": BILATERAL}
+DAMPINGS = {"non-adhesive": NON_ADHESIVE, "adhesive": ADHESIVE, "penetration": PENETRATION}
+# Teeth that part excite at least so many harmonics of their mesh order.
+_PARTING = 3
+# Coefficients of a tabulated stiffness below this share of the largest do not count as harmonics.
+_SMALL = 0.02
+_MOST_HARMONICS = 10
 _HEAD = 16
 _TURN = 2.0 * pi
 
@@ -145,13 +153,18 @@ class MeshContact(ForceLaw):
 
     title: ClassVar[str] = "tooth contact"
 
-    stiffness: float = parameter("N/m", "mean stiffness k along the flank normal")
-    damping: float = parameter("N s/m", "damping coefficient c", 0.0)
-    backlash: float = parameter("m", "backlash j along the flank normal", 0.0)
-    gap: str = parameter("", "dead zone, unilateral or bilateral", "dead zone")
-    contact_damping: str = parameter("", "non-adhesive, adhesive or penetration", "non-adhesive")
+    stiffness: float = parameter("N/m", "mean stiffness k along the flank normal", least=0.0)
+    damping: float = parameter("N s/m", "damping coefficient c", 0.0, least=0.0)
+    backlash: float = parameter("m", "backlash j along the flank normal", 0.0, least=0.0)
+    gap: str = parameter("", "dead zone, unilateral or bilateral", "dead zone", choices=tuple(GAPS))
+    contact_damping: str = parameter(
+        "", "non-adhesive, adhesive or penetration", "non-adhesive", choices=tuple(DAMPINGS)
+    )
     ramp: float = parameter(
-        "m", "depth over which the damping grows to c; the reference depth of penetration damping", 1e-9
+        "m",
+        "regularisation depth, over which the damping grows to c; the reference depth of penetration damping",
+        1e-9,
+        above=0.0,
     )
     order: float = parameter("rad/rad", "mesh phase for each radian of the reference", 0.0)
     phase: float = parameter("rad", "mesh phase at angle 0", 0.0)
@@ -164,19 +177,12 @@ class MeshContact(ForceLaw):
     error_cos: tuple[float, ...] = parameter("m", "a_n of e(p)", ())
     error_sin: tuple[float, ...] = parameter("m", "b_n of e(p)", ())
     impact: float = parameter("N", "peak of a half-sine force once a mesh cycle", 0.0)
-    impact_share: float = parameter("", "its duration as a share of the mesh cycle", 0.25)
+    impact_share: float = parameter("", "its duration as a share of the mesh cycle", 0.25, above=0.0, most=1.0)
     impact_phase: float = parameter("", "share of the cycle by which it comes earlier", 0.0)
     expanded: bool = parameter("", "whether solvers expand about k and c: not on a flank that is mostly open", True)
 
-    def __post_init__(self) -> None:
-        if self.gap not in GAPS or self.contact_damping not in DAMPINGS:
-            name, known = ("gap", GAPS) if self.gap not in GAPS else ("contact_damping", DAMPINGS)
-            raise refuse(self, name, "one of " + ", ".join(known))
-        for name in ("stiffness", "damping", "backlash"):
-            if not (np.isfinite(getattr(self, name)) and getattr(self, name) >= 0.0):
-                raise refuse(self, name, "a number that is not negative")
-        if not self.ramp > 0.0:
-            raise refuse(self, "ramp", "a positive depth")
+    def check(self) -> None:
+        """The pieces of the stiffness follow each other through the mesh cycle."""
         starts = [piece[0] for piece in self.pieces]
         if starts and (starts[0] != 0.0 or sorted(set(starts)) != starts or starts[-1] >= 1.0):
             raise refuse(self, "pieces", "rising starts from 0 to below 1")
@@ -202,8 +208,8 @@ class MeshContact(ForceLaw):
             self.stiffness,
             self.damping,
             self.backlash,
-            GAPS.index(self.gap),
-            DAMPINGS.index(self.contact_damping),
+            GAPS[self.gap],
+            DAMPINGS[self.contact_damping],
             self.ramp,
             self.order,
             self.phase,
@@ -218,9 +224,13 @@ class MeshContact(ForceLaw):
         ]
         return np.array([*head, *k, *e, *(x for piece in self.pieces for x in piece)], dtype=float)
 
-    def reference_stiffness(self) -> np.ndarray:
+    def closed_stiffness(self) -> np.ndarray:
         """The mean stiffness, as with teeth that never part."""
-        return np.array([[self._mean_stiffness() if self.expanded else 0.0]])
+        return np.array([[self._mean_stiffness()]])
+
+    def reference_stiffness(self) -> np.ndarray:
+        """The mean stiffness; nothing for a flank that is mostly open."""
+        return self.closed_stiffness() if self.expanded else np.zeros((1, 1))
 
     def _mean_stiffness(self) -> float:
         mean = 1.0
@@ -245,6 +255,50 @@ class MeshContact(ForceLaw):
             impact=0.0,
             stiffness=self._mean_stiffness(),
         )
+
+    def repeats(self) -> tuple[Repeats, ...]:
+        """The mesh cycle, with the harmonics that are tabulated, and at least 3 where teeth part."""
+        if not self.order:
+            return ()
+        highest = [1, len(self.stiffness_cos), len(self.error_cos), 1 if self.gap == "bilateral" else _PARTING]
+        if self.pieces:
+            sizes = np.abs(np.fft.rfft([share for _, share, _ in self.pieces]))[1 : _MOST_HARMONICS + 1]
+            highest.append(1 + int(np.flatnonzero(sizes >= _SMALL * sizes.max(initial=0.0)).max(initial=0)))
+        if self.impact:
+            highest.append(int(np.ceil(1.0 / self.impact_share)))
+        return (Repeats(abs(self.order), max(highest)),)
+
+    def columns(self, speed: float = 1.0) -> tuple[Column, ...]:
+        """The contact, in whole vector registers."""
+        return (
+            Column(
+                GAPS[self.gap],
+                DAMPINGS[self.contact_damping],
+                self._mean_stiffness(),
+                self.damping,
+                np.inf if self.gap == "unilateral" else self.backlash,
+                self.ramp,
+                self.impact,
+                counted=True,
+            ),
+        )
+
+    def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
+        """k over its mean, e, its slope over the sweep's time, and the impact over its peak."""
+        k, _, e, slope, push = states.T
+        mean = self._mean_stiffness()
+        found = np.zeros((len(angles), 1, TABLE_ROWS))
+        found[:, 0, STIFFNESS] = k / mean if mean else 1.0
+        found[:, 0, ERROR] = e
+        found[:, 0, SLOPE] = slope / order
+        found[:, 0, PUSH] = push / self.impact if self.impact else 0.0
+        return found
+
+    def table_key(self) -> bytes:
+        """All that shapes k, e and the impact; of the sizes k and impact, only whether there is one."""
+        sizes = {"stiffness", "damping", "backlash", "gap", "contact_damping", "ramp", "impact", "expanded"}
+        shape = [getattr(self, name) for name in self.declared() if name not in sizes]
+        return repr([bool(self.stiffness), bool(self.impact), *shape]).encode()
 
     @classmethod
     def examples(cls) -> tuple[MeshContact, ...]:

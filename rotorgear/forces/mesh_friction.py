@@ -19,7 +19,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces import mesh_contact
-from rotorgear.forces.law import ForceLaw, parameter, refuse
+from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
@@ -129,26 +129,25 @@ class MeshFriction(ForceLaw):
     title: ClassVar[str] = "tooth friction"
 
     contact: MeshContact = parameter("", "the normal contact that gives N")  # noqa: RUF009
-    base_pitch: float = parameter("m", "transverse base pitch p_bt")
+    base_pitch: float = parameter("m", "transverse base pitch p_bt", above=0.0)
     start: float = parameter("m", "start of the path of contact, xi from the pitch point")
     end: float = parameter("m", "its end")
     closing: float = parameter("rad/rad", "(|w_p| + |w_g|) for each rad/s of the reference")
-    coefficient: float = parameter("", "mu", 0.0)
-    overlap: float = parameter("", "overlap ratio of helical teeth; 0 for spur", 0.0)
-    viscosity: float = parameter("mPa s", "viscosity for Benedict and Kelley's mu, in place of mu", 0.0)
+    coefficient: float = parameter("", "mu", 0.0, least=0.0)
+    overlap: float = parameter("", "overlap ratio of helical teeth; 0 for spur", 0.0, least=0.0)
+    viscosity: float = parameter("mPa s", "viscosity for Benedict and Kelley's mu, in place of mu", 0.0, least=0.0)
     line_load: float = parameter("N/m", "mean load on a metre of face, for that mu", 0.0)
     rolling: float = parameter(
         "m/rad", "rolling speed at the pitch point for each rad/s of the reference, for that mu", 0.0
     )
-    smooth: float = parameter("m/s", "sliding speed v_0 over which friction changes its sense", 0.05)
+    smooth: float = parameter("m/s", "sliding speed v_0 over which friction changes its sense", 0.05, above=0.0)
 
-    def __post_init__(self) -> None:
-        if not self.base_pitch > 0.0 or not self.end > self.start:
-            raise refuse(self, "base_pitch" if self.base_pitch <= 0.0 else "end", "a path of contact")
+    def check(self) -> None:
+        """The path of contact has a length, of fewer than four base pitches."""
+        if not self.end > self.start:
+            raise refuse(self, "end", "an end of the path of contact beyond its start")
         if self.end - self.start >= 4.0 * self.base_pitch:
             raise refuse(self, "end", "fewer than four teeth in contact")
-        if not self.smooth > 0.0 or self.coefficient < 0.0:
-            raise refuse(self, "smooth" if self.smooth <= 0.0 else "coefficient", "a number that is positive")
 
     @property
     def components(self) -> int:
@@ -188,6 +187,10 @@ class MeshFriction(ForceLaw):
     def mean(self) -> MeshFriction:
         """Nothing remains: over a mesh cycle approach and recess cancel nearly."""
         return replace(self, coefficient=0.0, viscosity=0.0)
+
+    def repeats(self) -> tuple[Repeats, ...]:
+        """The mesh cycle of its contact."""
+        return tuple(Repeats(each.order) for each in self.contact.repeats())
 
     @classmethod
     def examples(cls) -> tuple[MeshFriction, ...]:

@@ -11,18 +11,23 @@ from rotorgear.forces.law import ForceLaw, parameter
 from rotorgear.solvers.time.compiled import force_function
 from rotorgear.solvers.time.kernel_contact import no_schedule
 
+STIFFNESS, CUBIC, DAMPING, GAP = range(4)  # of the parameters
+
 
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Elastic force beyond the clearance, damping everywhere."""
-    side = 1.0 if d[0] > p[3] else (-1.0 if d[0] < -p[3] else 0.0)
-    x = d[0] - side * p[3] if side != 0.0 else 0.0
-    F[0] = p[0] * x + p[1] * x**3 + p[2] * v[0]
-    Kd[0] = (p[0] + 3.0 * p[1] * x * x) if side != 0.0 else 0.0
-    Kv[0] = p[2]
-    energy[0] = 0.5 * p[0] * x * x + 0.25 * p[1] * x**4
+    k = p[STIFFNESS]
+    k3 = p[CUBIC]
+    c = p[DAMPING]
+    side = 1.0 if d[0] > p[GAP] else (-1.0 if d[0] < -p[GAP] else 0.0)
+    x = d[0] - side * p[GAP] if side != 0.0 else 0.0
+    F[0] = k * x + k3 * x**3 + c * v[0]
+    Kd[0] = (k + 3.0 * k3 * x * x) if side != 0.0 else 0.0
+    Kv[0] = c
+    energy[0] = 0.5 * k * x * x + 0.25 * k3 * x**4
     energy[1] = 0.0
-    energy[2] = p[2] * v[0] ** 2
+    energy[2] = c * v[0] ** 2
     energy[3] = side
 
 
@@ -34,16 +39,12 @@ class PlainSpring(ForceLaw):
 
     stiffness: float = parameter("N/m", "k")
     cubic: float = parameter("N/m^3", "k3", 0.0)
-    damping: float = parameter("N s/m", "c", 0.0)
-    gap: float = parameter("m", "clearance to each side", 0.0)
+    damping: float = parameter("N s/m", "c", 0.0, least=0.0)
+    gap: float = parameter("m", "clearance to each side", 0.0, least=0.0)
 
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
         return no_schedule, force
-
-    def parameters(self) -> np.ndarray:
-        """In the order of the fields."""
-        return np.array([self.stiffness, self.cubic, self.damping, self.gap])
 
     def reference_stiffness(self) -> np.ndarray:
         """k."""

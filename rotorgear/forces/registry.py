@@ -1,45 +1,75 @@
-"""All force laws by name. A new law is one file with a `ForceLaw`, named here."""
+"""All force laws by name: those of the package, which are loaded when first asked for, and those that are registered.
+
+    @rg.register_law("stop")
+    @dataclass(frozen=True)
+    class Stop(ForceLaw): ...
+
+makes a law of your own known to model files and to `law_of`, as if it were of the package; forces/law.py says what it must
+answer.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib import import_module
+from typing import TypeVar
 
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.law import ForceLaw
 
-# name -> (module, class)
-_HOMES = {
-    "mesh_contact": ("mesh_contact", "MeshContact"),
-    "mesh_friction": ("mesh_friction", "MeshFriction"),
-    "ball_bearing": ("ball_bearing", "BallBearing"),
-    "roller_bearing": ("roller_bearing", "RollerBearing"),
-    "rotating_force": ("rotating_force", "RotatingForce"),
-    "torque_curve": ("torque_curve", "TorqueCurve"),
-    "plain_spring": ("plain_spring", "PlainSpring"),
+# name -> class, in the module of that name: compiled code is loaded with the module, so not before it is needed
+_SHIPPED = {
+    "mesh_contact": "MeshContact",
+    "mesh_friction": "MeshFriction",
+    "ball_bearing": "BallBearing",
+    "roller_bearing": "RollerBearing",
+    "rotating_force": "RotatingForce",
+    "torque_curve": "TorqueCurve",
+    "plain_spring": "PlainSpring",
 }
-_ADDED: dict[str, type[ForceLaw]] = {}
+_REGISTERED: dict[str, type[ForceLaw]] = {}
+Law = TypeVar("Law", bound=type[ForceLaw])
 
 
 def names() -> tuple[str, ...]:
     """Return the names of all laws."""
-    return (*_HOMES, *_ADDED)
+    return (*_SHIPPED, *_REGISTERED)
 
 
-def law(name: str) -> type[ForceLaw]:
+def law_of(name: str) -> type[ForceLaw]:
     """Return a law by its name.
 
     Raises:
         AnalysisError: there is none of that name.
     """
-    if name in _ADDED:
-        return _ADDED[name]
-    if name not in _HOMES:
+    if name in _REGISTERED:
+        return _REGISTERED[name]
+    if name not in _SHIPPED:
         raise AnalysisError(f"there is no force law '{name}'; there are {', '.join(names())}")
-    module, cls = _HOMES[name]
-    found: type[ForceLaw] = getattr(import_module(f"rotorgear.forces.{module}"), cls)
-    return found
+    shipped: type[ForceLaw] = getattr(import_module(f"rotorgear.forces.{name}"), _SHIPPED[name])
+    return shipped
 
 
-def register(name: str, cls: type[ForceLaw]) -> None:
-    """Add a law of one's own."""
-    _ADDED[name] = cls
+def register(name: str, law: type[ForceLaw]) -> None:
+    """Make a law of your own known by a name; registered again, the later one counts, as in a notebook that is run twice.
+
+    Raises:
+        AnalysisError: the name is one of the package's, is no word, or the class is no force law.
+    """
+    if name in _SHIPPED:
+        raise AnalysisError(f"'{name}' is a force law of the package: choose another name for {law.__name__}")
+    if not name.isidentifier():
+        raise AnalysisError(f"'{name}' is no name for a force law: expected letters, digits and underscores")
+    if not (isinstance(law, type) and issubclass(law, ForceLaw)):
+        raise AnalysisError(f"{name}: a force law is a class derived from rotorgear.ForceLaw, got {law!r}")
+    _REGISTERED[name] = law
+
+
+def register_law(name: str) -> Callable[[Law], Law]:
+    """Register the class below, as a decorator."""
+
+    def registered(cls: Law) -> Law:
+        register(name, cls)
+        return cls
+
+    return registered

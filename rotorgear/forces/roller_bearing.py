@@ -14,21 +14,26 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.hertz import LINE_CONTACT
-from rotorgear.forces.law import ForceLaw, parameter, refuse
+from rotorgear.forces.law import ForceLaw, Repeats, parameter
 from rotorgear.solvers.time.compiled import force_function, schedule_function
+
+TURN = 2.0 * np.pi
+# Of the parameters; and of the state.
+ROLLERS, CONTACT, PLAY, ORDER, PHASE = range(5)
+CAGE, CAGE_SPEED = range(2)
 
 
 @schedule_function
 def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     """Fill the angle of the first roller, and the speed of the cage."""
-    s[0] = p[3] * angle + p[4]
-    s[1] = p[3] * speed
+    s[CAGE] = p[ORDER] * angle + p[PHASE]
+    s[CAGE_SPEED] = p[ORDER] * speed
 
 
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Forces along x and y of the inner ring on the rollers."""
-    count = int(p[0])
+    count = int(p[ROLLERS])
     F[0] = 0.0
     F[1] = 0.0
     for i in range(4):
@@ -38,14 +43,14 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     turned = 0.0
     loaded = 0.0
     for j in range(count):
-        phi = s[0] + 6.283185307179586 * j / count
+        phi = s[CAGE] + TURN * j / count
         c = np.cos(phi)
         n = np.sin(phi)
-        delta = d[0] * c + d[1] * n - p[2]
+        delta = d[0] * c + d[1] * n - p[PLAY]
         if delta <= 0.0:
             continue
         loaded = 1.0
-        slope = p[1] * delta ** (1.0 / 9.0)
+        slope = p[CONTACT] * delta ** (1.0 / 9.0)
         Q = slope * delta
         slope *= 10.0 / 9.0
         F[0] += Q * c
@@ -55,7 +60,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         Kd[2] += slope * c * n
         Kd[3] += slope * n * n
         stored += 9.0 / 19.0 * Q * delta
-        turned += Q * (d[1] * c - d[0] * n) * s[1]
+        turned += Q * (d[1] * c - d[0] * n) * s[CAGE_SPEED]
     energy[0] = stored
     energy[1] = turned
     energy[2] = 0.0
@@ -68,18 +73,12 @@ class RollerBearing(ForceLaw):
 
     title: ClassVar[str] = "cylindrical roller bearing"
 
-    rollers: int = parameter("", "number of rollers Z")
-    length: float = parameter("m", "effective length L of a roller")
+    rollers: int = parameter("", "number of rollers Z", least=3)
+    length: float = parameter("m", "effective length L of a roller", above=0.0)
     clearance: float = parameter("m", "radial internal clearance s (whole play along a diameter)", 0.0)
     order: float = parameter("rad/rad", "turns of the cage for each turn of the reference", 0.0)
     phase: float = parameter("rad", "angle of a roller at angle 0", 0.0)
     reference: tuple[float, float] = parameter("N/m", "linear stiffness along x and y to expand about", (0.0, 0.0))
-
-    def __post_init__(self) -> None:
-        if self.rollers < 3:
-            raise refuse(self, "rollers", "at least 3")
-        if not self.length > 0.0:
-            raise refuse(self, "length", "a positive length")
 
     @property
     def components(self) -> int:
@@ -107,6 +106,14 @@ class RollerBearing(ForceLaw):
     def reference_stiffness(self) -> np.ndarray:
         """The linear stiffness that is given with the bearing."""
         return np.diag(self.reference)
+
+    def repeats(self) -> tuple[Repeats, ...]:
+        """The cage, which repeats with nothing else."""
+        return (Repeats(abs(self.order), common=False),) if self.order else ()
+
+    def cycle(self) -> float:
+        """From one roller to the next."""
+        return 2.0 * np.pi / (self.rollers * abs(self.order)) if self.order else 0.0
 
     @classmethod
     def examples(cls) -> tuple[RollerBearing, ...]:

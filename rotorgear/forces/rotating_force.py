@@ -12,15 +12,18 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rotorgear.forces.law import ForceLaw, parameter
+from rotorgear.forces.law import ForceLaw, Repeats, parameter
+from rotorgear.solvers.lanes.columns import PRESCRIBED, PUSH, TABLE_ROWS, Column
 from rotorgear.solvers.time.compiled import force_function, schedule_function
+
+AMPLITUDE, ORDER, PHASE, POWER, PLANE = range(5)  # of the parameters
 
 
 @schedule_function
 def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     """Fill the components of the force."""
-    phase = p[1] * angle + p[2]
-    size = p[0] * abs(p[1] * speed) ** p[3] if p[3] > 0.0 else p[0]
+    phase = p[ORDER] * angle + p[PHASE]
+    size = p[AMPLITUDE] * abs(p[ORDER] * speed) ** p[POWER] if p[POWER] > 0.0 else p[AMPLITUDE]
     s[0] = size * np.cos(phase)
     s[1] = size * np.sin(phase)
 
@@ -50,7 +53,7 @@ class RotatingForce(ForceLaw):
     amplitude: float = parameter("N, or kg m with power 2", "A at power 0; A = amplitude * (order * speed)^power")
     order: float = parameter("rad/rad", "turns for each turn of the reference", 1.0)
     phase: float = parameter("rad", "phase at angle 0", 0.0)
-    power: float = parameter("", "2 for an unbalance, 0 for a given force", 0.0)
+    power: float = parameter("", "2 for an unbalance, 0 for a given force", 0.0, least=0.0)
     plane: bool = parameter("", "two components, cosine and sine, in place of one", False)
 
     @property
@@ -66,13 +69,30 @@ class RotatingForce(ForceLaw):
         """Both components."""
         return 2
 
-    def parameters(self) -> np.ndarray:
-        """Amplitude, order, phase, power."""
-        return np.array([self.amplitude, self.order, self.phase, self.power])
-
     def mean(self) -> RotatingForce:
         """Nothing remains of it."""
         return RotatingForce(0.0, self.order, self.phase, self.power, self.plane)
+
+    def repeats(self) -> tuple[Repeats, ...]:
+        """Its order, where there is a force."""
+        return (Repeats(abs(self.order)),) if self.amplitude and self.order else ()
+
+    def columns(self, speed: float = 1.0) -> tuple[Column, ...]:
+        """A prescribed force of the amplitude at that speed."""
+        size = self.amplitude * abs(self.order * speed) ** self.power
+        return (Column(PRESCRIBED, push=size),) * self.components
+
+    def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
+        """-cos p, and -sin p in a plane."""
+        phase = self.order * angles + self.phase
+        found = np.zeros((len(angles), self.components, TABLE_ROWS))
+        for component, turning in enumerate((np.cos, np.sin)[: self.components]):
+            found[:, component, PUSH] = -turning(phase)
+        return found
+
+    def table_key(self) -> bytes:
+        """Order and phase."""
+        return repr([self.order, self.phase]).encode()
 
     @classmethod
     def examples(cls) -> tuple[RotatingForce, ...]:

@@ -14,44 +14,46 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rotorgear.forces.law import ForceLaw, parameter, refuse
+from rotorgear.forces.law import ForceLaw, Repeats, parameter
+from rotorgear.solvers.lanes.columns import OWN_LAW, PRESCRIBED, PUSH, TABLE_ROWS, Column
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
-_SLOWEST = 1e-3  # of w0, below which a power law is held
+# Of the parameters, in the order of the fields; and of the state.
+TORQUE, RATIO, POWER, REFERENCE, VISCOUS, RIPPLE, ORDER, PHASE, STEP, STEP_TIME, STEP_RISE = range(11)
+TORQUE_NOW, SPEED = range(2)
+# Of w0, below which a power law is held: constant power would ask for an infinite torque at rest.
+_SLOWEST = 1e-3
 
 
 @schedule_function
 def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     """Fill the torque at nominal speed, and the nominal speed of the shaft."""
-    size = p[0] * (1.0 + p[5] * np.cos(p[6] * angle + p[7]))
-    if p[8] != 1.0:
-        share = (time - p[9]) / p[10]
-        share = min(max(share, 0.0), 1.0)
-        size *= 1.0 + (p[8] - 1.0) * 0.5 * (1.0 - np.cos(3.141592653589793 * share))
-    s[0] = size
-    s[1] = p[1] * speed
+    torque = p[TORQUE] * (1.0 + p[RIPPLE] * np.cos(p[ORDER] * angle + p[PHASE]))
+    if p[STEP] != 1.0:
+        share = min(max((time - p[STEP_TIME]) / p[STEP_RISE], 0.0), 1.0)
+        torque *= 1.0 + (p[STEP] - 1.0) * 0.5 * (1.0 - np.cos(np.pi * share))
+    s[TORQUE_NOW] = torque
+    s[SPEED] = p[RATIO] * speed
 
 
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Torque and its slope over speed."""
-    power = p[2]
-    reference = p[3]
-    viscous = p[4]
+    power = p[POWER]
     Kd[0] = 0.0
-    Kv[0] = 0.0
-    torque = s[0]
+    Kv[0] = p[VISCOUS]
+    torque = s[TORQUE_NOW]
     if power != 0.0:
-        w = s[1] + v[0]
-        size = max(abs(w) / reference, 1e-3)
-        torque = s[0] * size**power
-        if abs(w) / reference > 1e-3:
-            Kv[0] = -s[0] * power * size ** (power - 1.0) / reference * (1.0 if w > 0.0 else -1.0)
-    F[0] = -torque + viscous * v[0]
-    Kv[0] += viscous
+        w = s[SPEED] + v[0]
+        relative = max(abs(w) / p[REFERENCE], _SLOWEST)
+        torque = s[TORQUE_NOW] * relative**power
+        if relative > _SLOWEST:
+            slope = -s[TORQUE_NOW] * power * relative ** (power - 1.0) / p[REFERENCE]
+            Kv[0] += slope if w > 0.0 else -slope
+    F[0] = -torque + p[VISCOUS] * v[0]
     energy[0] = 0.0
     energy[1] = torque * v[0]
-    energy[2] = viscous * v[0] * v[0]
+    energy[2] = p[VISCOUS] * v[0] * v[0]
     energy[3] = 0.0
 
 
@@ -65,18 +67,14 @@ class TorqueCurve(ForceLaw):
     torque: float = parameter("N m", "M0 at the reference speed, positive about +z")
     ratio: float = parameter("", "speed of the shaft over that of the reference", 1.0)
     power: float = parameter("", "2: propeller law, 0: constant torque, -1: constant power", 0.0)
-    reference_speed: float = parameter("rad/s", "w0 of the shaft", 1.0)
-    damping: float = parameter("N m s/rad", "torque against a change of speed, beside the curve", 0.0)
+    reference_speed: float = parameter("rad/s", "w0 of the shaft", 1.0, above=0.0)
+    damping: float = parameter("N m s/rad", "torque against a change of speed, beside the curve", 0.0, least=0.0)
     ripple: float = parameter("", "a, share of M0", 0.0)
     order: float = parameter("rad/rad", "of the ripple, for each turn of the reference", 1.0)
     phase: float = parameter("rad", "of the ripple", 0.0)
     step: float = parameter("", "share of M0 that remains after the step", 1.0)
     step_time: float = parameter("s", "t1", 0.0)
-    step_rise: float = parameter("s", "duration of the step", 1e-3)
-
-    def __post_init__(self) -> None:
-        if not (self.reference_speed > 0.0 and self.step_rise > 0.0):
-            raise refuse(self, "reference_speed" if self.reference_speed <= 0.0 else "step_rise", "a positive number")
+    step_rise: float = parameter("s", "duration of the step", 1e-3, above=0.0)
 
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
@@ -86,23 +84,34 @@ class TorqueCurve(ForceLaw):
         """Torque and nominal speed."""
         return 2
 
-    def parameters(self) -> np.ndarray:
-        """In the order of the formula."""
-        return np.array(
-            [
-                self.torque,
-                self.ratio,
-                self.power,
-                self.reference_speed,
-                self.damping,
-                self.ripple,
-                self.order,
-                self.phase,
-                self.step,
-                self.step_time,
-                self.step_rise,
-            ]
+    def repeats(self) -> tuple[Repeats, ...]:
+        """The ripple."""
+        return (Repeats(abs(self.order)),) if self.ripple and self.order else ()
+
+    def unsettled(self) -> str:
+        """A step in time."""
+        if self.step == 1.0:
+            return ""
+        return (
+            "sweeps don't take a torque that steps at a time, which no settled motion shows; leave step_to out, or run "
+            "single points by the transient analysis"
         )
+
+    def columns(self, speed: float = 1.0) -> tuple[Column, ...]:
+        """A prescribed torque where the speed does not matter, else a law of its own."""
+        if self.power == 0.0 and self.damping == 0.0:
+            return (Column(PRESCRIBED, push=self.torque),)
+        return (Column(OWN_LAW),)
+
+    def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
+        """The torque over M0."""
+        found = np.zeros((len(angles), 1, TABLE_ROWS))
+        found[:, 0, PUSH] = -states[:, TORQUE_NOW] / self.torque if self.torque else 0.0
+        return found
+
+    def table_key(self) -> bytes:
+        """The ripple."""
+        return repr([bool(self.torque), self.ripple, self.order, self.phase]).encode()
 
     @classmethod
     def examples(cls) -> tuple[TorqueCurve, ...]:

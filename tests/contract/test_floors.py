@@ -60,7 +60,8 @@ ROOMS = {
         "eigen": {"sparse"},
         "time": {"eigen", "sparse"},
         "frequency": {"eigen", "sparse", "time"},
-        "lanes": {"time"},
+        "contact": {"time"},
+        "lanes": {"contact", "time"},
     },
 }
 # Folders that are rooms' floors, or rooms, hold no more files than this.

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pickle
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +12,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.forces import registry
 from rotorgear.forces.law import ForceLaw
 
-LAWS = [(f"{name} {i}", law) for name in registry.names() for i, law in enumerate(registry.law(name).examples())]
+LAWS = [(f"{name} {i}", law) for name in registry.names() for i, law in enumerate(registry.law_of(name).examples())]
 TIME = 3.7e-4
 ANGLE = 0.61
 SPEED = 120.0
@@ -81,7 +84,7 @@ def test_dissipation_is_never_negative_and_a_passive_law_gives_no_energy(name: s
 def test_a_law_declares_its_parameters_with_unit_and_meaning(name: str, law: ForceLaw) -> None:
     assert law.title
     assert law.declared()
-    assert all(meaning for _, meaning in law.declared().values())
+    assert all(each.meaning for each in law.declared().values())
     assert law.reference_stiffness().shape == law.reference_damping().shape == (law.components, law.components)
 
 
@@ -92,6 +95,78 @@ def test_a_law_that_ignores_velocities_says_so_rightly(name: str, law: ForceLaw)
             assert np.array_equal(at(law, d, v).force, at(law, d, -v).force)
 
 
+@pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
+def test_many_instants_at_once_are_the_same_instants_one_by_one(name: str, law: ForceLaw) -> None:
+    d, v = (np.array(x) for x in zip(*motions(law), strict=True))
+    t = TIME + 1e-5 * np.arange(len(d))
+    many = law.evaluate_many(d, v, time=t, angle=ANGLE + SPEED * t, speed=SPEED)
+    for i in range(len(d)):
+        one = law.evaluate(d[i], v[i], time=t[i], angle=ANGLE + SPEED * t[i], speed=SPEED)
+        for part in ("force", "in_displacement", "in_velocity", "stored", "power_in", "dissipated", "contact"):
+            assert np.array_equal(getattr(many, part)[i], getattr(one, part)), part
+
+
+@pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
+def test_linearised_is_the_slope_of_the_mean_force(name: str, law: ForceLaw) -> None:
+    d, v = motions(law)[0]
+    about = law.linearised(d, v, speed=SPEED)
+    k = law.components
+    floor = 1e-6 * np.abs(about.force).max()
+    for j in range(k):
+        step = np.eye(k)[j]
+        for slope, up, down, size in (
+            (about.stiffness, (d + 1e-10 * step, v), (d - 1e-10 * step, v), 2e-10),
+            (about.damping, (d, v + 1e-7 * step), (d, v - 1e-7 * step), 2e-7),
+        ):
+            difference = law.linearised(*up, speed=SPEED).force - law.linearised(*down, speed=SPEED).force
+            assert slope[:, j] == pytest.approx(
+                difference / size, rel=1e-3, abs=1e-5 * np.abs(slope).max() + floor * 1e-6 / size
+            )
+
+
+def test_rolling_bearings_linearised_about_their_centre_are_isotropic_at_any_angle_of_the_cage() -> None:
+    for name in ("ball_bearing", "roller_bearing"):
+        law = registry.law_of(name).examples()[0]
+        for phase in (0.0, 0.3):
+            about = replace(law, phase=phase, clearance=-20e-6).linearised()
+            assert about.stiffness[0, 0] == pytest.approx(about.stiffness[1, 1], rel=1e-12)
+            assert about.stiffness[0, 1] == pytest.approx(0.0, abs=1e-9 * about.stiffness[0, 0])
+
+
+@pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
+def test_a_law_refuses_what_is_out_of_its_declared_bounds_and_says_them(name: str, law: ForceLaw) -> None:
+    for key, about in law.declared().items():
+        outside = [about.least - 1.0] if about.least is not None else []
+        outside += [about.most + 1.0] if about.most is not None else []
+        outside += [bound for bound in (about.above, about.below) if bound is not None]
+        if isinstance(getattr(law, key), float):
+            outside += [np.nan, np.inf]
+        for value in outside or (["glue"] if about.choices else []):
+            with pytest.raises(AnalysisError, match=rf"{type(law).__name__}\.{key}: got .*, expected {about.expected}"):
+                replace(law, **{key: value})
+
+
+@pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
+def test_a_law_survives_pickling_and_copying(name: str, law: ForceLaw) -> None:
+    assert pickle.loads(pickle.dumps(law)) == law == replace(law)
+
+
+@pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
+def test_what_repeats_is_the_same_after_whole_periods_and_differs_between(name: str, law: ForceLaw) -> None:
+    d, v = (np.array(x) for x in zip(*motions(law), strict=True))
+
+    def force(turn: float) -> np.ndarray:
+        return law.evaluate_many(d, v, angle=ANGLE + turn, speed=SPEED).force
+
+    turns = [2.0 * np.pi / each.order for each in law.repeats()]
+    for turn in turns:
+        assert force(turn) == pytest.approx(force(0.0), rel=1e-9, abs=1e-12)
+        others = [force(0.37 * turn), force(0.61 * turn)]
+        assert any(np.abs(other - force(0.0)).max() > 1e-9 * np.abs(other).max() for other in others)
+    if not turns:
+        assert np.array_equal(force(1.0), force(0.0))
+
+
 def test_an_unknown_law_is_answered_with_those_that_exist() -> None:
     with pytest.raises(AnalysisError, match="no force law 'glue'; there are mesh_contact"):
-        registry.law("glue")
+        registry.law_of("glue")

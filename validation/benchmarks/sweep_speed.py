@@ -165,7 +165,7 @@ def scalar_loop(
 
 def scalar(point: Point, start: Start, table: np.ndarray, periods: int) -> np.ndarray:
     """Displacements of the contacts at the end of each period, (periods, m)."""
-    section = np.zeros((periods, point.system.columns.gap.size))
+    section = np.zeros((periods, point.system.columns.kind.size))
     scalar_loop(periods, STEPS, point.system.n, *_structure(point), table, start.z.copy(), start.dz.copy(), section)
     return section
 
@@ -194,8 +194,8 @@ def _structure(point: Point) -> tuple[np.ndarray, ...]:
         s.B[crows, ccolumns],
         c.stiffness,
         c.damping,
-        c.backlash,
-        c.ramp,
+        c.clearance,
+        c.per_depth,
     )
 
 
@@ -301,10 +301,10 @@ def _numpy_slope(t, y, point, phase, ripple, error):  # type: ignore[no-untyped-
     dz = y[s.n :]
     x = s.B.T @ z - error * np.cos(t + phase)
     rate = s.B.T @ dz + error * np.sin(t + phase)
-    side = np.where(x > 0.0, 1.0, np.where(x < -c.backlash, -1.0, 0.0))
-    depth = np.maximum(np.maximum(x, -x - c.backlash), 0.0)
+    side = np.where(x > 0.0, 1.0, np.where(x < -c.clearance, -1.0, 0.0))
+    depth = np.maximum(np.maximum(x, -x - c.clearance), 0.0)
     k = c.stiffness * (1.0 + ripple * np.cos(t + phase))
-    F = side * (k * depth + c.damping * np.minimum(depth * c.ramp, 1.0) * side * rate)
+    F = side * (k * depth + c.damping * np.minimum(depth * c.per_depth, 1.0) * side * rate)
     return np.concatenate([dz, s.load - s.K @ z - s.D @ dz - s.B @ F])
 
 
@@ -313,7 +313,7 @@ def _solve_ivp(point: Point, start: Start, right: Any, periods: int) -> float:
     from scipy.integrate import solve_ivp
 
     head = _structure(point) if right is slope else (point,)
-    phase = 0.3 * np.arange(point.system.columns.gap.size)
+    phase = 0.3 * np.arange(point.system.columns.kind.size)
 
     def run(periods: int) -> float:
         before = time.process_time()

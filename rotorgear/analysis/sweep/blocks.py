@@ -68,7 +68,7 @@ def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarra
     for (_, count), members in kinds.items():
         own = [points[job.point] for job in members]
         assert own[0] is not None
-        size = (2 * own[0].system.turns * count + 1) * len(own[0].system.columns.gap) * 4
+        size = (2 * own[0].system.turns * count + 1) * len(own[0].system.columns.kind) * 4
         same = len({p.shape for p in own if p}) == 1
         width = LANES if same else int(np.clip(_MOST_TABLE // size, 1, LANES))
         for at in range(0, len(members), width):

@@ -64,13 +64,13 @@ def gathered(
         if point.contact != contact:
             failed[i] = "its contacts are not those of the other points"
             continue
-        if not orbit.finite or np.any(np.abs(orbit.section[:, point.system.columns.mesh, 0]) > _FAR * _size(point)):
+        if not orbit.finite or np.any(np.abs(orbit.section[:, point.system.columns.counted, 0]) > _FAR * _size(point)):
             failed[i] = failed[i] or (
                 f"the run '{request.runs[run]}' left all bounds: the motion is unstable; give more damping, or a backlash that "
                 "bounds it"
             )
             continue
-        mesh = point.system.columns.mesh
+        mesh = point.system.columns.counted
         own = orbit.section[:, mesh]
         section[i, run] = own
         found = _indicators(orbit.sums[mesh], int(steps[i]))
@@ -129,7 +129,7 @@ def gathered(
 def _size(point: Point) -> float:
     """Displacement in m that motions are measured by: static deflection, backlash, and the smallest that counts."""
     columns = point.system.columns
-    backlash = columns.backlash[columns.mesh & np.isfinite(columns.backlash)]
+    backlash = columns.clearance[columns.counted & np.isfinite(columns.clearance)]
     return float(max(np.abs(point.static_force / point.stiffness).max(), backlash.max(initial=0.0), 1e-6))
 
 

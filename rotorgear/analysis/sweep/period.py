@@ -6,7 +6,6 @@ from fractions import Fraction
 from math import gcd, lcm
 from typing import TYPE_CHECKING
 
-from rotorgear.analysis.sweep.columns import order_of
 from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
@@ -50,13 +49,15 @@ def refuse_long(meshes: list[Fraction], orders: list[Fraction]) -> None:
 
 
 def orders_of(law: LocalLaw, label: str) -> list[Fraction]:
-    """Order of what varies in a law; none where it stays the same."""
-    value = order_of(law)
-    if not value:
-        return []
-    found = Fraction(value).limit_denominator(100000)
-    if abs(float(found) - value) > _WHOLE * value:
-        raise AnalysisError(
-            f"{label}: its order {value:.9g} of the input shaft is no ratio of whole numbers, so nothing repeats"
-        )
-    return [found]
+    """Orders of what varies in a law and belongs to the common period; none where it stays the same."""
+    orders = []
+    for each in law.repeats():
+        if not each.common:
+            continue
+        order = Fraction(each.order).limit_denominator(100000)
+        if abs(float(order) - each.order) > _WHOLE * each.order:
+            raise AnalysisError(
+                f"{label}: its order {each.order:.9g} of the input shaft is no ratio of whole numbers, so nothing repeats"
+            )
+        orders.append(order)
+    return orders

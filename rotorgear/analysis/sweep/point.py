@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
-from rotorgear.analysis.sweep.columns import column_of, columns_of, is_rolling, shape_of
 from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
 from rotorgear.analysis.sweep.reduce import Large, Reduced, Wanted
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+from rotorgear.solvers.lanes.columns import OWN_LAW, TABLE_ROWS, Columns
 from rotorgear.solvers.lanes.own_laws import own_laws
 from rotorgear.solvers.lanes.small_system import MOST_DOFS, Shapes, SmallSystem, small_system
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, free_motions, still_forces
@@ -22,9 +21,6 @@ from rotorgear.solvers.time.local_system import LocalSystem
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.local import local_model
 from rotorgear.system.system import System
-
-if TYPE_CHECKING:
-    pass
 
 _KEPT = 1000  # states at rest
 
@@ -61,16 +57,16 @@ class Point:
         """What points in one block share."""
         c = self.system.columns
         own = self.system.own.forces
-        names = tuple(type(law).__name__ for law in own.laws)
         return (
             self.system.n,
-            c.gap.tobytes(),
+            c.kind.tobytes(),
             c.mode.tobytes(),
-            c.mesh.tobytes(),
+            c.counted.tobytes(),
             len(self.system.rigid),
             self.system.turns,
             self.contact,
-            names,
+            own.kind.tobytes(),
+            tuple(type(law) for law in own.laws),
             own.parameters_first.tobytes(),
             own.state_first.tobytes(),
         )
@@ -132,7 +128,8 @@ class PointMaker:
             raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
         found = local_model(system, Rotation.constant(speed), speed)
         for part in found.parts:
-            column_of(part.law, part.part)
+            if why := part.law.unsettled():
+                raise AnalysisError(f"{part.part}: {why}")
         meshes, others = (
             [o for part in found.parts if part.is_mesh is is_mesh for o in orders_of(part.law, part.label)]
             for is_mesh in (True, False)
@@ -174,7 +171,7 @@ def still(
         free: its motions without strain, where they are known.
     """
     rest = equilibrium(local, free)
-    mean = tuple(law.mean() for law in local.forces.laws)  # type: ignore[attr-defined]
+    mean = tuple(law.mean() for law in local.forces.laws)
     static = still_forces(local, mean, rest.free)
     if not np.all(np.isfinite(static)):
         # Contacts that are open at rest: what the driving flanks alone would carry.
@@ -190,40 +187,35 @@ def ready_reduced(point: Large, found: Reduced) -> Point:
 
 def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     """Make a system ready at a speed of the reference in rad/s; `modal_ratio` is added to every mode with strain."""
-    from rotorgear.solvers.lanes.kernel_parts import OWN_LAW
-
     local = replace(known.local, rotation=Rotation.constant(speed))
     fastest, turns = common_period(known.orders)
     laws = local.forces.laws
-    columns = columns_of([column for law in laws for column in column_of(law, type(law).__name__, speed)])
+    columns = Columns.of([column for law in laws for column in law.columns(speed)])
     order = float(np.copysign(float(fastest), speed))
-    own = own_laws(local.forces, columns.gap == OWN_LAW, 1.0 / order)
+    own = own_laws(local.forces, columns.kind == OWN_LAW, 1.0 / order)
     system = small_system(
         local, known.rest, columns, own, float(fastest) * abs(speed), turns, modal_ratio, known.shapes
     )
     drift = known.rest.drift
     drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
-    shape = b"".join(shape_of(law) for law in laws)
-    mesh = columns.mesh
+    shape = b"".join(law.table_key() for law in laws)
+    counted = columns.counted
     return Point(
         system,
         local.forces,
         order,
         known.contact,
-        known.static[mesh],
-        columns.stiffness[mesh],
+        known.static[counted],
+        columns.stiffness[counted],
         drifts,
-        any(map(is_rolling, laws)),
+        any(not each.common for law in laws for each in law.repeats()),
         shape,
     )
 
 
 def table_of(point: Point, steps: int) -> np.ndarray:
     """Tables of a point over its common period, (2 turns steps + 1, m, 4)."""
-    from rotorgear.forces.mesh_contact import MeshContact
-    from rotorgear.forces.rotating_force import RotatingForce
-    from rotorgear.forces.torque_curve import TorqueCurve
-    from rotorgear.solvers.lanes.kernel_parts import ERROR, PUSH, SLOPE, STIFFNESS, tabulate
+    from rotorgear.solvers.lanes.kernel_parts import tabulate
 
     rows = 2 * point.system.turns * steps + 1
     angles = np.pi / steps / point.order * np.arange(rows)
@@ -232,21 +224,8 @@ def table_of(point: Point, steps: int) -> np.ndarray:
     tabulate(
         forces.schedules, forces.kind, forces.parameters, forces.parameters_first, forces.state_first, angles, states
     )
-    table = np.zeros((rows, forces.m, 4))
+    table = np.zeros((rows, forces.m, TABLE_ROWS))
     for i, law in enumerate(forces.laws):
         state = states[:, forces.state_first[i] : forces.state_first[i + 1]]
-        at = int(forces.first[i])
-        if isinstance(law, MeshContact):
-            k, _, e, slope, push = state.T
-            mean = law.mean().stiffness
-            table[:, at, STIFFNESS] = k / mean if mean else 1.0
-            table[:, at, ERROR] = e
-            table[:, at, SLOPE] = slope / point.order
-            table[:, at, PUSH] = push / law.impact if law.impact else 0.0
-        elif isinstance(law, TorqueCurve):
-            table[:, at, PUSH] = -state[:, 0] / law.torque if law.torque else 0.0
-        elif isinstance(law, RotatingForce):
-            phase = law.order * angles + law.phase
-            for k, values in enumerate((np.cos(phase), np.sin(phase))[: law.components]):
-                table[:, at + k, PUSH] = -values
+        table[:, forces.first[i] : forces.first[i + 1]] = law.table(angles, state, point.order)
     return table

@@ -124,5 +124,5 @@ def portraits_of(
             if kinds[k][j] == FAILED:
                 continue
             own = recorded(point.system, orbits[p, run].end, table, int(result.steps[p]), *sizes[k], begun=begun)
-            values[k, j, : len(own)] = own[:, point.system.columns.mesh]
+            values[k, j, : len(own)] = own[:, point.system.columns.counted]
     return Portraits(np.array(chosen), np.array(runs), result.turns[chosen], periods, records, values)

@@ -15,6 +15,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.results.reduction import Reduction
 from rotorgear.solvers.frequency.contact_basis import Candidates, Choice, candidates, choose, reduced
 from rotorgear.solvers.frequency.receptance import Scale, full_receptances
+from rotorgear.solvers.lanes.columns import PRESCRIBED
 from rotorgear.solvers.lanes.small_system import Shapes
 from rotorgear.solvers.time.local_system import LocalSystem
 
@@ -150,24 +151,18 @@ class Reducer:
 
 
 def scale_of(local: LocalSystem) -> Scale:
-    """What receptances of a system are measured by: the stiffness of its mesh contacts, and of bearings with rolling elements."""
-    from rotorgear.forces.mesh_contact import MeshContact
-
-    k = local.forces.reference_stiffness
-    root = np.sqrt(np.maximum(np.diag(k), 0.0))
-    for law, at in zip(local.forces.laws, local.forces.first, strict=False):
-        if isinstance(law, MeshContact):
-            root[at] = np.sqrt(law.mean().stiffness)
-    return Scale(k, local.forces.reference_damping, root)
+    """What receptances of a system are measured by: the stiffness of its laws with all contacts closed."""
+    forces = local.forces
+    root = np.zeros(forces.m)
+    for law, at in zip(forces.laws, forces.first, strict=False):
+        root[at : at + law.components] = np.sqrt(np.maximum(np.diag(law.closed_stiffness()), 0.0))
+    return Scale(forces.reference_stiffness, forces.reference_damping, root)
 
 
 def _acting(local: LocalSystem) -> np.ndarray:
     """Columns (a,) whose forces depend on the motion."""
-    from rotorgear.analysis.sweep.columns import column_of
-    from rotorgear.solvers.lanes.kernel_parts import PRESCRIBED
-
-    gaps = [row[0] for law in local.forces.laws for row in column_of(law, type(law).__name__)]
-    return np.flatnonzero(np.array(gaps) != PRESCRIBED)
+    kinds = [column.kind for law in local.forces.laws for column in law.columns()]
+    return np.flatnonzero(np.array(kinds) != PRESCRIBED)
 
 
 def _loads(points: Sequence[Large]) -> np.ndarray:

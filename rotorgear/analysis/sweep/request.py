@@ -93,10 +93,10 @@ def start_of(system: SmallSystem, number: int, seed: int, throw: float = 1.0) ->
     """
     if number == 0:
         return Start(system.rest.copy(), np.zeros(system.n))
-    mesh = system.columns.mesh
+    mesh = system.columns.counted
     B = system.B[:, mesh]
     reach = np.abs(system.B[:, mesh].T @ system.rest)
-    backlash = np.where(np.isfinite(system.columns.backlash[mesh]), system.columns.backlash[mesh], 0.0)
+    backlash = np.where(np.isfinite(system.columns.clearance[mesh]), system.columns.clearance[mesh], 0.0)
     draw = np.random.default_rng([seed, number])
     wanted = 2.0 * throw * draw.uniform(-1.0, 1.0, B.shape[1]) * (reach + backlash)
     thrown = np.linalg.lstsq(B.T, wanted, rcond=1e-10)[0]

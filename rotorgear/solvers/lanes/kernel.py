@@ -12,9 +12,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.solvers.lanes.columns import NEVER
 from rotorgear.solvers.lanes.kernel_jumps import add_used_along, missing, missing_along, push
 from rotorgear.solvers.lanes.kernel_laws import SPACE, force_laws, laws_along, schedule_laws
-from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, NEVER, contacts, count, product, read_table
+from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, contacts, count, product, read_table
 from rotorgear.solvers.lanes.kernel_tangents import orthonormal
 from rotorgear.solvers.lanes.kernel_vectors import LANES, fill, get, put, work
 from rotorgear.solvers.time.compiled import compiled

@@ -12,14 +12,12 @@ which the flanks meet are put right. Tangents follow with s(x_1) T_1 - s(x_0) T_
 
 from __future__ import annotations
 
+from rotorgear.solvers.lanes.columns import CLOSING, ERROR, NEVER
 from rotorgear.solvers.lanes.kernel_parts import (
     BACKLASH,
-    CLOSING,
-    ERROR,
     FOUND,
     GROWTH,
     IN_V,
-    NEVER,
     RAMP,
     REACH,
     VALUES,

@@ -5,28 +5,12 @@ Every array has the systems as its last axis of LANES entries, and is read by ro
 
 from __future__ import annotations
 
+from rotorgear.solvers.contact.kinds import ADHESIVE, BILATERAL, PENETRATION
+from rotorgear.solvers.lanes.columns import ERROR, OWN_LAW, PRESCRIBED, PUSH, SLOPE, STIFFNESS
 from rotorgear.solvers.lanes.kernel_vectors import fill, get, larger, put, smaller, where_positive
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import schedule_all
 
-# How a column acts: as MeshContact.gap does, as a force that is prescribed, or by a law of its own (kernel_lane_laws.py).
-LINE = 0
-ONE_SIDED = 1
-NEVER_PARTS = 2
-PRESCRIBED = 3
-OWN_LAW = 4
-CLAMPED = 0
-UNCLAMPED = 1
-PENETRATION = 2
-# When the damping of a column jumps, or nearly does: never, as flanks close, or as they close and as they part.
-NEVER = 0
-CLOSING = 1
-ALWAYS = 2
-# Rows of the tables: share of the mean stiffness, error, its slope, share of the prescribed force.
-STIFFNESS = 0
-ERROR = 1
-SLOPE = 2
-PUSH = 3
 # Values of a column: k, c, backlash, 1/ramp, prescribed force, ramp.
 K = 0
 C = 1
@@ -95,7 +79,7 @@ def contacts(gap, mode, values, table, weight, d, F, found, used):
         c = get(values, VALUES * j + C)
         x = get(d, 2 * j) - get(table, 4 * j + ERROR)
         rate = get(d, 2 * j + 1) - get(table, 4 * j + SLOPE)
-        if gap[j] == NEVER_PARTS:
+        if gap[j] == BILATERAL:
             put(F, j, k * x + c * rate + prescribed)
             put(found, FOUND * j + IN_D, k)
             put(found, FOUND * j + IN_V, c)
@@ -112,7 +96,7 @@ def contacts(gap, mode, values, table, weight, d, F, found, used):
             share = smaller(share, one)
         total = k * depth + c * share * closing
         holds = touch * touch
-        if mode[j] != UNCLAMPED:
+        if mode[j] != ADHESIVE:
             holds = where_positive(total, holds, none)
         put(F, j, touch * (holds * total) + prescribed)
         damping = holds * c * share

@@ -7,19 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.solvers.contact.kinds import ADHESIVE, BILATERAL, PENETRATION
+from rotorgear.solvers.lanes.columns import ALWAYS, ERROR, OWN_LAW, PRESCRIBED, PUSH, SLOPE, STIFFNESS
 from rotorgear.solvers.lanes.kernel_laws import SPACE
-from rotorgear.solvers.lanes.kernel_parts import (
-    ALWAYS,
-    ERROR,
-    NEVER_PARTS,
-    OWN_LAW,
-    PENETRATION,
-    PRESCRIBED,
-    PUSH,
-    SLOPE,
-    STIFFNESS,
-    UNCLAMPED,
-)
 from rotorgear.solvers.time.compiled import compiled
 
 
@@ -36,7 +26,7 @@ def force(gap, mode, values, now, d, v):
     c = values[1]
     x = d - now[ERROR]
     rate = v - now[SLOPE]
-    if gap == NEVER_PARTS:
+    if gap == BILATERAL:
         return k * x + c * rate + push, 0.0
     behind = -x - values[2]
     depth, touch = (x, 1.0) if x > 0.0 else ((behind, -1.0) if behind > 0.0 else (0.0, 0.0))
@@ -44,7 +34,7 @@ def force(gap, mode, values, now, d, v):
     if mode != PENETRATION:
         share = min(share, 1.0)
     total = k * depth + c * share * touch * rate
-    if total <= 0.0 and mode != UNCLAMPED:
+    if total <= 0.0 and mode != ADHESIVE:
         return push, 0.0
     return touch * total + push, c * share * rate
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.solvers.lanes.columns import ERROR
 from rotorgear.solvers.lanes.small_system import SmallSystem
 
 # Steps between two questions whether to go on: a fraction of a second.
@@ -96,8 +97,8 @@ def run_block(
     filled = [*systems, *[systems[-1]] * (LANES - count)]
     first = systems[0]
     (matrix, across), values = _matrices(filled), _values(filled)
-    mesh = first.columns.mesh
-    kinds = (first.columns.gap, first.columns.mode)
+    mesh = first.columns.counted
+    kinds = (first.columns.kind, first.columns.mode)
     jumps = np.max([s.columns.jumps for s in filled], axis=0)
     pushes = _sparse([-s.B for s in filled])
     wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
@@ -251,23 +252,21 @@ def _sparse(matrices: Sequence[np.ndarray]) -> Sparse:
 
 def _kept(systems: Sequence[SmallSystem], starts: Sequence[Start], tables: Sequence[np.ndarray]) -> np.ndarray:
     """What the kernel keeps of the end of a step (m, 4, w), at the start: see kernel_lane_jumps.py."""
-    from rotorgear.solvers.lanes.kernel_parts import ERROR
-
     found = []
     for i, (system, start) in enumerate(zip(systems, starts, strict=True)):
         c = system.columns
         x = system.B.T @ start.z - tables[i % len(tables)][0, :, ERROR]
-        behind = -x - c.backlash
+        behind = -x - c.clearance
         touch = np.where(x > 0.0, 1.0, np.where(behind > 0.0, -1.0, 0.0))
         depth = np.maximum(np.maximum(x, behind), 0.0)
-        share = np.minimum(depth * c.ramp, 1.0)
-        found.append(np.stack([touch * share * (depth - 0.5 * share / c.ramp), share, touch, touch], axis=1))
+        share = np.minimum(depth * c.per_depth, 1.0)
+        found.append(np.stack([touch * share * (depth - 0.5 * share / c.per_depth), share, touch, touch], axis=1))
     return _stacked(found)
 
 
 def _values(systems: Sequence[SmallSystem]) -> np.ndarray:
     """Values of the columns (m, 6, w), as the kernel reads them."""
-    names = ("stiffness", "damping", "backlash", "ramp", "push")
+    names = ("stiffness", "damping", "clearance", "per_depth", "push")
     return _stacked(
-        [np.stack([*(getattr(s.columns, name) for name in names), 1.0 / s.columns.ramp], axis=1) for s in systems]
+        [np.stack([*(getattr(s.columns, name) for name in names), 1.0 / s.columns.per_depth], axis=1) for s in systems]
     )

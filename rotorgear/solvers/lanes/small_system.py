@@ -11,6 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
+from rotorgear.solvers.lanes.columns import Columns
 from rotorgear.solvers.lanes.own_laws import OwnLaws, not_held, steepest
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium
 from rotorgear.solvers.time.local_system import LocalSystem
@@ -25,28 +26,6 @@ ACCURATE = 0.35
 _STATIC = 1.5
 # Of the largest stiffness, that every direction gets in the size of a tangent.
 _FLOOR = 1e-12
-
-
-@dataclass(frozen=True)
-class Columns:
-    """How each of m local displacements acts, arrays (m,): see kernel_lane_parts.py."""
-
-    gap: np.ndarray
-    mode: np.ndarray
-    stiffness: np.ndarray
-    damping: np.ndarray
-    backlash: np.ndarray
-    ramp: np.ndarray
-    push: np.ndarray
-    mesh: np.ndarray
-
-    @property
-    def jumps(self) -> np.ndarray:
-        """(m,) whether the damping sets in where flanks meet: NEVER, only as they CLOSE, or ALWAYS, as they part as well."""
-        from rotorgear.solvers.lanes.kernel_parts import ALWAYS, CLOSING, LINE, NEVER, ONE_SIDED, PENETRATION, UNCLAMPED
-
-        parts = ((self.gap == LINE) | (self.gap == ONE_SIDED)) & (self.mode != PENETRATION) & (self.damping > 0.0)
-        return np.where(parts, np.where(self.mode == UNCLAMPED, ALWAYS, CLOSING), NEVER).astype(np.int64)
 
 
 @dataclass(frozen=True)
@@ -154,7 +133,7 @@ def small_system(
         L.T @ rest.q,
         L,
         energy,
-        scaled(columns, w),
+        columns.scaled(w),
         own,
         w,
         turns,
@@ -177,20 +156,6 @@ def refuse_large(n: int) -> None:
             f"{n} dofs are too many for a sweep (at most {MOST_DOFS}): lump the shafts (rigid gears on springs), or run single "
             "points by the transient analysis"
         )
-
-
-def scaled(columns: Columns, w: float) -> Columns:
-    """Forces over w^2, damping over w."""
-    return Columns(
-        columns.gap,
-        columns.mode,
-        columns.stiffness / w**2,
-        columns.damping / w,
-        columns.backlash,
-        columns.ramp,
-        columns.push / w**2,
-        columns.mesh,
-    )
 
 
 def _clean(A: np.ndarray) -> np.ndarray:

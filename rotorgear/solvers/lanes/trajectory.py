@@ -31,8 +31,8 @@ def recorded(
     if rest:
         raise ValueError(f"{system.turns * steps} steps in a common period are no multiple of {every}")
     c = system.columns
-    values = np.stack([c.stiffness, c.damping, c.backlash, c.ramp, c.push], axis=1)
-    out = np.empty((periods * length, c.gap.size, 3))
+    values = np.stack([c.stiffness, c.damping, c.clearance, c.per_depth, c.push], axis=1)
+    out = np.empty((periods * length, c.kind.size, 3))
     matrices = [np.ascontiguousarray(x, dtype=float) for x in (system.K, system.D, system.B, system.load)]
     state = np.concatenate([start.z, start.dz])
     own = system.own.forces
@@ -53,7 +53,7 @@ def recorded(
         every,
         before,
         *matrices,
-        c.gap,
+        c.kind,
         c.mode,
         c.jumps,
         values,

@@ -62,6 +62,15 @@ def force_all(
 
 
 @compiled
+def evaluate_instants(schedules, forces, size, p, angle, speed, time, d, v, F, Kd, Kv, energy):
+    """One law at r instants: forces (r, k), tangents (r, k*k) and energies (r, 4) at d and v (r, k); its state has `size`."""
+    state = np.zeros(size)
+    for i in range(angle.size):
+        schedules[0](angle[i], speed[i], time[i], p, state)
+        forces[0](p, state, d[i], v[i], F[i], Kd[i], Kv[i], energy[i])
+
+
+@compiled
 def solve_small(A, b, n):
     """Solve A x = b in place by Gauss with row exchanges; False where A is singular."""
     for k in range(n):

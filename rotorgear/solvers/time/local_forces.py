@@ -2,7 +2,7 @@
 
 A law has two compiled functions. `schedule(angle, speed, time, parameters, state)` fills what depends on time only, once a
 step. `force(parameters, state, d, v, F, Kd, Kv, energy)` fills the force (k,), its tangents in d and v (k*k, row by row) and
-energy = [stored, power put in by what is prescribed, power dissipated, contact: 1 driving flank, -1 back flank, 0 apart].
+energy = [stored, power put in by what is prescribed, power dissipated, contact: 1 front side, -1 back side, 0 apart].
 """
 
 from __future__ import annotations
@@ -16,8 +16,23 @@ import numpy as np
 MOST_LAWS = 8
 
 
+@dataclass(frozen=True)
+class Repeats:
+    """What varies in a law as the reference turns.
+
+    Attributes:
+        order: periods in a turn of the reference, positive. harmonics: of it that matter.
+        common: whether it belongs to a common period with what else varies: rolling elements don't, for cages turn with slip-free
+            kinematics that never repeat with anything else.
+    """
+
+    order: float
+    harmonics: int = 1
+    common: bool = True
+
+
 class LocalLaw(Protocol):
-    """What a law offers to integrators."""
+    """What a law offers to solvers; forces/law.py says more of each."""
 
     @property
     def components(self) -> int:
@@ -41,6 +56,27 @@ class LocalLaw(Protocol):
 
     def reference_damping(self) -> np.ndarray:
         """Linear damping (k, k) about which a solver may expand."""
+
+    def closed_stiffness(self) -> np.ndarray:
+        """Mean stiffness (k, k) with all contacts closed."""
+
+    def mean(self) -> LocalLaw:
+        """Return the law without anything that varies in time."""
+
+    def repeats(self) -> tuple[Repeats, ...]:
+        """What varies with the angle of the reference."""
+
+    def unsettled(self) -> str:
+        """Why the law allows no settled motion, as a clause; empty where it does."""
+
+    def columns(self, speed: float = 1.0) -> tuple[Any, ...]:
+        """How each displacement acts in a sweep: a `Column` of solvers/lanes/columns.py each."""
+
+    def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
+        """What varies in the columns, (r, k, 4)."""
+
+    def table_key(self) -> bytes:
+        """Bytes that two laws share where their tables are the same."""
 
 
 @dataclass(frozen=True)

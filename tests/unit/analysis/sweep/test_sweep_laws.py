@@ -10,14 +10,12 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.sweep import point as sweep_point
 from rotorgear.analysis.sweep.point import ready, still, table_of
 from rotorgear.forces.ball_bearing import BallBearing
 from rotorgear.forces.law import ForceLaw
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.mesh_friction import MeshFriction
 from rotorgear.forces.torque_curve import TorqueCurve
-from rotorgear.solvers.lanes.kernel_parts import OWN_LAW
 from rotorgear.solvers.lanes.lanes import Plan, Start, run_block
 from rotorgear.solvers.lanes.own_laws import not_held, own_laws
 from rotorgear.solvers.time.local_system import LocalSystem
@@ -80,8 +78,7 @@ def test_one_at_a_time_and_in_vectors_are_the_same_to_rounding(monkeypatch: pyte
     def orbit(own: bool) -> Any:
         known = still(local, [Fraction(1)], ("m", "n"))
         if own:
-            row = [(OWN_LAW, 0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0)]
-            monkeypatch.setattr(sweep_point, "column_of", lambda *_: row)
+            monkeypatch.setattr(MeshContact, "columns", ForceLaw.columns)
         points = [ready(known, speed) for speed in (0.8, 0.9, 1.1)]
         # The same measure of tangents for both: that of a law of its own is taken at its steepest.
         points = [replace(p, system=replace(p.system, energy=np.eye(5))) for p in points]

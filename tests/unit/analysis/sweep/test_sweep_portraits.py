@@ -56,7 +56,7 @@ def check(point: Point, steps: int, periods: int, settle: int = 20) -> None:
     settled = run_block([system], [start_of(system, 1, 3)], [table], Plan(steps, settle, 2, 0))[0]
     whole = run_block([system], [start_of(system, 1, 3)], [table], Plan(steps, settle + 2, periods, 0))[0]
     path = recorded(system, settled.end, table, steps, periods + 1, begun=settle + 2)
-    mesh = system.columns.mesh
+    mesh = system.columns.counted
     length = system.turns * steps
     size = np.abs(path[:, mesh]).max(axis=0)
     points = path[::length, mesh]

@@ -13,7 +13,7 @@ import rotorgear as rg
 from rotorgear.analysis.sweep import blocks as sweep_blocks
 from rotorgear.analysis.sweep.classify import exponents
 from rotorgear.analysis.sweep.point import Point, PointMaker, ready_reduced, table_of
-from rotorgear.analysis.sweep.probes import harmonics, probes_for, rates
+from rotorgear.analysis.sweep.probes import probes_for, rates
 from rotorgear.analysis.sweep.reduce import Large, Reducer, Wanted
 from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.forces.mesh_contact import MeshContact
@@ -236,8 +236,8 @@ def test_probes_hold_the_harmonics_of_all_meshes_up_to_the_highest_tabulated() -
     tied = MeshContact(1.0, gap="bilateral", order=3.0, error_cos=(0.1, 0.0, 0.0, 0.2))
     pieces = tuple((i / 8, float(np.cos(np.pi * i / 4)), float(np.cos(np.pi * (i + 1) / 4))) for i in range(8))
     shaken = MeshContact(1.0, gap="bilateral", order=1.0, impact=1.0, impact_share=0.15)
-    assert [harmonics(law) for law in (parting, tied, shaken)] == [3, 4, 7]
-    assert harmonics(replace(tied, error_cos=(), pieces=pieces)) == 1
+    assert [law.repeats()[0].harmonics for law in (parting, tied, shaken)] == [3, 4, 7]
+    assert replace(tied, error_cos=(), pieces=pieces).repeats()[0].harmonics == 1
     unbalance = RotatingForce(1.0, 1.0, plane=True)
     assert rates([parting, unbalance], -10.0) == pytest.approx([10.0, 20.0, 40.0, 60.0])
     probes = probes_for([parting], [5.0, 10.0], np.array([0.0, 33.0, 70.0]), damping=0.01)
