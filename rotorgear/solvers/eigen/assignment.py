@@ -8,8 +8,6 @@ together (D. F. Crouse, On implementing 2D rectangular assignment algorithms, IE
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -28,7 +26,8 @@ def assign(measured: ArrayLike, computed: ArrayLike, tolerance: float) -> list[t
     """Return the admissible pairs (index of measured, index of computed), ascending in frequency.
 
     Args:
-        measured, computed: positive numbers in any order, shapes (r,) and (f,).
+        measured: positive numbers in any order, shape (r,).
+        computed: positive numbers in any order, shape (f,).
         tolerance: t, between 0 and 1.
     """
     from scipy.optimize import linear_sum_assignment
@@ -37,16 +36,16 @@ def assign(measured: ArrayLike, computed: ArrayLike, tolerance: float) -> list[t
     if errors.size == 0:
         return []
     admissible = np.abs(errors) <= tolerance + ROUNDING
+    # One inadmissible pair costs more than all admissible ones together: so their number is as large as possible.
     outside = 1.0 + min(errors.shape) * miss_cost(tolerance + ROUNDING)
     rows, columns = linear_sum_assignment(np.where(admissible, np.abs(np.log1p(errors)), outside))
     kept = admissible[rows, columns]
-    return _in_order(np.asarray(measured), np.asarray(computed), rows[kept], columns[kept])
+    rows = rows[kept]
+    columns = columns[kept]
 
-
-def _in_order(measured: Any, computed: Any, rows: Any, columns: Any) -> list[tuple[int, int]]:
-    """Uncross the pairs: of all pairings of the same numbers the ascending one is never worse, and it is unique."""
-    rows = rows[np.argsort(measured[rows], kind="stable")]
-    columns = columns[np.lexsort((columns, computed[columns]))]
+    # Uncross the pairs: of all pairings of the same numbers the ascending one is never worse, and it is unique.
+    rows = rows[np.argsort(np.asarray(measured)[rows], kind="stable")]
+    columns = columns[np.lexsort((columns, np.asarray(computed)[columns]))]
     return [(int(row), int(column)) for row, column in zip(rows, columns, strict=True)]
 
 

@@ -18,6 +18,7 @@ from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.residual_vectors import ritz_residuals
 
 _EPS = float(np.finfo(float).eps)
+# Condition of the eigenvectors beyond which the exponential would lose ten digits.
 _WORST_CONDITION = 1e10
 # A rate on a free motion below this share of the largest one is rounding.
 _NOISE = 1e-10
@@ -32,9 +33,8 @@ class ComplexModes:
     Attributes:
         s: (nz,) complex roots in rad/s.
         shapes: Phi (n, nz), with the weight 2 of a conjugate pair.
-        gains: W (nz, n) as gains_left @ basis^T, so W f = gains (basis^T f).
         basis: V (n, b), M-orthonormal.
-        gains: (nz, b).
+        gains: (nz, b), so that W f = gains (V^T f).
         rigid: R (n, r), M-orthonormal.
         condition: of the matrix of eigenvectors.
     """
@@ -53,7 +53,9 @@ def complex_modes(
     """Return the complex modes.
 
     Args:
-        M, D, K: (n, n); D and K need not be symmetric.
+        M: (n, n).
+        D: (n, n), need not be symmetric.
+        K: (n, n), need not be symmetric.
         B: (n, m) where local forces act; matters only where `modes` cuts the basis.
         modes: real modes to keep; all where None.
         modal_ratio: damping ratio added to that of every elastic mode.
@@ -67,26 +69,20 @@ def complex_modes(
         Kb = V.T @ (K @ V)
         Db = V.T @ (D @ V)
         if R.shape[1]:
-            met, R = _split_damped(D, V, R, Db)
-            V = np.hstack([met, V])
+            # Motions without stiffness that meet velocity terms (rates in 1/s, from either side) are modes, with a root each;
+            # those that meet none drift, r'' = R^T f.
+            rates = np.vstack([R.T @ (D @ R), V.T @ (D @ R), R.T @ (D.T @ R), V.T @ (D.T @ R)])
+            _, sizes, turned = la.svd(rates)
+            damped = np.zeros(R.shape[1], bool)
+            damped[: sizes.size] = sizes > 10.0 * _NOISE * np.abs(Db).max(initial=1e-300)
+            V = np.hstack([R @ turned[damped].T, V])
+            R = R @ turned[~damped].T
             Kb = V.T @ (K @ V)
             Db = V.T @ (D @ V)
         if modal_ratio:
             Db = Db + np.diag(2.0 * modal_ratio * np.sqrt(np.maximum(np.diag(Kb), 0.0)))
         s, X, gains, condition = _pairs(Kb, Db)
     return ComplexModes(s, V @ X, V, gains, R, condition)
-
-
-def _split_damped(D: sp.csc_array, V: np.ndarray, R: np.ndarray, Db: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Split motions without stiffness into those that meet velocity terms (rates in 1/s) and those that meet none."""
-    DR = D @ R
-    DtR = D.T @ R
-    rates = np.vstack([R.T @ DR, V.T @ DR, R.T @ DtR, V.T @ DtR])
-    _, sizes, turned = la.svd(rates)
-    met = np.concatenate(
-        [sizes > 10.0 * _NOISE * np.abs(Db).max(initial=1e-300), np.zeros(R.shape[1] - sizes.size, bool)]
-    )
-    return R @ turned[met].T, R @ turned[~met].T
 
 
 def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | None) -> tuple[np.ndarray, np.ndarray]:
@@ -96,6 +92,8 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     dense = M.toarray()
     stiff = K.toarray()
     stiff = 0.5 * (stiff + stiff.T)
+
+    # A shift below all elastic modes, at which rigid ones have the largest mu.
     ratio = np.diag(stiff) / np.diag(dense)
     sigma = 1e-3 * float(ratio[ratio > 0.0].min(initial=1.0)) if np.any(ratio > 0.0) else 1.0
     try:
@@ -105,6 +103,8 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     mu = mu[::-1]
     V = V[:, ::-1]
     V = V / np.sqrt(np.maximum(np.einsum("ij,ij->j", V, dense @ V), 1e-300))
+
+    # Rigid is what strains by rounding only; a rigid motion whose eigenvalue is not zero says that rounding hides soft modes.
     strain = np.einsum("ij,ij->j", V, stiff @ V)
     noise = np.einsum("ij,ij->j", np.abs(V), np.abs(stiff) @ np.abs(V))
     rigid = np.abs(strain) <= 1e3 * _EPS * noise
@@ -116,7 +116,10 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     V = V[:, ~rigid]
     V, lam = _freed_of_slower(dense, stiff, R, V)
     if modes is not None and modes < V.shape[1]:
-        V = _with_residuals(dense, stiff, V, lam, B, modes)
+        # What the modes that are cut give statically under unit local forces, as Ritz vectors with inertia.
+        high = V[:, modes:]
+        residual = high @ ((high.T @ B) / lam[modes:, None])
+        V = np.hstack([V[:, :modes], ritz_residuals(dense, stiff, residual)])
     return V, R
 
 
@@ -145,29 +148,22 @@ def _freed_of_slower(M: np.ndarray, K: np.ndarray, R: np.ndarray, V: np.ndarray)
     return slower[:, R.shape[1] :], np.concatenate(squares)
 
 
-def _with_residuals(
-    M: np.ndarray, K: np.ndarray, V: np.ndarray, lam: np.ndarray, B: np.ndarray, modes: int
-) -> np.ndarray:
-    """The lowest modes and what the others give statically under unit local forces, as Ritz vectors with inertia."""
-    high = V[:, modes:]
-    low = V[:, :modes]
-    residual = high @ ((high.T @ B) / lam[modes:, None])
-    return np.hstack([low, ritz_residuals(M, K, residual)])
-
-
 def _pairs(K: np.ndarray, D: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     """Roots, shapes (b, nz), gains (nz, b) and condition of q'' + D q' + K q = f in an orthonormal basis."""
     b = K.shape[0]
     if b == 0:
         return np.zeros(0, complex), np.zeros((0, 0), complex), np.zeros((0, 0), complex), 1.0
     diagonal = np.diag(K)
+
+    # Modal damping: K and D are diagonal, and the roots are those of single oscillators.
     off = np.abs(K - np.diag(diagonal)).max()
     if np.abs(D - np.diag(np.diag(D))).max() <= 1e-13 * np.abs(D).max(initial=0.0) and off <= 1e-12 * np.abs(K).max():
         half = 0.5 * np.diag(D)
         root = np.sqrt((half**2 - diagonal).astype(complex))
-        if np.all(root.imag > 0.0):  # all oscillate: closed form
+        if np.all(root.imag > 0.0):
             s = -half + root
             return s, 2.0 * np.eye(b, dtype=complex), np.diag(1.0 / (2.0 * root)), 1.0
+
     # In w = [sqrt(k_jj) q_j, q_j'] an undamped structure has orthogonal eigenvectors, whatever its frequencies.
     unit = np.sqrt(np.maximum(diagonal, 1e-12 * np.abs(diagonal).max(initial=1e-300)))
     A = np.zeros((2 * b, 2 * b))
@@ -180,7 +176,7 @@ def _pairs(K: np.ndarray, D: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nda
         raise ConvergenceError(
             f"the complex modes lie too near to each other (condition {condition:.1e}); use the newmark method"
         )
-    Y = la.inv(X)
+    Y = la.inv(X)  # left vectors, biorthonormal to X
     kept = s.imag >= 0.0
     weight = np.where(s[kept].imag > 0.0, 2.0, 1.0)
     return s[kept], X[:b, kept] * weight / unit[:, None], Y[kept][:, b:], condition

@@ -19,10 +19,10 @@ from rotorgear.solvers.eigen.shift_invert import ShiftInvert, dense_modes, lancz
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import Strain, backward_errors, check_pencil, count_below, rounding_noise
 
-_DENSE_UP_TO = 250
+_DENSE_UP_TO = 250  # unknowns up to which LAPACK is as fast
 _SPARE = 4  # Ritz pairs beyond the converged ones, among which a gap for the Sturm count is looked for
 _GAP = 1e-3  # least relative gap in lambda in which a Sturm count is placed
-_ATTEMPTS = 6
+_ATTEMPTS = 6  # each with three times the spare pairs of the one before
 _UNSTABLE = 100.0  # multiple of the rounding of K below which an eigenvalue is negative in earnest
 _EDGE = 1e-9  # a mode this close above the limit `below` counts as on it
 
@@ -31,15 +31,18 @@ _EDGE = 1e-9  # a mode this close above the limit `below` counts as on it
 class UndampedModes:
     """The m lowest modes of K v = lambda M v.
 
-    Attributes
-    ----------
-    eigenvalues : (m,) lambda = omega^2 in (rad/s)^2, ascending, never negative.
-    vectors : (n, m), V^T M V = identity.
-    rigid_count : how many of the first modes have no strain beyond rounding.
-    backward_error : (m,) ||K v - lambda M v|| / ((||K||_1 + |lambda| ||M||_1) ||v||).
-    available : number of finite modes of the pencil; `complete` says that all of them are here.
-    sturm_shift : lambda at which modes were counted; sturm_count by pivot signs, sturm_expected by this solver.
-    method : "dense" or "block Lanczos"; shift : sigma; factorisations : how many matrices were factored.
+    Attributes:
+        eigenvalues: (m,) lambda = omega^2 in (rad/s)^2, ascending, never negative.
+        vectors: (n, m), V^T M V = identity.
+        rigid_count: how many of the first modes have no strain beyond rounding.
+        backward_error: (m,) ||K v - lambda M v|| / ((||K||_1 + |lambda| ||M||_1) ||v||).
+        available: number of finite modes of the pencil; `complete` says that all of them are here.
+        sturm_shift: lambda at which modes were counted.
+        sturm_count: modes below it by pivot signs.
+        sturm_expected: modes below it that this solver has.
+        method: "dense" or "block Lanczos".
+        shift: sigma.
+        factorisations: how many matrices were factored.
     """
 
     eigenvalues: np.ndarray
@@ -65,18 +68,6 @@ class UndampedModes:
         return self.eigenvalues.size == self.available
 
 
-@dataclass(frozen=True)
-class _Wanted:
-    count: int | None
-    below: float | None
-
-    def among(self, values: np.ndarray) -> int:
-        """How many of the ascending eigenvalues were asked for."""
-        limit = np.inf if self.below is None else self.below**2 * (1.0 + _EDGE)
-        inside = int(np.count_nonzero(values <= limit))
-        return inside if self.count is None else min(inside, self.count)
-
-
 def lowest_modes(
     M: sp.csc_array,
     K: sp.csc_array,
@@ -88,23 +79,19 @@ def lowest_modes(
 ) -> UndampedModes:
     """The lowest undamped modes of a symmetric positive semidefinite pair, rigid modes included.
 
-    Parameters
-    ----------
-    M, K : (n, n) symmetric positive semidefinite; M may have massless dofs (their infinite modes are left out).
-    count : number of modes; when fewer exist all are returned (`complete`). None with no `below`: all modes.
-    below : only the modes with omega <= below [rad/s], and all of them (the lowest `count` when both are given).
-    strain : V (n, m) -> S V (p, m) with K = S^T S, each strain evaluated without forming K. It carries soft modes to
-        full precision and tells rigid from soft; without it a mode softer than the rounding of K counts as rigid.
-    guess : an eigenvalue [(rad/s)^2] near the first elastic one; saves the search for it, never changes the answer.
+    Args:
+        M: (n, n) symmetric positive semidefinite; it may have massless dofs, whose infinite modes are left out.
+        K: (n, n) symmetric positive semidefinite.
+        count: number of modes; when fewer exist all are returned (`complete`). None with no `below`: all modes.
+        below: only the modes with omega <= below [rad/s], and all of them (the lowest `count` when both are given).
+        strain: V (n, m) -> S V (p, m) with K = S^T S, each strain evaluated without forming K. It carries soft modes to
+            full precision and tells rigid from soft; without it a mode softer than the rounding of K counts as rigid.
+        guess: an eigenvalue [(rad/s)^2] near the first elastic one; saves the search for it, never changes the answer.
 
-    Raises
-    ------
-    LooseDofError
-        A dof has neither inertia nor stiffness (`dofs`).
-    AnalysisError
-        The matrices are not symmetric or K is not positive semidefinite.
-    ConvergenceError
-        The Sturm count does not confirm the modes; `partial` holds them.
+    Raises:
+        LooseDofError: a dof has neither inertia nor stiffness (`dofs`).
+        AnalysisError: the matrices are not symmetric or K is not positive semidefinite.
+        ConvergenceError: the Sturm count does not confirm the modes; `partial` holds them.
     """
     if count is not None and count < 1:
         raise AnalysisError(f"The number of modes must be at least 1, got {count}.")
@@ -114,7 +101,55 @@ def lowest_modes(
     K = sp.csc_array(K, dtype=float)
     with single_thread(K.shape[0]):
         massless = check_pencil(M, K)
-        return _confirmed(shifted_operator(M, K, guess), _Wanted(count, below), strain, massless)
+        operator = shifted_operator(M, K, guess)
+
+        # How many there are to find: all finite ones, or those that a first Sturm count sees just above the limit.
+        target = K.shape[0] - massless.size
+        if below is not None:
+            target = min(target, count_below(operator.M, operator.K, below**2 * (1.0 + 1e3 * _EDGE)))
+            operator.factorisations += 1
+        if count is not None:
+            target = min(count, target)
+
+        # Compute and refine, then count below a gap above the last mode; with more pairs while there is no gap, or while the
+        # count finds modes that are missing.
+        limit = np.inf if below is None else below**2 * (1.0 + _EDGE)
+        spare = _SPARE
+        modes = None
+        for _ in range(_ATTEMPTS):
+            pairs = _candidates(operator, massless, target, spare, strain)
+            keep = int(np.count_nonzero(pairs.values <= limit))
+            if count is not None:
+                keep = min(keep, count)
+            gap = _gap_above(pairs, keep) if keep <= pairs.sure else None
+            if gap is not None:
+                sturm_shift, expected = gap
+                errors = backward_errors(operator.mass, operator.stiffness, pairs.values, pairs.vectors)
+                sturm_count = count_below(operator.M, operator.K, sturm_shift)
+                operator.factorisations += 1
+                modes = UndampedModes(
+                    eigenvalues=pairs.values[:keep],
+                    vectors=pairs.vectors[:, :keep],
+                    rigid_count=min(pairs.rigid, keep),
+                    backward_error=errors[:keep],
+                    available=pairs.finite,
+                    sturm_shift=sturm_shift,
+                    sturm_count=sturm_count,
+                    sturm_expected=expected,
+                    method=pairs.method,
+                    shift=operator.sigma,
+                    factorisations=operator.factorisations,
+                )
+                if modes.sturm_count_ok:
+                    return modes
+                target = max(target, sturm_count)
+            target = max(target, keep)
+            spare = 3 * spare
+    raise ConvergenceError(
+        f"The {target} lowest modes could not be told from those above them: no gap confirmed by a Sturm count."
+        " Ask for more modes.",
+        modes,
+    )
 
 
 @dataclass(frozen=True)
@@ -130,40 +165,10 @@ class _Candidates:
     method: str
 
 
-def _confirmed(operator: ShiftInvert, wanted: _Wanted, strain: Strain | None, massless: np.ndarray) -> UndampedModes:
-    """Compute, refine and count, with more Ritz vectors while no gap is found or the count disagrees."""
-    target = _target(operator, wanted, massless)
-    spare = _SPARE
-    modes = None
-    for _attempt in range(_ATTEMPTS):
-        candidates = _candidates(operator, massless, target, spare, strain)
-        keep = wanted.among(candidates.values)
-        gap = _gap_above(candidates, keep) if keep <= candidates.sure else None
-        if gap is not None:
-            modes = _counted(operator, candidates, keep, gap)
-            if modes.sturm_count_ok:
-                return modes
-            target = max(target, modes.sturm_count)
-        target = max(target, keep)
-        spare = 3 * spare
-    raise ConvergenceError(
-        f"The {target} lowest modes could not be told from those above them: no gap confirmed by a Sturm count."
-        " Ask for more modes.",
-        modes,
-    )
-
-
-def _target(operator: ShiftInvert, wanted: _Wanted, massless: np.ndarray) -> int:
-    finite = operator.K.shape[0] - massless.size
-    if wanted.below is not None:
-        finite = min(finite, count_below(operator.M, operator.K, wanted.below**2 * (1.0 + 1e3 * _EDGE)))
-        operator.factorisations += 1
-    return finite if wanted.count is None else min(wanted.count, finite)
-
-
 def _candidates(
     operator: ShiftInvert, massless: np.ndarray, target: int, spare: int, strain: Strain | None
 ) -> _Candidates:
+    """Refined Ritz pairs: `target` lowest ones and up to `spare` more, among which a gap may be found."""
     n = operator.K.shape[0]
     dense = n <= _DENSE_UP_TO or 3 * (target + spare) > n
     if dense:
@@ -171,7 +176,7 @@ def _candidates(
         sure = finite = V.shape[1]
         V = V[:, : target + 10 * spare]
     else:
-        V = lanczos_modes(operator, target + 1, spare)
+        V = lanczos_modes(operator, target + 1, spare)  # one more must be converged: the gap lies below it
         sure = target + 1
         finite = n - massless.size
     V = orthonormalised(operator.mass, V)
@@ -189,6 +194,7 @@ def _gap_above(candidates: _Candidates, keep: int) -> tuple[float, int] | None:
     """A shift in the widest relative gap above the modes to keep, and the number of modes below it; None: no gap."""
     values = candidates.values
     noise = candidates.noise
+    # With all finite modes at hand any shift above the last one is in a gap.
     if values.size == candidates.finite:
         values = np.append(values, max(4.0 * values[-1], 1e3 * noise[-1]))
         noise = np.append(noise, 0.0)
@@ -204,22 +210,3 @@ def _gap_above(candidates: _Candidates, keep: int) -> tuple[float, int] | None:
         return None
     best = int(np.argmax(gaps))
     return float(0.5 * (above[best] + under[best])), first + best
-
-
-def _counted(operator: ShiftInvert, candidates: _Candidates, keep: int, gap: tuple[float, int]) -> UndampedModes:
-    errors = backward_errors(operator.mass, operator.stiffness, candidates.values, candidates.vectors)
-    found = count_below(operator.M, operator.K, gap[0])
-    operator.factorisations += 1
-    return UndampedModes(
-        eigenvalues=candidates.values[:keep],
-        vectors=candidates.vectors[:, :keep],
-        rigid_count=min(candidates.rigid, keep),
-        backward_error=errors[:keep],
-        available=candidates.finite,
-        sturm_shift=gap[0],
-        sturm_count=found,
-        sturm_expected=gap[1],
-        method=candidates.method,
-        shift=operator.sigma,
-        factorisations=operator.factorisations,
-    )

@@ -68,7 +68,7 @@ class BlockKrylov:
         self._reserve(new + self._block.shape[1])
         self._V[:, old:new] = self._block
         self._size = new
-        # symmetric T couples a block to its neighbours only: one full pass is then left to remove rounding
+        # Symmetric T couples a block to its neighbours only: one full pass is then left to remove rounding.
         since = self._border_start if self._inner is not None else 0
         self._block, coefficients = self._orthonormal(self._apply(self._block), since)
         self._H[:new, old:new] = coefficients[:new]
@@ -84,9 +84,11 @@ class BlockKrylov:
         self._inject(count)
 
     def _fresh(self, count: int) -> np.ndarray:
+        """T applied to random directions (n, count): what T maps to zero is left out from the start."""
         return self._apply(self._random.standard_normal((self._V.shape[0], count)))
 
     def _inject(self, count: int) -> None:
+        """Add fresh directions to the newest block, orthogonal to it and to the basis."""
         held = self._size
         pending = self._block.shape[1]
         self._reserve(held + pending)
@@ -108,6 +110,7 @@ class BlockKrylov:
         return image
 
     def _reserve(self, size: int) -> None:
+        """Make room for a basis of so many columns."""
         if size > self._V.shape[1]:
             room = 2 * size
             V = np.empty((self._V.shape[0], room), order="F")
@@ -148,6 +151,7 @@ class BlockKrylov:
 
 def _compressed(gram: np.ndarray, shortest: float) -> tuple[np.ndarray, np.ndarray, float]:
     """Q, R, spread with X = (X Q) R and X Q orthonormal, from X^T W X; directions under `shortest` are left out."""
+    # Unit columns first: directions of very different lengths then do not hide each other in the eigenvalues.
     scale = np.sqrt(np.maximum(np.diag(gram), 0.0))
     kept = np.flatnonzero(scale > shortest)
     scale = scale[kept]

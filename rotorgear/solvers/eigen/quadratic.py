@@ -70,10 +70,8 @@ def corrected(values: np.ndarray, trust: np.ndarray, forms: tuple[np.ndarray, np
 def scaled(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, w0: float) -> Quadratic:
     """Scale dofs by 1/sqrt(|k_ii| + w0 |d_ii| + w0^2 m_ii) and time by w0.
 
-    Raises
-    ------
-    LooseDofError
-        Some dof has no stiffness, damping and inertia of its own.
+    Raises:
+        LooseDofError: some dof has no stiffness, damping and inertia of its own.
     """
     diagonal = np.abs(K.diagonal()) + w0 * np.abs(D.diagonal()) + w0**2 * np.abs(M.diagonal())
     if np.any(diagonal <= 0.0):
@@ -94,6 +92,7 @@ class InverseState:
         self._second = sp.csr_array(quadratic.M)
         self.zeros = zero_states(quadratic, rigid)
         inertia = np.maximum(quadratic.M.diagonal(), 0.0)
+        # A massless dof has a speed that weighs nothing; rounding of the heaviest stands in, so that B can be inverted.
         self._balance = np.sqrt(np.maximum(inertia, EPS * inertia.max(initial=0.0)))[:, None]
 
     def project(self, x: np.ndarray) -> np.ndarray:
@@ -120,6 +119,7 @@ class InverseState:
         return np.vstack([y[:n], y[n:] / self._balance])
 
     def _balanced(self, x: np.ndarray) -> np.ndarray:
+        """B x (2n, k)."""
         n = self.quadratic.n
         return np.vstack([x[:n], self._balance * x[n:]])
 
@@ -148,10 +148,8 @@ def zero_states(quadratic: Quadratic, rigid: np.ndarray) -> np.ndarray:
     Each rigid motion R c is one. If D R c does no work on rigid motions (L^T D R c = 0, L^T K = 0) it may also drift,
     q = R c t + q1 with K q1 = -D R c: a second state, the pair of a defective double zero.
 
-    Raises
-    ------
-    AnalysisError
-        The rigid vectors are strained, or a drift has no inertia.
+    Raises:
+        AnalysisError: the rigid vectors are strained, or a drift has no inertia.
     """
     K = quadratic.K
     D = quadratic.D
@@ -184,10 +182,8 @@ def infinite_states(quadratic: Quadratic) -> np.ndarray:
     [0; e] for each massless dof e; and where D does no work on a combination N c of them (N^T D N c = 0) also
     [N c; -M^+ D N c], the pair of a defective double infinity. The drift pairs of `zero_states` with K and M exchanged.
 
-    Raises
-    ------
-    LooseDofError
-        Massless, undamped dofs have no stiffness.
+    Raises:
+        LooseDofError: massless, undamped dofs have no stiffness.
     """
     n = quadratic.n
     massless = np.flatnonzero(quadratic.M.diagonal() <= 0.0)

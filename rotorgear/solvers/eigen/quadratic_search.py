@@ -25,13 +25,12 @@ from rotorgear.solvers.eigen.quadratic import (
 )
 from rotorgear.solvers.sparse.pencil import EPS
 
-_DENSE_UP_TO = 80
+_DENSE_UP_TO = 80  # dofs up to which LAPACK is as fast
 _BLOCK = 4
 _CONVERGED = 1e-12  # residual of T x = mu x relative to mu
 _SOUND = 1e-9  # backward error, and distance of two pairs, above and below which a Krylov result is not taken
-# relative rounding of the smallest mu above which the upper spectrum is taken from the companion matrix
-_TOO_BLURRED = 1e-8
-_LARGEST_DENSE = 6000
+_TOO_BLURRED = 1e-8  # rounding of the smallest mu from which the upper spectrum is taken from the companion matrix
+_LARGEST_DENSE = 6000  # states: 0.6 GB a complex matrix
 _SPARE = 8  # pairs beyond those that matter which are refined too, since refinement may change their order
 _SHIFT = 0.3  # sigma / w0, w0 being near the lowest |lambda|
 _BLUR = 1e-13  # relative error of 1/mu from rounding above which an eigenpair is refined on the pencil itself
@@ -67,7 +66,10 @@ class Pairs:
 
 
 def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, frequency_scale: float | None) -> Search:
-    """Choose w0 near the lowest frequencies: probe, and move there while the guess is off by more than a decade."""
+    """Choose w0 near the lowest frequencies: probe, and move there while the guess is off by more than a decade.
+
+    Where they lie is the geometric mean of the lowest few |lambda|.
+    """
     w0 = first_guess(M, D, K) if frequency_scale is None else frequency_scale
     best = None
     off = np.inf
@@ -75,8 +77,18 @@ def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, f
         quadratic = scaled(M, D, K, w0)
         inverse = InverseState(quadratic, _SHIFT, R / quadratic.scale[:, None])
         search = Search(inverse, BlockKrylov(inverse.apply_balanced, 2 * quadratic.n, _BLOCK), attempt)
-        lowest = _probe(search)
-        if lowest is None or 0.1 <= lowest <= 10.0:
+
+        # Three blocks see the eigenvalues nearest to the shift; nothing but zero ones leaves nothing to move to.
+        for _ in range(3):
+            if not search.krylov.exhausted:
+                search.krylov.expand()
+        if search.krylov.size == 0:
+            return search
+        mu, _, residuals = search.ritz()
+        settled = mu[residuals < 0.3][: 2 * _BLOCK]
+        near = np.abs(inverse.sigma + 1.0 / (settled if settled.size else mu[:1]))
+        lowest = float(np.exp(np.mean(np.log(np.maximum(near, np.finfo(float).tiny)))))
+        if 0.1 <= lowest <= 10.0:
             return search
         if abs(np.log(lowest)) < off:
             best = search
@@ -87,20 +99,6 @@ def prepared(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, R: np.ndarray, f
             "The lowest frequencies could not be located: inertia, damping and stiffness lie too many decades apart."
         )
     return best  # a spectrum without a place near which its lowest eigenvalues gather: any scale will do
-
-
-def _probe(search: Search) -> float | None:
-    """Geometric mean of the lowest few |lambda| (scaled), or None when there is nothing but zero eigenvalues."""
-    krylov = search.krylov
-    for _ in range(3):
-        if not krylov.exhausted:
-            krylov.expand()
-    if krylov.size == 0:
-        return None
-    mu, _, residuals = search.ritz()
-    settled = mu[residuals < 0.3][: 2 * _BLOCK]
-    values = np.abs(search.inverse.sigma + 1.0 / (settled if settled.size else mu[:1]))
-    return float(np.exp(np.mean(np.log(np.maximum(values, np.finfo(float).tiny)))))
 
 
 def solve(search: Search, rows: int | None, below: float | None, dense: bool = False) -> Pairs:
@@ -174,7 +172,7 @@ def _converged(search: Search, wanted: int) -> tuple[np.ndarray, np.ndarray]:
             return mu, Y
         if krylov.size > 10 * wanted + 200:
             raise ConvergenceError(f"The {wanted} eigenvalues nearest to zero did not settle.", mu)
-        # residuals fall geometrically from about 1 at size = wanted: go to where the line meets the tolerance
+        # Residuals fall geometrically from about 1 at size = wanted: go to where the line meets the tolerance
         slope = np.log(min(worst, 0.1)) / max(krylov.size - wanted, 1)
         goal = krylov.size + int(np.clip(np.log(_CONVERGED / worst) / slope, 1, wanted))
 
@@ -194,6 +192,7 @@ def _dense(search: Search, rows: int | None) -> Pairs:
         )
     known = np.hstack([inverse.zeros, infinite_states(inverse.quadratic)])
     rest = np.linalg.qr(known, mode="complete")[0][:, known.shape[1] :] if known.shape[1] else np.eye(size)
+    # Off the states of zero and of infinite eigenvalues: these would spoil the others by their defective pairs.
     T = rest.T @ inverse.apply(rest)
     mu, X = np.linalg.eig(T)
     finite = np.abs(mu) > size * EPS**2 * np.abs(mu).max(initial=0.0)
@@ -243,10 +242,12 @@ def _selected(
     """
     quadratic = search.inverse.quadratic
     sigma = search.inverse.sigma
-    one = mu.imag <= 0.0
+    one = mu.imag <= 0.0  # Im lambda >= 0, since mu = 1 / (lambda - sigma)
     mu = mu[one].astype(complex)
     V = search.inverse.restored(mu, X[:, one].astype(complex), known)[: quadratic.n]
     values = sigma + 1.0 / mu
+
+    # An error e of mu is one of |lambda - sigma|^2 e of lambda. What it blurs is refined on the pencil itself.
     rounding = EPS * np.abs(values - sigma) ** 2 * size / np.abs(values)
     rank = np.argsort(np.argsort(np.abs(values), kind="stable"), kind="stable")
     blurred = (rounding > _BLUR) & (rank < (values.size if rows is None else rows + _SPARE))

@@ -41,11 +41,12 @@ class Pencil:
 class Eigen:
     """Eigenpairs of one pencil that oscillate (Im s > 0), lowest |s| first.
 
-    Attributes
-    ----------
-    s : (m,) eigenvalues; q : (r, m) right vectors, y : (r, m) left ones, with y_i^H (2 s_i M + D) q_j = delta_ij in clusters.
-    real : eigenvalues that do not oscillate, ascending; zero ones left out.
-    pencil : what they belong to.
+    Attributes:
+        s: (m,) eigenvalues.
+        q: (r, m) right vectors.
+        y: (r, m) left vectors, with y_i^H (2 s_i M + D) q_j = delta_ij in clusters.
+        real: eigenvalues that do not oscillate, ascending; zero ones left out.
+        pencil: what they belong to.
     """
 
     s: np.ndarray
@@ -58,24 +59,36 @@ class Eigen:
 def eigen(pencil: Pencil, shift: float, smallest: float, count: int) -> Eigen:
     """The oscillating eigenpairs of a pencil.
 
-    Parameters
-    ----------
-    pencil : M, D, K (r, r).
-    shift : sigma > 0 in rad/s, best near the geometric mean of the lowest and the highest |s| that count.
-    smallest : |s| below which an eigenvalue is that of a rigid motion and left out.
-    count : so many oscillating pairs at most.
+    Args:
+        pencil: M, D, K (r, r).
+        shift: sigma > 0 in rad/s, best near the geometric mean of the lowest and the highest |s| that count.
+        smallest: |s| below which an eigenvalue is that of a rigid motion and left out.
+        count: so many oscillating pairs at most.
 
-    Raises
-    ------
-    ConvergenceError
-        K + sigma D + sigma^2 M is singular.
+    Raises:
+        ConvergenceError: K + sigma D + sigma^2 M is singular.
     """
     r = pencil.K.shape[0]
     if r == 0:
         return Eigen(np.zeros(0, complex), np.zeros((0, 0), complex), np.zeros((0, 0), complex), np.zeros(0), pencil)
+
+    # Time in units of the shift (sigma = 1) and coordinates scaled to unit diagonals: units do not matter.
+    diagonal = np.abs(np.diag(pencil.K)) + shift**2 * np.abs(np.diag(pencil.M)) + shift * np.abs(np.diag(pencil.D))
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    M = shift**2 * pencil.M * scale[:, None] * scale
+    D = shift * pencil.D * scale[:, None] * scale
+    K = pencil.K * scale[:, None] * scale
     with single_thread(2 * r):
-        T, P, scale = _inverted(pencil, shift)
+        try:
+            P = la.inv(K + D + M, check_finite=False)
+        except la.LinAlgError:
+            raise ConvergenceError("A reduced problem is singular at its shift.") from None
+        PD = P @ (D + M)
+        PM = P @ M
+        T = np.block([[-PD, -PM], [np.eye(r) - PD, -PM]])
         mu, L, X = la.eig(T, left=True, right=True, check_finite=False)
+
+    # s = sigma + sigma / mu in these units; mu = 0 is a massless coordinate. Rigid motions are too small to count.
     infinite = np.abs(mu) < 1e-14 * np.abs(mu).max()
     s = shift * (1.0 + 1.0 / np.where(infinite, 1.0, mu))
     size = np.abs(s)
@@ -83,6 +96,8 @@ def eigen(pencil: Pencil, shift: float, smallest: float, count: int) -> Eigen:
     real = counted & (np.abs(s.imag) <= 1e-9 * size)
     chosen = np.flatnonzero(counted & ~real & (s.imag > 0.0))
     chosen = chosen[np.argsort(size[chosen], kind="stable")][:count]
+
+    # Right vectors are the upper half of x, left ones follow from l; both go back to the coordinates of the pencil.
     q = X[:r, chosen]
     l1 = L[:r, chosen]
     l2 = L[r:, chosen]
@@ -94,42 +109,27 @@ def eigen(pencil: Pencil, shift: float, smallest: float, count: int) -> Eigen:
     return Eigen(s, q, _biorthogonal(pencil, s, q, y), np.sort(shift * (1.0 + 1.0 / mu[real]).real), pencil)
 
 
-def _inverted(pencil: Pencil, shift: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """T and P in time scaled by the shift and coordinates scaled to unit diagonals, and the scale of the coordinates."""
-    diagonal = np.abs(np.diag(pencil.K)) + shift**2 * np.abs(np.diag(pencil.M)) + shift * np.abs(np.diag(pencil.D))
-    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-    M, D, K = (
-        factor * A * scale[:, None] * scale for factor, A in ((shift**2, pencil.M), (shift, pencil.D), (1.0, pencil.K))
-    )
-    try:
-        P = la.inv(K + D + M, check_finite=False)
-    except la.LinAlgError:
-        raise ConvergenceError("A reduced problem is singular at its shift.") from None
-    PD = P @ (D + M)
-    PM = P @ M
-    return np.block([[-PD, -PM], [np.eye(len(K)) - PD, -PM]]), P, scale
-
-
 def _biorthogonal(pencil: Pencil, s: np.ndarray, q: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Left vectors scaled to y_i^H ((s_i + s_j) M + D) q_j = delta_ij inside each cluster of eigenvalues."""
     y = y.copy()
-    for own in clusters(s):
-        if len(own) == 1:
-            k = own[0]
+    for close in clusters(s):
+        if len(close) == 1:
+            k = close[0]
             y[:, k] /= np.conj(y[:, k].conj() @ (2.0 * s[k] * (pencil.M @ q[:, k]) + pencil.D @ q[:, k]))
             continue
-        product = y[:, own].conj().T @ (2.0 * np.mean(s[own]) * pencil.M + pencil.D) @ q[:, own]
-        y[:, own] = y[:, own] @ np.linalg.pinv(product).conj().T
+        product = y[:, close].conj().T @ (2.0 * np.mean(s[close]) * pencil.M + pencil.D) @ q[:, close]
+        y[:, close] = y[:, close] @ np.linalg.pinv(product).conj().T
     return y
 
 
 def clusters(s: np.ndarray, tolerance: float = _CLUSTER) -> list[np.ndarray]:
     """Numbers of the eigenvalues (m,), ascending in |s|, that lie within a relative tolerance of each other, group by group."""
-    found: list[list[int]] = []
+    groups: list[list[int]] = []
     for k in range(len(s)):
-        near = [g for g in found[-6:] if np.min(np.abs(s[g] - s[k])) <= tolerance * abs(s[k])]
+        # Ascending in size only, groups of one size and other phases interleave: look back at the last few.
+        near = [g for g in groups[-6:] if np.min(np.abs(s[g] - s[k])) <= tolerance * abs(s[k])]
         if near:
             near[-1].append(k)
         else:
-            found.append([k])
-    return [np.array(group) for group in found]
+            groups.append([k])
+    return [np.array(group) for group in groups]

@@ -81,6 +81,7 @@ def count_rigid(operator: ShiftInvert, values: np.ndarray, V: np.ndarray, noise:
     """
     if not with_strain:
         return _leading(values <= _SAFETY * noise)
+    # Only what is near the rounding of K can be rigid; the rest needs no solve.
     low = _leading(values <= 1e3 * noise)
     if low == 0:
         return 0
@@ -92,4 +93,5 @@ def count_rigid(operator: ShiftInvert, values: np.ndarray, V: np.ndarray, noise:
 
 
 def _leading(flags: np.ndarray) -> int:
+    """How many of the first flags are true."""
     return int(np.argmin(np.append(flags, False)))

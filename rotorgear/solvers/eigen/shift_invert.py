@@ -18,7 +18,7 @@ from rotorgear.solvers.eigen.krylov import BlockKrylov
 from rotorgear.solvers.sparse.factor import SymmetricFactor, factor_symmetric
 from rotorgear.solvers.sparse.pencil import EPS, rounding_noise
 
-_BLOCK = 4
+_BLOCK = 4  # as many copies of an eigenvalue are found at once; more columns cost more than they bring
 _CONVERGED = 1e-9  # residual of T v = theta v relative to theta; its square is the error of the Rayleigh quotient
 _USEFUL = (1e-3, 10.0)  # |sigma| / first elastic eigenvalue: inside, the shift costs neither accuracy nor iterations
 _SPREAD = 1e7  # highest eigenvalue / |sigma| up to which rounding in soft modes leaves the stiff ones alone
@@ -69,20 +69,27 @@ class ShiftInvert:
 def shifted_operator(M: sp.csc_array, K: sp.csc_array, guess: float | None = None) -> ShiftInvert:
     """Find a useful sigma < 0 and factor K - sigma M; `guess`, a first elastic eigenvalue, saves work where it is right.
 
-    Raises
-    ------
-    AnalysisError
-        K is not positive semidefinite.
-    ConvergenceError
-        K - sigma M is singular for every shift.
+    Raises:
+        AnalysisError: K is not positive semidefinite.
+        ConvergenceError: K - sigma M is singular for every shift.
     """
-    sigma = -(0.1 * guess if guess else _first_guess(M, K))
+    # Without a guess begin far below all frequencies, and come up by the probe.
+    if guess:
+        sigma = -0.1 * guess
+    else:
+        mass = M.diagonal()
+        stiffness = K.diagonal()
+        both = (mass > 0.0) & (stiffness > 0.0)
+        sigma = -(1e-16 * float(np.median(stiffness[both] / mass[both])) if np.any(both) else 1.0)
     factored = 0
     for _ in range(12):
         factored += 1
-        factor = _positive_factor(M, K, sigma)
-        if factor is None:
-            sigma *= 1e3
+        try:
+            factor = factor_symmetric(sp.csc_array(K - sigma * M))
+        except ConvergenceError:
+            factor = None
+        if factor is None or factor.negative_count() > 0:
+            sigma *= 1e3  # a free structure: sigma M must rise above the rounding of K
             continue
         operator = ShiftInvert(M, K, sigma, factor, factored)
         elastic = _first_elastic(operator)
@@ -93,21 +100,6 @@ def shifted_operator(M: sp.csc_array, K: sp.csc_array, guess: float | None = Non
     raise ConvergenceError(
         "No shift makes K - sigma M positive definite: some motion meets neither stiffness nor inertia."
     )
-
-
-def _first_guess(M: sp.csc_array, K: sp.csc_array) -> float:
-    mass = M.diagonal()
-    stiffness = K.diagonal()
-    both = (mass > 0.0) & (stiffness > 0.0)
-    return 1e-16 * float(np.median(stiffness[both] / mass[both])) if np.any(both) else 1.0
-
-
-def _positive_factor(M: sp.csc_array, K: sp.csc_array, sigma: float) -> SymmetricFactor | None:
-    try:
-        factor = factor_symmetric(sp.csc_array(K - sigma * M))
-    except ConvergenceError:
-        return None
-    return factor if factor.negative_count() == 0 else None
 
 
 def _first_elastic(operator: ShiftInvert) -> float | None:
@@ -148,7 +140,12 @@ def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarr
         if krylov.exhausted or stagnant or np.all(residuals[:converged] < _CONVERGED):
             highest = values[min(converged, values.size) - 1]
             if highest <= _SPREAD * -operator.sigma:
-                return _cleaned(operator, values, krylov.polished(Y))
+                # One more solve for the modes below |sigma| takes the rounding in stiff modes out of soft ones.
+                V = krylov.polished(Y)
+                low = values < -operator.sigma
+                V[:, low] = operator.apply(V[:, low])
+                return V
+            # Soft and stiff modes too far apart for one shift: move it up, where the stiff ones are seen.
             operator.move(-1e-4 * highest)
             krylov = operator.krylov
             goal = 2 * enough
@@ -156,53 +153,43 @@ def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarr
         goal = krylov.size + 1 + krylov.size // 16
 
 
-def _cleaned(operator: ShiftInvert, values: np.ndarray, V: np.ndarray) -> np.ndarray:
-    """V (n, k) after one more solve for the modes below |sigma|: it takes the rounding in stiff modes out of soft ones."""
-    low = values < -operator.sigma
-    V[:, low] = operator.apply(V[:, low])
-    return V
-
-
 def dense_modes(operator: ShiftInvert, massless: np.ndarray, wanted: int) -> np.ndarray:
     """All finite modes (n, k): `eigh(M, K - sigma M)` for low modes, `eigh(K, M)` for those that it can't resolve."""
     M = operator.M.toarray()
     K = operator.K.toarray()
-    sigma, mu, V = _inverted_modes(M, K, min(operator.sigma, -0.01 * operator.elastic))
+
+    # Low modes: M v = mu (K - sigma M) v, sigma moved out until the Cholesky factor of the right side exists.
+    sigma = min(operator.sigma, -0.01 * operator.elastic)
+    for _ in range(6):
+        try:
+            mu, V = la.eigh(M, K - sigma * M)
+            break
+        except la.LinAlgError:
+            sigma *= 30.0
+    else:
+        raise ConvergenceError(
+            "K - sigma M is not positive definite to rounding for any shift; merge very short elements."
+        )
+    mu = mu[::-1]
+    V = V[:, ::-1]
     finite = np.arange(mu.size) < np.count_nonzero(mu > mu.size * EPS * mu[0])
     values = sigma + 1.0 / mu[finite]
     V = V[:, finite] / np.sqrt(mu[finite])
     resolved = int(np.count_nonzero(mu[finite] > 1e-6 * mu[0]))
     if wanted <= resolved:
         return V
-    high = _direct_modes(M, K, massless)
-    if high is None:
-        return V
-    # each solver errs by eps times its largest eigenvalue: they are equally good at the geometric mean
-    split = int(np.count_nonzero(values < np.sqrt(-sigma * high[0][-1])))
-    return np.hstack([V[:, :split], high[1][:, split:]])
 
-
-def _inverted_modes(M: np.ndarray, K: np.ndarray, sigma: float) -> tuple[float, np.ndarray, np.ndarray]:
-    """sigma, mu (n,) descending, V (n, n) of `eigh(M, K - sigma M)`, sigma moved out until the Cholesky factor exists."""
-    for _ in range(6):
-        try:
-            mu, V = la.eigh(M, K - sigma * M)
-        except la.LinAlgError:
-            sigma *= 30.0
-        else:
-            return sigma, mu[::-1], V[:, ::-1]
-    raise ConvergenceError("K - sigma M is not positive definite to rounding for any shift; merge very short elements.")
-
-
-def _direct_modes(M: np.ndarray, K: np.ndarray, massless: np.ndarray) -> Modes | None:
-    """`eigh(K, M)` after exact condensation of the massless dofs; None when M stays singular."""
+    # High modes: K v = lambda M v after exact condensation of the massless dofs. Where M stays singular there is nothing better.
     massive = np.setdiff1d(np.arange(K.shape[0]), massless)
     follow = np.zeros((K.shape[0], massive.size))
     follow[massive, np.arange(massive.size)] = 1.0
     if massless.size:
         follow[massless] = -la.solve(K[np.ix_(massless, massless)], K[np.ix_(massless, massive)], assume_a="pos")
     try:
-        values, V = la.eigh(K[massive] @ follow, M[np.ix_(massive, massive)])
+        high, condensed = la.eigh(K[massive] @ follow, M[np.ix_(massive, massive)])
     except la.LinAlgError:
-        return None
-    return values, follow @ V
+        return V
+
+    # Each solver errs by eps times its largest eigenvalue: they are equally good at the geometric mean.
+    split = int(np.count_nonzero(values < np.sqrt(-sigma * high[-1])))
+    return np.hstack([V[:, :split], (follow @ condensed)[:, split:]])

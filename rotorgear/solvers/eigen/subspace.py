@@ -40,20 +40,18 @@ class Subspace:
         return new
 
     def _extend(self, part: np.ndarray) -> int:
+        """Add what real vectors (n, m) bring beside the span; return the number of new columns."""
         rest = part.copy()
-        for _ in range(2):
+        for _ in range(2):  # twice is enough for the rounding
             rest -= self._scaled @ (self._scaled.T @ rest)
         if self.size == 0:
-            columns = _in_order(rest, self._tolerance)
+            # QR takes the first vectors one after the other: soft modes keep their directions.
+            Q, R = np.linalg.qr(rest)
+            columns = Q[:, np.abs(np.diag(R)) > self._tolerance]
         else:
+            # Of later ones only what is new counts, largest first.
             U, size, _ = np.linalg.svd(rest, full_matrices=False)
             columns = U[:, size > self._tolerance]
         columns = columns - self._scaled @ (self._scaled.T @ columns)
         self._scaled = np.hstack([self._scaled, columns])
         return int(columns.shape[1])
-
-
-def _in_order(vectors: np.ndarray, tolerance: float) -> np.ndarray:
-    """Orthonormal columns of the vectors, one after the other, without those that lie in the span of the ones before."""
-    Q, R = np.linalg.qr(vectors)
-    return np.asarray(Q[:, np.abs(np.diag(R)) > tolerance])

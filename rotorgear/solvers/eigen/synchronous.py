@@ -24,9 +24,9 @@ from rotorgear.solvers.sparse.factor import factor_general, factor_symmetric, si
 _DENSE_UP_TO = 100
 _CENTRE = 1.000731  # off the middle, where an eigenvalue may sit
 _RADIUS = 1.15  # of half the range, for roots that damping moves sideways
-_MOST = 400
-_SETTLED = 1e-14
-BACK_SUBSTITUTED = 1e-10
+_MOST = 400  # critical speeds that ARPACK is asked for; more are a question of another range
+_SETTLED = 1e-14  # |Im lambda - p W| / (p W) at which the secant ends
+BACK_SUBSTITUTED = 1e-10  # the same, above which a root is refused
 
 
 @dataclass(frozen=True)
@@ -59,28 +59,27 @@ class Synchronous:
 def synchronous_speeds(family: Affine, order: float) -> list[Synchronous]:
     """All speeds above `low` and up to `high` at which an oscillating mode has the frequency `order` times the speed, ascending.
 
-    Raises
-    ------
-    ConvergenceError
-        A root does not settle to 1e-10, or a count by pivot signs (undamped systems) says that one is missing.
+    Raises:
+        ConvergenceError: a root does not settle to 1e-10, or a count by pivot signs (undamped systems) says that one is missing.
     """
     with single_thread(family.M.shape[0]):
+        # Another centre and another start vector where a count says that one was missed.
         for attempt in range(4):
             s, X = _starts(family, order, attempt)
             inside = (s.imag > family.low - 1e-3 * family.high) & (s.imag < 1.05 * family.high)
-            inside &= np.abs(s.real) < 0.7 * np.abs(s)
+            inside &= np.abs(s.real) < 0.7 * np.abs(s)  # heavier damping leaves no oscillation to follow
             near = np.abs(s.imag) > 1e-6 * family.high
-            found: list[Synchronous] = []
+            roots: list[Synchronous] = []
             for k in np.flatnonzero(inside & near):
                 root = _polished(family, order, complex(s[k]), X[:, k])
-                if root is not None and not any(_same(root, other, family.M) for other in found):
-                    found.append(root)
-            found = sorted((r for r in found if family.low < r.speed <= family.high), key=lambda root: root.speed)
-            if _count_agrees(family, order, found):
-                return found
+                if root is not None and not any(_same(root, other, family.M) for other in roots):
+                    roots.append(root)
+            roots = sorted((r for r in roots if family.low < r.speed <= family.high), key=lambda root: root.speed)
+            if _count_agrees(family, order, roots):
+                return roots
     raise ConvergenceError(
-        f"a count by pivot signs does not confirm the {len(found)} critical speeds of order {order:g} that were found",
-        found,
+        f"a count by pivot signs does not confirm the {len(roots)} critical speeds of order {order:g} that were found",
+        roots,
     )
 
 
@@ -94,6 +93,7 @@ def _starts(family: Affine, order: float, attempt: int) -> tuple[np.ndarray, np.
     A0 = sp.csc_array(S @ family.K0 @ S, dtype=complex)
     A1 = sp.csc_array(S @ (order * family.D0 - 1j * family.K1) @ S * centre)
     A2 = sp.csc_array(S @ (order**2 * family.M - 1j * order * family.D1) @ S * centre**2)
+    # Inverted at s = i (a + b)/2, in units in which that is i: T [x; s x] as in `quadratic.InverseState`.
     sigma = 1j
     n = family.M.shape[0]
     factor = factor_general(sp.csc_array(A0 + sigma * A1 + sigma**2 * A2))
@@ -151,6 +151,7 @@ def _polished(family: Affine, order: float, s: complex, x: np.ndarray) -> Synchr
         gap = value.imag - order * speed
         if abs(gap) <= _SETTLED * order * speed:
             break
+        # Secant; the first step takes lambda as constant, and one as long as a third of the speed leads to another root.
         slope = -order if last is None or last[0] == speed else (gap - last[1]) / (speed - last[0])
         last = (speed, gap)
         step = gap / (slope or -order)
@@ -166,9 +167,10 @@ def _polished(family: Affine, order: float, s: complex, x: np.ndarray) -> Synchr
 
 
 def _same(one: Synchronous, other: Synchronous, M: sp.csc_array) -> bool:
-    if abs(one.speed - other.speed) > 1e-9 * one.speed or abs(one.eigenvalue - other.eigenvalue) > 1e-8 * abs(
-        one.eigenvalue
-    ):
+    """Whether two starts led to one root: equal speeds may belong to two modes, which their vectors tell apart."""
+    if abs(one.speed - other.speed) > 1e-9 * one.speed:
+        return False
+    if abs(one.eigenvalue - other.eigenvalue) > 1e-8 * abs(one.eigenvalue):
         return False
     x = one.vector
     y = other.vector
@@ -176,7 +178,7 @@ def _same(one: Synchronous, other: Synchronous, M: sp.csc_array) -> bool:
     return bool(abs(np.vdot(x, M @ y)) ** 2 > 0.98 * sizes)
 
 
-def _count_agrees(family: Affine, order: float, found: list[Synchronous]) -> bool:
+def _count_agrees(family: Affine, order: float, roots: list[Synchronous]) -> bool:
     """Pivot signs of K - W^2 H at both ends of the range against the signs of x^H H x; True where the pair is not Hermitian.
 
     An eigenvalue of K - m H falls through zero at m = W^2 where x^H H x > 0 and rises where it is negative.
@@ -185,12 +187,12 @@ def _count_agrees(family: Affine, order: float, found: list[Synchronous]) -> boo
     if family.D0.nnz or family.K1.nnz or (skew.nnz and skew.max() > 1e-12 * abs(family.D1).max()):
         return True
     H = sp.csc_array(order**2 * family.M - 1j * order * family.D1)
-    low = 0.999 * min([family.high, *(r.speed for r in found)])
+    low = 0.999 * min([family.high, *(r.speed for r in roots)])
     high = family.high
     first = max(family.low, 1e-4 * low)
-    if any(abs(r.speed - end) < 1e-7 * end for r in found for end in (first, high)):
+    if any(abs(r.speed - end) < 1e-7 * end for r in roots for end in (first, high)):
         return True  # a root on the very end can't be counted
-    signs = [np.sign(np.vdot(r.vector, H @ r.vector).real) for r in found]
+    signs = [np.sign(np.vdot(r.vector, H @ r.vector).real) for r in roots]
     try:
         counts = [factor_symmetric(sp.csc_array(family.K0 - W**2 * H)).pivots.real < 0.0 for W in (first, high)]
     except ConvergenceError:

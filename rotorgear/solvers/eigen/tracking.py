@@ -28,9 +28,11 @@ _SAME = 1e-7  # derivatives, relative to |s| over the step, that count as equal
 
 @dataclass(frozen=True)
 class Step:
-    """Links of a step: `partner` (m_a,) number at b of each mode at a, -1 where it has none; whether the step is too long.
+    """Links of a step from a to b.
 
-    `doubt` (m_a,) marks the links that make it so. `crossings` pairs of modes at a whose frequencies change places.
+    Attributes:
+        partner: (m_a,) number at b of each mode at a, -1 where it has none.
+        doubt: (m_a,) whether the link is one that makes the step too long.
     """
 
     partner: np.ndarray
@@ -45,29 +47,42 @@ class Step:
 def step(a: Eigen, b: Eigen, length: float, narrowest: float) -> Step:
     """Link the modes at a to those at b.
 
-    Parameters
-    ----------
-    a, b : eigenpairs at both ends of the step, of pencils in the same coordinates.
-    length : b - a in rad/s; it may be negative.
-    narrowest : a veering that is narrower in speed than this, in rad/s, is a crossing.
+    Args:
+        a: eigenpairs at the beginning of the step.
+        b: eigenpairs at its end, of a pencil in the same coordinates.
+        length: b - a in rad/s; it may be negative.
+        narrowest: a veering that is narrower in speed than this, in rad/s, is a crossing.
     """
     from scipy.optimize import linear_sum_assignment
 
     if not len(a.s) or not len(b.s):
         return Step(np.full(len(a.s), -1), np.zeros(len(a.s), bool))
     slope = Pencil(0.0 * a.pencil.M, (b.pencil.D - a.pencil.D) / length, (b.pencil.K - a.pencil.K) / length)
-    (a, rate_a), (b, rate_b) = parted(a, slope), parted(b, slope)
+    a, rate_a = parted(a, slope)
+    b, rate_b = parted(b, slope)
+
+    # Vectors of twins are anyone's: the MAC of a mode is summed over them, and no twin counts as the second best.
     mac = _mac(a, b)
     twins_a = _twins(a.s, rate_a, length)
     twins_b = _twins(b.s, rate_b, length)
     mac = np.clip(np.abs(twins_a @ mac @ twins_b) / np.maximum(twins_a.sum(1)[:, None], 1.0), 0.0, 1.0)
+
+    # Cost of a link: 1 - MAC, and a tenth of how many times the mismatch is above what makes a step too long.
     size = 0.5 * (np.abs(a.s)[:, None] + np.abs(b.s))
     mismatch = np.abs(b.s - a.s[:, None] - 0.5 * length * (rate_a[:, None] + rate_b)) / size
     cost = (1.0 - mac) + np.minimum(mismatch / MISMATCH, 10.0) * 0.1
     rows, columns = linear_sum_assignment(cost)
     partner = np.full(len(a.s), -1)
     partner[rows] = columns
-    doubt = _doubtful(cost, mismatch, rows, columns, twins_a, twins_b)
+
+    # Doubt where a link is not clearly better than the second best of its mode at either end, or does not follow its derivatives.
+    others = cost[rows].copy()
+    others[twins_b[columns] > 0.0] = np.inf
+    other_rows = cost[:, columns].T.copy()
+    other_rows[twins_a[rows] > 0.0] = np.inf
+    second = np.minimum(others.min(axis=1), other_rows.min(axis=1))
+    doubt = np.zeros(len(a.s), bool)
+    doubt[rows] = (cost[rows, columns] > AMBIGUOUS * second) | (mismatch[rows, columns] > MISMATCH)
     doubt |= _veering(a, b, (rate_a, rate_b), slope, partner, narrowest)
     poor = np.zeros(len(a.s), bool)
     poor[rows] = (1.0 - mac[rows, columns]) > _WORST
@@ -79,17 +94,17 @@ def parted(at: Eigen, slope: Pencil) -> tuple[Eigen, np.ndarray]:
     """Eigenpairs with the vectors of equal eigenvalues turned to the directions in which they part; derivatives (m,)."""
     q = at.q
     y = at.y
-    for own in clusters(at.s):
-        if len(own) < 2:
+    for equal in clusters(at.s):
+        if len(equal) < 2:
             continue
-        s = np.mean(at.s[own])
-        block = -(y[:, own].conj().T @ ((s * slope.D + slope.K) @ q[:, own]))
-        W = np.linalg.eig(block)[1]
-        if np.linalg.cond(W) < 1e6:
+        s = np.mean(at.s[equal])
+        derivative = -(y[:, equal].conj().T @ ((s * slope.D + slope.K) @ q[:, equal]))
+        W = np.linalg.eig(derivative)[1]
+        if np.linalg.cond(W) < 1e6:  # a defective derivative has no such directions; the vectors stay as they are
             q = q.copy()
             y = y.copy()
-            q[:, own] = q[:, own] @ W
-            y[:, own] = y[:, own] @ np.linalg.inv(W).conj().T
+            q[:, equal] = q[:, equal] @ W
+            y[:, equal] = y[:, equal] @ np.linalg.inv(W).conj().T
     rate = -np.einsum("ri,ri->i", y.conj(), slope.D @ q * at.s + slope.K @ q)
     return replace(at, q=q, y=y), rate
 
@@ -98,9 +113,9 @@ def _mac(a: Eigen, b: Eigen) -> np.ndarray:
     """c_ij(a, b) c_ji(b, a), (m_a, m_b)."""
 
     def product(one: Eigen, other: Eigen) -> np.ndarray:
-        own = one.y.conj().T @ (one.pencil.D @ other.q)
+        damping = one.y.conj().T @ (one.pencil.D @ other.q)
         mass = one.y.conj().T @ (one.pencil.M @ other.q)
-        return np.asarray(own + (one.s[:, None] + other.s) * mass)
+        return np.asarray(damping + (one.s[:, None] + other.s) * mass)
 
     return np.asarray(product(a, b) * product(b, a).T)
 
@@ -110,26 +125,6 @@ def _twins(s: np.ndarray, rate: np.ndarray, length: float) -> np.ndarray:
     size = np.abs(s)[:, None] + np.abs(s)
     same = np.abs(s[:, None] - s) <= _SAME * size
     return np.asarray((same & (np.abs(rate[:, None] - rate) * abs(length) <= _SAME * size)).astype(float))
-
-
-def _doubtful(
-    cost: np.ndarray,
-    mismatch: np.ndarray,
-    rows: np.ndarray,
-    columns: np.ndarray,
-    twins_a: np.ndarray,
-    twins_b: np.ndarray,
-) -> np.ndarray:
-    """Which links are not clearly better than any other, or do not follow their derivatives."""
-    chosen = cost[rows, columns]
-    others = cost[rows].copy()
-    others[twins_b[columns] > 0.0] = np.inf
-    other_rows = cost[:, columns].T.copy()
-    other_rows[twins_a[rows] > 0.0] = np.inf
-    second = np.minimum(others.min(axis=1), other_rows.min(axis=1))
-    doubt = np.zeros(cost.shape[0], bool)
-    doubt[rows] = (chosen > AMBIGUOUS * second) | (mismatch[rows, columns] > MISMATCH)
-    return doubt
 
 
 def _veering(

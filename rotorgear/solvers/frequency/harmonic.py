@@ -16,12 +16,14 @@ import scipy.sparse as sp
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.sparse.factor import factor_general
 
-# Residuals relative to the forces inside: refined below the first, refused above the second.
+# Residuals relative to the forces inside: refined until below the first, refused above the second.
 _RESIDUAL = 1e-14
 _LARGEST_RESIDUAL = 1e-11
 _REFINEMENTS = 6
-# Relative distances of the frequency whose factors are used.
+# Relative distances of the frequency whose factors are used: farther only where nearer ones fail, since refinement gets slower.
 _ASIDE = (0.0, 1e-8, 1e-6, 1e-4)
+# What a new vector adds to a basis counts from this share of its length on.
+_NEW = 1e-8
 
 
 @dataclass(frozen=True)
@@ -44,10 +46,8 @@ class Dynamics:
     def solve(self, w: float, f: np.ndarray) -> np.ndarray:
         """Solve at one frequency in rad/s: f (n, p) complex -> q (n, p).
 
-        Raises
-        ------
-        ConvergenceError
-            Z is singular: an undamped resonance to the last digit.
+        Raises:
+            ConvergenceError: Z is singular: an undamped resonance to the last digit.
         """
         f = np.asarray(f, complex)
         if self.low_rank is None:
@@ -85,6 +85,7 @@ class Dynamics:
         return np.asarray(q) if residual <= _LARGEST_RESIDUAL else None
 
     def _stiffness(self, w: float) -> sp.csc_array:
+        """K + i w D - w^2 M, without the damping of low rank."""
         return sp.csc_array(self.K + (1j * w) * self.D - w**2 * self.M, dtype=complex)
 
     def relative_residual(self, w: float | np.ndarray, f: np.ndarray, q: np.ndarray) -> float:
@@ -144,5 +145,5 @@ def orthonormal(X: np.ndarray, new: np.ndarray, scale: np.ndarray) -> np.ndarray
     for _ in range(2):  # twice is enough
         columns = columns - have @ (have.T @ columns)
     q, r, _ = la.qr(columns, mode="economic", pivoting=True) if columns.size else (columns, np.zeros((0, 0)), None)
-    kept = np.abs(np.diag(r)) > 1e-8
+    kept = np.abs(np.diag(r)) > _NEW
     return np.hstack([X, q[:, : len(kept)][:, kept] / rows])

@@ -35,7 +35,13 @@ class Probes:
 
 @dataclass(frozen=True)
 class Scale:
-    """k, c: reference stiffness and damping (m, m); root: (m,) root of each contact's stiffness, 0 for other columns."""
+    """What receptances are measured by.
+
+    Attributes:
+        k: reference stiffness (m, m).
+        c: reference damping (m, m).
+        root: (m,) root of each contact's stiffness, 0 for other columns.
+    """
 
     k: np.ndarray
     c: np.ndarray
@@ -50,14 +56,14 @@ class Scale:
 def full_receptances(local: LocalSystem, probes: Probes) -> np.ndarray:
     """H (f, m, m) with contacts closed: one sparse factorisation for each of f probes."""
     B = local.B.toarray().astype(complex)
-    found = np.zeros((probes.count, local.m, local.m), complex)
+    H = np.zeros((probes.count, local.m, local.m), complex)
     K = local.stiffness_about
     D = local.damping_about
     with single_thread(local.n):
         for i, (speed, s) in enumerate(zip(probes.speed, probes.s, strict=True)):
-            own = D if local.G is None else D + speed * local.G
-            found[i] = B.T @ factor_general(sp.csc_array(K + s * own + s * s * local.M, dtype=complex)).solve(B)
-    return found
+            damping = D if local.G is None else D + speed * local.G
+            H[i] = B.T @ factor_general(sp.csc_array(K + s * damping + s * s * local.M, dtype=complex)).solve(B)
+    return H
 
 
 def around(H: np.ndarray, s: np.ndarray, scale: Scale) -> tuple[np.ndarray, np.ndarray]:
@@ -72,30 +78,29 @@ def sizes(H: np.ndarray, scale: Scale) -> tuple[np.ndarray, np.ndarray]:
     at = scale.contacts
     root = scale.root
     inner = H[:, at][:, :, at] * root[at][:, None] * root[at]
-    own = np.maximum(np.linalg.norm(inner, ord=2, axis=(1, 2)), 1.0) if at.size else np.ones(len(H))
+    between = np.maximum(np.linalg.norm(inner, ord=2, axis=(1, 2)), 1.0) if at.size else np.ones(len(H))
     moved = np.linalg.norm(root[at][:, None] * H[:, at], axis=1).max(axis=0, initial=0.0)
     most = np.sqrt(np.abs(np.einsum("fii->fi", H)).max(axis=0, initial=0.0))
-    return own, np.where(moved > _NOTHING * most, moved, 0.0)
+    return between, np.where(moved > _NOTHING * most, moved, 0.0)
 
 
-def difference(H: np.ndarray, found: np.ndarray, scale: Scale) -> float:
-    """Largest relative difference (f, m, m) of `found` from H.
+def difference(H: np.ndarray, other: np.ndarray, scale: Scale) -> float:
+    """Largest relative difference of other receptances (f, m, m) from H.
 
     Between contacts: relative to |H| or the contacts' own compliance, the larger; of what prescribed forces do at contacts:
     relative to the most that each does over all probes.
     """
-    own, moved = sizes(H, scale)
+    between, moved = sizes(H, scale)
     at = scale.contacts
     root = scale.root
-    apart = root[at][:, None] * (found - H)[:, at]
-    inner = np.linalg.norm(apart[:, :, at] * root[at], ord=2, axis=(1, 2)) / own if at.size else np.zeros(1)
+    apart = root[at][:, None] * (other - H)[:, at]
+    inner = np.linalg.norm(apart[:, :, at] * root[at], ord=2, axis=(1, 2)) / between if at.size else np.zeros(1)
     others = np.flatnonzero((scale.root == 0.0) & (moved > 0.0))
     outer = np.linalg.norm(apart[:, :, others], axis=1) / moved[others]
     return float(max(inner.max(initial=0.0), outer.max(initial=0.0)))
 
 
-def differences(H: np.ndarray, found: np.ndarray, s: np.ndarray, scale: Scale) -> tuple[float, float]:
+def differences(H: np.ndarray, other: np.ndarray, s: np.ndarray, scale: Scale) -> tuple[float, float]:
     """`difference` with contacts closed and with all of them apart."""
-    return difference(H, found, scale), difference(
-        H @ around(H, s, scale)[1], found @ around(found, s, scale)[1], scale
-    )
+    closed = difference(H, other, scale)
+    return closed, difference(H @ around(H, s, scale)[1], other @ around(other, s, scale)[1], scale)

@@ -14,37 +14,34 @@ from rotorgear.solvers.sparse.nullspace import SupportedSolver
 from rotorgear.solvers.sparse.static import UnbalancedLoadError
 
 _BALANCE = 1e-8  # as in static.py: work relative to the sum of its absolute parts that counts as none
-_RESIDUAL = 1e-11
-_ROUNDING = 1e-11
+_RESIDUAL = 1e-11  # relative to the largest force inside, |K||q| + |f|
+_ROUNDING = 1e-11  # work on a free motion below this share of the whole load is rounding of the load itself
 _REFINEMENTS = 4
 
 
 class Equilibrium:
     """Solves K q = f again and again for loads that leave the free motions R (n, r) alone.
 
-    Raises
-    ------
-    AnalysisError
-        K is singular beyond R.
+    Raises:
+        AnalysisError: K is singular beyond R.
     """
 
     def __init__(self, K: sp.csc_array, R: np.ndarray) -> None:
         self._K = sp.csc_array(K, dtype=float)
+        # Scaled by the root of the stiffness, metres and radians compete fairly for the support; a dof without stiffness of its
+        # own counts as a typical one.
         diagonal = np.abs(self._K.diagonal())
         typical = float(np.median(diagonal[diagonal > 0.0])) if np.any(diagonal > 0.0) else 1.0
-        self._scale = np.sqrt(np.where(diagonal > 0.0, diagonal, typical))  # metres and radians compete fairly
+        self._scale = np.sqrt(np.where(diagonal > 0.0, diagonal, typical))
         self._R = np.linalg.qr(R * self._scale[:, None])[0]  # of q * scale
         self._solver = SupportedSolver(self._K, self._R, self._R)
 
     def solve(self, f: np.ndarray) -> np.ndarray:
         """Return q (n, p) for loads f (n, p).
 
-        Raises
-        ------
-        UnbalancedLoadError
-            A load does work on a free motion.
-        ConvergenceError
-            The residual stays above 1e-11 of the forces inside; `partial` holds q.
+        Raises:
+            UnbalancedLoadError: a load does work on a free motion.
+            ConvergenceError: the residual stays above 1e-11 of the forces inside; `partial` holds q.
         """
         rest = self._balanced(f)
         target = rest
@@ -73,5 +70,6 @@ class Equilibrium:
         return self._free_of_rigid(f)
 
     def _free_of_rigid(self, f: np.ndarray) -> np.ndarray:
+        """The part of f (n, p) that does no work on the free motions."""
         scaled = f / self._scale[:, None]
         return np.asarray((scaled - self._R @ (self._R.T @ scaled)) * self._scale[:, None])

@@ -17,12 +17,14 @@ from threadpoolctl import ThreadpoolController
 
 from rotorgear.errors import ConvergenceError
 
+# Unknowns from which a second BLAS thread saves more than it costs.
 _THREADS_PAY_FROM = 2000
 
 
 @cache
 def _controller() -> ThreadpoolController:
-    return ThreadpoolController()  # scans the loaded libraries: a millisecond, so once only
+    """The one controller: it scans the loaded libraries, which takes a millisecond."""
+    return ThreadpoolController()
 
 
 def single_thread(n: int) -> AbstractContextManager[object]:
@@ -79,11 +81,10 @@ def factor_symmetric(A: sp.csc_array) -> SymmetricFactor:
 
     Without pivoting an indefinite matrix may lose accuracy: check with `solve_error` where that matters.
 
-    Raises
-    ------
-    ConvergenceError
-        The matrix is singular, holds NaN, or needs row exchanges.
+    Raises:
+        ConvergenceError: the matrix is singular, holds NaN, or needs row exchanges.
     """
+    # Threshold 0 keeps every pivot on the diagonal: L U with U = D L^T, whose signs are the inertia.
     lu = _superlu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     if not np.array_equal(lu.perm_r, lu.perm_c):
         raise ConvergenceError(
@@ -95,23 +96,25 @@ def factor_symmetric(A: sp.csc_array) -> SymmetricFactor:
 def factor_general(A: sp.csc_array) -> Factor:
     """Factor a general sparse matrix (real or complex) with partial pivoting that prefers the diagonal.
 
-    Raises
-    ------
-    ConvergenceError
-        The matrix is singular or holds NaN.
+    Raises:
+        ConvergenceError: the matrix is singular or holds NaN.
     """
+    # Rows are exchanged only where the diagonal is less than a tenth of its column: the symmetric order keeps its low fill.
     return Factor(_superlu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1, options={"SymmetricMode": True}))
 
 
 def solve_error(A: sp.csc_array, factor: Factor) -> float:
     """Backward error ||A x - b|| / (||A||_1 ||x|| + ||b||) of one solve with a fixed b: 1e-16 for a healthy factor."""
-    b = np.random.default_rng(7).standard_normal(factor.n)
+    b = np.random.default_rng(7).standard_normal(
+        factor.n
+    )  # random, so that it meets every pivot; fixed, to be repeatable
     x = factor.solve(b)
     scale = abs(A).sum(axis=0).max() * np.linalg.norm(x) + np.linalg.norm(b)
     return float(np.linalg.norm(A @ x - b) / scale)
 
 
 def _superlu(A: sp.csc_array, **how: Any) -> SuperLU:
+    """SuperLU's factors of a matrix, with its refusals in words."""
     A = sp.csc_array(A)
     if not np.all(np.isfinite(A.data)):
         raise ConvergenceError("The matrix to factor holds entries that are not finite; check the input for NaN.")

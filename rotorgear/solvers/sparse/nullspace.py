@@ -29,6 +29,7 @@ def left_null_space(K: sp.csc_array, M: sp.csc_array, R: np.ndarray) -> np.ndarr
     skew = abs(K - K.T)
     if R.shape[1] == 0 or skew.nnz == 0 or skew.max() <= 1e-14 * abs(K).max():
         return np.linalg.qr(R)[0]
+    # Inverse iteration beside zero: each step shrinks all other left vectors by 1e-6 / |lambda|: four are plenty.
     factor = factor_general(sp.csc_array(K + 1e-6 * M))
     L = R
     for _ in range(4):
@@ -39,10 +40,8 @@ def left_null_space(K: sp.csc_array, M: sp.csc_array, R: np.ndarray) -> np.ndarr
 class SupportedSolver:
     """Solves K q = f for f orthogonal to L; q is zero at the support dofs of R.
 
-    Raises
-    ------
-    AnalysisError
-        K stays singular on the support: it has more rigid motions than R.
+    Raises:
+        AnalysisError: K stays singular on the support: it has more rigid motions than R.
     """
 
     def __init__(self, K: sp.csc_array, R: np.ndarray, L: np.ndarray) -> None:

@@ -15,6 +15,10 @@ from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.sparse.factor import SymmetricFactor, factor_symmetric, solve_error
 
 EPS = float(np.finfo(float).eps)
+_SYMMETRY = 1e-9  # an entry may differ from its mirror image by this share of sqrt(a_ii a_jj)
+_LIFT = 4.0 * EPS  # added to diagonals, relative to them, so that an exactly zero pivot shows as a tiny one
+_ZERO_PIVOT = 100.0 * EPS  # pivots below this share of the diagonal are rounding
+_ACCURATE = 1e-9  # backward error of a solve up to which the pivots' signs are believed
 Strain = Callable[[np.ndarray], np.ndarray]
 
 
@@ -33,12 +37,9 @@ class LooseDofError(AnalysisError):
 def check_pencil(M: sp.csc_array, K: sp.csc_array) -> np.ndarray:
     """Refuse what is no symmetric pair without loose dofs; return the indices of the massless dofs.
 
-    Raises
-    ------
-    AnalysisError
-        Shapes differ, entries are not finite, or a matrix is not symmetric.
-    LooseDofError
-        Massless dofs can move among themselves without strain.
+    Raises:
+        AnalysisError: shapes differ, entries are not finite, or a matrix is not symmetric.
+        LooseDofError: massless dofs can move among themselves without strain.
     """
     if M.shape != K.shape or K.shape[0] != K.shape[1]:
         raise AnalysisError(f"M {M.shape} and K {K.shape} must be square and of one size.")
@@ -48,24 +49,21 @@ def check_pencil(M: sp.csc_array, K: sp.csc_array) -> np.ndarray:
         skew = abs(A - A.T)
         scale = np.sqrt(np.abs(A.diagonal()))
         rows, cols = skew.nonzero()
-        if rows.size and np.any(skew.data[skew.data > 0] > 1e-9 * (scale[rows] * scale[cols])):
+        if rows.size and np.any(skew.data[skew.data > 0] > _SYMMETRY * (scale[rows] * scale[cols])):
             raise AnalysisError(f"{name} is not symmetric: use the damped solver for circulatory or gyroscopic terms.")
+
+    # A semidefinite pencil is singular exactly when the massless block of K is: one of its pivots is then zero.
     massless = np.flatnonzero(M.diagonal() <= 0.0)
     if massless.size:
-        _refuse_loose(massless, sp.csc_array(K[massless][:, massless]))
+        block = sp.csc_array(K[massless][:, massless])
+        diagonal = block.diagonal()
+        if np.any(diagonal <= 0.0):
+            raise LooseDofError(massless[diagonal <= 0.0])
+        lifted = sp.csc_array(block + sp.diags_array(_LIFT * diagonal))
+        loose = factor_symmetric(lifted).pivots_by_row() < _ZERO_PIVOT * diagonal
+        if np.any(loose):
+            raise LooseDofError(massless[loose])
     return massless
-
-
-def _refuse_loose(massless: np.ndarray, stiffness: sp.csc_array) -> None:
-    """A semidefinite pencil is singular exactly when the massless block of K is."""
-    diagonal = stiffness.diagonal()
-    if np.any(diagonal <= 0.0):
-        raise LooseDofError(massless[diagonal <= 0.0])
-    lifted = sp.csc_array(stiffness + sp.diags_array(4 * EPS * diagonal))  # keeps an exactly zero pivot findable
-    pivots = factor_symmetric(lifted).pivots_by_row()
-    loose = pivots < 100 * EPS * diagonal
-    if np.any(loose):
-        raise LooseDofError(massless[loose])
 
 
 def rounding_noise(size_K: sp.csr_array, V: np.ndarray, shift: float = 0.0) -> np.ndarray:
@@ -88,17 +86,17 @@ def backward_errors(M: sp.csr_array, K: sp.csr_array, values: np.ndarray, V: np.
 def count_below(M: sp.csc_array, K: sp.csc_array, shift: float) -> int:
     """Number of eigenvalues of K x = lambda M x below the shift, from the signs of the pivots of K - shift M.
 
-    Raises
-    ------
-    ConvergenceError
-        The factors stay inaccurate when the shift is moved by a billionth or so: it lies in a cluster of eigenvalues.
+    Raises:
+        ConvergenceError: the factors stay inaccurate when the shift is moved by a billionth or so: it lies in a cluster of
+            eigenvalues.
     """
+    # On an eigenvalue the factors without pivoting blow up; a nudge that passes no other eigenvalue does not change the count.
     for nudge in (0.0, 1e-9, -1e-9, 1e-8, -1e-8):
         A = sp.csc_array(K - shift * (1.0 + nudge) * M)
         try:
             factor: SymmetricFactor = factor_symmetric(A)
         except ConvergenceError:
             continue
-        if solve_error(A, factor) < 1e-9:
+        if solve_error(A, factor) < _ACCURATE:
             return factor.negative_count()
     raise ConvergenceError(f"No accurate factors of K - {shift:.6g} M: the shift lies in a cluster of eigenvalues.")

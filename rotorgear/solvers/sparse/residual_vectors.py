@@ -17,12 +17,15 @@ def ritz_residuals(M: np.ndarray | sp.csc_array, K: np.ndarray | sp.csc_array, s
     """Return an M-orthonormal basis (n, r) of shapes (n, m), r <= m, in which K is diagonal, softest first.
 
     Args:
-        M, K: (n, n) symmetric. shapes: (n, m), M-orthogonal to the modes that they complete.
+        M: (n, n) symmetric.
+        K: (n, n) symmetric.
+        shapes: (n, m), M-orthogonal to the modes that they complete.
     """
     size = np.sqrt(np.einsum("ij,ij->j", shapes, M @ shapes))
     shapes = shapes[:, size > 0.0] / size[size > 0.0]
     if not shapes.shape[1]:
         return shapes
+    # Orthonormal in M by the eigenvectors of their Gram matrix, which shows what depends on the others; then diagonal in K.
     values, turned = la.eigh(shapes.T @ (M @ shapes))
     kept = values > _DEPENDENT * values.max(initial=0.0)
     shapes = shapes @ (turned[:, kept] / np.sqrt(values[kept]))

@@ -16,8 +16,8 @@ from rotorgear.solvers.sparse.nullspace import SupportedSolver
 from rotorgear.solvers.sparse.pencil import check_pencil
 
 _BALANCE = 1e-8  # work of the loads on a rigid motion, relative to the sum of its absolute parts, that counts as none
-_RESIDUAL = 1e-12
-_REFINEMENTS = 3
+_RESIDUAL = 1e-12  # of the solution, relative to ||K||_1 ||q|| + ||f||
+_REFINEMENTS = 3  # one brings a regular K to rounding; a residual after three means that K is singular
 
 
 class UnbalancedLoadError(AnalysisError):
@@ -35,24 +35,19 @@ class UnbalancedLoadError(AnalysisError):
 def static_solution(K: sp.csc_array, M: sp.csc_array, f: np.ndarray, rigid_vectors: np.ndarray | None) -> np.ndarray:
     """Solve K q = f, with q M-orthogonal to the rigid motions.
 
-    Parameters
-    ----------
-    K, M : (n, n) symmetric positive semidefinite.
-    f : (n,) one load case, or (n, p) several.
-    rigid_vectors : (n, r) basis of the null space of K; None when K is regular.
+    Args:
+        K: (n, n) symmetric positive semidefinite.
+        M: (n, n) likewise.
+        f: (n,) one load case, or (n, p) several.
+        rigid_vectors: (n, r) basis of the null space of K; None when K is regular.
 
-    Returns
-    -------
-    q of the shape of f, with ||K q - f|| <= 1e-12 (||K||_1 ||q|| + ||f||).
+    Returns:
+        q of the shape of f, with ||K q - f|| <= 1e-12 (||K||_1 ||q|| + ||f||).
 
-    Raises
-    ------
-    UnbalancedLoadError
-        The loads do work on a rigid motion.
-    AnalysisError
-        A rigid vector has no inertia, or K is singular beyond the rigid vectors given.
-    ConvergenceError
-        The residual stays above its bound; `partial` holds q.
+    Raises:
+        UnbalancedLoadError: the loads do work on a rigid motion.
+        AnalysisError: a rigid vector has no inertia, or K is singular beyond the rigid vectors given.
+        ConvergenceError: the residual stays above its bound; `partial` holds q.
     """
     K = sp.csc_array(K, dtype=float)
     M = sp.csc_array(M, dtype=float)
@@ -61,35 +56,30 @@ def static_solution(K: sp.csc_array, M: sp.csc_array, f: np.ndarray, rigid_vecto
     R = np.zeros((K.shape[0], 0)) if rigid_vectors is None else np.asarray(rigid_vectors, dtype=float)
     with single_thread(K.shape[0]):
         check_pencil(M, K)
-        loads = _balanced(M, R, loads)
-        return _settled(K, M, R, loads).reshape(f.shape)
 
+        # Balanced loads do no work on rigid motions but for rounding; inertia forces carry that rest.
+        if R.shape[1]:
+            work = R.T @ loads
+            parts = np.abs(R.T) @ np.abs(loads)
+            imbalance = (np.abs(work) / np.where(parts > 0.0, parts, 1.0)).max(axis=1)
+            if np.any(imbalance > _BALANCE):
+                raise UnbalancedLoadError(imbalance)
+            loads = loads - M @ (R @ _inertia_solve(M, R, work))
 
-def _balanced(M: sp.csc_array, R: np.ndarray, loads: np.ndarray) -> np.ndarray:
-    """The loads less the rounding of their balance, carried by inertia forces."""
-    if R.shape[1] == 0:
-        return loads
-    work = R.T @ loads
-    parts = np.abs(R.T) @ np.abs(loads)
-    imbalance = (np.abs(work) / np.where(parts > 0.0, parts, 1.0)).max(axis=1)
-    if np.any(imbalance > _BALANCE):
-        raise UnbalancedLoadError(imbalance)
-    return loads - M @ (R @ _inertia_solve(M, R, work))
+        # The support is chosen by the rows of R. Scaled by the root of the stiffness, metres and radians compete fairly for it.
+        stiffness = np.sqrt(np.maximum(K.diagonal(), np.finfo(float).tiny))
+        comparable = R * stiffness[:, None]
+        solver = SupportedSolver(K, comparable, comparable)
 
-
-def _settled(K: sp.csc_array, M: sp.csc_array, R: np.ndarray, loads: np.ndarray) -> np.ndarray:
-    """Solve, refine until the residual is at its bound, and take out the rigid part."""
-    stiffness = np.sqrt(np.maximum(K.diagonal(), np.finfo(float).tiny))
-    comparable = R * stiffness[:, None]  # so that metres and radians compete fairly for the support
-    solver = SupportedSolver(K, comparable, comparable)
-    norm = float(abs(K).sum(axis=0).max())
-    q = np.zeros_like(loads)
-    for _ in range(_REFINEMENTS):
-        q = q + solver.solve(loads - K @ q)
-        q = q - R @ _inertia_solve(M, R, R.T @ (M @ q))
-        residual = np.linalg.norm(loads - K @ q, axis=0)
-        if np.all(residual <= _RESIDUAL * (norm * np.linalg.norm(q, axis=0) + np.linalg.norm(loads, axis=0))):
-            return q
+        # Refine, and take out the rigid part that the choice of the support left in.
+        norm = float(abs(K).sum(axis=0).max())
+        q = np.zeros_like(loads)
+        for _ in range(_REFINEMENTS):
+            q = q + solver.solve(loads - K @ q)
+            q = q - R @ _inertia_solve(M, R, R.T @ (M @ q))
+            residual = np.linalg.norm(loads - K @ q, axis=0)
+            if np.all(residual <= _RESIDUAL * (norm * np.linalg.norm(q, axis=0) + np.linalg.norm(loads, axis=0))):
+                return q.reshape(f.shape)
     raise ConvergenceError(
         "The static solution keeps a residual: the stiffness has a rigid motion that was not given, or a vector given "
         "as rigid motion is strained.",
