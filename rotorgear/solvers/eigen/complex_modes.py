@@ -104,7 +104,7 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     V = V[:, ::-1]
     V = V / np.sqrt(np.maximum(np.einsum("ij,ij->j", V, dense @ V), 1e-300))
 
-    # Rigid is what strains by rounding only; a rigid motion whose eigenvalue is not zero says that rounding hides soft modes.
+    # Rigid is what strains by rounding only. One whose eigenvalue is not zero says that rounding hides soft modes.
     strain = np.einsum("ij,ij->j", V, stiff @ V)
     noise = np.einsum("ij,ij->j", np.abs(V), np.abs(stiff) @ np.abs(V))
     rigid = np.abs(strain) <= 1e3 * _EPS * noise

@@ -63,14 +63,14 @@ def damped_modes(
         M: (n, n) real.
         D: (n, n) real: damping matrix and gyroscopic terms.
         K: (n, n) real; it may be non-symmetric (circulatory).
-        count: number of rows to return: rigid motions, real eigenvalues and conjugate pairs each count once.
+        count: number of rows to return: rigid-body motions, real eigenvalues and conjugate pairs each count once.
         below: only |lambda| <= below [rad/s], and all of them (the first `count` when both are given). Neither: all modes.
         rigid_vectors: (n, r) basis of the null space of K; None means that K is regular.
         frequency_scale: a frequency near the lowest ones [rad/s]; saves the search for it, never changes the answer.
         dense: all eigenvalues by LAPACK, whatever n is: for spectra over very many decades.
 
     Raises:
-        AnalysisError: K has a rigid motion that was not given, or a given one is strained or without inertia.
+        AnalysisError: K has a rigid-body motion that was not given, or a given one is strained or without inertia.
         ConvergenceError: the iteration did not settle; `partial` holds what was found.
     """
     if count is not None and count < 1:
@@ -98,7 +98,7 @@ def damped_modes(
         V = np.hstack([listed, pairs.vectors[:, shown]])
         errors = quadratic.residuals(values, V)
 
-        # A vector outside the given rigid motions that K strains by rounding only: its eigenvalue would be noise.
+        # A vector outside the given rigid-body motions that K strains by rounding only: its eigenvalue would be noise.
         elastic = pairs.vectors[:, shown]
         force = np.abs(quadratic.K @ elastic)
         rounding = 32.0 * EPS * (abs(quadratic.K) @ np.abs(elastic))
@@ -106,7 +106,7 @@ def damped_modes(
         outside = np.linalg.norm(elastic - Q @ (Q.T @ elastic), axis=0) > 1e-6 * np.linalg.norm(elastic, axis=0)
         if np.any(np.all(force <= rounding, axis=0) & outside):
             raise AnalysisError(
-                "The stiffness has a rigid motion (to its rounding) that was not given: "
+                "The stiffness has a rigid-body motion (to its rounding) that was not given: "
                 "pass the rigid modes of the undamped system."
             )
 

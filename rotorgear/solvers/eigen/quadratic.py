@@ -82,7 +82,7 @@ def scaled(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, w0: float) -> Quad
 
 
 class InverseState:
-    """T = (A - sigma)^-1 on states (2n, k), with the zero eigenvalues of the rigid motions projected out."""
+    """T = (A - sigma)^-1 on states (2n, k), with the zero eigenvalues of the rigid-body motions projected out."""
 
     def __init__(self, quadratic: Quadratic, sigma: float, rigid: np.ndarray) -> None:
         self.quadratic = quadratic
@@ -137,7 +137,7 @@ class InverseState:
             restored: np.ndarray = X + known @ np.linalg.solve(shifted, coupling.T[:, :, None])[:, :, 0].T
         except np.linalg.LinAlgError as error:
             raise ConvergenceError(
-                "A mode can't be told from a rigid motion: some part is held by less than the rounding of the others."
+                "A mode can't be told from a rigid-body motion: some part is held by less than the rounding of the others."
             ) from error
         return restored
 
@@ -145,7 +145,7 @@ class InverseState:
 def zero_states(quadratic: Quadratic, rigid: np.ndarray) -> np.ndarray:
     """Orthonormal basis (2n, z) of the states whose eigenvalue is exactly zero, given K @ rigid = 0.
 
-    Each rigid motion R c is one. If D R c does no work on rigid motions (L^T D R c = 0, L^T K = 0) it may also drift,
+    Each rigid-body motion R c is one. If D R c does no work on rigid-body motions (L^T D R c = 0, L^T K = 0) it may also drift,
     q = R c t + q1 with K q1 = -D R c: a second state, the pair of a defective double zero.
 
     Raises:
@@ -158,7 +158,9 @@ def zero_states(quadratic: Quadratic, rigid: np.ndarray) -> np.ndarray:
         return np.zeros((2 * quadratic.n, 0))
     R = np.linalg.qr(rigid)[0]
     if np.any(np.abs(K @ R) > 1e-6 * float(abs(K).sum(axis=0).max())):
-        raise AnalysisError("A vector given as rigid motion is strained: it is not in the null space of the stiffness.")
+        raise AnalysisError(
+            "A vector given as rigid-body motion is strained: it is not in the null space of the stiffness."
+        )
     L = left_null_space(K, M, R)
     drag = L.T @ (D @ R)
     U, size, W = la.svd(drag)
@@ -172,7 +174,7 @@ def zero_states(quadratic: Quadratic, rigid: np.ndarray) -> np.ndarray:
     follow = SupportedSolver(K, R, L).solve(-(D @ drift))
     inertia = (L @ U[:, rank:]).T @ (M @ drift + D @ follow)
     if np.linalg.cond(inertia) > 1e12:
-        raise AnalysisError("A rigid motion has no inertia: give the parts that it moves a mass or a support.")
+        raise AnalysisError("A rigid-body motion has no inertia: give the parts that it moves a mass or a support.")
     return np.linalg.qr(np.hstack([first, np.vstack([follow, drift])]))[0]
 
 

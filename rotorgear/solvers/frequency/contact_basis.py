@@ -37,8 +37,8 @@ class Candidates:
     """p M-orthonormal shapes of n dofs, and the system in them; contacts closed in K and D.
 
     Attributes:
-        vectors: (n, p), rigid motions first, then modes, then attachment vectors.
-        rigid: how many rigid motions.
+        vectors: (n, p), rigid-body motions first, then modes, then attachment vectors.
+        rigid: how many rigid-body motions.
         modes: how many modes.
         w: (p,) rad/s.
         K: (p, p) stiffness.
@@ -97,7 +97,7 @@ def candidates(local: LocalSystem, loads: np.ndarray, acting: np.ndarray, count:
     rigid = lowest.rigid_count
     R = V[:, :rigid]
 
-    # Attachment vectors: static shapes under forces whose share on rigid motions is carried by inertia (a free structure).
+    # Attachment vectors: static shapes under forces whose share on rigid-body motions is carried by inertia (a free structure).
     solver = SupportedSolver(K, R * np.sqrt(np.maximum(K.diagonal(), 1e-300))[:, None], left_null_space(K, M, R))
     B = local.B.toarray()
     forces = np.hstack([B, loads])
@@ -137,7 +137,7 @@ def candidates(local: LocalSystem, loads: np.ndarray, acting: np.ndarray, count:
 
 
 def basis_of(among: Candidates, modes: np.ndarray) -> np.ndarray:
-    """Orthonormal Q (p, r) of rigid motions, some modes and the static shapes."""
+    """Orthonormal Q (p, r) of rigid-body motions, some modes and the static shapes."""
     rest = among.statics.copy()
     whole = np.linalg.norm(rest, axis=0)
     taken = np.concatenate([np.arange(among.rigid), modes])
@@ -235,7 +235,7 @@ def reduced(local: LocalSystem, among: Candidates, Q: np.ndarray) -> tuple[Local
     free = among.rigid
     K = Q.T @ among.K @ Q - (Q.T @ among.B) @ inner @ (Q.T @ among.B).T
 
-    # Modes of the basis without contacts; rigid motions are turned among none, so that they stay rigid to the last bit.
+    # Modes of the basis without contacts; rigid-body motions are turned among none, so that they stay rigid to the last bit.
     squares = np.zeros(len(K))
     turned = np.eye(len(K))
     squares[free:], turned[free:, free:] = la.eigh(0.5 * (K + K.T)[free:, free:])

@@ -41,7 +41,7 @@ class SupportedSolver:
     """Solves K q = f for f orthogonal to L; q is zero at the support dofs of R.
 
     Raises:
-        AnalysisError: K stays singular on the support: it has more rigid motions than R.
+        AnalysisError: K stays singular on the support: it has more rigid-body motions than R.
     """
 
     def __init__(self, K: sp.csc_array, R: np.ndarray, L: np.ndarray) -> None:
@@ -52,7 +52,7 @@ class SupportedSolver:
             self._factor: Factor = factor_general(sp.csc_array(K[self._rows][:, self._columns]))
         except ConvergenceError as error:
             raise AnalysisError(
-                f"The stiffness has more rigid motions (to its rounding) than the {R.shape[1]} given: give them all."
+                f"The stiffness has more rigid-body motions (to its rounding) than the {R.shape[1]} given: give them all."
             ) from error
         self._n = n
 

@@ -1,6 +1,6 @@
-"""Static equilibrium K q = f of a structure that may be free to move: the part M-orthogonal to the rigid motions.
+"""Static equilibrium K q = f of a structure that may be free to move: the part M-orthogonal to the rigid-body motions.
 
-A free structure is in equilibrium only under loads that do no work on its rigid motions R: R^T f = 0 (K R = 0).
+A free structure is in equilibrium only under loads that do no work on its rigid-body motions R: R^T f = 0 (K R = 0).
 Then q = q_s - R (R^T M R)^-1 R^T M q_s, with q_s the solution on a statically determinate support.
 Geradin and Rixen, Mechanical Vibrations, 3rd ed., section 3.3 (John Wiley 2015).
 """
@@ -15,7 +15,9 @@ from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.nullspace import SupportedSolver
 from rotorgear.solvers.sparse.pencil import check_pencil
 
-_BALANCE = 1e-8  # work of the loads on a rigid motion, relative to the sum of its absolute parts, that counts as none
+_BALANCE = (
+    1e-8  # work of the loads on a rigid-body motion, relative to the sum of its absolute parts, that counts as none
+)
 _RESIDUAL = 1e-12  # of the solution, relative to ||K||_1 ||q|| + ||f||
 _REFINEMENTS = 3  # one brings a regular K to rounding; a residual after three means that K is singular
 
@@ -27,13 +29,13 @@ class UnbalancedLoadError(AnalysisError):
         self.imbalance = imbalance
         worst = int(np.argmax(imbalance))
         super().__init__(
-            f"The loads do work on rigid motion {worst + 1} of {imbalance.size} (a share of {imbalance[worst]:.2g}), "
+            f"The loads do work on rigid-body motion {worst + 1} of {imbalance.size} (a share of {imbalance[worst]:.2g}), "
             "so there is no equilibrium; balance the loads or support that motion."
         )
 
 
 def static_solution(K: sp.csc_array, M: sp.csc_array, f: np.ndarray, rigid_vectors: np.ndarray | None) -> np.ndarray:
-    """Solve K q = f, with q M-orthogonal to the rigid motions.
+    """Solve K q = f, with q M-orthogonal to the rigid-body motions.
 
     Args:
         K: (n, n) symmetric positive semidefinite.
@@ -45,7 +47,7 @@ def static_solution(K: sp.csc_array, M: sp.csc_array, f: np.ndarray, rigid_vecto
         q of the shape of f, with ||K q - f|| <= 1e-12 (||K||_1 ||q|| + ||f||).
 
     Raises:
-        UnbalancedLoadError: the loads do work on a rigid motion.
+        UnbalancedLoadError: the loads do work on a rigid-body motion.
         AnalysisError: a rigid vector has no inertia, or K is singular beyond the rigid vectors given.
         ConvergenceError: the residual stays above its bound; `partial` holds q.
     """
@@ -57,7 +59,7 @@ def static_solution(K: sp.csc_array, M: sp.csc_array, f: np.ndarray, rigid_vecto
     with single_thread(K.shape[0]):
         check_pencil(M, K)
 
-        # Balanced loads do no work on rigid motions but for rounding; inertia forces carry that rest.
+        # Balanced loads do no work on rigid-body motions but for rounding; inertia forces carry that rest.
         if R.shape[1]:
             work = R.T @ loads
             parts = np.abs(R.T) @ np.abs(loads)
@@ -81,8 +83,8 @@ def static_solution(K: sp.csc_array, M: sp.csc_array, f: np.ndarray, rigid_vecto
             if np.all(residual <= _RESIDUAL * (norm * np.linalg.norm(q, axis=0) + np.linalg.norm(loads, axis=0))):
                 return q.reshape(f.shape)
     raise ConvergenceError(
-        "The static solution keeps a residual: the stiffness has a rigid motion that was not given, or a vector given "
-        "as rigid motion is strained.",
+        "The static solution keeps a residual: the stiffness has a rigid-body motion that was not given, or a vector given "
+        "as rigid-body motion is strained.",
         q,
     )
 
@@ -94,6 +96,6 @@ def _inertia_solve(M: sp.csc_array, R: np.ndarray, b: np.ndarray) -> np.ndarray:
     inertia = R.T @ (M @ R)
     size = np.sqrt(np.maximum(np.diag(inertia), 0.0))
     if np.any(size == 0.0):
-        raise AnalysisError("A rigid motion has no inertia: give the parts that it moves a mass or a support.")
+        raise AnalysisError("A rigid-body motion has no inertia: give the parts that it moves a mass or a support.")
     solved: np.ndarray = np.linalg.solve(inertia / size / size[:, None], b / size[:, None]) / size[:, None]
     return solved
