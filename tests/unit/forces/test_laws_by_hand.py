@@ -71,7 +71,7 @@ def test_a_propeller_takes_the_square_of_its_own_speed_and_its_ripple_and_step_m
 def test_harmonics_of_stiffness_and_error_stand_where_the_mesh_phase_says() -> None:
     law = MeshContact(
         3e8,
-        gap="none",
+        gap="bilateral",
         order=-20.0,
         phase=0.4,
         stiffness_cos=(0.1, 0.05),
@@ -88,7 +88,7 @@ def test_harmonics_of_stiffness_and_error_stand_where_the_mesh_phase_says() -> N
 
 
 def test_pieces_are_straight_between_their_ends_and_the_mean_of_both_on_a_jump() -> None:
-    law = MeshContact(1e8, gap="none", order=1.0, pieces=((0.0, 0.8, 1.0), (0.4, 1.2, 1.5), (0.9, 0.6, 0.7)))
+    law = MeshContact(1e8, gap="bilateral", order=1.0, pieces=((0.0, 0.8, 1.0), (0.4, 1.2, 1.5), (0.9, 0.6, 0.7)))
 
     def k(share: float) -> float:
         return law.evaluate([1e-6], angle=2.0 * math.pi * share).force[0] / 1e2
@@ -112,7 +112,7 @@ def test_a_corner_impact_is_half_a_sine_that_comes_earlier_by_its_phase() -> Non
 
 
 def test_damping_acts_on_the_rate_of_the_depth_which_the_error_moves_too() -> None:
-    law = MeshContact(3e8, 900.0, gap="none", order=20.0, phase=0.2, error_cos=(2e-6,), error_sin=(1e-6,))
+    law = MeshContact(3e8, 900.0, gap="bilateral", order=20.0, phase=0.2, error_cos=(2e-6,), error_sin=(1e-6,))
     speed = 70.0
 
     def error(t: float) -> float:
@@ -139,14 +139,14 @@ def test_damping_by_penetration_grows_with_the_depth_and_no_damping_pulls(side: 
     assert law.evaluate([place], [side * 0.01]).force[0] == pytest.approx(
         side * (2e8 * depth + 800.0 * depth / 4e-6 * 0.01), rel=1e-9
     )
-    for kind, least in (("penetration", 0.0), ("clamped", 0.0), ("unclamped", 2e8 * depth - 800.0 * 0.75 * 9.0)):
+    for kind, least in (("penetration", 0.0), ("non-adhesive", 0.0), ("adhesive", 2e8 * depth - 800.0 * 0.75 * 9.0)):
         own = replace(law, contact_damping=kind)
         assert side * own.evaluate([place], [-side * 9.0]).force[0] == pytest.approx(least, rel=1e-9, abs=1e-9)
 
 
 # --- friction -----------------------------------------------------------------------------------------------------------
 
-NORMAL = MeshContact(2e8, gap="none", order=20.0, phase=0.9)
+NORMAL = MeshContact(2e8, gap="bilateral", order=20.0, phase=0.9)
 
 
 def places(pitch: float, start: float, end: float, cycle: float) -> list[float]:
@@ -275,7 +275,7 @@ def test_the_power_that_turning_rollers_put_in_is_the_change_of_energy_with_the_
 
 def test_the_mean_of_a_contact_is_the_mean_over_its_cycle() -> None:
     law = MeshContact(
-        1e8, gap="none", order=1.0, pieces=((0.0, 0.8, 1.0), (0.4, 1.2, 1.5)), error_mean=2e-6, error_cos=(1e-6,)
+        1e8, gap="bilateral", order=1.0, pieces=((0.0, 0.8, 1.0), (0.4, 1.2, 1.5)), error_mean=2e-6, error_cos=(1e-6,)
     )
     mean = quad(lambda u: law.evaluate([1e-6], angle=2 * math.pi * u).in_displacement[0, 0], 0.0, 1.0, points=[0.4])[0]
     still = law.mean().evaluate([5e-6], angle=1.0)
