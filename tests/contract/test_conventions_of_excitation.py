@@ -65,3 +65,31 @@ def test_c30_an_error_stands_in_the_phase_of_its_mesh(harmonic: int, own: float)
     force, change, phase = slow_error(harmonic, own)
     turn = cmath.exp(1j * (2.0 * math.pi * harmonic * phase + own))
     assert force == pytest.approx(change * turn, rel=1e-6, abs=1e-8 * float(np.abs(change).max()))
+
+
+def pair_of_one_kind(kind: str, clocking: float, **own: Any) -> rg.Model:
+    """Two gears in torsion; the one that the mesh calls the pinion sits on the shaft that turns against the input."""
+    helix = {"kind": kind, "helix_angle": 0.4, "normal_module": 0.004, "width": 0.03, "body": {"bore": 0.0}}
+    return rg.Model(
+        motions=["torsion"],
+        operation={"input_shaft": "in"},
+        shafts={"in": {"position": [0.0, 0.0]}, "out": {"position": [0.07, 0.09943]}},
+        gears={
+            "big": {**helix, "shaft": "in", "at": "start", "teeth": 31, "hand": "right", "clocking": clocking, **own},
+            "small": {**helix, "shaft": "out", "at": "start", "teeth": 25, "hand": "left", **own},
+        },
+        meshes={"m": {"pinion": "small", "gear": "big", "stiffness": 1e8, **({"stagger": 0.2} if own else {})}},
+    )
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_c31_the_helix_at_larger_z_is_ahead_as_a_gear_that_is_turned_on_its_shaft(direction: int) -> None:
+    both = pair_of_one_kind("herringbone", 0.0, nodes=1).mean_load(direction)
+    first, second = (both.phase(state.contact) for state in both.forces)
+    # Both gears have their teeth ahead at larger z. The big one turns with the input, so that its teeth lie towards +z.
+    apart, turned = (
+        pair_of_one_kind("helical", angle).mean_load(direction) for angle in (0.0, 0.2 * 2.0 * math.pi / 31)
+    )
+    lead = turned.phases["m"] - apart.phases["m"]  # type: ignore[operator]
+    assert cmath.exp(1j * (second - first)) == pytest.approx(cmath.exp(1j * lead), rel=1e-12)  # type: ignore[operator]
+    assert cmath.exp(1j * lead) == pytest.approx(cmath.exp(0.4j * math.pi * direction), rel=1e-9)
