@@ -81,11 +81,6 @@ class System:
         return self.layout.train
 
     @property
-    def flow(self) -> MeanLoad:
-        """Old name of `load`."""
-        return self.load
-
-    @property
     def direction(self) -> int:
         """+1 or -1: sense in which the reference shaft turns."""
         return self.load.direction

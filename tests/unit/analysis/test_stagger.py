@@ -79,7 +79,10 @@ def two_helical(stiffness: Any, phases: tuple[float, float], shafts: dict[str, A
     """The same machine as two helical pairs: half the body at each helix, and the phases typed in (rad)."""
     own = base(shafts)
     for helix, side in enumerate((-1, 1)):
-        for name, shaft, teeth, hands in (("pinion", "one", 24, ("right", "left")), ("wheel", "two", 36, ("left", "right"))):
+        for name, shaft, teeth, hands in (
+            ("pinion", "one", 24, ("right", "left")),
+            ("wheel", "two", 36, ("left", "right")),
+        ):
             mass, polar, tilt = BODY[name]
             inertia = {
                 "mass": mass / 2,
@@ -87,7 +90,9 @@ def two_helical(stiffness: Any, phases: tuple[float, float], shafts: dict[str, A
                 "diametral_inertia": 0.5 * (tilt - mass * OFFSET**2),
             }
             at = 0.06 + side * OFFSET
-            own[f"gears__{name}_{helix}"] = gear(shaft, teeth, kind="helical", hand=hands[helix], **inertia) | {"at": at}
+            own[f"gears__{name}_{helix}"] = gear(shaft, teeth, kind="helical", hand=hands[helix], **inertia) | {
+                "at": at
+            }
         ends = {"pinion": f"pinion_{helix}", "gear": f"wheel_{helix}"}
         own[f"meshes__pair_{helix}"] = mesh(stiffness, 3e3, phase=phases[helix] % (2.0 * np.pi), **ends)
     return spur_pair(**own)

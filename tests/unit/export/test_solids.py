@@ -93,7 +93,8 @@ def test_the_two_helices_of_a_herringbone_gear_mirror_each_other():
     order = np.lexsort(np.round(points, 9).T)
     mirror_order = np.lexsort(np.round(mirrored, 9).T)
     assert np.allclose(points[order], mirrored[mirror_order], rtol=0.0, atol=2e-9)
-    assert twist_rates(model_of(HERRINGBONE), "pinion")[0] > 0.0 > twist_rates(model_of(HERRINGBONE), "pinion")[1]
+    low, high = twist_rates(model_of(HERRINGBONE).layout.gear("pinion"))
+    assert low > 0.0 > high
 
 
 @pytest.mark.parametrize("text", [PAIR, HERRINGBONE])

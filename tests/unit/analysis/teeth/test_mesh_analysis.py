@@ -233,4 +233,4 @@ def test_in_a_loop_of_meshes_split_and_stiffness_agree() -> None:
         sum(f.normal_force for name in ("stage_1a", "stage_1b") for f in flow.of_mesh(name)) * radius * np.cos(base)
     )
     assert carried == pytest.approx(torque, rel=1e-9)
-    assert flow.stiffness["stage_1a"].load == pytest.approx(0.5 * torque / radius, rel=1e-6)
+    assert flow.whole_curve("stage_1a").load == pytest.approx(0.5 * torque / radius, rel=1e-6)
