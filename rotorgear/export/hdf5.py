@@ -5,21 +5,14 @@ Layout: the root's attributes say what it is; every field of the result is a dat
 
 from __future__ import annotations
 
-from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.errors import MissingExtraError, ModelError, RotorgearError
 from rotorgear.export.files import replacing
-from rotorgear.export.hdf5_values import get_value, put_value
-from rotorgear.results.campbell import CampbellResult
-from rotorgear.results.critical import CriticalResult
-from rotorgear.results.frequency_response import FrequencyResponse
-from rotorgear.results.modal import ModalResult
-from rotorgear.results.response import ResponseResult
-from rotorgear.results.static import StaticResult
-from rotorgear.results.sweep import SweepResult
-from rotorgear.results.transient import TransientResult
+from rotorgear.export.hdf5_values import get_value, put_value, stored_fields
+from rotorgear.results.kinds import kinds
+from rotorgear.results.result import Result
 from rotorgear.version import VERSION
 
 if TYPE_CHECKING:
@@ -27,16 +20,6 @@ if TYPE_CHECKING:
 
 FORMAT = "rotorgear result"
 FORMAT_VERSION = 1
-_KINDS: dict[str, type[Any]] = {
-    "modal": ModalResult,
-    "campbell": CampbellResult,
-    "critical": CriticalResult,
-    "static": StaticResult,
-    "response": ResponseResult,
-    "frf": FrequencyResponse,
-    "transient": TransientResult,
-    "sweep": SweepResult,
-}
 
 
 class ReadError(RotorgearError):
@@ -46,20 +29,19 @@ class ReadError(RotorgearError):
         super().__init__(f"{path} can't be read: {reason}")
 
 
-def save(result: Any, path: str | Path) -> Path:
+def save(result: Result, path: str | Path) -> Path:
     """Write a result to an HDF5 file and return its path.
 
     Raises:
         WriteError: the file can't be written; what was there before stays.
     """
     h5 = _import_h5py()
-    kind = next(name for name, cls in _KINDS.items() if isinstance(result, cls))
     with replacing(path) as scratch, h5.File(scratch, "w") as file:
         file.attrs.update(
-            {"format": FORMAT, "format_version": FORMAT_VERSION, "kind": kind, "rotorgear_version": VERSION}
+            {"format": FORMAT, "format_version": FORMAT_VERSION, "kind": result.kind, "rotorgear_version": VERSION}
         )
-        for item in fields(result):
-            put_value(h5, file, item.name, getattr(result, item.name))
+        for item in stored_fields(type(result)):
+            put_value(h5, file, item, getattr(result, item))
     return Path(path)
 
 
@@ -83,7 +65,9 @@ def read(path: str | Path) -> Any:
     with file:
         cls = _kind(path, file)
         try:
-            return cls(**{item.name: get_value(file[item.name]) for item in fields(cls) if item.name in file})
+            # A field that came later has its default in an older file; the version stands in every file.
+            old = {"rotorgear_version": str(file.attrs["rotorgear_version"])}
+            return cls(**old | {name: get_value(file[name]) for name in stored_fields(cls) if name in file})
         except ModelError as error:
             raise ReadError(path, f"its model does not pass the checks of rotorgear {VERSION}\n{error}") from None
         except (KeyError, ValueError, TypeError, AttributeError, OSError, RuntimeError) as error:
@@ -104,11 +88,11 @@ def _kind(path: Path, file: Any) -> type[Any]:
         raise ReadError(path, "it is no result of rotorgear")
     version = file.attrs.get("format_version")
     kind = file.attrs.get("kind")
-    if version != FORMAT_VERSION or kind not in _KINDS:
+    if version != FORMAT_VERSION or kind not in kinds():
         by = file.attrs.get("rotorgear_version", "another version")
         raise ReadError(
             path,
             f"it was written by rotorgear {by} in format {version} ({kind}), and this is rotorgear {VERSION}, which reads "
             f"format {FORMAT_VERSION}; use the newer one, or run the analysis again",
         )
-    return _KINDS[kind]
+    return kinds()[kind]

@@ -1,46 +1,28 @@
 """Values of a result in HDF5: arrays, numbers, texts (UTF-8), dictionaries, the model, and records such as the table of nodes.
 
 A dictionary of arrays is a group with `names` and `values`: a part's name may hold a slash, and the order counts. A record is a
-group of its fields, a tuple of records a group of columns. The model is JSON in SI units, which keeps every digit of a float.
-The attribute `type` of each item says how to read it.
+group of its fields, a tuple of records a group of columns, or of numbered entries where they don't fit into columns. The model
+is JSON in SI units, which keeps every digit of a float. The attribute `type` of each item says how to read it.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import fields, is_dataclass
+from dataclasses import fields
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from rotorgear.model.model import Model
-from rotorgear.results.campbell import Crossing, ExcitationOrder, Margin, Onset
-from rotorgear.results.critical import CriticalSpeed
-from rotorgear.results.modal import NodeTable, Piece
-from rotorgear.results.portrait import Portraits
-from rotorgear.results.reduction import Reduction
-from rotorgear.results.static import LoopAssembly, Share
-from rotorgear.results.transient import EnergyLedger
+from rotorgear.results.schema import Record
 
-_RECORDS: dict[str, type] = {
-    cls.__name__: cls
-    for cls in (
-        NodeTable,
-        Piece,
-        ExcitationOrder,
-        Crossing,
-        Margin,
-        Onset,
-        CriticalSpeed,
-        Share,
-        LoopAssembly,
-        EnergyLedger,
-        Portraits,
-        Reduction,
-    )
-}
+
+def stored_fields(cls: type[Record]) -> list[str]:
+    """Names of the fields of a record that belong in a file."""
+    declared = cls.declarations
+    return [item.name for item in fields(cls) if item.name not in declared or declared[item.name].stored]
 
 
 def put_value(h5: ModuleType, parent: Any, name: str, value: Any) -> None:
@@ -88,20 +70,32 @@ def _put_nothing(h5: ModuleType, parent: Any, name: str, value: None) -> None:
 def _put_record(h5: ModuleType, parent: Any, name: str, value: Any) -> None:
     group = parent.create_group(name)
     group.attrs["record"] = type(value).__name__
-    for item in fields(value):
-        put_value(h5, group, item.name, getattr(value, item.name))
+    for name in stored_fields(type(value)):
+        put_value(h5, group, name, getattr(value, name))
 
 
 def _put_records(h5: ModuleType, parent: Any, name: str, value: tuple[Any, ...]) -> None:
     group = parent.create_group(name)
     group.attrs["record"] = type(value[0]).__name__
-    for item in fields(value[0]):
-        column = tuple(getattr(record, item.name) for record in value)
-        put_value(h5, group, item.name, column if isinstance(column[0], str | tuple) else np.array(column))
+    for name in stored_fields(type(value[0])):
+        column = tuple(getattr(record, name) for record in value)
+        put_value(h5, group, name, column if isinstance(column[0], str | tuple) else np.array(column))
 
 
 def _put_lists(h5: ModuleType, parent: Any, name: str, value: tuple[tuple[str, ...], ...]) -> None:
     _put_texts(h5, parent, name, tuple(json.dumps(item) for item in value))
+
+
+def _put_sequence(h5: ModuleType, parent: Any, name: str, value: tuple[Any, ...]) -> None:
+    group = parent.create_group(name)
+    for number, entry in enumerate(value):
+        put_value(h5, group, str(number), entry)
+
+
+def _put_mapping(h5: ModuleType, parent: Any, name: str, value: dict[Any, Any]) -> None:
+    group = parent.create_group(name)
+    _put_texts(h5, group, "keys", tuple(json.dumps(key) for key in value))
+    _put_sequence(h5, group, "values", tuple(value.values()))
 
 
 def _get_texts(item: Any) -> tuple[str, ...]:
@@ -109,13 +103,14 @@ def _get_texts(item: Any) -> tuple[str, ...]:
 
 
 def _get_record(item: Any) -> Any:
-    cls = _RECORDS[item.attrs["record"]]
-    return cls(**{field.name: get_value(item[field.name]) for field in fields(cls)})
+    cls = Record.known[item.attrs["record"]]
+    # A field that came later than the file has its default; one without a default is missed by the class.
+    return cls(**{name: get_value(item[name]) for name in stored_fields(cls) if name in item})
 
 
 def _get_records(item: Any) -> tuple[Any, ...]:
-    cls = _RECORDS[item.attrs["record"]]
-    names = [field.name for field in fields(cls)]
+    cls = Record.known[item.attrs["record"]]
+    names = [name for name in stored_fields(cls) if name in item]
     columns = [get_value(item[name]) for name in names]
     plain = [column if isinstance(column, tuple) else column.tolist() for column in columns]
     return tuple(cls(**dict(zip(names, row, strict=True))) for row in zip(*plain, strict=True))
@@ -125,8 +120,43 @@ def _table_of(kind: Callable[[Any], Any]) -> Callable[[Any], dict[str, Any]]:
     return lambda item: dict(zip(_get_texts(item["names"]), map(kind, item["values"][()]), strict=True))
 
 
+def _get_sequence(item: Any) -> tuple[Any, ...]:
+    return tuple(get_value(item[str(number)]) for number in range(len(item)))
+
+
+def _get_mapping(item: Any) -> dict[Any, Any]:
+    keys = [json.loads(text) for text in _get_texts(item["keys"])]
+    return dict(zip(keys, _get_sequence(item["values"]), strict=True))
+
+
 def _is_record(value: Any) -> bool:
-    return is_dataclass(value) and type(value).__name__ in _RECORDS
+    return isinstance(value, Record)
+
+
+def _are_columns(value: Any) -> bool:
+    """Whether records of one class fit into columns: texts, lists of texts, or numbers of one kind, in each field."""
+    if not (isinstance(value, tuple) and value and isinstance(value[0], Record)):
+        return False
+    if any(type(record) is not type(value[0]) for record in value):
+        return False
+    return all(_is_column([getattr(record, name) for record in value]) for name in stored_fields(type(value[0])))
+
+
+def _is_column(entries: list[Any]) -> bool:
+    if all(map(_is_texts, entries)):
+        return True
+    return isinstance(entries[0], str | bool | int | float) and len({type(entry) for entry in entries}) == 1
+
+
+def _is_sound_table(value: Any) -> bool:
+    """Whether a dictionary holds arrays of one shape and kind under texts."""
+    if not _is_table(value, np.ndarray):
+        return False
+    return all(isinstance(key, str) for key in value) and len({(x.shape, x.dtype) for x in value.values()}) <= 1
+
+
+def _is_texts(value: Any) -> bool:
+    return isinstance(value, tuple) and all(isinstance(entry, str) for entry in value)
 
 
 def _is_table(value: Any, kind: type | tuple[type, ...]) -> bool:
@@ -138,16 +168,18 @@ _WRITERS: tuple[_Writer, ...] = (
     ("nothing", lambda v: v is None, _put_nothing),
     ("model", lambda v: isinstance(v, Model), _put_model),
     ("record", _is_record, _put_record),
-    ("records", lambda v: isinstance(v, tuple) and bool(v) and all(map(_is_record, v)), _put_records),
+    ("records", _are_columns, _put_records),
     ("text", lambda v: isinstance(v, str), _put_text),
-    ("texts", lambda v: isinstance(v, tuple) and all(isinstance(x, str) for x in v), _put_texts),
-    ("lists", lambda v: isinstance(v, tuple) and all(isinstance(x, tuple) for x in v), _put_lists),
+    ("texts", _is_texts, _put_texts),
+    ("lists", lambda v: isinstance(v, tuple) and all(_is_texts(x) for x in v), _put_lists),
     ("array", lambda v: isinstance(v, np.ndarray), _put_array),
     ("truth", lambda v: isinstance(v, bool), _put_array),
-    ("numbers", lambda v: _is_table(v, (float, int)), _put_table),
-    ("arrays", lambda v: _is_table(v, np.ndarray), _put_table),
+    ("numbers", lambda v: _is_table(v, float), _put_table),
+    ("arrays", _is_sound_table, _put_table),
     ("integer", lambda v: isinstance(v, int | np.integer), _put_array),
     ("number", lambda v: isinstance(v, float | np.floating), _put_array),
+    ("sequence", lambda v: isinstance(v, tuple), _put_sequence),
+    ("mapping", lambda v: isinstance(v, dict), _put_mapping),
 )
 _READERS: dict[str, Callable[[Any], Any]] = {
     "nothing": lambda item: None,
@@ -163,4 +195,6 @@ _READERS: dict[str, Callable[[Any], Any]] = {
     "arrays": _table_of(np.asarray),
     "integer": lambda item: int(item[()]),
     "number": lambda item: float(item[()]),
+    "sequence": _get_sequence,
+    "mapping": _get_mapping,
 }

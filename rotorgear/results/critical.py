@@ -2,139 +2,103 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
-from typing import Any
-
 import numpy as np
 
-from rotorgear.model.model import Model
 from rotorgear.results.campbell import RPM, ExcitationOrder
 from rotorgear.results.modal import NodeTable, Piece
-from rotorgear.results.plain import plain
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, Written, derived, of
 
 
-@dataclass(frozen=True)
-class CriticalSpeed:
-    """A speed at which a line of excitation meets a mode.
+class CriticalSpeed(Record):
+    """A speed at which a line of excitation meets a mode."""
 
-    Attributes:
-        line: its name. speed: of the input shaft in rad/s. frequency_hz: of the mode there, the damped one.
-        damping_ratio: of the mode there; 0 in an undamped analysis. whirl: forward, backward, mixed, planar or "".
-        participation, excited: as at a crossing of the Campbell diagram. description: what moves.
-        residual: |w - p W| / (p W), with the eigenvalue of the system solved for again at that speed.
-    """
-
-    line: str
-    speed: float
-    frequency_hz: float
-    damping_ratio: float
-    whirl: str
-    participation: float
-    excited: bool
-    description: str
-    residual: float
+    line: str = of("excitation line")
+    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
+    frequency_hz: float = of("frequency", "Hz", note=" of the mode there, the damped one", form=".3f")
+    damping_ratio: float = of("damping ratio", note=" of the mode there; 0 in an undamped analysis")
+    whirl: str = of("sense of whirl", note=' there; `""` where nothing whirls')
+    participation: float = of("share of the exciting part in the energy of the mode")
+    excited: bool = of("whether the line can excite the mode", note=": whether the participation is above 1e-4")
+    description: str = of("what moves")
+    residual: float = of(
+        "residual",
+        note=" |w - p W| / (p W): relative difference of the frequency from the line, with the eigenvalue of the system "
+        "solved for again at that speed",
+        form=".0e",
+    )
 
 
-@dataclass(frozen=True)
-class CriticalResult:
-    """c critical speeds, ascending.
+def _columns_of_speeds() -> tuple[Written, ...]:
+    """The critical speeds are written by columns: a list over all of them for each field but the speed."""
 
-    Attributes:
-        model: the model; damped: whether damping and circulatory terms took part.
-        top_speed: highest speed looked at in rad/s, negative for the other sense.
-        lines: the lines; speeds: the critical speeds.
-        shapes: (p, 6, c) complex, modal mass 1; nodes: where they are.
-        dofs, discretisation, seconds, left_out, warnings, method: as in a modal result.
-    """
+    def column(name: str) -> Written:
+        one = CriticalSpeed.declarations[name]
+        return Written(
+            name,
+            lambda result, speeds: [getattr(item, name) for item in speeds],
+            one.unit,
+            ("critical_speed",),
+            one.label,
+            one.note,
+        )
 
-    model: Model
-    damped: bool
-    top_speed: float
-    lines: tuple[ExcitationOrder, ...]
-    speeds: tuple[CriticalSpeed, ...]
-    shapes: np.ndarray
-    nodes: NodeTable
-    dofs: int
-    discretisation: tuple[Piece, ...]
-    seconds: dict[str, float]
-    left_out: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
-    method: str = ""
+    return tuple(column(name) for name in CriticalSpeed.declarations if name != "speed")
 
-    def __len__(self) -> int:
-        return len(self.speeds)
 
-    @property
+class CriticalResult(ModelResult, kind="critical"):
+    """c critical speeds, ascending; shapes have modal mass 1."""
+
+    damped: bool = of("whether damping and circulatory terms took part")
+    top_speed: float = of(
+        "highest speed looked at", "rad/s", json="top_speed_rpm", note=", negative for the other sense"
+    )
+
+    @derived("critical speeds of the input shaft", "rpm", "critical_speed", form=".2f")
     def critical_speed_rpm(self) -> np.ndarray:
         """Speeds of the input shaft in rpm, (c,)."""
         return np.array([item.speed * RPM for item in self.speeds])
+
+    speeds: tuple[CriticalSpeed, ...] = of(
+        "critical speeds", "", "critical_speed", record=CriticalSpeed, json=_columns_of_speeds()
+    )
+    lines: tuple[ExcitationOrder, ...] = of("excitation lines", "", "line", record=ExcitationOrder)
+    shapes: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "critical_speed", json=None)
+    nodes: NodeTable = of("nodes", record=NodeTable, json=None)
+    discretisation: tuple[Piece, ...] = of("how each piece of shaft was cut", "", "piece", record=Piece)
+
+    def __len__(self) -> int:
+        return len(self.speeds)
 
     @property
     def worst_residual(self) -> float:
         """Largest residual; 0 without critical speeds."""
         return max((item.residual for item in self.speeds), default=0.0)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Everything but the shapes as plain values for JSON; the keys are documented in docs/json.md."""
-        names = (
-            "line",
-            "frequency_hz",
-            "damping_ratio",
-            "whirl",
-            "participation",
-            "excited",
-            "description",
-            "residual",
-        )
-        return {
-            "analysis": "critical",
-            "title": self.model.title,
-            "damped": self.damped,
-            "top_speed_rpm": self.top_speed * RPM,
-            "critical_speed_rpm": plain(self.critical_speed_rpm),
-            **{name: [getattr(item, name) for item in self.speeds] for name in names},
-            "lines": [asdict(line) for line in self.lines],
-            "dofs": self.dofs,
-            "discretisation": [asdict(piece) for piece in self.discretisation],
-            "seconds": float(self.seconds.get("total", 0.0)),
-            "seconds_by_step": {step: float(value) for step, value in self.seconds.items() if step != "total"},
-            "left_out": list(self.left_out),
-            "warnings": list(self.warnings),
-            "method": self.method,
-        }
 
+class CriticalMap(ModelResult, kind="critical_map"):
+    """Undamped critical speeds over one radial stiffness of all bearings, by sense of whirl.
 
-@dataclass(frozen=True)
-class CriticalMap:
-    """Undamped critical speeds over one radial stiffness of all bearings.
-
-    Attributes:
-        model: the model. line: name of the line. stiffness: (k,) in N/m.
-        forward, backward: (k, m) speeds of the input shaft in rad/s by sense of whirl, ascending, NaN beyond the last one;
-            other: the same for modes that don't whirl (torsion, axial, planar).
-        bearings: radial stiffness along x and y in N/m that the bearings of the model have, bearing -> (2,).
-        top_speed: highest speed looked at in rad/s. dofs, seconds: of the largest problem, and of all.
+    Speeds ascend at each stiffness, NaN beyond the last one; `other` are those of modes that don't whirl (torsion, axial,
+    planar). `dofs` are those of the largest problem.
     """
 
-    model: Model
-    line: str
-    stiffness: np.ndarray
-    forward: np.ndarray
-    backward: np.ndarray
-    other: np.ndarray
-    bearings: dict[str, np.ndarray]
-    top_speed: float
-    dofs: int
-    seconds: dict[str, float]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON."""
-        return {
-            "line": self.line,
-            "stiffness_n_per_m": plain(self.stiffness),
-            **{f"{kind}_rpm": plain(getattr(self, kind) * RPM) for kind in ("forward", "backward", "other")},
-            "bearing_stiffness_n_per_m": {name: plain(values) for name, values in self.bearings.items()},
-            "top_speed_rpm": self.top_speed * RPM,
-            "dofs": self.dofs,
-            "seconds": float(self.seconds.get("total", 0.0)),
-        }
+    line: str = of("excitation line", note=" of the map")
+    stiffness: np.ndarray = of("radial stiffness of all bearings", "N/m", "stiffness", json="stiffness_n_per_m")
+    forward: np.ndarray = of(
+        "critical speeds with forward whirl", "rad/s", "stiffness", "critical_speed", json="forward_rpm"
+    )
+    backward: np.ndarray = of(
+        "critical speeds with backward whirl", "rad/s", "stiffness", "critical_speed", json="backward_rpm"
+    )
+    other: np.ndarray = of(
+        "critical speeds of modes that do not whirl", "rad/s", "stiffness", "critical_speed", json="other_rpm"
+    )
+    bearings: dict[str, np.ndarray] = of(
+        "radial stiffness along x and y that the bearings of the model have",
+        "N/m",
+        "BEARING",
+        "xy",
+        json="bearing_stiffness_n_per_m",
+    )
+    top_speed: float = of("highest speed looked at", "rad/s", json="top_speed_rpm")

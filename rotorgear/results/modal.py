@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
-from typing import Any
-
 import numpy as np
 
-from rotorgear.model.model import Model
-from rotorgear.results.plain import plain
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, Written, derived, of
 
 
-@dataclass(frozen=True)
-class NodeTable:
-    """Where the p nodes are: shaft's name, position (p, 3) in m, and the name of the bearing for a pedestal's node ("" else).
+class NodeTable(Record):
+    """Where the p nodes are.
 
     The nodes of the model come first, then stations inside elements of higher order, where the shape is known as well.
     """
 
-    shaft: tuple[str, ...]
-    position: np.ndarray
-    pedestal: tuple[str, ...]
+    shaft: tuple[str, ...] = of("shaft", "", "node")
+    position: np.ndarray = of("position", "m", "node", "xyz")
+    pedestal: tuple[str, ...] = of("bearing whose pedestal the node is", "", "node", note=', else `""`')
 
     def on_shaft(self, shaft: str) -> np.ndarray:
         """Numbers of a shaft's nodes from left to right, without pedestals."""
@@ -33,65 +29,122 @@ class NodeTable:
         return int(numbers[np.argmin(np.abs(self.position[numbers, 2] - z))])
 
 
-@dataclass(frozen=True)
-class Piece:
-    """A stretch of shaft between two neighbouring places: from start to end (z in m), its elements and their order."""
+class Piece(Record):
+    """A stretch of shaft between two neighbouring places, and how it was cut into elements."""
 
-    shaft: str
-    start: float
-    end: float
-    elements: int
-    order: int
+    shaft: str = of("shaft")
+    start: float = of("z of the left end", "m")
+    end: float = of("z of the right end", "m")
+    elements: int = of("number of elements")
+    order: int = of("polynomial order of the elements")
 
 
-@dataclass(frozen=True)
-class ModalResult:
+# How many nodes there are is all of the table of nodes that is written.
+NODE_COUNT = Written("nodes", lambda result, nodes: len(nodes.shaft), axes=(), label="number of nodes")
+
+
+class ModalResult(ModelResult, kind="modal"):
     """m modes of a model, lowest natural frequency first.
 
-    Attributes:
-        model: the model that was analysed.
-        speed: speed of the reference shaft in rad/s; None for an undamped analysis at standstill.
-        eigenvalues: s in rad/s, (m,) complex, one of each conjugate pair; real for overdamped and 0 for rigid modes.
-        rigid: (m,) whether a mode is a rigid-body motion.
-        shapes: (p, 6, m) complex, displacements x y z tx ty tz of all nodes; modal mass 1 (q^H M q), the largest displacement
-            real and positive.
-        nodes: where the p nodes are.
-        error_estimate: (m,) estimated relative discretisation error of the natural frequency; infinite where a mode is finer
-            than the mesh, NaN where the estimate was left out.
-        kinetic_energy, strain_energy: share of each part in the energy of each mode, part -> (m,); sums to 1 over the parts.
-        kinetic_by_motion: share of bending, axial and torsion in the kinetic energy, motion -> (m,).
-        strain_by_motion: share of the shafts' bending, axial and torsion, of meshes, supports and couplings in strain energy.
-        whirl: per mode "forward", "backward", "mixed", "planar", or "" where nothing whirls.
-        whirl_by_shaft: shaft -> (m,), -1 (backward circle) to +1 (forward circle), in the sense of that shaft's own spin.
-        description: one line a person can read for each mode.
-        backward_error: (m,) residual relative to the matrices.
-        dofs: number of degrees of freedom; discretisation: how each shaft segment was cut.
-        seconds: wall time by step. left_out: sentences about what the model did not need. warnings: sentences.
-        method: solver, and what its guards said.
+    Of each conjugate pair of eigenvalues s one is kept; s is real for overdamped and 0 for rigid-body modes. Shapes are those
+    of all p nodes, with modal mass 1 (q^H M q) and the largest displacement real and positive.
     """
 
-    model: Model
-    speed: float | None
-    eigenvalues: np.ndarray
-    rigid: np.ndarray
-    shapes: np.ndarray
-    nodes: NodeTable
-    error_estimate: np.ndarray
-    kinetic_energy: dict[str, np.ndarray]
-    strain_energy: dict[str, np.ndarray]
-    kinetic_by_motion: dict[str, np.ndarray]
-    strain_by_motion: dict[str, np.ndarray]
-    whirl: tuple[str, ...]
-    whirl_by_shaft: dict[str, np.ndarray]
-    description: tuple[str, ...]
-    backward_error: np.ndarray
-    dofs: int
-    discretisation: tuple[Piece, ...]
-    seconds: dict[str, float]
-    left_out: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
-    method: str = ""
-    point_amplitudes: dict[str, np.ndarray] = field(default_factory=dict)
+    speed: float | None = of(
+        "speed of the input shaft", "rad/s", json="speed_rpm", note="; `null`: undamped, at standstill"
+    )
+
+    @derived("frequency", "Hz", "mode", note=" of each mode, the damped one; 0 for rigid-body modes", form=".4f")
+    def frequency_hz(self) -> np.ndarray:
+        """Damped frequency |Im s| / 2 pi, (m,)."""
+        return np.where(self.rigid, 0.0, np.abs(self.eigenvalues.imag) / (2.0 * np.pi))
+
+    @derived(
+        "natural frequency",
+        "Hz",
+        "mode",
+        note=", |s| / 2π of the eigenvalue s; equal to the former without damping",
+        form=".4f",
+    )
+    def natural_frequency_hz(self) -> np.ndarray:
+        """|s| / 2 pi, (m,)."""
+        return np.where(self.rigid, 0.0, np.abs(self.eigenvalues) / (2.0 * np.pi))
+
+    @derived("damping ratio", "", "mode", note=", −Re s / |s|, as a fraction; negative: unstable")
+    def damping_ratio(self) -> np.ndarray:
+        """-Re s / |s|, (m,); 0 for rigid modes, 1 for overdamped and -1 for divergent ones."""
+        size = np.abs(self.eigenvalues)
+        safe = np.where(size > 0.0, size, 1.0)
+        return np.where(self.rigid | (size == 0.0), 0.0, -self.eigenvalues.real / safe) + 0.0
+
+    rigid: np.ndarray = of("whether the mode is a rigid-body motion", "", "mode")
+    description: tuple[str, ...] = of("what moves", "", "mode", note=", in a line")
+    whirl: tuple[str, ...] = of(
+        "sense of whirl",
+        "",
+        "mode",
+        note=': `"forward"`, `"backward"`, `"mixed"`, `"planar"`, or `""` where nothing whirls',
+    )
+    error_estimate: np.ndarray = of(
+        "estimated relative discretisation error",
+        "",
+        "mode",
+        note=" of the frequency; `null`: the mesh can't follow that mode, or the estimate was left out",
+        form=".0e",
+    )
+    eigenvalues: np.ndarray = of(
+        "eigenvalue s",
+        "rad/s",
+        "mode",
+        json=(
+            Written("eigenvalue_real_1_per_s", lambda r, s: s.real, label="real part of s in rad/s"),
+            Written("eigenvalue_imag_1_per_s", lambda r, s: s.imag, label="imaginary part of s in rad/s"),
+        ),
+    )
+    kinetic_energy: dict[str, np.ndarray] = of(
+        "share in the kinetic energy",
+        "",
+        "PART",
+        "mode",
+        note=" of each mode, of a part such as `gears.pinion`; sums to 1 over the parts",
+    )
+    strain_energy: dict[str, np.ndarray] = of(
+        "share in the strain energy", "", "PART", "mode", note=", the same; 0 for rigid-body modes"
+    )
+    kinetic_by_motion: dict[str, np.ndarray] = of(
+        "share of a motion in the kinetic energy", "", "MOTION", "mode", note=": bending, axial motion, torsion"
+    )
+    strain_by_motion: dict[str, np.ndarray] = of(
+        "share of a motion in the strain energy",
+        "",
+        "MOTION",
+        "mode",
+        note=": bending, axial and torsional strain of the shafts; meshes, supports and couplings",
+    )
+    whirl_by_shaft: dict[str, np.ndarray] = of(
+        "sense of whirl of each shaft",
+        "",
+        "SHAFT",
+        "mode",
+        json=None,
+        note=", -1 (backward circle) to +1 (forward circle)",
+    )
+    shapes: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "mode", json=None)
+    nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)
+    backward_error: np.ndarray = of("residual relative to the matrices", "", "mode", form=".0e")
+    discretisation: tuple[Piece, ...] = of("how each piece of shaft was cut", "", "piece", record=Piece)
+    point_amplitudes: dict[str, np.ndarray] = of(
+        "amplitude at a named point",
+        "m, rad",
+        "POINT",
+        "mode",
+        json=Written(
+            "point_amplitude",
+            lambda r, amplitudes: {name: np.abs(value) for name, value in amplitudes.items()},
+            note=", along its direction, of the shape with modal mass 1 kg",
+        ),
+        default_factory=dict,
+    )
 
     def __len__(self) -> int:
         return len(self.eigenvalues)
@@ -105,51 +158,3 @@ class ModalResult:
         orders = sorted({piece.order for piece in self.discretisation})
         text = f"order {orders[0]}" if len(orders) == 1 else f"orders {orders[0]} to {orders[-1]}"
         return f"{elements} shaft element{'s'[: elements != 1]} of {text} in {len(self.discretisation)} pieces"
-
-    @property
-    def natural_frequency_hz(self) -> np.ndarray:
-        """|s| / 2 pi, (m,)."""
-        return np.where(self.rigid, 0.0, np.abs(self.eigenvalues) / (2.0 * np.pi))
-
-    @property
-    def frequency_hz(self) -> np.ndarray:
-        """Damped frequency |Im s| / 2 pi, (m,)."""
-        return np.where(self.rigid, 0.0, np.abs(self.eigenvalues.imag) / (2.0 * np.pi))
-
-    @property
-    def damping_ratio(self) -> np.ndarray:
-        """-Re s / |s|, (m,); 0 for rigid modes, 1 for overdamped and -1 for divergent ones."""
-        size = np.abs(self.eigenvalues)
-        safe = np.where(size > 0.0, size, 1.0)
-        return np.where(self.rigid | (size == 0.0), 0.0, -self.eigenvalues.real / safe) + 0.0
-
-    def to_dict(self) -> dict[str, Any]:
-        """Everything but the shapes as plain values for JSON; the keys are documented in docs/json.md."""
-        return {
-            "analysis": "modal",
-            "title": self.model.title,
-            "speed_rpm": None if self.speed is None else self.speed * 30.0 / np.pi,
-            "frequency_hz": plain(self.frequency_hz),
-            "natural_frequency_hz": plain(self.natural_frequency_hz),
-            "damping_ratio": plain(self.damping_ratio),
-            "rigid": [bool(value) for value in self.rigid],
-            "description": list(self.description),
-            "whirl": list(self.whirl),
-            "error_estimate": plain(self.error_estimate),
-            "eigenvalue_real_1_per_s": plain(self.eigenvalues.real),
-            "eigenvalue_imag_1_per_s": plain(self.eigenvalues.imag),
-            "kinetic_energy": {part: plain(share) for part, share in self.kinetic_energy.items()},
-            "strain_energy": {part: plain(share) for part, share in self.strain_energy.items()},
-            "kinetic_by_motion": {motion: plain(share) for motion, share in self.kinetic_by_motion.items()},
-            "strain_by_motion": {motion: plain(share) for motion, share in self.strain_by_motion.items()},
-            "point_amplitude": {name: plain(np.abs(value)) for name, value in self.point_amplitudes.items()},
-            "backward_error": plain(self.backward_error),
-            "dofs": self.dofs,
-            "nodes": len(self.nodes.shaft),
-            "discretisation": [asdict(piece) for piece in self.discretisation],
-            "seconds": float(self.seconds.get("total", 0.0)),
-            "seconds_by_step": {step: float(value) for step, value in self.seconds.items() if step != "total"},
-            "left_out": list(self.left_out),
-            "warnings": list(self.warnings),
-            "method": self.method,
-        }

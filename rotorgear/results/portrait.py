@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
-
 import numpy as np
 
 from rotorgear.errors import AnalysisError
+from rotorgear.results.schema import Record, of
 
 # What a record holds of each contact.
 DISPLACEMENT = 0
@@ -21,24 +19,48 @@ _SHARE = 1e-3
 _MOST_LINES = 8
 
 
-@dataclass(frozen=True)
-class Portraits:
+class SpectrumLine(Record):
+    """A line in the spectrum of a trajectory."""
+
+    order: float = of("order", note=": frequency over that of the fastest mesh; the largest line comes first")
+    displacement_m: float = of("amplitude of the displacement", "m")
+
+
+class ContactLines(Record):
+    """The lines of one contact."""
+
+    name: str = of("name", note=": mesh and helix")
+    lines: tuple[SpectrumLine, ...] = of("lines of the spectrum", "", "line", record=SpectrumLine)
+
+
+class Portrait(Record):
+    """Length and lines of one trajectory."""
+
+    values: tuple[float, ...] = of(
+        "value of each parameter", "", "parameter", note=" at a point that keeps its trajectory"
+    )
+    start: str = of("where the run started")
+    periods: int = of("common periods that were recorded")
+    records_per_period: int = of("records in one of them")
+    contacts: tuple[ContactLines, ...] = of("lines by contact", "", "contact", record=ContactLines)
+
+
+class Portraits(Record):
     """k points with j runs each, c contacts, s records at most.
 
-    Attributes:
-        point: (k,) numbers of the points. run: (j,) numbers of the runs.
-        turns: (k,) periods of the fastest mesh in a least common period T. periods: (k,) least common periods that were recorded.
-        records: (k,) records in one of them, at even times; the first is a Poincare point.
-        values: displacement in m and velocity in m/s of the contacts along their normal (without the transmission error), and
-            force in N, (k, j, s, c, 3); NaN behind the last record of a point, and where a run failed.
+    Records stand at even times; the first of a common period T is a Poincare point. Values are displacement and velocity of
+    the contacts along their normal (without the transmission error), and force; NaN behind the last record of a point, and
+    where a run failed.
     """
 
-    point: np.ndarray
-    run: np.ndarray
-    turns: np.ndarray
-    periods: np.ndarray
-    records: np.ndarray
-    values: np.ndarray
+    point: np.ndarray = of("numbers of the points", "", "portrait")
+    run: np.ndarray = of("numbers of the runs", "", "portrait_run")
+    turns: np.ndarray = of("periods of the fastest mesh in a common period", "", "portrait")
+    periods: np.ndarray = of("common periods that were recorded", "", "portrait")
+    records: np.ndarray = of("records in one of them", "", "portrait")
+    values: np.ndarray = of(
+        "displacement, velocity, force", "m, m/s, N", "portrait", "portrait_run", "record", "contact", "dvf"
+    )
 
     def trajectory(self, k: int, run: int = 0) -> np.ndarray:
         """Records of a run, (s, c, 3)."""
@@ -94,18 +116,3 @@ def _between(order: np.ndarray, a: np.ndarray, i: int) -> tuple[float, float]:
     r = a[i + side] / a[i]
     x = max(0.0, (2.0 * r - 1.0) / (r + 1.0))
     return float(order[i] + side * x * order[1]), float(a[i] * (1.0 - x**2) / np.sinc(x))
-
-
-def portrait_dict(portraits: Portraits, k: int, j: int, contact: tuple[str, ...]) -> dict[str, Any]:
-    """Length and lines of a trajectory as plain values for JSON."""
-    return {
-        "periods": int(portraits.periods[k]),
-        "records_per_period": int(portraits.records[k]),
-        "contacts": [
-            {
-                "name": name,
-                "lines": [{"order": f, "displacement_m": a} for f, a in portraits.lines(k, j, c)],
-            }
-            for c, name in enumerate(contact)
-        ],
-    }

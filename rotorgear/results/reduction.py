@@ -1,36 +1,31 @@
-"""How the systems of a sweep were reduced, and the FRF error of the reduction."""
+"""How the systems of a sweep were reduced, and what that costs in accuracy."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from rotorgear.results.schema import Record, of
 
 
-@dataclass(frozen=True)
-class Reduction:
-    """A basis of modes and static shapes in place of all degrees of freedom; of several bases, the largest values.
+class Reduction(Record):
+    """A basis of modes and static shapes in place of all degrees of freedom; of several bases, the largest values."""
 
-    Attributes:
-        dofs: before. coordinates: after. modes: elastic modes among them; highest: frequency of the highest of these in Hz.
-        rigid: rigid-body modes. static: static shapes of contacts and loads.
-        closed, apart: FRF error: largest relative difference of the receptances at the contacts from those of the whole system,
-            with all contacts closed and with all of them open; see solvers/frequency/receptance.py.
-        up_to: Hz up to which they were compared. frequencies: how many. bases: how many bases there are.
-        seconds: to find and check them.
-    """
-
-    dofs: int
-    coordinates: int
-    modes: int
-    highest: float
-    rigid: int
-    static: int
-    closed: float
-    apart: float
-    up_to: float
-    frequencies: int
-    bases: int
-    seconds: float
+    dofs: int = of("degrees of freedom", note=" before the reduction; of several bases, the largest values")
+    coordinates: int = of("coordinates after the reduction")
+    modes: int = of("elastic modes among them")
+    highest: float = of("frequency of the highest of these modes", "Hz", json="highest_mode_hz")
+    rigid: int = of("rigid-body motions among them", json="rigid_motions")
+    static: int = of("static shapes of loads and contacts among them", json="static_shapes")
+    closed: float = of(
+        "largest relative error of the receptances at the contacts, all of them closed",
+        json="error_closed",
+        note=", against those of the whole system (solvers/frequency/receptance.py)",
+    )
+    apart: float = of(
+        "largest relative error of the receptances at the contacts, all of them apart", json="error_apart"
+    )
+    up_to: float = of("frequency up to which they were compared", "Hz", json="up_to_hz")
+    frequencies: int = of("at how many frequencies")
+    bases: int = of("how many bases there are")
+    seconds: float = of("wall time", "s", note=" to find and check them")
 
     @property
     def error(self) -> float:
@@ -39,31 +34,14 @@ class Reduction:
 
     @property
     def sentence(self) -> str:
-        """One sentence that describes the reduction."""
+        """The reduction in words."""
         parts = [f"{self.modes} modes up to {_hertz(self.highest)}"] if self.modes else []
         parts += [f"{self.rigid} rigid"] if self.rigid else []
         parts += [f"{self.static} static shapes"] if self.static else []
         return (
-            f"{self.dofs} dofs reduced to {self.coordinates} ({', '.join(parts)}): FRF error at the contacts "
+            f"{self.dofs} dofs reduced to {self.coordinates} ({', '.join(parts)}): receptances at the contacts within "
             f"{100.0 * self.error:.2g} % up to {_hertz(self.up_to)}"
         )
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON; the keys are documented in docs/json.md."""
-        return {
-            "dofs": self.dofs,
-            "coordinates": self.coordinates,
-            "modes": self.modes,
-            "highest_mode_hz": self.highest,
-            "rigid_motions": self.rigid,
-            "static_shapes": self.static,
-            "error_closed": self.closed,
-            "error_apart": self.apart,
-            "up_to_hz": self.up_to,
-            "frequencies": self.frequencies,
-            "bases": self.bases,
-            "seconds": self.seconds,
-        }
 
 
 def _hertz(value: float) -> str:

@@ -2,152 +2,181 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
 
-from rotorgear.model.model import Model
-from rotorgear.results.modal import NodeTable
+from rotorgear.results.modal import NODE_COUNT, NodeTable
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, Written, derived, of
 
 
-@dataclass(frozen=True)
-class Share:
+class Share(Record):
     """Share of a mesh in the load of a gear that it drives, or is driven by, together with other meshes.
 
-    `factor` is the number of these meshes times the share (the sharing factor K_gamma of the group is the largest one);
-    `decided_by` is "stiffness" in a loop and "loads" where equilibrium alone decides.
+    The sharing factor K_gamma of the group is the largest factor in it.
     """
 
-    gear: str
-    mesh: str
-    share: float
-    factor: float
-    decided_by: str
+    gear: str = of("gear", note=" whose meshes share a load")
+    mesh: str = of("mesh", note=": one of these meshes")
+    share: float = of("share", note=" of the mesh in the force of them all", form=".3f")
+    factor: float = of("factor", note=": the share times the number of meshes", form=".4f")
+    decided_by: str = of(
+        "what decides the share",
+        note=': `"stiffness"`: a loop, which stiffness and index errors divide; `"loads"`: the torques alone decide',
+    )
 
 
-@dataclass(frozen=True)
-class LoopAssembly:
-    """How a closed loop of gears goes together.
+class LoopAssembly(Record):
+    """How a closed loop of gears goes together."""
 
-    Attributes:
-        mesh: the mesh that closes the loop.
-        gear: the gear that closes it by its place on the shaft; "" where all clockings are given.
-        clocking_deg: angle of that gear's tooth from the shaft's mark.
-        rest_pitches: what is missing where the gear stands at angle 0 (or as the file says), in pitches.
-    """
-
-    mesh: str
-    gear: str
-    clocking_deg: float
-    rest_pitches: float
+    mesh: str = of("mesh", note=" that closes the loop")
+    gear: str = of("gear", note=' that closes it by its place on the shaft; `""` where all clockings are given')
+    clocking_deg: float = of("angle of that gear's tooth from the shaft's mark", "deg", form="+.4f")
+    rest_pitches: float = of(
+        "what is missing where the gear stands at angle 0, or as the file says, in pitches", form="+.4f"
+    )
 
 
-@dataclass(frozen=True)
-class StaticResult:
+class Sensitivity(Record):
+    """What one parameter changes: derivatives of forces and shares."""
+
+    parameter: str = of("parameter", note=", such as `meshes.stage_1a.index_error`")
+    unit: str = of("unit", note=" of the force derivatives; for a stiffness they are for 100 % of it")
+    mesh_force_n: dict[str, np.ndarray] = of(
+        "derivative of the force of each contact", "N over the unit of the parameter", "MESH", "helix"
+    )
+    share: np.ndarray = of("derivative of each row of `shares`", "", "share")
+
+
+def by_mesh(key: str, *axes: str) -> Written:
+    """A key under which the values of contacts stand by mesh; `axes` are those behind the contact's."""
+
+    def value(result: Any, values: np.ndarray) -> dict[str, Any]:
+        return {mesh: values[result.contacts_of(mesh)] for mesh in dict.fromkeys(result.contact_mesh)}
+
+    return Written(key, value, axes=("MESH", "helix", *axes))
+
+
+def _drivers(result: Any, driver: tuple[str, ...]) -> dict[str, str]:
+    return {mesh: driver[result.contacts_of(mesh)[0]] for mesh in dict.fromkeys(result.contact_mesh)}
+
+
+def _forces(name: str, kind: str) -> tuple[Written, Written]:
+    """Force and moment of a support stand under keys of their own."""
+    return (
+        Written(
+            f"{kind}_force_n",
+            lambda result, loads: {part: load[:3] for part, load in loads.items()},
+            "N",
+            (name, "xyz"),
+            "force on the shaft",
+        ),
+        Written(
+            f"{kind}_moment_n_m",
+            lambda result, loads: {part: load[3:] for part, load in loads.items()},
+            "N m",
+            (name, "xyz"),
+            "moment on the shaft",
+        ),
+    )
+
+
+class StaticResult(ModelResult, kind="static"):
     """Static equilibrium of a model with p nodes and c contacts (helices of meshes, in the order of the file).
 
-    Attributes:
-        model: the model; speed: speed of the reference shaft in rad/s (for bearings with tables), None without one.
-        nodes: where the nodes are; displacement: x y z tx ty tz of each, (p, 6).
-        contact_mesh, contact_helix: mesh of each contact, and 0 or 1 for the helix at the smaller or larger z.
-        driver: gear that drives at each contact; carries: (c,) whether the contact is closed.
-        mesh_force: (c,) N along the flank normal; mesh_force_on_gear: (c, 3) N, x y z, of the pinion on the gear.
-        mesh_deflection: (c,) approach of the flanks in m.
-        bearing_force, support_force: force and moment on the shaft by name, (6,), N and N m.
-        shares: sharing of each gear with several meshes; helix_share: (c,) share of a helix in its mesh.
-        parameter, parameter_unit: what the shares depend on; force_derivative: (k, c), change of each contact's force for a
-            unit of each; share_derivative: (k, g), change of each row of `shares`. For a stiffness the unit is 100 %.
-        mesh_phase: phase of each mesh in pitches, NaN where teeth are missing; assembly: how loops close.
-        torque: applied torques by name in N m about +z.
-        imbalance: largest force that is missing for equilibrium of the whole, relative to the sum of all.
-        error_estimate: relative change of mesh and bearing forces against a mesh of half the element length.
+    `force_derivative` and `share_derivative` are the changes for a unit of each parameter; for a stiffness the unit is 100 %.
     """
 
-    model: Model
-    speed: float | None
-    nodes: NodeTable
-    displacement: np.ndarray
-    contact_mesh: tuple[str, ...]
-    contact_helix: np.ndarray
-    driver: tuple[str, ...]
-    carries: np.ndarray
-    mesh_force: np.ndarray
-    mesh_force_on_gear: np.ndarray
-    mesh_deflection: np.ndarray
-    bearing_force: dict[str, np.ndarray]
-    support_force: dict[str, np.ndarray]
-    shares: tuple[Share, ...]
-    helix_share: np.ndarray
-    parameter: tuple[str, ...]
-    parameter_unit: tuple[str, ...]
-    force_derivative: np.ndarray
-    share_derivative: np.ndarray
-    mesh_phase: dict[str, float]
-    assembly: tuple[LoopAssembly, ...]
-    torque: dict[str, float]
-    point_displacement: dict[str, float]
-    imbalance: float
-    error_estimate: float
-    dofs: int
-    seconds: dict[str, float]
-    left_out: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
-    method: str = ""
-    place_displacement: dict[str, np.ndarray] = field(default_factory=dict)
+    speed: float | None = of(
+        "speed of the input shaft",
+        "rad/s",
+        json="speed_rpm",
+        note=", for flanks and bearings with tables; `null` without one",
+    )
+    torque: dict[str, float] = of("applied torque", "N m", "TORQUE", json="torque_n_m", note=" about +z, by name")
+    contact_mesh: tuple[str, ...] = of("mesh of each contact", "", "contact", json=None)
+    contact_helix: np.ndarray = of("0 or 1 for the helix at the smaller or larger z", "", "contact", json=None)
+    mesh_force: np.ndarray = of(
+        "force along the flank normal",
+        "N",
+        "contact",
+        json=by_mesh("mesh_force_n"),
+        note=" of each contact",
+        form=".1f",
+    )
+    mesh_force_on_gear: np.ndarray = of(
+        "force of the pinion on the gear",
+        "N",
+        "contact",
+        "xyz",
+        json=by_mesh("mesh_force_on_gear_n", "xyz"),
+        form=".0f",
+    )
+    mesh_deflection: np.ndarray = of("approach of the flanks", "m", "contact", json=by_mesh("mesh_deflection_m"))
+    carries: np.ndarray = of("whether the contact is closed", "", "contact", json=by_mesh("mesh_carries"))
+    driver: tuple[str, ...] = of(
+        "gear that drives", "", "contact", json=Written("mesh_driver", _drivers, axes=("MESH",))
+    )
+    helix_share: np.ndarray = of(
+        "share of a contact in the force of its mesh", "", "contact", json=by_mesh("helix_share")
+    )
+    shares: tuple[Share, ...] = of("sharing of each gear with several meshes", "", "share", record=Share)
 
-    def contacts_of(self, mesh: str) -> list[int]:
-        """Numbers of the contacts of a mesh."""
-        return [k for k, name in enumerate(self.contact_mesh) if name == mesh]
-
-    @property
+    @derived("largest sharing factor", note=", like K_gamma; 1 where no meshes share")
     def sharing_factor(self) -> float:
         """The largest sharing factor of all groups of meshes; 1 where none shares."""
         return max((row.factor for row in self.shares), default=1.0)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON; the keys are documented in docs/json.md."""
-        meshes = list(dict.fromkeys(self.contact_mesh))
+    bearing_force: dict[str, np.ndarray] = of(
+        "force and moment on the shaft", "N, N m", "BEARING", "component", json=_forces("BEARING", "bearing")
+    )
+    support_force: dict[str, np.ndarray] = of(
+        "force and moment on the shaft", "N, N m", "SUPPORT", "component", json=_forces("SUPPORT", "support")
+    )
+    nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)
+    displacement: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", json=None)
+    point_displacement: dict[str, float] = of(
+        "displacement of a named point", "m, rad", "POINT", note=" along its direction"
+    )
+    parameter: tuple[str, ...] = of("parameters on which the shares depend", "", "parameter", json=None)
+    parameter_unit: tuple[str, ...] = of("their units", "", "parameter", json=None)
+    force_derivative: np.ndarray = of("change of each contact's force", "N", "parameter", "contact", json=None)
+    share_derivative: np.ndarray = of("change of each row of `shares`", "", "parameter", "share", json=None)
 
-        def by_mesh(values: np.ndarray) -> dict[str, Any]:
-            return {mesh: values[self.contacts_of(mesh)].tolist() for mesh in meshes}
+    @derived("what the forces depend on", "", "parameter", record=Sensitivity)
+    def sensitivity(self) -> tuple[Sensitivity, ...]:
+        """The derivatives, a record for each parameter."""
+        return tuple(
+            Sensitivity(
+                name,
+                unit,
+                {mesh: self.force_derivative[k, self.contacts_of(mesh)] for mesh in dict.fromkeys(self.contact_mesh)},
+                self.share_derivative[k],
+            )
+            for k, (name, unit) in enumerate(zip(self.parameter, self.parameter_unit, strict=True))
+        )
 
-        return {
-            "analysis": "static",
-            "title": self.model.title,
-            "speed_rpm": None if self.speed is None else self.speed * 30.0 / np.pi,
-            "torque_n_m": dict(self.torque),
-            "mesh_force_n": by_mesh(self.mesh_force),
-            "mesh_force_on_gear_n": by_mesh(self.mesh_force_on_gear),
-            "mesh_deflection_m": by_mesh(self.mesh_deflection),
-            "mesh_carries": by_mesh(self.carries),
-            "mesh_driver": {mesh: self.driver[self.contacts_of(mesh)[0]] for mesh in meshes},
-            "helix_share": by_mesh(self.helix_share),
-            "shares": [asdict(row) for row in self.shares],
-            "sharing_factor": self.sharing_factor,
-            "bearing_force_n": {name: value[:3].tolist() for name, value in self.bearing_force.items()},
-            "bearing_moment_n_m": {name: value[3:].tolist() for name, value in self.bearing_force.items()},
-            "support_force_n": {name: value[:3].tolist() for name, value in self.support_force.items()},
-            "support_moment_n_m": {name: value[3:].tolist() for name, value in self.support_force.items()},
-            "displacement": {place: value.tolist() for place, value in self.place_displacement.items()},
-            "point_displacement": dict(self.point_displacement),
-            "sensitivity": [
-                {
-                    "parameter": name,
-                    "unit": unit,
-                    "mesh_force_n": by_mesh(self.force_derivative[k]),
-                    "share": self.share_derivative[k].tolist(),
-                }
-                for k, (name, unit) in enumerate(zip(self.parameter, self.parameter_unit, strict=True))
-            ],
-            "mesh_phase": {name: float(v) if np.isfinite(v) else None for name, v in self.mesh_phase.items()},
-            "assembly": [asdict(row) for row in self.assembly],
-            "imbalance": self.imbalance,
-            "error_estimate": self.error_estimate if np.isfinite(self.error_estimate) else None,
-            "dofs": self.dofs,
-            "nodes": len(self.nodes.shaft),
-            "seconds": float(self.seconds.get("total", 0.0)),
-            "left_out": list(self.left_out),
-            "warnings": list(self.warnings),
-            "method": self.method,
-        }
+    mesh_phase: dict[str, float] = of("phase of a mesh in pitches", "", "MESH", note="; `null` where teeth are missing")
+    assembly: tuple[LoopAssembly, ...] = of("how closed loops go together", "", "loop", record=LoopAssembly)
+    imbalance: float = of(
+        "largest force that is missing for equilibrium", note=" of the whole, relative to the sum of all", form=".0e"
+    )
+    error_estimate: float = of(
+        "estimated relative discretisation error",
+        note=": change of mesh and bearing forces when every element is halved",
+        form=".0e",
+    )
+    place_displacement: dict[str, np.ndarray] = of(
+        "displacements of gears, disks and bearings",
+        "m, rad",
+        "PLACE",
+        "component",
+        json="displacement",
+        note=": x, y, z in m, tilts and twist in rad",
+        default_factory=dict,
+    )
+
+    def contacts_of(self, mesh: str) -> list[int]:
+        """Numbers of the contacts of a mesh."""
+        return [k for k, name in enumerate(self.contact_mesh) if name == mesh]

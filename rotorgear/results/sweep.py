@@ -1,79 +1,190 @@
-"""Result of a sweep: Poincare sections, Lyapunov exponents, response types and indicators over one or two parameters."""
+"""Result of a sweep: Poincare sections, Lyapunov exponents, kinds of motion and indicators over one or two parameters."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
-
 import numpy as np
 
-from rotorgear.model.model import Model
-from rotorgear.results.portrait import Portraits, portrait_dict
+from rotorgear.results.portrait import ContactLines, Portrait, Portraits, SpectrumLine
 from rotorgear.results.reduction import Reduction
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, derived, of
 
 
-@dataclass(frozen=True)
-class SweepResult:
+class Parameter(Record):
+    """What was changed."""
+
+    address: str = of("address of a parameter", note=": what was changed")
+    unit: str = of("unit", note=' of its values, or `""` for SI')
+
+
+class SweepContact(Record):
+    """A contact in one run."""
+
+    name: str = of("name", note=": mesh and helix")
+    static_force_n: float = of(
+        "static force", "N", note=" along the flank normal without anything that varies; negative on the back flank"
+    )
+    static_deflection_m: float = of("static force over mean stiffness", "m")
+    peak_to_peak_m: float = of("approach of the flanks less the transmission error, peak to peak", "m")
+    peak_to_peak_dte_m: float = of("dynamic transmission error, peak to peak", "m")
+    rms_dte_m: float = of("root mean square of the dynamic transmission error about its mean", "m")
+    mean_force_n: float = of("mean force", "N")
+    rms_force_n: float = of("root mean square of the force about its mean", "N")
+    largest_force_n: float = of("largest force", "N")
+    dynamic_factor: float = of(
+        "dynamic factor", note=": largest over static force; `null` without load on the driving flank"
+    )
+    driving_share: float = of("share of the time on the driving flank")
+    apart_share: float = of("share of the time without contact")
+    back_share: float = of("share of the time on the back flank", note=" (impact time ratio)")
+    losses_per_mesh_period: float = of("losses of contact in a period of the fastest mesh")
+
+
+class SweepRun(Record):
+    """One run of a point."""
+
+    start: str = of("where the run started", note=': `"static"`, `"start 2"`, `"up"`, `"down"`')
+    motion: str = of(
+        "kind of motion",
+        note=': `"1T"`, `"2T"`, ..., `"quasi-periodic"`, `"chaotic"`, `"not settled"`, `"not periodic"` (without exponents), '
+        '`"failed"`',
+    )
+    lyapunov: np.ndarray = of(
+        "Lyapunov exponents", "", "exponent", note=" per period of the fastest mesh, largest first"
+    )
+    lyapunov_error: np.ndarray = of("standard errors of the Lyapunov exponents", "", "exponent")
+    contacts: tuple[SweepContact, ...] = of("contacts", "", "contact", record=SweepContact)
+
+
+class SweepPoint(Record):
+    """One point of the grid."""
+
+    values: np.ndarray = of("value of each parameter", "", "parameter")
+    mesh_frequency_hz: float = of("mesh frequency", "Hz", note=" of the fastest mesh")
+    mesh_periods: int = of("periods of the fastest mesh in the common one")
+    steps: int = of("steps", note=" in a period of the fastest mesh")
+    failure: str = of("why the point failed", note=', or `""`')
+    runs: tuple[SweepRun, ...] = of("runs", "", "run", record=SweepRun)
+
+
+class SweepResult(ModelResult, kind="sweep"):
     """p points with r runs each, c mesh contacts, s sections a run, t exponents. NaN where a point or run failed.
 
-    Attributes:
-        model: the model whose parameters were changed.
-        address, unit: of the a parameters; values: (p, a) in these units; shape: (a,) points along each.
-        run: names of the runs of each point: "static", "start 2", "up", "down".
-        contact: names of the contacts.
-        frequency: (p,) of the fastest mesh in Hz; turns: (p,) its periods in the common one of all meshes.
-        section: displacement in m and velocity in m/s of the contacts along their normal (without the transmission error) at the
-            end of each least common period, (p, r, s, c, 2).
-        motion: (p * r) kinds: "1T", "2T", ..., "quasi-periodic", "chaotic", "not settled", "not periodic", "failed".
-        lyapunov, lyapunov_error: (p, r, t) exponents and their standard errors, per period of the fastest mesh.
-        peak_to_peak: of the approach d - e, amplitude: of d itself, rms: of d about its mean, (p, r, c) in m.
-        mean_force, rms_force, largest_force: (p, r, c) in N, the rms about the mean; static_force: (p, c) in N;
-            static_deflection: (p, c) in m.
-        driving, apart, back: (p, r, c) shares of the time; losses: (p, r, c) contact losses in a period of the fastest mesh.
-        failure: (p,) why a point failed, "" where it did not.
-        steps: (p,) in a period of the fastest mesh; settle, count: least common periods that settled and counted.
-        tolerance, chaos: of the criterion, see analysis/sweep/classify.py.
-        dofs, seconds, method, warnings: cost, and sentences. reduction: how large systems were reduced; None where none was.
-        portraits: trajectories of some points, where they were asked for.
+    `section` holds displacement and velocity of the contacts along their normal (without the transmission error) at the end
+    of each common period T of all meshes. `amplitude` and `rms` are of the displacement d, `peak_to_peak` of the approach
+    d - e. The criterion that `tolerance` and `chaos` belong to stands in analysis/sweep/classify.py.
     """
 
-    model: Model
-    address: tuple[str, ...]
-    unit: tuple[str, ...]
-    values: np.ndarray
-    shape: np.ndarray
-    run: tuple[str, ...]
-    contact: tuple[str, ...]
-    frequency: np.ndarray
-    turns: np.ndarray
-    section: np.ndarray
-    motion: tuple[str, ...]
-    lyapunov: np.ndarray
-    lyapunov_error: np.ndarray
-    peak_to_peak: np.ndarray
-    amplitude: np.ndarray
-    rms: np.ndarray
-    mean_force: np.ndarray
-    rms_force: np.ndarray
-    largest_force: np.ndarray
-    static_force: np.ndarray
-    static_deflection: np.ndarray
-    driving: np.ndarray
-    apart: np.ndarray
-    back: np.ndarray
-    losses: np.ndarray
-    failure: tuple[str, ...]
-    steps: np.ndarray
-    settle: int
-    count: int
-    tolerance: float
-    chaos: float
-    dofs: int
-    seconds: dict[str, float]
-    method: str
-    warnings: tuple[str, ...] = ()
-    reduction: Reduction | None = None
-    portraits: Portraits | None = None
+    address: tuple[str, ...] = of("address of a parameter", "", "parameter", json=None)
+    unit: tuple[str, ...] = of("units", "", "parameter", json=None)
+    values: np.ndarray = of("values", "", "point", "parameter", json=None)
+    shape: np.ndarray = of("points along each parameter", "", "parameter", json=None)
+    run: tuple[str, ...] = of("where the runs started", "", "run", json=None)
+    contact: tuple[str, ...] = of("names of the contacts", "", "contact", json=None)
+    frequency: np.ndarray = of("frequency of the fastest mesh", "Hz", "point", json=None)
+    turns: np.ndarray = of("periods of the fastest mesh in a common period", "", "point", json=None)
+    section: np.ndarray = of("Poincare points", "m, m/s", "point", "run", "period", "contact", "phase_space", json=None)
+    motion: tuple[str, ...] = of("kind of motion", "", "point_and_run", json=None)
+    lyapunov: np.ndarray = of("Lyapunov exponents", "", "point", "run", "exponent", json=None)
+    lyapunov_error: np.ndarray = of(
+        "standard errors of the Lyapunov exponents", "", "point", "run", "exponent", json=None
+    )
+    peak_to_peak: np.ndarray = of(
+        "approach of the flanks less the transmission error, peak to peak", "m", "point", "run", "contact", json=None
+    )
+    amplitude: np.ndarray = of("dynamic transmission error, peak to peak", "m", "point", "run", "contact", json=None)
+    rms: np.ndarray = of(
+        "root mean square of the dynamic transmission error about its mean", "m", "point", "run", "contact", json=None
+    )
+    mean_force: np.ndarray = of("mean force", "N", "point", "run", "contact", json=None)
+    rms_force: np.ndarray = of(
+        "root mean square of the force about its mean", "N", "point", "run", "contact", json=None
+    )
+    largest_force: np.ndarray = of("largest force", "N", "point", "run", "contact", json=None)
+    static_force: np.ndarray = of("static force", "N", "point", "contact", json=None)
+    static_deflection: np.ndarray = of("static force over mean stiffness", "m", "point", "contact", json=None)
+    driving: np.ndarray = of("share of the time on the driving flank", "", "point", "run", "contact", json=None)
+    apart: np.ndarray = of("share of the time without contact", "", "point", "run", "contact", json=None)
+    back: np.ndarray = of("share of the time on the back flank", "", "point", "run", "contact", json=None)
+    losses: np.ndarray = of(
+        "losses of contact in a period of the fastest mesh", "", "point", "run", "contact", json=None
+    )
+    failure: tuple[str, ...] = of("why the point failed", "", "point", json=None)
+    steps: np.ndarray = of("steps", "", "point", json=None)
+    settle: int = of("common periods that settled", json="settle_periods")
+    count: int = of("common periods that count", json="counted_periods")
+    tolerance: float = of("tolerance", note=": share of the peak to peak within which a motion repeats")
+    chaos: float = of("exponent above which a motion is chaotic")
+    reduction: Reduction | None = of(
+        "reduction of large systems", record=Reduction, default=None, note="; `null` where there was none"
+    )
+    portraits: Portraits | None = of("trajectories of some points", record=Portraits, json=None, default=None)
+
+    @derived("parameters", "", "parameter", record=Parameter)
+    def parameters(self) -> tuple[Parameter, ...]:
+        """What was changed."""
+        return tuple(map(Parameter, self.address, self.unit))
+
+    @derived("points", "", "point", record=SweepPoint)
+    def points(self) -> tuple[SweepPoint, ...]:
+        """All points with their runs."""
+        return tuple(
+            SweepPoint(
+                values=self.values[p],
+                mesh_frequency_hz=float(self.frequency[p]),
+                mesh_periods=int(self.turns[p]),
+                steps=int(self.steps[p]),
+                failure=self.failure[p],
+                runs=tuple(self._run(p, r) for r in range(len(self.run))),
+            )
+            for p in range(len(self.values))
+        )
+
+    def _run(self, p: int, r: int) -> SweepRun:
+        contacts = tuple(self._contact(p, r, c) for c in range(len(self.contact)))
+        return SweepRun(self.run[r], self.motion_at(p, r), self.lyapunov[p, r], self.lyapunov_error[p, r], contacts)
+
+    def _contact(self, p: int, r: int, c: int) -> SweepContact:
+        at = (p, r, c)
+        static = float(self.static_force[p, c])
+        largest = float(self.largest_force[at])
+        return SweepContact(
+            name=self.contact[c],
+            static_force_n=static,
+            static_deflection_m=float(self.static_deflection[p, c]),
+            peak_to_peak_m=float(self.peak_to_peak[at]),
+            peak_to_peak_dte_m=float(self.amplitude[at]),
+            rms_dte_m=float(self.rms[at]),
+            mean_force_n=float(self.mean_force[at]),
+            rms_force_n=float(self.rms_force[at]),
+            largest_force_n=largest,
+            dynamic_factor=largest / static if static > 0.0 else float("nan"),
+            driving_share=float(self.driving[at]),
+            apart_share=float(self.apart[at]),
+            back_share=float(self.back[at]),
+            losses_per_mesh_period=float(self.losses[at]),
+        )
+
+    @derived("lines of the points that keep their trajectory", "", "portrait", record=Portrait, json="portraits")
+    def portrait_lines(self) -> tuple[Portrait, ...]:
+        """Length and lines of the trajectories; none where none were kept."""
+        own = self.portraits
+        if own is None:
+            return ()
+        return tuple(
+            Portrait(
+                values=tuple(self.values[p].tolist()),
+                start=self.run[r],
+                periods=int(own.periods[k]),
+                records_per_period=int(own.records[k]),
+                contacts=tuple(
+                    ContactLines(name, tuple(SpectrumLine(order, a) for order, a in own.lines(k, j, c)))
+                    for c, name in enumerate(self.contact)
+                ),
+            )
+            for k, p in enumerate(own.point.tolist())
+            for j, r in enumerate(own.run.tolist())
+        )
 
     @property
     def dynamic_factor(self) -> np.ndarray:
@@ -83,18 +194,18 @@ class SweepResult:
 
     @property
     def period_words(self) -> str:
-        """The least common period T in words."""
+        """The common period T in words."""
         turns = sorted({int(n) for n in self.turns if n})
         if turns == [1]:
             return "the mesh period"
         return f"{turns[0]}{f' to {turns[-1]}' if len(turns) > 1 else ''} periods of the fastest mesh"
 
     def motion_at(self, point: int, run: int = 0) -> str:
-        """Response type of a run."""
+        """Kind of motion of a run."""
         return self.motion[point * len(self.run) + run]
 
     def route(self, run: int = 0) -> list[tuple[str, int, int]]:
-        """Response types along the points with the first and last point of each."""
+        """Kinds of motion along the points with the first and last point of each."""
         found: list[tuple[str, int, int]] = []
         for p in range(len(self.values)):
             kind = self.motion_at(p, run)
@@ -103,82 +214,3 @@ class SweepResult:
             else:
                 found.append((kind, p, p))
         return found
-
-    def to_dict(self) -> dict[str, Any]:
-        """Everything but the sections as plain values for JSON; the keys are documented in docs/json.md."""
-        return {
-            "analysis": "sweep",
-            "title": self.model.title,
-            "parameters": [{"address": a, "unit": u} for a, u in zip(self.address, self.unit, strict=True)],
-            "points": [self._point(p) for p in range(len(self.values))],
-            "portraits": self._portraits(),
-            "settle_periods": self.settle,
-            "counted_periods": self.count,
-            "tolerance": self.tolerance,
-            "chaos": self.chaos,
-            "dofs": self.dofs,
-            "reduction": self.reduction.to_dict() if self.reduction else None,
-            "seconds": float(self.seconds.get("total", 0.0)),
-            "seconds_by_step": {name: float(value) for name, value in self.seconds.items() if name != "total"},
-            "method": self.method,
-            "warnings": list(self.warnings),
-        }
-
-    def _point(self, p: int) -> dict[str, Any]:
-        return {
-            "values": [float(x) for x in self.values[p]],
-            "mesh_frequency_hz": _number(self.frequency[p]),
-            "mesh_periods": int(self.turns[p]),
-            "steps": int(self.steps[p]),
-            "failure": self.failure[p],
-            "runs": [self._run(p, r) for r in range(len(self.run))],
-        }
-
-    def _portraits(self) -> list[dict[str, Any]]:
-        own = self.portraits
-        if own is None:
-            return []
-        return [
-            {
-                "values": [float(x) for x in self.values[p]],
-                "start": self.run[r],
-                **portrait_dict(own, k, j, self.contact),
-            }
-            for k, p in enumerate(own.point.tolist())
-            for j, r in enumerate(own.run.tolist())
-        ]
-
-    def _run(self, p: int, r: int) -> dict[str, Any]:
-        return {
-            "start": self.run[r],
-            "motion": self.motion_at(p, r),
-            "lyapunov": [_number(x) for x in self.lyapunov[p, r]],
-            "lyapunov_error": [_number(x) for x in self.lyapunov_error[p, r]],
-            "contacts": [self._contact(p, r, c) for c in range(len(self.contact))],
-        }
-
-    def _contact(self, p: int, r: int, c: int) -> dict[str, Any]:
-        names = {
-            "peak_to_peak_m": self.peak_to_peak,
-            "peak_to_peak_dte_m": self.amplitude,
-            "rms_dte_m": self.rms,
-            "mean_force_n": self.mean_force,
-            "rms_force_n": self.rms_force,
-            "largest_force_n": self.largest_force,
-            "dynamic_factor": self.dynamic_factor,
-            "driving_share": self.driving,
-            "apart_share": self.apart,
-            "back_share": self.back,
-            "losses_per_mesh_period": self.losses,
-        }
-        return {
-            "name": self.contact[c],
-            "static_force_n": _number(self.static_force[p, c]),
-            "static_deflection_m": _number(self.static_deflection[p, c]),
-            **{name: _number(table[p, r, c]) for name, table in names.items()},
-        }
-
-
-def _number(value: float) -> float | None:
-    """A float for JSON; what is not finite becomes null."""
-    return float(value) if np.isfinite(value) else None

@@ -2,89 +2,192 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from rotorgear.model.model import Model
 from rotorgear.results.modal import NodeTable
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, Written, derived, of
 
 
-@dataclass(frozen=True)
-class EnergyLedger:
-    """Energies in J at times (e,), all since t = 0: what came in, what is stored, what was dissipated, and the rest.
+def _at_end(key: str, label: str) -> Written:
+    return Written(key, lambda energy, values: float(values[-1]), axes=(), label=label)
 
-    numerical = stored - stored(0) - load_work - excitation_work + dissipated: what the integration itself made or lost. `share`
-    is its largest size over the largest of the others.
+
+class EnergyLedger(Record):
+    """Energies at times (e,), all since t = 0: what came in, what is stored, what was dissipated, and the rest.
+
+    numerical = stored - stored(0) - load_work - excitation_work + dissipated: what the integration itself made or lost.
     """
 
-    time: np.ndarray
-    kinetic: np.ndarray
-    strain: np.ndarray
-    contact: np.ndarray
-    load_work: np.ndarray
-    excitation_work: np.ndarray
-    dissipated: np.ndarray
-    numerical: np.ndarray
-    share: float
+    time: np.ndarray = of("time", "s", "instant", json=None)
+    kinetic: np.ndarray = of("kinetic energy", "J", "instant", json=None)
+    strain: np.ndarray = of("strain energy", "J", "instant", json=None)
+    contact: np.ndarray = of("energy in the contacts", "J", "instant", json=None)
+    load_work: np.ndarray = of(
+        "work of the constant torques", "J", "instant", json=_at_end("load_work_j", "work of the constant torques")
+    )
+    excitation_work: np.ndarray = of(
+        "work of the excitation",
+        "J",
+        "instant",
+        json=_at_end(
+            "excitation_work_j",
+            "work of transmission errors, stiffness variation, unbalances and torques that vary",
+        ),
+    )
+    dissipated: np.ndarray = of(
+        "energy that dampers took", "J", "instant", json=_at_end("dissipated_j", "energy that dampers took")
+    )
+    numerical: np.ndarray = of(
+        "what the integration made",
+        "J",
+        "instant",
+        json=_at_end("numerical_j", "what the integration made (or lost, if negative)"),
+    )
+    share: float = of(
+        "numerical energy",
+        json=Written("numerical_share", lambda energy, share: share),
+        note=", its largest size over the largest of the other terms",
+    )
 
 
-@dataclass(frozen=True)
-class TransientResult:
+class ContactStatistics(Record):
+    """A contact in the time that counts."""
+
+    name: str = of("name", note=": mesh and helix")
+    static_force_n: float = of("static force", "N", note=" along the flank normal, without anything that varies")
+    mean_force_n: float = of("mean force", "N", note=" in the time that counts")
+    rms_force_n: float = of("root mean square of the force about its mean", "N")
+    largest_force_n: float = of("largest force", "N")
+    smallest_force_n: float = of("smallest force", "N", note="; negative on the back flank")
+    dynamic_factor: float = of("dynamic factor", note=": largest over static force; `null` without load", form=".3f")
+    peak_to_peak_dte_m: float = of("dynamic transmission error, peak to peak", "m", note=" along the flank normal")
+    driving_share: float = of("share of the time on the driving flank")
+    apart_share: float = of("share of the time without contact")
+    back_share: float = of("share of the time on the back flank")
+    losses: int = of("losses of contact", note=": how often contact was lost")
+
+
+class ChannelStatistics(Record):
+    """A channel in the time that counts."""
+
+    name: str = of("name", note=": force of a bearing, motion of a point, a bearing or a gear")
+    unit: str = of("unit")
+    mean: float = of("mean", note=" in the time that counts")
+    rms: float = of("root mean square about the mean")
+    largest: float = of("largest value")
+    smallest: float = of("smallest value")
+
+
+class Quantity(Record):
+    """A statistic whose error is estimated."""
+
+    name: str = of("name", note=" of the statistic whose error is estimated")
+    value: float = of("value")
+    error: float = of("estimated error", note=", absolute; `null` where none was asked for")
+
+
+def _first_and_last(result: Any, speed: np.ndarray) -> list[float]:
+    return [float(speed[0] * 30.0 / np.pi), float(speed[-1] * 30.0 / np.pi)]
+
+
+class TransientResult(ModelResult, kind="transient"):
     """r recorded instants of c contacts and p channels.
 
-    Attributes:
-        model: the model that was analysed.
-        time: (r,) in s. angle, speed: (r,) of the reference shaft in rad and rad/s.
-        settle: time in s from which statistics count; start_step: first record from there on.
-        contact: names of the contacts. deflection: (r, c) approach of the flanks along their normal in m, without the
-            transmission error (the dynamic transmission error). mesh_force: (r, c) in N, positive on the working flank.
-        mean_force: (c,) static mean force of each contact in N.
-        contact_time: (c, 3) share of the time on the working flank, apart, on the coast flank; contact_losses: (c,) how often.
-        channel, unit: names and units of the channels; values: (r, p).
-        quantity: names of the statistics with an error; quantity_value, quantity_error: (s,), the error absolute.
-        energy: ledger. step: h in s; steps: of the run; every: of them one record.
-        error_estimate: largest relative error of the quantities. dofs, seconds, method, reason of its choice.
-        nodes: where the motion is known; motion_time (w,), motion (p, 6, w): displacements of the nodes in m and rad at the
-            last w records, where frames were asked for.
-        mesh_frequency: of each mesh in Hz at the first speed.
-        status: "success", or why the run ended early; left_out, warnings: sentences.
+    Statistics count from the time `settle` on. `deflection` is the approach of the flanks along their normal without the
+    transmission error (the dynamic transmission error); forces are positive on the driving flank. One of `every` steps is
+    recorded. Where frames were asked for, `motion` holds the displacements of the nodes at the last w records.
     """
 
-    model: Model
-    time: np.ndarray
-    angle: np.ndarray
-    speed: np.ndarray
-    settle: float
-    contact: tuple[str, ...]
-    deflection: np.ndarray
-    mesh_force: np.ndarray
-    mean_force: np.ndarray
-    contact_time: np.ndarray
-    contact_losses: np.ndarray
-    channel: tuple[str, ...]
-    unit: tuple[str, ...]
-    values: np.ndarray
-    quantity: tuple[str, ...]
-    quantity_value: np.ndarray
-    quantity_error: np.ndarray
-    energy: EnergyLedger
-    step: float
-    steps: int
-    every: int
-    error_estimate: float
-    dofs: int
-    seconds: dict[str, float]
-    method: str
-    reason: str
-    mesh_frequency: dict[str, float]
-    nodes: NodeTable
-    motion_time: np.ndarray
-    motion: np.ndarray
-    status: str = "success"
-    left_out: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
+    speed: np.ndarray = of(
+        "speed of the input shaft",
+        "rad/s",
+        "record",
+        json=Written("speed_rpm", _first_and_last, "rpm", ("end",), note=" at the start and at the end"),
+    )
+    angle: np.ndarray = of("angle of the input shaft", "rad", "record", json=None)
+    time: np.ndarray = of(
+        "time",
+        "s",
+        "record",
+        json=(
+            Written("time_s", lambda result, time: float(time[-1]), axes=(), label="end of the run"),
+            Written("records", lambda result, time: len(time), "", (), "number of recorded instants"),
+        ),
+    )
+    settle: float = of("time from which statistics count", "s", json="settle_s")
+    step: float = of("time step", "s", json="step_s")
+    steps: int = of("steps", note=" done")
+    every: int = of("steps from one record to the next", json=None)
+    mesh_frequency: dict[str, float] = of(
+        "mesh frequency", "Hz", "MESH", json="mesh_frequency_hz", note=" of each mesh, at the first speed"
+    )
+    contact: tuple[str, ...] = of("names of the contacts", "", "contact", json=None)
+    deflection: np.ndarray = of("approach of the flanks", "m", "record", "contact", json=None)
+    mesh_force: np.ndarray = of("force along the flank normal", "N", "record", "contact", json=None)
+    mean_force: np.ndarray = of("static force of each contact", "N", "contact", json=None)
+    contact_time: np.ndarray = of(
+        "share of the time on the driving flank, apart, on the back flank", "", "contact", "state", json=None
+    )
+    contact_losses: np.ndarray = of("losses of contact", "", "contact", json=None)
+    channel: tuple[str, ...] = of("names of the channels", "", "channel", json=None)
+    unit: tuple[str, ...] = of("units", "", "channel", json=None)
+    values: np.ndarray = of("values", "", "record", "channel", json=None)
+    quantity: tuple[str, ...] = of("names of the statistics with an error", "", "quantity", json=None)
+    quantity_value: np.ndarray = of("values of the statistics", "", "quantity", json=None)
+    quantity_error: np.ndarray = of("estimated errors of the statistics", "", "quantity", json=None)
+
+    @derived("contacts in the time that counts", "", "contact", record=ContactStatistics)
+    def contacts(self) -> tuple[ContactStatistics, ...]:
+        """Statistics of the contacts."""
+        return tuple(
+            self._contact(i, self.mesh_force[self.counted, i], self.deflection[self.counted, i])
+            for i in range(len(self.contact))
+        )
+
+    def _contact(self, i: int, force: np.ndarray, x: np.ndarray) -> ContactStatistics:
+        return ContactStatistics(
+            name=self.contact[i],
+            static_force_n=float(self.mean_force[i]),
+            mean_force_n=_mean(force),
+            rms_force_n=_rms(force),
+            largest_force_n=float(force.max(initial=-np.inf)),
+            smallest_force_n=float(force.min(initial=np.inf)),
+            dynamic_factor=float(self.dynamic_factor[i]),
+            peak_to_peak_dte_m=float(np.ptp(x)) if x.size else float("nan"),
+            driving_share=float(self.contact_time[i, 0]),
+            apart_share=float(self.contact_time[i, 1]),
+            back_share=float(self.contact_time[i, 2]),
+            losses=int(self.contact_losses[i]),
+        )
+
+    @derived("channels in the time that counts", "", "channel", record=ChannelStatistics)
+    def channels(self) -> tuple[ChannelStatistics, ...]:
+        """Statistics of the channels."""
+        rows = []
+        for i, name in enumerate(self.channel):
+            own = self.values[self.counted, i]
+            largest = float(own.max(initial=-np.inf))
+            smallest = float(own.min(initial=np.inf))
+            rows.append(ChannelStatistics(name, self.unit[i], _mean(own), _rms(own), largest, smallest))
+        return tuple(rows)
+
+    @derived("statistics with an error", "", "quantity", record=Quantity)
+    def quantities(self) -> tuple[Quantity, ...]:
+        """The statistics whose error is estimated."""
+        rows = zip(self.quantity, self.quantity_value.tolist(), self.quantity_error.tolist(), strict=True)
+        return tuple(Quantity(name, value, error) for name, value, error in rows)
+
+    error_estimate: float = of(
+        "largest relative error of the statistics", note=", each relative to the size of its kind", form=".1e"
+    )
+    energy: EnergyLedger = of("energies", record=EnergyLedger)
+    reason: str = of("why the method was chosen")
+    nodes: NodeTable = of("nodes", record=NodeTable, json=None)
+    motion_time: np.ndarray = of("time of the frames", "s", "frame", json=None)
+    motion: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "frame", json=None)
 
     @property
     def counted(self) -> np.ndarray:
@@ -118,71 +221,6 @@ class TransientResult:
             return np.asarray(table[:, self.contact.index(contact)])
         raise KeyError(name)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Everything but the histories as plain values for JSON; the keys are documented in docs/json.md."""
-        return {
-            "analysis": "transient",
-            "title": self.model.title,
-            "status": self.status,
-            "speed_rpm": [float(self.speed[0] * 30.0 / np.pi), float(self.speed[-1] * 30.0 / np.pi)],
-            "time_s": float(self.time[-1]),
-            "settle_s": self.settle,
-            "step_s": self.step,
-            "steps": self.steps,
-            "records": len(self.time),
-            "mesh_frequency_hz": dict(self.mesh_frequency),
-            "contacts": [self._contact(i) for i in range(len(self.contact))],
-            "channels": [self._channel(i) for i in range(len(self.channel))],
-            "quantities": [
-                {"name": name, "value": _number(value), "error": _number(error)}
-                for name, value, error in zip(self.quantity, self.quantity_value, self.quantity_error, strict=True)
-            ],
-            "error_estimate": _number(self.error_estimate),
-            "energy": {
-                "load_work_j": _number(self.energy.load_work[-1]),
-                "excitation_work_j": _number(self.energy.excitation_work[-1]),
-                "dissipated_j": _number(self.energy.dissipated[-1]),
-                "numerical_j": _number(self.energy.numerical[-1]),
-                "numerical_share": _number(self.energy.share),
-            },
-            "dofs": self.dofs,
-            "seconds": float(self.seconds.get("total", 0.0)),
-            "seconds_by_step": {name: float(value) for name, value in self.seconds.items() if name != "total"},
-            "method": self.method,
-            "reason": self.reason,
-            "left_out": list(self.left_out),
-            "warnings": list(self.warnings),
-        }
-
-    def _contact(self, i: int) -> dict[str, Any]:
-        force = self.mesh_force[self.counted, i]
-        x = self.deflection[self.counted, i]
-        return {
-            "name": self.contact[i],
-            "static_force_n": _number(self.mean_force[i]),
-            "mean_force_n": _number(_mean(force)),
-            "rms_force_n": _number(_rms(force)),
-            "largest_force_n": _number(force.max(initial=-np.inf)),
-            "smallest_force_n": _number(force.min(initial=np.inf)),
-            "dynamic_factor": _number(self.dynamic_factor[i]),
-            "peak_to_peak_dte_m": _number(np.ptp(x) if x.size else np.nan),
-            "driving_share": _number(self.contact_time[i, 0]),
-            "apart_share": _number(self.contact_time[i, 1]),
-            "back_share": _number(self.contact_time[i, 2]),
-            "losses": int(self.contact_losses[i]),
-        }
-
-    def _channel(self, i: int) -> dict[str, Any]:
-        own = self.values[self.counted, i]
-        return {
-            "name": self.channel[i],
-            "unit": self.unit[i],
-            "mean": _number(_mean(own)),
-            "rms": _number(_rms(own)),
-            "largest": _number(own.max(initial=-np.inf)),
-            "smallest": _number(own.min(initial=np.inf)),
-        }
-
 
 def _mean(x: np.ndarray) -> float:
     return float(x.mean()) if x.size else float("nan")
@@ -191,8 +229,3 @@ def _mean(x: np.ndarray) -> float:
 def _rms(x: np.ndarray) -> float:
     """Root mean square about the mean."""
     return float(x.std()) if x.size else float("nan")
-
-
-def _number(value: float) -> float | None:
-    """A float for JSON; what is not finite becomes null."""
-    return float(value) if np.isfinite(value) else None

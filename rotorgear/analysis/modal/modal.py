@@ -8,6 +8,7 @@ import numpy as np
 
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.notes import gathering
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, direction_of, speed_in_si
 from rotorgear.analysis.modal.enriched_error import enriched_errors
 from rotorgear.analysis.modal.modes import Modes, Wanted
@@ -29,6 +30,7 @@ DEFAULT_MODES = 24
 _ROUNDS = 30
 
 
+@recorded
 def modal(
     model: Model | System,
     *,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -55,7 +56,7 @@ def gathered(
     section = np.full((p, r, request.count, c, 2), np.nan)
     exponent = np.full((p, r, t), np.nan)
     error = np.full((p, r, t), np.nan)
-    tables = {name: np.full((p, r, c), np.nan) for name in _TABLES}
+    tables: dict[str, Any] = {name: np.full((p, r, c), np.nan) for name in _TABLES}
     motion = [FAILED] * (p * r)
     failed = list(failure)
     for (i, run), orbit in orbits.items():

@@ -1,0 +1,66 @@
+"""Every analysis marks its result in one place: with its arguments, the hash of its model, and the time it took."""
+
+from __future__ import annotations
+
+import inspect
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import wraps
+from pathlib import Path
+from typing import Any, ParamSpec, TypeVar
+
+import numpy as np
+
+from rotorgear.model.model import Model
+from rotorgear.model.model_hash import model_hash
+from rotorgear.results.result import Result
+
+P = ParamSpec("P")
+R = TypeVar("R", bound=Result)
+# They say how the work is done or watched, and change no number.
+_NOT_SETTINGS = ("progress", "stream", "client", "cluster")
+
+
+def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
+    """Wrap an analysis so that its result carries settings, model hash and seconds.
+
+    The first argument is what is analysed (a model, a system, or another result) and no setting.
+    """
+    signature = inspect.signature(analysis)
+
+    @wraps(analysis)
+    def run(*args: P.args, **kwargs: P.kwargs) -> R:
+        start = time.perf_counter()
+        result = analysis(*args, **kwargs)
+        bound = signature.bind(*args, **kwargs)
+        bound.apply_defaults()
+        (_, subject), *given = bound.arguments.items()
+        settings = {name: setting(value) for name, value in given if name not in _NOT_SETTINGS}
+        seconds = result.seconds or {"total": time.perf_counter() - start}
+        return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds)
+
+    return run
+
+
+def hash_of(subject: Any) -> str:
+    """Hash of the model that something is, or belongs to; "" without one."""
+    if isinstance(subject, Result):
+        return subject.model_hash
+    model = subject if isinstance(subject, Model) else getattr(subject, "model", None)
+    return model_hash(model) if isinstance(model, Model) else ""
+
+
+def setting(value: Any) -> Any:
+    """An argument as plain values: what JSON and HDF5 can hold."""
+    if isinstance(value, bool | int | float | str) or value is None:
+        return value
+    if isinstance(value, np.generic | np.ndarray):
+        return setting(value.tolist())
+    if isinstance(value, Mapping):
+        return {str(key): setting(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple | set | frozenset | range):
+        return tuple(setting(entry) for entry in value)
+    if isinstance(value, Path):
+        return str(value)
+    return getattr(value, "__name__", None) or repr(value)

@@ -1,0 +1,141 @@
+"""What every result has: where it comes from, what it cost, its text, its rows and its labelled data set."""
+
+from __future__ import annotations
+
+from html import escape
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from rotorgear.results.schema import Record, Written, of
+from rotorgear.version import VERSION
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rotorgear.model.model import Model
+
+# A notebook shows so many lines of a result; `text()` has them all.
+_LINES = 40
+_WIDTH = 80
+
+
+def _total(record: Any, seconds: dict[str, float]) -> float:
+    return float(seconds.get("total", 0.0))
+
+
+def _by_step(record: Any, seconds: dict[str, float]) -> dict[str, float]:
+    return {step: float(value) for step, value in seconds.items() if step != "total"}
+
+
+class Result(Record):
+    """Base of all results.
+
+    `kind` names a class of results in files; `analysis` is the word that JSON output begins with.
+    """
+
+    kind: ClassVar[str] = ""
+    analysis_word: ClassVar[str] = ""
+    kinds: ClassVar[dict[str, type[Result]]] = {}
+
+    seconds: dict[str, float] = of(
+        "wall time",
+        "s",
+        "STEP",
+        json=(
+            Written("seconds", _total, "s", ()),
+            Written("seconds_by_step", _by_step, "s", ("STEP",), note=" of each step of the analysis"),
+        ),
+        default_factory=dict,
+        kw_only=True,
+    )
+    left_out: tuple[str, ...] = of(
+        "sentences", "", "left_out_note", note=": what the analysis did not need or take in", default=(), kw_only=True
+    )
+    warnings: tuple[str, ...] = of("sentences", "", "warning", default=(), kw_only=True)
+    method: str = of("method", note=": solver, and what its guards said", default="", kw_only=True)
+    status: str = of(
+        "status",
+        note=': `"success"`, or why the analysis ended early and how to go on',
+        default="success",
+        kw_only=True,
+    )
+    rotorgear_version: str = of("version of rotorgear", default=VERSION, kw_only=True)
+    model_hash: str = of(
+        "SHA-256 of the model", note=": of the canonical JSON of its fields in SI units", default="", kw_only=True
+    )
+    settings: dict[str, Any] = of(
+        "arguments of the analysis", "", "ARGUMENT", note=", by name", default_factory=dict, kw_only=True
+    )
+
+    def __init_subclass__(cls, *, kind: str = "", analysis: str = "") -> None:
+        super().__init_subclass__()
+        cls.kind = kind
+        cls.analysis_word = analysis or kind
+        if kind:
+            Result.kinds[kind] = cls
+
+    # Results hold arrays; two runs of one analysis are told apart by `is`, and compared by `==`.
+    __hash__ = None  # type: ignore[assignment]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values for JSON; the keys are on docs/json.md."""
+        return {"analysis": self.analysis_word, **super().to_dict()}
+
+    def table(self, **options: Any) -> RenderableType:
+        """What the command prints, as one rich renderable; the options are those of the command that choose tables."""
+        # A table knows its result, so the result finds its table by name: that of its own file, in the room above.
+        place = type(self).__module__.rpartition(".")[2]
+        module = import_module(f".tables.{place}", __package__)
+        table: RenderableType = getattr(module, f"{self.kind}_table")(self, **options)
+        return table
+
+    def text(self, width: int = _WIDTH, **options: Any) -> str:
+        """The table as text, so many characters wide."""
+        from io import StringIO
+
+        from rich.console import Console
+
+        out = StringIO()
+        Console(file=out, width=width, highlight=False, color_system=None).print(self.table(**options))
+        return "\n".join(line.rstrip() for line in out.getvalue().splitlines()).rstrip("\n")
+
+    def __repr__(self) -> str:
+        return "\n".join(self._lines())
+
+    def _lines(self) -> list[str]:
+        """What fits on a screen of the text."""
+        try:
+            lines = self.text().splitlines()
+        except Exception as error:  # a debugger asks for the text of half-made results too
+            return [f"{type(self).__name__}: no table ({type(error).__name__}: {error})"]
+        if len(lines) <= _LINES:
+            return lines
+        return [*lines[: _LINES - 1], f"... and {len(lines) - _LINES + 1} more lines: result.text() has them all"]
+
+    def _repr_html_(self) -> str:
+        first, *rest = (escape(line) for line in self._lines() or [type(self).__name__])
+        return "<pre>" + "\n".join([f"<b>{first}</b>", *rest]) + "</pre>"
+
+    def rows(self, *axes: str) -> list[dict[str, Any]]:
+        """One dictionary for each entry along an axis, or along several; see `rotorgear.results.labelled.rows`."""
+        from rotorgear.results.labelled import rows
+
+        return rows(self, *axes)
+
+    def to_xarray(self) -> Any:
+        """A labelled data set (xarray); see `rotorgear.results.labelled.data_set`."""
+        from rotorgear.results.labelled import data_set
+
+        return data_set(self)
+
+
+class ModelResult(Result):
+    """A result of a model with n degrees of freedom."""
+
+    model: Model = of("model that was analysed", json=None)
+    dofs: int = of("degrees of freedom", default=0, kw_only=True)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values for JSON; the keys are on docs/json.md."""
+        head, *rest = super().to_dict().items()
+        return dict([head, ("title", self.model.title), *rest])

@@ -1,0 +1,307 @@
+"""Results as schemas: a field says once what it is, in which unit and over what; everything that shows it reads that.
+
+    class Modes(Result, kind="modes"):
+        eigenvalues: np.ndarray = of("eigenvalue", "rad/s", "mode", json=None)
+
+        @derived("frequency", "Hz", "mode", note=" of each mode")
+        def frequency_hz(self) -> np.ndarray:
+            return np.abs(self.eigenvalues) / (2.0 * np.pi)
+
+JSON, HDF5, rows, data sets, the text of a result and docs/json.md follow from these declarations. An axis in small letters is
+counted ("mode"), one in capitals is a dictionary's ("PART"). Subclasses of `Record` are frozen dataclasses without a decorator;
+two of them are equal if all their values are, arrays by their entries and NaN to NaN, and their arrays are read-only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import MISSING, Field, dataclass, field, fields
+from itertools import count
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, dataclass_transform, overload
+
+if TYPE_CHECKING:
+    import numpy as np
+
+T = TypeVar("T")
+_SAME_KEY = "\0"  # written under the field's own name
+_places = count()  # fields and computed fields of a class share one order, that of the page
+# A key that ends so is written in its unit: the unit stands with the written key, SI with the stored field.
+_WRITTEN_UNITS = {
+    ("rad/s", "_rpm"): ("rpm", 30.0 / math.pi),
+    ("rad", "_deg"): ("deg", 180.0 / math.pi),
+}
+
+
+@dataclass(frozen=True)
+class Written:
+    """A key of the JSON output that is not simply the field: `value(record, stored)` makes what is written."""
+
+    key: str
+    value: Callable[[Any, Any], Any]
+    unit: str | None = None
+    axes: tuple[str, ...] | None = None
+    label: str | None = None
+    note: str | None = None
+
+
+@dataclass(frozen=True)
+class Declared:
+    """What a field says of itself. `place` orders the fields of a class; `computed`: not stored; see `of` for the rest."""
+
+    name: str
+    label: str
+    unit: str
+    axes: tuple[str, ...]
+    note: str
+    form: str
+    record: type[Record] | None
+    json: tuple[str | Written, ...]
+    stored: bool
+    computed: bool
+    place: int
+
+    def written(self) -> Iterator[Written]:
+        """Yield the keys that are written, with their units and words."""
+        for entry in self.json:
+            if isinstance(entry, Written):
+                yield entry
+                continue
+            key = self.name if entry == _SAME_KEY else entry
+            factor: float | None = None
+            unit = self.unit
+            for (stored, ending), (in_file, times) in _WRITTEN_UNITS.items():
+                if self.unit == stored and key.endswith(ending):
+                    unit = in_file
+                    factor = times
+            yield Written(key, _scaled(factor), unit)
+
+
+def _scaled(factor: float | None) -> Callable[[Any, Any], Any]:
+    if factor is None:
+        return lambda record, stored: stored
+    times = factor
+    return lambda record, stored: None if stored is None else stored * times
+
+
+def of(
+    label: str,
+    unit: str = "",
+    *axes: str,
+    note: str = "",
+    form: str = "",
+    record: type[Record] | None = None,
+    json: str | Written | tuple[str | Written, ...] | None = _SAME_KEY,
+    stored: bool = True,
+    default: Any = MISSING,
+    default_factory: Any = MISSING,
+    kw_only: bool = False,
+) -> Any:
+    """Declare a stored field.
+
+    Args:
+        label: what it is, in the same words wherever a field has this name.
+        unit: SI, as it is stored; "" for words, counts and ratios.
+        axes: what its entries are counted by, one name a dimension.
+        note: goes on after the label on the page of keys, punctuation included: what the label means in this result.
+        form: how a number is shown, such as ".4f".
+        record: class of its entries (or of its value, without axes), where they are records.
+        json: key of the JSON output where it is not the name; a `Written` (or several) where the value is converted or cut in
+            parts; None where it is not written.
+        stored: whether it is saved and compared; what only drawings need is not.
+        default, default_factory, kw_only: as of a dataclass field.
+    """
+    declared = _declared("", label, unit, axes, note, form, record, json, stored, computed=False)
+    more: dict[str, Any] = {"default": default} if default is not MISSING else {}
+    more |= {"default_factory": default_factory} if default_factory is not MISSING else {}
+    return field(metadata={"declared": declared}, kw_only=kw_only, **more)
+
+
+def _declared(
+    name: str,
+    label: str,
+    unit: str,
+    axes: tuple[str, ...],
+    note: str,
+    form: str,
+    record: type[Record] | None,
+    json: str | Written | tuple[str | Written, ...] | None,
+    stored: bool,
+    *,
+    computed: bool,
+) -> Declared:
+    keys = () if json is None else json if isinstance(json, tuple) else (json,)
+    return Declared(name, label, unit, axes, note, form, record, keys, stored, computed, next(_places))
+
+
+class Derived(Generic[T]):
+    """A declared field that is computed when it is asked for."""
+
+    def __init__(self, function: Callable[[Any], T], declared: Declared) -> None:
+        self.function = function
+        self.declared = declared
+        self.__doc__ = function.__doc__
+
+    @overload
+    def __get__(self, obj: None, owner: type) -> Derived[T]: ...
+    @overload
+    def __get__(self, obj: object, owner: type) -> T: ...
+    def __get__(self, obj: object | None, owner: type) -> T | Derived[T]:
+        return self if obj is None else read_only(self.function(obj))
+
+
+def derived(
+    label: str,
+    unit: str = "",
+    *axes: str,
+    note: str = "",
+    form: str = "",
+    record: type[Record] | None = None,
+    json: str | Written | tuple[str | Written, ...] | None = _SAME_KEY,
+) -> Callable[[Callable[[Any], T]], Derived[T]]:
+    """Declare a computed field; the arguments are those of `of`."""
+
+    def declare(function: Callable[[Any], T]) -> Derived[T]:
+        name = function.__name__
+        return Derived(function, _declared(name, label, unit, axes, note, form, record, json, False, computed=True))
+
+    return declare
+
+
+@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(of,))
+class Record:
+    """Base of results and of the records in them."""
+
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+    declarations: ClassVar[dict[str, Declared]] = {}
+    known: ClassVar[dict[str, type[Record]]] = {}  # all records by the name of their class, for files
+
+    def __init_subclass__(cls) -> None:
+        dataclass(frozen=True, eq=False, repr=False)(cls)
+        # A field is found by its name in the class that declares it last; its own fields stand before those of the bases.
+        found: dict[str, Declared] = {}
+        for item in fields(cls):
+            if "declared" in item.metadata:
+                found[item.name] = _named(item.metadata["declared"], item.name)
+        for base in reversed(cls.__mro__):
+            for name, value in vars(base).items():
+                if isinstance(value, Derived):
+                    found[name] = value.declared
+        inherited = {name for base in cls.__mro__[1:] for name in getattr(base, "declarations", {})}
+        order = sorted(found.values(), key=lambda one: (one.name in inherited, one.place))
+        cls.declarations = {one.name: one for one in order}
+        Record.known[cls.__name__] = cls
+
+    def __post_init__(self) -> None:
+        for item in fields(self):
+            object.__setattr__(self, item.name, read_only(getattr(self, item.name)))
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        # Arrays come writeable out of a pickle.
+        for name, value in state.items():
+            object.__setattr__(self, name, read_only(value))
+
+    def __eq__(self, other: object) -> bool:
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(_agree(getattr(self, name), getattr(other, name)) for name in self._compared())
+
+    def __hash__(self) -> int:
+        return hash((type(self), *(getattr(self, name) for name in self._compared())))
+
+    @classmethod
+    def _compared(cls) -> list[str]:
+        declared = cls.declarations
+        return [item.name for item in fields(cls) if item.name not in declared or declared[item.name].stored]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{item.name}={_short(getattr(self, item.name))}' for item in fields(self))})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values for JSON; the keys are on docs/json.md."""
+        out: dict[str, Any] = {}
+        for declared in self.declarations.values():
+            if declared.json:
+                stored = getattr(self, declared.name)
+                for entry in declared.written():
+                    out[entry.key] = plain(entry.value(self, stored))
+        return out
+
+
+def _named(declared: Declared, name: str) -> Declared:
+    return Declared(**{**vars(declared), "name": name})
+
+
+def read_only(value: Any) -> Any:
+    """The same, arrays as read-only views: whoever made them may go on with them."""
+    import numpy as np
+
+    if isinstance(value, np.ndarray):
+        view = value.view()
+        view.flags.writeable = False
+        return view
+    if isinstance(value, dict):
+        return {key: read_only(entry) for key, entry in value.items()}
+    if isinstance(value, tuple) and any(isinstance(entry, np.ndarray | dict) for entry in value):
+        return tuple(read_only(entry) for entry in value)
+    return value
+
+
+def plain(value: Any) -> Any:
+    """Lists, dictionaries, texts, numbers and None; a number that is not finite becomes None."""
+    import numpy as np
+
+    if isinstance(value, Record):
+        return value.to_dict()
+    if isinstance(value, np.ndarray):
+        return _plain_array(value)
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, dict):
+        return {str(key): plain(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(entry) for entry in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def _plain_array(values: np.ndarray) -> Any:
+    import numpy as np
+
+    if values.dtype.kind != "f" or np.isfinite(values).all():
+        return values.tolist()
+    if values.ndim > 1:
+        return [_plain_array(row) for row in values]
+    return [number if math.isfinite(number) else None for number in np.atleast_1d(values).tolist()]
+
+
+def _agree(one: Any, other: Any) -> bool:
+    """Whether two values are the same; NaN is NaN."""
+    import numpy as np
+
+    if one is other:
+        return True
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        if not (isinstance(one, np.ndarray) and isinstance(other, np.ndarray)):
+            return False
+        return one.dtype.kind == other.dtype.kind and np.array_equal(one, other, equal_nan=one.dtype.kind in "fc")
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(_agree(value, other[key]) for key, value in one.items())
+    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
+        return type(one) is type(other) and len(one) == len(other) and all(map(_agree, one, other))
+    if isinstance(one, float) and isinstance(other, float):
+        return one == other or (one != one and other != other)
+    return bool(one == other)
+
+
+def _short(value: Any) -> str:
+    """A value in a few words: large ones by their shape."""
+    shape = getattr(value, "shape", ())
+    if shape:
+        return f"array {shape}"
+    if isinstance(value, tuple | dict) and len(value) > 6:
+        return f"{len(value)} entries"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key!r}: {_short(entry)}" for key, entry in value.items()) + "}"
+    return repr(value)
