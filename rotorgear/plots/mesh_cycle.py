@@ -38,7 +38,7 @@ def draw_mesh_cycle(found: MeshResult, path: str | Path) -> Path:
         _sharing(axes[1, 0], found, found.helix[0])
         _pressure(figure, axes[1, 1], found, found.helix[0])
     load = "" if found.load is None else f", {found.load.pinion_torque_n_m:.5g} N m on the pinion"
-    figure.suptitle(f"{found.mesh}: {found.model}{load}", fontsize=11)
+    figure.suptitle(f"{found.mesh}: {found.stiffness_model}{load}", fontsize=11)
     with replacing(target) as scratch:
         plain = target.suffix.lower() == ".svg"
         figure.savefig(scratch, dpi=130, format=target.suffix[1:].lower(), metadata={"Date": None} if plain else None)

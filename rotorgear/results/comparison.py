@@ -10,29 +10,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from typing import Any
 
 from rotorgear.errors import ModelError, Problem
+from rotorgear.results.result import Result
+from rotorgear.results.schema import Record, derived, of
 
 EVIDENCE_LEVEL = 0.05
 _UNFITTED = "if it was not fitted to these lines"
 
 
-@dataclass(frozen=True)
-class RigLine:
+class RigLine(Record):
     """One measured line: frequency and standard uncertainty in Hz, damping ratio as a fraction of critical.
 
     Raises:
         ModelError: a number that no measurement can have; all of them at once.
     """
 
-    frequency_hz: float
-    label: str = ""
-    uncertainty_hz: float | None = None
-    damping_ratio: float | None = None
+    frequency_hz: float = of("frequency", "Hz", note=", measured")
+    label: str = of("label", note=', or `""`', default="")
+    uncertainty_hz: float | None = of(
+        "standard uncertainty", "Hz", note=" of the measured frequency, or `null`", default=None
+    )
+    damping_ratio: float | None = of("damping ratio", note=", measured, as a fraction, or `null`", default=None)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         problems = []
         frequency = self.frequency_hz
         uncertainty = self.uncertainty_hz
@@ -49,32 +51,29 @@ class RigLine:
             raise ModelError(problems, "rig line")
 
 
-@dataclass(frozen=True)
-class ExcitationLine:
+class ExcitationLine(Record):
     """A frequency at which the machine is driven whatever its modes are: a shaft order or a mesh order."""
 
-    name: str
-    frequency_hz: float
+    name: str = of("name", note=" of a shaft or mesh order")
+    frequency_hz: float = of("frequency", "Hz")
 
     def __str__(self) -> str:
         return f"{self.name} {self.frequency_hz:.1f} Hz"
 
 
-@dataclass(frozen=True)
-class Candidate:
+class Candidate(Record):
     """A mode beside a rig line: number (from 1, rigid modes counted), frequency, its error against that line in %.
 
     `matched_elsewhere`: the mode is the partner of another rig line.
     """
 
-    mode_number: int
-    frequency_hz: float
-    error_percent: float
-    matched_elsewhere: bool = False
+    mode_number: int = of("number of the mode", note=", from 1, rigid-body modes counted")
+    frequency_hz: float = of("frequency", "Hz")
+    error_percent: float = of("frequency of the mode over that of the rig, less 1", "%", note=", in %")
+    matched_elsewhere: bool = of("whether the mode belongs to another rig line", default=False)
 
 
-@dataclass(frozen=True)
-class Match:
+class Match(Record):
     """A rig line and its mode, within the tolerance.
 
     `within_uncertainty` is None where the rig states no uncertainty. `runner_up` is given where the assignment is
@@ -83,39 +82,53 @@ class Match:
     `mode_excitations` with the mode.
     """
 
-    rig: RigLine
-    mode_number: int
-    mode_frequency_hz: float
-    mode_description: str
-    error_percent: float
-    within_uncertainty: bool | None
-    runner_up: Candidate | None
-    mode_damping_ratio: float | None
-    excitations: tuple[ExcitationLine, ...]
-    mode_excitations: tuple[ExcitationLine, ...]
+    rig: RigLine = of("rig line", record=RigLine)
+    mode_number: int = of("number of the mode", note=", from 1, rigid-body modes counted")
+    mode_frequency_hz: float = of("frequency of the mode", "Hz")
+    mode_description: str = of("what moves")
+    error_percent: float = of("frequency of the mode over that of the rig, less 1", "%", note=", in %")
+    within_uncertainty: bool | None = of(
+        "whether the difference is within the rig's uncertainty", note="; `null`: none stated"
+    )
+    runner_up: Candidate | None = of(
+        "another mode that fits nearly as well", record=Candidate, note="; `null` where the choice is clear"
+    )
+    mode_damping_ratio: float | None = of("damping ratio of the mode", note="; `null` at standstill")
+    excitations: tuple[ExcitationLine, ...] = of(
+        "shaft and mesh orders that coincide with it", "", "excitation", record=ExcitationLine
+    )
+    mode_excitations: tuple[ExcitationLine, ...] = of(
+        "shaft and mesh orders that coincide with the mode", "", "excitation", record=ExcitationLine
+    )
+
+    @derived("whether the mode is within the tolerance", note=": `true`, since what is outside is no match")
+    def within_tolerance(self) -> bool:
+        """What is outside is no match."""
+        return True
 
 
-@dataclass(frozen=True)
-class UnmatchedRigLine:
+class UnmatchedRigLine(Record):
     """A rig line without a mode; the nearest elastic mode is outside the tolerance or the partner of another line."""
 
-    rig: RigLine
-    nearest_mode: Candidate | None
-    excitations: tuple[ExcitationLine, ...]
+    rig: RigLine = of("rig line", record=RigLine)
+    nearest_mode: Candidate | None = of("nearest elastic mode", record=Candidate, note="; `null` where there is none")
+    excitations: tuple[ExcitationLine, ...] = of(
+        "shaft and mesh orders that coincide with it", "", "excitation", record=ExcitationLine
+    )
 
 
-@dataclass(frozen=True)
-class UnmatchedMode:
+class UnmatchedMode(Record):
     """An elastic mode inside the band to which no rig line was assigned."""
 
-    mode_number: int
-    frequency_hz: float
-    description: str
-    excitations: tuple[ExcitationLine, ...]
+    mode_number: int = of("number of the mode", note=" in the band without a rig line")
+    frequency_hz: float = of("frequency", "Hz")
+    description: str = of("what moves")
+    excitations: tuple[ExcitationLine, ...] = of(
+        "shaft and mesh orders that coincide with it", "", "excitation", record=ExcitationLine
+    )
 
 
-@dataclass(frozen=True)
-class Chance:
+class Chance(Record):
     """What a random list of as many lines would do, each uniform in log frequency from band_low_hz to band_high_hz.
 
     Attributes:
@@ -135,27 +148,32 @@ class Chance:
     construction.
     """
 
-    band_low_hz: float
-    band_high_hz: float
-    modes_in_band: int
-    coverage: float
-    expected_random_matches: float
-    probability_as_many: float
-    probability_as_close: float
-    binomial_expected: float
-    binomial_probability: float
-    samples: int
-    seed: int
+    band_low_hz: float = of("lowest frequency of a random line", "Hz")
+    band_high_hz: float = of("highest frequency of a random line", "Hz")
+    modes_in_band: int = of("elastic modes in the band")
+    coverage: float = of("share of the band that lies within the tolerance of some mode")
+    expected_random_matches: float = of("mean number of matches of a random list of as many lines")
+    probability_as_many: float = of("share of random lists that match at least as many lines")
+    probability_as_close: float = of("share of random lists that come at least as close in the sum of |ln(mode / rig)|")
+    binomial_expected: float = of("mean number of matches in closed form, if lines could share a mode")
+    binomial_probability: float = of("share of lists that match as many in closed form, if lines could share a mode")
+    samples: int = of("number of random lists")
+    seed: int = of("seed of the random lists")
 
-    @property
+    @derived("whether chance matches as many in at most 2.5 % of cases")
     def number_is_evidence(self) -> bool:
         """True where chance matches as many in at most 2.5 % of cases: 5 %, shared by two looks at the same data."""
         return self._is_rare(self.probability_as_many)
 
-    @property
+    @derived("whether chance comes as close in at most 2.5 % of cases")
     def closeness_is_evidence(self) -> bool:
         """True where chance comes as close in at most 2.5 % of cases."""
         return self._is_rare(self.probability_as_close)
+
+    @derived("how shares of the band are measured")
+    def measure(self) -> str:
+        """Random lines are uniform in log frequency."""
+        return "log frequency"
 
     def _is_rare(self, probability: float) -> bool:
         """Whether a sampled probability is below the level by more than twice its own sampling error."""
@@ -163,53 +181,29 @@ class Chance:
         return probability + 2.0 * error <= EVIDENCE_LEVEL / 2
 
 
-@dataclass(frozen=True)
-class Comparison:
+class Comparison(Result, kind="compare"):
     """The whole comparison; relative tolerances as fractions, `warnings` as sentences."""
 
-    matches: tuple[Match, ...]
-    unmatched_rig: tuple[UnmatchedRigLine, ...]
-    unmatched_modes: tuple[UnmatchedMode, ...]
-    tolerance: float
-    excitation_tolerance: float
-    chance: Chance
-    warnings: tuple[str, ...] = ()
+    matches: tuple[Match, ...] = of("matches", "", "match", record=Match)
+    unmatched_rig: tuple[UnmatchedRigLine, ...] = of(
+        "rig lines without a mode", "", "unmatched_line", record=UnmatchedRigLine
+    )
+    unmatched_modes: tuple[UnmatchedMode, ...] = of(
+        "modes in the band without a rig line", "", "unmatched_mode", record=UnmatchedMode
+    )
+    tolerance: float = of("tolerance", note=": largest relative difference of a match")
+    excitation_tolerance: float = of("relative distance at which a line coincides with an excitation")
+    chance: Chance = of("what chance gives", record=Chance)
 
-    @property
+    @derived("number of rig lines", json="rig_lines")
     def rig_count(self) -> int:
         """The number of rig lines."""
         return len(self.matches) + len(self.unmatched_rig)
 
-    @property
+    @derived("what the agreement is worth", note=", in one sentence")
     def verdict(self) -> str:
         """One sentence that says what the agreement is worth."""
         return f"{_finding(self)}{_driven(self)}."
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON.
-
-        Keys: `verdict`; `tolerance`, `excitation_tolerance` (fractions); `rig_lines` (their number); `warnings`;
-        `matches`: list of `rig` {`frequency_hz`, `label`, `uncertainty_hz`, `damping_ratio`}, `mode_number` (from 1),
-        `mode_frequency_hz`, `mode_description`, `error_percent` (mode relative to rig), `within_tolerance` (true),
-        `within_uncertainty` (null: none stated), `runner_up` (null: not ambiguous) {`mode_number`, `frequency_hz`,
-        `error_percent`, `matched_elsewhere`}, `mode_damping_ratio`, `excitations` and `mode_excitations` [{`name`,
-        `frequency_hz`}]; `unmatched_rig`: list of `rig`, `nearest_mode` (keys as in `runner_up`; null: no elastic
-        mode), `excitations`; `unmatched_modes`: list of `mode_number`, `frequency_hz`, `description`, `excitations`;
-        `chance`: the attributes of `Chance`, `number_is_evidence`, `closeness_is_evidence` and `measure` (how the share
-        of the band is measured).
-        """
-        worth = {name: getattr(self.chance, name) for name in ("number_is_evidence", "closeness_is_evidence")}
-        return {
-            "verdict": self.verdict,
-            "tolerance": self.tolerance,
-            "excitation_tolerance": self.excitation_tolerance,
-            "rig_lines": self.rig_count,
-            "matches": [{**asdict(match), "within_tolerance": True} for match in self.matches],
-            "unmatched_rig": [asdict(line) for line in self.unmatched_rig],
-            "unmatched_modes": [asdict(mode) for mode in self.unmatched_modes],
-            "chance": {**asdict(self.chance), **worth, "measure": "log frequency"},
-            "warnings": list(self.warnings),
-        }
 
 
 def _finding(comparison: Comparison) -> str:

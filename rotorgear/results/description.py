@@ -2,75 +2,63 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
-from typing import Any
+from rotorgear.results.result import Result
+from rotorgear.results.schema import Record, of
 
 
-@dataclass(frozen=True)
-class ShaftRow:
-    """A shaft: speed over that of the input, speed in rpm (None without one), length in m, mass in kg of shaft and bodies on it,
-    polar inertia in kg m^2 of both.
-    """
+class ShaftRow(Record):
+    """A shaft, with what is on it."""
 
-    name: str
-    speed_ratio: float
-    speed_rpm: float | None
-    length_m: float
-    shaft_mass_kg: float
-    body_mass_kg: float
-    polar_inertia_kg_m2: float
+    name: str = of("name")
+    speed_ratio: float = of("speed over that of the input shaft", note="; negative: turns the other way")
+    speed_rpm: float | None = of("speed of the shaft", "rpm", note="; `null` without an operating speed")
+    length_m: float = of("length", "m")
+    shaft_mass_kg: float = of("mass of the shaft itself", "kg")
+    body_mass_kg: float = of("mass of gears, disks and point masses on it", "kg")
+    polar_inertia_kg_m2: float = of("moment of inertia about z of all that", "kg m^2")
 
 
-@dataclass(frozen=True)
-class MeshRow:
+class MeshRow(Record):
     """A mesh: what follows from its gears and axes, at the operating point. None is what is not known for lumped gears."""
 
-    name: str
-    pinion: str
-    gear: str
-    ratio: float
-    centre_distance_m: float | None
-    centre_line_deg: float
-    pressure_angle_deg: float
-    base_helix_angle_deg: float
-    transverse_contact_ratio: float | None
-    overlap_ratio: float | None
-    mesh_frequency_hz: float | None
-    normal_force_n: tuple[float, ...]
-    driver: str
-    flank_assumed: bool
-    stiffness_n_per_m: float
-    damping_n_s_per_m: float
+    name: str = of("name")
+    pinion: str = of("gear that the file calls the pinion")
+    gear: str = of("gear that meshes with the pinion")
+    ratio: float = of("teeth of the gear over those of the pinion")
+    centre_distance_m: float | None = of("distance of the axes", "m")
+    centre_line_deg: float = of("direction from pinion to gear", "deg", note=", from +x")
+    pressure_angle_deg: float = of("working transverse pressure angle", "deg")
+    base_helix_angle_deg: float = of("base helix angle", "deg")
+    transverse_contact_ratio: float | None = of("transverse contact ratio")
+    overlap_ratio: float | None = of("overlap ratio", note=", of one helix")
+    mesh_frequency_hz: float | None = of("mesh frequency", "Hz")
+    normal_force_n: tuple[float, ...] = of("mean force along the flank normal", "N", "helix", note=", of each helix")
+    driver: str = of("gear that drives")
+    flank_assumed: bool = of("whether the driving flank is an assumption", note=": no torque flows")
+    stiffness_n_per_m: float = of("stiffness along the flank normal", "N/m", note=", of all helices")
+    damping_n_s_per_m: float = of("damping coefficient along the flank normal", "N s/m", note=", of all helices")
 
 
-@dataclass(frozen=True)
-class TorqueRow:
+class TorqueRow(Record):
     """A torque on a shaft: N m about +z where the input turns positively, and the power it brings in W (None without a speed)."""
 
-    name: str
-    shaft: str
-    torque_n_m: float
-    power_w: float | None
+    name: str = of("where the torque is given", note=": a load, `operation`, or its output")
+    shaft: str = of("shaft it acts on")
+    torque_n_m: float = of("torque about +z", "N m")
+    power_w: float | None = of("power it brings", "W", note="; negative: takes")
 
 
-@dataclass(frozen=True)
-class ModelDescription:
+class ModelDescription(Result, kind="check"):
     """All that `rotorgear check` shows."""
 
-    title: str
-    reference_shaft: str
-    speed_rpm: float | None
-    shafts: tuple[ShaftRow, ...]
-    meshes: tuple[MeshRow, ...]
-    torques: tuple[TorqueRow, ...]
-    total_mass_kg: float
-    counts: dict[str, int]
-    nodes: int
-    dofs: int
-    mesh: str
-    left_out: tuple[str, ...]
-    warnings: tuple[str, ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON; the keys are the attributes'."""
-        return {"analysis": "check", **asdict(self)}
+    title: str = of("title of the model")
+    reference_shaft: str = of("name of the input shaft")
+    speed_rpm: float | None = of("speed of the input shaft", "rpm", note="; `null` without an operating speed")
+    shafts: tuple[ShaftRow, ...] = of("shafts", "", "shaft", record=ShaftRow)
+    meshes: tuple[MeshRow, ...] = of("meshes", "", "mesh", record=MeshRow)
+    torques: tuple[TorqueRow, ...] = of("torques", "", "torque", record=TorqueRow)
+    total_mass_kg: float = of("mass of all shafts and what is on them", "kg")
+    counts: dict[str, int] = of("number of parts in each table of the file", "", "TABLE")
+    nodes: int = of("number of nodes")
+    dofs: int = of("degrees of freedom")
+    mesh: str = of("the discretisation in words")

@@ -137,7 +137,7 @@ def data_set(result: Result) -> Any:
     merged = xr.merge(arrays, join="outer", compat="no_conflicts", combine_attrs="drop")
     merged = merged.assign_coords(coordinates)
     merged.attrs = {
-        "title": getattr(getattr(result, "model", None), "title", ""),
+        "title": getattr(result, "title", ""),
         "analysis": result.analysis_word,
         "status": result.status,
         "rotorgear_version": result.rotorgear_version,

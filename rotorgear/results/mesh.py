@@ -2,92 +2,103 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from rotorgear.old_names import warn_old
+from rotorgear.results.result import Result
+from rotorgear.results.schema import Record, derived, of, plain
+
 PLANE = "transverse, along the line of action: base force over approach"
+# So many orders are written where nothing else is asked for.
+_ORDERS = 8
 
 
-@dataclass(frozen=True)
-class MeshLoad:
-    """What a mesh carries: torque (N m) on the pinion, force F_bt (N) at the base circle and F_n (N) along the flank normal,
-    of all helices together, and where that is from."""
+class MeshLoad(Record):
+    """What a mesh carries, of all helices together."""
 
-    pinion_torque_n_m: float
-    base_force_n: float
-    normal_force_n: float
-    source: str
+    pinion_torque_n_m: float = of("torque on the pinion about +z", "N m")
+    base_force_n: float = of("tangential force F_bt at the base circle", "N")
+    normal_force_n: float = of("force F_n along the flank normal", "N")
+    source: str = of("where the load is from")
 
 
-@dataclass(frozen=True)
-class HelixContact:
-    """Loaded contact of one helix over p positions, in n slices of the contact lines.
+class LoadedPieces(Record):
+    """The n pieces of contact lines that carry load."""
 
-    Attributes:
-        stiffness, tangent: (p,) N/m in the transverse plane; transmission_error, no_load_error: (p,) m.
-        share: share (p,) of each tooth pair in the load, by its number.
-        contact_ratio: mean number of pairs that carry load; geometric_contact_ratio: without load.
-        position, pair: (n,) number of the position, and of the pair, of each slice.
-        z, length: (n,) place from the middle of the face and length of the contact line (m).
-        roll: (n, 2) roll lengths of both gears (m); force: (n,) N along the flank normal.
-        half_width, pressure: (n,) half-width (m) and largest pressure (Pa) of the contact.
-    """
+    position_number: np.ndarray = of(
+        "index into `position`", "", "piece", note=" of each loaded piece of a contact line"
+    )
+    pair: np.ndarray = of("number of the tooth pair", "", "piece")
+    z_m: np.ndarray = of("middle along the face", "m", "piece")
+    pinion_roll_length_m: np.ndarray = of("roll length on the pinion", "m", "piece")
+    gear_roll_length_m: np.ndarray = of("roll length on the gear", "m", "piece")
+    line_load_n_per_m: np.ndarray = of("force per length of contact line", "N/m", "piece")
+    half_width_m: np.ndarray = of("half-width of the contact", "m", "piece")
+    pressure_pa: np.ndarray = of("largest contact pressure", "Pa", "piece")
 
-    stiffness: np.ndarray
-    tangent: np.ndarray
-    transmission_error: np.ndarray
-    no_load_error: np.ndarray
-    share: dict[int, np.ndarray]
-    contact_ratio: float
-    geometric_contact_ratio: float
-    position: np.ndarray
-    pair: np.ndarray
-    z: np.ndarray
-    length: np.ndarray
-    roll: np.ndarray
-    force: np.ndarray
-    half_width: np.ndarray
-    pressure: np.ndarray
+
+class HelixContact(Record):
+    """Loaded contact of one helix over p positions, in n slices of the contact lines; stiffness in the transverse plane."""
+
+    stiffness: np.ndarray = of(
+        "stiffness", "N/m", "position", json="stiffness_n_per_m", note=" of one helix over `position`"
+    )
+    tangent: np.ndarray = of("tangent stiffness", "N/m", "position", json=None)
+    transmission_error: np.ndarray = of("transmission error", "m", "position", json="ste_m", note=" under load")
+    no_load_error: np.ndarray = of("transmission error without load", "m", "position", json="no_load_te_m")
+    share: dict[int, np.ndarray] = of(
+        "share of a tooth pair in the load", "", "PAIR", "position", json="load_share", note=" over `position`"
+    )
+    contact_ratio: float = of("mean number of pairs that carry load")
+    geometric_contact_ratio: float = of("total contact ratio without load")
+    position: np.ndarray = of("number of the position", "", "slice", json=None)
+    pair: np.ndarray = of("number of the tooth pair", "", "slice", json=None)
+    z: np.ndarray = of("place from the middle of the face", "m", "slice", json=None)
+    length: np.ndarray = of("length of the contact line", "m", "slice", json=None)
+    roll: np.ndarray = of("roll lengths of both gears", "m", "slice", "pinion_and_gear", json=None)
+    force: np.ndarray = of("force along the flank normal", "N", "slice", json=None)
+    half_width: np.ndarray = of("half-width of the contact", "m", "slice", json=None)
+    pressure: np.ndarray = of("largest contact pressure", "Pa", "slice", json=None)
 
     @property
     def line_load(self) -> np.ndarray:
         """Force per length of contact line (n,), N/m."""
         return np.asarray(self.force / self.length)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON."""
+    @derived("largest force per length of contact line", "N/m")
+    def largest_line_load_n_per_m(self) -> float:
+        """Of all slices."""
+        return float(self.line_load.max())
+
+    @derived("largest contact pressure", "Pa")
+    def largest_pressure_pa(self) -> float:
+        """Of all slices."""
+        return float(self.pressure.max())
+
+    @derived("pieces that carry load", record=LoadedPieces)
+    def contact(self) -> LoadedPieces:
+        """The slices under load alone."""
         carrying = self.force > 0.0
-        return {
-            "stiffness_n_per_m": self.stiffness.tolist(),
-            "ste_m": self.transmission_error.tolist(),
-            "no_load_te_m": self.no_load_error.tolist(),
-            "contact_ratio": self.contact_ratio,
-            "geometric_contact_ratio": self.geometric_contact_ratio,
-            "load_share": {str(pair): values.tolist() for pair, values in self.share.items()},
-            "largest_line_load_n_per_m": float(self.line_load.max()),
-            "largest_pressure_pa": float(self.pressure.max()),
-            "contact": {
-                "position_number": self.position[carrying].tolist(),
-                "pair": self.pair[carrying].tolist(),
-                "z_m": self.z[carrying].tolist(),
-                "pinion_roll_length_m": self.roll[carrying, 0].tolist(),
-                "gear_roll_length_m": self.roll[carrying, 1].tolist(),
-                "line_load_n_per_m": self.line_load[carrying].tolist(),
-                "half_width_m": self.half_width[carrying].tolist(),
-                "pressure_pa": self.pressure[carrying].tolist(),
-            },
-        }
+        return LoadedPieces(
+            position_number=self.position[carrying],
+            pair=self.pair[carrying],
+            z_m=self.z[carrying],
+            pinion_roll_length_m=self.roll[carrying, 0],
+            gear_roll_length_m=self.roll[carrying, 1],
+            line_load_n_per_m=self.line_load[carrying],
+            half_width_m=self.half_width[carrying],
+            pressure_pa=self.pressure[carrying],
+        )
 
 
-@dataclass(frozen=True)
-class MeshErrors:
+class MeshErrors(Record):
     """Estimated relative errors: mean stiffness, its peak to peak over its own size, and the same of the transmission error."""
 
-    mean_stiffness: float
-    peak_to_peak_stiffness: float
-    ste_peak_to_peak: float
+    mean_stiffness: float = of("relative error of the mean stiffness")
+    peak_to_peak_stiffness: float = of("relative error of the peak to peak of the stiffness")
+    ste_peak_to_peak: float = of("relative error of the peak to peak of the transmission error")
 
     @property
     def worst(self) -> float:
@@ -95,73 +106,93 @@ class MeshErrors:
         return max(self.mean_stiffness, self.peak_to_peak_stiffness, self.ste_peak_to_peak)
 
 
-@dataclass(frozen=True)
-class LoadPoint:
-    """The same mesh at another load: factor, N/m and m."""
+class LoadPoint(Record):
+    """The same mesh at another load."""
 
-    factor: float
-    mean_stiffness_n_per_m: float
-    peak_to_peak_stiffness_n_per_m: float
-    ste_peak_to_peak_m: float
-    contact_ratio: float
+    factor: float = of("factor", note=": multiple of the load, from `--load-factors`")
+    mean_stiffness_n_per_m: float = of("mean stiffness", "N/m", note=" at that load")
+    peak_to_peak_stiffness_n_per_m: float = of("peak to peak of the stiffness", "N/m", note=" at that load")
+    ste_peak_to_peak_m: float = of("peak to peak of the transmission error", "m", note=" at that load")
+    contact_ratio: float = of("mean number of pairs that carry load")
 
 
-@dataclass(frozen=True)
-class MeshResult:
+class MeshOrder(Record):
+    """One order of the mesh: k(u) = mean + sum amplitude cos(2 pi order u + phase)."""
+
+    order: int = of("order", note=" of the mesh")
+    stiffness_n_per_m: float = of(
+        "amplitude of the stiffness", "N/m", note=": k(u) = mean + Σ amplitude · cos(2π order u + phase)"
+    )
+    stiffness_phase_deg: float = of("phase of the stiffness", "deg")
+    ste_m: float | None = of("amplitude of the transmission error", "m")
+    ste_phase_deg: float | None = of("phase of the transmission error", "deg")
+
+
+class MeshResult(Result, kind="mesh"):
     """One mesh of a model over its mesh cycle, all helices together where nothing else is said.
 
-    Attributes:
-        model: stiffness model; preset: of the finite elements, None for another model.
-        definition: "secant" or "tangent"; body: what the teeth stand on.
-        position: (p,) mesh periods; stiffness, tangent: (p,) N/m in the transverse plane.
-        transmission_error, no_load_error: (p,) m along the line of action; None where a model has none.
-        helix: contact of each helix, empty for a model without contact.
-        errors: estimates; None where a model has none. dofs: of the finite elements.
-        loads: at other loads, where asked for.
+    What a stiffness model doesn't know is None; `helix` is empty for a model without loaded contact.
     """
 
-    title: str
-    mesh: str
-    pinion: str
-    gear: str
-    model: str
-    preset: str | None
-    definition: str
-    body: str
-    helices: int
-    face_width: float
-    base_helix_angle: float
-    stagger: float
-    load: MeshLoad | None
-    position: np.ndarray
-    stiffness: np.ndarray
-    tangent: np.ndarray | None
-    transmission_error: np.ndarray | None
-    no_load_error: np.ndarray | None
-    helix: tuple[HelixContact, ...]
-    errors: MeshErrors | None
-    dofs: int
-    seconds: float
-    seconds_by_step: dict[str, float]
-    loads: tuple[LoadPoint, ...]
-    warnings: tuple[str, ...]
+    title: str = of("title of the model")
+    mesh: str = of("mesh", note=": its name")
+    pinion: str = of("gear that the file calls the pinion")
+    gear: str = of("gear that meshes with the pinion")
+    stiffness_model: str = of("stiffness model", json="model", note=', or `"given"`')
+    preset: str | None = of("preset of the finite elements")
+    definition: str = of("definition of the stiffness", note=': `"secant"` or `"tangent"`')
+    body: str = of("what the teeth stand on", note=", in words")
+    helices: int = of("number of helices")
+    face_width: float = of("common face width of one helix", "m", json="face_width_m")
+    base_helix_angle: float = of("base helix angle", "rad", json="base_helix_angle_deg")
+    stagger: float = of("lead of the second helix in mesh periods")
+    load: MeshLoad | None = of("load", record=MeshLoad)
+    position: np.ndarray = of("position", "", "position", note=" in mesh periods")
+    stiffness: np.ndarray = of("stiffness", "N/m", "position", json="stiffness_n_per_m", note=" over `position`")
+    tangent: np.ndarray | None = of(
+        "tangent stiffness", "N/m", "position", json="tangent_stiffness_n_per_m", note=" over `position`"
+    )
+    transmission_error: np.ndarray | None = of(
+        "transmission error", "m", "position", json="ste_m", note=" under load over `position`"
+    )
+    no_load_error: np.ndarray | None = of("transmission error without load", "m", "position", json="no_load_te_m")
+    helix: tuple[HelixContact, ...] = of("loaded contact of each helix", "", "helix", record=HelixContact)
+    errors: MeshErrors | None = of("estimated errors", record=MeshErrors, json="error_estimate")
+    dofs: int = of("degrees of freedom", note=" of both gears' elements")
+    loads: tuple[LoadPoint, ...] = of("the same mesh at other loads", "", "load", record=LoadPoint)
 
     @property
+    def model(self) -> str:
+        """Former name of `stiffness_model`."""
+        warn_old("attribute of a mesh result", "model", "stiffness_model")
+        return self.stiffness_model
+
+    @derived("plane and direction of the stiffness", note=", in words")
+    def plane(self) -> str:
+        """The same for all stiffness models."""
+        return PLANE
+
+    @derived("mean stiffness", "N/m", json="mean_stiffness_n_per_m")
     def mean_stiffness(self) -> float:
         """Mean of the transverse stiffness (N/m)."""
         return float(self.stiffness.mean())
 
-    @property
+    @derived("mean stiffness along the flank normal", "N/m", json="mean_normal_stiffness_n_per_m")
     def mean_normal_stiffness(self) -> float:
         """Mean stiffness along the flank normal (N/m): what a model file takes as a number."""
         return self.mean_stiffness / float(np.cos(self.base_helix_angle)) ** 2
 
-    @property
+    @derived("peak to peak of the stiffness", "N/m", json="peak_to_peak_stiffness_n_per_m")
     def peak_to_peak_stiffness(self) -> float:
         """Largest less smallest transverse stiffness (N/m)."""
         return float(np.ptp(self.stiffness))
 
-    @property
+    @derived("mean tangent stiffness", "N/m", json="mean_tangent_stiffness_n_per_m")
+    def mean_tangent_stiffness(self) -> float | None:
+        """Mean of the transverse tangent stiffness (N/m)."""
+        return None if self.tangent is None else float(self.tangent.mean())
+
+    @derived("peak to peak of the transmission error", "m", json="ste_peak_to_peak_m", note=" under load")
     def ste_peak_to_peak(self) -> float | None:
         """Largest less smallest transmission error under load (m)."""
         return None if self.transmission_error is None else float(np.ptp(self.transmission_error))
@@ -174,58 +205,29 @@ class MeshResult:
         """The same of the transmission error under load, in m."""
         return None if self.transmission_error is None else _harmonics(self.position, self.transmission_error, count)
 
-    def to_dict(self, harmonics: int = 8) -> dict[str, Any]:
-        """Plain values for JSON."""
-        k = self.harmonics(harmonics)
-        e = self.ste_harmonics(harmonics)
-        return {
-            "analysis": "mesh",
-            "title": self.title,
-            "mesh": self.mesh,
-            "pinion": self.pinion,
-            "gear": self.gear,
-            "model": self.model,
-            "preset": self.preset,
-            "definition": self.definition,
-            "plane": PLANE,
-            "body": self.body,
-            "helices": self.helices,
-            "stagger": self.stagger,
-            "face_width_m": self.face_width,
-            "base_helix_angle_deg": float(np.degrees(self.base_helix_angle)),
-            "load": None if self.load is None else dict(vars(self.load)),
-            "mean_stiffness_n_per_m": self.mean_stiffness,
-            "mean_normal_stiffness_n_per_m": self.mean_normal_stiffness,
-            "peak_to_peak_stiffness_n_per_m": self.peak_to_peak_stiffness,
-            "mean_tangent_stiffness_n_per_m": None if self.tangent is None else float(self.tangent.mean()),
-            "ste_peak_to_peak_m": self.ste_peak_to_peak,
-            "position": self.position.tolist(),
-            "stiffness_n_per_m": self.stiffness.tolist(),
-            "tangent_stiffness_n_per_m": _plain(self.tangent),
-            "ste_m": _plain(self.transmission_error),
-            "no_load_te_m": _plain(self.no_load_error),
-            "harmonics": [
-                {
-                    "order": h + 1,
-                    "stiffness_n_per_m": float(abs(k[h])),
-                    "stiffness_phase_deg": float(np.degrees(np.angle(k[h]))),
-                    "ste_m": None if e is None else float(abs(e[h])),
-                    "ste_phase_deg": None if e is None else float(np.degrees(np.angle(e[h]))),
-                }
-                for h in range(len(k))
-            ],
-            "helix": [helix.to_dict() for helix in self.helix],
-            "error_estimate": None if self.errors is None else dict(vars(self.errors)),
-            "loads": [dict(vars(point)) for point in self.loads],
-            "dofs": self.dofs,
-            "seconds": self.seconds,
-            "seconds_by_step": self.seconds_by_step,
-            "warnings": list(self.warnings),
-        }
+    def orders(self, count: int = _ORDERS) -> tuple[MeshOrder, ...]:
+        """The first orders of stiffness and transmission error by amplitude and phase."""
+        k = self.harmonics(count)
+        e = self.ste_harmonics(count)
+        return tuple(
+            MeshOrder(
+                order=h + 1,
+                stiffness_n_per_m=float(abs(k[h])),
+                stiffness_phase_deg=float(np.degrees(np.angle(k[h]))),
+                ste_m=None if e is None else float(abs(e[h])),
+                ste_phase_deg=None if e is None else float(np.degrees(np.angle(e[h]))),
+            )
+            for h in range(len(k))
+        )
 
+    @derived("orders of the mesh", "", "order", record=MeshOrder, json="harmonics")
+    def first_orders(self) -> tuple[MeshOrder, ...]:
+        """The orders that are written."""
+        return self.orders()
 
-def _plain(values: np.ndarray | None) -> list[float] | None:
-    return None if values is None else [float(value) for value in values]
+    def to_dict(self, harmonics: int = _ORDERS) -> dict[str, Any]:
+        """Plain values for JSON with so many orders; the keys are on docs/json.md."""
+        return {**super().to_dict(), "harmonics": plain(self.orders(harmonics))}
 
 
 def _harmonics(position: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:

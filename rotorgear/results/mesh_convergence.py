@@ -2,48 +2,36 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
-from typing import Any
-
 from rotorgear.results.mesh import MeshErrors
+from rotorgear.results.result import Result
+from rotorgear.results.schema import Record, of
 
 
-@dataclass(frozen=True)
-class MeshRung:
-    """One mesh of the teeth.
+class MeshRung(Record):
+    """One mesh of the teeth."""
 
-    Attributes:
-        method: preset or mesh, in words. elements: of one pitch, both gears alike; layers: along the face, 0 for a plane model.
-        dofs: of both gears. fe_seconds, contact_seconds: CPU time of both compliances, and of the contact over a cycle.
-        mean_stiffness_n_per_m, peak_to_peak_stiffness_n_per_m, ste_peak_to_peak_m: of one helix.
-        error: relative errors against the reference; estimate: what an analysis with this preset says itself, None where there
-            is no estimate.
-    """
-
-    method: str
-    elements: int
-    layers: int
-    dofs: int
-    fe_seconds: float
-    contact_seconds: float
-    mean_stiffness_n_per_m: float
-    peak_to_peak_stiffness_n_per_m: float
-    ste_peak_to_peak_m: float
-    error: MeshErrors
-    estimate: MeshErrors | None
+    method: str = of("what was asked for", note=": a preset, or a mesh between them")
+    elements: int = of("elements of a pitch in the transverse plane")
+    layers: int = of("layers along the face", note="; 0: a plane model")
+    dofs: int = of("degrees of freedom", note=" of both gears")
+    fe_seconds: float = of("CPU time of both compliances", "s")
+    contact_seconds: float = of("CPU time of the contact over a cycle", "s")
+    mean_stiffness_n_per_m: float = of("mean stiffness", "N/m")
+    peak_to_peak_stiffness_n_per_m: float = of("peak to peak of the stiffness", "N/m")
+    ste_peak_to_peak_m: float = of("peak to peak of the transmission error", "m")
+    error: MeshErrors = of("relative errors against the reference", record=MeshErrors)
+    estimate: MeshErrors | None = of(
+        "what an analysis with this preset estimates itself", record=MeshErrors, note="; `null` for other meshes"
+    )
 
 
-@dataclass(frozen=True)
-class MeshConvergenceStudy:
+class MeshConvergenceStudy(Result, kind="mesh_convergence", analysis="accuracy"):
     """Rungs of one mesh at one load; `reference` says what the errors are measured against."""
 
-    title: str
-    mesh: str
-    body: str
-    base_force_n: float
-    reference: str
-    rungs: tuple[MeshRung, ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON; the keys are the attributes'."""
-        return {**asdict(self), "analysis": "accuracy", "of": "mesh"}
+    title: str = of("title of the model")
+    analysis: str = of("analysis that is measured", json="of", default="mesh", kw_only=True)
+    mesh: str = of("mesh")
+    body: str = of("what the teeth stand on")
+    base_force_n: float = of("tangential force F_bt at the base circle", "N", note=" of the helix")
+    reference: str = of("what the errors are measured against")
+    rungs: tuple[MeshRung, ...] = of("discretisations", "", "rung", record=MeshRung)

@@ -6,7 +6,7 @@ from html import escape
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rotorgear.results.schema import Record, Written, of
+from rotorgear.results.schema import Record, Written, derived, of
 from rotorgear.version import VERSION
 
 if TYPE_CHECKING:
@@ -79,7 +79,9 @@ class Result(Record):
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON; the keys are on docs/json.md."""
-        return {"analysis": self.analysis_word, **super().to_dict()}
+        values = super().to_dict()
+        head = {"title": values.pop("title")} if "title" in values else {}
+        return {"analysis": self.analysis_word, **head, **values}
 
     def table(self, **options: Any) -> RenderableType:
         """What the command prints, as one rich renderable; the options are those of the command that choose tables."""
@@ -135,7 +137,7 @@ class ModelResult(Result):
     model: Model = of("model that was analysed", json=None)
     dofs: int = of("degrees of freedom", default=0, kw_only=True)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON; the keys are on docs/json.md."""
-        head, *rest = super().to_dict().items()
-        return dict([head, ("title", self.model.title), *rest])
+    @derived("title of the model")
+    def title(self) -> str:
+        """The title in the model file."""
+        return self.model.title

@@ -2,91 +2,75 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
-
 import numpy as np
 
-
-@dataclass(frozen=True)
-class Spectrum:
-    """One-sided amplitude spectrum: a sine of amplitude A shows a peak of height A.
-
-    `frequency` (f,) in Hz, or orders of the reference shaft; `amplitude` (f,) in the history's unit; `resolution` the
-    distance of two lines that are just told apart.
-    """
-
-    name: str
-    unit: str
-    frequency: np.ndarray
-    amplitude: np.ndarray
-    window: str
-    resolution: float
-    over: str = "Hz"
+from rotorgear.results.result import Result
+from rotorgear.results.schema import Record, derived, of
 
 
-@dataclass(frozen=True)
-class SpectralLines:
-    """The strongest lines of a spectrum, by frequency; `source` says which shaft or mesh order a line belongs to, else ""."""
+class Spectrum(Record):
+    """One-sided amplitude spectrum: a sine of amplitude A shows a peak of height A."""
 
-    name: str
-    unit: str
-    frequency_hz: np.ndarray
-    amplitude: np.ndarray
-    source: tuple[str, ...]
-    window: str
-    resolution_hz: float
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON."""
-        return {
-            "history": self.name,
-            "unit": self.unit,
-            "window": self.window,
-            "resolution_hz": self.resolution_hz,
-            "lines": [
-                {"frequency_hz": float(f), "amplitude": float(a), "source": what}
-                for f, a, what in zip(self.frequency_hz, self.amplitude, self.source, strict=True)
-            ],
-        }
+    name: str = of("name", note=" of the history")
+    unit: str = of("unit", note=" of the amplitudes")
+    frequency: np.ndarray = of("frequency", "", "bin", note=" in Hz, or orders of the reference shaft")
+    amplitude: np.ndarray = of("amplitude", "", "bin", note=" in the history's unit")
+    window: str = of("window")
+    resolution: float = of("distance at which two lines are told apart", note=", in the unit of the frequency")
+    over: str = of("what the frequency is in", note=', `"Hz"` or orders', default="Hz")
 
 
-@dataclass(frozen=True)
-class RigSpectrum:
-    """Spectral lines beside the lines of a rig.
+class SpectralLine(Record):
+    """A line of a spectrum."""
 
-    For each of the k rig lines: its frequency in Hz and label, the nearest spectral line (frequency and amplitude, NaN where
-    none lies within the tolerance), its source, and in words why none is there.
-    """
+    frequency_hz: float = of("frequency", "Hz", note=" of the line")
+    amplitude: float = of("amplitude")
+    source: str = of("shaft or mesh order that the line belongs to", note=', or `""`')
 
-    name: str
-    unit: str
-    rig_hz: np.ndarray
-    label: tuple[str, ...]
-    frequency_hz: np.ndarray
-    amplitude: np.ndarray
-    source: tuple[str, ...]
-    reason: tuple[str, ...]
-    tolerance: float
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON."""
+class SpectralLines(Result, kind="spectral_lines", analysis="spectrum"):
+    """The strongest lines of a spectrum, by frequency."""
 
-        def number(value: float) -> float | None:
-            return float(value) if np.isfinite(value) else None
+    name: str = of("name of the history", json="history")
+    unit: str = of("unit", note=" of the amplitudes")
+    frequency_hz: np.ndarray = of("frequency", "Hz", "line", json=None, form=".2f")
+    amplitude: np.ndarray = of("amplitude", "", "line", json=None)
+    source: tuple[str, ...] = of("shaft or mesh order that the line belongs to", "", "line", json=None)
+    window: str = of("window")
+    resolution_hz: float = of("distance at which two lines are told apart", "Hz")
 
-        rows = zip(self.rig_hz, self.label, self.frequency_hz, self.amplitude, self.source, self.reason, strict=True)
-        return {
-            "tolerance": self.tolerance,
-            "lines": [
-                {
-                    "rig_hz": float(rig),
-                    "label": label,
-                    "frequency_hz": number(f),
-                    "amplitude": number(a),
-                    "source": source,
-                    "reason": reason,
-                }
-                for rig, label, f, a, source, reason in rows
-            ],
-        }
+    @derived("lines", "", "line", record=SpectralLine)
+    def lines(self) -> tuple[SpectralLine, ...]:
+        """A record for each line."""
+        return tuple(map(SpectralLine, self.frequency_hz.tolist(), self.amplitude.tolist(), self.source))
+
+
+class LineBesideRig(Record):
+    """A line of the rig, and the spectral line beside it."""
+
+    rig_hz: float = of("frequency of the rig line", "Hz")
+    label: str = of("label", note=" of the rig line")
+    frequency_hz: float = of("frequency", "Hz", note=" of the spectral line beside it, or `null`")
+    amplitude: float = of("amplitude", note=", or `null`")
+    source: str = of("shaft or mesh order that the line belongs to")
+    reason: str = of("why there is no line", note=', or `""`')
+
+
+class RigSpectrum(Result, kind="rig_spectrum", analysis="compare spectrum"):
+    """Spectral lines beside the k lines of a rig; NaN where none lies within the tolerance."""
+
+    name: str = of("name of the history", json="history")
+    unit: str = of("unit", note=" of the amplitudes")
+    rig_hz: np.ndarray = of("frequency of the rig line", "Hz", "rig_line", json=None)
+    label: tuple[str, ...] = of("label", "", "rig_line", json=None)
+    frequency_hz: np.ndarray = of("frequency", "Hz", "rig_line", json=None)
+    amplitude: np.ndarray = of("amplitude", "", "rig_line", json=None)
+    source: tuple[str, ...] = of("shaft or mesh order that the line belongs to", "", "rig_line", json=None)
+    reason: tuple[str, ...] = of("why there is no line", "", "rig_line", json=None)
+    tolerance: float = of("tolerance", note=": relative distance at which a spectral line counts as the rig's")
+
+    @derived("lines of the rig", "", "rig_line", record=LineBesideRig)
+    def lines(self) -> tuple[LineBesideRig, ...]:
+        """A record for each line of the rig."""
+        columns = (self.rig_hz.tolist(), self.label, self.frequency_hz.tolist(), self.amplitude.tolist())
+        return tuple(map(LineBesideRig, *columns, self.source, self.reason))

@@ -2,51 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
-from math import isfinite
-from typing import Any
+from rotorgear.results.result import Result
+from rotorgear.results.schema import Record, of
 
 
-@dataclass(frozen=True)
-class SweepRung:
-    """One number of steps and of periods.
+class SweepRung(Record):
+    """One number of steps and of periods."""
 
-    Attributes:
-        steps: in a period of the fastest mesh. count: common periods that count. seconds: of integration for one run.
-        exponent: mean of the largest Lyapunov exponents of all runs; scatter: their standard deviation; stated: median of
-            the standard errors that the runs state.
-        peak_to_peak, peak_to_peak_scatter: of the worst contact in m. dynamic_factor, dynamic_factor_scatter: of that contact.
-        motion: kinds that occurred.
-    """
-
-    steps: int
-    count: int
-    seconds: float
-    exponent: float
-    scatter: float
-    stated: float
-    peak_to_peak: float
-    peak_to_peak_scatter: float
-    dynamic_factor: float
-    dynamic_factor_scatter: float
-    motion: tuple[str, ...]
+    steps: int = of("steps", note=" in a period of the fastest mesh")
+    count: int = of("common periods that count")
+    seconds: float = of("wall time", "s", note=" of one run")
+    exponent: float = of("mean of the largest Lyapunov exponents")
+    scatter: float = of("standard deviation of these exponents over the runs")
+    stated: float = of("standard error that one run states", note=", the median")
+    peak_to_peak: float = of(
+        "approach of the flanks less the transmission error, peak to peak", "m", note=", of the worst contact"
+    )
+    peak_to_peak_scatter: float = of("standard deviation of the peak to peak", "m")
+    dynamic_factor: float = of("dynamic factor", note=" of that contact")
+    dynamic_factor_scatter: float = of("standard deviation of the dynamic factor")
+    motion: tuple[str, ...] = of("kind of motion", "", "kind", note=": those that occurred")
 
 
-@dataclass(frozen=True)
-class SweepConvergenceStudy:
+class SweepConvergenceStudy(Result, kind="sweep_convergence", analysis="accuracy"):
     """Rungs of one model; `runs` is how many states each was run from."""
 
-    title: str
-    runs: int
-    rungs: tuple[SweepRung, ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON; the keys are the attributes'."""
-        rungs = [{key: _finite(value) for key, value in asdict(rung).items()} for rung in self.rungs]
-        return {"analysis": "accuracy", "of": "sweep", "title": self.title, "runs": self.runs, "rungs": rungs}
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return list(value)
-    return None if isinstance(value, float) and not isfinite(value) else value
+    title: str = of("title of the model")
+    analysis: str = of("analysis that is measured", json="of", default="sweep", kw_only=True)
+    runs: int = of("number of states that the point was run from")
+    rungs: tuple[SweepRung, ...] = of("discretisations", "", "rung", record=SweepRung)

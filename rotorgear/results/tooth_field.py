@@ -2,48 +2,44 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from rotorgear.results.result import Result
+from rotorgear.results.schema import Record, of
 
-@dataclass(frozen=True)
-class ToothField:
-    """Finite elements of some pitches of one gear, in the place where they mesh (m; the pinion's axis is the z axis).
 
-    Attributes:
-        points: (p, 3); cells: (e, 9) of biquadratic quadrangles or (e, 27) of triquadratic hexahedra, in VTK's order.
-        tooth: (p,) number of the pitch, 0 for that of pair 0.
-        displacement: (p, 3) in m; von_mises, largest_principal: (p,) in Pa, averaged at the nodes.
-        root_stress: largest principal stress (Pa) in the fillet on the loaded side of all teeth.
+class ToothField(Record):
+    """Finite elements of some pitches of one gear, in the place where they mesh; the pinion's axis is the z axis.
+
+    Cells are biquadratic quadrangles (9 nodes) or triquadratic hexahedra (27), in VTK's order. Stresses are averaged at nodes.
     """
 
-    name: str
-    points: np.ndarray
-    cells: np.ndarray
-    tooth: np.ndarray
-    displacement: np.ndarray
-    von_mises: np.ndarray
-    largest_principal: np.ndarray
-    root_stress: float
+    name: str = of("name", note=" of the gear")
+    points: np.ndarray = of("nodes of the elements", "m", "node", "xyz", json=None)
+    cells: np.ndarray = of("nodes of each cell", "", "cell", "corner", json=None)
+    tooth: np.ndarray = of("number of the pitch", "", "node", json=None, note=", 0 for that of pair 0")
+    displacement: np.ndarray = of("displacement of the nodes", "m", "node", "xyz", json=None)
+    von_mises: np.ndarray = of("von Mises stress", "Pa", "node", json=None)
+    largest_principal: np.ndarray = of("largest principal stress", "Pa", "node", json=None)
+    root_stress: float = of(
+        "largest principal stress in the fillet on the loaded side of all teeth", "Pa", json="root_stress_pa"
+    )
 
 
-@dataclass(frozen=True)
-class ContactField:
-    """Slices that carry load: (n, 2, 3) ends of each on the flanks (m), line load (N/m), half-width (m), pressure (Pa), pair."""
+class ContactField(Record):
+    """The n slices that carry load."""
 
-    ends: np.ndarray
-    line_load: np.ndarray
-    half_width: np.ndarray
-    pressure: np.ndarray
-    pair: np.ndarray
+    ends: np.ndarray = of("ends of each slice on the flanks", "m", "slice", "end", "xyz", json=None)
+    line_load: np.ndarray = of("force per length of contact line", "N/m", "slice", json="line_load_n_per_m")
+    half_width: np.ndarray = of("half-width of the contact", "m", "slice", json="half_width_m")
+    pressure: np.ndarray = of("largest contact pressure", "Pa", "slice", json="pressure_pa")
+    pair: np.ndarray = of("number of the tooth pair", "", "slice")
 
 
-@dataclass(frozen=True)
-class ToothFields:
-    """Both gears and the contact at one position (mesh periods) of the first helix."""
+class ToothFields(Result, kind="tooth_field"):
+    """Both gears and the contact at one position of the first helix."""
 
-    mesh: str
-    position: float
-    gears: tuple[ToothField, ToothField]
-    contact: ContactField
+    mesh: str = of("mesh", note=": its name")
+    position: float = of("position", note=" in mesh periods")
+    gears: tuple[ToothField, ToothField] = of("both gears", "", "pinion_and_gear", record=ToothField)
+    contact: ContactField = of("slices that carry load", record=ContactField)

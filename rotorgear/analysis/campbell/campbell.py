@@ -20,6 +20,7 @@ from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.pieces import pieces
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits, whirl_numbers
 from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.errors import AnalysisError
@@ -31,6 +32,7 @@ from rotorgear.system.system import System
 DEFAULT_MODES = 24
 
 
+@recorded
 def campbell(
     model: Model | System,
     *,

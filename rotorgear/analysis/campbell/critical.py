@@ -16,6 +16,7 @@ from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.pieces import pieces
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.branch_shapes import BasisShapes
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -30,6 +31,7 @@ SHAFT_ORDERS = (1.0,)
 
 
 @renamed_arguments(top_speed="stop")
+@recorded
 def critical(
     model: Model | System,
     *,

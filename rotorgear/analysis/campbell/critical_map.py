@@ -17,6 +17,7 @@ from rotorgear.analysis.campbell.speed_family import SpeedFamily
 from rotorgear.analysis.campbell.speeds import highest_speed
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import excitation_orders
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.branch_shapes import BasisShapes
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -32,6 +33,7 @@ _POINTS = 33
 
 
 @renamed_arguments(top_speed="stop")
+@recorded
 def critical_map(
     model: Model,
     *,

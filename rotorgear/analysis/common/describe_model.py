@@ -8,6 +8,7 @@ import numpy as np
 
 from rotorgear.analysis.common.model_warnings import model_warnings
 from rotorgear.analysis.common.notes import left_out
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.model.model import Model
 from rotorgear.results.description import MeshRow, ModelDescription, ShaftRow, TorqueRow
 from rotorgear.system.system import System
@@ -27,6 +28,7 @@ _COUNTED = (
 )
 
 
+@recorded
 def check(model: Model, *, elements: int | None = None) -> ModelDescription:
     """Return speeds, mesh frequencies, torques, contact ratios, masses, dofs and warnings of a model.
 

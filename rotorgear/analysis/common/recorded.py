@@ -15,11 +15,12 @@ import numpy as np
 from rotorgear.model.model import Model
 from rotorgear.model.model_hash import model_hash
 from rotorgear.results.result import Result
+from rotorgear.results.schema import Record
 
 P = ParamSpec("P")
 R = TypeVar("R", bound=Result)
 # They say how the work is done or watched, and change no number.
-_NOT_SETTINGS = ("progress", "stream", "client", "cluster")
+_NOT_SETTINGS = ("progress", "stream", "executor")
 
 
 def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
@@ -37,7 +38,7 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
         bound.apply_defaults()
         (_, subject), *given = bound.arguments.items()
         settings = {name: setting(value) for name, value in given if name not in _NOT_SETTINGS}
-        seconds = result.seconds or {"total": time.perf_counter() - start}
+        seconds = {"total": time.perf_counter() - start} | result.seconds
         return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds)
 
     return run
@@ -61,6 +62,8 @@ def setting(value: Any) -> Any:
         return {str(key): setting(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple | set | frozenset | range):
         return tuple(setting(entry) for entry in value)
+    if isinstance(value, Record):
+        return setting(value.to_dict())
     if isinstance(value, Path):
         return str(value)
     return getattr(value, "__name__", None) or repr(value)

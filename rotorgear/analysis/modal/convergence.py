@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -23,6 +24,7 @@ REFERENCE = 1e-10
 _ROUNDING = 1e-11
 
 
+@recorded
 def convergence_study(
     model: Model,
     *,

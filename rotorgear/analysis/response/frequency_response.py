@@ -12,6 +12,7 @@ import numpy as np
 
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.points import named_place
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, direction_of, speed_in_si
 from rotorgear.analysis.modal.refine import all_finer
 from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
@@ -31,6 +32,7 @@ _CHECKED_ON_FINER = 8
 
 
 @renamed_arguments(damping_ratio="modal_damping")
+@recorded
 def frf(
     model: Model,
     frequencies: Sequence[float] | np.ndarray | None = None,

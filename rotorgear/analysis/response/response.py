@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from rotorgear.analysis.common.pieces import pieces
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, direction_of, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.response.error import mesh_error, parting, speed_warnings
@@ -35,6 +36,7 @@ POINTS = 221
 
 
 @renamed_arguments(damping_ratio="modal_damping")
+@recorded
 def response(
     model: Model,
     *,

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.rig.chance import estimate_chance
 from rotorgear.errors import AnalysisError
 from rotorgear.results.comparison import (
@@ -30,6 +31,7 @@ from rotorgear.solvers.eigen.assignment import ROUNDING, assign
 READING_ACCURACY = 1e-3
 
 
+@recorded
 def compare_lines(
     frequency_hz: ArrayLike,
     descriptions: Sequence[str],

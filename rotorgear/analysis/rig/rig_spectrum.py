@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rotorgear.analysis.common.excitation import excitation_lines
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.results.comparison import ExcitationLine, RigLine
 from rotorgear.results.spectrum import RigSpectrum, SpectralLines
 from rotorgear.results.transient import TransientResult
@@ -14,6 +15,7 @@ from rotorgear.results.transient import TransientResult
 TOLERANCE = 0.01
 
 
+@recorded
 def compare_spectrum(
     result: TransientResult, lines: SpectralLines, rig: Sequence[RigLine], tolerance: float = TOLERANCE
 ) -> RigSpectrum:

@@ -9,6 +9,7 @@ import numpy as np
 
 from rotorgear.analysis.common.places import displacement_places
 from rotorgear.analysis.common.points import point_amplitudes
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import direction_of, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.forces import bearing_forces, forces_on_gears, imbalance, support_forces
@@ -28,6 +29,7 @@ from rotorgear.system.system import System
 DEFAULT_ELEMENTS = 4
 
 
+@recorded
 def static(
     model: Model,
     *,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.sweep.sweep import sweep
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -19,6 +20,7 @@ _SETTLE = 300
 _THROW = 1e-3
 
 
+@recorded
 def sweep_convergence_study(
     model: Model,
     *,

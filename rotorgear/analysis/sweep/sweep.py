@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.sweep.axes import Axis, Family, axis_of, points_of
 from rotorgear.analysis.sweep.blocks import Pool, Workers, blocks, packed, unpacked, waves
 from rotorgear.analysis.sweep.classify import CHAOS, TOLERANCE
@@ -33,6 +34,7 @@ _READY = 0.1
 
 
 @renamed_arguments(starts="initial_conditions", settle="discard", count="sample")
+@recorded
 def sweep(
     model: Model,
     over: Mapping[str, str | Sequence[float | str]],
@@ -128,7 +130,7 @@ def sweep(
         laps["portraits"] = clock.perf_counter() - begun - laps["points"] - laps["integration"]
     laps["total"] = clock.perf_counter() - begun
     progress(1.0, "done")
-    return result
+    return replace(result, seconds=laps)
 
 
 def _ready(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.teeth.errors import coarser, estimated
 from rotorgear.analysis.teeth.request import mesh_request
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, mesh_cycle
@@ -35,6 +36,7 @@ class _Run:
     contact_seconds: float
 
 
+@recorded
 def mesh_convergence_study(
     model: Model, mesh: str | None = None, *, torque: float | str | None = None, progress: Progress = silent
 ) -> MeshConvergenceStudy:

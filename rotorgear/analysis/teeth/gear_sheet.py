@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.teeth.dynamic_factor import mesh_dynamic_factor
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.geometry import GearGeometry, check_gear
@@ -32,6 +33,7 @@ from rotorgear.results.gear_sheet import GearRow, GearSheet, MeshSheetRow
 _POSITIONS = 256
 
 
+@recorded
 def gear(model: Model, mesh: str | None = None) -> GearSheet:
     """Return the sheet of all gears and meshes with teeth, or of one mesh and its two gears.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotorgear.analysis.common.clock import Clock
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.teeth.errors import coarser, estimated
 from rotorgear.analysis.teeth.request import MeshRequest, mesh_request
 from rotorgear.errors import AnalysisError
@@ -39,6 +40,7 @@ class _Solved:
     no_load: np.ndarray
 
 
+@recorded
 def mesh(
     model: Model,
     mesh: str | None = None,
@@ -185,31 +187,30 @@ def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> 
     clock.lap("stiffness")
     width = request.teeth.width if request.teeth else request.mesh.pinion.part.width or 0.0
     return MeshResult(
-        model.title,
-        request.name,
-        request.mesh.pinion.name,
-        request.mesh.gear.name,
-        curve.model,
-        None,
-        curve.definition,
-        curve.body,
-        request.helices,
-        width,
-        curve.base_helix_angle,
-        request.mesh.part.stagger,
-        request.load,
-        curve.position,
-        curve.transverse,
-        curve.tangent,
-        error,
-        None if error is None else np.zeros(len(error)),
-        (),
-        None,
-        0,
-        sum(clock.laps.values()),
-        clock.laps,
-        (),
-        curve.warnings,
+        title=model.title,
+        mesh=request.name,
+        pinion=request.mesh.pinion.name,
+        gear=request.mesh.gear.name,
+        stiffness_model=curve.model,
+        preset=None,
+        definition=curve.definition,
+        body=curve.body,
+        helices=request.helices,
+        face_width=width,
+        base_helix_angle=curve.base_helix_angle,
+        stagger=request.mesh.part.stagger,
+        load=request.load,
+        position=curve.position,
+        stiffness=curve.transverse,
+        tangent=curve.tangent,
+        transmission_error=error,
+        no_load_error=None if error is None else np.zeros(len(error)),
+        helix=(),
+        errors=None,
+        dofs=0,
+        seconds=clock.total(),
+        loads=(),
+        warnings=curve.warnings,
     )
 
 
@@ -231,50 +232,49 @@ def _result(
             "preview: slices along the face do not feel each other, which is tens of percent off in the ripple of a helical pair"
         )
     return MeshResult(
-        model.title,
-        request.name,
-        request.mesh.pinion.name,
-        request.mesh.gear.name,
-        "tooth_fe",
-        teeth.fe.preset,
-        "secant",
-        found.problem.body,
-        request.helices,
-        teeth.width,
-        teeth.pair.base_helix_angle,
-        request.mesh.part.stagger,
-        request.load,
-        u,
-        found.stiffness,
-        found.tangent,
-        found.error,
-        found.no_load,
-        tuple(_helix(cycle, teeth) for cycle in found.cycles),
-        errors,
-        found.problem.unknowns,
-        sum(clock.laps.values()),
-        clock.laps,
-        loads,
-        tuple(dict.fromkeys(notes)),
+        title=model.title,
+        mesh=request.name,
+        pinion=request.mesh.pinion.name,
+        gear=request.mesh.gear.name,
+        stiffness_model="tooth_fe",
+        preset=teeth.fe.preset,
+        definition="secant",
+        body=found.problem.body,
+        helices=request.helices,
+        face_width=teeth.width,
+        base_helix_angle=teeth.pair.base_helix_angle,
+        stagger=request.mesh.part.stagger,
+        load=request.load,
+        position=u,
+        stiffness=found.stiffness,
+        tangent=found.tangent,
+        transmission_error=found.error,
+        no_load_error=found.no_load,
+        helix=tuple(_helix(cycle, teeth) for cycle in found.cycles),
+        errors=errors,
+        dofs=found.problem.unknowns,
+        seconds=clock.total(),
+        loads=loads,
+        warnings=tuple(dict.fromkeys(notes)),
     )
 
 
 def _helix(cycle: MeshCycle, teeth: ToothPair) -> HelixContact:
     s = cycle.slices
     return HelixContact(
-        cycle.secant,
-        cycle.tangent,
-        cycle.deflection,
-        cycle.no_load,
-        cycle.share_by_pair(),
-        cycle.contact_ratio,
-        teeth.pair.total_contact_ratio,
-        s.position,
-        s.pair,
-        s.z @ s.weight,
-        s.length / np.cos(teeth.pair.base_helix_angle),
-        np.stack([roll @ s.weight for roll in s.roll], axis=-1),
-        cycle.force,
-        cycle.strip,
-        cycle.pressure,
+        stiffness=cycle.secant,
+        tangent=cycle.tangent,
+        transmission_error=cycle.deflection,
+        no_load_error=cycle.no_load,
+        share=cycle.share_by_pair(),
+        contact_ratio=cycle.contact_ratio,
+        geometric_contact_ratio=teeth.pair.total_contact_ratio,
+        position=s.position,
+        pair=s.pair,
+        z=s.z @ s.weight,
+        length=s.length / np.cos(teeth.pair.base_helix_angle),
+        roll=np.stack([roll @ s.weight for roll in s.roll], axis=-1),
+        force=cycle.force,
+        half_width=cycle.strip,
+        pressure=cycle.pressure,
     )

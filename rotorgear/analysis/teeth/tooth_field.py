@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.teeth.request import mesh_request
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import tooth_outline
@@ -26,6 +27,7 @@ from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.tooth_field import ContactField, ToothField, ToothFields
 
 
+@recorded
 def tooth_fields(
     model: Model,
     mesh: str | None = None,

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.transient.transient import transient
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -28,6 +29,7 @@ _ROUNDING = 1e-9
 _NO_ORDER = 0.1
 
 
+@recorded
 def transient_convergence_study(
     model: Model,
     *,

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.analysis.common.excitation import excitation_lines
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.errors import AnalysisError
 from rotorgear.results.spectrum import SpectralLines, Spectrum
 from rotorgear.results.transient import TransientResult
@@ -81,6 +82,7 @@ def _at_even_angles(result: TransientResult, values: np.ndarray) -> tuple[np.nda
     return CubicSpline(angle, values)(even), float(even[1] - even[0]) / (2.0 * np.pi)
 
 
+@recorded
 def spectral_lines(
     result: TransientResult, name: str, *, window: str = "flattop", count: int = _MOST_LINES
 ) -> SpectralLines:

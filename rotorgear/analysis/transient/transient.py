@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from rotorgear.analysis.common.notes import left_out
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.transient.histories import Histories, Stream
 from rotorgear.analysis.transient.notes import transient_left_out, transient_warnings
@@ -29,6 +30,7 @@ DEFAULT_ACCURACY = 0.01
 
 
 @renamed_arguments(settle="discard")
+@recorded
 def transient(
     model: Model | System,
     *,

@@ -26,12 +26,12 @@ def mesh_parts(found: MeshResult, harmonics: int) -> Iterator[Any]:
     yield ""
     yield from (f"Warning: {text}" for text in found.warnings)
     if found.dofs:
-        yield f"{found.dofs} dofs, {found.seconds:.2f} s"
+        yield f"{found.dofs} dofs, {found.seconds['total']:.2f} s"
 
 
 def _setting(found: MeshResult) -> Iterator[str]:
     preset = "" if found.preset is None else f", preset {found.preset}"
-    yield f"stiffness model {found.model}{preset}: {found.definition}, {PLANE}"
+    yield f"stiffness model {found.stiffness_model}{preset}: {found.definition}, {PLANE}"
     yield f"body: {found.body}"
     if found.load is None:
         yield "no load"

@@ -85,7 +85,7 @@ def test_the_load_is_that_of_the_torque_flow_unless_one_is_given() -> None:
 
 def test_a_number_in_the_file_is_answered_by_teeth_and_on_request_by_itself() -> None:
     text = pair_file(mesh=f'stiffness = "8e8 N/m"\n{PREVIEW}')
-    assert mesh_of(text).model == "tooth_fe"
+    assert mesh_of(text).stiffness_model == "tooth_fe"
     given = mesh_of(text, stiffness="given")
     assert given.mean_normal_stiffness == pytest.approx(8e8)
     assert given.peak_to_peak_stiffness == pytest.approx(0.0, abs=1.0)

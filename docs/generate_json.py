@@ -1,0 +1,125 @@
+"""Writes docs/json.md from the declarations of the results: every key of the JSON output with its unit and meaning."""
+
+from __future__ import annotations
+
+from rotorgear.results.keys import Key, keys_of
+from rotorgear.results.kinds import kinds
+
+HEAD = """# JSON output
+
+`--json FILE` writes the result of a command as one JSON object; `result.to_dict()` is the same in Python. Numbers are in the
+unit that their key names; a key without a unit is a share, a ratio or a count. A number that is not known is `null`. Modes are
+counted from 1 in `mode_number`; lists over modes begin with mode 1.
+
+Below, `[]` stands for the entries of a list, and a word in capitals for names of your model. This page is written by
+`docs/generate_json.py` from the declarations of the results in `rotorgear/results/`; a test compares it with what the commands
+write, in both directions.
+"""
+# Heading, words before the table, and the kinds of results with what stands before their keys.
+SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
+    (
+        "modal",
+        "`rotorgear modal MODEL --json modal.json`. With `--compare`, the keys of the [comparison](#compare) stand below\n"
+        "`comparison`.",
+        (("modal", ""),),
+    ),
+    ("compare", "`rotorgear compare MODEL RIG --json compare.json` writes these keys.", (("compare", ""),)),
+    (
+        "mesh",
+        "`rotorgear mesh MODEL --mesh NAME --json mesh.json`. Stiffness and transmission error are transverse, of all helices\n"
+        "together where `helix[]` doesn't stand before them. What a stiffness model doesn't know is `null`, and `helix[]` is\n"
+        "empty without loaded contact.",
+        (("mesh", ""),),
+    ),
+    (
+        "mesh accuracy",
+        "`rotorgear accuracy MODEL --analysis mesh --json study.json`, of one helix.",
+        (("mesh_convergence", ""),),
+    ),
+    (
+        "campbell",
+        "`rotorgear campbell MODEL --json campbell.json`. Lists of lists are by branch and speed; `null` where a branch\n"
+        "does not oscillate or is out of reach.",
+        (("campbell", ""),),
+    ),
+    (
+        "critical",
+        "`rotorgear critical MODEL --map --json critical.json`. Lists are by critical speed, ascending; `map` is there with\n"
+        "`--map` only.",
+        (("critical", ""), ("critical_map", "map.")),
+    ),
+    (
+        "static",
+        "`rotorgear static MODEL --json static.json`. Lists over the contacts of a mesh have two entries for a herringbone gear\n"
+        "with two nodes, first the helix at the smaller z. Vectors are x, y, z.",
+        (("static", ""),),
+    ),
+    (
+        "response",
+        "`rotorgear response MODEL --json response.json`. All amplitudes are half of peak to peak. Lists of lists are by\n"
+        "order and speed; `MESH[]` by contact, order and speed.",
+        (("response", ""),),
+    ),
+    (
+        "frf",
+        "`rotorgear frf MODEL --inputs A --outputs B --fmax 1000 --json frf.json`. Receptances are lists by response, force and\n"
+        "frequency.",
+        (("frf", ""),),
+    ),
+    (
+        "check",
+        "`rotorgear check MODEL --json check.json`. What a lumped gear doesn't know is `null`, and so is what needs a\n"
+        "speed where none is given.",
+        (("check", ""),),
+    ),
+    (
+        "transient",
+        "`rotorgear transient MODEL --json transient.json`. `spectrum` with `--spectrum`, `rig` with `--rig`. Histories are\n"
+        "in the HDF5 file of `--save`.",
+        (("transient", ""), ("spectral_lines", "spectrum."), ("rig_spectrum", "rig.")),
+    ),
+    (
+        "sweep",
+        "`rotorgear sweep MODEL --over ADDRESS=VALUES --json sweep.json`. What failed or makes no sense is `null`. Sections and\n"
+        "trajectories are in the HDF5 file of `--save`.",
+        (("sweep", ""),),
+    ),
+    (
+        "sweep accuracy",
+        "`rotorgear accuracy MODEL --analysis sweep --json accuracy.json`.",
+        (("sweep_convergence", ""),),
+    ),
+    (
+        "gear",
+        "`rotorgear gear MODEL --json gear.json`. The [page on gears](gears.md) says what the numbers mean.",
+        (("gear", ""),),
+    ),
+    (
+        "accuracy",
+        "`rotorgear accuracy MODEL --json accuracy.json`. What is infinite or makes no sense is `null`.",
+        (("convergence", ""),),
+    ),
+    (
+        "tooth field",
+        "`rotorgear mesh MODEL --vtk FOLDER` writes the stresses of the teeth for ParaView; `to_dict()` holds the largest\n"
+        "and the contact pressure.",
+        (("tooth_field", ""),),
+    ),
+)
+
+
+def pages() -> dict[str, str]:
+    """Return the page by its path."""
+    return {"docs/json.md": "\n".join([HEAD, *(section(*parts) for parts in SECTIONS)])}
+
+
+def section(heading: str, words: str, parts: tuple[tuple[str, str], ...]) -> str:
+    """The section of one command."""
+    rows = "".join(row(key) for kind, prefix in parts for key in keys_of(kinds()[kind], prefix))
+    return f"## {heading}\n\n{words}\n\n| key | unit | value |\n|---|---|---|\n{rows}"
+
+
+def row(key: Key) -> str:
+    """A line of the table; a vertical bar would end the cell."""
+    text = key.text.replace("|", "\\|")
+    return f"| `{key.path}` | {key.unit} | {text} |\n"
