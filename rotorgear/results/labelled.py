@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError, MissingExtraError
 from rotorgear.results.schema import Declared, Record
-
-if TYPE_CHECKING:
-    from rotorgear.results.result import Result
 
 
 @dataclass(frozen=True)
@@ -96,11 +93,11 @@ def _columns(record: Record, prefix: str = "") -> Iterator[Column]:
             yield Column(name, declared.axes, texts, declared)
 
 
-def data_set(result: Result) -> Any:
+def data_set(result: Record) -> Any:
     """Return everything that is counted by axes as an `xarray.Dataset`.
 
     Dimensions are the axes, in small letters; a field that has the name of its only axis, or the plural, labels it. Each
-    variable has `long_name` and `units`; the data set's attributes say where the result is from.
+    variable has `long_name` and `units`.
 
     Raises:
         MissingExtraError: xarray is not installed.
@@ -135,12 +132,4 @@ def data_set(result: Result) -> Any:
         else:
             arrays.append(xr.DataArray(column.values, dims=column.axes, name=column.name, attrs=about))
     merged = xr.merge(arrays, join="outer", compat="no_conflicts", combine_attrs="drop")
-    merged = merged.assign_coords(coordinates)
-    merged.attrs = {
-        "title": getattr(result, "title", ""),
-        "analysis": result.analysis_word,
-        "status": result.status,
-        "rotorgear_version": result.rotorgear_version,
-        "model_hash": result.model_hash,
-    }
-    return merged
+    return merged.assign_coords(coordinates)

@@ -125,10 +125,15 @@ class Result(Record):
         return rows(self, *axes)
 
     def to_xarray(self) -> Any:
-        """A labelled data set (xarray); see `rotorgear.results.labelled.data_set`."""
+        """A labelled data set; see `rotorgear.results.labelled.data_set`. Its attributes say where the result is from.
+
+        Raises:
+            MissingExtraError: xarray is not installed.
+        """
         from rotorgear.results.labelled import data_set
 
-        return data_set(self)
+        source = ("title", "analysis_word", "status", "rotorgear_version", "model_hash")
+        return data_set(self).assign_attrs({name: getattr(self, name, "") for name in source})
 
 
 class ModelResult(Result):
