@@ -196,7 +196,7 @@ class CampbellResult(ModelResult, kind="campbell"):
     crossings: tuple[Crossing, ...] = of("crossings", "", "crossing", record=Crossing)
     margins: tuple[Margin, ...] = of("margins", "", "margin", record=Margin)
     onsets: tuple[Onset, ...] = of("onsets of instability", "", "onset", record=Onset)
-    discretisation: tuple[Piece, ...] = of("how each piece of shaft was cut", "", "piece", record=Piece)
+    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece)
 
     def __len__(self) -> int:
         return int(self.eigenvalues.shape[1])

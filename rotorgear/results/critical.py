@@ -65,7 +65,7 @@ class CriticalResult(ModelResult, kind="critical"):
     lines: tuple[ExcitationOrder, ...] = of("excitation lines", "", "line", record=ExcitationOrder)
     shapes: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "critical_speed", json=None)
     nodes: NodeTable = of("nodes", record=NodeTable, json=None)
-    discretisation: tuple[Piece, ...] = of("how each piece of shaft was cut", "", "piece", record=Piece)
+    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece)
 
     def __len__(self) -> int:
         return len(self.speeds)

@@ -34,7 +34,7 @@ class MeshRow(Record):
     mesh_frequency_hz: float | None = of("mesh frequency", "Hz")
     normal_force_n: tuple[float, ...] = of("mean force along the flank normal", "N", "helix", note=", of each helix")
     driver: str = of("gear that drives")
-    flank_assumed: bool = of("whether the driving flank is an assumption", note=": no torque flows")
+    flank_assumed: bool = of("whether the working flank is an assumption", note=": no torque flows")
     stiffness_n_per_m: float = of("stiffness along the flank normal", "N/m", note=", of all helices")
     damping_n_s_per_m: float = of("damping coefficient along the flank normal", "N s/m", note=", of all helices")
 

@@ -47,7 +47,7 @@ class FrequencyResponse(ModelResult, kind="frf"):
         note=": change on a finer mesh at the largest responses, relative to the largest; 0 without shaft elements",
         form=".0e",
     )
-    discretisation: tuple[Piece, ...] = of("how each piece of shaft was cut", "", "piece", record=Piece, json=None)
+    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece, json=None)
 
     def of(self, quantity: str) -> np.ndarray:
         """Receptance, mobility or accelerance, (f, o, i)."""

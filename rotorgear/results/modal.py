@@ -132,7 +132,7 @@ class ModalResult(ModelResult, kind="modal"):
     shapes: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "mode", json=None)
     nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)
     backward_error: np.ndarray = of("residual relative to the matrices", "", "mode", form=".0e")
-    discretisation: tuple[Piece, ...] = of("how each piece of shaft was cut", "", "piece", record=Piece)
+    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece)
     point_amplitudes: dict[str, np.ndarray] = of(
         "amplitude at a named point",
         "m, rad",

@@ -40,7 +40,7 @@ class Portrait(Record):
         "value of each parameter", "", "parameter", note=" at a point that keeps its trajectory"
     )
     start: str = of("where the run started")
-    periods: int = of("common periods that were recorded")
+    periods: int = of("least common periods that were recorded")
     records_per_period: int = of("records in one of them")
     contacts: tuple[ContactLines, ...] = of("lines by contact", "", "contact", record=ContactLines)
 
@@ -48,15 +48,15 @@ class Portrait(Record):
 class Portraits(Record):
     """k points with j runs each, c contacts, s records at most.
 
-    Records stand at even times; the first of a common period T is a Poincare point. Values are displacement and velocity of
+    Records stand at even times; the first of a least common period T is a Poincare point. Values are displacement and velocity of
     the contacts along their normal (without the transmission error), and force; NaN behind the last record of a point, and
     where a run failed.
     """
 
     point: np.ndarray = of("numbers of the points", "", "portrait")
     run: np.ndarray = of("numbers of the runs", "", "portrait_run")
-    turns: np.ndarray = of("periods of the fastest mesh in a common period", "", "portrait")
-    periods: np.ndarray = of("common periods that were recorded", "", "portrait")
+    turns: np.ndarray = of("periods of the fastest mesh in a least common period", "", "portrait")
+    periods: np.ndarray = of("least common periods that were recorded", "", "portrait")
     records: np.ndarray = of("records in one of them", "", "portrait")
     values: np.ndarray = of(
         "displacement, velocity, force", "m, m/s, N", "portrait", "portrait_run", "record", "contact", "dvf"

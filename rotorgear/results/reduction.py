@@ -1,4 +1,4 @@
-"""How the systems of a sweep were reduced, and what that costs in accuracy."""
+"""How the systems of a sweep were reduced, and the FRF error of the reduction."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ class Reduction(Record):
     rigid: int = of("rigid-body motions among them", json="rigid_motions")
     static: int = of("static shapes of loads and contacts among them", json="static_shapes")
     closed: float = of(
-        "largest relative error of the receptances at the contacts, all of them closed",
+        "FRF error: largest relative error of the receptances at the contacts, all of them closed",
         json="error_closed",
         note=", against those of the whole system (solvers/frequency/receptance.py)",
     )
     apart: float = of(
-        "largest relative error of the receptances at the contacts, all of them apart", json="error_apart"
+        "FRF error: largest relative error of the receptances at the contacts, all of them open", json="error_apart"
     )
     up_to: float = of("frequency up to which they were compared", "Hz", json="up_to_hz")
     frequencies: int = of("at how many frequencies")
@@ -34,12 +34,12 @@ class Reduction(Record):
 
     @property
     def sentence(self) -> str:
-        """The reduction in words."""
+        """One sentence that describes the reduction."""
         parts = [f"{self.modes} modes up to {_hertz(self.highest)}"] if self.modes else []
         parts += [f"{self.rigid} rigid"] if self.rigid else []
         parts += [f"{self.static} static shapes"] if self.static else []
         return (
-            f"{self.dofs} dofs reduced to {self.coordinates} ({', '.join(parts)}): receptances at the contacts within "
+            f"{self.dofs} dofs reduced to {self.coordinates} ({', '.join(parts)}): FRF error at the contacts "
             f"{100.0 * self.error:.2g} % up to {_hertz(self.up_to)}"
         )
 

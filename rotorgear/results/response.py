@@ -131,7 +131,7 @@ class ResponseResult(ModelResult, kind="response"):
     error_estimate: float = of(
         "estimated relative discretisation error", note=": change of the largest forces on a finer mesh", form=".0e"
     )
-    discretisation: tuple[Piece, ...] = of("how each piece of shaft was cut", "", "piece", record=Piece, json=None)
+    discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece, json=None)
 
     def contacts_of(self, mesh: str) -> list[int]:
         """Numbers of the contacts of a mesh."""

@@ -1,4 +1,4 @@
-"""Result of a sweep: Poincare sections, Lyapunov exponents, kinds of motion and indicators over one or two parameters."""
+"""Result of a sweep: Poincare sections, Lyapunov exponents, response types and indicators over one or two parameters."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ class SweepContact(Record):
 
     name: str = of("name", note=": mesh and helix")
     static_force_n: float = of(
-        "static force", "N", note=" along the flank normal without anything that varies; negative on the back flank"
+        "static force",
+        "N",
+        note=" along the flank normal in static equilibrium, without excitation; negative on the coast flank",
     )
     static_deflection_m: float = of("static force over mean stiffness", "m")
     peak_to_peak_m: float = of("approach of the flanks less the transmission error, peak to peak", "m")
@@ -32,12 +34,12 @@ class SweepContact(Record):
     rms_force_n: float = of("root mean square of the force about its mean", "N")
     largest_force_n: float = of("largest force", "N")
     dynamic_factor: float = of(
-        "dynamic factor", note=": largest over static force; `null` without load on the driving flank"
+        "dynamic factor", note=": largest over static force; `null` without load on the working flank"
     )
-    driving_share: float = of("share of the time on the driving flank")
-    apart_share: float = of("share of the time without contact")
-    back_share: float = of("share of the time on the back flank", note=" (impact time ratio)")
-    losses_per_mesh_period: float = of("losses of contact in a period of the fastest mesh")
+    driving_share: float = of("share of the time on the working flank")
+    apart_share: float = of("contact-loss ratio")
+    back_share: float = of("share of the time on the coast flank", note=" (impact time ratio)")
+    losses_per_mesh_period: float = of("contact losses in a period of the fastest mesh")
 
 
 class SweepRun(Record):
@@ -45,7 +47,7 @@ class SweepRun(Record):
 
     start: str = of("where the run started", note=': `"static"`, `"start 2"`, `"up"`, `"down"`')
     motion: str = of(
-        "kind of motion",
+        "response type",
         note=': `"1T"`, `"2T"`, ..., `"quasi-periodic"`, `"chaotic"`, `"not settled"`, `"not periodic"` (without exponents), '
         '`"failed"`',
     )
@@ -71,7 +73,7 @@ class SweepResult(ModelResult, kind="sweep"):
     """p points with r runs each, c mesh contacts, s sections a run, t exponents. NaN where a point or run failed.
 
     `section` holds displacement and velocity of the contacts along their normal (without the transmission error) at the end
-    of each common period T of all meshes. `amplitude` and `rms` are of the displacement d, `peak_to_peak` of the approach
+    of each least common period T of all meshes. `amplitude` and `rms` are of the displacement d, `peak_to_peak` of the approach
     d - e. The criterion that `tolerance` and `chaos` belong to stands in analysis/sweep/classify.py.
     """
 
@@ -82,9 +84,9 @@ class SweepResult(ModelResult, kind="sweep"):
     run: tuple[str, ...] = of("where the runs started", "", "run", json=None)
     contact: tuple[str, ...] = of("names of the contacts", "", "contact", json=None)
     frequency: np.ndarray = of("frequency of the fastest mesh", "Hz", "point", json=None)
-    turns: np.ndarray = of("periods of the fastest mesh in a common period", "", "point", json=None)
+    turns: np.ndarray = of("periods of the fastest mesh in a least common period", "", "point", json=None)
     section: np.ndarray = of("Poincare points", "m, m/s", "point", "run", "period", "contact", "phase_space", json=None)
-    motion: tuple[str, ...] = of("kind of motion", "", "point_and_run", json=None)
+    motion: tuple[str, ...] = of("response type", "", "point_and_run", json=None)
     lyapunov: np.ndarray = of("Lyapunov exponents", "", "point", "run", "exponent", json=None)
     lyapunov_error: np.ndarray = of(
         "standard errors of the Lyapunov exponents", "", "point", "run", "exponent", json=None
@@ -103,16 +105,14 @@ class SweepResult(ModelResult, kind="sweep"):
     largest_force: np.ndarray = of("largest force", "N", "point", "run", "contact", json=None)
     static_force: np.ndarray = of("static force", "N", "point", "contact", json=None)
     static_deflection: np.ndarray = of("static force over mean stiffness", "m", "point", "contact", json=None)
-    driving: np.ndarray = of("share of the time on the driving flank", "", "point", "run", "contact", json=None)
-    apart: np.ndarray = of("share of the time without contact", "", "point", "run", "contact", json=None)
-    back: np.ndarray = of("share of the time on the back flank", "", "point", "run", "contact", json=None)
-    losses: np.ndarray = of(
-        "losses of contact in a period of the fastest mesh", "", "point", "run", "contact", json=None
-    )
+    driving: np.ndarray = of("share of the time on the working flank", "", "point", "run", "contact", json=None)
+    apart: np.ndarray = of("contact-loss ratio", "", "point", "run", "contact", json=None)
+    back: np.ndarray = of("share of the time on the coast flank", "", "point", "run", "contact", json=None)
+    losses: np.ndarray = of("contact losses in a period of the fastest mesh", "", "point", "run", "contact", json=None)
     failure: tuple[str, ...] = of("why the point failed", "", "point", json=None)
     steps: np.ndarray = of("steps", "", "point", json=None)
-    settle: int = of("common periods that settled", json="settle_periods")
-    count: int = of("common periods that count", json="counted_periods")
+    settle: int = of("transient periods discarded (least common periods)", json="settle_periods")
+    count: int = of("periods sampled (least common periods)", json="counted_periods")
     tolerance: float = of("tolerance", note=": share of the peak to peak within which a motion repeats")
     chaos: float = of("exponent above which a motion is chaotic")
     reduction: Reduction | None = of(
@@ -194,18 +194,18 @@ class SweepResult(ModelResult, kind="sweep"):
 
     @property
     def period_words(self) -> str:
-        """The common period T in words."""
+        """The least common period T in words."""
         turns = sorted({int(n) for n in self.turns if n})
         if turns == [1]:
             return "the mesh period"
         return f"{turns[0]}{f' to {turns[-1]}' if len(turns) > 1 else ''} periods of the fastest mesh"
 
     def motion_at(self, point: int, run: int = 0) -> str:
-        """Kind of motion of a run."""
+        """Response type of a run."""
         return self.motion[point * len(self.run) + run]
 
     def route(self, run: int = 0) -> list[tuple[str, int, int]]:
-        """Kinds of motion along the points with the first and last point of each."""
+        """Response types along the points with the first and last point of each."""
         found: list[tuple[str, int, int]] = []
         for p in range(len(self.values)):
             kind = self.motion_at(p, run)

@@ -10,7 +10,7 @@ class SweepRung(Record):
     """One number of steps and of periods."""
 
     steps: int = of("steps", note=" in a period of the fastest mesh")
-    count: int = of("common periods that count")
+    count: int = of("periods sampled (least common periods)")
     seconds: float = of("wall time", "s", note=" of one run")
     exponent: float = of("mean of the largest Lyapunov exponents")
     scatter: float = of("standard deviation of these exponents over the runs")
@@ -21,7 +21,7 @@ class SweepRung(Record):
     peak_to_peak_scatter: float = of("standard deviation of the peak to peak", "m")
     dynamic_factor: float = of("dynamic factor", note=" of that contact")
     dynamic_factor_scatter: float = of("standard deviation of the dynamic factor")
-    motion: tuple[str, ...] = of("kind of motion", "", "kind", note=": those that occurred")
+    motion: tuple[str, ...] = of("response type", "", "kind", note=": those that occurred")
 
 
 class SweepConvergenceStudy(Result, kind="sweep_convergence", analysis="accuracy"):

@@ -44,7 +44,7 @@ class EnergyLedger(Record):
         "what the integration made",
         "J",
         "instant",
-        json=_at_end("numerical_j", "what the integration made (or lost, if negative)"),
+        json=_at_end("numerical_j", "energy error of the integration: what it made, or lost if negative"),
     )
     share: float = of(
         "numerical energy",
@@ -57,17 +57,19 @@ class ContactStatistics(Record):
     """A contact in the time that counts."""
 
     name: str = of("name", note=": mesh and helix")
-    static_force_n: float = of("static force", "N", note=" along the flank normal, without anything that varies")
+    static_force_n: float = of(
+        "static force", "N", note=" along the flank normal, in static equilibrium, without excitation"
+    )
     mean_force_n: float = of("mean force", "N", note=" in the time that counts")
     rms_force_n: float = of("root mean square of the force about its mean", "N")
     largest_force_n: float = of("largest force", "N")
-    smallest_force_n: float = of("smallest force", "N", note="; negative on the back flank")
+    smallest_force_n: float = of("smallest force", "N", note="; negative on the coast flank")
     dynamic_factor: float = of("dynamic factor", note=": largest over static force; `null` without load", form=".3f")
     peak_to_peak_dte_m: float = of("dynamic transmission error, peak to peak", "m", note=" along the flank normal")
-    driving_share: float = of("share of the time on the driving flank")
-    apart_share: float = of("share of the time without contact")
-    back_share: float = of("share of the time on the back flank")
-    losses: int = of("losses of contact", note=": how often contact was lost")
+    driving_share: float = of("share of the time on the working flank")
+    apart_share: float = of("contact-loss ratio")
+    back_share: float = of("share of the time on the coast flank")
+    losses: int = of("contact losses", note=": how often contact was lost")
 
 
 class ChannelStatistics(Record):
@@ -97,7 +99,7 @@ class TransientResult(ModelResult, kind="transient"):
     """r recorded instants of c contacts and p channels.
 
     Statistics count from the time `settle` on. `deflection` is the approach of the flanks along their normal without the
-    transmission error (the dynamic transmission error); forces are positive on the driving flank. One of `every` steps is
+    transmission error (the dynamic transmission error); forces are positive on the working flank. One of `every` steps is
     recorded. Where frames were asked for, `motion` holds the displacements of the nodes at the last w records.
     """
 
@@ -129,9 +131,9 @@ class TransientResult(ModelResult, kind="transient"):
     mesh_force: np.ndarray = of("force along the flank normal", "N", "record", "contact", json=None)
     mean_force: np.ndarray = of("static force of each contact", "N", "contact", json=None)
     contact_time: np.ndarray = of(
-        "share of the time on the driving flank, apart, on the back flank", "", "contact", "state", json=None
+        "share of the time on the working flank, apart, on the coast flank", "", "contact", "state", json=None
     )
-    contact_losses: np.ndarray = of("losses of contact", "", "contact", json=None)
+    contact_losses: np.ndarray = of("contact losses", "", "contact", json=None)
     channel: tuple[str, ...] = of("names of the channels", "", "channel", json=None)
     unit: tuple[str, ...] = of("units", "", "channel", json=None)
     values: np.ndarray = of("values", "", "record", "channel", json=None)
