@@ -21,13 +21,13 @@ each frequency: column "error" of the printed table, `error_estimate` in [JSON](
 discretisation only. How well you know the stiffness of bearings and meshes is another matter, and often the larger
 one.
 
-**How it works.** A *piece* of shaft is what lies between two neighbouring places: ends of sections, gears, bearings,
-disks, supports, couplings, points. Each piece starts as one element of order 2. A mode leaves a residual against the
-next two polynomials of every element; solved in each element by itself, it gives the error of the frequency and says
-where it comes from. Only pieces that bring a share of the error are refined, in order first (the error falls
-exponentially), then in number. A piece that no requested mode bends stays coarse.
+**How it works.** A shaft *segment* lies between two neighbouring places: ends of sections, gears, bearings, disks, supports,
+couplings, points. Each segment starts as one element of order 2. A mode leaves a residual against the next two polynomials
+of every element. That residual, solved in each element separately, gives the error of the frequency and its origin. Only
+segments that contribute to the error are refined, first in order (the error falls exponentially), then in number. A segment
+that no requested mode bends stays coarse.
 
-**`--elements N`** fixes the mesh instead: N basic elements in each piece (`elements = N` in a section fixes that
+**`--elements N`** fixes the mesh instead: N basic elements in each segment (`elements = N` in a section fixes that
 section's number). The basic element has the exact static shape functions, so it is exact in statics. Its frequencies
 come from above with an error that falls with the square of the element length, faster at first in slender bending. An
 estimate of `inf` says that the mesh can't follow the shape of that mode at all.

@@ -35,7 +35,7 @@ def campbell(
     stop: ToOption = None,
     points: Annotated[int, typer.Option("--points", help="Number of speeds.")] = 51,
     modes: Annotated[
-        int | None, typer.Option("--modes", help="Follow the lowest so many modes (default 24).", show_default=False)
+        int | None, typer.Option("--modes", help="Number of lowest modes to follow (default 24).", show_default=False)
     ] = None,
     fmax: Annotated[
         float | None, typer.Option("--fmax", help="Follow all modes up to this frequency in Hz.", show_default=False)
@@ -50,7 +50,7 @@ def campbell(
         str | None, typer.Option("--mesh-orders", help="Orders of every mesh (default 1,2,3).", show_default=False)
     ] = None,
     sidebands: Annotated[
-        int, typer.Option("--sidebands", min=0, help="So many shaft-speed sidebands at each side of a mesh order.")
+        int, typer.Option("--sidebands", min=0, help="Shaft-speed sidebands on each side of a mesh order.")
     ] = 0,
     crossings: Annotated[bool, typer.Option("--crossings", help="Also list all crossings with the lines.")] = False,
     plot: PlotOption = None,
@@ -58,7 +58,8 @@ def campbell(
     json: JsonOption = None,
     save: SaveOption = None,
     vtk: Annotated[
-        Path | None, typer.Option("--vtk", help="Write a branch over speed for ParaView here.", show_default=False)
+        Path | None,
+        typer.Option("--vtk", help="Write a branch over speed for ParaView to this folder.", show_default=False),
     ] = None,
     branch: Annotated[int, typer.Option("--branch", min=1, help="The branch that --vtk writes.")] = 1,
 ) -> None:

@@ -22,7 +22,7 @@ _FORCE_LEGEND = (
 
 
 def check(model: ModelFile, elements: ElementsOption = None, json: JsonOption = None) -> None:
-    """Say what a model file describes: speeds, mesh frequencies, torques, contact ratios, masses, dofs, warnings."""
+    """Show what a model file describes: speeds, mesh frequencies, torques, contact ratios, masses, dofs, warnings."""
     import rotorgear as rg
 
     description = rg.check(rg.load(model), elements=elements)

@@ -31,7 +31,7 @@ def compare(
     elements: ElementsOption = None,
     json: JsonOption = None,
 ) -> None:
-    """Compare modes with rig frequencies, and say what chance alone would give."""
+    """Compare modes with rig frequencies, and with the matches of random frequencies."""
     import rotorgear as rg
     from rotorgear.results.tables.comparison import comparison_table
 

@@ -40,10 +40,11 @@ def critical(
         str | None, typer.Option("--mesh-orders", help="Orders of every mesh (default none).", show_default=False)
     ] = None,
     damped: Annotated[
-        bool, typer.Option("--damped/--undamped", help="With all damping and circulatory terms, or without.")
+        bool, typer.Option("--damped/--undamped", help="With all damping and circulatory terms, or without them.")
     ] = True,
     fmax: Annotated[
-        float | None, typer.Option("--fmax", help="Only frequencies up to this many Hz.", show_default=False)
+        float | None,
+        typer.Option("--fmax", help="Only critical speeds up to this frequency in Hz.", show_default=False),
     ] = None,
     accuracy: AccuracyOption = None,
     elements: ElementsOption = None,

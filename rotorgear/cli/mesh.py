@@ -37,10 +37,12 @@ def mesh(
     ] = None,
     accuracy: Annotated[
         float | None,
-        typer.Option("--accuracy", help="Take the cheapest preset estimated to be within it.", show_default=False),
+        typer.Option(
+            "--accuracy", help="Take the cheapest preset whose estimated error is within this.", show_default=False
+        ),
     ] = None,
     body: Annotated[
-        str | None, typer.Option("--body", help="What the teeth stand on: rim or ring.", show_default=False)
+        str | None, typer.Option("--body", help="Body under the teeth: rim or ring.", show_default=False)
     ] = None,
     positions: Annotated[int, typer.Option("--positions", help="Positions in one mesh period.")] = 64,
     periods: Annotated[

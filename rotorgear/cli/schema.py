@@ -15,7 +15,7 @@ def schema(
         Path | None, typer.Option("--json", help="Write it to this file instead of the terminal.", show_default=False)
     ] = None,
 ) -> None:
-    """Print the JSON Schema of the model file: editors complete and check with it."""
+    """Print the JSON Schema of the model file, for completion and checks in editors."""
     import json as json_module
 
     import rotorgear as rg

@@ -32,7 +32,7 @@ def static(
     ] = None,
     elements: ElementsOption = None,
     sensitivity: Annotated[
-        bool, typer.Option("--sensitivity", help="Also list what the shares of the branches depend on.")
+        bool, typer.Option("--sensitivity", help="Also list the sensitivities of the load shares of the branches.")
     ] = False,
     json: JsonOption = None,
     save: SaveOption = None,

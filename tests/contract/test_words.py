@@ -110,7 +110,7 @@ def test_the_help_of_every_command_says_the_words_of_the_field() -> None:
 
 
 def test_the_keys_of_the_model_file_say_the_words_of_the_field() -> None:
-    schema = str(rg.json_schema())
+    schema = str(rg.schema())
     assert not found_in(schema)
 
 
