@@ -119,11 +119,11 @@ def test_the_energy_of_a_tooth_is_that_of_its_outline_summed_in_thin_slabs() -> 
     stiff = replace(body, youngs_modulus=2 * 206e9)
     whole = float(tooth_compliance(outline, body, np.array([roll]))[0])
     assert whole > beam  # the ring gives on top of it
-    assert float(tooth_compliance(outline, stiff, np.array([roll]))[0]) == pytest.approx(0.5 * whole, rel=1e-12)
+    assert float(tooth_compliance(outline, stiff, np.array([roll]))[0]) / whole == pytest.approx(0.5, rel=1e-12)
     from rotorgear.gears.stiffness.tooth_beam import _beam, _load
 
     inclination, cut = _load(outline, np.array([roll]))
-    assert float(_beam(outline, body, np.array([roll]), inclination, cut)[0]) == pytest.approx(beam, rel=2e-4)
+    assert float(_beam(outline, body, np.array([roll]), inclination, cut)[0]) / beam == pytest.approx(1.0, rel=2e-4)
 
 
 def test_a_thin_web_under_a_thin_rim_softens_the_iso_stiffness_as_c_r_says() -> None:
