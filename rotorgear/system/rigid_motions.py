@@ -38,6 +38,8 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     A = np.vstack(rows) if rows else np.zeros((0, P.shape[1]))
     null = la.null_space(A, rcond=_ZERO) if A.shape[0] else np.eye(P.shape[1])
     motions = P @ null
+    if not motions.shape[1]:  # LAPACK refuses a least-squares problem without a right-hand side
+        return np.zeros((system.n, 0))
     free = motions[system.dofs.column >= 0] if system.dofs.selects else la.lstsq(T.toarray(), motions)[0]
     # Candidates may move held dofs only; what is left of the basis is orthonormal again.
     u, s, _ = la.svd(free, full_matrices=False) if free.size else (free, np.zeros(0), None)
