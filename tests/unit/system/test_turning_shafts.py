@@ -168,5 +168,5 @@ def test_speeds_too_far_apart_for_a_peak_are_named_by_its_half_power_width() -> 
         step = share * width
         speeds = (w + step * np.arange(-6, 4)).tolist()
         assert speeds[-1] < 0.9 * np.sqrt(8e4 / 0.2)  # the tilting modes, which are damped otherwise, stay above
-        result = rg.response(model, speeds=speeds, damping_ratio=extra, elements=1)
+        result = rg.response(model, speeds=speeds, modal_damping=extra, elements=1)
         assert any("half power" in text for text in result.warnings) is told
