@@ -21,6 +21,7 @@ from rotorgear.forces.law import ForceLaw
 _SHIPPED = {
     "mesh_contact": "MeshContact",
     "mesh_friction": "MeshFriction",
+    "journal_bearing": "JournalBearing",
     "ball_bearing": "BallBearing",
     "roller_bearing": "RollerBearing",
     "rotating_force": "RotatingForce",
