@@ -19,6 +19,7 @@ from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, Stiffn
 from rotorgear.model.parts.flank import Flank, ToothFeTable
 from rotorgear.model.parts.gear import Gear, GearBody
 from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.nonlinear_element import NonlinearElement
 from rotorgear.model.parts.operation import Load, ModelDamping, Operation, Point
 from rotorgear.model.parts.shaft import LIBRARY, Material, Section, Shaft
 from rotorgear.model.parts.supports import (
@@ -55,6 +56,7 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("damping = { ... } of a bearing, support or coupling", DampingMatrix),
     ("[supports.NAME]", Support),
     ("[couplings.NAME]", Coupling),
+    ("[nonlinear_elements.NAME]", NonlinearElement),
     ("[disks.NAME]", Disk),
     ("[point_masses.NAME]", PointMass),
     ("[damping]", ModelDamping),
@@ -94,7 +96,8 @@ RULES: dict[type[BaseModel], str] = {
         stand at the centre distance that teeth and profile shifts give, to a twentieth of the module. Signs:
         [conventions](conventions.md#mesh-of-a-parallel-axis-pair).""",
     Bearing: """
-        Give `stiffness` (and `damping`), or a `table` over speed. A bearing holds no torsion unless told to.""",
+        Give `stiffness` (and `damping`), a `table` over speed, or `rolling` elements. A bearing holds no torsion unless told
+        to.""",
     TableRow: """
         At least two rows, speeds rising. A speed outside the table is refused, never extrapolated.""",
     Pedestal: """
@@ -111,8 +114,15 @@ RULES: dict[type[BaseModel], str] = {
     CornerImpact: """
         The force of each helix, beside the contact force.""",
     RollingElements: """
-        Only a transient takes them; all other analyses keep the `stiffness`, which must stand beside them along x, y, axial and
-        tilt.""",
+        A transient and a sweep take them. With a `stiffness` beside them (along x, y, axial and tilt), statics and linear
+        analyses keep that and say so; without one, statics solves for their contacts, and linear analyses take the tangent at
+        that equilibrium, the mean over a pitch of the elements.""",
+    NonlinearElement: """
+        A force law of the package, such as `journal_bearing` or `plain_spring`, or one registered from Python before the file
+        is loaded. It acts in every analysis: as it is in statics, transients and sweeps, and by its tangents at the static
+        equilibrium in modes, Campbell diagrams, critical speeds and responses, over speed where they depend on it; `left_out`
+        says about which state. Displacements are those of the shaft less those of `to_shaft`, and the force acts against
+        them.""",
     Unbalance: """
         A transient takes it. It turns with its shaft; [conventions](conventions.md) count angles from +x about +z.""",
     Disk: """

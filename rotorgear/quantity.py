@@ -100,6 +100,33 @@ def parse_quantity(value: Any, dimension: str) -> float:
     return _sensible(_sensible(float(match[1]), wanted) * _factor(unit, dimension), wanted)
 
 
+def parse_in_unit(value: Any, unit: str) -> float:
+    """Return `value` in SI as a finite float, for a quantity that is declared by its SI unit alone, such as "N s/m".
+
+    Raises:
+        QuantityError: not a quantity of that unit.
+    """
+    key = unit.replace(" ", "*")
+    name = next((item.name for item in DIMENSIONS.values() if item.unit == key), None)
+    if name is not None or key == "rad/rad":
+        return parse_quantity(value, name or "ratio")
+    wanted = Dimension("", unit, f"a number in {unit}", f"1 {unit}")
+    if isinstance(value, bool) or not isinstance(value, numbers.Real | str):
+        raise QuantityError(_expected(wanted))
+    if not isinstance(value, str):
+        return _sensible(value, wanted)
+    match = _NUMBER_AND_UNIT.match(value)
+    try:
+        assert match is not None
+        factor, given = _base_units(_expression(" ".join(match[2].split())))
+        needed = _base_units(key)[1]
+    except Exception as error:  # pint raises many kinds, as in _factor
+        raise QuantityError(_expected(wanted)) from error
+    if given != needed:
+        raise QuantityError(_expected(wanted))
+    return _sensible(float(match[1]) * factor, wanted)
+
+
 def _expected(wanted: Dimension) -> str:
     return f"{wanted.phrase} such as '{wanted.example}'"
 

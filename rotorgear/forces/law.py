@@ -166,6 +166,8 @@ class ForceLaw(ABC):
     title: ClassVar[str]
     # Whether the force alone can't bring energy into the structure while nothing prescribed moves.
     passive: ClassVar[bool] = True
+    # Name of the parameter that holds the turns of the law's shaft for each turn of the reference; a model file fills it in.
+    shaft_ratio: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
         """Hold all parameters to their declared bounds, then to what the law itself checks.
@@ -288,6 +290,11 @@ class ForceLaw(ABC):
     def declared(cls) -> dict[str, Parameter]:
         """Name -> unit, meaning, default and bounds of every parameter."""
         return {item.name: item.metadata["parameter"] for item in fields(cls)}
+
+    @classmethod
+    def required(cls) -> tuple[str, ...]:
+        """Names of the parameters that have no default."""
+        return tuple(item.name for item in fields(cls) if item.default is MISSING and item.default_factory is MISSING)
 
     def evaluate(self, d: Any, v: Any = 0.0, *, time: float = 0.0, angle: float = 0.0, speed: float = 0.0) -> LawValue:
         """Return force and tangents at displacements d and velocities v (k,), a time, and angle and speed of the reference."""

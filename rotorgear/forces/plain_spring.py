@@ -20,7 +20,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     k = p[STIFFNESS]
     k3 = p[CUBIC]
     c = p[DAMPING]
-    side = 1.0 if d[0] > p[GAP] else (-1.0 if d[0] < -p[GAP] else 0.0)
+    side = 1.0 if d[0] >= p[GAP] else (-1.0 if d[0] <= -p[GAP] else 0.0)
     x = d[0] - side * p[GAP] if side != 0.0 else 0.0
     F[0] = k * x + k3 * x**3 + c * v[0]
     Kd[0] = (k + 3.0 * k3 * x * x) if side != 0.0 else 0.0

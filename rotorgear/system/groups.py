@@ -21,6 +21,7 @@ from rotorgear.elements.spring import grounded_spring, linking_spring
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mean_load import MeanLoad, MeshForce
+from rotorgear.model.parts.nonlinear_element import NonlinearElement
 from rotorgear.model.parts.supports import Bearing, DampingMatrix, StiffnessMatrix
 from rotorgear.model.parts.tables import Tables
 from rotorgear.system.nodes import Element, Nodes
@@ -48,6 +49,14 @@ class ElementGroup:
     dofs: np.ndarray
     spin: float = 0.0
     strain_motions: tuple[str, ...] = ()
+
+    def circulatory_at(self, speed: float) -> np.ndarray | None:
+        """Non-symmetric stiffness (e, d, d) at a reference speed in rad/s; None where there is none."""
+        plain = self.matrices.circulatory
+        turning = self.matrices.circulatory_per_speed
+        if turning is None or not self.spin * speed:
+            return plain
+        return self.spin * speed * turning if plain is None else plain + self.spin * speed * turning
 
     @property
     def dof_motions(self) -> tuple[str, ...]:
@@ -80,12 +89,15 @@ def constant_groups(layout: Layout, load: MeanLoad, nodes: Nodes) -> list[Elemen
         node = nodes.at(*layout.place(f"supports.{name}"))
         matrices = grounded_spring(_rows(support.stiffness), _rows(support.damping))
         found.append(ElementGroup(f"supports.{name}", support.shaft, matrices, node_dofs(node)))
+    for name, element in model.nonlinear_elements.items():
+        if not element.table:
+            found.append(_element(layout, nodes, name, element, _rows(element.stiffness), _rows(element.damping)))
     found += list(_couplings(layout, nodes))
     return found
 
 
 def table_groups(layout: Layout, nodes: Nodes, speed: float) -> list[ElementGroup]:
-    """Bearings with tables at a speed of the reference shaft in rad/s.
+    """Bearings and nonlinear elements with tables at a speed of the reference shaft in rad/s.
 
     Raises:
         AnalysisError: the speed of a bearing's shaft lies outside its table.
@@ -94,7 +106,12 @@ def table_groups(layout: Layout, nodes: Nodes, speed: float) -> list[ElementGrou
     for name, bearing in layout.model.bearings.items():
         if bearing.table:
             own = abs(layout.train.ratio(bearing.shaft) * speed)
-            found.append(_bearing(layout, nodes, name, bearing, *table_values(name, bearing, own)))
+            found.append(_bearing(layout, nodes, name, bearing, *table_values(f"bearings.{name}", bearing, own)))
+    for name, element in layout.model.nonlinear_elements.items():
+        if element.table:
+            own = abs(layout.train.ratio(element.shaft) * speed)
+            values = table_values(f"nonlinear_elements.{name}", element, own)
+            found.append(_element(layout, nodes, name, element, *values))
     return found
 
 
@@ -102,8 +119,8 @@ def _rows(matrix: StiffnessMatrix | DampingMatrix | None) -> np.ndarray:
     return np.zeros((6, 6)) if matrix is None else np.array(matrix.as_rows())
 
 
-def table_values(name: str, bearing: Bearing, speed: float) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffness and damping (6, 6) of a bearing with a table at the speed of its shaft in rad/s.
+def table_values(part: str, bearing: Bearing | NonlinearElement, speed: float) -> tuple[np.ndarray, np.ndarray]:
+    """Stiffness and damping (6, 6) of a part with a table at the speed of its shaft in rad/s; `part` is its address.
 
     Raises:
         AnalysisError: the speed lies outside the table.
@@ -112,7 +129,7 @@ def table_values(name: str, bearing: Bearing, speed: float) -> tuple[np.ndarray,
     if not speeds[0] * (1.0 - 1e-12) <= speed <= speeds[-1] * (1.0 + 1e-12):
         rpm = 30.0 / np.pi
         raise AnalysisError(
-            f"bearings.{name}: its shaft turns at {speed * rpm:.6g} rpm, but its table covers {speeds[0] * rpm:.6g} to "
+            f"{part}: its shaft turns at {speed * rpm:.6g} rpm, but its table covers {speeds[0] * rpm:.6g} to "
             f"{speeds[-1] * rpm:.6g} rpm; ask for a speed inside (--speed) or add rows to the table"
         )
     right = int(np.clip(np.searchsorted(speeds, speed), 1, len(speeds) - 1))
@@ -251,6 +268,18 @@ def _bearing(
     origin = np.zeros(3)
     matrices = linking_spring(stiffness, damping, origin, origin)
     return ElementGroup(part, bearing.shaft, matrices, node_dofs(nodes.of_pedestal(name), node))
+
+
+def _element(
+    layout: Layout, nodes: Nodes, name: str, element: NonlinearElement, stiffness: np.ndarray, damping: np.ndarray
+) -> ElementGroup:
+    """What linear analyses take of a nonlinear element: springs and dampers from its shaft to the ground or another shaft."""
+    part = f"nonlinear_elements.{name}"
+    node, *other = (nodes.at(*place) for place in layout.places(part))
+    if not other:
+        return ElementGroup(part, element.shaft, grounded_spring(stiffness, damping), node_dofs(node))
+    origin = np.zeros(3)  # the law knows relative displacements of two nodes, whatever lies between them
+    return ElementGroup(part, "", linking_spring(stiffness, damping, origin, origin), node_dofs(other[0], node))
 
 
 def _pedestal(nodes: Nodes, name: str, bearing: Bearing) -> Iterator[ElementGroup]:

@@ -25,11 +25,14 @@ from rotorgear.system.local_parts import (
     LocalPart,
     bearing_parts,
     columns_at,
+    element_parts,
+    expansion_stiffness,
     friction_part,
     is_rolling,
     load_parts,
     unbalance_parts,
     varying_load,
+    without_linear_part,
     without_stiffness,
 )
 from rotorgear.system.system import System
@@ -66,22 +69,36 @@ def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
     groups = tuple(
         without_stiffness(group) if is_rolling(system, group) else group
         for group in system.groups_at(speed)
-        if not group.part.startswith("meshes.")
+        if not group.part.startswith(("meshes.", "nonlinear_elements."))
     )
     K = assemble(groups, system.dofs, lambda g: g.matrices.stiffness)
     C = assemble(groups, system.dofs, lambda g: g.matrices.damping)
     damping = system.model.damping
     C = sp.csc_array(C + damping.rayleigh_alpha * system.mass + damping.rayleigh_beta * K)
-    parts = (*_mesh_parts(system), *bearing_parts(system), *unbalance_parts(system), *load_parts(system))
+    parts = (
+        *_mesh_parts(system),
+        *bearing_parts(system),
+        *element_parts(system),
+        *unbalance_parts(system),
+        *load_parts(system),
+    )
     T = system.dofs.transform
     columns = np.hstack([np.zeros((T.shape[0], 0)), *(part.columns for part in parts)])
+    load = T.T @ (torque_load(system) + _weight(system))
+    forces = gather(tuple(part.law for part in parts))
+    alone = {part.part for part in without_linear_part(system)}
+    about = forces.reference_stiffness.copy()
+    for part, first, last in zip(parts, forces.first[:-1], forces.first[1:], strict=True):
+        if part.part in alone:
+            size = max(float(np.abs(load).max(initial=0.0)), 1.0)
+            about[first:last, first:last] = expansion_stiffness(part.law, size, speed)
     local = LocalSystem(
         M=system.mass,
         D=C,
-        K=sp.csc_array(K + system.circulatory(speed)),
+        K=sp.csc_array(K + assemble(groups, system.dofs, lambda g: g.circulatory_at(speed))),
         B=sp.csc_array(T.T @ columns),
-        forces=gather(tuple(part.law for part in parts)),
-        load=T.T @ (torque_load(system) + _weight(system)),
+        forces=replace(forces, reference_stiffness=about),
+        load=load,
         rotation=rotation,
         G=system.gyroscopic if system.gyroscopic.nnz else None,
     )

@@ -1,4 +1,5 @@
-"""What acts locally beside the teeth's normal contact: rolling bearings, tooth friction, unbalances, and torques that vary."""
+"""What acts locally beside the teeth's normal contact: rolling bearings, nonlinear elements, tooth friction, unbalances, and
+torques that vary."""
 
 from __future__ import annotations
 
@@ -10,6 +11,8 @@ import numpy as np
 
 from rotorgear.elements.gear_mesh import ContactGeometry, sliding_vectors
 from rotorgear.model.layout.mean_load import MeshForce
+from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.model.parts.nonlinear_element import element_law
 from rotorgear.model.parts.operation import Load
 from rotorgear.model.parts.supports import Bearing
 from rotorgear.system.groups import ElementGroup, node_dofs
@@ -36,6 +39,46 @@ def columns_at(system: System, dofs: np.ndarray, rows: np.ndarray) -> np.ndarray
     found = np.zeros((system.dofs.transform.shape[0], len(rows)))
     np.add.at(found, dofs, rows.T)
     return found
+
+
+def element_parts(system: System) -> Iterator[LocalPart]:
+    """Yield the general nonlinear elements: displacements of their shaft, against the ground or another shaft."""
+    for name, element in system.model.nonlinear_elements.items():
+        part = f"nonlinear_elements.{name}"
+        rows = np.eye(6)[[DOF_NAMES.index(direction) for direction in element.directions]]
+        node, *other = (system.nodes.at(*place) for place in system.layout.places(part))
+        columns = columns_at(system, node_dofs(node)[0], rows)
+        for second in other:
+            columns -= columns_at(system, node_dofs(second)[0], rows)
+        yield LocalPart(part, name, element_law(element, float(system.train.ratio(element.shaft))), columns)
+
+
+def without_linear_part(system: System) -> list[LocalPart]:
+    """Nonlinear elements, and bearings that are given by their rolling elements alone: in statics their laws hold the shafts."""
+    bearings = system.model.bearings
+    alone = [part for part in bearing_parts(system) if bearings[part.label].stiffness is None]
+    return [*alone, *element_parts(system)]
+
+
+def expansion_stiffness(law: ForceLaw, load: float, speed: float) -> np.ndarray:
+    """Diagonal stiffness (k, k) about which solvers may expand a law that names none: at displacements where it carries a load.
+
+    Nothing of a result depends on it, but a motion that only this law holds must not count as free.
+    """
+    given = law.reference_stiffness()
+    if np.any(given):
+        return np.asarray(given)
+    largest = np.zeros(law.components)
+    for size in np.logspace(-8.0, -2.0, 25):  # metres or radians
+        for side in (size, -size):
+            about = law.linearised(side, speed=speed)
+            stiffness = np.diag(about.stiffness)
+            if not (np.all(np.isfinite(stiffness)) and np.all(np.isfinite(about.force))):
+                continue
+            largest = np.maximum(largest, stiffness)
+            if np.all(largest > 0.0) and np.abs(about.force).max() >= load:
+                return np.diag(largest)
+    return np.diag(largest)
 
 
 def is_rolling(system: System, group: ElementGroup) -> bool:

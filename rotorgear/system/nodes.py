@@ -95,6 +95,7 @@ def places(layout: Layout) -> dict[str, list[tuple[float, str]]]:
         "bearings",
         "supports",
         "couplings",
+        "nonlinear_elements",
         "loads",
         "unbalances",
         "points",

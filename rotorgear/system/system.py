@@ -90,6 +90,13 @@ class System:
         """Number of degrees of freedom."""
         return self.dofs.n
 
+    @property
+    def has_tables(self) -> bool:
+        """Whether stiffness or damping of some part depends on speed by a table."""
+        model = self.model
+        tables = [bearing.table for bearing in model.bearings.values()]
+        return any([*tables, *(element.table for element in model.nonlinear_elements.values())])
+
     @cached_property
     def groups(self) -> list[ElementGroup]:
         """Element groups without the bearings that have tables."""
@@ -120,15 +127,7 @@ class System:
 
     def circulatory(self, speed: float = 0.0) -> sp.csc_array:
         """Non-symmetric stiffness of cross-coupled bearings and of internal damping at speed, sparse (n, n)."""
-
-        def term(group: ElementGroup) -> np.ndarray | None:
-            parts = [group.matrices.circulatory]
-            if group.matrices.circulatory_per_speed is not None and group.spin * speed:
-                parts.append(group.spin * speed * group.matrices.circulatory_per_speed)
-            given = [part for part in parts if part is not None]
-            return sum(given[1:], given[0]) if given else None
-
-        return self._sum(self.groups_at(speed), term)
+        return self._sum(self.groups_at(speed), lambda g: g.circulatory_at(speed))
 
     def damping(self, speed: float = 0.0) -> sp.csc_array:
         """Damping matrix with the proportional part, sparse (n, n); that of the last speed is kept."""

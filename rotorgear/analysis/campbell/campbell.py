@@ -7,6 +7,7 @@ are damped and gyroscopic as in `modal` at a speed.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits, whirl_numbers
 from rotorgear.analysis.modal.refine import errors_of, total_error
+from rotorgear.analysis.static.tangent import about_equilibrium_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
@@ -76,6 +78,7 @@ def campbell(
         modes = DEFAULT_MODES
     _check(modes, fmax, sidebands)
     clock = Clock()
+    model, given, notes = about_equilibrium_of(model, [float(speed) for speed in asked])
     ends = [float(asked[0]), float(asked[-1])]
     system = system_for_speeds(
         model, ends, modes=modes, fmax=fmax, elements=elements, accuracy=accuracy, only=tuple(only), progress=progress
@@ -93,7 +96,8 @@ def campbell(
     estimate = _error_estimate(system, found, chains, grid, error_estimate)
     clock.lap("error estimate")
     lines = excitation_orders(system.model, shaft_orders, mesh_orders, sidebands)
-    return _result(system, found, (asked, grid, operating), chains, tracks, estimate, lines, clock, progress)
+    result = _result(system, found, (asked, grid, operating), chains, tracks, estimate, lines, clock, progress)
+    return replace(result, model=given, left_out=(*result.left_out, *notes))
 
 
 def _check(modes: int | None, fmax: float | None, sidebands: int) -> None:

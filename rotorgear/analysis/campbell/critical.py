@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -18,6 +19,7 @@ from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.branch_shapes import BasisShapes
+from rotorgear.analysis.static.tangent import about_equilibrium_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
@@ -28,6 +30,8 @@ from rotorgear.solvers.eigen.synchronous import Affine, Synchronous, synchronous
 from rotorgear.system.system import System
 
 SHAFT_ORDERS = (1.0,)
+# Speeds at which nonlinear parts are linearised.
+_TANGENTS = 41
 
 
 @renamed_arguments(top_speed="stop")
@@ -69,6 +73,8 @@ def critical(
     if fmax is not None and not (np.isfinite(fmax) and fmax > 0.0):
         raise AnalysisError(f"the highest frequency must be positive, got {fmax} Hz")
     clock = Clock()
+    # Where a line meets a mode is not known before: tangents over the whole range.
+    model, given, notes = about_equilibrium_of(model, list(np.linspace(0.0, top, _TANGENTS)))
     highest = max(line.frequency_hz(top) for line in lines)
     system = system_for_speeds(
         model,
@@ -88,7 +94,8 @@ def critical(
         found += [(line, root) for root in roots_of(system, family, line.order, np.copysign(limit, top), damped)]
     clock.lap("critical speeds")
     found.sort(key=lambda item: item[1].speed)
-    return _result(system, found, lines, top, damped, clock)
+    result = _result(system, found, lines, top, damped, clock)
+    return replace(result, model=given, left_out=(*result.left_out, *notes))
 
 
 def roots_of(system: System, family: SpeedFamily, order: float, top: float, damped: bool) -> list[Synchronous]:

@@ -19,6 +19,7 @@ from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.branch_shapes import BasisShapes
+from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.model.parts.supports import Bearing
@@ -66,6 +67,8 @@ def critical_map(
     line = next((item for item in lines if shaft in item.parts), None)
     if line is None:
         raise AnalysisError(f"there is no turning shaft '{shaft}'; there are {', '.join(model.shafts)}")
+    given = model
+    model, _ = about_equilibrium(model, [highest_speed(model, stop)])
     own = {name: radial_stiffness(bearing) for name, bearing in model.bearings.items()}
     values = np.sort(np.asarray(stiffness if stiffness is not None else _default(own), float))
     if not values.size or not np.all(np.isfinite(values) & (values > 0.0)):
@@ -90,7 +93,7 @@ def critical_map(
     clock.lap("critical speeds")
     tables = {kind: _padded([row[kind] for row in rows]) for kind in ("forward", "backward", "other")}
     return CriticalMap(
-        model=model,
+        model=given,
         line=line.name,
         stiffness=values,
         forward=tables["forward"],

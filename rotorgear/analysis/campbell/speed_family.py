@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
+from rotorgear.model.parts.nonlinear_element import NonlinearElement
+from rotorgear.model.parts.supports import Bearing
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
 from rotorgear.system.assembly import assemble
 from rotorgear.system.components import independent_groups
@@ -119,14 +121,15 @@ def _whole_stiffness(group: ElementGroup) -> np.ndarray | None:
 
 
 def table_speeds(system: System, low: float, high: float) -> np.ndarray:
-    """Reference speeds (k,) from `low` to `high` at which a table of a bearing has a kink; none without tables."""
+    """Reference speeds (k,) from `low` to `high` at which a table of a part has a kink; none without tables."""
     found: set[float] = set()
     sign = -1.0 if min(low, high) < 0.0 else 1.0
-    for bearing in system.model.bearings.values():
-        ratio = abs(system.train.ratio(bearing.shaft))
-        if bearing.table:
+    parts: list[Bearing | NonlinearElement] = [*system.model.bearings.values()]
+    for part in [*parts, *system.model.nonlinear_elements.values()]:
+        ratio = abs(system.train.ratio(part.shaft))
+        if part.table:
             found |= {low, high}
-        for row in bearing.table if ratio else ():
+        for row in part.table if ratio else ():
             speed = sign * row.speed / ratio
             if low < speed < high:
                 found.add(float(speed))

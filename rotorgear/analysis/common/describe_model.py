@@ -23,6 +23,7 @@ _COUNTED = (
     "bearings",
     "supports",
     "couplings",
+    "nonlinear_elements",
     "unbalances",
     "points",
 )

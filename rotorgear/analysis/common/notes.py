@@ -26,7 +26,7 @@ def left_out(system: System, speed: float | None) -> tuple[str, ...]:
             notes.append("gyroscopic matrix: standstill")
         elif not system.gyroscopic.nnz:
             notes.append("gyroscopic matrix: nothing that turns can tilt")
-        if system.velocity_terms(0.0) is None and not system.model.damping.modal_ratio:
+        if not np.any(system.damping(speed).data) and not system.model.damping.modal_ratio:
             notes.append("damping matrix: nothing damps")
     return (*notes, *mesh_stiffness_left_out(system))
 

@@ -8,7 +8,7 @@ from rotorgear.system.system import System
 
 
 def part_nodes(system: System) -> dict[str, int]:
-    """Node of every gear, disk and bearing by address; a herringbone with two nodes has one "left" and one "right"."""
+    """Node of every gear, disk, bearing and nonlinear element by address; of a herringbone one "left" and one "right"."""
     model = system.model
     nodes = system.nodes
     found = {}
@@ -16,7 +16,7 @@ def part_nodes(system: System) -> dict[str, int]:
         sides = (" left", " right") if len(gear.places) == 2 else ("",)
         for place, side in zip(gear.places, sides, strict=True):
             found[f"gears.{gear.name}{side}"] = nodes.at(*place)
-    for table in ("disks", "bearings"):
+    for table in ("disks", "bearings", "nonlinear_elements"):
         for name in getattr(model, table):
             found[f"{table}.{name}"] = nodes.at(*system.layout.place(f"{table}.{name}"))
     return found

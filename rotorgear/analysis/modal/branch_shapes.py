@@ -78,7 +78,7 @@ class BasisShapes:
     def _batches(self, speeds: np.ndarray) -> list[np.ndarray]:
         """Numbers of modes that are looked at together: of one speed where bearings depend on it."""
         order = np.arange(len(speeds))
-        if any(bearing.table for bearing in self.system.model.bearings.values()):
+        if self.system.has_tables:
             return [order[speeds == speed] for speed in dict.fromkeys(speeds.tolist())]
         width = max(1, _CHUNK // max(self.everything.shape[0], 1))
         still = speeds == 0.0  # at standstill nothing whirls

@@ -11,7 +11,13 @@ import numpy as np
 from rotorgear.system.groups import ElementGroup
 from rotorgear.system.system import System
 
-_SPRING_KINDS = {"meshes": "mesh", "bearings": "supports", "supports": "supports", "couplings": "couplings"}
+_SPRING_KINDS = {
+    "meshes": "mesh",
+    "bearings": "supports",
+    "supports": "supports",
+    "couplings": "couplings",
+    "nonlinear_elements": "supports",
+}
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, all_finer, 
 from rotorgear.analysis.modal.request import MOST_MODES, check_count
 from rotorgear.analysis.modal.result import modal_result
 from rotorgear.analysis.modal.solve import solve
+from rotorgear.analysis.static.tangent import about_equilibrium_of
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import MOTIONS
@@ -70,6 +72,7 @@ def modal(
     if unknown:
         raise AnalysisError(f"only: got {', '.join(sorted(unknown))}, expected motions among {', '.join(MOTIONS)}")
     clock = Clock()
+    model, given, notes = about_equilibrium_of(model, [speed])
     if modes is None and fmax is None:
         modes = DEFAULT_MODES
     fixed = isinstance(model, System) or elements is not None
@@ -123,7 +126,7 @@ def modal(
     progress(0.9, "energies")
     result = modal_result(system, speed, (modes, fmax), found.first(kept), q[:, :kept], estimate[:kept], clock)
     progress(1.0, "done")
-    return result
+    return replace(result, model=given, left_out=(*result.left_out, *notes))
 
 
 def _solved(system: System, wanted: Wanted) -> Modes:

@@ -18,6 +18,7 @@ from rotorgear.analysis.modal.refine import all_finer
 from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant, dof_row
 from rotorgear.analysis.static.mean_state import mean_state
+from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
@@ -75,11 +76,12 @@ def frf(
     _check(hz, inputs, outputs, modal_damping)
     places = {text: named_place(model, text) for text in (*inputs, *outputs)}
     zeta = modal_damping + model.damping.modal_ratio
+    linear, notes = about_equilibrium(model, [turns or None])
     first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
     limit = 2.0 * np.pi * DAMPED * float(hz[-1])
     progress(0.02, "discretisation")
-    plan = plan_up_to(at_speed(model, turns), MARGIN * float(hz[-1]), elements, accuracy)
-    system = System(model, plan=plan, load=first.system.load.of_kind("dynamic"))
+    plan = plan_up_to(at_speed(linear, turns), MARGIN * float(hz[-1]), elements, accuracy)
+    system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
 
     def solve(system: System, hz: np.ndarray, progress: Progress) -> tuple[np.ndarray, float]:
         modes = (*damped_modes(system, limit, turns), zeta) if zeta else None
@@ -110,7 +112,7 @@ def frf(
         dofs=system.n,
         discretisation=pieces(system),
         seconds={"total": time.perf_counter() - clock},
-        left_out=first.notes,
+        left_out=(*first.notes, *notes),
         warnings=()
         if zeta or _is_damped(system, turns)
         else ("nothing damps the model: heights near a resonance are those of the nearest frequency; give a damping",),

@@ -52,17 +52,17 @@ def at_speed(model: Model, speed: float) -> Model:
     """
     train = model.layout.train
     changed: dict[str, dict[str, Any]] = {}
-    for table in ("bearings", "supports", "couplings"):
+    for table in ("bearings", "supports", "couplings", "nonlinear_elements"):
         for name, part in getattr(model, table).items():
             if getattr(part, "table", ()):
-                rows = table_values(name, part, abs(train.ratio(part.shaft) * speed))[0]
+                rows = table_values(f"{table}.{name}", part, abs(train.ratio(part.shaft) * speed))[0]
             elif part.stiffness is not None:
                 rows = np.array(part.stiffness.as_rows())
             else:
                 continue
             if getattr(part, "table", ()) or not np.array_equal(rows, rows.T):
                 even = StiffnessMatrix(matrix=tuple(tuple(row) for row in 0.5 * (rows + rows.T)))
-                update = {"stiffness": even, "damping": None, **({"table": ()} if table == "bearings" else {})}
+                update = {"stiffness": even, "damping": None, **({"table": ()} if hasattr(part, "table") else {})}
                 changed.setdefault(table, dict(getattr(model, table)))[name] = part.model_copy(update=update)
     return model.model_copy(update=changed) if changed else model
 

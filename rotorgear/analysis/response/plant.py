@@ -63,7 +63,7 @@ class Plant:
         if damping is not None and damping[2] > 0.0 and damping[1].size:
             modes, w, zeta = damping
             self.low_rank = LowRankDamping(np.asarray(system.mass @ modes), 2.0 * zeta * w)
-        self.has_tables = any(bearing.table for bearing in system.model.bearings.values())
+        self.has_tables = system.has_tables
         self.places = part_nodes(system)
         rows = [6 * node + dof for node in self.places.values() for dof in range(6)]
         self._place_rows = sp.csr_array(system.dofs.transform)[rows, :]

@@ -18,6 +18,7 @@ from rotorgear.analysis.response.orders import Order, orders_of
 from rotorgear.analysis.response.plant import Plant, Readings
 from rotorgear.analysis.response.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
 from rotorgear.analysis.static.mean_state import Setup, mean_state
+from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
@@ -33,6 +34,8 @@ METHODS = ("auto", "modal", "direct")
 LOWEST = 0.1
 HIGHEST = 1.2
 POINTS = 221
+# Speeds at which nonlinear parts are linearised at most.
+_TANGENTS = 41
 
 
 @renamed_arguments(damping_ratio="modal_damping")
@@ -76,14 +79,15 @@ def response(
     chosen = _speeds(model, speeds, start, stop, points)
     _check(method, modal_damping, fmax, elements, accuracy)
     zeta = modal_damping + model.damping.modal_ratio
+    linear, notes = about_equilibrium(model, _spread(chosen))
     first = mean_state(
         System(model, load=model.mean_load(direction_of(chosen[-1])).of_kind("static")), float(chosen[-1])
     )
     orders, left = _within(orders_of(first.system, first.lines, first.mean_force), chosen, fmax)
     top = max(order.ratio for order in orders) * float(np.max(np.abs(chosen)))
     progress(0.02, "discretisation")
-    plan = plan_up_to(at_speed(model, float(chosen[-1])), MARGIN * top / (2.0 * np.pi), elements, accuracy)
-    setup, orders = _discretised(first, plan, orders)
+    plan = plan_up_to(at_speed(linear, float(chosen[-1])), MARGIN * top / (2.0 * np.pi), elements, accuracy)
+    setup, orders = _discretised(first, linear, plan, orders)
     system = setup.system
     modes, w = damped_modes(system, DAMPED * top, float(chosen[-1]))
     plant = Plant(system, setup.lines, (modes, w, zeta))
@@ -125,15 +129,21 @@ def response(
         dofs=system.n,
         discretisation=pieces(system),
         seconds={"total": time.perf_counter() - clock},
-        left_out=(*left, *setup.notes),
+        left_out=(*left, *setup.notes, *notes),
         warnings=(*speed_warnings(plant, orders, chosen, (modes, w, zeta)), *parting(setup, stacked[0], chosen)),
         method=f"{run.method} ({how}: {why})",
     )
 
 
-def _discretised(first: Setup, plan: Plan, orders: list[Order]) -> tuple[Setup, list[Order]]:
+def _spread(speeds: np.ndarray) -> list[float]:
+    """Speeds at which tangents are taken: all, or so many of them that straight lines between serve."""
+    at = np.unique(np.linspace(0, len(speeds) - 1, _TANGENTS).round().astype(int))
+    return [float(speed) for speed in speeds[at]]
+
+
+def _discretised(first: Setup, linear: Model, plan: Plan, orders: list[Order]) -> tuple[Setup, list[Order]]:
     """The same state on another mesh, with the orders of the same names."""
-    system = System(first.system.model, plan=plan, load=first.system.load.of_kind("dynamic"))
+    system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
     setup = replace(first, system=system, lines=contact_lines(system))
     names = {order.name for order in orders}
     return setup, [o for o in orders_of(system, setup.lines, setup.mean_force) if o.name in names]

@@ -34,13 +34,19 @@ def _inner(group: ElementGroup, q: np.ndarray) -> np.ndarray:
 
 
 def bearing_forces(found: Equilibrated) -> dict[str, np.ndarray]:
-    """Force and moment of each bearing on its shaft, (6,)."""
+    """Force and moment of each bearing on its shaft, (6,), and of each nonlinear element by its address."""
     q = found.system.dofs.expand(found.q)
-    return {
+    forces = {
         group.part.removeprefix("bearings."): -_inner(group, q)[0, -6:]
         for group in found.groups
         if group.part.startswith("bearings.") and not group.part.endswith(".pedestal")
     }
+    for law in found.laws:
+        node = found.system.nodes.at(*found.system.layout.place(law.part.part))
+        on_shaft = -law.part.columns[6 * node : 6 * node + 6] @ law.force
+        name = law.part.part.removeprefix("bearings.")
+        forces[name] = forces.get(name, 0.0) + on_shaft
+    return forces
 
 
 def support_forces(found: Equilibrated) -> dict[str, np.ndarray]:
@@ -81,6 +87,8 @@ def inner_forces(found: Equilibrated) -> np.ndarray:
             np.add.at(total, group.dofs, next(meshes) * group.matrices.strain[:, 0, :])
         else:
             np.add.at(total, group.dofs, _inner(group, q))
+    for law in found.laws:
+        total += law.part.columns @ law.force
     return total
 
 

@@ -9,21 +9,36 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.linalg as la
 import scipy.sparse as sp
 
+from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.errors import AnalysisError
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.sparse.equilibrium import Equilibrium
+from rotorgear.solvers.sparse.newton import settle
 from rotorgear.solvers.sparse.static import UnbalancedLoadError
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import ContactLines, contact_lines
 from rotorgear.system.groups import ElementGroup
 from rotorgear.system.loads import torque_loads, weight_loads
+from rotorgear.system.local_parts import LocalPart, expansion_stiffness, without_linear_part
 from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
 
 # A contact pulls where its force is below minus this share of the largest one.
 _PULLS = 1e-9
+
+
+@dataclass(frozen=True)
+class LawState:
+    """A law in equilibrium: displacements d and force (k,), and its tangents there, (k, k), stiffness and damping."""
+
+    part: LocalPart
+    d: np.ndarray
+    force: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -40,6 +55,7 @@ class Equilibrated:
     q: np.ndarray
     force: np.ndarray
     notes: tuple[str, ...]
+    laws: tuple[LawState, ...] = ()
 
 
 def equilibrate(system: System, speed: float) -> Equilibrated:
@@ -92,24 +108,86 @@ class _PushedMotionError(AnalysisError):
 def _solve(system: System, speed: float, closed: np.ndarray) -> Equilibrated:
     lines = contact_lines(system)
     meshes = iter(closed)
-    groups = [g for g in system.groups_at(speed) if not g.part.startswith("meshes.") or next(meshes)]
+    groups = [
+        group
+        for group in system.groups_at(speed)
+        if not group.part.startswith("nonlinear_elements.") and (not group.part.startswith("meshes.") or next(meshes))
+    ]
     groups, notes = without_torsion_to_ground(system, groups)
-    K = assemble(groups, system.dofs, lambda g: g.matrices.stiffness)
-    N = assemble(groups, system.dofs, lambda g: _circulatory(g, speed))
-    if N.nnz:
-        K = sp.csc_array(K + N)
-    R = rigid_motions(system, groups)
     active = np.where(closed, lines.stiffness, 0.0)
     loads = outer_loads(system)
     f = system.dofs.transform.T @ loads + lines.vectors @ (active * lines.gap)
+    parts = without_linear_part(system)
+    size = max(float(np.abs(loads).max(initial=0.0)), 1.0)
+    about = [expansion_stiffness(part.law, size, speed) for part in parts]
+    K, R = _held(system, [*groups, *map(law_group, parts, about)], speed)
     solver = Equilibrium(K, R)
+    laws = _laws_at_rest(system, parts, about, solver, f, speed)
+    # Of a model without such laws this is the one linear solution.
+    pushed = sum((part.columns @ (k @ law.d - law.force) for part, k, law in zip(parts, about, laws, strict=True)), 0.0)
     try:
-        q = solver.solve(f[:, None])[:, 0]
+        q = solver.solve((f + system.dofs.transform.T @ (pushed + np.zeros_like(loads)))[:, None])[:, 0]
     except UnbalancedLoadError:
         raise _PushedMotionError(_mechanism(system, R, f)) from None
     q = _placed(system, R, q)
+    if parts:  # derivatives are about the state found
+        K, R = _held(system, [*groups, *(law_group(law.part, law.stiffness) for law in laws)], speed)
+        solver = Equilibrium(K, R)
     force = active * (lines.vectors.T @ q - lines.gap)
-    return Equilibrated(system, groups, lines, closed, solver, R, loads, q, force, notes)
+    return Equilibrated(system, groups, lines, closed, solver, R, loads, q, force, notes, tuple(laws))
+
+
+def _held(system: System, groups: list[ElementGroup], speed: float) -> tuple[sp.csc_array, np.ndarray]:
+    """Stiffness (n, n) of element groups, and the motions (n, r) that strain none of them."""
+    K = assemble(groups, system.dofs, lambda g: g.matrices.stiffness)
+    N = assemble(groups, system.dofs, lambda g: g.circulatory_at(speed))
+    return sp.csc_array(K + N) if N.nnz else K, rigid_motions(system, groups)
+
+
+def law_group(part: LocalPart, stiffness: np.ndarray) -> ElementGroup:
+    """A law as springs of a stiffness (k, k) between its displacements."""
+    dofs = np.flatnonzero(np.any(part.columns != 0.0, axis=1))
+    symmetric = 0.5 * (stiffness + stiffness.T)
+    skew = 0.5 * (stiffness - stiffness.T)
+    matrices = ElementMatrices(
+        strain=part.columns[dofs].T[None], modulus=symmetric[None], circulation=skew[None] if np.any(skew) else None
+    )
+    return ElementGroup(part.part, "", matrices, dofs[None])
+
+
+def _laws_at_rest(
+    system: System, parts: list[LocalPart], about: list[np.ndarray], solver: Equilibrium, f: np.ndarray, speed: float
+) -> list[LawState]:
+    """Find the displacements at which the laws and the structure are in equilibrium.
+
+    Raises:
+        AnalysisError: there are none, or none was found.
+    """
+    if not parts:
+        return []
+    T = system.dofs.transform
+    B = np.asarray(T.T @ np.hstack([part.columns for part in parts]))
+    ends = np.cumsum([0, *(part.law.components for part in parts)])
+    k = la.block_diag(*about)
+
+    def laws(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        states = [part.law.linearised(d[a:b], speed=speed) for part, a, b in zip(parts, ends, ends[1:], strict=False)]
+        return np.concatenate([state.force for state in states]), la.block_diag(*(state.stiffness for state in states))
+
+    solved = solver.solve(np.column_stack([f, B]), carried=True)
+    found = settle(B.T @ solved[:, 0], B.T @ solved[:, 1:], k, laws)
+    if not found.converged:
+        names = ", ".join(part.part for part in parts)
+        raise AnalysisError(
+            f"no equilibrium was found with {names} under these loads at {speed * 30.0 / np.pi:.6g} rpm: look for a law that "
+            "can't carry the load, such as a journal bearing at standstill"
+        )
+    states = []
+    for part, a, b in zip(parts, ends, ends[1:], strict=False):
+        d = found.d[a:b]
+        tangent = part.law.linearised(d, speed=speed)
+        states.append(LawState(part, d, tangent.force, tangent.stiffness, tangent.damping))
+    return states
 
 
 def outer_loads(system: System) -> np.ndarray:
@@ -119,14 +197,6 @@ def outer_loads(system: System) -> np.ndarray:
     if operation and operation.gravity:
         loads = loads + weight_loads(system, operation.gravity)
     return loads
-
-
-def _circulatory(group: ElementGroup, speed: float) -> np.ndarray | None:
-    plain = group.matrices.circulatory
-    turning = group.matrices.circulatory_per_speed
-    if turning is None or not group.spin * speed:
-        return plain
-    return group.spin * speed * turning if plain is None else plain + group.spin * speed * turning
 
 
 def without_torsion_to_ground(system: System, groups: list[ElementGroup]) -> tuple[list[ElementGroup], tuple[str, ...]]:

@@ -158,7 +158,8 @@ def _standing(model: Model) -> bool:
     varying = any(load.varies for load in model.loads.values())
     tables = any(bearing.table for bearing in model.bearings.values())
     inner = any(section for shaft in model.shafts.values() for section in shaft.sections)
-    return all(power is None for power in powers) and not (varying or tables or inner)
+    # Laws of one's own may depend on the speed as they like.
+    return all(power is None for power in powers) and not (varying or tables or inner or model.nonlinear_elements)
 
 
 def still(

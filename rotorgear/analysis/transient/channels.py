@@ -52,7 +52,7 @@ def _row(local: LocalModel, node: int, dof: int) -> np.ndarray:
 
 def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
     """Force of the shaft on each bearing, by its springs and dampers or its rolling elements."""
-    found = []
+    found: list[tuple[str, str, dict[str, np.ndarray]]] = []
     T = local.system.dofs.transform
     firsts = local.local.forces.first
     rolling = {
@@ -60,6 +60,12 @@ def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndar
         for part, first in zip(local.parts, firsts, strict=False)
         if part.part.startswith("bearings.")
     }
+    for part, first in zip(local.parts, firsts, strict=False):
+        if part.part.startswith("nonlinear_elements."):
+            directions = local.system.model.nonlinear_elements[part.label].directions
+            for k, direction in enumerate(directions):
+                unit = "N" if direction in _AXES else "N m"
+                found.append((f"{part.part} force {direction}", unit, {"F": np.eye(local.local.m)[int(first) + k]}))
     for group in local.groups:
         if not group.part.startswith("bearings.") or group.part.endswith(".pedestal"):
             continue

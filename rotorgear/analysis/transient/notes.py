@@ -42,9 +42,8 @@ def transient_warnings(
         notes.append(
             "the loads do not balance on a free motion: it is carried along and drifts with constant acceleration"
         )
-    if any(note.startswith("damping matrix") for note in result.left_out) and not np.any(
-        local.local.forces.reference_damping
-    ):
+    damped = np.any(local.local.forces.reference_damping) or local.system.model.nonlinear_elements
+    if any(note.startswith("damping matrix") for note in result.left_out) and not damped:
         notes.append(
             "nothing damps: what the start sets swinging never dies out; give damping, or a modal damping ratio"
         )

@@ -12,6 +12,7 @@ from rotorgear.errors import Problem
 from rotorgear.model.checks.gears import gear_problems, inertia_problems
 from rotorgear.model.checks.meshes import massless_gears, mesh_problems, mesh_settings
 from rotorgear.model.checks.names import duplicate_names, points, unknown_materials, unknown_names
+from rotorgear.model.checks.nonlinear_elements import nonlinear_elements
 from rotorgear.model.checks.places import coupled_points, stations
 from rotorgear.model.checks.references import PartName, part_of, sound, without
 from rotorgear.model.checks.sizes import materials, matrices, motions, sections
@@ -59,6 +60,7 @@ def _by_themselves(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
     yield from sections(rest)
     yield from gear_problems(rest)
     yield from matrices(rest)
+    yield from nonlinear_elements(rest)
     yield from mesh_settings(rest)
     yield from points(rest)
     yield from operating_point(rest, broken)

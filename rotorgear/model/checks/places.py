@@ -20,6 +20,10 @@ def stations(model: Tables) -> Iterator[Problem]:
     for name, coupling in model.couplings.items():
         yield from _station(model, f"couplings.{name}.from_at", coupling.from_shaft, coupling.from_at)
         yield from _station(model, f"couplings.{name}.to_at", coupling.to_shaft, coupling.to_at)
+    for name, element in model.nonlinear_elements.items():
+        if element.to_shaft is not None:
+            at = element.at if element.to_at is None else element.to_at
+            yield from _station(model, f"nonlinear_elements.{name}.to_at", element.to_shaft, at)
     for table in ("loads", "unbalances", "points"):
         for name, part in getattr(model, table).items():
             if part.shaft is not None and part.at is not None:

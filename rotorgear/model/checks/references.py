@@ -20,11 +20,12 @@ TABLES = (
     "bearings",
     "supports",
     "couplings",
+    "nonlinear_elements",
     "loads",
     "unbalances",
     "points",
 )
-ON_SHAFTS = ("disks", "point_masses", "gears", "bearings", "supports")
+ON_SHAFTS = ("disks", "point_masses", "gears", "bearings", "supports", "nonlinear_elements")
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,9 @@ def references(model: Tables) -> Iterator[Reference]:
     for name, coupling in model.couplings.items():
         yield Reference(("couplings", name), "from_shaft", ("shafts", coupling.from_shaft))
         yield Reference(("couplings", name), "to_shaft", ("shafts", coupling.to_shaft))
+    for name, element in model.nonlinear_elements.items():
+        if element.to_shaft is not None:
+            yield Reference(("nonlinear_elements", name), "to_shaft", ("shafts", element.to_shaft))
     for name, point in model.points.items():
         if point.on is not None:
             table, _, part = point.on.partition(".")

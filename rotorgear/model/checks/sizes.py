@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from rotorgear.errors import Problem
+from rotorgear.model.parts.nonlinear_element import NonlinearElement
 from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import Section
-from rotorgear.model.parts.supports import Bearing, DampingMatrix, Pedestal, RollingElements, StiffnessMatrix
+from rotorgear.model.parts.supports import Bearing, DampingMatrix, Pedestal, RollingElements, StiffnessMatrix, TableRow
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import millimetres
 
@@ -73,30 +74,49 @@ def matrices(model: Tables) -> Iterator[Problem]:
         yield from _six_by_six(f"supports.{name}", support.stiffness, support.damping)
         if not (support.stiffness or support.damping or support.fixed):
             yield Problem(f"supports.{name}", "neither stiffness, damping nor fixed", "at least one of them")
+    for name, element in model.nonlinear_elements.items():
+        yield from _given_tangent(f"nonlinear_elements.{name}", element)
     for name, coupling in model.couplings.items():
         yield from _six_by_six(f"couplings.{name}", coupling.stiffness, coupling.damping)
 
 
 def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
-    if bearing.stiffness is None and not bearing.table:
-        yield Problem(address, "neither stiffness nor table", "stiffness (with damping), or a table over speed")
+    if bearing.stiffness is None and not bearing.table and bearing.rolling is None:
+        text = "stiffness (with damping), a table over speed, or rolling elements"
+        yield Problem(address, "neither stiffness nor table", text)
     elif bearing.stiffness is not None and bearing.table:
         yield Problem(address, "stiffness and table", "one of the two")
     if bearing.table and bearing.damping is not None:
         yield Problem(f"{address}.damping", "damping beside a table", "damping in the rows of the table")
     yield from _six_by_six(address, bearing.stiffness, bearing.damping)
-    speeds = [row.speed for row in bearing.table]
+    yield from _table(address, bearing.table)
+    if bearing.rolling:
+        yield from _rolling(address, bearing, bearing.rolling)
+    if bearing.pedestal:
+        yield from _pedestal(f"{address}.pedestal", bearing.pedestal)
+
+
+def _given_tangent(address: str, element: NonlinearElement) -> Iterator[Problem]:
+    if element.stiffness is not None and element.table:
+        yield Problem(address, "stiffness and table", "one of the two")
+    if element.damping is not None and element.stiffness is None:
+        text = "damping without stiffness"
+        yield Problem(
+            f"{address}.damping", text, "a stiffness beside it, or neither: then the law's own tangents serve"
+        )
+    yield from _six_by_six(address, element.stiffness, element.damping)
+    yield from _table(address, element.table)
+
+
+def _table(address: str, table: tuple[TableRow, ...]) -> Iterator[Problem]:
+    speeds = [row.speed for row in table]
     if len(speeds) == 1 or any(b <= a for a, b in pairwise(speeds)) or any(s < 0 for s in speeds):
         rpm = ", ".join(f"{speed * 30.0 / math.pi:.6g}" for speed in speeds)
         yield Problem(
             f"{address}.table", f"speeds of {rpm} rpm", "at least two rows with speeds that rise from 0 or more"
         )
-    for number, row in enumerate(bearing.table):
+    for number, row in enumerate(table):
         yield from _six_by_six(f"{address}.table[{number}]", row.stiffness, row.damping)
-    if bearing.rolling:
-        yield from _rolling(address, bearing, bearing.rolling)
-    if bearing.pedestal:
-        yield from _pedestal(f"{address}.pedestal", bearing.pedestal)
 
 
 def _rolling(address: str, bearing: Bearing, rolling: RollingElements) -> Iterator[Problem]:

@@ -110,6 +110,9 @@ class Layout:
             return self.gear(name).places
         if table == "couplings":
             return self.at(part.from_shaft, part.from_at), self.at(part.to_shaft, part.to_at)
+        if table == "nonlinear_elements" and part.to_shaft is not None:
+            to_at = part.at if part.to_at is None else part.to_at
+            return self.at(part.shaft, part.at), self.at(part.to_shaft, to_at)
         if table == "loads":
             return (self.load_place(part),)
         if table == "points" and part.on is not None:

@@ -11,6 +11,7 @@ from rotorgear.model.parts.excitation import Unbalance
 from rotorgear.model.parts.fields import Name, Part
 from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.nonlinear_element import NonlinearElement
 from rotorgear.model.parts.operation import Load, ModelDamping, Operation, Point
 from rotorgear.model.parts.shaft import LIBRARY, Material, Section, Shaft
 from rotorgear.model.parts.supports import Bearing, Coupling, Support
@@ -40,6 +41,9 @@ class Tables(Part):
     bearings: dict[Name, Bearing] = Field(default_factory=dict, description="bearings")
     supports: dict[Name, Support] = Field(default_factory=dict, description="supports to ground")
     couplings: dict[Name, Coupling] = Field(default_factory=dict, description="couplings between shafts")
+    nonlinear_elements: dict[Name, NonlinearElement] = Field(
+        default_factory=dict, description="force laws between shafts, or a shaft and the ground"
+    )
     damping: ModelDamping = Field(default_factory=ModelDamping, description="damping of the model as a whole")
     loads: dict[Name, Load] = Field(default_factory=dict, description="torques, for several inputs or outputs")
     unbalances: dict[Name, Unbalance] = Field(default_factory=dict, description="unbalances of shafts")

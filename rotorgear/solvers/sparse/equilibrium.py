@@ -36,14 +36,14 @@ class Equilibrium:
         self._R = np.linalg.qr(R * self._scale[:, None])[0]  # of q * scale
         self._solver = SupportedSolver(self._K, self._R, self._R)
 
-    def solve(self, f: np.ndarray) -> np.ndarray:
-        """Return q (n, p) for loads f (n, p).
+    def solve(self, f: np.ndarray, *, carried: bool = False) -> np.ndarray:
+        """Return q (n, p) for loads f (n, p); `carried`: what they do on the free motions is left out, not refused.
 
         Raises:
             UnbalancedLoadError: a load does work on a free motion.
             ConvergenceError: the residual stays above 1e-11 of the forces inside; `partial` holds q.
         """
-        rest = self._balanced(f)
+        rest = self._free_of_rigid(f) if carried else self._balanced(f)
         target = rest
         q = np.zeros_like(f)
         size = abs(self._K)

@@ -73,11 +73,9 @@ def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibr
 def still_forces(system: LocalSystem, laws: tuple[LocalLaw, ...], free: np.ndarray | None = None) -> np.ndarray:
     """Local forces (m,) in the equilibrium with laws in place of the system's own; NaN where there is none.
 
-    The free motions of the system serve where they are known and the laws have its reference stiffness.
+    `free`: the free motions of the system, where they are known. Both are expanded about the same stiffness, on which nothing
+    depends.
     """
-    still = replace(system, forces=gather(laws))
-    same = np.array_equal(still.forces.reference_stiffness, system.forces.reference_stiffness)
-    rest = equilibrium(still, free if same else None)
-    if not rest.converged:
-        return np.full(system.m, np.nan)
-    return rest.force
+    forces = replace(gather(laws), reference_stiffness=system.forces.reference_stiffness)
+    rest = equilibrium(replace(system, forces=forces), free)
+    return rest.force if rest.converged else np.full(system.m, np.nan)

@@ -1,0 +1,118 @@
+"""The model that linear analyses solve: laws without a linear part of their own get their tangents at the equilibrium.
+
+A nonlinear element, or a bearing given by its rolling elements alone, has the stiffness dF/dd and the damping dF/dv of its law
+at the static equilibrium under the loads, at rest but for the rotation. What does not depend on speed becomes one stiffness; what
+does, such as the film of a journal bearing, a table over speed, as a file may give it. Meshes have the stiffness of their mean
+load, as always: the tangent at that load where a stiffness model knows it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rotorgear.analysis.static.solve import LawState, equilibrate
+from rotorgear.model.model import Model
+from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.model.parts.supports import DampingMatrix, StiffnessMatrix, TableRow
+from rotorgear.system.system import System
+
+# Tangents that change less over speed are one stiffness.
+_CONSTANT = 1e-9
+
+
+def about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Model, tuple[str, ...]]:
+    """Return the linear model about its static equilibrium, and a sentence on each nonlinear part.
+
+    A model without such parts, or whose parts all give a stiffness, comes back as it is.
+
+    Args:
+        model: a checked model.
+        speeds: of the reference shaft in rad/s, of one sense, at which tangents are taken; None stands for standstill, where
+            films have none, so that the operating speed serves.
+
+    Raises:
+        AnalysisError: there is no equilibrium at one of the speeds.
+    """
+    notes = [
+        f"the rolling elements of bearings.{name}: the stiffness given beside them is taken"
+        for name, bearing in model.bearings.items()
+        if bearing.rolling is not None and bearing.stiffness is not None
+    ]
+    notes += [
+        f"the law of nonlinear_elements.{name}: the stiffness given beside it is taken"
+        for name, element in model.nonlinear_elements.items()
+        if element.is_given
+    ]
+    wanted = {
+        f"bearings.{name}" for name, bearing in model.bearings.items() if bearing.rolling and not bearing.stiffness
+    }
+    wanted |= {
+        f"nonlinear_elements.{name}" for name, element in model.nonlinear_elements.items() if not element.is_given
+    }
+    if not wanted:
+        return model, tuple(notes)
+    operating = model.operation.speed if model.operation else None
+    at = sorted({(operating or 0.0) if speed is None else float(speed) for speed in speeds}, key=abs)
+    load = model.mean_load(-1 if min(at) < 0.0 else 1).of_kind("static")
+    system = System(model, load=load)
+    states = [{law.part.part: law for law in equilibrate(system, speed).laws} for speed in at]
+    changed: dict[str, dict[str, Any]] = {}
+    for part in sorted(wanted):
+        table, _, name = part.partition(".")
+        own = changed.setdefault(table, dict(getattr(model, table)))
+        own[name] = own[name].model_copy(update=_linear(model, part, at, [state[part] for state in states]))
+    where = " to ".join(f"{speed * 30.0 / np.pi:.6g}" for speed in dict.fromkeys((at[0], at[-1])))
+    notes.append(
+        f"what is not linear of {', '.join(sorted(wanted))}: linearised about the static equilibrium at {where} rpm"
+    )
+    return model.model_copy(update=changed), tuple(notes)
+
+
+def about_equilibrium_of(
+    model: Model | System, speeds: Sequence[float | None]
+) -> tuple[Model | System, Model, tuple[str, ...]]:
+    """The same of a model or an assembled system: linear, as it was given, and the sentences."""
+    own = model.model if isinstance(model, System) else model
+    linear, notes = about_equilibrium(own, speeds)
+    if not isinstance(model, System):
+        return linear, own, notes
+    return (model if linear is own else System(linear, plan=model.plan, load=model.load)), own, notes
+
+
+def _linear(model: Model, part: str, speeds: Sequence[float], states: Sequence[LawState]) -> dict[str, Any]:
+    """Stiffness and damping of a part in the words of a model file."""
+    table, _, name = part.partition(".")
+    owner = getattr(model, table)[name]
+    given = np.array(owner.damping.as_rows()) if owner.damping else np.zeros((6, 6))
+    used = [DOF_NAMES.index(d) for d in owner.directions] if table == "nonlinear_elements" else None
+    pairs = [(_six(state.stiffness, used), given + _six(state.damping, used)) for state in states]
+    ratio = abs(float(model.layout.train.ratio(owner.shaft)))
+    first = pairs[0]
+    size = [max(float(np.abs(A).max()), 1e-300) for A in first]
+    change = max(float(np.abs(A - B).max()) / s for pair in pairs for A, B, s in zip(pair, first, size, strict=True))
+    if change <= _CONSTANT or ratio == 0.0:
+        return {"stiffness": _matrix(first[0]), "damping": DampingMatrix(matrix=_rows(first[1]))}
+    rows = tuple(
+        TableRow(speed=ratio * abs(speed), stiffness=_matrix(K), damping=DampingMatrix(matrix=_rows(C)))
+        for speed, (K, C) in zip(speeds, pairs, strict=True)
+    )
+    return {"table": rows, "damping": None}
+
+
+def _six(A: np.ndarray, used: list[int] | None) -> np.ndarray:
+    """Tangents (k, k) among the six displacements of a node."""
+    full = np.zeros((6, 6))
+    own = list(range(len(A))) if used is None else used
+    full[np.ix_(own, own)] = A
+    return full
+
+
+def _rows(A: np.ndarray) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(map(float, row)) for row in A)
+
+
+def _matrix(K: np.ndarray) -> StiffnessMatrix:
+    return StiffnessMatrix(matrix=_rows(K))
