@@ -3,13 +3,13 @@
     u(point) = u(s) + theta(s) x r.
 
 Between two nodes at a distance L, with xi = s/L, the deflection w is cubic and the slope theta quadratic: the exact static shapes
-of a uniform Timoshenko element (Przemieniecki, Theory of Matrix Structural Analysis, 1968), in xz with w = x, theta = ty,
+of a uniform Timoshenko element (Przemieniecki, Theory of Matrix Structural Analysis, 1968). In xz, with w = x, theta = theta_y,
 
     d = ((w2 - w1)/L - (theta1 + theta2)/2) / (1 + Phi)            Phi = 12 E I / (kappa G A L^2)
     theta(xi) = (1 - xi) theta1 + xi theta2 + 6 (xi - xi^2) d
     w(xi) = w1 + L [ (xi - xi^2/2) theta1 + xi^2/2 theta2 + (3 xi^2 - 2 xi^3) d + Phi xi d ]
 
-and with w = y, theta = -tx in the other plane; z and tz are linear. Cones are interpolated with their mean section.
+and with w = y, theta = -theta_x in the other plane; z and theta_z are linear. Cones are interpolated with their mean section.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ class Attachment:
     """What carries each of P points.
 
     Attributes:
-        left, right: (P,) numbers of the nodes on both sides; -1 for a point that stands on the ground.
+        left: (P,) numbers of the nodes on the left; -1 for a point that stands on the ground.
+        right: (P,) numbers of the nodes on the right, likewise.
         share: (P,) xi from 0 at the left to 1 at the right node.
         length: (P,) distance of the nodes in m.
         shear: (P,) Phi.
@@ -53,6 +54,7 @@ class Attachment:
         both = (1.0 - xi) * first + xi * second
         centre = both[:, :3].copy()
         turn = both[:, 3:].copy()
+        # Planes xz (w = x, slope = theta_y) and yz (w = y, slope = -theta_x).
         for w, t, sign in ((0, 4, 1.0), (1, 3, -1.0)):
             slopes = sign * first[:, t], sign * second[:, t]
             centre[:, w], slope = self._bend(first[:, w], second[:, w], *slopes)
@@ -138,21 +140,22 @@ class Skeleton:
 
     def _shear_numbers(self, shaft: str) -> np.ndarray:
         """Phi between each two neighbouring nodes of a shaft."""
-        own = self.model.shafts[shaft]
+        part = self.model.shafts[shaft]
         places = self.nodes.position[self._numbers[shaft], 2]
-        if not own.sections or not own.shear_deformation:
+        if not part.sections or not part.shear_deformation:
             return np.zeros(max(len(places) - 1, 0))
-        ends = own.start + np.cumsum([section.length for section in own.sections])
-        which = np.minimum(np.searchsorted(ends, 0.5 * (places[:-1] + places[1:])), len(own.sections) - 1)
+        ends = part.start + np.cumsum([section.length for section in part.sections])
+        which = np.minimum(np.searchsorted(ends, 0.5 * (places[:-1] + places[1:])), len(part.sections) - 1)
         return np.array(
-            [self._phi(shaft, own.sections[k], length) for k, length in zip(which, np.diff(places), strict=True)]
+            [self._phi(shaft, part.sections[k], length) for k, length in zip(which, np.diff(places), strict=True)]
         )
 
     def _phi(self, shaft: str, section: Section, length: float) -> float:
+        """Phi of a piece of a section; a cone counts with its mean diameters."""
         outer, bore, outer_end, bore_end = section.stiffness_diameters()
         outer = 0.5 * (outer + outer_end)
         bore = 0.5 * (bore + bore_end)
         material = self.model.material_of(shaft, section)
         kappa = section.shear_coefficient or float(cowper(material.nu, bore / outer))
-        # I/A = (d_o^2 + d_i^2)/16
+        # E/G (12 / kappa L^2) I/A with I/A = (d_o^2 + d_i^2)/16
         return 12.0 * material.youngs_modulus * (outer**2 + bore**2) / (16.0 * kappa * material.g * length**2)

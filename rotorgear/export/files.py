@@ -37,6 +37,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
     target = target.resolve()
     if not target.parent.is_dir():
         raise WriteError(target, f"there is no folder {target.parent}; make it first, or choose another")
+    # In the same folder, so that the move is one of names within a file system: it happens whole or not at all.
     scratch = target.with_name(f".{target.name}.{uuid.uuid4().hex}")
     try:
         yield scratch
@@ -69,15 +70,15 @@ def filling(directory: str | Path) -> Iterator[Path]:
 
 def publish(scratch: Path, directory: Path, names: list[str]) -> list[Path]:
     """Move files from a temporary folder to their places in `directory`, in this order; return where they are."""
-    found = []
+    published = []
     for name in names:
         target = directory / name
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.is_dir():
             raise WriteError(target, "a folder of that name stands in the way")
         os.replace(scratch / name, target)
-        found.append(target)
-    return found
+        published.append(target)
+    return published
 
 
 def reason_of(error: OSError) -> str:

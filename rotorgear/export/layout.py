@@ -19,30 +19,39 @@ _OVERLAP = 0.85
 
 def display_axes(model: Model) -> dict[str, Axis]:
     """Axis (x, y) in m of every shaft for display, shaft -> (x, y)."""
+    # Given positions stand. From them on neighbours are placed one by one; what nothing leads to begins a group of its own, to
+    # the right of all.
     axes: dict[str, Axis] = {name: shaft.position for name, shaft in model.shafts.items() if shaft.position is not None}
     envelopes = {name: _envelope(model, name) for name in model.shafts}
     while len(axes) < len(model.shafts):
+        if _place_neighbours(model, axes, envelopes):
+            continue
         start = next(name for name in model.shafts if name not in axes)
-        if not _place_neighbours(model, axes, envelopes):
-            axes[start] = _beside(axes, envelopes, start)
+        if not axes:
+            axes[start] = (0.0, 0.0)
+            continue
+        reach = {name: 0.5 * max(body.diameter for body in envelope) for name, envelope in envelopes.items()}
+        right = max(axis[0] + reach[name] for name, axis in axes.items())
+        axes[start] = (float(right + 1.2 * reach[start]), float(np.mean([axis[1] for axis in axes.values()])))
     return axes
 
 
 def _envelope(model: Model, shaft: str) -> list[BodySize]:
     """Cylinders that a shaft and its bodies fill."""
-    own = model.shafts[shaft]
-    sections = []
-    left = own.start
-    for section in own.sections:
+    part = model.shafts[shaft]
+    cylinders = []
+    left = part.start
+    for section in part.sections:
         outer, _, outer_end, _ = section.stiffness_diameters()
-        sections.append(BodySize(max(outer, outer_end), left, left + section.length))
+        cylinders.append(BodySize(max(outer, outer_end), left, left + section.length))
         left += section.length
-    found = [*sections, *bodies_on(model, shaft)]
-    return found or [BodySize(shaft_diameter(model, shaft, "start"), own.start, own.end)]
+    cylinders += bodies_on(model, shaft)
+    return cylinders or [BodySize(shaft_diameter(model, shaft, "start"), part.start, part.end)]
 
 
 def _place_neighbours(model: Model, axes: dict[str, Axis], envelopes: dict[str, list[BodySize]]) -> bool:
     """Place one shaft that is coupled to or in mesh with a placed one; whether there was one."""
+    # Coupled shafts are in line where there is room, else they are placed by what they mesh with.
     for coupling in model.couplings.values():
         for known, new in _both_ways(coupling.from_shaft, coupling.to_shaft):
             if known in axes and new not in axes and _free(axes[known], new, axes, envelopes):
@@ -58,7 +67,8 @@ def _place_neighbours(model: Model, axes: dict[str, Axis], envelopes: dict[str, 
             given = mesh.centre_line_angle
             directions = _DIRECTIONS if given is None else (given + turn,)
             distance = pitch_radius(model, one) + pitch_radius(model, other)
-            places = [_step(axes[known], distance, angle) for angle in directions]
+            x, y = axes[known]
+            places = [(x + distance * math.cos(angle), y + distance * math.sin(angle)) for angle in directions]
             axes[new] = next((at for at in places if given is not None or _free(at, new, axes, envelopes)), places[0])
             return True
     return False
@@ -66,10 +76,6 @@ def _place_neighbours(model: Model, axes: dict[str, Axis], envelopes: dict[str, 
 
 def _both_ways(one: str, other: str) -> tuple[tuple[str, str], tuple[str, str]]:
     return (one, other), (other, one)
-
-
-def _step(start: Axis, distance: float, angle: float) -> Axis:
-    return start[0] + distance * math.cos(angle), start[1] + distance * math.sin(angle)
 
 
 def _free(at: Axis, new: str, axes: dict[str, Axis], envelopes: dict[str, list[BodySize]]) -> bool:
@@ -82,12 +88,3 @@ def _free(at: Axis, new: str, axes: dict[str, Axis], envelopes: dict[str, list[B
                 if same_place and distance < _OVERLAP * 0.5 * (a.diameter + b.diameter):
                     return False
     return True
-
-
-def _beside(axes: dict[str, Axis], envelopes: dict[str, list[BodySize]], new: str) -> Axis:
-    """An axis to the right of everything that is placed."""
-    reach = {name: 0.5 * max(body.diameter for body in envelope) for name, envelope in envelopes.items()}
-    if not axes:
-        return 0.0, 0.0
-    right = max(axis[0] + reach[name] for name, axis in axes.items())
-    return float(right + 1.2 * reach[new]), float(np.mean([axis[1] for axis in axes.values()]))

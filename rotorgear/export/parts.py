@@ -13,7 +13,6 @@ from rotorgear.export.sizes import ball_radius, disk_size, helix_width, hidden_h
 from rotorgear.export.surface import Surface, ball, hollow_cylinder, join, make_surface, revolve, twisted_prism
 from rotorgear.export.teeth import DISK_GROOVES, contour_of, grooved_contour, tooth_phases, twist_rates
 from rotorgear.model.model import Model
-from rotorgear.model.parts.gear import Gear
 from rotorgear.model.parts.shaft import Shaft
 
 # Stripes along a shaft, by which its twist is seen: how many, half their width in rad, and their height relative to the radius.
@@ -87,6 +86,7 @@ def _outline(shaft: Shaft, step: float, bore: bool) -> np.ndarray:
         radii = 0.5 * (left + (right - left) * share)
         points += zip(radii.tolist(), (z + section.length * share).tolist(), strict=True)
         z += section.length
+    # Of two equal points, at a joint of sections of one diameter, the second stays: no cell of zero area.
     kept = [a for a, b in zip(points, [*points[1:], None], strict=True) if a != b]
     return np.array(kept)
 
@@ -117,16 +117,27 @@ def gear_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Pi
 
 
 def _helix(model: Model, name: str, plane: float, rate: float, phase: float, detail: Detail) -> Surface:
+    """One helix of a gear about its own axis, with its web and hub."""
     gear = model.layout.gear(name).part
     half = 0.5 * helix_width(model, name)
     angles, radii = contour_of(model, name, pitch_radius(model, name), detail.flank_points, detail.arc_points)
     steps = max(math.ceil(abs(rate) * 2.0 * half / detail.twist_step), 1)
     z = plane + np.linspace(-half, half, steps + 1)
     hole = _hole(model, gear.shaft, plane - half, plane + half, gear.body.bore, float(radii.min()))
-    rim = _rim_radius(gear)
-    inner = hole if rim is None else max(rim, hole)
-    toothed = twisted_prism(angles + phase, radii, z, rate * (z - plane), inner)
-    return join([toothed, *_web(gear, plane, hole, inner, half, detail)]) if rim else toothed
+    geometry = gear.geometry
+    body = gear.body
+    if geometry is None or body.rim_thickness is None:
+        return twisted_prism(angles + phase, radii, z, rate * (z - plane), hole)
+
+    # A rim is measured from the root circle; web and hub as wide as the helix unless they say otherwise.
+    inner = max(0.5 * geometry.root_diameter - body.rim_thickness, hole)
+    pieces = [twisted_prism(angles + phase, radii, z, rate * (z - plane), inner)]
+    web = 0.5 * (body.web_thickness or 2.0 * half)
+    pieces.append(hollow_cylinder(inner, hole, plane - web, plane + web, detail.segments))
+    if body.hub_diameter is not None:
+        hub = 0.5 * (body.hub_width or 2.0 * half)
+        pieces.append(hollow_cylinder(0.5 * body.hub_diameter, hole, plane - hub, plane + hub, detail.segments))
+    return join(pieces)
 
 
 def _hole(model: Model, shaft: str, low: float, high: float, bore: float | None, outer: float) -> float:
@@ -134,24 +145,6 @@ def _hole(model: Model, shaft: str, low: float, high: float, bore: float | None,
     surface, inside = hidden_hole(model, shaft, low, high)
     radius = 0.5 * bore if bore is not None and 0.5 * bore > surface else inside
     return min(radius, _LARGEST_HOLE * outer)
-
-
-def _rim_radius(gear: Gear) -> float | None:
-    """Inner radius of the rim; None for a solid gear."""
-    geometry = gear.geometry
-    if geometry is None or gear.body.rim_thickness is None:
-        return None
-    return 0.5 * geometry.root_diameter - gear.body.rim_thickness
-
-
-def _web(gear: Gear, plane: float, hole: float, rim: float, half: float, detail: Detail) -> Iterator[Surface]:
-    """Yield web and hub of a gear with a rim."""
-    body = gear.body
-    web = 0.5 * (body.web_thickness or 2.0 * half)
-    yield hollow_cylinder(rim, hole, plane - web, plane + web, detail.segments)
-    if body.hub_diameter is not None:
-        hub = 0.5 * (body.hub_width or 2.0 * half)
-        yield hollow_cylinder(0.5 * body.hub_diameter, hole, plane - hub, plane + hub, detail.segments)
 
 
 def disk_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:

@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.export.attachment import Attachment, Skeleton
 from rotorgear.export.parts import Detail, Piece
 from rotorgear.export.sizes import shaft_diameter
-from rotorgear.export.surface import Surface, beam, hollow_cylinder, join, wedge
+from rotorgear.export.surface import beam, hollow_cylinder, join, wedge
 from rotorgear.model.model import Model
 from rotorgear.model.parts.supports import Coupling
 
@@ -41,15 +41,12 @@ def bearing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator
         on_shaft = np.hypot(*(ring.points - np.array(axis))[:, :2].T) < 0.5 * (radius + housing)
         on_ground = np.array([False, True, True] * 2)
         surface = join([ring, foot])
-        held = _standing(skeleton, name if bearing.pedestal else None, surface.points)
+        # The ring stretches from the shaft to the housing, the foot from the housing to the ground.
         ground = skeleton.on_ground(surface.points)
+        held = skeleton.on_pedestal(name, surface.points) if bearing.pedestal else ground
         carried = skeleton.rigid(bearing.shaft, z, surface.points)
         attachment = _select([held, carried, ground], np.concatenate([on_shaft.astype(int), 2 * on_ground]))
         yield Piece(f"bearings.{name}", "bearing", bearing.shaft, surface, attachment)
-
-
-def _standing(skeleton: Skeleton, pedestal: str | None, points: np.ndarray) -> Attachment:
-    return skeleton.on_ground(points) if pedestal is None else skeleton.on_pedestal(pedestal, points)
 
 
 def support_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
@@ -94,17 +91,14 @@ def _link(
     if np.allclose(start, end, rtol=0.0, atol=1e-6 * radius):
         return
     if np.allclose(start[:2], end[:2], rtol=0.0, atol=1e-6 * radius):
-        surface = _sleeve(min(z), max(z), radius, detail).moved((*start[:2], 0.0))
+        sleeve = hollow_cylinder(_SLEEVE * radius, 0.9 * _SLEEVE * radius, min(z), max(z), detail.segments)
+        surface = sleeve.moved((*start[:2], 0.0))
         to_second = np.abs(surface.points[:, 2] - z[1]) < np.abs(surface.points[:, 2] - z[0])
     else:
         surface = beam(start, end, 0.3 * radius)
         to_second = np.arange(8) >= 4
     carried = [skeleton.rigid(s, place, surface.points) for s, place in zip(shafts, z, strict=True)]
     yield Piece(f"couplings.{name}", "coupling", shafts[0], surface, _select(carried, to_second.astype(int)))
-
-
-def _sleeve(low: float, high: float, radius: float, detail: Detail) -> Surface:
-    return hollow_cylinder(_SLEEVE * radius, 0.9 * _SLEEVE * radius, low, high, detail.segments)
 
 
 def _select(choices: list[Attachment], which: np.ndarray) -> Attachment:

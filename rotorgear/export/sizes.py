@@ -10,7 +10,6 @@ import math
 from dataclasses import dataclass
 
 from rotorgear.model.model import Model
-from rotorgear.model.parts.bodies import Disk
 
 # A shaft without sections has no diameter: parts that need one take this share of its largest body, or this many m.
 NOMINAL_SHARE = 0.2
@@ -58,26 +57,24 @@ def disk_size(model: Model, name: str) -> BodySize:
     disk = model.disks[name]
     shaft = model.shafts[disk.shaft]
     z = model.layout.place(f"disks.{name}").z
-    diameter, width = _cylinder(disk, model.material_of(disk.shaft, name=disk.material).density)
+    density = model.material_of(disk.shaft, name=disk.material).density
+    mass = disk.mass or 0.0
+    inertia = disk.polar_inertia or 2.0 * (disk.diametral_inertia or 0.0)
+    if disk.outer_diameter is not None and disk.width is not None:
+        diameter = disk.outer_diameter
+        width = disk.width
+    elif mass > 0.0 and inertia > 0.0:  # m = rho pi D^2 w / 4, J = m D^2 / 8
+        diameter = math.sqrt(8.0 * inertia / mass)
+        width = 4.0 * mass / (math.pi * density * diameter**2)
+    elif inertia > 0.0:  # the same with w = D / 5
+        diameter = (160.0 * inertia / (math.pi * density)) ** 0.2
+        width = diameter / 5.0
+    else:
+        diameter = (20.0 * mass / (math.pi * density)) ** (1.0 / 3.0)
+        width = diameter / 5.0
     diameter = max(diameter, 1.3 * shaft.diameter_at(z)) or NOMINAL_DIAMETER
     width = width or 0.2 * diameter
     return BodySize(diameter, z - 0.5 * width, z + 0.5 * width)
-
-
-def _cylinder(disk: Disk, density: float) -> tuple[float, float]:
-    """Diameter and width of a disk as given or as its inertia suggests; 0 where nothing does."""
-    if disk.outer_diameter is not None and disk.width is not None:
-        return disk.outer_diameter, disk.width
-    mass = disk.mass or 0.0
-    inertia = disk.polar_inertia or 2.0 * (disk.diametral_inertia or 0.0)
-    if mass > 0.0 and inertia > 0.0:
-        diameter = math.sqrt(8.0 * inertia / mass)
-        return diameter, 4.0 * mass / (math.pi * density * diameter**2)
-    if inertia > 0.0:
-        diameter = (160.0 * inertia / (math.pi * density)) ** 0.2
-        return diameter, diameter / 5.0
-    diameter = (20.0 * mass / (math.pi * density)) ** (1.0 / 3.0)
-    return diameter, diameter / 5.0
 
 
 def ball_radius(model: Model, name: str) -> float:
@@ -89,10 +86,9 @@ def ball_radius(model: Model, name: str) -> float:
 
 def shaft_diameter(model: Model, shaft: str, at: float | str) -> float:
     """Diameter in m of a shaft at a place, or a nominal one for a shaft without sections; never 0."""
-    own = model.shafts[shaft]
-    found = own.diameter_at(model.layout.at(shaft, at).z)
-    if found:
-        return found
+    diameter = model.shafts[shaft].diameter_at(model.layout.at(shaft, at).z)
+    if diameter:
+        return diameter
     bodies = [body.diameter for body in bodies_on(model, shaft)]
     return NOMINAL_SHARE * max(bodies) if bodies else NOMINAL_DIAMETER
 
@@ -102,11 +98,10 @@ def hidden_hole(model: Model, shaft: str, low: float, high: float) -> tuple[floa
 
     The second is 0 for a solid shaft: a body may close its hole where nobody looks.
     """
-    own = model.shafts[shaft]
-    left = own.start
+    left = model.shafts[shaft].start
     outer = [0.0]
     bore = [0.0]
-    for section in own.sections:
+    for section in model.shafts[shaft].sections:
         if left < high and left + section.length > low:
             diameters = section.stiffness_diameters()
             outer.append(0.5 * min(diameters[0::2]))

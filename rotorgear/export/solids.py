@@ -35,9 +35,14 @@ class Solids:
 
     Attributes:
         points: (P, 3) in m, where they are shown undeformed.
-        quads, triangles: (Q, 4) and (T, 3) numbers of the corners, counter-clockwise from outside.
-        part, kind, shaft: (C,) numbers of each cell's part, kind and shaft among the names.
-        part_names: addresses such as "gears.pinion"; kind_names; shaft_names.
+        quads: (Q, 4) numbers of the corners, counter-clockwise from outside.
+        triangles: (T, 3) likewise.
+        part: (C,) number of each cell's part among the names.
+        kind: (C,) likewise of its kind.
+        shaft: (C,) likewise of its shaft.
+        part_names: addresses such as "gears.pinion".
+        kind_names: names of the kinds.
+        shaft_names: names of the shafts.
         attachment: what carries each point.
         node_positions: (p, 3) where the nodes are shown.
     """

@@ -21,7 +21,9 @@ class ChunkStream:
     """Keeps chunks in a folder beside the file that the result will be saved to."""
 
     def __init__(self, path: str | Path, *, resume: bool = False) -> None:
-        self.path, self.folder, self._resume = Path(path), Path(f"{path}.parts"), resume
+        self.path = Path(path)
+        self.folder = Path(f"{path}.parts")
+        self._resume = resume
         self._count = 0
 
     def begin(self, settings: dict[str, str]) -> list[dict[str, np.ndarray]]:
@@ -33,6 +35,7 @@ class ChunkStream:
         """
         if self.path.is_dir():
             raise WriteError(self.path, "it is a folder; give the name of a file")
+        # Settings as digests: enough to tell another run, whatever their size.
         mark = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in settings.items()}
         note = self.folder / "settings.json"
         if self._resume and note.is_file():
@@ -64,9 +67,9 @@ class ChunkStream:
         self._count += 1
 
     def _read(self) -> list[dict[str, np.ndarray]]:
-        found = [read_chunk(path) for path in sorted(self.folder.glob("chunk_*.h5"))]
-        self._count = len(found)
-        return found
+        chunks = [read_chunk(path) for path in sorted(self.folder.glob("chunk_*.h5"))]
+        self._count = len(chunks)
+        return chunks
 
     def close(self) -> None:
         """Take the folder away: the result is saved elsewhere."""

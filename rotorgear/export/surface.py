@@ -72,6 +72,7 @@ def revolve(contour: np.ndarray, segments: int, closed: bool = False) -> Surface
     angle = np.linspace(0.0, 2.0 * np.pi, segments, endpoint=False)
     points: list[np.ndarray] = []
     rings = []
+    # A point on the axis stands for a whole ring: its number is repeated, and its cells become triangles.
     for radius, z in contour:
         start = sum(map(len, points))
         around = angle if radius > 0.0 else angle[:1]
@@ -105,8 +106,10 @@ def twisted_prism(angles: np.ndarray, radii: np.ndarray, z: np.ndarray, twist: n
     """A closed prism whose star-shaped contour turns along z, around a hole.
 
     Args:
-        angles, radii: (n, c) contour of n equal teeth with c points each, counter-clockwise.
-        z, twist: (s,) places along the axis, rising, and the contour's rotation there.
+        angles: (n, c) of the contour of n equal teeth with c points each, counter-clockwise.
+        radii: (n, c) of the contour.
+        z: (s,) places along the axis, rising.
+        twist: (s,) the contour's rotation there.
         inner: radius of the hole, with one point a tooth; 0 for none.
     """
     count, corners = angles.shape
@@ -117,9 +120,18 @@ def twisted_prism(angles: np.ndarray, radii: np.ndarray, z: np.ndarray, twist: n
     index = np.arange(s * size).reshape(s, size)
     following = np.roll(index, -1, axis=1)
     quads = [np.stack([index[:-1], following[:-1], following[1:], index[1:]], -1)]
-    hole = _hole(angles[:, 0], z[[0, -1]], twist[[0, -1]], inner)
+
+    # Points of the hole's edge on both faces, one a tooth, or the two middles of the faces.
+    if inner > 0.0:
+        edge = angles[:, 0] + twist[[0, -1]][:, None]
+        points = [inner * np.cos(edge), inner * np.sin(edge), np.tile(z[[0, -1]][:, None], count)]
+        hole = np.stack(points, -1).reshape(-1, 3)
+    else:
+        hole = np.array([[0.0, 0.0, z[0]], [0.0, 0.0, z[-1]]])
     core = s * size + np.arange(2 * (count if inner > 0.0 else 1)).reshape(2, -1)
     core = np.broadcast_to(core, (2, count))
+
+    # Faces: each tooth a fan from its point of the hole, and the gap to the next tooth.
     triangles = []
     for end, order in ((0, -1), (-1, 1)):  # the left face looks towards -z
         rim = index[end].reshape(count, corners)
@@ -136,15 +148,6 @@ def twisted_prism(angles: np.ndarray, radii: np.ndarray, z: np.ndarray, twist: n
         low, high = core
         quads.append(np.stack([low, high, np.roll(high, -1), np.roll(low, -1)], -1))
     return make_surface(np.concatenate([side.reshape(-1, 3), hole]), quads, triangles)
-
-
-def _hole(angles: np.ndarray, z: np.ndarray, twist: np.ndarray, inner: float) -> np.ndarray:
-    """Points of the hole's edge on both faces, or the two middles of the faces."""
-    if inner <= 0.0:
-        return np.array([[0.0, 0.0, z[0]], [0.0, 0.0, z[1]]])
-    turned = angles + twist[:, None]
-    points = [inner * np.cos(turned), inner * np.sin(turned), np.tile(z[:, None], len(angles))]
-    return np.stack(points, -1).reshape(-1, 3)
 
 
 def ball(radius: float, segments: int) -> Surface:

@@ -12,7 +12,6 @@ import numpy as np
 
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.model.layout.gear_layout import GearLayout
-from rotorgear.model.layout.mesh_layout import Contact
 from rotorgear.model.model import Model
 
 # Grooves of a plain cylinder, and their width in rad and depth relative to the radius, by which its rotation is seen.
@@ -37,6 +36,7 @@ def toothed_contour(geometry: GearGeometry, flank_points: int) -> tuple[np.ndarr
     radius = np.linspace(root, tip, flank_points)
     involute = np.maximum(radius, geometry.base_radius)
     half = np.array([geometry.transverse_thickness(2.0 * r) / (2.0 * r) for r in involute])
+    # Pointed teeth and closed gaps are refused elsewhere, not in a picture: keep a land.
     half = np.clip(half, _LEAST_LAND * pitch, (0.5 - _LEAST_LAND) * pitch)
     angles = np.concatenate([-half, half[::-1]]) + pitch * np.arange(geometry.teeth)[:, None]
     return angles, np.tile(np.concatenate([radius, radius[::-1]]), (geometry.teeth, 1))
@@ -69,22 +69,18 @@ def tooth_phases(model: Model, axes: dict[str, tuple[float, float]]) -> dict[str
     for start in model.gears:
         phases.setdefault(start, 0.0)
         while contact := next((c for c in first if (c.pinion in phases) != (c.gear in phases)), None):
-            _place_mate(model, contact, axes, phases)
+            names = (contact.pinion, contact.gear) if contact.pinion in phases else (contact.gear, contact.pinion)
+            known, new = (model.layout.gear(name) for name in names)
+            here = axes[known.shaft]
+            there = axes[new.shaft]
+            out = math.atan2(there[1] - here[1], there[0] - here[0])
+            pitch, mate_pitch = (2.0 * math.pi / (gear.part.teeth or 1) for gear in (known, new))
+            ahead = (out - phases[known.name] - _turn(known, contact.contact_z)) / pitch
+
+            # The mate turns the other way: what lies a share of the pitch back here lies the same share ahead there.
+            gap = out + math.pi + ahead * mate_pitch
+            phases[new.name] = gap + 0.5 * mate_pitch - _turn(new, contact.contact_z)
     return phases
-
-
-def _place_mate(model: Model, contact: Contact, axes: dict[str, tuple[float, float]], phases: dict[str, float]) -> None:
-    """Set the phase of the mate of a gear that has one."""
-    names = (contact.pinion, contact.gear) if contact.pinion in phases else (contact.gear, contact.pinion)
-    known, new = (model.layout.gear(name) for name in names)
-    here = axes[known.shaft]
-    there = axes[new.shaft]
-    out = math.atan2(there[1] - here[1], there[0] - here[0])
-    pitch, mate_pitch = (2.0 * math.pi / (gear.part.teeth or 1) for gear in (known, new))
-    ahead = (out - phases[known.name] - _turn(known, contact.contact_z)) / pitch
-    # The mate turns the other way: what lies a share of the pitch back here lies the same share ahead there.
-    gap = out + math.pi + ahead * mate_pitch
-    phases[new.name] = gap + 0.5 * mate_pitch - _turn(new, contact.contact_z)
 
 
 def _turn(gear: GearLayout, z: float) -> float:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import ModuleType
-from typing import Any
 
 import numpy as np
 
 from rotorgear.export.files import filling, publish
 from rotorgear.export.polydata import import_pyvista, save_mesh
-from rotorgear.results.tooth_field import ContactField, ToothField, ToothFields
+from rotorgear.results.tooth_field import ToothFields
 
 _README = """Loaded teeth of mesh '{mesh}' at position {position:g} of the mesh period, first helix.
 
@@ -38,9 +36,24 @@ def write_tooth_vtk(fields: ToothFields, directory: str | Path) -> list[Path]:
     with filling(directory) as scratch:
         names = []
         for gear in fields.gears:
+            # Nine nodes an element in the plane, 27 in space: VTK has both orders as they are.
+            kind = pv.CellType.BIQUADRATIC_QUAD if gear.cells.shape[1] == 9 else pv.CellType.TRIQUADRATIC_HEXAHEDRON
+            teeth = pv.UnstructuredGrid({kind: gear.cells}, gear.points)
+            teeth.point_data["displacement"] = gear.displacement
+            teeth.point_data["von_mises"] = gear.von_mises
+            teeth.point_data["largest_principal"] = gear.largest_principal
+            teeth.point_data["tooth"] = gear.tooth
             names.append(f"{gear.name}.vtu")
-            save_mesh(_gear_mesh(pv, gear), scratch / names[-1])
-        save_mesh(_contact_mesh(pv, fields.contact), scratch / "contact.vtp")
+            save_mesh(teeth, scratch / names[-1])
+
+        contact = fields.contact
+        n = len(contact.pair)
+        lines = np.column_stack([np.full(n, 2), np.arange(2 * n).reshape(n, 2)])
+        contact_lines = pv.PolyData(contact.ends.reshape(-1, 3), lines=lines.ravel())
+        for name in ("line_load", "half_width", "pressure", "pair"):
+            contact_lines.cell_data[name] = getattr(contact, name)
+        save_mesh(contact_lines, scratch / "contact.vtp")
+
         text = _README.format(
             mesh=fields.mesh,
             position=fields.position,
@@ -51,22 +64,3 @@ def write_tooth_vtk(fields: ToothFields, directory: str | Path) -> list[Path]:
         )
         (scratch / "README.txt").write_text(text, encoding="utf-8")
         return publish(scratch, Path(directory), [*names, "contact.vtp", "README.txt"])
-
-
-def _gear_mesh(pv: ModuleType, gear: ToothField) -> Any:
-    kind = pv.CellType.BIQUADRATIC_QUAD if gear.cells.shape[1] == 9 else pv.CellType.TRIQUADRATIC_HEXAHEDRON
-    mesh = pv.UnstructuredGrid({kind: gear.cells}, gear.points)
-    mesh.point_data["displacement"] = gear.displacement
-    mesh.point_data["von_mises"] = gear.von_mises
-    mesh.point_data["largest_principal"] = gear.largest_principal
-    mesh.point_data["tooth"] = gear.tooth
-    return mesh
-
-
-def _contact_mesh(pv: ModuleType, contact: ContactField) -> Any:
-    n = len(contact.pair)
-    lines = np.column_stack([np.full(n, 2), np.arange(2 * n).reshape(n, 2)])
-    mesh = pv.PolyData(contact.ends.reshape(-1, 3), lines=lines.ravel())
-    for name in ("line_load", "half_width", "pressure", "pair"):
-        mesh.cell_data[name] = getattr(contact, name)
-    return mesh

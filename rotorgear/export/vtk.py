@@ -64,7 +64,11 @@ def write_vtk(
         raise AnalysisError(f"an animation needs at least 2 frames, got {frames}")
     pv = import_pyvista("VTK output")
     solids = build_solids(result.model, result.nodes)
-    plain = _with_names(solids_mesh(pv, solids), solids, result)
+    plain = solids_mesh(pv, solids)
+    add_texts(plain, "part_names", solids.part_names)
+    add_texts(plain, "kind_names", solids.kind_names)
+    add_texts(plain, "shaft_names", solids.shaft_names)
+    add_texts(plain, "title", [result.model.title])
     target = Path(directory)
     with filling(target) as scratch:
         save_mesh(plain, scratch / "model.vtp")
@@ -77,7 +81,12 @@ def write_vtk(
         (scratch / "index.pvd").write_text(collection(index), encoding="utf-8")
         (scratch / "README.txt").write_text(readme(result, chosen, frames), encoding="utf-8")
         written = publish(scratch, target, [*names, "index.pvd", "README.txt"])
-        _remove_old_frames(target, chosen, set(written))
+
+        # Frames that an earlier run left beside the new ones of the same modes would be played among them.
+        for mode in chosen:
+            for path in (target / f"mode_{mode + 1:02d}").glob("phase_*.vtp"):
+                if path not in written:
+                    path.unlink()
     progress(1.0, "done")
     return written
 
@@ -124,34 +133,21 @@ def _write_mode(
     """Write one mode to the temporary folder and return the names of its files, what refers to others last."""
     motion = Motion(*solids.scaled(result.shapes[:, :, mode], amplitude))
     name = f"mode_{mode + 1:02d}"
-    save_mesh(_mode_mesh(result, plain, mode, motion), scratch / f"{name}.vtp")
-    (scratch / name).mkdir()
-    steps = write_frames(pv, solids, plain, motion, frames, scratch, name)
-    (scratch / f"{name}.pvd").write_text(collection(steps), encoding="utf-8")
-    return [*dict.fromkeys(file for _, file in steps), f"{name}.vtp", f"{name}.pvd"]
-
-
-def _with_names(mesh: Any, solids: Solids, result: ModalResult) -> Any:
-    add_texts(mesh, "part_names", solids.part_names)
-    add_texts(mesh, "kind_names", solids.kind_names)
-    add_texts(mesh, "shaft_names", solids.shaft_names)
-    add_texts(mesh, "title", [result.model.title])
-    return mesh
-
-
-def _mode_mesh(result: ModalResult, plain: Any, mode: int, motion: Motion) -> Any:
-    mesh = plain.copy(deep=False)
-    raw = motion.scaled / motion.scale
-    for name, values in (("displacement", motion.scaled), ("mass_normalised", raw)):
-        mesh.point_data[f"{name}_real"] = values.real.astype(np.float32)
-        mesh.point_data[f"{name}_imag"] = values.imag.astype(np.float32)
+    mesh = plain.copy(deep=False)  # the same points and cells, but data of its own
+    for label, values in (("displacement", motion.scaled), ("mass_normalised", motion.scaled / motion.scale)):
+        mesh.point_data[f"{label}_real"] = values.real.astype(np.float32)
+        mesh.point_data[f"{label}_imag"] = values.imag.astype(np.float32)
     mesh.field_data["mode"] = np.array([mode + 1], dtype=np.int32)
     mesh.field_data["displacement_scale"] = np.array([motion.scale])
     mesh.field_data["frequency_hz"] = result.frequency_hz[[mode]]
     mesh.field_data["natural_frequency_hz"] = result.natural_frequency_hz[[mode]]
     mesh.field_data["damping_ratio"] = result.damping_ratio[[mode]]
     add_texts(mesh, "description", [result.description[mode]])
-    return mesh
+    save_mesh(mesh, scratch / f"{name}.vtp")
+    (scratch / name).mkdir()
+    steps = write_frames(pv, solids, plain, motion, frames, scratch, name)
+    (scratch / f"{name}.pvd").write_text(collection(steps), encoding="utf-8")
+    return [*dict.fromkeys(file for _, file in steps), f"{name}.vtp", f"{name}.pvd"]
 
 
 def write_frames(
@@ -182,11 +178,3 @@ def _rounded(values: np.ndarray, step: float) -> np.ndarray:
     """Multiples of the power of two next to a step, so that the last bits are 0, in single precision."""
     grid = 2.0 ** round(math.log2(step))
     return (np.round(values / grid) * grid).astype(np.float32)
-
-
-def _remove_old_frames(target: Path, chosen: list[int], written: set[Path]) -> None:
-    """Remove frames that an earlier run left beside the new ones of the same modes."""
-    for mode in chosen:
-        for path in (target / f"mode_{mode + 1:02d}").glob("phase_*.vtp"):
-            if path not in written:
-                path.unlink()

@@ -31,8 +31,11 @@ def write_branch(
     phase that goes on smoothly from the speed before, and frequency, log decrement and speed in the field data.
 
     Args:
-        result: branches over speed. directory: folder to write to; made if need be. branch: which, counted from 0.
-        amplitude: largest displacement shown, as a share of the size of the model. progress: is told fraction and step.
+        result: branches over speed.
+        directory: folder to write to; made if need be.
+        branch: which, counted from 0.
+        amplitude: largest displacement shown, as a share of the size of the model.
+        progress: is told fraction and step.
 
     Raises:
         AnalysisError: a branch that the result does not have, an amplitude that is not positive.
@@ -72,10 +75,13 @@ def write_branch(
 
 def smooth_shapes(result: CampbellResult, branch: int) -> Sequence[tuple[int, np.ndarray]]:
     """(number of the speed, shape (p, 6)) of a branch where it oscillates, each in phase with the one before."""
-    found: list[tuple[int, np.ndarray]] = []
+    shapes: list[tuple[int, np.ndarray]] = []
     for k in np.flatnonzero(np.isfinite(result.eigenvalues[:, branch])):
         shape = result.basis @ result.coordinates[k, :, branch]
-        other = found[-1][1] if found else np.conj(shape[np.unravel_index(np.argmax(np.abs(shape)), shape.shape)])
-        turn = np.vdot(shape, other) if found else other
-        found.append((int(k), shape * (turn / abs(turn) if turn else 1.0)))
-    return found
+        # The phase of an eigenvector is free: the first shape has its largest component real, each other follows the one before.
+        if shapes:
+            turn = np.vdot(shape, shapes[-1][1])
+        else:
+            turn = np.conj(shape[np.unravel_index(np.argmax(np.abs(shape)), shape.shape)])
+        shapes.append((int(k), shape * (turn / abs(turn) if turn else 1.0)))
+    return shapes

@@ -42,7 +42,8 @@ def write_deflections(
         progress: callable that is told fraction and step.
 
     Raises:
-        AnalysisError: an amplitude that is not positive. MissingExtraError: pyvista is not installed.
+        AnalysisError: an amplitude that is not positive.
+        MissingExtraError: pyvista is not installed.
         WriteError: the folder can't be written.
     """
     check_amplitude(amplitude)
@@ -54,22 +55,18 @@ def write_deflections(
     add_texts(plain, "title", [result.model.title])
     with filling(directory) as scratch:
         if isinstance(result, StaticResult):
-            names = [_write_static(result, solids, plain, amplitude, scratch)]
+            scaled, scale = solids.scaled(result.displacement, amplitude)
+            mesh = plain.copy(deep=False)
+            mesh.point_data["displacement"] = scaled.astype(np.float32)
+            mesh.point_data["displacement_m"] = (scaled / scale).astype(np.float32)
+            mesh.field_data["displacement_scale"] = np.array([scale])
+            save_mesh(mesh, scratch / "static.vtp")
+            names = ["static.vtp"]
         else:
             names = list(_write_orders(pv, result, solids, plain, amplitude, scratch, progress))
         written = publish(scratch, Path(directory), names)
     progress(1.0, "done")
     return written
-
-
-def _write_static(result: StaticResult, solids: Solids, plain: Any, amplitude: float | None, scratch: Path) -> str:
-    scaled, scale = solids.scaled(result.displacement, amplitude)
-    mesh = plain.copy(deep=False)
-    mesh.point_data["displacement"] = scaled.astype(np.float32)
-    mesh.point_data["displacement_m"] = (scaled / scale).astype(np.float32)
-    mesh.field_data["displacement_scale"] = np.array([scale])
-    save_mesh(mesh, scratch / "static.vtp")
-    return "static.vtp"
 
 
 def _write_orders(

@@ -31,7 +31,8 @@ def write_motion(
         progress: callable that is told fraction and step.
 
     Raises:
-        AnalysisError: no motion was kept, or an amplitude that is not positive. MissingExtraError: pyvista is not installed.
+        AnalysisError: no motion was kept, or an amplitude that is not positive.
+        MissingExtraError: pyvista is not installed.
         WriteError: the folder can't be written.
     """
     check_amplitude(amplitude)
