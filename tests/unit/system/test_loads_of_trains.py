@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from tests.contract.small_models import lumped_gear
+from rotorgear.system.system import System
+from tests.contract.small_models import lumped_gear, lumped_pair
 
 RADII = {"a": 0.05, "b": 0.12, "c": 0.03, "d": 0.1}  # one - two - three
 SPEED = 150.0
@@ -99,3 +100,19 @@ def test_the_weight_of_a_shaft_is_carried_by_its_bearings_by_their_levers(count:
     right = (weights[0] * 0.3 + weights[1] * 0.8) / 0.8
     assert held["right"][1] == pytest.approx(right, rel=1e-6)
     assert held["left"][1] == pytest.approx(sum(weights) - right, rel=1e-6)
+
+
+@pytest.mark.parametrize(("driver", "radius"), [("one", 0.06), ("two", 0.15)])
+def test_the_mean_force_of_a_helical_mesh_is_torque_over_its_arm_whichever_gear_is_given_the_torque(
+    driver: str, radius: float
+) -> None:
+    other = {"one": "two", "two": "one"}[driver]
+    model = lumped_pair(
+        lumped_gear("one", 0.06, "right"),
+        lumped_gear("two", 0.15, "left"),
+        {},
+        operation={"input_shaft": driver, "output_shaft": other, "torque": 100.0, "speed": 50.0},
+    )
+    (force,) = System(model).load.forces
+    assert force.normal_force == pytest.approx(100.0 / (radius * math.cos(0.4)), rel=1e-9)
+    assert force.pinion_drives is (driver == "one")

@@ -94,3 +94,41 @@ def test_a_steady_transient_is_the_response_in_amplitude_and_phase(driver: str, 
         operation__torque="300 N m",
     )
     assert_agree(model, sense * 300.0 * (1.0 if driver == "one" else 24.0 / 36.0), 4, 0.02)
+
+
+@pytest.mark.parametrize("driver", ["one", "two"])
+def test_a_corner_impact_stands_at_the_same_place_of_the_mesh_cycle_in_both(driver: str) -> None:
+    model = herringbone(
+        operation__input_shaft=driver,
+        operation__output_shaft={"one": "two", "two": "one"}[driver],
+        operation__torque="300 N m",
+        meshes__pair__transmission_error=[],
+        meshes__pair__corner_impact={"force": "50 N", "duration": 0.7, "at": 0.2},
+        unbalances={},
+    )
+    linear = rg.response(model, speeds=[300.0], elements=1, method="direct")
+    strongest = int(np.argmax(np.abs(linear.mesh_force[:, 0]).max(axis=1)))
+    result = rg.transient(
+        model,
+        speed=300.0,
+        time=0.03,
+        discard=0.1,
+        steps=100,
+        records=50,
+        method="newmark",
+        elements=1,
+        error_estimate=False,
+    )
+    found = amplitudes(result, result.mesh_force, linear.frequency_hz[:, 0])[strongest]
+    expected = linear.mesh_force[strongest, 0]
+    assert np.abs(found - expected).max() < 0.02 * np.abs(expected).max()
+
+
+def test_a_small_variation_of_the_stiffness_acts_with_its_phase_in_both() -> None:
+    model = herringbone(
+        operation__torque="300 N m",
+        meshes__pair__transmission_error=[],
+        meshes__pair__stiffness_variation=[{"harmonic": 1, "amplitude": 1e-3, "phase": "65 deg"}],
+        unbalances={},
+    )
+    assert_agree(model, 300.0, 1, 0.02)
