@@ -20,8 +20,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
+from rotorgear.solvers.contact.gap_contact import contact, momentum
 from rotorgear.solvers.contact.kinds import ADHESIVE, BILATERAL, DEAD_ZONE, NON_ADHESIVE, PENETRATION, UNILATERAL
-from rotorgear.solvers.lanes.columns import ERROR, PUSH, SLOPE, STIFFNESS, TABLE_ROWS, Column
+from rotorgear.solvers.lanes.columns import ERROR, SLOPE, STIFFNESS, TABLE_ROWS, Column
+from rotorgear.solvers.lanes.columns import PUSH as PUSH_ROW
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 # The words of model files, and the kinds of contact and damping that compiled code branches on.
@@ -32,27 +34,51 @@ _PARTING = 3
 # Coefficients of a tabulated stiffness below this share of the largest do not count as harmonics.
 _SMALL = 0.02
 _MOST_HARMONICS = 10
-_HEAD = 16
 _TURN = 2.0 * pi
+# Nearer than this share of a cycle to the start of a piece is on it.
+_ON_JUMP = 1e-9
+# Places of the parameters, which tables follow: cosine and sine of each harmonic of k, then of e, then the pieces of k.
+(
+    K,
+    C,
+    BACKLASH,
+    GAP,
+    MODE,
+    PER_DEPTH,
+    ORDER,
+    PHASE,
+    HARMONICS_K,
+    HARMONICS_E,
+    PIECES,
+    E_MEAN,
+    PUSH,
+    PUSH_SHARE,
+    PUSH_PHASE,
+    TABLES,
+) = range(16)
+# Places of the state: k, its rate, e, its rate, impact.
+K_NOW, K_RATE, E_NOW, E_RATE, PUSH_NOW = range(5)
+# A piece of k: its start as a share of the mesh cycle, its first and its last value.
+START, FIRST, LAST = range(3)
+PIECE = 3
 
 
 @schedule_function
 def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     """Fill k, k', e, e', impact."""
-    rate = p[6] * speed
-    phase = p[6] * angle + p[7]
-    nk = int(p[8])
-    ne = int(p[9])
-    pieces = int(p[10])
+    rate = p[ORDER] * speed
+    phase = p[ORDER] * angle + p[PHASE]
+    pieces = int(p[PIECES])
     c1 = np.cos(phase)
     s1 = np.sin(phase)
-    place = 16
+    place = TABLES
     for which in range(2):
         value = 0.0
         slope = 0.0
         cn = 1.0
         sn = 0.0
-        for n in range(1, (nk if which == 0 else ne) + 1):
+        for n in range(1, int(p[HARMONICS_K] if which == 0 else p[HARMONICS_E]) + 1):
+            # cos(n p), sin(n p) by the addition theorem, for a call of both costs more than the rest of the loop.
             cn, sn = cn * c1 - sn * s1, sn * c1 + cn * s1
             a = p[place]
             b = p[place + 1]
@@ -60,91 +86,49 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
             slope += n * (b * cn - a * sn)
             place += 2
         if which == 0:
-            s[0] = p[0] * (1.0 + value)
-            s[1] = p[0] * slope * rate
+            s[K_NOW] = p[K] * (1.0 + value)
+            s[K_RATE] = p[K] * slope * rate
         else:
-            s[2] = p[11] + value
-            s[3] = slope * rate
+            s[E_NOW] = p[E_MEAN] + value
+            s[E_RATE] = slope * rate
     if pieces > 0:
-        share = phase / 6.283185307179586
+        share = phase / _TURN
         share -= np.floor(share)
-        if share > 1.0 - 1e-9:
+        if share > 1.0 - _ON_JUMP:
             share -= 1.0
-        base = place
         i = 0
-        while i < pieces - 1 and share >= p[base + 3 * (i + 1)] - 1e-9:
+        while i < pieces - 1 and share >= p[place + PIECE * (i + 1) + START] - _ON_JUMP:
             i += 1
-        left = p[base + 3 * i]
-        right = p[base + 3 * (i + 1)] if i < pieces - 1 else 1.0
-        rise = p[base + 3 * i + 2] - p[base + 3 * i + 1]
-        value = p[base + 3 * i + 1] + rise * (share - left) / (right - left)
-        if abs(share - left) <= 1e-9:  # on a jump: the mean of both sides, which keeps the order of an implicit method
-            value = 0.5 * (p[base + 3 * i + 1] + p[base + 3 * ((i + pieces - 1) % pieces) + 2])
-        s[0] = p[0] * value
-        s[1] = p[0] * rise / (right - left) * rate / 6.283185307179586
-    s[4] = 0.0
-    if p[12] != 0.0:
-        share = phase / 6.283185307179586 + p[14]
+        own = place + PIECE * i
+        length = (p[own + PIECE + START] if i < pieces - 1 else 1.0) - p[own + START]
+        rise = p[own + LAST] - p[own + FIRST]
+        value = p[own + FIRST] + rise * (share - p[own + START]) / length
+        if abs(share - p[own + START]) <= _ON_JUMP:
+            # On a jump: the mean of both sides, which keeps the order of an implicit method.
+            value = 0.5 * (p[own + FIRST] + p[place + PIECE * ((i + pieces - 1) % pieces) + LAST])
+        s[K_NOW] = p[K] * value
+        s[K_RATE] = p[K] * rise / length * rate / _TURN
+    s[PUSH_NOW] = 0.0
+    if p[PUSH] != 0.0:
+        share = phase / _TURN + p[PUSH_PHASE]
         share -= np.floor(share)
-        if share < p[13]:
-            s[4] = p[12] * np.sin(3.141592653589793 * share / p[13])
+        if share < p[PUSH_SHARE]:
+            s[PUSH_NOW] = p[PUSH] * np.sin(pi * share / p[PUSH_SHARE])
 
 
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Force along the line of contact, positive when the working flanks are pressed."""
-    c = p[1]
-    backlash = p[2]
-    gap = int(p[3])
-    mode = int(p[4])
-    ramp = p[5]
-    k = s[0]
-    dk = s[1]
-    de = s[3]
-    x = d[0] - s[2]
-    rate = v[0] - de
-    side = 0.0
-    depth = 0.0
-    if gap == 2 or x > 0.0:
-        side = 1.0
-        depth = x
-    elif gap == 0 and x < -backlash:
-        side = -1.0
-        depth = -x - backlash
-    F[0] = s[4]
-    Kd[0] = 0.0
-    Kv[0] = 0.0
-    energy[0] = 0.0
-    energy[1] = -s[4] * v[0]
-    energy[2] = 0.0
-    energy[3] = side
-    if side == 0.0:
-        return
-    elastic = k * depth
-    viscous = 0.0
-    in_depth = k
-    in_rate = 0.0
-    if c != 0.0:
-        closing = side * rate
-        share = 1.0
-        slope = 0.0
-        if gap != 2 and (mode == 2 or depth < ramp):
-            share = depth / ramp
-            slope = 1.0 / ramp
-        viscous = c * share * closing
-        if mode != 1 and gap != 2 and elastic + viscous < 0.0:
-            viscous = -elastic
-            in_depth = 0.0
-        else:
-            in_depth += c * slope * closing
-            in_rate = c * share
-    total = side * (elastic + viscous)
-    F[0] += total
-    Kd[0] = in_depth
-    Kv[0] = in_rate
-    energy[0] = 0.5 * k * depth * depth
-    energy[1] += 0.5 * dk * depth * depth - total * de
-    energy[2] = side * viscous * rate
+    k = s[K_NOW]
+    rate = v[0] - s[E_RATE]
+    now = contact(int(p[GAP]), int(p[MODE]), k, p[C], p[BACKLASH], p[PER_DEPTH], d[0] - s[E_NOW], rate)
+    F[0] = s[PUSH_NOW] + now.force
+    Kd[0] = now.stiffness
+    Kv[0] = now.damping
+    energy[0] = 0.5 * k * now.depth * now.depth
+    energy[1] = 0.5 * s[K_RATE] * now.depth * now.depth - now.force * s[E_RATE] - s[PUSH_NOW] * v[0]
+    energy[2] = now.resisted * now.side * rate
+    energy[3] = now.side
 
 
 @dataclass(frozen=True)
@@ -207,10 +191,10 @@ class MeshContact(ForceLaw):
         head = [
             self.stiffness,
             self.damping,
-            self.backlash,
+            self._clearance,
             GAPS[self.gap],
             DAMPINGS[self.contact_damping],
-            self.ramp,
+            1.0 / self.ramp,
             self.order,
             self.phase,
             len(k) // 2,
@@ -220,7 +204,6 @@ class MeshContact(ForceLaw):
             self.impact,
             self.impact_share,
             self.impact_phase,
-            0.0,
         ]
         return np.array([*head, *k, *e, *(x for piece in self.pieces for x in piece)], dtype=float)
 
@@ -231,6 +214,11 @@ class MeshContact(ForceLaw):
     def reference_stiffness(self) -> np.ndarray:
         """The mean stiffness; nothing for a flank that is mostly open."""
         return self.closed_stiffness() if self.expanded else np.zeros((1, 1))
+
+    @property
+    def _clearance(self) -> float:
+        """Backlash; without end where there is no back flank."""
+        return np.inf if self.gap == "unilateral" else self.backlash
 
     def _mean_stiffness(self) -> float:
         mean = 1.0
@@ -268,6 +256,15 @@ class MeshContact(ForceLaw):
             highest.append(int(np.ceil(1.0 / self.impact_share)))
         return (Repeats(abs(self.order), max(highest)),)
 
+    def impulse(self, d: Any, *, angle: float = 0.0) -> np.ndarray:
+        """c times the integral of the damping's share over the approach d - e, where damping sets in with contact."""
+        if self.gap == "bilateral" or self.contact_damping == "penetration":
+            return np.zeros(1)
+        state = np.zeros(self.state_size())
+        schedule(angle, 0.0, 0.0, self.parameters(), state)
+        x = float(np.ravel(d)[0]) - float(state[E_NOW])
+        return np.array([self.damping * momentum(self._clearance, self.ramp, 1.0 / self.ramp, x).integral])
+
     def columns(self, speed: float = 1.0) -> tuple[Column, ...]:
         """The contact, in whole vector registers."""
         return (
@@ -276,7 +273,7 @@ class MeshContact(ForceLaw):
                 DAMPINGS[self.contact_damping],
                 self._mean_stiffness(),
                 self.damping,
-                np.inf if self.gap == "unilateral" else self.backlash,
+                self._clearance,
                 self.ramp,
                 self.impact,
                 counted=True,
@@ -291,7 +288,7 @@ class MeshContact(ForceLaw):
         found[:, 0, STIFFNESS] = k / mean if mean else 1.0
         found[:, 0, ERROR] = e
         found[:, 0, SLOPE] = slope / order
-        found[:, 0, PUSH] = push / self.impact if self.impact else 0.0
+        found[:, 0, PUSH_ROW] = push / self.impact if self.impact else 0.0
         return found
 
     def table_key(self) -> bytes:

@@ -20,59 +20,71 @@ import numpy as np
 
 from rotorgear.forces import mesh_contact
 from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
-from rotorgear.forces.mesh_contact import MeshContact
+from rotorgear.forces.mesh_contact import ORDER, PHASE, MeshContact
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
-_HEAD = 16
 _SLICES = 9
 _STATE = 5
 _normal_schedule = mesh_contact.schedule
 _normal_force = mesh_contact.force
 
 
+# Places of the parameters, after which those of the contact follow.
+(
+    BASE_PITCH,
+    PATH_START,
+    PATH_END,
+    OVERLAP,
+    SLICES,
+    COEFFICIENT,
+    VISCOSITY,
+    LINE_LOAD,
+    CLOSING,
+    ROLLING,
+    SMOOTH,
+    CONTACT,
+) = range(12)
+# Places of the state after that of the contact: W, the number of places of contact, and for each of those xi and mu.
+W, COUNT, PLACES = range(_STATE, _STATE + 3)
+# Places of contact at once in a slice, and the first and the second part of each.
+MOST, XI, MU = 4, 0, 1
+PLACE = 2
+_TURN = 2.0 * np.pi
+# Benedict and Kelley's mu = 0.0127 log10(29.66 ...) is held between nothing and this.
+_LARGEST_MU = 0.2
+
+
 @schedule_function
 def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
-    """Fill the state of the contact, W, and for each place of contact xi and its share of mu N."""
-    _normal_schedule(angle, speed, time, p[16:], s[:5])
-    pitch = p[0]
-    start = p[1]
-    end = p[2]
-    overlap = p[3]
-    slices = int(p[4])
-    mu = p[5]
-    viscosity = p[6]
-    line_load = p[7]
-    closing = p[8]
-    rolling = p[9]
-    s[5] = closing * speed
-    cycle = p[16 + 6] * angle + p[16 + 7]
-    total = 0.0
+    """Fill the state of the contact, W, and for each place of contact xi and its coefficient of friction."""
+    _normal_schedule(angle, speed, time, p[CONTACT:], s[:_STATE])
+    pitch = p[BASE_PITCH]
+    slices = int(p[SLICES])
+    s[W] = p[CLOSING] * speed
+    cycle = p[CONTACT + ORDER] * angle + p[CONTACT + PHASE]
+    count = 0.0
     for i in range(slices):
-        late = overlap * ((i + 0.5) / slices - 0.5)
-        share = cycle / 6.283185307179586 - late
+        late = p[OVERLAP] * ((i + 0.5) / slices - 0.5)
+        share = cycle / _TURN - late
         first = pitch * (share - np.floor(share))
-        while first - pitch >= start:
+        while first - pitch >= p[PATH_START]:
             first -= pitch
-        count = 0
-        for j in range(4):
-            s[7 + 8 * i + 2 * j] = 0.0
-            s[8 + 8 * i + 2 * j] = 0.0
+        for j in range(MOST):
+            own = PLACES + PLACE * (MOST * i + j)
             xi = first + j * pitch
-            if start <= xi <= end:
-                count += 1
-                s[7 + 8 * i + 2 * j] = xi
-                s[8 + 8 * i + 2 * j] = 1.0
-        for j in range(4):
-            if s[8 + 8 * i + 2 * j] > 0.0:
-                coefficient = mu
-                if viscosity > 0.0:
-                    slide = max(abs(s[7 + 8 * i + 2 * j] * s[5]), p[10])
-                    roll = max(abs(rolling * speed), p[10])
-                    x = 29.66 * line_load / (viscosity * slide * roll * roll)
-                    coefficient = min(max(0.0127 * np.log10(max(x, 1.0)), 0.0), 0.2)
-                s[8 + 8 * i + 2 * j] = coefficient
-        total += count
-    s[6] = total
+            s[own + XI] = 0.0
+            s[own + MU] = 0.0
+            if not p[PATH_START] <= xi <= p[PATH_END]:
+                continue
+            count += 1
+            s[own + XI] = xi
+            s[own + MU] = p[COEFFICIENT]
+            if p[VISCOSITY] > 0.0:
+                slide = max(abs(xi * s[W]), p[SMOOTH])
+                roll = max(abs(p[ROLLING] * speed), p[SMOOTH])
+                x = 29.66 * p[LINE_LOAD] / (p[VISCOSITY] * slide * roll * roll)
+                s[own + MU] = min(max(0.0127 * np.log10(max(x, 1.0)), 0.0), _LARGEST_MU)
+    s[COUNT] = count
 
 
 @force_function
@@ -87,39 +99,40 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     kd = np.zeros(1)
     kv = np.zeros(1)
     e = np.zeros(4)
-    _normal_force(p[16:], s[:5], d[:1], v[:1], n, kd, kv, e)
+    _normal_force(p[CONTACT:], s[:_STATE], d[:1], v[:1], n, kd, kv, e)
     energy[0] = 0.0
     energy[1] = 0.0
     energy[2] = 0.0
     energy[3] = e[3]
-    if s[6] == 0.0:
+    if s[COUNT] == 0.0:
         return
     N = abs(n[0])
     sign = 1.0 if n[0] >= 0.0 else -1.0
-    for i in range(int(p[4])):
-        for j in range(4):
-            mu = s[8 + 8 * i + 2 * j]
-            if mu == 0.0:
-                continue
-            xi = s[7 + 8 * i + 2 * j]
-            driven = xi * s[5]
-            slide = driven + v[1] + xi * v[2]
-            t = np.tanh(slide / p[10])
-            one = mu * N / s[6]
-            own = one * t
-            slope = one * (1.0 - t * t) / p[10]
-            F[1] += own
-            F[2] += xi * own
-            Kv[4] += slope
-            Kv[5] += xi * slope
-            Kv[7] += xi * slope
-            Kv[8] += xi * xi * slope
-            Kd[3] += mu / s[6] * t * sign * kd[0]
-            Kd[6] += xi * mu / s[6] * t * sign * kd[0]
-            Kv[3] += mu / s[6] * t * sign * kv[0]
-            Kv[6] += xi * mu / s[6] * t * sign * kv[0]
-            energy[1] += own * driven
-            energy[2] += own * slide
+    for i in range(MOST * int(p[SLICES])):
+        own = PLACES + PLACE * i
+        mu = s[own + MU]
+        if mu == 0.0:
+            continue
+        xi = s[own + XI]
+        driven = xi * s[W]
+        slide = driven + v[1] + xi * v[2]
+        t = np.tanh(slide / p[SMOOTH])
+        largest = mu * N / s[COUNT]
+        friction = largest * t
+        slope = largest * (1.0 - t * t) / p[SMOOTH]
+        F[1] += friction
+        F[2] += xi * friction
+        Kv[4] += slope
+        Kv[5] += xi * slope
+        Kv[7] += xi * slope
+        Kv[8] += xi * xi * slope
+        in_normal = mu / s[COUNT] * t * sign
+        Kd[3] += in_normal * kd[0]
+        Kd[6] += xi * in_normal * kd[0]
+        Kv[3] += in_normal * kv[0]
+        Kv[6] += xi * in_normal * kv[0]
+        energy[1] += friction * driven
+        energy[2] += friction * slide
 
 
 @dataclass(frozen=True)
@@ -165,7 +178,7 @@ class MeshFriction(ForceLaw):
 
     def state_size(self) -> int:
         """State of the contact, W, number of contacts, and for each (xi, mu)."""
-        return _STATE + 2 + 8 * self.slices
+        return PLACES + PLACE * MOST * self.slices
 
     def parameters(self) -> np.ndarray:
         """Own parameters in a head, then those of the contact."""
@@ -182,7 +195,7 @@ class MeshFriction(ForceLaw):
             self.rolling,
             self.smooth,
         ]
-        return np.concatenate([head, np.zeros(_HEAD - len(head)), self.contact.parameters()])
+        return np.concatenate([head, self.contact.parameters()])
 
     def mean(self) -> MeshFriction:
         """Nothing remains: over a mesh cycle approach and recess cancel nearly."""

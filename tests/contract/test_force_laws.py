@@ -11,6 +11,7 @@ import pytest
 from rotorgear.errors import AnalysisError
 from rotorgear.forces import registry
 from rotorgear.forces.law import ForceLaw
+from rotorgear.solvers.lanes.columns import OWN_LAW, PRESCRIBED, Columns
 
 LAWS = [(f"{name} {i}", law) for name in registry.names() for i, law in enumerate(registry.law_of(name).examples())]
 TIME = 3.7e-4
@@ -165,6 +166,63 @@ def test_what_repeats_is_the_same_after_whole_periods_and_differs_between(name: 
         assert any(np.abs(other - force(0.0)).max() > 1e-9 * np.abs(other).max() for other in others)
     if not turns:
         assert np.array_equal(force(1.0), force(0.0))
+
+
+@pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
+def test_the_elastic_force_is_the_gradient_of_the_stored_energy(name: str, law: ForceLaw) -> None:
+    if not law.passive:
+        return
+    still = law.mean()
+    for d, _ in motions(law):
+        for step in 1e-9 * np.eye(law.components):
+            rise = (still.evaluate(d + step).stored - still.evaluate(d - step).stored) / 2e-9
+            force = still.evaluate(d).force
+            assert force @ (step / 1e-9) == pytest.approx(rise, rel=1e-5, abs=1e-6 * np.abs(force).max())
+
+
+@pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
+def test_the_impulse_is_the_integral_of_the_damping_force_whatever_the_velocity(name: str, law: ForceLaw) -> None:
+    end = np.full(law.components, 5e-5)
+    expected = law.impulse(end, angle=ANGLE)
+    if not np.any(expected):
+        return
+    for rate in (1e-3, 0.1):
+        d = np.linspace(-1e-5, 5e-5, 60001)[:, None] * np.ones(law.components)  # from between the sides into contact
+        moving = law.evaluate_many(d, rate, angle=ANGLE).force - law.evaluate_many(d, 0.0, angle=ANGLE).force
+        assert np.trapezoid(moving, dx=1e-9 / rate, axis=0) == pytest.approx(expected, rel=1e-4)
+
+
+def test_damping_that_sets_in_with_contact_has_an_impulse() -> None:
+    contact = registry.law_of("mesh_contact").examples()[0]
+    assert contact.impulse(5e-5)[0] > 0.0 > contact.impulse(-9e-5)[0]
+    assert contact.impulse(-1e-5)[0] == 0.0
+
+
+@pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
+def test_in_lanes_a_law_is_what_it_is_alone(name: str, law: ForceLaw) -> None:
+    from rotorgear.solvers.contact.vectors import LANES
+    from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, SIDE, contacts
+
+    columns = Columns.of(law.columns(SPEED)).scaled(SPEED)
+    if np.all(columns.kind == OWN_LAW):
+        return  # run by the same compiled function, tested in test_sweep_laws.py
+    k = law.components
+    state = np.zeros(law.state_size())
+    law.functions()[0](ANGLE, 1.0, 0.0, law.parameters(), state)
+    table = law.table(np.array([ANGLE]), state[None], 1.0)[0]
+    moved = motions(law, LANES)
+    d, found, F, used = (np.zeros((rows, LANES)) for rows in (2 * k, FOUND * k, k, k))
+    d[0::2] = np.array([one for one, _ in moved]).T
+    d[1::2] = np.array([rate for _, rate in moved]).T / SPEED
+    in_lanes = [np.repeat(each[:, :, None], LANES, axis=2) for each in (columns.values, table)]
+    contacts(columns.kind, columns.mode, *in_lanes, 1.0, d, F, found.reshape(k, FOUND, LANES), used)
+    for lane, (one, rate) in enumerate(moved):
+        alone = law.evaluate(one, rate, angle=ANGLE, speed=SPEED)
+        assert SPEED**2 * F[:, lane] == pytest.approx(alone.force, rel=1e-12)
+        if np.all(columns.kind < PRESCRIBED):
+            assert SPEED**2 * found[IN_D, lane] == pytest.approx(alone.in_displacement[0, 0], rel=1e-12)
+            assert SPEED * found[IN_V, lane] == pytest.approx(alone.in_velocity[0, 0], rel=1e-12)
+            assert found[SIDE, lane] == alone.contact
 
 
 def test_an_unknown_law_is_answered_with_those_that_exist() -> None:

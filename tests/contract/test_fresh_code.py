@@ -6,12 +6,14 @@ source that the computing module imports.
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from rotorgear.fingerprint import PACKAGE, imported_files, with_imports
@@ -36,6 +38,30 @@ print(repr(float(gear_compliance(key).flexibility.max())))
 """
 
 
+# What one contact does in lanes, as a trajectory, by Newmark's method, and at rest.
+EVERYWHERE = """
+from fractions import Fraction
+import numpy as np
+from rotorgear.analysis.sweep.point import ready, still, table_of
+from rotorgear.forces.mesh_contact import MeshContact
+from rotorgear.solvers.lanes.lanes import Plan, Start, run_block
+from rotorgear.solvers.lanes.trajectory import recorded
+from rotorgear.solvers.time.contact_equilibrium import equilibrium
+from validation.oscillators import integrate, local_system
+law = MeshContact(3.0, 0.2, 0.5, ramp=0.05, order=1.0, error_cos=(0.1,))
+system = local_system(np.eye(1), np.zeros((1, 1)), np.eye(1), [0.4], [(law, [1.0])], speed=0.9)
+point = ready(still(system, [Fraction(1)], ("contact",)), 0.9)
+table = table_of(point, 50)
+start = Start(np.array([0.2]), np.zeros(1))
+print(repr([
+    float(run_block([point.system], [start], [table], Plan(50, 0, 1, 0))[0].section[-1, 0, 0]),
+    float(recorded(point.system, start, table, 50, 1)[-1, 0, 0]),
+    float(integrate(system, "average acceleration", 0.1, 20, [0.2], [0.0]).q[-1][0]),
+    float(equilibrium(system).q[0]),
+]))
+"""
+
+
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
     """The package and the helpers of its tests in a folder of their own, with a cache of their own."""
@@ -45,14 +71,18 @@ def copy(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def answer(copy: Path, program: str) -> float:
+def answers(copy: Path, program: str) -> str:
     environment = {**os.environ, "PYTHONPATH": str(copy), "ROTORGEAR_CACHE": str(copy / "cache")}
     environment.pop("NUMBA_CACHE_DIR", None)
     run = subprocess.run(
         [sys.executable, "-c", program], cwd=copy, env=environment, capture_output=True, text=True, check=False
     )
     assert run.returncode == 0, run.stderr
-    return float(run.stdout)
+    return run.stdout
+
+
+def answer(copy: Path, program: str) -> float:
+    return float(answers(copy, program))
 
 
 def change(copy: Path, file: str, old: str, new: str) -> None:
@@ -72,6 +102,14 @@ def test_a_change_of_an_inlined_function_reaches_the_compiled_loop(copy: Path) -
         "                F[i] = 2.0 * trial[i]",
     )
     assert answer(copy, INTEGRATE) != pytest.approx(before, rel=1e-3)
+
+
+@pytest.mark.long  # compiles all loops anew
+def test_the_contact_formula_stands_once_for_lanes_trajectory_integrator_and_equilibrium(copy: Path) -> None:
+    before = np.array(json.loads(answers(copy, EVERYWHERE)))
+    change(copy, "solvers/contact/gap_contact.py", "elastic = k * depth", "elastic = 1.5 * k * depth")
+    after = np.array(json.loads(answers(copy, EVERYWHERE)))
+    assert np.all(np.abs(after - before) > 1e-3 * np.abs(before)), (before, after)
 
 
 def test_a_change_of_the_elements_reaches_the_stored_compliances(copy: Path) -> None:

@@ -58,7 +58,7 @@ def waves(shape: Sequence[int], directions: Sequence[str], starts: int) -> list[
 
 def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarray) -> Iterator[list[Job]]:
     """Yield jobs that can run in one block."""
-    from rotorgear.solvers.lanes.kernel_vectors import LANES
+    from rotorgear.solvers.contact.vectors import LANES
 
     kinds: dict[Any, list[Job]] = {}
     for job in jobs:

@@ -138,7 +138,7 @@ def _indicators(sums: np.ndarray, steps: int) -> dict[str, np.ndarray]:
     """Indicators of the contacts from their sums (c, 14)."""
     from rotorgear.solvers.lanes import kernel_parts as k
 
-    total = np.maximum(sums[:, [k.DRIVING, k.APART, k.BACK]].sum(axis=1), 1.0)
+    total = np.maximum(sums[:, [k.FRONT, k.APART, k.BACK]].sum(axis=1), 1.0)
     force = sums[:, k.F_SUM] / total
     d = sums[:, k.D_SUM] / total
     return {
@@ -148,7 +148,7 @@ def _indicators(sums: np.ndarray, steps: int) -> dict[str, np.ndarray]:
         "mean_force": force,
         "rms_force": np.sqrt(np.maximum(sums[:, k.F_SQUARES] / total - force**2, 0.0)),
         "largest_force": sums[:, k.F_MAX],
-        "driving": sums[:, k.DRIVING] / total,
+        "driving": sums[:, k.FRONT] / total,
         "apart": sums[:, k.APART] / total,
         "back": sums[:, k.BACK] / total,
         "losses": sums[:, k.LOSSES] / total * steps,

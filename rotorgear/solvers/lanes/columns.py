@@ -83,6 +83,13 @@ class Columns:
         sudden = parts & (self.damping > 0.0)
         return np.where(sudden, np.where(self.mode == ADHESIVE, ALWAYS, CLOSING), NEVER).astype(np.int64)
 
+    @property
+    def values(self) -> np.ndarray:
+        """(m, 6) as the kernels read them: k, c, clearance, 1/depth, prescribed force, depth."""
+        return np.stack(
+            [self.stiffness, self.damping, self.clearance, self.per_depth, self.push, 1.0 / self.per_depth], axis=1
+        )
+
     def scaled(self, w: float) -> Columns:
         """Forces over w^2, damping over w: as time counts in 1/w."""
         return Columns(

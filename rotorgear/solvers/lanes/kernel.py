@@ -1,23 +1,23 @@
 """Compiled: many small systems side by side through the same time steps, by the Runge-Kutta method of order 4.
 
-    z'' = f - K z - D z' - B F(B^T z, B^T z', t),   M = 1,   time in radians of the fastest mesh
+    z'' = f - K z - D z' - B F(B^T z, B^T z', t),   M = 1,   time in radians of the fastest excitation
 
 Every array has the systems as its last axis of LANES entries, which move through vector registers together. What depends on
 time only (k(t), e(t), prescribed forces) stands in tables over the common period, for the times at and between steps.
-Tangents T obey T'' = -K T - D T' - B (Kd B^T T + Kv B^T T') along the trajectory; each mesh period they are freed of rigid
-motions and made orthonormal, and the logarithms of their growth sum up to Lyapunov exponents.
+Tangents T obey T'' = -K T - D T' - B (Kd B^T T + Kv B^T T') along the trajectory; once in a period of the fastest excitation
+they are freed of rigid-body motions and made orthonormal, and the logarithms of their growth sum up to Lyapunov exponents.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.solvers.contact.vectors import LANES, fill, get, put, work
 from rotorgear.solvers.lanes.columns import NEVER
 from rotorgear.solvers.lanes.kernel_jumps import add_used_along, missing, missing_along, push
 from rotorgear.solvers.lanes.kernel_laws import SPACE, force_laws, laws_along, schedule_laws
 from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, contacts, count, product, read_table
 from rotorgear.solvers.lanes.kernel_tangents import orthonormal
-from rotorgear.solvers.lanes.kernel_vectors import LANES, fill, get, put, work
 from rotorgear.solvers.time.compiled import compiled
 
 
@@ -134,11 +134,11 @@ def lanes_loop(
     matrix,
     across,
     pushes,
-    gap,
+    kind,
     mode,
     jumps,
     values,
-    mesh,
+    counted,
     table,
     laws,
     clock,
@@ -155,20 +155,20 @@ def lanes_loop(
     """Advance all lanes in place by common periods and record a section at the end of each.
 
     Args:
-        turns: periods of the fastest mesh in a common one; steps: steps in one of those; begun: common periods before.
+        turns: periods of the fastest excitation in a common one; steps: steps in one of those; begun: common periods before.
         counting: whether the statistics count.
         matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1).
         across: d and d' of each column from (z, z'), (2 m, 2 n). pushes: -B, (n, m).
-        gap, mode, jumps, mesh: of the columns, (m,); values: theirs, (m, 6, w), see `contacts`.
+        kind, mode, jumps, counted: of the columns, (m,); values: theirs, (m, 6, w), see `contacts`.
         table: (2 turns steps + 1, m, 4, 1 or w), without its last row where no force is prescribed.
-        laws: see kernel_lane_laws.py; clock (2, w): radians of the reference for one of the fastest mesh, and its rad/s.
+        laws: see kernel_laws.py; clock (2, w): radians of the reference for one of the fastest excitation, and its rad/s.
         rigid: orthonormal motions without strain, (r, n, w); root: S with S^T S the mean stiffness, (n, n, w).
-        state: z and z', (2 n, w); kept: of the end of the last step, see kernel_lane_jumps.py.
-        tangents: (t, 2 n, w); last: (m, w) flanks that touched last.
+        state: z and z', (2 n, w); kept: of the end of the last step, see kernel_jumps.py.
+        tangents: (t, 2 n, w); last: (m, w) sides that touched last.
         growth: (p, t, w), section: (p, 2 m, w), sums: (m, 14, w): what is found in p common periods.
     """
     n = state.shape[0] // 2
-    m = mesh.size
+    m = counted.size
     t = tangents.shape[0]
     rows = 2 * n + m + 1
     own = laws[2].size > 0
@@ -206,11 +206,11 @@ def lanes_loop(
                     if own:
                         schedule_laws(laws, clock, 0.5 * h * (2.0 * steps * turns * (begun + period) + at), condition)
                 product(*across, stage, d)
-                contacts(gap, mode, values, now, weight_of(number, h), d, F, found, used)
+                contacts(kind, mode, values, now, weight_of(number, h), d, F, found, used)
                 if own:
                     force_laws(laws, clock, condition, d, F, blocks, space)
                 if number == 0 and counting:
-                    count(mesh, now, d, F, found, last, sums)
+                    count(counted, now, d, F, found, last, sums)
                 advance(number, h, *matrix, stage, ahead, 0, state, 0, total)
                 if t:
                     tangent_stage(

@@ -1,4 +1,4 @@
-"""Compiled: the impulse of a damper that sets in where flanks meet, put right at the end of each step.
+"""Compiled: the impulse of a damper that sets in where sides meet, put right at the end of each step.
 
 The damping force c s(x) x' of a contact jumps, or rises over a depth that no step of sensible length sees. What it did in a
 step by the stages of the Runge-Kutta method then depends on where these happened to fall, and so much noise makes motions look
@@ -7,31 +7,37 @@ chaotic that are not. But its impulse in a step follows from the ends alone:
     int c s(x) x' dt = c [G(x_1) - G(x_0)],   G(x) = int s dx
 
 So a step ends by what is missing of that. Damping that never pulls does not obey it while it is held back; there only steps in
-which the flanks meet are put right. Tangents follow with s(x_1) T_1 - s(x_0) T_0 in place of the difference of G.
+which the sides meet are put right. Tangents follow with s(x_1) T_1 - s(x_0) T_0 in place of the difference of G.
 """
 
 from __future__ import annotations
 
-from rotorgear.solvers.lanes.columns import CLOSING, ERROR, NEVER
-from rotorgear.solvers.lanes.kernel_parts import (
-    BACKLASH,
-    FOUND,
-    GROWTH,
-    IN_V,
-    RAMP,
-    REACH,
-    VALUES,
-    C,
-)
-from rotorgear.solvers.lanes.kernel_vectors import fill, get, larger, put, smaller, where_positive
+from rotorgear.solvers.contact.gap_contact import momentum
+from rotorgear.solvers.contact.vectors import fill, formula, get, put, where_positive
+from rotorgear.solvers.lanes.columns import CLOSING, ERROR, NEVER, TABLE_ROWS
+from rotorgear.solvers.lanes.kernel_parts import CLEARANCE, DEPTH, FOUND, GROWTH, IN_V, PER_DEPTH, VALUES, C
 from rotorgear.solvers.time.compiled import compiled
 
-# What is kept of the end of a step: G, s, the flank that touches, and whether the impulse of the step is put right (> 0).
-INTEGRAL = 0
-SHARE = 1
-TOUCH = 2
-RIGHT = 3
+# What is kept of the end of a step: G, s, the side that touches, and whether the impulse of the step is put right (> 0).
+INTEGRAL, SHARE, SIDE, RIGHT = range(4)
 KEPT = 4
+
+
+@compiled(fast=True)
+def keep_start(values, x, kept):
+    """Fill kept (m, 4, w) at the start of a run from the approach x (m, w)."""
+    for j in range(x.shape[0]):
+        end = momentum(*regularised(values, j), get(x, j))
+        put(kept, KEPT * j + INTEGRAL, end.integral)
+        put(kept, KEPT * j + SHARE, end.share)
+        put(kept, KEPT * j + SIDE, end.side)
+        put(kept, KEPT * j + RIGHT, end.side)
+
+
+@formula
+def regularised(values, j):
+    """Clearance, depth of regularisation and 1/depth of a column."""
+    return get(values, VALUES * j + CLEARANCE), get(values, VALUES * j + DEPTH), get(values, VALUES * j + PER_DEPTH)
 
 
 @compiled(fast=True)
@@ -46,21 +52,16 @@ def missing(jumps, values, table, d, used, kept, impulse):
         if jumps[j] == NEVER:
             put(impulse, j, none)
             continue
-        x = get(d, 2 * j) - get(table, 4 * j + ERROR)
-        behind = -1.0 * x - get(values, VALUES * j + BACKLASH)
-        touch = where_positive(x, one, where_positive(behind, fill(-1.0), none))
-        depth = larger(larger(x, behind), none)
-        share = smaller(depth * get(values, VALUES * j + RAMP), one)
-        integral = touch * share * (depth - 0.5 * share * get(values, VALUES * j + REACH))
-        rest = get(values, VALUES * j + C) * (integral - get(kept, KEPT * j + INTEGRAL)) - get(used, j)
+        end = momentum(*regularised(values, j), get(d, 2 * j) - get(table, TABLE_ROWS * j + ERROR))
+        rest = get(values, VALUES * j + C) * (end.integral - get(kept, KEPT * j + INTEGRAL)) - get(used, j)
         right = one
         if jumps[j] == CLOSING:
-            right = touch * (touch - get(kept, KEPT * j + TOUCH))
+            right = end.side * (end.side - get(kept, KEPT * j + SIDE))
         put(impulse, j, where_positive(right, rest, none))
         put(used, j, none)
-        put(kept, KEPT * j + INTEGRAL, integral)
-        put(kept, KEPT * j + SHARE, share)
-        put(kept, KEPT * j + TOUCH, touch)
+        put(kept, KEPT * j + INTEGRAL, end.integral)
+        put(kept, KEPT * j + SHARE, end.share)
+        put(kept, KEPT * j + SIDE, end.side)
         put(kept, KEPT * j + RIGHT, right)
 
 

@@ -1,12 +1,12 @@
-"""Compiled: force laws that run one system at a time: rolling bearings, friction, torques over speed.
+"""Compiled: force laws that run one system at a time: rolling elements, friction, torques over speed.
 
 The laws work in SI: displacements of the lanes are metres already, velocities are multiplied and forces divided by powers of the
-rad/s of the fastest mesh, which the lanes use as unit of time.
+rad/s of the fastest excitation, which the lanes use as unit of time.
 """
 
 from __future__ import annotations
 
-from rotorgear.solvers.lanes.kernel_vectors import LANES, fill, get, put
+from rotorgear.solvers.contact.vectors import LANES, fill, get, put
 from rotorgear.solvers.time.compiled import compiled
 
 _MOST_COMPONENTS = 6
@@ -16,7 +16,7 @@ SPACE = 3 * _MOST_COMPONENTS + 2 * _MOST_COMPONENTS**2 + 4
 
 @compiled
 def schedule_laws(laws, clock, time, state):
-    """Fill the state (w, s) of the laws in all lanes at a time in radians of the fastest mesh."""
+    """Fill the state (w, s) of the laws in all lanes at a time in radians of the fastest excitation."""
     schedules, _, kind, _, parameters, parameters_first, state_first, _ = laws
     for w in range(LANES if kind.size else 0):
         angle = time * clock[0, w]

@@ -1,4 +1,4 @@
-"""Compiled: tangents of the lanes of kernel_lanes.py, freed of rigid-body motions and made orthonormal once in a period.
+"""Compiled: tangents of the lanes of kernel.py, freed of rigid-body motions and made orthonormal once in a period.
 
 Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15 (1980) 9.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.solvers.lanes.kernel_vectors import LANES, fill, get, put
+from rotorgear.solvers.contact.vectors import LANES, fill, get, put
 from rotorgear.solvers.time.compiled import compiled
 
 

@@ -1,4 +1,4 @@
-"""Compiled: one small system step by step through the method and the forces of kernel_lanes.py, recording as it goes.
+"""Compiled: one small system step by step through the method and the forces of kernel.py, recording as it goes.
 
 It serves few systems for a short time, so it has no lanes and no tangents; that it goes the same way is tested.
 """
@@ -7,51 +7,39 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.solvers.contact.kinds import ADHESIVE, BILATERAL, PENETRATION
+from rotorgear.solvers.contact.gap_contact import contact, momentum
 from rotorgear.solvers.lanes.columns import ALWAYS, ERROR, OWN_LAW, PRESCRIBED, PUSH, SLOPE, STIFFNESS
 from rotorgear.solvers.lanes.kernel_laws import SPACE
+from rotorgear.solvers.lanes.kernel_parts import CLEARANCE, DEPTH, FORCE, PER_DEPTH, C, K
 from rotorgear.solvers.time.compiled import compiled
 
 
 @compiled
-def force(gap, mode, values, now, d, v):
+def force(kind, mode, values, now, d, v):
     """Force of one column, and the share of its damping that can jump.
 
-    values (5,): k, c, backlash, 1/ramp, prescribed force; now (4,) of its table; see `contacts`.
+    values (6,) of the column; now (4,) of its table; see `contacts`.
     """
-    push = values[4] * now[PUSH]
-    if gap == PRESCRIBED:
+    push = values[FORCE] * now[PUSH]
+    if kind == PRESCRIBED:
         return push, 0.0
-    k = values[0] * now[STIFFNESS]
-    c = values[1]
-    x = d - now[ERROR]
     rate = v - now[SLOPE]
-    if gap == BILATERAL:
-        return k * x + c * rate + push, 0.0
-    behind = -x - values[2]
-    depth, touch = (x, 1.0) if x > 0.0 else ((behind, -1.0) if behind > 0.0 else (0.0, 0.0))
-    share = depth * values[3]
-    if mode != PENETRATION:
-        share = min(share, 1.0)
-    total = k * depth + c * share * touch * rate
-    if total <= 0.0 and mode != ADHESIVE:
-        return push, 0.0
-    return touch * total + push, c * share * rate
-
-
-@compiled
-def momentum(values, now, d):
-    """Integral of the damping's share over the approach d - e, and the flank that touches; see `edges`."""
-    x = d - now[ERROR]
-    behind = -x - values[2]
-    depth, touch = (x, 1.0) if x > 0.0 else ((behind, -1.0) if behind > 0.0 else (0.0, 0.0))
-    share = min(depth * values[3], 1.0)
-    return touch * share * (depth - 0.5 * share / values[3]), touch
+    found = contact(
+        kind,
+        mode,
+        values[K] * now[STIFFNESS],
+        values[C],
+        values[CLEARANCE],
+        values[PER_DEPTH],
+        d - now[ERROR],
+        rate,
+    )
+    return found.force + push, found.damping * rate
 
 
 @compiled
 def own_schedules(laws, clock, time, condition):
-    """Fill the state (s,) of the laws at a time in radians of the fastest mesh."""
+    """Fill the state (s,) of the laws at a time in radians of the fastest excitation."""
     schedules, _, kind, _, parameters, parameters_first, state_first, _ = laws
     for i in range(kind.size):
         schedules[kind[i]](
@@ -65,9 +53,9 @@ def own_schedules(laws, clock, time, condition):
 
 @compiled
 def own_forces(laws, clock, condition, space, local):
-    """Forces of the laws of kernel_lane_laws.py to local (m, 3), one system.
+    """Forces of the laws of kernel_laws.py to local (m, 3), one system.
 
-    clock (2,): radians of the reference for one of the fastest mesh, and its rad/s; space: SPACE numbers.
+    clock (2,): radians of the reference for one of the fastest excitation, and its rad/s; space: SPACE numbers.
     """
     _, forces, kind, place, parameters, parameters_first, state_first, _ = laws
     rate = clock[1]
@@ -96,7 +84,7 @@ def own_forces(laws, clock, condition, space, local):
 
 
 @compiled
-def slopes(K, D, B, load, gap, mode, values, now, laws, clock, condition, space, y, local, a):
+def slopes(K, D, B, load, kind, mode, values, now, laws, clock, condition, space, y, local, a):
     """z'' (n,) of a state y = (z, z'), and d, d', F and its damping of each column, local (m, 4).
 
     laws, clock, condition, space: of the columns that act by laws of their own, see `own_forces`.
@@ -113,8 +101,8 @@ def slopes(K, D, B, load, gap, mode, values, now, laws, clock, condition, space,
             v += B[i, j] * dz[i]
         local[j, 0] = d
         local[j, 1] = v
-        if gap[j] != OWN_LAW:
-            local[j, 2], local[j, 3] = force(gap[j], mode[j], values[j], now[j], d, v)
+        if kind[j] != OWN_LAW:
+            local[j, 2], local[j, 3] = force(kind[j], mode[j], values[j], now[j], d, v)
     own_forces(laws, clock, condition, space, local)
     for i in range(n):
         total = load[i]
@@ -126,11 +114,11 @@ def slopes(K, D, B, load, gap, mode, values, now, laws, clock, condition, space,
 
 
 @compiled(free=True)
-def trajectory(steps, every, begun, K, D, B, load, gap, mode, jumps, values, table, laws, clock, state, out):
+def trajectory(steps, every, begun, K, D, B, load, kind, mode, jumps, values, table, laws, clock, state, out):
     """Run on from a state (2 n,) in place; out (s, m, 3) gets d, d' and F once in `every` steps, beginning with the first state.
 
     Args:
-        steps: in a period of the fastest mesh; begun: steps before. jumps, values: (m,), (m, 5).
+        steps: in a period of the fastest excitation; begun: steps before. jumps, values: (m,), (m, 6).
         table: (2 steps in a common period + 1, m, 4). laws, clock: see `own_forces`.
     """
     n = K.shape[0]
@@ -154,14 +142,18 @@ def trajectory(steps, every, begun, K, D, B, load, gap, mode, jumps, values, tab
             if stage != 2:
                 own_schedules(laws, clock, 0.5 * h * (2.0 * (begun + step) + half), condition)
             now = table[2 * (step % period) + half]
-            slopes(K, D, B, load, gap, mode, values, now, laws, clock, condition, space, y, local, a)
+            slopes(K, D, B, load, kind, mode, values, now, laws, clock, condition, space, y, local, a)
             if stage == 0 and step % every == 0:
                 out[step // every] = local[:, :3]
             weight = (1.0 if stage in (0, 3) else 2.0) * h / 6.0
             for j in range(m):
                 used[j] += weight * local[j, 3]
                 if stage == 0 and jumps[j]:
-                    edge[j] = momentum(values[j], now[j], local[j, 0])
+                    begin = momentum(
+                        values[j, CLEARANCE], values[j, DEPTH], values[j, PER_DEPTH], local[j, 0] - now[j, ERROR]
+                    )
+                    edge[j, 0] = begin.integral
+                    edge[j, 1] = begin.side
             share = h if stage == 2 else 0.5 * h
             for i in range(n):
                 total[i] += weight * y[n + i]
@@ -175,8 +167,8 @@ def trajectory(steps, every, begun, K, D, B, load, gap, mode, jumps, values, tab
                 d = 0.0
                 for i in range(n):
                     d += B[i, j] * state[i]
-                gamma, touch = momentum(values[j], now[j], d)
-                if jumps[j] == ALWAYS or (touch != 0.0 and touch != edge[j, 1]):
-                    rest = values[j, 1] * (gamma - edge[j, 0]) - used[j]
+                end = momentum(values[j, CLEARANCE], values[j, DEPTH], values[j, PER_DEPTH], d - now[j, ERROR])
+                if jumps[j] == ALWAYS or (end.side != 0.0 and end.side != edge[j, 1]):
+                    rest = values[j, C] * (end.integral - edge[j, 0]) - used[j]
                     for i in range(n):
                         state[n + i] -= B[i, j] * rest

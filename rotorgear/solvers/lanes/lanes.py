@@ -18,7 +18,7 @@ _REGISTER = 64  # bytes of the widest vector registers
 
 @dataclass(frozen=True)
 class Plan:
-    """How long: steps in a period of the fastest mesh, common periods that settle and count, tangents to follow.
+    """How long: steps in a period of the fastest excitation, common periods that settle and count, tangents to follow.
 
     The tangents are followed over the last `warm` of the periods that settle, so that they find the direction of most growth.
     """
@@ -30,7 +30,7 @@ class Plan:
     warm: int = 40
 
     def stride(self, turns: int) -> int:
-        """Common periods of so many mesh periods from one question whether to go on to the next."""
+        """Common periods of so many periods of the fastest excitation from one question whether to go on to the next."""
         return max(1, _SLICE // (turns * self.steps))
 
     def questions(self, turns: int) -> int:
@@ -62,7 +62,7 @@ class Orbit:
     Attributes:
         section: displacement and velocity (in m and m/s) of each local displacement at the end of each common period, (p, m, 2).
         growth: (p, t) logarithm of the growth of each tangent in a common period.
-        sums: (m, 14) statistics, see kernel_lane_parts.py; forces in N.
+        sums: (m, 14) statistics, see kernel_parts.py; forces in N.
         end: state at the end. finite: whether everything stayed finite.
     """
 
@@ -88,16 +88,16 @@ def run_block(
         plan: how long.
         go_on: asked now and then; the run is given up with a KeyboardInterrupt where it says no.
     """
+    from rotorgear.solvers.contact.vectors import LANES
     from rotorgear.solvers.lanes.kernel import lanes_loop
-    from rotorgear.solvers.lanes.kernel_vectors import LANES
 
     count = len(systems)
     if not 0 < count <= LANES:
         raise ValueError(f"{count} systems in a block, expected 1 to {LANES}")
     filled = [*systems, *[systems[-1]] * (LANES - count)]
     first = systems[0]
-    (matrix, across), values = _matrices(filled), _values(filled)
-    mesh = first.columns.counted
+    (matrix, across), values = _matrices(filled), _stacked([s.columns.values for s in filled])
+    counted = first.columns.counted
     kinds = (first.columns.kind, first.columns.mode)
     jumps = np.max([s.columns.jumps for s in filled], axis=0)
     pushes = _sparse([-s.B for s in filled])
@@ -111,13 +111,13 @@ def run_block(
     begins = [*starts, *[starts[-1]] * (LANES - count)]
     state = _stacked([np.concatenate([s.z, s.dz]) for s in begins])
     tangents = _tangents(first, plan.tangents)
-    kept = _kept(filled, begins, wide)
-    last = aligned((mesh.size, LANES))
-    sums = blank_sums(mesh.size)
+    kept = _kept(filled, begins, wide, values)
+    last = aligned((counted.size, LANES))
+    sums = blank_sums(counted.size)
 
     def run(begun: int, periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         growth = aligned((periods, len(followed), LANES))
-        section = aligned((periods, 2 * mesh.size, LANES))
+        section = aligned((periods, 2 * counted.size, LANES))
         stride = plan.stride(first.turns)
         for p in range(0, periods, stride):
             if not go_on():
@@ -133,7 +133,7 @@ def run_block(
                 *kinds,
                 jumps,
                 values,
-                mesh,
+                counted,
                 table,
                 laws,
                 clock,
@@ -177,8 +177,8 @@ def _orbit(
 
 def blank_sums(m: int) -> np.ndarray:
     """Statistics (m, 14, w) before anything was counted."""
+    from rotorgear.solvers.contact.vectors import LANES
     from rotorgear.solvers.lanes.kernel_parts import D_MAX, D_MIN, F_MAX, F_MIN, X_MAX, X_MIN
-    from rotorgear.solvers.lanes.kernel_vectors import LANES
 
     sums = aligned((m, 14, LANES))
     sums[:, [D_MIN, X_MIN, F_MIN]] = np.inf
@@ -188,14 +188,14 @@ def blank_sums(m: int) -> np.ndarray:
 
 def _tangents(system: SmallSystem, count: int) -> np.ndarray:
     """Random tangents (t, 2 n, w), the same for all lanes and runs."""
-    from rotorgear.solvers.lanes.kernel_vectors import LANES
+    from rotorgear.solvers.contact.vectors import LANES
 
     drawn = np.random.default_rng(1).standard_normal((count, 2 * system.n))
     return _stacked([drawn] * LANES)
 
 
 def own_laws(systems: Sequence[SmallSystem]) -> tuple[Any, ...]:
-    """The laws that act by their own functions as kernel_lane_laws.py takes them; parameters and state by lane."""
+    """The laws that act by their own functions as kernel_laws.py takes them; parameters and state by lane."""
     first = systems[0].own
     own = first.forces
     parameters = np.ascontiguousarray(np.stack([s.own.forces.parameters for s in systems]))
@@ -250,23 +250,18 @@ def _sparse(matrices: Sequence[np.ndarray]) -> Sparse:
     return first, np.nonzero(used)[1].astype(np.int64), _stacked([matrix[used] for matrix in matrices])
 
 
-def _kept(systems: Sequence[SmallSystem], starts: Sequence[Start], tables: Sequence[np.ndarray]) -> np.ndarray:
-    """What the kernel keeps of the end of a step (m, 4, w), at the start: see kernel_lane_jumps.py."""
-    found = []
-    for i, (system, start) in enumerate(zip(systems, starts, strict=True)):
-        c = system.columns
-        x = system.B.T @ start.z - tables[i % len(tables)][0, :, ERROR]
-        behind = -x - c.clearance
-        touch = np.where(x > 0.0, 1.0, np.where(behind > 0.0, -1.0, 0.0))
-        depth = np.maximum(np.maximum(x, behind), 0.0)
-        share = np.minimum(depth * c.per_depth, 1.0)
-        found.append(np.stack([touch * share * (depth - 0.5 * share / c.per_depth), share, touch, touch], axis=1))
-    return _stacked(found)
+def _kept(
+    systems: Sequence[SmallSystem], starts: Sequence[Start], tables: Sequence[np.ndarray], values: np.ndarray
+) -> np.ndarray:
+    """What the kernel keeps of the end of a step (m, 4, w), at the start: see kernel_jumps.py."""
+    from rotorgear.solvers.lanes.kernel_jumps import KEPT, keep_start
 
-
-def _values(systems: Sequence[SmallSystem]) -> np.ndarray:
-    """Values of the columns (m, 6, w), as the kernel reads them."""
-    names = ("stiffness", "damping", "clearance", "per_depth", "push")
-    return _stacked(
-        [np.stack([*(getattr(s.columns, name) for name in names), 1.0 / s.columns.per_depth], axis=1) for s in systems]
+    x = _stacked(
+        [
+            system.B.T @ start.z - tables[i % len(tables)][0, :, ERROR]
+            for i, (system, start) in enumerate(zip(systems, starts, strict=True))
+        ]
     )
+    kept = aligned((len(x), KEPT, x.shape[1]))
+    keep_start(values, x, kept)
+    return kept

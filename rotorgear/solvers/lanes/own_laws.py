@@ -1,4 +1,4 @@
-"""Local forces that the lanes of a sweep take by laws of their own: rolling bearings, friction, torques over speed."""
+"""Local forces that the lanes of a sweep take by laws of their own: rolling elements, friction, torques over speed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.solvers.time.local_forces import LocalForces, gather
 from rotorgear.solvers.time.local_system import LocalSystem, evaluated
 
-# Times in a period of the fastest mesh at which tangents are looked at.
+# Times in a period of the fastest excitation at which tangents are looked at.
 _SAMPLES = 64
 _FAR = 1e-2  # m or rad, by which a displacement is changed to see whether a law answers
 
@@ -20,7 +20,7 @@ class OwnLaws:
 
     Attributes:
         forces: the laws. place: (2, l) first of the m local displacements of each, and how many it takes.
-        turn: radians of the reference for one of the fastest mesh, with the sign of its speed.
+        turn: radians of the reference for one of the fastest excitation, with the sign of its speed.
     """
 
     forces: LocalForces
@@ -65,7 +65,7 @@ def _tangents(local: LocalSystem, q: np.ndarray, own: OwnLaws, t: float) -> tupl
 def not_held(local: LocalSystem, q: np.ndarray, own: OwnLaws, free: np.ndarray) -> np.ndarray:
     """Of the motions without strain `free` (n, r): those that no law answers with a force, wherever it is; (n, s).
 
-    A bearing with clearance may have no stiffness at rest, and still holds its shaft.
+    A support with clearance may have no stiffness at rest, and still holds what it carries.
     """
     if not own.forces.laws or not free.size:
         return free

@@ -1,4 +1,4 @@
-"""A small system with local forces as the lane kernels take it: mass one, time in radians of the fastest mesh.
+"""A small system with local forces as the lane kernels take it: mass one, time in radians of the fastest excitation.
 
 z = L^T q with M = L L^T, ' = d/d(w t):   z'' = f - K z - D z' - B F,   B^T z = B^T q
 """
@@ -50,9 +50,9 @@ class SmallSystem:
         K, D: (n, n); load: (n,); B: (n, m); rigid: (r, n) orthonormal motions without strain; rest: z in equilibrium, (n,).
         root: L, (n, n). energy: S with S^T S the stiffness with all contacts closed, (n, n).
         columns: of the local forces; own: those that act by laws of their own.
-        w: rad/s of the fastest mesh; turns: its periods in the common one.
-        fastest: largest |eigenvalue| of the linear system, in radians of the mesh; followed: of those that a reduced system
-        holds for. shapes: of a system that was reduced.
+        w: rad/s of the fastest excitation; turns: its periods in the common one.
+        fastest: largest |eigenvalue| of the linear system, in radians of that excitation; followed: of those that a reduced
+        system holds for. shapes: of a system that was reduced.
     """
 
     K: np.ndarray
@@ -96,7 +96,7 @@ def small_system(
 
     Args:
         local: the system. rest: its equilibrium. columns: of its local forces, in SI. own: those with laws of their own.
-        w: rad/s of the fastest mesh. turns: its periods in the common one.
+        w: rad/s of the fastest excitation. turns: its periods in the common one.
         modal_ratio: damping ratio added to every mode with strain. shapes: of a system that was reduced.
 
     Raises:
@@ -153,8 +153,8 @@ def refuse_large(n: int) -> None:
     """AnalysisError where n dofs are too many."""
     if n > MOST_DOFS:
         raise AnalysisError(
-            f"{n} dofs are too many for a sweep (at most {MOST_DOFS}): lump the shafts (rigid gears on springs), or run single "
-            "points by the transient analysis"
+            f"{n} dofs are too many for a sweep (at most {MOST_DOFS}): lump the structure (rigid bodies on springs), or run "
+            "single points by the transient analysis"
         )
 
 
@@ -164,14 +164,14 @@ def _clean(A: np.ndarray) -> np.ndarray:
 
 
 def steps_needed(system: SmallSystem) -> int:
-    """Steps in a period of the fastest mesh that follow all frequencies the system holds for, and are stable for the rest."""
+    """Steps in a period of the fastest excitation that follow the frequencies the system holds for, and are stable for all."""
     return max(
         _steps(system.followed, ACCURATE), _steps(system.fastest, ACCURATE if system.shapes is None else _STATIC)
     )
 
 
 def steps_stable(system: SmallSystem) -> int:
-    """Least steps in a period of the fastest mesh that are stable."""
+    """Least steps in a period of the fastest excitation that are stable."""
     return _steps(system.fastest, STABLE)
 
 

@@ -15,7 +15,7 @@ def recorded(
 
     Args:
         table: of what depends on time, (2 turns steps + 1, m, 4).
-        steps: in a period of the fastest mesh. periods: common ones. every: steps between two records.
+        steps: in a period of the fastest excitation. periods: common ones. every: steps between two records.
         begun: common periods before the start, for laws that go on from one to the next, such as rolling elements.
 
     Returns:
@@ -31,7 +31,7 @@ def recorded(
     if rest:
         raise ValueError(f"{system.turns * steps} steps in a common period are no multiple of {every}")
     c = system.columns
-    values = np.stack([c.stiffness, c.damping, c.clearance, c.per_depth, c.push], axis=1)
+    values = c.values
     out = np.empty((periods * length, c.kind.size, 3))
     matrices = [np.ascontiguousarray(x, dtype=float) for x in (system.K, system.D, system.B, system.load)]
     state = np.concatenate([start.z, start.dz])

@@ -6,7 +6,7 @@ About any stiffness k of the laws, q = q0 + X (k d - F(d)) with q0 = (K + B k B^
 
 Whatever k is, the solution is the same; where the forces are k d, the start d0 is the solution.
 
-Where Newton's method stops short, as with teeth that stand apart (nothing pushes them, so no tangent says where to go), the
+Where Newton's method stops short, as with contacts that stand apart (nothing pushes them, so no tangent says where to go), the
 laws get dampers in proportion to k and d creeps to rest: with s = (time step)^-1 each step solves r(d) + s A k (d - d_last) = 0
 and s falls until nothing of it is left. A gap is crossed however soft or stiff its walls are, because a tenfold step
 is taken with each solution. A stable equilibrium is reached, an unstable one is left.

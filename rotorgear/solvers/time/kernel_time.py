@@ -64,7 +64,7 @@ def lu_solve(Lp, Li, Lx, Up, Ui, Ux, diagonal, row_place, column_place, b, y, x)
 
 @compiled
 def count_events(energy, last, events):
-    """Count, for each law, steps on the working flank, apart, and on the coast flank, and the contact losses."""
+    """Count, for each law, steps on the front side, apart, and on the back side, and the contact losses."""
     for law in range(last.size):
         now = int(energy[4 * law + 3])
         if now > 0:

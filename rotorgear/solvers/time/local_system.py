@@ -68,7 +68,7 @@ class State:
     """Where a run stands after `step` steps: displacements, velocities, accelerations (n,), local forces (m,) and sums.
 
     `before` are the forces a step earlier; `sums` (l, 2): energy put in and dissipated by each law; `events` (l, 4): steps on
-    the working flank, without contact, on the coast flank, and contact losses; `inner`: what else an integrator carries on.
+    the front side, without contact, on the back side, and contact losses; `inner`: what else an integrator carries on.
     """
 
     step: int

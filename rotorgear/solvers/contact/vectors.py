@@ -12,6 +12,7 @@ import operator
 from collections.abc import Callable
 from typing import Any
 
+import numba
 import numpy as np
 from llvmlite import ir
 from numba.core import types
@@ -92,23 +93,44 @@ def put(typing: Any, array: Any, row: Any, value: Any) -> Any:
     return types.void(array, types.intp, lanes), build
 
 
+# The next three take numbers as well: what comes out is a number if all that goes in are numbers, else lanes, where a number
+# stands for the same in all of them. So a formula written with them is one source for both.
+
+
+def _common(given: tuple[Any, ...]) -> tuple[Any, Any]:
+    """The type that given types have in common, numbers or lanes, and what brings values to it."""
+    if lanes not in given:
+        return types.float64(*[types.float64] * len(given)), lambda builder, made, args: list(args)
+    return lanes(*[lanes if kind == lanes else types.float64 for kind in given]), _wide
+
+
+def _wide(builder: Any, made: Any, args: Any) -> list[Any]:
+    """All values as lanes."""
+    return [a if kind == lanes else _splat(builder, a) for a, kind in zip(args, made.args, strict=True)]
+
+
 @intrinsic
 def where_positive(typing: Any, sign: Any, then: Any, otherwise: Any) -> Any:
-    """Lane by lane: `then` where `sign` > 0, `otherwise` elsewhere (also where sign is not a number)."""
+    """`then` where `sign` > 0, `otherwise` elsewhere (also where sign is not a number)."""
+    kind, alike = _common((sign, then, otherwise))
 
     def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
-        mask = builder.fcmp_ordered(">", args[0], ir.Constant(_VECTOR, [0.0] * LANES))
-        return builder.select(mask, args[1], args[2])
+        sign, then, otherwise = alike(builder, made, args)
+        mask = builder.fcmp_ordered(">", sign, ir.Constant(sign.type, None))
+        return builder.select(mask, then, otherwise)
 
-    return lanes(lanes, lanes, lanes), build
+    return kind, build
 
 
 def _extreme(comparison: str) -> Any:
     def choose(typing: Any, a: Any, b: Any) -> Any:
-        def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
-            return builder.select(builder.fcmp_ordered(comparison, args[0], args[1]), args[0], args[1])
+        kind, alike = _common((a, b))
 
-        return lanes(lanes, lanes), build
+        def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
+            a, b = alike(builder, made, args)
+            return builder.select(builder.fcmp_ordered(comparison, a, b), a, b)
+
+        return kind, build
 
     return choose
 
@@ -128,8 +150,7 @@ def _register(function: Callable[..., Any], name: str) -> None:
     infer_global(function)(Known)
 
     def build(context: Any, builder: Any, made: Any, args: Any) -> Any:
-        wide = [a if kind == lanes else _splat(builder, a) for a, kind in zip(args, made.args, strict=True)]
-        return getattr(builder, name)(*wide, flags=_FLAGS)
+        return getattr(builder, name)(*_wide(builder, made, args), flags=_FLAGS)
 
     for pair in pairs:
         lower_builtin(function, *pair)(build)
@@ -142,6 +163,24 @@ for _name, _functions in {
 }.items():
     for _function in _functions:
         _register(_function, _name)
+
+
+class _Negative(ConcreteTemplate):
+    key = operator.neg
+    cases = [signature(lanes, lanes)]  # noqa: RUF012
+
+
+infer_global(operator.neg)(_Negative)
+
+
+@lower_builtin(operator.neg, lanes)
+def _negative(context: Any, builder: Any, made: Any, args: Any) -> Any:
+    return builder.fneg(args[0])
+
+
+def formula(function: Callable[..., Any]) -> Any:
+    """Compile a function of numbers or lanes into whatever compiled code calls it."""
+    return numba.njit(forceinline=True)(function)
 
 
 @compiled
