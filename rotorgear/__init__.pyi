@@ -46,6 +46,7 @@ from rotorgear.analysis.sweep.cluster import cluster as cluster
 from rotorgear.analysis.teeth.gear_sheet import gear as gear
 from rotorgear.analysis.teeth.mesh import mesh as mesh
 from rotorgear.plots.view import view as view
+from rotorgear import plot as plot
 from rotorgear.analysis.accuracy import accuracy as accuracy
 from rotorgear.analysis.modal.convergence import convergence_study as convergence_study
 from rotorgear.analysis.transient.convergence import transient_convergence_study as transient_convergence_study

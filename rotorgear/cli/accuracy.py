@@ -85,7 +85,8 @@ def accuracy(
         console().print(part)
     write_json(study.to_dict(), json)
     if plot:
-        typer.echo(f"wrote {_draw(study, plot)}")
+        drawn = rg.plot.mesh_accuracy(study) if analysis == "mesh" else rg.plot.accuracy(study)  # type: ignore[arg-type]
+        typer.echo(f"wrote {rg.plot.save(drawn, plot)}")
 
 
 def _parts(study: ConvergenceStudy | MeshConvergenceStudy | SweepConvergenceStudy) -> list[Any]:
@@ -101,16 +102,6 @@ def _parts(study: ConvergenceStudy | MeshConvergenceStudy | SweepConvergenceStud
     from rotorgear.results.tables.sweep import convergence_table
 
     return [convergence_table(study)]
-
-
-def _draw(study: Any, plot: Path) -> Path:
-    from rotorgear.plots.convergence import draw_convergence
-    from rotorgear.plots.mesh_convergence import draw_mesh_convergence
-    from rotorgear.results.mesh_convergence import MeshConvergenceStudy
-
-    return (
-        draw_mesh_convergence(study, plot) if isinstance(study, MeshConvergenceStudy) else draw_convergence(study, plot)
-    )
 
 
 def table(study: ConvergenceStudy) -> list[Any]:

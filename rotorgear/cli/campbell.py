@@ -90,9 +90,7 @@ def campbell(
         rg.save(result, save)
         typer.echo(f"saved {save}")
     if plot:
-        from rotorgear.plots.campbell import draw_campbell
-
-        typer.echo(f"wrote {draw_campbell(result, plot, colour=colour)}")
+        typer.echo(f"wrote {rg.plot.save(rg.plot.campbell(result, colour=colour), plot)}")
     if vtk:
         from rotorgear.export.vtk_branch import write_branch
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -93,13 +92,7 @@ def critical(
         rg.save(result, save)
         typer.echo(f"saved {save}")
     if plot and chart:
-        _draw(chart, plot)
-
-
-def _draw(chart: CriticalMap, plot: Path) -> None:
-    from rotorgear.plots.critical_map import draw_critical_map
-
-    typer.echo(f"wrote {draw_critical_map(chart, plot)}")
+        typer.echo(f"wrote {rg.plot.save(rg.plot.critical_map(chart), plot)}")
 
 
 def _print(result: CriticalResult, chart: CriticalMap | None) -> None:

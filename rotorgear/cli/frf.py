@@ -74,6 +74,4 @@ def frf(
     if save:
         typer.echo(f"saved {rg.save(result, save)}")
     if plot:
-        from rotorgear.plots.frf import draw_frf
-
-        typer.echo(f"wrote {draw_frf(result, plot, quantity=quantity)}")
+        typer.echo(f"wrote {rg.plot.save(rg.plot.frf(result, quantity=quantity), plot)}")

@@ -27,7 +27,7 @@ def gear(
 ) -> None:
     """Print the gear sheet: geometry, measures, contact ratios, backlash and stiffness of all teeth."""
     import rotorgear as rg
-    from rotorgear.plots.gear_mesh import draw_mesh, require_picture_name
+    from rotorgear.plots.figure import require_picture_name
     from rotorgear.results.tables.gear import sheet_parts
 
     if plot is not None:
@@ -38,4 +38,4 @@ def gear(
         out.print(part)
     write_json(sheet.to_dict(), json)
     if plot is not None:
-        out.print(f"drawn: {draw_mesh(sheet, plot, mesh=mesh)}")
+        out.print(f"drawn: {rg.plot.save(rg.plot.gear(sheet, mesh=mesh), plot)}")

@@ -96,9 +96,7 @@ def mesh(
         console().print(part)
     write_json(found.to_dict(max(harmonics, 8)), json)
     if plot:
-        from rotorgear.plots.mesh_cycle import draw_mesh_cycle
-
-        console().print(f"drawn: {draw_mesh_cycle(found, plot)}")
+        console().print(f"drawn: {rg.plot.save(rg.plot.mesh(found), plot)}")
     if vtk:
         from rotorgear.analysis.teeth.tooth_field import tooth_fields
         from rotorgear.export.tooth_vtk import write_tooth_vtk

@@ -121,9 +121,9 @@ def _write(result: ModalResult, save: Path | None, vtk: Path | None, plot: Path 
             if what == "vtk":
                 paths = rg.write_vtk(result, folder, modes=chosen, progress=progress)
             else:
-                from rotorgear.plots.mode_pictures import draw_modes
+                from rotorgear.plots.mode_pictures import write_modes
 
-                paths = draw_modes(result, folder, modes=chosen, progress=progress)
+                paths = write_modes(result, folder, modes=chosen, progress=progress)
         which = (
             "" if len(chosen) == len(result) else f" for {len(chosen)} of {len(result)} modes; --shapes chooses them"
         )

@@ -89,13 +89,9 @@ def response(
     if save:
         typer.echo(f"saved {rg.save(result, save)}")
     if plot:
-        from rotorgear.plots.run_up import draw_run_up
-
-        typer.echo(f"wrote {draw_run_up(result, plot)}")
+        typer.echo(f"wrote {rg.plot.save(rg.plot.response(result), plot)}")
     if waterfall:
-        from rotorgear.plots.waterfall import draw_waterfall
-
-        typer.echo(f"wrote {draw_waterfall(result, waterfall, at=at)}")
+        typer.echo(f"wrote {rg.plot.save(rg.plot.waterfall(result, at=at), waterfall)}")
     if vtk:
         with progress_bar("vtk") as progress:
             paths = rg.write_deflections(result, vtk, progress=progress)

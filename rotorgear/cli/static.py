@@ -52,9 +52,7 @@ def static(
     if save:
         typer.echo(f"saved {rg.save(result, save)}")
     if plot:
-        from rotorgear.plots.static import draw_static
-
-        typer.echo(f"wrote {draw_static(result, plot)}")
+        typer.echo(f"wrote {rg.plot.save(rg.plot.static(result), plot)}")
     if vtk:
         rg.write_deflections(result, vtk)
         typer.echo(f"wrote {vtk / 'static.vtp'}")

@@ -151,7 +151,7 @@ def _write(result: SweepResult, save: Path | None, plot: Path | None, json: Path
         typer.echo(f"saved {save}")
     write_json(result.to_dict(), json)
     if plot:
-        from rotorgear.plots.sweep import draw_sweep
+        from rotorgear.plots.sweep import write_pictures
 
-        paths = draw_sweep(result, plot)
+        paths = write_pictures(result, plot)
         typer.echo(f"wrote {len(paths)} picture{'s' if len(paths) > 1 else ''} to {plot}")

@@ -157,9 +157,9 @@ def _write(result: TransientResult, save: Path | None, plot: Path | None, vtk: P
         rg.stream(save).close()
         typer.echo(f"saved {save}")
     if plot:
-        from rotorgear.plots.transient import draw_transient
+        from rotorgear.plots.transient import write_pictures
 
-        paths = draw_transient(result, plot)
+        paths = write_pictures(result, plot)
         typer.echo(f"wrote {len(paths)} pictures to {plot}")
     if vtk:
         paths = rg.write_motion(result, vtk)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.plots.figure import new_figure, write_figure
+from rotorgear.plots.figure import axes_for
 from rotorgear.plots.labels import Labels, spread
 from rotorgear.results.campbell import RPM, WHIRL_WORDS, CampbellResult, Crossing, ExcitationOrder
 
@@ -19,27 +18,29 @@ _LINES = {"shaft": "#555555", "mesh": "#7a3f9d", "sideband": "#b58ccb"}
 _MOST_LABELS = 14
 
 
-def draw_campbell(result: CampbellResult, path: str | Path, *, colour: str = "motion") -> Path:
-    """Write the diagram as PNG, SVG or PDF by the name's ending and return its path.
+def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") -> Any:
+    """Draw a Campbell diagram: branches over speed with whirl, lines of excitation, and the crossings that are excited.
 
     Args:
         result: branches over speed.
-        path: file to write.
+        ax: axes to draw on; those of a new figure for None.
         colour: "motion" (bending, axial, torsion, mixed by their shares of the kinetic energy), "mesh" (share of all meshes in
             the strain energy) or "damping" (logarithmic decrement).
+
+    Returns:
+        The axes.
 
     Raises:
         AnalysisError: an unknown colour. MissingExtraError: matplotlib is not installed.
     """
     if colour not in COLOURS:
         raise AnalysisError(f"colour: got '{colour}', expected {', '.join(COLOURS[:-1])} or {COLOURS[-1]}")
-    figure = new_figure((11.0, 7.0))
-    axis = figure.subplots()
+    axis = axes_for(ax, (11.0, 7.0), result.model.title or "Campbell diagram")
     top = 1.04 * float(np.nanmax(result.frequency_hz))
     left, right = sorted((float(result.speed_rpm[0]), float(result.speed_rpm[-1])))
     axis.set_xlim(left, right)
     axis.set_ylim(0.0, top)
-    _branches(figure, axis, result, colour)
+    _branches(axis, result, colour)
     _whirl(axis, result)
     _lines(axis, result, (left, right), top)
     _crossings(axis, result, top)
@@ -55,13 +56,12 @@ def draw_campbell(result: CampbellResult, path: str | Path, *, colour: str = "mo
         )
     axis.set_xlabel(f"speed of {result.model.reference_shaft}, rpm")
     axis.set_ylabel("damped frequency, Hz")
-    figure.suptitle(result.model.title or "Campbell diagram", fontsize=11)
     axis.grid(True, alpha=0.15)
     _legend(axis, result, colour)
-    return write_figure(figure, path)
+    return axis
 
 
-def _branches(figure: Any, axis: Any, result: CampbellResult, colour: str) -> None:
+def _branches(axis: Any, result: CampbellResult, colour: str) -> None:
     from matplotlib.collections import LineCollection
 
     points = np.stack(
@@ -83,7 +83,7 @@ def _branches(figure: Any, axis: Any, result: CampbellResult, colour: str) -> No
         label = "logarithmic decrement"
     lines = LineCollection(segments[there], array=values.ravel()[there], cmap="viridis", lw=1.7, zorder=3)
     axis.add_collection(lines)
-    figure.colorbar(lines, ax=axis, label=label, pad=0.06, fraction=0.03)
+    axis.figure.colorbar(lines, ax=axis, label=label, pad=0.06, fraction=0.03)
 
 
 def _mean(values: np.ndarray) -> np.ndarray:

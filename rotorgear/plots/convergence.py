@@ -2,43 +2,41 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
 from typing import Any
 
-from rotorgear.errors import MissingExtraError
+import numpy as np
+
+from rotorgear.plots.figure import figure_for
 from rotorgear.results.convergence import ConvergenceStudy
 
 _STYLE = {"elements": ("s", "#777777", "basic elements"), "accuracy": ("o", "#1f5fa8", "refined to an accuracy")}
 
 
-def draw_convergence(study: ConvergenceStudy, path: str | Path) -> Path:
-    """Write the study as a picture (PNG or SVG by the name's ending) and return its path.
+def accuracy(result: ConvergenceStudy, fig: Any = None) -> np.ndarray:
+    """Draw a convergence study: error against seconds and, of modes, against degrees of freedom.
+
+    Args:
+        result: a convergence study of modes or of a transient.
+        fig: figure to draw on; a new one for None.
+
+    Returns:
+        One or two axes.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtraError("A plot", "matplotlib", "plots") from None
-    figure = Figure(figsize=(9.0, 4.0), layout="constrained")
-    if study.analysis == "transient":
-        axes = [figure.subplots()]
-        _curve(axes[0], study, "seconds", "seconds, integration")
-        axes[0].set_ylabel(f"rms error of {study.modes} contact forces over their change")
+    figure = figure_for(fig, (9.0, 4.0), result.title)
+    if result.analysis == "transient":
+        axes = np.array([figure.subplots()])
+        _curve(axes[0], result, "seconds", "seconds, integration")
+        axes[0].set_ylabel(f"rms error of {result.modes} contact forces over their change")
     else:
-        axes = list(figure.subplots(1, 2, sharey=True))
-        _curve(axes[0], study, "seconds", "seconds, whole analysis")
-        _curve(axes[1], study, "dofs", "degrees of freedom")
-        axes[0].set_ylabel(f"largest relative error of {study.modes} frequencies")
+        axes = figure.subplots(1, 2, sharey=True)
+        _curve(axes[0], result, "seconds", "seconds, whole analysis")
+        _curve(axes[1], result, "dofs", "degrees of freedom")
+        axes[0].set_ylabel(f"largest relative error of {result.modes} frequencies")
     axes[0].legend(frameon=False)
-    figure.suptitle(study.title, fontsize=11)
-    target = Path(path)
-    temporary = target.with_name(f".{target.stem}.part{target.suffix}")
-    figure.savefig(temporary, dpi=120, metadata={"Date": None} if target.suffix == ".svg" else None)
-    os.replace(temporary, target)
-    return target
+    return axes
 
 
 def _curve(axis: Any, study: ConvergenceStudy, key: str, label: str) -> None:

@@ -2,62 +2,68 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from rotorgear.plots.figure import new_figure, write_figure
+from rotorgear.plots.figure import axes_for
 from rotorgear.results.campbell import RPM
 from rotorgear.results.critical import CriticalMap
 
 _STYLE = {"forward": ("-", "#1f5fa8"), "backward": ("--", "#c2571a"), "other": (":", "#777777")}
 
 
-def draw_critical_map(chart: CriticalMap, path: str | Path) -> Path:
-    """Write critical speeds over support stiffness, with the stiffness of the bearings, as a picture; return its path.
+def critical_map(result: CriticalMap, ax: Any = None) -> Any:
+    """Draw critical speeds over support stiffness, with the stiffness of the bearings.
+
+    Args:
+        result: a map of critical speeds.
+        ax: axes to draw on; those of a new figure for None.
+
+    Returns:
+        The axes.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    figure = new_figure((9.0, 6.0))
-    axis = figure.subplots()
+    title = f"{result.model.title or 'Critical speeds'}\nundamped critical speeds of {result.line}"
+    axis = axes_for(ax, (9.0, 6.0), title)
     for kind, (style, colour) in _STYLE.items():
-        values = np.abs(getattr(chart, kind)) * RPM
+        values = np.abs(getattr(result, kind)) * RPM
         for column in range(values.shape[1]):
             axis.loglog(
-                chart.stiffness,
+                result.stiffness,
                 values[:, column],
                 style,
                 color=colour,
                 lw=1.4,
                 label=_label(kind) if column == 0 else None,
             )
-    _bearings(axis, chart)
+    _bearings(axis, result)
     axis.set_xlabel("radial stiffness of every bearing, N/m")
-    axis.set_ylabel(f"critical speed of {chart.model.reference_shaft}, rpm")
-    axis.set_title(f"{chart.model.title or 'Critical speeds'}\nundamped critical speeds of {chart.line}", fontsize=10)
-    axis.set_xlim(chart.stiffness[0], chart.stiffness[-1])
+    axis.set_ylabel(f"critical speed of {result.model.reference_shaft}, rpm")
+    axis.set_xlim(result.stiffness[0], result.stiffness[-1])
     axis.grid(True, which="both", alpha=0.2)
     axis.legend(frameon=False, loc="lower right")
-    return write_figure(figure, path)
+    return axis
 
 
 def _label(kind: str) -> str:
     return "torsion or axial" if kind == "other" else f"{kind} whirl"
 
 
-def _bearings(axis: object, chart: CriticalMap) -> None:
+def _bearings(axis: Any, result: CriticalMap) -> None:
     """A vertical line at each different stiffness that a bearing has, named after the bearings that have it."""
     names: dict[float, list[str]] = {}
-    for name, (x, y) in chart.bearings.items():
+    for name, (x, y) in result.bearings.items():
         for value, suffix in ((x, "" if x == y else " x"), (y, "" if x == y else " y")):
             if value > 0.0 and f"{name}{suffix}" not in names.setdefault(float(value), []):
                 names[float(value)].append(f"{name}{suffix}")
     for value, own in names.items():
-        if chart.stiffness[0] <= value <= chart.stiffness[-1]:
-            axis.axvline(value, color="#444444", lw=0.8)  # type: ignore[attr-defined]
+        if result.stiffness[0] <= value <= result.stiffness[-1]:
+            axis.axvline(value, color="#444444", lw=0.8)
             more = f" and {len(own) - 3} more" if len(own) > 3 else ""
-            axis.text(  # type: ignore[attr-defined]
+            axis.text(
                 value,
                 0.02,
                 " " + ", ".join(own[:3]) + more,
@@ -66,5 +72,5 @@ def _bearings(axis: object, chart: CriticalMap) -> None:
                 va="bottom",
                 ha="right",
                 color="#444444",
-                transform=axis.get_xaxis_transform(),  # type: ignore[attr-defined]
+                transform=axis.get_xaxis_transform(),
             )

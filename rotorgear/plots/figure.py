@@ -1,18 +1,20 @@
-"""matplotlib figures without a window, written whole."""
+"""matplotlib figures without a window and without pyplot's global state, and files of them, written whole."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rotorgear.errors import AnalysisError, MissingExtraError
 from rotorgear.export.files import replacing
 
-_FORMATS = (".png", ".svg", ".pdf")
+FORMATS = (".png", ".svg", ".pdf")
 
 
-def new_figure(size: tuple[float, float]) -> Any:
-    """An empty figure of a size in inches.
+def new_figure(size: tuple[float, float], title: str = "") -> Any:
+    """An empty figure of a size in inches, with a title if there is one.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
@@ -21,19 +23,51 @@ def new_figure(size: tuple[float, float]) -> Any:
         from matplotlib.figure import Figure
     except ImportError:
         raise MissingExtraError("A plot", "matplotlib", "plots") from None
-    return Figure(figsize=size, layout="constrained")
+    figure = Figure(figsize=size, layout="constrained")
+    if title:
+        figure.suptitle(title, fontsize=11)
+    return figure
 
 
-def write_figure(figure: Any, path: str | Path) -> Path:
-    """Write a figure as PNG, SVG or PDF by the name's ending, and return its path.
+def axes_for(ax: Any, size: tuple[float, float], title: str) -> Any:
+    """The axes to draw on: those of the caller, whose title is the caller's too, or those of a new figure."""
+    return ax if ax is not None else new_figure(size, title).subplots()
+
+
+def figure_for(fig: Any, size: tuple[float, float], title: str) -> Any:
+    """The figure (or subfigure) to draw several panels on: that of the caller, or a new one with a title."""
+    return fig if fig is not None else new_figure(size, title)
+
+
+def require_picture_name(path: str | Path) -> str:
+    """The ending of a picture's name.
+
+    Raises:
+        AnalysisError: an ending that is no picture's.
+    """
+    kind = Path(path).suffix.lower()
+    if kind not in FORMATS:
+        raise AnalysisError(f"a plot is written as PNG, SVG or PDF by the ending of its name; got '{Path(path).name}'")
+    return kind
+
+
+def save(picture: Any, path: str | Path) -> Path:
+    """Write a picture as PNG, SVG or PDF by the name's ending, whole or not at all.
+
+    Args:
+        picture: what a function of `rotorgear.plot` returned, axes or an array of them, or a figure.
+        path: file to write.
+
+    Returns:
+        The path.
 
     Raises:
         AnalysisError: another ending. WriteError: the file can't be written.
     """
+    kind = require_picture_name(path)
+    one = np.asarray(picture, dtype=object).flat[0]
+    figure = one.figure.figure  # of axes their figure or subfigure, of that the whole one
     target = Path(path)
-    kind = target.suffix.lower()
-    if kind not in _FORMATS:
-        raise AnalysisError(f"a plot is written as PNG, SVG or PDF by the ending of its name; got '{target.name}'")
     # Without a date the same result gives the same file.
     metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(kind)
     with replacing(target) as scratch:

@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import new_figure, write_figure
+from rotorgear.plots.figure import figure_for
 from rotorgear.plots.static import plain_axis
 from rotorgear.results.frequency_response import FrequencyResponse
 
 _UNITS = {"receptance": "m/N", "mobility": "m/(N s)", "accelerance": "m/(N s$^2$)"}
 
 
-def draw_frf(result: FrequencyResponse, path: str | Path, *, quantity: str = "receptance") -> Path:
-    """Write the picture (PNG, SVG or PDF by the name's ending) and return its path.
+def frf(result: FrequencyResponse, fig: Any = None, *, quantity: str = "receptance") -> np.ndarray:
+    """Draw frequency responses: size on a logarithmic scale above, phase below.
+
+    Args:
+        result: responses between places.
+        fig: figure to draw on; a new one for None.
+        quantity: "receptance", "mobility" or "accelerance".
+
+    Returns:
+        Both axes.
 
     Raises:
-        AnalysisError: another ending. MissingExtraError: matplotlib is not installed.
+        AnalysisError: no such quantity. MissingExtraError: matplotlib is not installed.
     """
-    figure = new_figure((9.0, 6.0))
+    figure = figure_for(fig, (9.0, 6.0), result.model.title or "Frequency response")
     size, phase = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
     values = result.of(quantity)
     pairs = [(o, i) for i in range(len(result.inputs)) for o in range(len(result.outputs))]
@@ -38,5 +46,4 @@ def draw_frf(result: FrequencyResponse, path: str | Path, *, quantity: str = "re
     phase.set_xlabel("frequency, Hz")
     for axis in (size, phase):
         plain_axis(axis)
-    figure.suptitle(result.model.title or "Frequency response", fontsize=11)
-    return write_figure(figure, path)
+    return np.array([size, phase])

@@ -6,15 +6,14 @@ The pinion stands left and drives counter-clockwise; a tooth pair touches at the
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from rotorgear.errors import AnalysisError, MissingExtraError
-from rotorgear.export.files import replacing
+from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.plots.figure import figure_for
 from rotorgear.results.gear_sheet import GearSheet
 
 _COLOURS = ("#1f5fa8", "#b3541e")
@@ -52,45 +51,36 @@ def on_line_of_action(teeth: ToothPair, position: float) -> tuple[float, float]:
     return pitch + position * math.sin(angle), position * math.cos(angle)
 
 
-def require_picture_name(path: Path) -> None:
-    """AnalysisError unless the name ends with .png or .svg."""
-    if path.suffix.lower() not in (".png", ".svg"):
-        raise AnalysisError(f"A picture ends with .png or .svg, not '{path.suffix}'.")
+def gear(result: GearSheet, fig: Any = None, *, mesh: str | None = None) -> np.ndarray:
+    """Draw the teeth of a mesh in the transverse plane: both gears whole, and what happens near the pitch point.
 
+    Args:
+        result: a gear sheet.
+        fig: figure to draw on; a new one for None.
+        mesh: name of the mesh; the first one for None.
 
-def draw_mesh(sheet: GearSheet, path: str | Path, mesh: str | None = None) -> Path:
-    """Write the drawing of a mesh (the first one where none is named) as PNG or SVG and return its path.
+    Returns:
+        Both axes.
 
     Raises:
-        AnalysisError: no such mesh, or another ending.
-        MissingExtraError: matplotlib is not installed.
-        WriteError: the file can't be written.
+        AnalysisError: no such mesh. MissingExtraError: matplotlib is not installed.
     """
-    target = Path(path)
-    require_picture_name(target)
-    name = mesh or next(iter(sheet.pairs), None)
-    if name not in sheet.pairs:
+    name = mesh or next(iter(result.pairs), None)
+    if name not in result.pairs:
         raise AnalysisError("There is no mesh between gears with teeth to draw.")
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtraError("A drawing", "matplotlib", "plots") from None
-    row = next(row for row in sheet.meshes if row.name == name)
-    figure = Figure(figsize=(11.0, 5.6), layout="constrained")
+    row = next(row for row in result.meshes if row.name == name)
+    figure = figure_for(fig, (11.0, 5.6), "")
     whole, near = figure.subplots(1, 2, width_ratios=[1.0, 1.25])
     for axis in (whole, near):
-        _draw(axis, sheet.pairs[name], (row.pinion, row.gear))
-    _look_near(near, sheet.pairs[name])
+        _draw(axis, result.pairs[name], (row.pinion, row.gear))
+    _look_near(near, result.pairs[name])
     whole.set_title(f"{name}: centre distance {1e3 * row.centre_distance_m:.3f} mm", fontsize=10)
     ratios = f"eps_alpha {row.transverse_contact_ratio:.3f}, eps_beta {row.overlap_ratio:.3f}"
     near.set_title(f"working pressure angle {row.working_pressure_angle_deg:.3f} deg, {ratios}", fontsize=10)
     handles = dict(zip(*near.get_legend_handles_labels()[::-1], strict=True))
     first = {row.pinion: handles[row.pinion], row.gear: handles[row.gear]} | handles
     figure.legend(first.values(), first.keys(), loc="outside lower center", ncols=7, frameon=False, fontsize=8)
-    with replacing(target) as scratch:
-        plain = target.suffix.lower() == ".svg"
-        figure.savefig(scratch, dpi=130, format=target.suffix[1:].lower(), metadata={"Date": None} if plain else None)
-    return target
+    return np.array([whole, near])
 
 
 def _draw(axis: Any, teeth: ToothPair, names: tuple[str, str]) -> None:
@@ -118,7 +108,8 @@ def _draw(axis: Any, teeth: ToothPair, names: tuple[str, str]) -> None:
     axis.plot(*(1e3 * contact_points(teeth)).T, "o", color="#c00000", ms=4.5, label="contact points")
     axis.set_aspect("equal")
     axis.tick_params(labelsize=8)
-    axis.set_xlabel("mm", fontsize=8)
+    axis.set_xlabel("x, mm", fontsize=8)
+    axis.set_ylabel("y, mm", fontsize=8)
 
 
 def _look_near(axis: Any, teeth: ToothPair) -> None:

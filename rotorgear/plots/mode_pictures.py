@@ -24,7 +24,36 @@ from rotorgear.results.modal import ModalResult
 _SUPERSAMPLING = 2
 
 
-def draw_modes(
+def modes(result: ModalResult, plotter: Any = None, *, mode: int = 0, amplitude: float | None = None) -> Any:
+    """Put a mode on a stage of pyvista: the gearbox deformed, coloured by displacement, over its undeformed self.
+
+    The shape is that at phase 0, where the largest displacement is real; the colour is the amplitude relative to the largest.
+
+    Args:
+        result: modes of a model.
+        plotter: pyvista plotter to fill; for None a new one without a window, for `screenshot`.
+        mode: which, counted from 0.
+        amplitude: largest displacement shown, as a share of the size of the model; for None 0.05, or less where bodies turn far.
+
+    Returns:
+        The plotter.
+
+    Raises:
+        AnalysisError: a mode that the result does not have, an amplitude that is not positive.
+        MissingExtraError: pyvista is not installed.
+        RenderError: nothing can be rendered on this machine.
+    """
+    (chosen,) = chosen_modes(result, [mode])
+    check_amplitude(amplitude)
+    pv = import_pyvista("Drawing modes")
+    with rendering():
+        if plotter is None:
+            plotter = pv.Plotter(off_screen=True, window_size=[1600, 1000], lighting="none")
+        _show(plotter, _stage(pv, plotter, result), chosen, amplitude)
+    return plotter
+
+
+def write_modes(
     result: ModalResult,
     directory: str | Path,
     modes: Sequence[int] | None = None,
@@ -58,8 +87,10 @@ def draw_modes(
     pv = import_pyvista("Drawing modes")
     names = []
     with filling(directory) as scratch, rendering():
-        plotter, scene = _stage(pv, result, size)
+        fine = [_SUPERSAMPLING * pixels for pixels in size]
+        plotter = pv.Plotter(off_screen=True, window_size=fine, lighting="none")
         try:
+            scene = _stage(pv, plotter, result)
             for count, mode in enumerate(chosen):
                 progress(count / len(chosen), f"mode {mode + 1}")
                 _show(plotter, scene, mode, amplitude)
@@ -72,12 +103,10 @@ def draw_modes(
     return written
 
 
-def _stage(pv: ModuleType, result: ModalResult, size: tuple[int, int]) -> tuple[Any, Scene]:
-    """The plotter with everything but the shape of a mode."""
+def _stage(pv: ModuleType, plotter: Any, result: ModalResult) -> Scene:
+    """Put everything but the shape of a mode on a plotter."""
     scene = Scene(pv, build_solids(result.model, result.nodes, FINE), result)
     direction = best_direction(pv, result.model, result.nodes)
-    fine = [_SUPERSAMPLING * pixels for pixels in size]
-    plotter = pv.Plotter(off_screen=True, window_size=fine, lighting="none")
     scene.add_to(pv, plotter)
     if scene.moving.mesh.n_points:
         ghost = plotter.add_mesh(scene.moving.mesh.copy(), color=GREY, opacity=0.2, show_scalar_bar=False)
@@ -85,7 +114,7 @@ def _stage(pv: ModuleType, result: ModalResult, size: tuple[int, int]) -> tuple[
         ghost.mapper.SetResolveCoincidentTopologyToPolygonOffset()
         ghost.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(4.0, 4.0)
     look(plotter, scene.solids.points, direction)
-    return plotter, scene
+    return scene
 
 
 def _save(plotter: Any, path: Path) -> None:

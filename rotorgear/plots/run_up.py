@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import new_figure, write_figure
+from rotorgear.plots.figure import figure_for
 from rotorgear.plots.static import plain_axis
 from rotorgear.results.response import ResponseResult
 
@@ -18,17 +17,25 @@ _HEIGHT = 2.9
 _HEADROOM = 0.45  # for the legend, as a share of the height of the curves
 
 
-def draw_run_up(result: ResponseResult, path: str | Path) -> Path:
-    """Write the picture (PNG, SVG or PDF by the name's ending) and return its path.
+def response(result: ResponseResult, fig: Any = None) -> np.ndarray:
+    """Draw amplitudes over speed: mesh forces, transmission errors, bearing forces and accelerations.
 
     Left: each mesh, bearing or point with all its orders together (root of the sum of squares); right: the strongest of them
     by order. The eight strongest lines are drawn. The dashed line is the operating speed.
 
+    Args:
+        result: a run-up.
+        fig: figure to draw on; a new one for None.
+
+    Returns:
+        The axes, row by row, (rows, 2).
+
     Raises:
-        AnalysisError: another ending. MissingExtraError: matplotlib is not installed.
+        MissingExtraError: matplotlib is not installed.
     """
     rows = [row for row in _quantities(result) if row[2].size and row[2].any()]
-    figure = new_figure((2.0 * _WIDTH, _HEIGHT * max(len(rows), 1) + 0.4))
+    title = f"{result.model.title or 'Forced response'}: amplitudes over speed"
+    figure = figure_for(fig, (2.0 * _WIDTH, _HEIGHT * max(len(rows), 1) + 0.4), title)
     axes = np.atleast_2d(figure.subplots(max(len(rows), 1), 2, sharex=True))
     for (left, right), (title, names, size, unit) in zip(axes, rows, strict=False):
         total = np.sqrt((size**2).sum(axis=0))  # (s, lines)
@@ -37,8 +44,7 @@ def draw_run_up(result: ResponseResult, path: str | Path) -> Path:
         _lines(right, result, list(result.orders), size[:, :, strongest], f"{names[strongest]} by order, {unit}")
     for axis in axes[-1]:
         axis.set_xlabel(f"speed of {result.model.reference_shaft}, rpm")
-    figure.suptitle(f"{result.model.title or 'Forced response'}: amplitudes over speed", fontsize=11)
-    return write_figure(figure, path)
+    return axes
 
 
 def _quantities(result: ResponseResult) -> list[tuple[str, list[str], np.ndarray, str]]:

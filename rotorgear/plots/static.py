@@ -2,33 +2,39 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import new_figure, write_figure
+from rotorgear.plots.figure import figure_for
 from rotorgear.results.static import StaticResult
 
 
-def draw_static(result: StaticResult, path: str | Path) -> Path:
-    """Write the picture (PNG, SVG or PDF by the name's ending) and return its path.
+def static(result: StaticResult, fig: Any = None) -> np.ndarray:
+    """Draw how branches and helices share the load, the forces of bearings, and the deflection of every shaft.
+
+    Args:
+        result: a static result.
+        fig: figure to draw on; a new one for None.
+
+    Returns:
+        All axes, those of meshes and bearings first.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
     shafts = [name for name in result.model.shafts if result.nodes.on_shaft(name).size > 1]
     upper = bool(result.contact_mesh) or bool(result.bearing_force)
-    figure = new_figure((10.0, (3.6 if upper else 0.0) + 1.9 * max(len(shafts), 1)))
+    figure = figure_for(fig, (10.0, (3.6 if upper else 0.0) + 1.9 * max(len(shafts), 1)), result.model.title)
     top, bottom = figure.subfigures(2, 1, height_ratios=[3.4, 1.8 * max(len(shafts), 1)]) if upper else (None, figure)
+    axes = []
     if top is not None:
         left, right = top.subplots(1, 2, width_ratios=[1.0, 1.1])
         _mesh_bars(left, result)
         _bearing_bars(right, result)
-    _deflections(bottom, result, shafts)
-    figure.suptitle(result.model.title, fontsize=11)
-    return write_figure(figure, path)
+        axes += [left, right]
+    return np.array([*axes, *_deflections(bottom, result, shafts)])
 
 
 def _mesh_bars(axis: Any, result: StaticResult) -> None:
@@ -67,9 +73,9 @@ def _bearing_bars(axis: Any, result: StaticResult) -> None:
     plain_axis(axis)
 
 
-def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> None:
+def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> list[Any]:
     if not shafts:
-        return
+        return []
     axes = np.atleast_1d(figure.subplots(len(shafts), 1, sharex=True))
     for axis, name in zip(axes, shafts, strict=True):
         own = result.nodes.on_shaft(name)
@@ -87,6 +93,7 @@ def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> None:
     axes[0].legend(frameon=False, fontsize=8, ncols=2, loc="best")
     axes[0].set_title("Deflection of the shafts (dotted: gears grey, bearings green)", fontsize=10)
     axes[-1].set_xlabel("z, mm")
+    return list(axes)
 
 
 def plain_axis(axis: Any) -> None:

@@ -2,57 +2,88 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from rotorgear.errors import AnalysisError
 from rotorgear.export.files import filling, publish
 from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import new_figure
-from rotorgear.plots.sweep_portraits import draw_portraits, draw_spectra, portrait_size
+from rotorgear.plots.figure import figure_for, save
+from rotorgear.plots.sweep_portraits import portrait_spectra, portraits
 from rotorgear.results.sweep import SweepResult
 
+_SIZE = (8.0, 6.0)
 _KINDS = ("1T", "2T", "3T", "4T", "longer", "quasi-periodic", "chaotic", "not settled", "failed")
 _SHADES = ("#0072B2", "#56B4E9", "#009E73", "#9ad0a5", "#F0E442", "#E69F00", "#D55E00", "#bbbbbb", "#ffffff")
 
 
-def draw_sweep(result: SweepResult, directory: str | Path) -> list[Path]:
-    """Draw what the result has data for into a folder; returns the paths.
+def write_pictures(result: SweepResult, directory: str | Path) -> list[Path]:
+    """Write what the result has data for into a folder; returns the paths.
 
     Raises:
         MissingExtraError: matplotlib is missing. WriteError: the folder can't be written.
     """
-    plans: dict[str, Any] = {}
+    contacts = range(len(result.contact))
+    plans: dict[str, Callable[[], Any]] = {}
     if len(result.shape) == 1:
-        for number in range(len(result.contact)):
-            plans[f"bifurcation_{number + 1}.png"] = lambda figure, c=number: draw_bifurcation(result, figure, c)
-        plans["sections.png"] = lambda figure: draw_sections(result, figure)
+        plans |= {f"bifurcation_{c + 1}.png": partial(bifurcation, result, contact=c) for c in contacts}
+        plans["sections.png"] = partial(sections, result)
     else:
-        plans["map.png"] = lambda figure: draw_map(result, figure)
-    for number in range(len(result.contact) if result.portraits else 0):
-        plans[f"portraits_{number + 1}.png"] = lambda figure, c=number: draw_portraits(result, figure, c)
-        plans[f"spectra_{number + 1}.png"] = lambda figure, c=number: draw_spectra(result, figure, c)
+        plans["map.png"] = partial(sweep_map, result)
+    for c in contacts if result.portraits else ():
+        plans[f"portraits_{c + 1}.png"] = partial(portraits, result, contact=c)
+        plans[f"spectra_{c + 1}.png"] = partial(portrait_spectra, result, contact=c)
     target = Path(directory)
-    names = []
     with filling(target) as scratch:
         for name, draw in plans.items():
-            figure = new_figure(portrait_size(result) if name.startswith(("portraits", "spectra")) else (8.0, 6.0))
-            draw(figure)
-            figure.savefig(scratch / name, dpi=130)
-            names.append(name)
-        return publish(scratch, target, names)
+            save(draw(), scratch / name)
+        return publish(scratch, target, list(plans))
+
+
+def sweep(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np.ndarray:
+    """Draw the bifurcation diagram over one parameter, or the map over two.
+
+    Args:
+        result: a sweep.
+        fig: figure to draw on; a new one for None.
+        contact: number of the contact in a bifurcation diagram, counted from 0.
+
+    Returns:
+        The axes from top to bottom.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    return bifurcation(result, fig, contact=contact) if len(result.shape) == 1 else sweep_map(result, fig)
 
 
 def _label(result: SweepResult, axis: int) -> str:
     return f"{result.address[axis]}{', ' + result.unit[axis] if result.unit[axis] else ''}"
 
 
-def draw_bifurcation(result: SweepResult, figure: Any, contact: int = 0) -> None:
-    """Displacement of a contact at the sections over the parameter, the largest exponent, and shares of time below it."""
+def bifurcation(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np.ndarray:
+    """Draw a contact at the Poincare sections over the parameter, the largest exponent, and shares of time below it.
+
+    Args:
+        result: a sweep.
+        fig: figure to draw on; a new one for None.
+        contact: its number, counted from 0.
+
+    Returns:
+        The axes from top to bottom.
+
+    Raises:
+        AnalysisError: a sweep over two parameters. MissingExtraError: matplotlib is not installed.
+    """
+    if len(result.shape) != 1:
+        raise AnalysisError("a bifurcation diagram is drawn over one parameter: of two there is a map (sweep_map)")
     exponent = bool(result.lyapunov.shape[2])
     rows = 3 if exponent else 2
-    axes = figure.subplots(rows, 1, sharex=True, height_ratios=(3, 1, 1)[:rows])
+    axes = figure_for(fig, _SIZE, "").subplots(rows, 1, sharex=True, height_ratios=(3, 1, 1)[:rows])
     for r, name in enumerate(result.run):
         x = np.repeat(result.values[:, 0], result.count)
         y = 1e6 * result.section[:, r, :, contact, 0].ravel()
@@ -94,6 +125,7 @@ def draw_bifurcation(result: SweepResult, figure: Any, contact: int = 0) -> None
     axes[-1].set_xlabel(_label(result, 0))
     for one in axes:
         one.grid(alpha=0.25)
+    return np.asarray(axes)
 
 
 def _dot(result: SweepResult) -> float:
@@ -105,11 +137,23 @@ def _colour(result: SweepResult, run: int) -> str:
     return "k" if len(result.run) == 1 else COLOURS[run % len(COLOURS)]
 
 
-def draw_sections(result: SweepResult, figure: Any) -> None:
-    """Poincare sections (displacement and velocity of the first contact) of up to nine points, spread over the sweep."""
+def sections(result: SweepResult, fig: Any = None) -> np.ndarray:
+    """Draw Poincare sections of the first contact at up to nine points, spread over the sweep.
+
+    Args:
+        result: a sweep.
+        fig: figure to draw on; a new one for None.
+
+    Returns:
+        One axes a point.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
     sound = [p for p in range(len(result.values)) if not result.failure[p]]
     chosen = [sound[i] for i in np.unique(np.linspace(0, len(sound) - 1, min(9, len(sound))).round().astype(int))]
     columns = int(np.ceil(np.sqrt(len(chosen))))
+    figure = figure_for(fig, _SIZE, "")
     grid = figure.subplots(int(np.ceil(len(chosen) / columns)), columns, squeeze=False)
     for one in grid.flat[len(chosen) :]:
         one.set_visible(False)
@@ -124,10 +168,25 @@ def draw_sections(result: SweepResult, figure: Any) -> None:
         one.ticklabel_format(useOffset=False)
     figure.supxlabel(f"displacement of {result.contact[0]}, um", fontsize=9)
     figure.supylabel("velocity, mm/s", fontsize=9)
+    return np.asarray(grid.flat[: len(chosen)])
 
 
-def draw_map(result: SweepResult, figure: Any) -> None:
-    """Response types, and the largest exponent, over both parameters."""
+def sweep_map(result: SweepResult, fig: Any = None) -> np.ndarray:
+    """Draw response types, and the largest exponent, over both parameters.
+
+    Args:
+        result: a sweep.
+        fig: figure to draw on; a new one for None.
+
+    Returns:
+        One or two axes.
+
+    Raises:
+        AnalysisError: a sweep over one parameter. MissingExtraError: matplotlib is not installed.
+    """
+    if len(result.shape) != 2:
+        raise AnalysisError("a map is drawn over two parameters: of one there is a bifurcation diagram (bifurcation)")
+    figure = figure_for(fig, _SIZE, "")
     from matplotlib.colors import BoundaryNorm, ListedColormap
 
     n1, n2 = (int(n) for n in result.shape)
@@ -158,6 +217,7 @@ def draw_map(result: SweepResult, figure: Any) -> None:
     for one in axes:
         one.set_ylabel(_label(result, 1), fontsize=8)
     axes[-1].set_xlabel(_label(result, 0))
+    return axes
 
 
 def _class(kind: str) -> int:

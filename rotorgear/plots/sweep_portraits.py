@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.errors import AnalysisError
 from rotorgear.plots.colours import COLOURS
+from rotorgear.plots.figure import figure_for
 from rotorgear.results.portrait import DISPLACEMENT, VELOCITY, Portraits
 from rotorgear.results.sweep import SweepResult
 
@@ -15,15 +17,26 @@ _ORDERS = 4.0
 _DECADES = 5
 
 
-def portrait_size(result: SweepResult) -> tuple[float, float]:
-    """Inches of a figure with all portraits."""
-    count = len(result.portraits.point) if result.portraits else 0
+def _size(count: int) -> tuple[float, float]:
+    """Inches of a figure with so many portraits."""
     return (5.0, 4.0) if count == 1 else (8.0, 6.0) if count <= 9 else (10.5, 8.0)
 
 
-def draw_portraits(result: SweepResult, figure: Any, contact: int = 0) -> None:
-    """Velocity over displacement of a contact through some periods, with the Poincare points on top."""
-    own, panels = _panels(result, figure)
+def portraits(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np.ndarray:
+    """Draw velocity over displacement of a contact through some periods, with the Poincare points on top.
+
+    Args:
+        result: a sweep.
+        fig: figure to draw on; a new one for None.
+        contact: its number, counted from 0.
+
+    Returns:
+        One axes a point.
+
+    Raises:
+        AnalysisError: the sweep kept no trajectories. MissingExtraError: matplotlib is not installed.
+    """
+    own, figure, panels = _panels(result, fig)
     for k, one in enumerate(panels):
         for j in range(len(own.run)):
             path = 1e6 * own.trajectory(k, j)[:, contact]
@@ -43,11 +56,24 @@ def draw_portraits(result: SweepResult, figure: Any, contact: int = 0) -> None:
         one.ticklabel_format(useOffset=False)
     figure.supxlabel(f"displacement of {result.contact[contact]}, um", fontsize=9)
     figure.supylabel("velocity, mm/s", fontsize=9)
+    return np.array(panels)
 
 
-def draw_spectra(result: SweepResult, figure: Any, contact: int = 0) -> None:
-    """Amplitudes of the displacement of a contact over the frequency as a multiple of the mesh frequency."""
-    own, panels = _panels(result, figure)
+def portrait_spectra(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np.ndarray:
+    """Draw amplitudes of the displacement of a contact over the frequency as a multiple of the mesh frequency.
+
+    Args:
+        result: a sweep.
+        fig: figure to draw on; a new one for None.
+        contact: its number, counted from 0.
+
+    Returns:
+        One axes a point.
+
+    Raises:
+        AnalysisError: the sweep kept no trajectories. MissingExtraError: matplotlib is not installed.
+    """
+    own, figure, panels = _panels(result, fig)
     for k, one in enumerate(panels):
         largest = 0.0
         for j in range(len(own.run)):
@@ -67,13 +93,16 @@ def draw_spectra(result: SweepResult, figure: Any, contact: int = 0) -> None:
     which = "that of the fastest mesh" if own.turns.max() > 1 else "the mesh frequency"
     figure.supxlabel(f"frequency over {which}", fontsize=9)
     figure.supylabel(f"amplitude of the displacement of {result.contact[contact]}, um", fontsize=9)
+    return np.array(panels)
 
 
-def _panels(result: SweepResult, figure: Any) -> tuple[Portraits, list[Any]]:
+def _panels(result: SweepResult, fig: Any) -> tuple[Portraits, Any, list[Any]]:
     """One pair of axes for each point, named by its values and response types."""
     own = result.portraits
-    assert own is not None
+    if own is None:
+        raise AnalysisError("the sweep kept no trajectories: ask for them (portraits, --portraits)")
     count = len(own.point)
+    figure = figure_for(fig, _size(count), "")
     columns = int(np.ceil(np.sqrt(count)))
     grid = list(figure.subplots(int(np.ceil(count / columns)), columns, squeeze=False).flat)
     for one in grid[count:]:
@@ -85,7 +114,7 @@ def _panels(result: SweepResult, figure: Any) -> tuple[Portraits, list[Any]]:
             kinds = [f"{result.run[r]} {kind}" for r, kind in zip(own.run.tolist(), kinds, strict=True)]
         one.set_title(f"{values}: {', '.join(kinds)}", fontsize=8)
         one.tick_params(labelsize=7)
-    return own, grid[:count]
+    return own, figure, grid[:count]
 
 
 def _name(result: SweepResult, k: int, j: int) -> str | None:

@@ -9,45 +9,56 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.transient.spectra import spectrum
-from rotorgear.errors import MissingExtraError
+from rotorgear.errors import AnalysisError
 from rotorgear.export.files import filling, publish
+from rotorgear.plots.figure import axes_for, figure_for, save
 from rotorgear.results.transient import TransientResult
 
+_SIZE = (8.0, 5.0)
 _SHOWN_PERIODS = 6
 # Share of the largest line down to which a spectrum is shown.
 _SHOWN_SHARE = 1e-4
 _SHOWN_DB = 60.0
 
 
-def draw_transient(result: TransientResult, directory: str | Path) -> list[Path]:
-    """Draw all pictures that the result has data for into a folder; returns their paths.
+def write_pictures(result: TransientResult, directory: str | Path) -> list[Path]:
+    """Write all pictures that the result has data for into a folder; returns their paths.
 
     Raises:
         MissingExtraError: matplotlib is missing. WriteError: the folder can't be written.
     """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtraError("Drawing pictures", "matplotlib", "plots") from None
-    plans: dict[str, Callable[[TransientResult, Any], None]] = {
-        "mesh_forces.png": draw_mesh_forces,
-        "transmission_error.png": draw_transmission_error,
-        "spectra.png": draw_spectra,
-        "energy.png": draw_energy,
-    }
+    plans: list[Callable[..., Any]] = [mesh_forces, transmission_error, spectra, energy]
     if _orbits(result):
-        plans["orbits.png"] = draw_orbits
+        plans.append(orbits)
     if np.ptp(result.speed) > 0.0:
-        plans["spectrogram.png"] = draw_spectrogram
+        plans.append(spectrogram)
     target = Path(directory)
     names = []
     with filling(target) as scratch:
-        for name, draw in plans.items():
-            figure = Figure(figsize=(8.0, 5.0), dpi=130, layout="constrained")
-            draw(result, figure)
-            figure.savefig(scratch / name)
-            names.append(name)
+        for draw in plans:
+            names.append(f"{draw.__name__}.png")
+            save(draw(result), scratch / names[-1])
         return publish(scratch, target, names)
+
+
+def transient(result: TransientResult, fig: Any = None) -> np.ndarray:
+    """Draw mesh forces and transmission errors over the last periods, one above the other.
+
+    Args:
+        result: a transient.
+        fig: figure to draw on; a new one for None.
+
+    Returns:
+        Both axes.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    axes = figure_for(fig, (8.0, 7.0), result.model.title).subplots(2, 1, sharex=True)
+    mesh_forces(result, axes[0])
+    transmission_error(result, axes[1])
+    axes[0].set_xlabel("")
+    return np.asarray(axes)
 
 
 def _window(result: TransientResult) -> np.ndarray:
@@ -57,9 +68,9 @@ def _window(result: TransientResult) -> np.ndarray:
     return np.asarray(result.time >= start)
 
 
-def _histories(result: TransientResult, figure: Any, table: np.ndarray, label: str) -> Any:
+def _histories(result: TransientResult, ax: Any, table: np.ndarray, label: str) -> Any:
     shown = _window(result)
-    axes = figure.subplots()
+    axes = axes_for(ax, _SIZE, result.model.title)
     for i, name in enumerate(result.contact):
         axes.plot(1e3 * result.time[shown], table[shown, i], lw=1.0, label=name)
     axes.set_xlabel("time, ms")
@@ -69,22 +80,59 @@ def _histories(result: TransientResult, figure: Any, table: np.ndarray, label: s
     return axes
 
 
-def draw_mesh_forces(result: TransientResult, figure: Any) -> None:
-    """Mesh force of each contact over the last periods."""
-    _histories(result, figure, 1e-3 * result.mesh_force, "mesh force, kN").axhline(0.0, color="k", lw=0.5)
+def mesh_forces(result: TransientResult, ax: Any = None) -> Any:
+    """Draw the mesh force of each contact over the last periods.
+
+    Args:
+        result: a transient.
+        ax: axes to draw on; those of a new figure for None.
+
+    Returns:
+        The axes.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    axes = _histories(result, ax, 1e-3 * result.mesh_force, "mesh force, kN")
+    axes.axhline(0.0, color="k", lw=0.5)
+    return axes
 
 
-def draw_transmission_error(result: TransientResult, figure: Any) -> None:
-    """Dynamic transmission error of each contact over the last periods."""
-    _histories(result, figure, 1e6 * result.deflection, "dynamic transmission error along the flank normal, um")
+def transmission_error(result: TransientResult, ax: Any = None) -> Any:
+    """Draw the dynamic transmission error of each contact, along the flank normal, over the last periods.
+
+    Args:
+        result: a transient.
+        ax: axes to draw on; those of a new figure for None.
+
+    Returns:
+        The axes.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    return _histories(result, ax, 1e6 * result.deflection, "dynamic transmission error, um")
 
 
-def draw_spectra(result: TransientResult, figure: Any) -> None:
-    """Amplitude spectra of the points' accelerations, or of the mesh forces."""
+def spectra(result: TransientResult, fig: Any = None) -> np.ndarray:
+    """Draw amplitude spectra of the accelerations of three points, or of the mesh forces.
+
+    Args:
+        result: a transient.
+        fig: figure to draw on; a new one for None.
+
+    Returns:
+        One axes a quantity.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
     names = [n for n in result.channel if n.endswith("acceleration")] or [f"force {c}" for c in result.contact]
     names = names[:3]
     orders = bool(np.ptp(result.speed) > 0.0)
-    for axes, name in zip(np.atleast_1d(figure.subplots(len(names), 1, sharex=True)), names, strict=True):
+    figure = figure_for(fig, _SIZE, result.model.title)
+    panels = np.atleast_1d(figure.subplots(len(names), 1, sharex=True))
+    for axes, name in zip(panels, names, strict=True):
         found = spectrum(result, name, orders=orders)
         top = float(found.amplitude.max()) or 1.0
         seen = found.frequency[found.amplitude > _SHOWN_SHARE * top]
@@ -99,10 +147,11 @@ def draw_spectra(result: TransientResult, figure: Any) -> None:
         axes.set_ylim(0.3 * _SHOWN_SHARE * top, 3.0 * top)
         if result.mesh_frequency and not orders:
             axes.legend(fontsize=7, loc="upper right")
-        axes.set_ylabel(f"{found.unit}")
+        axes.set_ylabel(f"amplitude, {found.unit}")
         axes.set_title(name, fontsize=9)
         axes.grid(alpha=0.3)
     axes.set_xlabel("order of the input shaft" if orders else "frequency, Hz")
+    return panels
 
 
 def _different(frequencies: dict[str, float]) -> list[tuple[str, float]]:
@@ -118,9 +167,23 @@ def _orbits(result: TransientResult) -> list[str]:
     return [name for name in ends if f"{name} displacement y" in result.channel and name.startswith("bearings.")]
 
 
-def draw_orbits(result: TransientResult, figure: Any) -> None:
-    """Path of the shaft in each bearing about its mean, over the last periods."""
+def orbits(result: TransientResult, fig: Any = None) -> np.ndarray:
+    """Draw the path of the shaft in each bearing about its mean, over the last periods.
+
+    Args:
+        result: a transient.
+        fig: figure to draw on; a new one for None.
+
+    Returns:
+        One axes a bearing.
+
+    Raises:
+        AnalysisError: the model has no bearing with both displacements. MissingExtraError: matplotlib is not installed.
+    """
     names = _orbits(result)
+    if not names:
+        raise AnalysisError("there are no orbits to draw: no bearing of the model has displacements along x and y")
+    figure = figure_for(fig, _SIZE, result.model.title)
     shown = _window(result)
     columns = int(np.ceil(np.sqrt(len(names))))
     grid = figure.subplots(int(np.ceil(len(names) / columns)), columns, squeeze=False)
@@ -134,11 +197,24 @@ def draw_orbits(result: TransientResult, figure: Any) -> None:
         axes.tick_params(labelsize=7)
     figure.supxlabel("x, um")
     figure.supylabel("y, um")
+    return np.asarray(grid.flat[: len(names)])
 
 
-def draw_energy(result: TransientResult, figure: Any) -> None:
-    """The terms of the energy ledger since the start, and below the energy error of the integration."""
+def energy(result: TransientResult, fig: Any = None) -> np.ndarray:
+    """Draw the terms of the energy ledger since the start, and below the energy error of the integration.
+
+    Args:
+        result: a transient.
+        fig: figure to draw on; a new one for None.
+
+    Returns:
+        Both axes.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
     e = result.energy
+    figure = figure_for(fig, _SIZE, result.model.title)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
     stored = e.strain + e.contact
     terms = {
@@ -151,22 +227,37 @@ def draw_energy(result: TransientResult, figure: Any) -> None:
     for name, values in terms.items():
         upper.plot(1e3 * e.time, values, lw=1.0, label=name)
     upper.set_ylabel("energy since the start, J")
-    upper.legend(fontsize=7)
+    # Above the panel: the terms take its whole height.
+    upper.legend(fontsize=7, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
     lower.plot(1e3 * e.time, e.numerical, lw=1.0, color="tab:red")
     lower.set_ylabel("energy error, J")
     lower.set_xlabel("time, ms")
     for axes in (upper, lower):
         axes.grid(alpha=0.3)
+    return np.array([upper, lower])
 
 
-def draw_spectrogram(result: TransientResult, figure: Any) -> None:
-    """Spectrogram of the first acceleration, or mesh force, over the speed."""
-    from scipy.signal import spectrogram
+def spectrogram(result: TransientResult, ax: Any = None) -> Any:
+    """Draw the spectrogram of the first acceleration, or mesh force, over the speed of a run-up.
 
+    Args:
+        result: a transient.
+        ax: axes to draw on; those of a new figure for None.
+
+    Returns:
+        The axes.
+
+    Raises:
+        AnalysisError: the speed does not change. MissingExtraError: matplotlib is not installed.
+    """
+    from scipy import signal
+
+    if not np.ptp(result.speed):
+        raise AnalysisError("a spectrogram is drawn over the speed: it needs a run-up (speed_to, --speed-to)")
     name = next((n for n in result.channel if n.endswith("acceleration")), f"force {result.contact[0]}")
     values = result.history(name)[result.counted]
     size = int(min(max(values.size // 60, 64), 4096))
-    f, t, power = spectrogram(
+    f, t, power = signal.spectrogram(
         values - values.mean(),
         1.0 / result.spacing,
         nperseg=size,
@@ -174,13 +265,14 @@ def draw_spectrogram(result: TransientResult, figure: Any) -> None:
         window="hann",
         scaling="spectrum",
     )
-    axes = figure.subplots()
+    axes = axes_for(ax, _SIZE, result.model.title)
     speeds = np.interp(result.settle + t, result.time, result.speed) * 30.0 / np.pi
     level = 10.0 * np.log10(np.maximum(2.0 * power, 1e-12 * power.max()))
     picture = axes.pcolormesh(speeds, f, level, vmin=level.max() - _SHOWN_DB, shading="auto", rasterized=True)
-    figure.colorbar(picture, label="dB of the amplitude squared")
+    axes.figure.colorbar(picture, ax=axes, label="dB of the amplitude squared")
     seen = f[level.max(axis=1) > level.max() - _SHOWN_DB]
     axes.set_ylim(0.0, 1.1 * float(seen.max(initial=f[1])))
     axes.set_xlabel("speed of the input shaft, rpm")
     axes.set_ylabel("frequency, Hz")
     axes.set_title(name, fontsize=9)
+    return axes

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import new_figure, write_figure
+from rotorgear.plots.figure import axes_for
 from rotorgear.plots.static import plain_axis
 from rotorgear.results.response import ResponseResult
 
@@ -21,13 +21,17 @@ _SHOWN = 0.01
 _LABELS_APART = 0.03
 
 
-def draw_waterfall(result: ResponseResult, path: str | Path, *, at: str | None = None) -> Path:
-    """Write the picture (PNG, SVG or PDF by the name's ending) and return its path.
+def waterfall(result: ResponseResult, ax: Any = None, *, at: str | None = None) -> Any:
+    """Draw the spectra of one quantity over speed, one above the other.
 
     Args:
-        result: a run-up. path: file to write.
+        result: a run-up.
+        ax: axes to draw on; those of a new figure for None.
         at: name of a mesh (its most loaded helix), a bearing (all three forces) or a point; None: mesh of the largest force,
             else the first bearing.
+
+    Returns:
+        The axes.
 
     Raises:
         AnalysisError: no such mesh, bearing or point, or a single speed. MissingExtraError: matplotlib is not installed.
@@ -39,10 +43,10 @@ def draw_waterfall(result: ResponseResult, path: str | Path, *, at: str | None =
     rpm = np.abs(result.speed_rpm)
     top = float(size[:, chosen].max()) or 1.0
     step = float(rpm[chosen[-1]] - rpm[chosen[0]]) / len(chosen)
-    figure = new_figure((10.0, 7.0))
-    axis = figure.subplots()
     shown = [o for o in range(len(result.orders)) if size[o].max() >= _SHOWN * top]
     widest = 1.03 * float(result.frequency_hz[shown].max())
+    peak = f"{title}: highest peak {top:.4g} {unit}{_left_out(result, shown)}"
+    axis = axes_for(ax, (10.0, 7.0), f"{result.model.title}\n{peak}")
     labelled = -widest
     for order in shown:  # the way of each order, lowest first
         axis.plot(result.frequency_hz[order], rpm, color="#999999", lw=0.7, ls=":", zorder=0)
@@ -70,11 +74,8 @@ def draw_waterfall(result: ResponseResult, path: str | Path, *, at: str | None =
     axis.set_ylim(rpm[0] - step, rpm[-1] + (_STEPS_HIGH + 3.0) * step)
     axis.set_xlabel("frequency, Hz")
     axis.set_ylabel(f"speed of {result.model.reference_shaft}, rpm")
-    axis.set_title(
-        f"{result.model.title}\n{title}: highest peak {top:.4g} {unit}{_left_out(result, shown)}", fontsize=10
-    )
     plain_axis(axis)
-    return write_figure(figure, path)
+    return axis
 
 
 def waterfall_of(result: ResponseResult, at: str | None) -> tuple[str, str, np.ndarray]:

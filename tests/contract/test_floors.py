@@ -29,6 +29,7 @@ FLOORS = {
     "analysis": 7,
     "export": 8,
     "plots": 8,
+    "plot": 9,
     "report": 9,
     "cli": 10,
 }

@@ -12,7 +12,7 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import new_figure, write_figure
+from rotorgear.plots.figure import new_figure, save
 from validation.seeds import marine, pair12, pair16, pair24
 from validation.seeds.rows import changed, loaded
 from validation.T1.spectrum import run as split_torque
@@ -243,7 +243,7 @@ def main() -> None:
         draw, size = PICTURES[name]
         figure = new_figure(size)
         draw(figure)
-        print(f"wrote {write_figure(figure, FOLDER / f'{name}.png')}", flush=True)
+        print(f"wrote {save(figure, FOLDER / f'{name}.png')}", flush=True)
 
 
 if __name__ == "__main__":

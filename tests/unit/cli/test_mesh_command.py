@@ -101,7 +101,7 @@ def test_vtk_files_hold_meshes_that_touch_and_stresses(helix: float, tmp_path: P
         (("--torque", "5 mm"), "--torque: got '5 mm'"),
         (("--load-factors", "a,b"), "--load-factors: got 'a,b'"),
         (("--preset", "best"), "preset: got 'best'"),
-        (("--plot", "curves.jpg"), "ends with .png or .svg"),
+        (("--plot", "curves.jpg"), "a plot is written as PNG, SVG or PDF"),
     ],
 )
 def test_mistakes_are_one_sentence(spur: Path, arguments: tuple[str, str], said: str) -> None:

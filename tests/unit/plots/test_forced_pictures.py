@@ -11,10 +11,7 @@ from typer.testing import CliRunner
 
 import rotorgear as rg
 from rotorgear.cli.main import app
-from rotorgear.plots.frf import draw_frf
-from rotorgear.plots.run_up import draw_run_up
-from rotorgear.plots.static import draw_static
-from rotorgear.plots.waterfall import draw_waterfall, waterfall_of
+from rotorgear.plots.waterfall import waterfall_of
 from tests.paths import ROOT
 
 GEARBOX = ROOT / "models" / "split_torque.toml"
@@ -34,17 +31,16 @@ def lone_rotor() -> rg.ResponseResult:
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
 def test_a_run_up_is_drawn_in_every_format(run_up: rg.ResponseResult, tmp_path: Path, ending: str) -> None:
-    for draw in (draw_run_up, draw_waterfall):
-        assert draw(run_up, tmp_path / f"picture.{ending}").stat().st_size > 3000
+    for draw in (rg.plot.response, rg.plot.waterfall):
+        assert rg.plot.save(draw(run_up), tmp_path / f"picture.{ending}").stat().st_size > 3000
 
 
 def test_a_rotor_without_meshes_bearings_and_points_is_drawn_by_its_displacement(
     lone_rotor: rg.ResponseResult, tmp_path: Path
 ) -> None:
-    assert draw_run_up(lone_rotor, tmp_path / "rotor.png").exists()
+    assert rg.plot.save(rg.plot.response(lone_rotor), tmp_path / "rotor.png").exists()
     with pytest.raises(rg.AnalysisError, match="no mesh, bearing or point"):
-        draw_waterfall(lone_rotor, tmp_path / "none.png")
-    assert not (tmp_path / "none.png").exists()
+        rg.plot.waterfall(lone_rotor)
 
 
 def test_a_waterfall_names_its_quantity(run_up: rg.ResponseResult) -> None:
@@ -60,15 +56,15 @@ def test_a_waterfall_names_its_quantity(run_up: rg.ResponseResult) -> None:
 
 def test_a_wrong_ending_is_refused_and_leaves_nothing(run_up: rg.ResponseResult, tmp_path: Path) -> None:
     with pytest.raises(rg.AnalysisError, match="PNG"):
-        draw_run_up(run_up, tmp_path / "picture.txt")
+        rg.plot.save(rg.plot.response(run_up), tmp_path / "picture.txt")
     assert not list(tmp_path.iterdir())
 
 
 def test_statics_and_frequency_responses_are_drawn(tmp_path: Path) -> None:
     model = rg.load(GEARBOX)
-    assert draw_static(rg.static(model), tmp_path / "static.png").exists()
+    assert rg.plot.save(rg.plot.static(rg.static(model)), tmp_path / "static.png").exists()
     result = rg.frf(model, [10.0, 20.0, 30.0], inputs=["gears.bull:y"], outputs=["output_bearing_y"], elements=1)
-    assert draw_frf(result, tmp_path / "frf.svg", quantity="mobility").exists()
+    assert rg.plot.save(rg.plot.frf(result, quantity="mobility"), tmp_path / "frf.svg").exists()
 
 
 def test_operating_deflections_in_vtk_are_those_of_the_result(run_up: rg.ResponseResult, tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 from rotorgear.errors import AnalysisError, MissingExtraError
 from rotorgear.export.files import WriteError
 from rotorgear.plots import offscreen, view
-from rotorgear.plots.mode_pictures import draw_modes
+from rotorgear.plots.mode_pictures import write_modes
 from rotorgear.plots.offscreen import RenderError, rendering, working_window
 from rotorgear.plots.scene import Scene, colour_map, headline
 from tests.unit.export.small_models import CHAIN, PAIR, modes_of
@@ -20,7 +20,7 @@ pv = pytest.importorskip("pyvista")
 def pictures(tmp_path_factory):
     folder = tmp_path_factory.mktemp("pictures")
     try:
-        return draw_modes(modes_of(PAIR), folder, modes=[1, 2], size=(480, 300))
+        return write_modes(modes_of(PAIR), folder, modes=[1, 2], size=(480, 300))
     except RenderError as error:
         pytest.skip(str(error))
 
@@ -48,7 +48,7 @@ def test_pictures_of_two_modes_differ(pictures):
 
 
 def test_a_torsion_only_chain_without_shafts_can_be_drawn(tmp_path, pictures):
-    (path,) = draw_modes(modes_of(CHAIN), tmp_path, modes=[1], size=(480, 300))
+    (path,) = write_modes(modes_of(CHAIN), tmp_path, modes=[1], size=(480, 300))
     assert np.mean(np.any(pixels(path) < 240, axis=-1)) > 0.03
 
 
@@ -71,7 +71,7 @@ def broken_graphics(monkeypatch):
 @pytest.mark.skipif(sys.platform == "win32", reason="no such signal")
 def test_where_rendering_crashes_the_command_says_so_and_lives(tmp_path, broken_graphics):
     with pytest.raises(RenderError, match=r"can't be rendered on this machine .*a crash.*libegl1.*ParaView"):
-        draw_modes(modes_of(PAIR), tmp_path, modes=[0])
+        write_modes(modes_of(PAIR), tmp_path, modes=[0])
     assert list(tmp_path.iterdir()) == []
 
 
@@ -88,23 +88,23 @@ def test_a_trial_that_draws_nothing_is_no_success(monkeypatch):
 
 def test_wishes_that_make_no_sense_are_refused(tmp_path):
     with pytest.raises(AnalysisError, match="there is no mode 9: the result has 4"):
-        draw_modes(modes_of(PAIR), tmp_path, modes=[8])
+        write_modes(modes_of(PAIR), tmp_path, modes=[8])
     with pytest.raises(AnalysisError, match="at least 100 pixels each way, got 1600 x 40"):
-        draw_modes(modes_of(PAIR), tmp_path, size=(1600, 40))
+        write_modes(modes_of(PAIR), tmp_path, size=(1600, 40))
     with pytest.raises(AnalysisError, match="the amplitude must be"):
-        draw_modes(modes_of(PAIR), tmp_path, amplitude=-1.0)
+        write_modes(modes_of(PAIR), tmp_path, amplitude=-1.0)
 
 
 def test_a_file_in_the_way_of_the_folder_is_reported(tmp_path):
     (tmp_path / "taken").touch()
     with pytest.raises(WriteError, match="a file stands in the way"):
-        draw_modes(modes_of(PAIR), tmp_path / "taken", modes=[0])
+        write_modes(modes_of(PAIR), tmp_path / "taken", modes=[0])
 
 
 def test_without_pyvista_the_extra_to_install_is_named(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     with pytest.raises(MissingExtraError, match=r"pyvista.*rotorgear\[vtk\]"):
-        draw_modes(modes_of(PAIR), tmp_path)
+        write_modes(modes_of(PAIR), tmp_path)
     with pytest.raises(MissingExtraError, match=r"pyvista.*rotorgear\[vtk\]"):
         view.view(modes_of(PAIR))
 

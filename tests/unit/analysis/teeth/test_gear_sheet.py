@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 import rotorgear as rg
 from rotorgear.cli.main import app
-from rotorgear.plots.gear_mesh import contact_points, draw_mesh, gear_contour
+from rotorgear.plots.gear_mesh import contact_points, gear_contour
 from tests.paths import MODELS
 
 PAIR = MODELS / "helical_pair.toml"
@@ -78,7 +78,7 @@ def test_the_drawn_contours_touch_at_the_contact_points_and_never_overlap() -> N
 
 @pytest.mark.parametrize("ending", [".png", ".svg"])
 def test_a_drawing_is_written_whole(tmp_path: Path, ending: str) -> None:
-    target = draw_mesh(rg.gear(rg.load(PAIR)), tmp_path / f"mesh{ending}")
+    target = rg.plot.save(rg.plot.gear(rg.gear(rg.load(PAIR))), tmp_path / f"mesh{ending}")
     assert target.stat().st_size > 10_000
     assert list(tmp_path.iterdir()) == [target]
 
@@ -86,7 +86,7 @@ def test_a_drawing_is_written_whole(tmp_path: Path, ending: str) -> None:
 def test_what_is_refused_leaves_nothing_behind(tmp_path: Path) -> None:
     for arguments, words in (
         ((str(PAIR), "--mesh", "stge"), "There is no mesh 'stge'"),
-        ((str(PAIR), "--plot", str(tmp_path / "mesh.jpg")), "A picture ends with .png or .svg"),
+        ((str(PAIR), "--plot", str(tmp_path / "mesh.jpg")), "a plot is written as PNG, SVG or PDF"),
         ((str(MODELS / "jeffcott.toml"),), "has no gears with teeth"),
     ):
         from rotorgear.errors import RotorgearError

@@ -1,0 +1,32 @@
+"""The pictures, one a line: type checkers and editors read them here, and so does `rotorgear.lazy`."""
+
+# Named as the verb whose result they draw; `result.plot()` calls these.
+from rotorgear.plots.campbell import campbell as campbell
+from rotorgear.plots.critical_map import critical_map as critical_map
+from rotorgear.plots.static import static as static
+from rotorgear.plots.run_up import response as response
+from rotorgear.plots.frf import frf as frf
+from rotorgear.plots.transient import transient as transient
+from rotorgear.plots.sweep import sweep as sweep
+from rotorgear.plots.gear_mesh import gear as gear
+from rotorgear.plots.mesh_cycle import mesh as mesh
+from rotorgear.plots.convergence import accuracy as accuracy
+from rotorgear.plots.mesh_convergence import mesh_accuracy as mesh_accuracy
+from rotorgear.plots.mode_pictures import modes as modes
+
+# More of one result.
+from rotorgear.plots.waterfall import waterfall as waterfall
+from rotorgear.plots.transient import mesh_forces as mesh_forces
+from rotorgear.plots.transient import transmission_error as transmission_error
+from rotorgear.plots.transient import spectra as spectra
+from rotorgear.plots.transient import orbits as orbits
+from rotorgear.plots.transient import energy as energy
+from rotorgear.plots.transient import spectrogram as spectrogram
+from rotorgear.plots.sweep import bifurcation as bifurcation
+from rotorgear.plots.sweep import sections as sections
+from rotorgear.plots.sweep import sweep_map as sweep_map
+from rotorgear.plots.sweep_portraits import portraits as portraits
+from rotorgear.plots.sweep_portraits import portrait_spectra as portrait_spectra
+
+# Files of them.
+from rotorgear.plots.figure import save as save
