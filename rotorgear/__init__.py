@@ -8,6 +8,7 @@ The public names stand in `__init__.pyi` beside this file and are loaded when th
 nothing.
 """
 
+from rotorgear.drawing import found_by
 from rotorgear.lazy import attach
 from rotorgear.version import VERSION
 
@@ -30,3 +31,4 @@ _FORMER = {
 }
 __getattr__, __dir__, __all__ = attach(__name__, __file__, _FORMER)
 __all__ += ["__version__"]
+found_by(lambda kind: getattr(__getattr__("plot"), kind, None))

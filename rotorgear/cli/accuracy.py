@@ -85,8 +85,7 @@ def accuracy(
         console().print(part)
     write_json(study.to_dict(), json)
     if plot:
-        drawn = rg.plot.mesh_accuracy(study) if analysis == "mesh" else rg.plot.accuracy(study)  # type: ignore[arg-type]
-        typer.echo(f"wrote {rg.plot.save(drawn, plot)}")
+        typer.echo(f"wrote {rg.plot.save(study.plot(), plot)}")
 
 
 def _parts(study: ConvergenceStudy | MeshConvergenceStudy | SweepConvergenceStudy) -> list[Any]:

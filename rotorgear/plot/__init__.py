@@ -1,4 +1,4 @@
-"""Pictures of results: `rg.plot.campbell(result, ax=None)`, each named as the verb whose result it draws.
+"""Pictures of results: `rg.plot.campbell(result, ax=None)`, each named as the kind of result that it draws.
 
     axes = rg.plot.campbell(rg.campbell(model), colour="damping")
     rg.plot.save(axes, "campbell.png")

@@ -1,6 +1,6 @@
 """The pictures, one a line: type checkers and editors read them here, and so does `rotorgear.lazy`."""
 
-# Named as the verb whose result they draw; `result.plot()` calls these.
+# Named as the kind of the result that they draw: `result.plot()` calls these.
 from rotorgear.plots.campbell import campbell as campbell
 from rotorgear.plots.critical_map import critical_map as critical_map
 from rotorgear.plots.static import static as static
@@ -10,9 +10,9 @@ from rotorgear.plots.transient import transient as transient
 from rotorgear.plots.sweep import sweep as sweep
 from rotorgear.plots.gear_mesh import gear as gear
 from rotorgear.plots.mesh_cycle import mesh as mesh
-from rotorgear.plots.convergence import accuracy as accuracy
-from rotorgear.plots.mesh_convergence import mesh_accuracy as mesh_accuracy
-from rotorgear.plots.mode_pictures import modes as modes
+from rotorgear.plots.convergence import convergence as convergence
+from rotorgear.plots.mesh_convergence import mesh_convergence as mesh_convergence
+from rotorgear.plots.mode_pictures import modal as modal
 
 # More of one result.
 from rotorgear.plots.waterfall import waterfall as waterfall

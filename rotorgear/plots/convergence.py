@@ -12,7 +12,7 @@ from rotorgear.results.convergence import ConvergenceStudy
 _STYLE = {"elements": ("s", "#777777", "basic elements"), "accuracy": ("o", "#1f5fa8", "refined to an accuracy")}
 
 
-def accuracy(result: ConvergenceStudy, fig: Any = None) -> np.ndarray:
+def convergence(result: ConvergenceStudy, fig: Any = None) -> np.ndarray:
     """Draw a convergence study: error against seconds and, of modes, against degrees of freedom.
 
     Args:

@@ -14,7 +14,7 @@ _CURVES = (
 )
 
 
-def mesh_accuracy(result: MeshConvergenceStudy, ax: Any = None) -> Any:
+def mesh_convergence(result: MeshConvergenceStudy, ax: Any = None) -> Any:
     """Draw the convergence study of a mesh: errors of stiffness and transmission error against CPU seconds.
 
     Args:

@@ -24,7 +24,7 @@ from rotorgear.results.modal import ModalResult
 _SUPERSAMPLING = 2
 
 
-def modes(result: ModalResult, plotter: Any = None, *, mode: int = 0, amplitude: float | None = None) -> Any:
+def modal(result: ModalResult, plotter: Any = None, *, mode: int = 0, amplitude: float | None = None) -> Any:
     """Put a mode on a stage of pyvista: the gearbox deformed, coloured by displacement, over its undeformed self.
 
     The shape is that at phase 0, where the largest displacement is real; the colour is the amplitude relative to the largest.

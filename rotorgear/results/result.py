@@ -6,6 +6,7 @@ from html import escape
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from rotorgear.drawing import picture_of
 from rotorgear.results.schema import Record, Written, derived, of
 from rotorgear.version import VERSION
 
@@ -90,6 +91,21 @@ class Result(Record):
         module = import_module(f".tables.{place}", __package__)
         table: RenderableType = getattr(module, f"{self.kind}_table")(self, **options)
         return table
+
+    def plot(self, on: Any = None, **options: Any) -> Any:
+        """Draw this result; `rotorgear.plot` has the picture of its kind, with the options, and others.
+
+        Args:
+            on: axes, figure or plotter to draw on, as the picture takes; a new one for None.
+            options: of the picture.
+
+        Returns:
+            The axes, an array of them, or the plotter.
+
+        Raises:
+            AnalysisError: a kind of result without a picture. MissingExtraError: matplotlib or pyvista is not installed.
+        """
+        return picture_of(self.kind)(self, on, **options)
 
     def text(self, width: int = _WIDTH, **options: Any) -> str:
         """The table as text, so many characters wide."""

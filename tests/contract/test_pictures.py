@@ -24,12 +24,12 @@ PICTURES = {
     "frf": ("frf",),
     "gear": ("gear",),
     "mesh": ("mesh",),
-    "accuracy": ("accuracy",),
+    "convergence": ("convergence",),
     "transient": ("transient", "mesh_forces", "transmission_error", "spectra", "orbits", "energy", "spectrogram"),
     "sweep": ("sweep", "bifurcation", "sections", "portraits", "portrait_spectra"),
 }
 # Of a stage of pyvista, of a map over two parameters, and of minutes of contact analyses: each has its own test or a long one.
-ELSEWHERE = {"modes", "sweep_map", "mesh_accuracy", "save"}
+ELSEWHERE = {"modal", "sweep_map", "mesh_convergence", "save"}
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def results() -> dict[str, Any]:
         "frf": rg.frf(jeffcott, inputs=["disks.disk:x"], outputs=["disks.disk:x"], fmax=100.0, points=9, elements=1),
         "gear": rg.gear(pair),
         "mesh": rg.mesh(pair, stiffness="iso"),
-        "accuracy": rg.convergence_study(jeffcott, modes=4, elements=(1, 2), accuracies=(), repeat=1),
+        "convergence": rg.convergence_study(jeffcott, modes=4, elements=(1, 2), accuracies=(), repeat=1),
         "transient": rg.transient(
             rg.load(MODELS / "flexible_pair.toml"),
             speed="3000 rpm",
@@ -88,7 +88,7 @@ def test_a_picture_is_drawn_on_its_own_figure_and_on_the_callers(
     for one in np.atleast_1d(np.asarray(axes, dtype=object)).flat:
         assert one.has_data()
     where = list(inspect.signature(draw).parameters)[1]
-    figure = Figure(layout="constrained")
+    figure = Figure(figsize=(20.0, 12.0), layout="constrained")
     if where == "ax":
         given = figure.subplots()
         assert draw(results[verb], given) is given
@@ -108,7 +108,7 @@ def test_a_picture_says_along_its_axes_what_is_drawn(results: dict[str, Any], ve
         # Along a shared axis the label stands once: at the last panel, or for the whole figure.
         assert any(one.get_xlabel() for one in axes.flat) or figure.get_supxlabel(), name
         for one in axes.flat:
-            assert one.get_ylabel() or one.get_title() or figure.get_supylabel() or verb == "accuracy", name
+            assert one.get_ylabel() or one.get_title() or figure.get_supylabel() or verb == "convergence", name
 
 
 def test_pictures_leave_pyplot_alone(results: dict[str, Any]) -> None:
@@ -121,6 +121,23 @@ def test_pictures_leave_pyplot_alone(results: dict[str, Any]) -> None:
         assert plt.get_fignums() == []
     else:
         assert "matplotlib.pyplot" not in sys.modules
+
+
+@pytest.mark.parametrize("verb", PICTURES)
+def test_a_result_draws_itself_with_the_picture_of_its_kind(
+    results: dict[str, Any], verb: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    result = results[verb]
+    assert result.kind == verb == PICTURES[verb][0]
+    drawn: list[Any] = []
+    monkeypatch.setitem(vars(rg.plot), verb, lambda *args, **options: drawn.append((*args, options)))
+    result.plot("here", colour="red")
+    assert drawn == [(result, "here", {"colour": "red"})]
+
+
+def test_a_result_without_a_picture_says_so() -> None:
+    with pytest.raises(rg.AnalysisError, match="'check' has no picture"):
+        rg.check(rg.load(MODELS / "jeffcott.toml")).plot()
 
 
 def test_what_a_result_has_no_data_for_is_refused_in_a_sentence(results: dict[str, Any]) -> None:

@@ -17,8 +17,6 @@ from pathlib import Path
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.plots.convergence import accuracy as draw_accuracy
-from rotorgear.plots.figure import save
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "error_vs_runtime.md"
@@ -94,7 +92,7 @@ def section(name: str, file: Path, model: rg.Model) -> tuple[str, tuple[float, f
         f"`rotorgear accuracy {file.relative_to(ROOT)}`: {study.title}, {study.modes} frequencies.\n",
     ]
     if name in DRAWN:
-        picture = save(draw_accuracy(study), PICTURES / f"error_{name.replace('/', '_')}.png")
+        picture = rg.plot.save(study.plot(), PICTURES / f"error_{name.replace('/', '_')}.png")
         lines.append(f"![error against time of {name}](pictures/{picture.name})\n")
     spread = (min(r[0] for r in ranges), max(r[1] for r in ranges)) if ranges else (np.nan, np.nan)
     return "\n".join([*lines, table(rows)]), spread

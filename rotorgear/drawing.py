@@ -1,0 +1,31 @@
+"""How a result finds its picture, the one on `rotorgear.plot` that is named as its kind.
+
+Results stand below pictures and know none of them. So the face, which stands above both, hands the way up in here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rotorgear.errors import AnalysisError
+
+Picture = Callable[..., Any]
+_ways: list[Callable[[str], Picture | None]] = []
+
+
+def found_by(way: Callable[[str], Picture | None]) -> None:
+    """Say how the picture of a kind of result is found; the way answers None for a kind without one."""
+    _ways[:] = [way]
+
+
+def picture_of(kind: str) -> Picture:
+    """The function that draws results of a kind.
+
+    Raises:
+        AnalysisError: nothing draws them.
+    """
+    picture = _ways[0](kind) if _ways else None
+    if picture is None:
+        raise AnalysisError(f"a result of the kind '{kind}' has no picture; its table and its numbers say it all")
+    return picture
