@@ -18,6 +18,7 @@ GLOSSARY = ROOT / "docs" / "glossary.md"
 # What stands for itself: recorded names of other people's cases, and texts about the change of words.
 _TOLD = {"glossary.md"}
 _CODE = re.compile(r"`[^`\n]*`")
+_PATH = re.compile(r"`[^`\n]*/[^`\n]*`")
 
 
 def former_words(text: str | None = None) -> list[tuple[str, str]]:
