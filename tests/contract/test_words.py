@@ -117,7 +117,5 @@ def test_the_keys_of_the_model_file_say_the_words_of_the_field() -> None:
 
 @pytest.mark.parametrize("page", pages(), ids=lambda page: page.name)
 def test_the_pages_say_the_words_of_the_field(page: Path) -> None:
-    text = (
-        _CODE.sub("", page.read_text(encoding="utf-8")) if page.name == "json.md" else page.read_text(encoding="utf-8")
-    )
+    text = (_CODE if page.name == "json.md" else _PATH).sub("", page.read_text(encoding="utf-8"))
     assert not found_in(text)
