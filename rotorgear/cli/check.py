@@ -15,8 +15,10 @@ _MESH_LEGEND = (
     "[dim]at: direction from pinion to gear from +x; a_wt: working transverse pressure angle; beta_b: base helix angle in deg; "
     "eps: contact ratios, transverse and overlap (of one helix)[/dim]"
 )
+_GEAR_LEGEND = "[dim]r_b: base radius; z of its nodes; angle of a tooth's middle from the mark of its shaft[/dim]"
 _FORCE_LEGEND = (
-    "[dim]forces on one helix: normal to the flank, tangential and radial at the working circle, axial; "
+    "[dim]phase: in pitches, when the mark of the input shaft points to +x; "
+    "forces on one helix: normal to the flank, tangential and radial at the working circle, axial; "
     "L and R: helix at the smaller and the larger z[/dim]"
 )
 
@@ -40,6 +42,10 @@ def _parts(d: ModelDescription) -> list[Any]:
     counts = ", ".join(counted(number, name) for name, number in d.counts.items())
     parts: list[Any] = [f"[bold]{d.title or 'Model'}[/bold]", f"{speed}; {counts}", ""]
     parts.append(_shafts(d))
+    if d.gears:
+        parts += ["", _gears(d), _GEAR_LEGEND]
+    if d.places:
+        parts += ["", _places(d)]
     if d.meshes:
         parts += ["", _meshes(d), _MESH_LEGEND, "", _forces(d), _FORCE_LEGEND]
     if d.torques:
@@ -86,6 +92,39 @@ def _shafts(d: ModelDescription) -> Any:
     return table
 
 
+def _gears(d: ModelDescription) -> Any:
+    table = _table(
+        ("gear", "left"),
+        ("shaft", "left"),
+        ("teeth", "right"),
+        ("hand", "left"),
+        ("r_b mm", "right"),
+        ("z mm", "right"),
+        ("angle deg", "right"),
+        ("kg", "right"),
+    )
+    for row in d.gears:
+        table.add_row(
+            row.name,
+            row.shaft,
+            "-" if row.teeth is None else str(row.teeth),
+            row.hand or "-",
+            f"{1e3 * row.base_radius_m:.3f}",
+            " ".join(f"{1e3 * z:.5g}" for z in row.z_m),
+            f"{row.clocking_deg:.3f}",
+            f"{row.mass_kg:.3f}",
+        )
+    return table
+
+
+def _places(d: ModelDescription) -> Any:
+    """A line for each shaft: z of what stands on it beside the gears."""
+    table = _table(("shaft", "left"), ("z mm of the other parts on it", "left"))
+    for shaft in dict.fromkeys(row.shaft for row in d.places):
+        table.add_row(shaft, ", ".join(f"{row.part} {1e3 * row.z_m:.5g}" for row in d.places if row.shaft == shaft))
+    return table
+
+
 def _meshes(d: ModelDescription) -> Any:
     table = _table(
         ("mesh", "left"),
@@ -121,6 +160,7 @@ def _forces(d: ModelDescription) -> Any:
     table = _table(
         ("mesh", "left"),
         ("driver", "left"),
+        ("phase", "right"),
         ("F_n N", "right"),
         ("F_t N", "right"),
         ("F_r N", "right"),
@@ -138,7 +178,8 @@ def _forces(d: ModelDescription) -> Any:
             table.add_row(
                 name,
                 _driver(row),
-                *(f"{part:.1f}" for part in parts),
+                _number(row.phase_pitches[number], 1.0, 3),
+                *(f"{part:.5g}" for part in parts),
                 f"{row.stiffness_n_per_m / helices:.4g}",
                 f"{row.damping_n_s_per_m / helices:.4g}",
             )

@@ -18,6 +18,30 @@ class ShaftRow(Record):
     polar_inertia_kg_m2: float = of("moment of inertia about z of all that", "kg m^2")
 
 
+class GearRow(Record):
+    """A gear on its shaft."""
+
+    name: str = of("name")
+    shaft: str = of("shaft")
+    teeth: int | None = of("number of teeth")
+    hand: str | None = of("hand of the helix", note="; of a herringbone: of that at the smaller z")
+    base_radius_m: float = of("base radius", "m")
+    z_m: tuple[float, ...] = of("z of its nodes", "m", "node")
+    clocking_deg: float = of(
+        "angle of a tooth's middle from the mark of its shaft", "deg", note=", given or what closes a loop"
+    )
+    mass_kg: float = of("mass", "kg")
+    polar_inertia_kg_m2: float = of("moment of inertia about z", "kg m^2")
+
+
+class PlaceRow(Record):
+    """Where a part stands that is no gear."""
+
+    part: str = of("address of the part")
+    shaft: str = of("shaft it stands on")
+    z_m: float = of("z", "m")
+
+
 class MeshRow(Record):
     """A mesh: what follows from its gears and axes, at the operating point. None is what is not known for lumped gears."""
 
@@ -32,6 +56,9 @@ class MeshRow(Record):
     transverse_contact_ratio: float | None = of("transverse contact ratio")
     overlap_ratio: float | None = of("overlap ratio", note=", of one helix")
     mesh_frequency_hz: float | None = of("mesh frequency", "Hz")
+    phase_pitches: tuple[float | None, ...] = of(
+        "phase of each helix in pitches", "", "helix", note=", when the mark of the input shaft points to +x"
+    )
     normal_force_n: tuple[float, ...] = of("mean force along the flank normal", "N", "helix", note=", of each helix")
     driver: str = of("gear that drives")
     flank_assumed: bool = of("whether the working flank is an assumption", note=": no torque flows")
@@ -55,6 +82,8 @@ class ModelDescription(Result, kind="check"):
     reference_shaft: str = of("name of the input shaft")
     speed_rpm: float | None = of("speed of the input shaft", "rpm", note="; `null` without an operating speed")
     shafts: tuple[ShaftRow, ...] = of("shafts", "", "shaft", record=ShaftRow)
+    gears: tuple[GearRow, ...] = of("gears", "", "gear", record=GearRow)
+    places: tuple[PlaceRow, ...] = of("places of the other parts", "", "place", record=PlaceRow)
     meshes: tuple[MeshRow, ...] = of("meshes", "", "mesh", record=MeshRow)
     torques: tuple[TorqueRow, ...] = of("torques", "", "torque", record=TorqueRow)
     total_mass_kg: float = of("mass of all shafts and what is on them", "kg")

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
 from rotorgear.analysis.common.model_warnings import model_warnings
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.model import Model
-from rotorgear.results.description import MeshRow, ModelDescription, ShaftRow, TorqueRow
+from rotorgear.results.description import GearRow, MeshRow, ModelDescription, PlaceRow, ShaftRow, TorqueRow
 from rotorgear.system.system import System
 
 _RPM = 30.0 / math.pi
@@ -44,6 +46,8 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
         reference_shaft=model.reference_shaft,
         speed_rpm=None if speed is None else speed * _RPM,
         shafts=tuple(_shaft(system, name, speed) for name in model.shafts),
+        gears=tuple(_gear(system, gear) for gear in system.layout.gears),
+        places=tuple(_places(system)),
         meshes=tuple(_mesh(system, name, speed) for name in model.meshes),
         torques=_torques(system, speed),
         total_mass_kg=sum(sum(_mass(system, name)[:2]) for name in model.shafts),
@@ -81,6 +85,31 @@ def _shaft(system: System, name: str, speed: float | None) -> ShaftRow:
     return ShaftRow(name, ratio, rpm, system.model.shafts[name].length, own, bodies, polar)
 
 
+def _gear(system: System, gear: GearLayout) -> GearRow:
+    return GearRow(
+        name=gear.name,
+        shaft=gear.shaft,
+        teeth=gear.part.teeth,
+        hand=gear.part.hand,
+        base_radius_m=gear.base_radius,
+        z_m=tuple(place.z for place in gear.places),
+        clocking_deg=math.degrees(system.layout.assembly.clocking.get(gear.name, 0.0)),
+        mass_kg=gear.body.mass,
+        polar_inertia_kg_m2=gear.body.polar_inertia,
+    )
+
+
+def _places(system: System) -> Iterator[PlaceRow]:
+    """Where all parts but gears stand, by shaft from left to right."""
+    found = []
+    for table in ("bearings", "supports", "couplings", "disks", "point_masses", "loads", "unbalances", "points"):
+        for name in getattr(system.model, table):
+            places = system.layout.places(f"{table}.{name}")
+            found += [PlaceRow(f"{table}.{name}", place.shaft, place.z) for place in places]
+    for shaft in system.model.shafts:
+        yield from sorted((row for row in found if row.shaft == shaft), key=lambda row: row.z_m)
+
+
 def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
     mesh = system.layout.mesh(name)
     pinion = mesh.pinion.part
@@ -108,12 +137,17 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
         transverse_contact_ratio=pair.transverse_contact_ratio if pair else None,
         overlap_ratio=pair.overlap_ratio if pair else None,
         mesh_frequency_hz=None if speed is None else system.layout.mesh_frequency(name, speed),
+        phase_pitches=tuple(_pitches(system.load.phase(force.contact)) for force in forces),
         normal_force_n=tuple(force.normal_force for force in forces),
         driver=(mesh.pinion if forces[0].pinion_drives else mesh.gear).name,
         flank_assumed=any(force.assumed for force in forces),
         stiffness_n_per_m=sum(force.contact.stiffness for force in forces),
         damping_n_s_per_m=sum(damping),
     )
+
+
+def _pitches(phase: float | None) -> float | None:
+    return None if phase is None else phase / (2.0 * math.pi) % 1.0
 
 
 def _torques(system: System, speed: float | None) -> tuple[TorqueRow, ...]:

@@ -2,14 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out, mesh_stiffness_warnings
+from rotorgear.model.model import Model
 from rotorgear.system.system import System
 
 
-def left_out(system: System, speed: float | None) -> tuple[str, ...]:
-    """Say what this analysis did not build or solve, and why."""
+def rolling_notes(model: Model, *, rolls: bool) -> Iterator[str]:
+    """Say which of the two descriptions of a bearing with rolling elements counts, for the two need not agree.
+
+    Args:
+        model: the model.
+        rolls: whether the analysis takes the rolling elements (transient, sweep), or the stiffness (statics, linear analyses).
+    """
+    said = (
+        "its rolling elements carry, not its stiffness, which statics and linear analyses take"
+        if rolls
+        else "its stiffness carries, not its rolling elements, which transients and sweeps take"
+    )
+    for name, bearing in model.bearings.items():
+        if bearing.rolling is not None:
+            yield f"bearings.{name}: {said}"
+
+
+def left_out(system: System, speed: float | None, *, rolls: bool = False) -> tuple[str, ...]:
+    """Say what this analysis did not build or solve, and why; `rolls`: whether it takes rolling elements."""
     notes = []
     absent = [motion for motion in ("bending", "axial", "torsion") if not system.model.has(motion)]
     if absent:
@@ -28,7 +48,7 @@ def left_out(system: System, speed: float | None) -> tuple[str, ...]:
             notes.append("gyroscopic matrix: nothing that turns can tilt")
         if not np.any(system.damping(speed).data) and not system.model.damping.modal_ratio:
             notes.append("damping matrix: nothing damps")
-    return (*notes, *mesh_stiffness_left_out(system))
+    return (*notes, *rolling_notes(system.model, rolls=rolls), *mesh_stiffness_left_out(system))
 
 
 def mode_warnings(

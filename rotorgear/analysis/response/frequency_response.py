@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.points import named_place
 from rotorgear.analysis.common.recorded import recorded
@@ -112,7 +113,7 @@ def frf(
         dofs=system.n,
         discretisation=pieces(system),
         seconds={"total": time.perf_counter() - clock},
-        left_out=(*first.notes, *notes),
+        left_out=(*first.notes, *notes, *rolling_notes(model, rolls=False)),
         warnings=()
         if zeta or _is_damped(system, turns)
         else ("nothing damps the model: heights near a resonance are those of the nearest frequency; give a damping",),

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, direction_of, speed_in_si
@@ -129,7 +130,7 @@ def response(
         dofs=system.n,
         discretisation=pieces(system),
         seconds={"total": time.perf_counter() - clock},
-        left_out=(*left, *setup.notes, *notes),
+        left_out=(*left, *setup.notes, *notes, *rolling_notes(model, rolls=False)),
         warnings=(*speed_warnings(plant, orders, chosen, (modes, w, zeta)), *parting(setup, stacked[0], chosen)),
         method=f"{run.method} ({how}: {why})",
     )

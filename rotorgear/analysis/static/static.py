@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 
+from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.places import displacement_places
 from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import recorded
@@ -163,7 +164,7 @@ def _left_out(found: Equilibrated) -> tuple[str, ...]:
     gravity = model.operation.gravity if model.operation else None
     if not (gravity and any(gravity)):
         notes.append("weight: no gravity given under [operation]")
-    return tuple(notes)
+    return (*notes, *rolling_notes(model, rolls=False))
 
 
 def _warnings(found: Equilibrated) -> list[str]:

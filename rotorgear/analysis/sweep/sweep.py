@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.sweep.axes import Axis, Family, axis_of, points_of
 from rotorgear.analysis.sweep.blocks import Pool, Workers, blocks, packed, unpacked, waves
@@ -124,7 +125,9 @@ def sweep(
         orbits = _run(points, chosen, shape, request, Workers(workers, executor), stream, kept, progress)
     laps["integration"] = clock.perf_counter() - begun - laps["points"]
     result = gathered(model, axes, values, points, failure, chosen, request, orbits, laps, reduction)
-    result = replace(result, warnings=(*result.warnings, *coarse_shafts(model, elements)))
+    result = replace(
+        result, warnings=(*result.warnings, *coarse_shafts(model, elements), *rolling_notes(model, rolls=True))
+    )
     if wanted:
         result = replace(result, portraits=portraits_of(result, wanted, points, request, orbits, progress))
         laps["portraits"] = clock.perf_counter() - begun - laps["points"] - laps["integration"]

@@ -181,7 +181,7 @@ def _result(
         motion_time=motion_time,
         motion=shapes,
         status=found.status,
-        left_out=(*left_out(system, float(local.rotation.speeds[0])), *transient_left_out(task.local)),
+        left_out=(*left_out(system, float(local.rotation.speeds[0]), rolls=True), *transient_left_out(task.local)),
     )
     return replace(result, warnings=transient_warnings(result, task.rest, task.local, estimated=estimated))
 
