@@ -122,28 +122,24 @@ def _plane(
     e = len(data.length)
     g = len(at)
     if not shear:
-        f, df, ddf = _hermite(2.0 * at - 1.0, order)
+        # int int P_k, int P_k and P_k for k = 2 ... p, scaled to unit curvature energy; d/dz = (2 / L) d/dx.
+        P = legendre.legvander(2.0 * at - 1.0, order + 2)
+        k = np.arange(2, order + 1)
+        once = (P[:, k + 1] - P[:, k - 1]) / (2 * k + 1)
+        above = (P[:, k + 2] - P[:, k]) / ((2 * k + 3) * (2 * k + 1))
+        twice = above - (P[:, k] - P[:, k - 2]) / ((2 * k + 1) * (2 * k - 1))
+        scale = np.sqrt((2 * k + 1) / 2.0)
         half = (2.0 / data.length)[:, None, None]
-        w = np.broadcast_to(f, (e, g, f.shape[1]))
-        return w, half * df, half**2 * ddf, np.zeros(w.shape)
-    k = order - 1
-    w = np.concatenate([np.broadcast_to(value, (e, *value.shape)), np.zeros((e, g, k))], axis=2)
-    t = np.concatenate([np.zeros((e, g, order)), np.broadcast_to(value[:, :k], (e, g, k))], axis=2)
-    bent = np.concatenate([np.zeros((e, g, order)), derivative[:, :, :k]], axis=2)
-    rising = np.concatenate([derivative, np.zeros((e, g, k))], axis=2)
+        w = np.broadcast_to(scale * twice, (e, g, len(k)))
+        return w, half * (scale * once), half**2 * (scale * P[:, k]), np.zeros(w.shape)
+
+    # Deflection phi_2 ... phi_p+1 and slope phi_2 ... phi_p move on their own; the shear strain is w' - theta.
+    slopes = order - 1
+    w = np.concatenate([np.broadcast_to(value, (e, *value.shape)), np.zeros((e, g, slopes))], axis=2)
+    t = np.concatenate([np.zeros((e, g, order)), np.broadcast_to(value[:, :slopes], (e, g, slopes))], axis=2)
+    bent = np.concatenate([np.zeros((e, g, order)), derivative[:, :, :slopes]], axis=2)
+    rising = np.concatenate([derivative, np.zeros((e, g, slopes))], axis=2)
     return w, t, bent, rising - t
-
-
-def _hermite(x: np.ndarray, highest: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """int int P_k, int P_k and P_k at x for k = 2..highest, scaled to unit curvature energy, each (g, highest - 1)."""
-    P = legendre.legvander(x, highest + 2)
-    k = np.arange(2, highest + 1)
-    once = (P[:, k + 1] - P[:, k - 1]) / (2 * k + 1)
-    twice = (P[:, k + 2] - P[:, k]) / ((2 * k + 3) * (2 * k + 1)) - (P[:, k] - P[:, k - 2]) / (
-        (2 * k + 1) * (2 * k - 1)
-    )
-    scale = np.sqrt((2 * k + 1) / 2.0)
-    return scale * twice, scale * once, scale * P[:, k]
 
 
 def _triangle(rows: np.ndarray) -> np.ndarray:

@@ -46,7 +46,7 @@ class Attachment:
     arm: np.ndarray
 
     def displacement(self, shape: np.ndarray) -> np.ndarray:
-        """Displacements (P, 3) of the points from those of the nodes (p, 6), real or complex; x y z tx ty tz in m and rad."""
+        """Displacements (P, 3) of the points from those of the nodes (p, 6), real or complex, in m and rad."""
         standing = (self.left < 0)[:, None]
         first = np.where(standing, 0.0, shape[self.left])
         second = np.where(standing, 0.0, shape[self.right])

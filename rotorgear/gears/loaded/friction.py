@@ -1,7 +1,7 @@
-"""Coefficients of friction between tooth flanks as plain functions; each takes its own inputs and no others.
+"""Coefficients of friction between tooth flanks as plain functions, for estimates of one's own.
 
-All return a coefficient mu >= 0 (or signed, where the sliding velocity's sign is its input). SI units, except where the
-docstring says that the published regression has its own; those are converted inside.
+All return a coefficient mu >= 0 (or signed, where the sliding velocity's sign is an input). SI units; those of a published
+regression are converted inside. The law that acts in analyses, with Benedict and Kelley's formula, is `forces.mesh_friction`.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from rotorgear.errors import AnalysisError
 
 
 def _require_positive(**values: float) -> None:
+    """AnalysisError unless every named value is positive and finite: powers and logarithms of it are taken."""
     for name, value in values.items():
         if not 0.0 < value < math.inf:
             raise AnalysisError(
@@ -28,21 +29,7 @@ def saturating_friction(sliding_velocity: float, limit: float, decay: float) -> 
     return limit * math.copysign(-math.expm1(-decay * abs(sliding_velocity)), sliding_velocity)
 
 
-def benedict_kelley_friction(
-    line_load: float, viscosity: float, sliding_velocity: float, rolling_velocity: float
-) -> float:
-    """Benedict and Kelley, ASLE Transactions 4 (1961) 59: mu = 0.0127 log10(29.66 w / (eta v_s v_r^2)).
-
-    line_load w (N/m), dynamic viscosity (Pa s), sliding and rolling velocity, v_r the sum of both surfaces' (m/s). The
-    regression's viscosity is in cP. It grows without bound towards the pitch point and ends at 0 where it would be negative.
-    """
-    speed = abs(sliding_velocity)
-    _require_positive(
-        line_load=line_load, viscosity=viscosity, sliding_velocity=speed, rolling_velocity=rolling_velocity
-    )
-    return max(0.0, 0.0127 * math.log10(29.66 * line_load / (1e3 * viscosity * speed * rolling_velocity**2)))
-
-
+# b1 ... b9 of the regression.
 _XU = (-8.916465, 1.03303, 1.036077, -0.354068, 2.812084, -0.100601, 0.752755, -0.390958, 0.620305)
 
 
@@ -67,7 +54,8 @@ def xu_kahraman_friction(
         curvature_radius: R (m), reduced.
         roughness: S (m), root mean square of both flanks; the regression's is in um.
 
-    Pure rolling gives 0.
+    Returns:
+        mu, 0 in pure rolling.
     """
     _require_positive(
         hertz_pressure=hertz_pressure,
@@ -91,9 +79,14 @@ def mean_mesh_friction(
 ) -> float:
     """DIN 3990-4: mean along the path of contact, mu = 0.045 (w / (v_sum rho))^0.2 eta^-0.05 X_R.
 
-    line_load w = K F_bt / b (N/m), sum_velocity v_sum of both surfaces at the pitch point (m/s), curvature_radius rho (m),
-    reduced at the pitch point, dynamic viscosity at oil temperature (Pa s), X_R the roughness factor. The regression's units
-    are N/mm, m/s, mm and mPa s.
+    The regression's units are N/mm, m/s, mm and mPa s.
+
+    Args:
+        line_load: w = K F_bt / b (N/m).
+        sum_velocity: v_sum of both surfaces at the pitch point (m/s).
+        curvature_radius: rho (m), reduced, at the pitch point.
+        viscosity: eta (Pa s), dynamic, at oil temperature.
+        roughness_factor: X_R.
     """
     _require_positive(
         line_load=line_load, sum_velocity=sum_velocity, curvature_radius=curvature_radius, viscosity=viscosity
