@@ -134,6 +134,7 @@ def test_bearing_forces_and_inertia_are_in_balance_with_stiffness_proportional_d
     data = {
         "damping": {"rayleigh_beta": beta},
         "unbalances": {"u": {"shaft": "rotor", "at": 0.2, "magnitude": 1e-3, "phase": 0.6}},
+        "points": {"pickup": {"on": "disks.disk", "direction": "y"}},
     }
     still = between_bearings(stiffness={"radial": 1e6}, damping={"radial": 100.0})
     model = rg.Model(
@@ -145,6 +146,7 @@ def test_bearing_forces_and_inertia_are_in_balance_with_stiffness_proportional_d
     speed = 380.0
     result = rg.response(model, speeds=[speed], elements=1)
     moved = result.displacement[0, 0, result.places.index("disks.disk"), :2]
+    assert result.acceleration[0, 0, 0] == pytest.approx(-(speed**2) * moved[1], rel=1e-9)
     unbalance = 1e-3 * speed**2 * np.exp(0.6j) * np.array([1.0, -1.0j])
     held = result.bearing_force[0, 0, :, :2].sum(axis=0)
     assert held + unbalance == pytest.approx(-10.0 * speed**2 * moved, rel=1e-6)
@@ -170,3 +172,26 @@ def test_speeds_too_far_apart_for_a_peak_are_named_by_its_half_power_width() -> 
         assert speeds[-1] < 0.9 * np.sqrt(8e4 / 0.2)  # the tilting modes, which are damped otherwise, stay above
         result = rg.response(model, speeds=speeds, modal_damping=extra, elements=1)
         assert any("half power" in text for text in result.warnings) is told
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_damping_that_turns_with_the_shaft_does_not_see_a_whirl_that_turns_with_it_too(sense: float) -> None:
+    """Under unbalance the bent shaft stands still for an observer on it: internal damping changes nothing."""
+
+    def moved(eta: float) -> np.ndarray:
+        shaft = {"sections": [{"length": 1.0, "outer_diameter": 0.03}], "internal_damping": eta}
+        model = rg.Model(
+            operation={"input_shaft": "rotor"},
+            motions=["bending"],
+            shafts={"rotor": shaft},
+            disks={"disk": disk(at=0.4, mass=6.0, polar=0.02, tilt=0.01)},
+            bearings={
+                end: {"shaft": "rotor", "at": end, "stiffness": {"radial": 3e6}, "damping": {"radial": 300.0}}
+                for end in ("start", "end")
+            },
+            unbalances={"u": {"shaft": "rotor", "at": 0.4, "magnitude": 1e-4, "phase": 0.3}},
+        )
+        return rg.response(model, speeds=[sense * 120.0], elements=3).displacement
+
+    still = moved(0.0)
+    assert moved(3e-4) == pytest.approx(still, abs=1e-8 * np.abs(still).max())
