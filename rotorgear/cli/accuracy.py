@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -20,9 +20,7 @@ from rotorgear.cli.common import (
 from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
-    from rotorgear.results.convergence import ConvergenceStudy
-    from rotorgear.results.mesh_convergence import MeshConvergenceStudy
-    from rotorgear.results.sweep_convergence import SweepConvergenceStudy
+    pass
 
 
 def accuracy(
@@ -81,42 +79,7 @@ def accuracy(
             modal_damping=modal_damping,
             progress=progress,
         )
-    for part in _parts(study):
-        console().print(part)
+    console().print(study.table())
     write_json(study.to_dict(), json)
     if plot:
         typer.echo(f"wrote {rg.plot.save(study.plot(), plot)}")
-
-
-def _parts(study: ConvergenceStudy | MeshConvergenceStudy | SweepConvergenceStudy) -> list[Any]:
-    from rotorgear.results.convergence import ConvergenceStudy
-    from rotorgear.results.mesh_convergence import MeshConvergenceStudy
-
-    if isinstance(study, ConvergenceStudy):
-        return table(study)
-    if isinstance(study, MeshConvergenceStudy):
-        from rotorgear.results.tables.mesh import convergence_parts
-
-        return list(convergence_parts(study))
-    from rotorgear.results.tables.sweep import convergence_table
-
-    return [convergence_table(study)]
-
-
-def table(study: ConvergenceStudy) -> list[Any]:
-    """The study as rich renderables that fit 80 columns."""
-    from rich.table import Table
-
-    rows = Table(box=None, pad_edge=False, header_style="bold")
-    for name in ("discretisation", "dofs", "seconds", "error", "estimate", "order"):
-        rows.add_column(name, justify="left" if name == "discretisation" else "right")
-    for rung in study.rungs:
-        order = "" if rung.order is None else f"{rung.order:.2f}"
-        rows.add_row(
-            rung.method, str(rung.dofs), f"{rung.seconds:.3f} s", f"{rung.error:.1e}", f"{rung.estimate:.1e}", order
-        )
-    what = f"largest relative error of {study.modes} frequencies"
-    if study.analysis == "transient":
-        what = f"rms error of {study.modes} contact forces over their change"
-    head = f"[bold]{study.title}[/bold]: {what}"
-    return [head, f"against {study.reference}", "", rows, ""]

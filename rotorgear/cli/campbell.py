@@ -66,7 +66,6 @@ def campbell(
     """Campbell diagram: modes over speed, excitation lines, crossings, margins, whirl and stability."""
     import rotorgear as rg
     from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS
-    from rotorgear.results.tables.campbell import campbell_table
 
     with progress_bar("campbell") as progress:
         result = rg.campbell(
@@ -84,7 +83,7 @@ def campbell(
             sidebands=sidebands,
             progress=progress,
         )
-    console().print(campbell_table(result, crossings=crossings))
+    console().print(result.table(crossings=crossings))
     write_json(result.to_dict(), json)
     if save:
         rg.save(result, save)

@@ -33,7 +33,6 @@ def compare(
 ) -> None:
     """Compare modes with rig frequencies, and with the matches of random frequencies."""
     import rotorgear as rg
-    from rotorgear.results.tables.comparison import comparison_table
 
     lines = rg.read_rig_lines(rig)
     with progress_bar("modal") as progress:
@@ -46,5 +45,5 @@ def compare(
             elements=elements,
             progress=progress,
         )
-    console().print(comparison_table(comparison))
+    console().print(comparison.table())
     write_json({"analysis": "compare", **comparison.to_dict()}, json)

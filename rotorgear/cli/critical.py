@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -21,10 +21,9 @@ from rotorgear.cli.common import (
 )
 from rotorgear.cli.speed_options import ToOption, parse_mesh_orders, parse_orders
 from rotorgear.errors import AnalysisError
-from rotorgear.results.tables.campbell import plain_table
 
 if TYPE_CHECKING:
-    from rotorgear.results.critical import CriticalMap, CriticalResult
+    pass
 
 _RPM = 30.0 / math.pi
 
@@ -83,7 +82,10 @@ def critical(
             chart = rg.critical_map(
                 built, shaft=shaft, stop=top, elements=elements, accuracy=accuracy, progress=progress
             )
-    _print(result, chart)
+    out = console()
+    out.print(result.table())
+    if chart:
+        out.print(chart.table())
     data = result.to_dict()
     if chart:
         data["map"] = chart.to_dict()
@@ -93,64 +95,3 @@ def critical(
         typer.echo(f"saved {save}")
     if plot and chart:
         typer.echo(f"wrote {rg.plot.save(rg.plot.critical_map(chart), plot)}")
-
-
-def _print(result: CriticalResult, chart: CriticalMap | None) -> None:
-    from rich.text import Text
-
-    out = console()
-    kind = "damped" if result.damped else "undamped"
-    out.print(
-        Text(
-            f"{result.model.title or 'Critical speeds'}: {kind} critical speeds to {result.top_speed * _RPM:.6g} rpm",
-            style="bold",
-        )
-    )
-    out.print(_table(result))
-    out.print("")
-    out.print(Text(f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}"))
-    bound = 10.0 ** math.ceil(math.log10(max(result.worst_residual, 1e-12)))
-    out.print(Text(f"substituted back: |w - p W| / (p W) at most {bound:.0e}"))
-    for note in result.left_out:
-        out.print(Text(f"left out: {note}"))
-    for note in result.warnings:
-        out.print(Text(f"Warning: {note}"))
-    if chart:
-        out.print(_map_table(chart))
-
-
-def _table(result: CriticalResult) -> Any:
-    table = plain_table()
-    table.add_column("rpm", justify="right")
-    table.add_column("Hz", justify="right")
-    table.add_column("line", overflow="fold", min_width=14)
-    if result.damped:
-        table.add_column("zeta %", justify="right")
-    table.add_column("whirl")
-    table.add_column("part %", justify="right")
-    table.add_column("what moves", overflow="fold")
-    for item in result.speeds:
-        share = f"{100.0 * item.participation:.2f}" if item.excited else "none"
-        zeta = [f"{round(100.0 * item.damping_ratio, 3) + 0.0:.3f}"] if result.damped else []
-        row = [
-            f"{item.speed * _RPM:.2f}",
-            f"{item.frequency_hz:.3f}",
-            item.line,
-            *zeta,
-            item.whirl,
-            share,
-            item.description,
-        ]
-        table.add_row(*row)
-    return table
-
-
-def _map_table(chart: CriticalMap) -> Any:
-    table = plain_table(f"Undamped map: {chart.line}, rpm of the input shaft")
-    table.add_column("N/m", justify="right")
-    table.add_column("forward", overflow="fold")
-    table.add_column("backward", overflow="fold")
-    for k in range(0, len(chart.stiffness), max(1, len(chart.stiffness) // 8)):
-        rows = [[f"{v * _RPM:.0f}" for v in values[k] if v == v] for values in (chart.forward, chart.backward)]
-        table.add_row(f"{chart.stiffness[k]:.2e}", *(", ".join(row) for row in rows))
-    return table

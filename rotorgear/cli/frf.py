@@ -49,7 +49,6 @@ def frf(
     """Frequency responses between points or parts: unit force in, displacement, velocity or acceleration out."""
     import rotorgear as rg
     from rotorgear.results.frequency_response import QUANTITIES
-    from rotorgear.results.tables.response import frf_tables
 
     if quantity not in QUANTITIES:
         raise AnalysisError(f"--quantity: got '{quantity}', expected one of {', '.join(QUANTITIES)}")
@@ -68,8 +67,7 @@ def frf(
             progress=progress,
         )
     out = console()
-    for part in frf_tables(result, quantity):
-        out.print(part)
+    out.print(result.table(quantity=quantity))
     write_json(result.to_dict(), json)
     if save:
         typer.echo(f"saved {rg.save(result, save)}")

@@ -28,14 +28,12 @@ def gear(
     """Print the gear sheet: geometry, measures, contact ratios, backlash and stiffness of all teeth."""
     import rotorgear as rg
     from rotorgear.plots.figure import require_picture_name
-    from rotorgear.results.tables.gear import sheet_parts
 
     if plot is not None:
         require_picture_name(plot)
     sheet = rg.gear(rg.load(model), mesh=mesh)
     out = console()
-    for part in sheet_parts(sheet):
-        out.print(part)
+    out.print(sheet.table())
     write_json(sheet.to_dict(), json)
     if plot is not None:
         out.print(f"drawn: {rg.plot.save(rg.plot.gear(sheet, mesh=mesh), plot)}")

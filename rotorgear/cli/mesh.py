@@ -75,7 +75,6 @@ def mesh(
 ) -> None:
     """Print stiffness, transmission error, load sharing and pressure of one mesh over its cycle."""
     import rotorgear as rg
-    from rotorgear.results.tables.mesh import mesh_parts
 
     checked = rg.load(model)
     with progress_bar("mesh") as progress:
@@ -92,8 +91,7 @@ def mesh(
             load_factors=parse_factors(load_factors),
             progress=progress,
         )
-    for part in mesh_parts(found, harmonics):
-        console().print(part)
+    console().print(found.table(harmonics=harmonics))
     write_json(found.to_dict(max(harmonics, 8)), json)
     if plot:
         console().print(f"drawn: {rg.plot.save(rg.plot.mesh(found), plot)}")

@@ -72,7 +72,6 @@ def modal(
     """Natural frequencies and mode shapes; undamped at standstill, or damped and gyroscopic at a --speed."""
     import rotorgear as rg
     from rotorgear.analysis.rig.compare_result import ABOVE_RIG
-    from rotorgear.results.tables.modal import modal_table
 
     rig = rg.read_rig_lines(compare) if compare else ()
     chosen = _numbers(shapes)
@@ -92,14 +91,12 @@ def modal(
             progress=progress,
         )
     out = console()
-    out.print(modal_table(result, energies=energies))
+    out.print(result.table(energies=energies))
     # So many modes say nothing of where the next one lies; a highest frequency does.
     known_to_hz = None if modes else fmax
     comparison = rg.compare(result, rig, tolerance=tolerance, known_to_hz=known_to_hz) if rig else None
     if comparison:
-        from rotorgear.results.tables.comparison import comparison_table
-
-        out.print(comparison_table(comparison))
+        out.print(comparison.table())
     data = result.to_dict()
     if comparison:
         data["comparison"] = comparison.to_dict()

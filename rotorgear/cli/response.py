@@ -66,7 +66,6 @@ def response(
 ) -> None:
     """Run-up: response to unbalances, transmission errors and stiffness variation, by order and speed."""
     import rotorgear as rg
-    from rotorgear.results.tables.response import response_tables
 
     with progress_bar("response") as progress:
         result = rg.response(
@@ -83,8 +82,7 @@ def response(
             progress=progress,
         )
     out = console()
-    for part in response_tables(result):
-        out.print(part)
+    out.print(result.table())
     write_json(result.to_dict(), json)
     if save:
         typer.echo(f"saved {rg.save(result, save)}")

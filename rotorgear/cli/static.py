@@ -41,13 +41,11 @@ def static(
 ) -> None:
     """Deflections, bearing and mesh forces, load sharing of branches and helices, assembly condition of loops."""
     import rotorgear as rg
-    from rotorgear.results.tables.static import static_tables
 
     with progress_bar("static") as progress:
         result = rg.static(rg.load(model), speed=parse_speed(speed), elements=elements, progress=progress)
     out = console()
-    for part in static_tables(result, sensitivity=sensitivity):
-        out.print(part)
+    out.print(result.table(sensitivity=sensitivity))
     write_json(result.to_dict(), json)
     if save:
         typer.echo(f"saved {rg.save(result, save)}")

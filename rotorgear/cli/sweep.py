@@ -96,7 +96,6 @@ def sweep(
     """Bifurcation diagram, Lyapunov exponents and response types of a model over its parameters."""
     import rotorgear as rg
     from rotorgear.analysis.sweep.axes import axis_of_option
-    from rotorgear.results.tables.sweep import sweep_table
 
     if resume and save is None:
         raise AnalysisError("--resume needs the --save of the sweep that was interrupted")
@@ -137,7 +136,7 @@ def sweep(
             if save and any(Path(f"{save}.parts").glob("chunk_*")):
                 typer.echo(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)
             raise
-    console().print(sweep_table(result))
+    console().print(result.table())
     _write(result, save, plot, json)
 
 

@@ -100,7 +100,6 @@ def transient(
 ) -> None:
     """Time response from the static equilibrium: contact forces, transmission error, bearings, spectra."""
     import rotorgear as rg
-    from rotorgear.results.tables.transient import transient_table
 
     if rig and not spectrum:
         raise AnalysisError("--rig needs --spectrum: the history whose lines are compared")
@@ -128,19 +127,15 @@ def transient(
             progress=progress,
         )
     out = console()
-    out.print(transient_table(result))
+    out.print(result.table())
     data = result.to_dict()
     if spectrum:
-        from rotorgear.results.tables.transient import spectrum_table
-
         lines = rg.spectral_lines(result, spectrum)
-        out.print(spectrum_table(lines))
+        out.print(lines.table())
         data["spectrum"] = lines.to_dict()
         if rig:
-            from rotorgear.results.tables.transient import rig_table
-
             beside = rg.compare_spectrum(result, lines, rg.read_rig_lines(rig))
-            out.print(rig_table(beside))
+            out.print(beside.table())
             data["rig"] = beside.to_dict()
     write_json(data, json)
     _write(result, save, plot, vtk)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 
-def comparison_table(comparison: Comparison) -> RenderableType:
+def compare_table(comparison: Comparison) -> RenderableType:
     """Return the comparison as one rich renderable that fits 80 columns."""
     from rich.console import Group
     from rich.text import Text

@@ -2,34 +2,31 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rotorgear.results.tables.common import error_words, table
+from rotorgear.results.tables.common import error_words, heading, lines, table
 
 if TYPE_CHECKING:
-    from rotorgear.results.frequency_response import FrequencyResponse
+    from rich.console import RenderableType
+
     from rotorgear.results.response import ResponseResult
 
-_RPM = 30.0 / math.pi
-_PEAKS = 6
 
-
-def response_tables(result: ResponseResult) -> list[Any]:
-    """Return title, tables of the largest values and notes as rich renderables."""
-    from rich.text import Text
+def response_table(result: ResponseResult) -> RenderableType:
+    """Return title, tables of the largest values and notes as one rich renderable."""
+    from rich.console import Group
 
     first = result.speed_rpm[0]
     last = result.speed_rpm[-1]
     speeds = f"{first:.6g} rpm" if len(result.speeds) == 1 else f"{first:.6g} to {last:.6g} rpm"
     parts: list[Any] = [
-        f"[bold]{result.model.title or 'Model'}: forced response, {result.model.reference_shaft} at {speeds}[/bold]"
+        heading(f"{result.model.title or 'Model'}: forced response, {result.model.reference_shaft} at {speeds}")
     ]
     parts += ["", _orders(result)]
     parts += ["", _largest(result)]
-    return [*parts, "", *(Text(line) for line in _notes(result)), ""]
+    return Group(*parts, "", *lines(*_notes(result)), "")
 
 
 def _orders(result: ResponseResult) -> Any:
@@ -76,7 +73,7 @@ def _row(out: Any, result: ResponseResult, what: str, name: str, size: np.ndarra
 
 
 def _notes(result: ResponseResult) -> list[str]:
-    lines = [
+    texts = [
         *(["DTE: dynamic transmission error, r_b1 theta_1 + r_b2 theta_2"] if result.contact_mesh else []),
         "amplitudes are half of peak to peak, each order by itself; forces without their mean",
         f"{len(result.speeds)} speeds, {result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
@@ -84,28 +81,5 @@ def _notes(result: ResponseResult) -> list[str]:
         f"on a finer mesh the peaks change by {error_words(result.error_estimate)}",
         f"damping ratio added to every elastic mode: {result.damping_ratio:g}",
     ]
-    lines += [f"left out: {note}" for note in result.left_out]
-    return lines + [f"Warning: {note}" for note in result.warnings]
-
-
-def frf_tables(result: FrequencyResponse, quantity: str) -> list[Any]:
-    """Return title, the highest peaks of each response, and notes."""
-    from rich.text import Text
-
-    hz = result.frequency_hz
-    title = f"{result.model.title or 'Model'}: {quantity}, {hz[0]:.6g} to {hz[-1]:.6g} Hz"
-    speed = f", {result.model.reference_shaft} at {result.speed * _RPM:.6g} rpm" if result.speed else ", at standstill"
-    out = table("force at", "response at", "peak Hz", quantity, left=2)
-    for i, entry in enumerate(result.inputs):
-        for o, place in enumerate(result.outputs):
-            for frequency, size in result.peaks(o, i, quantity)[:_PEAKS]:
-                out.add_row(entry, place, f"{frequency:.2f}", f"{size:.3e}")
-    notes = [
-        f"{len(hz)} frequencies, {result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
-        f"residual {error_words(result.residual)} of the forces inside; on a finer mesh the peaks change by "
-        f"{error_words(result.error_estimate)}",
-        f"damping ratio added to every elastic mode: {result.damping_ratio:g}",
-        *(f"left out: {note}" for note in result.left_out),
-        *(f"Warning: {note}" for note in result.warnings),
-    ]
-    return [f"[bold]{title}{speed}[/bold]", "", out, "", *(Text(line) for line in notes), ""]
+    texts += [f"left out: {note}" for note in result.left_out]
+    return texts + [f"Warning: {note}" for note in result.warnings]

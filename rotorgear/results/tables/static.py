@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from rotorgear.results.tables.common import error_words, table
+from rotorgear.results.tables.common import error_words, heading, lines, table
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
     from rotorgear.results.static import StaticResult
 
 # What one line of the sensitivity table is for, by the end of the parameter's name: factor, its words, and the sign of a turn.
@@ -19,28 +21,27 @@ _STEPS = {
 _LINES = 12
 
 
-def static_tables(result: StaticResult, *, sensitivity: bool = False) -> list[Any]:
-    """Return title, tables and notes as rich renderables."""
-    from rich.text import Text
+def static_table(result: StaticResult, *, sensitivity: bool = False) -> RenderableType:
+    """Return title, tables and notes as one rich renderable."""
+    from rich.console import Group
 
     speed = (
         "" if result.speed is None else f", {result.model.reference_shaft} at {result.speed * 30.0 / math.pi:.6g} rpm"
     )
-    parts: list[Any] = [f"[bold]{result.model.title or 'Model'}: statics{speed}[/bold]"]
+    parts: list[Any] = [heading(f"{result.model.title or 'Model'}: statics{speed}")]
     if result.torque:
         torques = "; ".join(f"{name} {value:.2f} N m" for name, value in result.torque.items())
-        parts.append(f"torques about z: {torques}")
+        parts += lines(f"torques about z: {torques}")
     if result.contact_mesh:
         parts += ["", _meshes(result)]
     if result.shares:
         parts += ["", _shares(result)]
         if sensitivity:
             parts += ["", *_sensitivities(result)]
-    parts += [f"Loop: {text}" for text in _loops(result)]
+    parts += lines(*(f"Loop: {text}" for text in _loops(result)))
     if result.bearing_force or result.support_force:
         parts += ["", _supports(result)]
-    parts += ["", _displacements(result), "", *(Text(line) for line in _notes(result)), ""]
-    return parts
+    return Group(*parts, "", _displacements(result), "", *lines(*_notes(result)), "")
 
 
 def _meshes(result: StaticResult) -> Any:
@@ -87,22 +88,22 @@ def _sensitivities(result: StaticResult) -> list[Any]:
     for _, change, part, words in rows[:_LINES]:
         out.add_row(part, words, f"{100.0 * change:+.3f}")
     more = f" (the {_LINES} largest of {len(rows)}; --json has all)" if len(rows) > _LINES else ""
-    return [f"[bold]Share of {first.mesh} in {first.gear}[/bold], change in percentage points{more}", out]
+    return [heading(f"Share of {first.mesh} in {first.gear}", f", change in percentage points{more}"), out]
 
 
 def _loops(result: StaticResult) -> list[str]:
-    lines = []
+    texts = []
     for loop in result.assembly:
         if loop.gear:
-            lines.append(
+            texts.append(
                 f"{loop.mesh} closes a loop: with all teeth aligned to the shafts' marks {loop.rest_pitches:+.4f} pitches are "
                 f"missing; {loop.gear} clocked by {loop.clocking_deg:+.4f} deg closes it"
             )
         else:
-            lines.append(
+            texts.append(
                 f"{loop.mesh} closes a loop with the clockings given: {loop.rest_pitches:+.4f} pitches missing"
             )
-    return lines
+    return texts
 
 
 def _supports(result: StaticResult) -> Any:
@@ -136,11 +137,11 @@ def _displacements(result: StaticResult) -> Any:
 
 
 def _notes(result: StaticResult) -> list[str]:
-    lines = [
+    texts = [
         "tilts and twist in urad; L and R: helix at the smaller and the larger z",
         f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
         f"error: forces change by {error_words(result.error_estimate)} when every element is halved; "
         f"residual {error_words(result.imbalance)}",
     ]
-    lines += [f"left out: {note}" for note in result.left_out]
-    return lines + [f"Warning: {note}" for note in result.warnings]
+    texts += [f"left out: {note}" for note in result.left_out]
+    return texts + [f"Warning: {note}" for note in result.warnings]

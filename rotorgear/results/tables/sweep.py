@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from rotorgear.results.sweep import SweepResult
-    from rotorgear.results.sweep_convergence import SweepConvergenceStudy
 
 # Lines of a spectrum in a row, with the columns before them.
 _LINES = 5
@@ -128,30 +127,3 @@ def _notes(result: SweepResult) -> list[str]:
     ]
     lines += [result.reduction.sentence] if result.reduction else []
     return lines + [f"Warning: {note}" for note in result.warnings]
-
-
-def convergence_table(study: SweepConvergenceStudy) -> RenderableType:
-    """Return the convergence study of a point: its values, their scatter and its cost."""
-    from rich.console import Group
-    from rich.text import Text
-
-    out = table("steps", "periods", "seconds", "LE", "scatter", "stated", "p-p um", "scatter", "K_dyn", left=0)
-    for rung in study.rungs:
-        out.add_row(
-            str(rung.steps),
-            str(rung.count),
-            f"{rung.seconds:.3f} s",
-            f"{rung.exponent:+.3f}",
-            f"{rung.scatter:.3f}",
-            f"{rung.stated:.3f}",
-            f"{1e6 * rung.peak_to_peak:.2f}",
-            f"{1e6 * rung.peak_to_peak_scatter:.2f}",
-            f"{rung.dynamic_factor:.2f}",
-        )
-    kinds = ", ".join(sorted({kind for rung in study.rungs for kind in rung.motion}))
-    head = f"{study.title}: one point from {study.runs} states ({kinds})"
-    notes = (
-        "LE: largest Lyapunov exponent per period of the fastest mesh; scatter: standard deviation over the states; stated: "
-        "standard error that one run states; seconds: of one run"
-    )
-    return Group(Text(head, style="bold"), Text(""), out, Text(""), Text(notes), "")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from rotorgear.results.spectrum import RigSpectrum, SpectralLines
     from rotorgear.results.transient import TransientResult
 
 
@@ -48,18 +48,18 @@ def _contacts(result: TransientResult) -> Any:
     table.add_column("contact", overflow="fold")
     for name in ("static N", "mean", "rms", "largest", "K_dyn", "DTE um", "loss %", "coast %", "losses"):
         table.add_column(name, justify="right")
-    for row in result.to_dict()["contacts"]:
+    for row in result.contacts:
         table.add_row(
-            row["name"],
-            _value(row["static_force_n"]),
-            _value(row["mean_force_n"]),
-            _value(row["rms_force_n"]),
-            _value(row["largest_force_n"]),
-            "-" if row["dynamic_factor"] is None else f"{row['dynamic_factor']:.3f}",
-            f"{1e6 * (row['peak_to_peak_dte_m'] or 0.0):.2f}",
-            f"{100.0 * row['apart_share']:.1f}",
-            f"{100.0 * row['back_share']:.1f}",
-            str(row["losses"]),
+            row.name,
+            _value(row.static_force_n),
+            _value(row.mean_force_n),
+            _value(row.rms_force_n),
+            _value(row.largest_force_n),
+            f"{row.dynamic_factor:.3f}" if math.isfinite(row.dynamic_factor) else "-",
+            f"{1e6 * row.peak_to_peak_dte_m if math.isfinite(row.peak_to_peak_dte_m) else 0.0:.2f}",
+            f"{100.0 * row.apart_share:.1f}",
+            f"{100.0 * row.back_share:.1f}",
+            str(row.losses),
         )
     return table
 
@@ -70,21 +70,21 @@ def _channels(result: TransientResult) -> Any:
     for name in ("mean", "rms", "largest", "smallest"):
         table.add_column(name, justify="right")
     table.add_column("unit")
-    shown = [row for row in result.to_dict()["channels"] if not row["name"].startswith(_UNSHOWN)]
+    shown = [row for row in result.channels if not row.name.startswith(_UNSHOWN)]
     for row in shown:
-        if row["name"].startswith("bearings.") and " displacement " in row["name"]:
+        if row.name.startswith("bearings.") and " displacement " in row.name:
             continue
         table.add_row(
-            row["name"].partition(".")[2],
-            *(_value(row[key]) for key in ("mean", "rms", "largest", "smallest")),
-            row["unit"],
+            row.name.partition(".")[2],
+            *(_value(getattr(row, key)) for key in ("mean", "rms", "largest", "smallest")),
+            row.unit,
         )
     return table
 
 
-def _value(value: float | None) -> str:
+def _value(value: float) -> str:
     """Four digits, without an exponent where that is as short."""
-    if value is None:
+    if not math.isfinite(value):
         return "-"
     return f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.4g}"
 
@@ -104,35 +104,3 @@ def _notes(result: TransientResult) -> list[str]:
     lines += [f"left out: {note}" for note in result.left_out]
     lines += [f"Warning: {note}" for note in result.warnings]
     return lines
-
-
-def spectrum_table(lines: SpectralLines) -> RenderableType:
-    """Return the lines of a spectrum."""
-    from rich.console import Group
-    from rich.text import Text
-
-    table = _table()
-    table.add_column("Hz", justify="right")
-    table.add_column(f"amplitude {lines.unit}", justify="right")
-    table.add_column("order", overflow="fold")
-    for f, a, what in zip(lines.frequency_hz, lines.amplitude, lines.source, strict=True):
-        table.add_row(f"{f:.2f}", f"{a:.4g}", what)
-    head = f"Spectrum of {lines.name}, {lines.window} window, {lines.resolution_hz:.3g} Hz apart"
-    return Group(Text(head, style="bold"), table, "")
-
-
-def rig_table(beside: RigSpectrum) -> RenderableType:
-    """Return rig lines beside spectral lines."""
-    from rich.console import Group
-    from rich.text import Text
-
-    table = _table()
-    for name in ("rig Hz", "Hz", f"amplitude {beside.unit}"):
-        table.add_column(name, justify="right")
-    table.add_column("order, or why there is no line", overflow="fold")
-    for rig, f, a, source, reason in zip(
-        beside.rig_hz, beside.frequency_hz, beside.amplitude, beside.source, beside.reason, strict=True
-    ):
-        found = not reason
-        table.add_row(f"{rig:.6g}", f"{f:.2f}" if found else "-", f"{a:.4g}" if found else "-", reason or source)
-    return Group(Text(f"Rig lines within {100.0 * beside.tolerance:g} %", style="bold"), table, "")

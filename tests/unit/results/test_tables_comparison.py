@@ -10,12 +10,12 @@ from rich.console import Console
 
 from rotorgear.analysis.rig.compare import compare_lines as compare
 from rotorgear.results.comparison import ExcitationLine, RigLine
-from rotorgear.results.tables.comparison import comparison_table
+from rotorgear.results.tables.comparison import compare_table
 
 
 def render(comparison, encoding="utf-8"):
     stream = io.TextIOWrapper(io.BytesIO(), encoding=encoding)
-    Console(file=stream, width=80).print(comparison_table(comparison))
+    Console(file=stream, width=80).print(compare_table(comparison))
     stream.seek(0)
     return stream.read()
 

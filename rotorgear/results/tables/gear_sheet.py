@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rotorgear.results.gear_sheet import GearRow, GearSheet, MeshSheetRow
+from rotorgear.results.tables.common import heading, lines
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 # So many gears or meshes stand side by side in 80 columns.
 _COLUMNS = 4
@@ -121,20 +125,28 @@ MESH_ROWS: Sequence[Row] = (
 )
 
 
-def sheet_parts(sheet: GearSheet) -> Iterator[Any]:
-    """Yield what the command prints, in order."""
-    yield f"[bold]{sheet.title or 'Gears'}[/bold]"
+def gear_table(sheet: GearSheet) -> RenderableType:
+    """Return the sheet as one rich renderable."""
+    from rich.console import Group
+
+    return Group(*_parts(sheet))
+
+
+def _parts(sheet: GearSheet) -> Iterator[Any]:
+    yield heading(sheet.title or "Gears")
     for rows, columns, head in ((GEAR_ROWS, sheet.gears, "gear"), (MESH_ROWS, sheet.meshes, "mesh")):
         for first in range(0, len(columns), _COLUMNS):
             yield ""
             yield _table(head, rows, columns[first : first + _COLUMNS])
     yield ""
-    yield from (f"left out: {note}" for note in sheet.left_out)
+    yield from lines(*(f"left out: {note}" for note in sheet.left_out))
     for table, parts in (("gears", sheet.gears), ("meshes", sheet.meshes)):
-        yield from (f"Warning: {table}.{part.name}: {text}" for part in parts for text in part.warnings)
+        yield from lines(*(f"Warning: {table}.{part.name}: {text}" for part in parts for text in part.warnings))
     for row in sheet.meshes:
-        yield f"meshes.{row.name}: {row.stiffness_definition} stiffness; body: {row.stiffness_body}"
-        yield f"meshes.{row.name}: {'K_v by ' * (row.dynamic_factor is not None)}{row.dynamic_factor_method}"
+        yield from lines(f"meshes.{row.name}: {row.stiffness_definition} stiffness; body: {row.stiffness_body}")
+        yield from lines(
+            f"meshes.{row.name}: {'K_v by ' * (row.dynamic_factor is not None)}{row.dynamic_factor_method}"
+        )
 
 
 def _table(head: str, rows: Sequence[Row], columns: Sequence[GearRow | MeshSheetRow]) -> Any:

@@ -1,0 +1,71 @@
+"""Critical speeds and their map as tables for the terminal, 80 columns wide."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from rotorgear.results.tables.campbell import plain_table
+from rotorgear.results.tables.common import heading, lines
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rotorgear.results.critical import CriticalMap, CriticalResult
+
+_RPM = 30.0 / math.pi
+
+
+def critical_table(result: CriticalResult) -> RenderableType:
+    """Return the critical speeds and the notes as one rich renderable."""
+    from rich.console import Group
+
+    kind = "damped" if result.damped else "undamped"
+    title = f"{result.model.title or 'Critical speeds'}: {kind} critical speeds to {result.top_speed * _RPM:.6g} rpm"
+    bound = 10.0 ** math.ceil(math.log10(max(result.worst_residual, 1e-12)))
+    notes = (
+        f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
+        f"substituted back: |w - p W| / (p W) at most {bound:.0e}",
+        *(f"left out: {note}" for note in result.left_out),
+        *(f"Warning: {note}" for note in result.warnings),
+    )
+    return Group(heading(title), _speeds(result), "", *lines(*notes))
+
+
+def _speeds(result: CriticalResult) -> Any:
+    table = plain_table()
+    table.add_column("rpm", justify="right")
+    table.add_column("Hz", justify="right")
+    table.add_column("line", overflow="fold", min_width=14)
+    if result.damped:
+        table.add_column("zeta %", justify="right")
+    table.add_column("whirl")
+    table.add_column("part %", justify="right")
+    table.add_column("what moves", overflow="fold")
+    for item in result.speeds:
+        share = f"{100.0 * item.participation:.2f}" if item.excited else "none"
+        zeta = [f"{round(100.0 * item.damping_ratio, 3) + 0.0:.3f}"] if result.damped else []
+        row = [
+            f"{item.speed * _RPM:.2f}",
+            f"{item.frequency_hz:.3f}",
+            item.line,
+            *zeta,
+            item.whirl,
+            share,
+            item.description,
+        ]
+        table.add_row(*row)
+    return table
+
+
+def critical_map_table(chart: CriticalMap) -> RenderableType:
+    """Return the map as one table."""
+    table = plain_table(f"Undamped map: {chart.line}, rpm of the input shaft")
+    table.add_column("N/m", justify="right")
+    table.add_column("forward", overflow="fold")
+    table.add_column("backward", overflow="fold")
+    for k in range(0, len(chart.stiffness), max(1, len(chart.stiffness) // 8)):
+        rows = [[f"{v * _RPM:.0f}" for v in values[k] if v == v] for values in (chart.forward, chart.backward)]
+        table.add_row(f"{chart.stiffness[k]:.2e}", *(", ".join(row) for row in rows))
+    own: RenderableType = table
+    return own
