@@ -73,6 +73,7 @@ from rotorgear.analysis.transient.spectra import spectral_lines as spectral_line
 from rotorgear.export.hdf5 import save as save
 from rotorgear.export.hdf5 import read as read
 from rotorgear.export.stream import stream as stream
+from rotorgear.export.uff import write_uff as write_uff
 from rotorgear.export.vtk import write_vtk as write_vtk
 from rotorgear.export.vtk_motion import write_motion as write_motion
 from rotorgear.export.vtk_deflection import write_deflections as write_deflections

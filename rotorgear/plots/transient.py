@@ -27,7 +27,9 @@ def write_pictures(result: TransientResult, directory: str | Path) -> list[Path]
     Raises:
         MissingExtraError: matplotlib is missing. WriteError: the folder can't be written.
     """
-    plans: list[Callable[..., Any]] = [mesh_forces, transmission_error, spectra, energy]
+    # A rotor without gears has neither contacts nor their spectra.
+    plans: list[Callable[..., Any]] = [mesh_forces, transmission_error, spectra] if result.contact else []
+    plans.append(energy)
     if _orbits(result):
         plans.append(orbits)
     if np.ptp(result.speed) > 0.0:

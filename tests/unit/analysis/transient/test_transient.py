@@ -345,7 +345,8 @@ def test_a_pair_under_torque_stands_in_equilibrium_at_any_stiffness() -> None:
                 meshes__pair__backlash="40 um",
                 meshes__pair__transmission_error=[{"harmonic": 1, "amplitude": "3 um"}],
             )
-            local = local_model(System(model, direction=int(direction)), Rotation.constant(direction), direction).local
+            system = System(model, load=model.mean_load(int(direction)))
+            local = local_model(system, Rotation.constant(direction), direction).local
             rest = equilibrium(local)
             assert rest.converged, factor
             # Of deflections of teeth a billion times as stiff, displacements of the shafts leave few digits.
