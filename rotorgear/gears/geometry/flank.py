@@ -16,11 +16,14 @@ class FlankModification:
     """What is taken off one flank.
 
     Attributes:
-        tip_relief, tip_relief_length: depth at the tip, and roll length from the tip over which it falls to 0.
-        root_relief, root_relief_length: the same from the form circle.
+        tip_relief: depth at the tip.
+        tip_relief_length: roll length from the tip over which it falls to 0.
+        root_relief: depth at the form circle.
+        root_relief_length: roll length from the form circle over which it falls to 0.
         relief_exponent: 1 for linear, 2 for parabolic relief.
         crowning: depth at both ends of the face, parabolic.
-        end_relief, end_relief_length: linear relief at both ends of the face, and its length.
+        end_relief: depth of linear relief at both ends of the face.
+        end_relief_length: how far it reaches along the face.
         helix_slope: depth at the end of larger z less that at the end of smaller z; negative the other way.
         pitch_error: (tooth, how far its flank stands back along the line of action); the other teeth are exact.
     """

@@ -31,7 +31,8 @@ class ToothOutline:
 
     Attributes:
         geometry: the gear.
-        tip_radius, root_radius: of tip and root circle.
+        tip_radius: r_a.
+        root_radius: r_f.
         form_radius: where involute and trochoid meet.
         form_roll_length: xi_F along the line of action from the base tangent point, sqrt(r_F^2 - r_b^2).
         base_half_angle: half the tooth's angle at the base circle.

@@ -49,7 +49,8 @@ def iso_tooth_stiffness(
     """c'_th, c', c_gamma_alpha and c_gamma_beta of a pair.
 
     Args:
-        g1, g2: the gear with fewer teeth is taken as the standard's pinion.
+        g1: one gear; that with fewer teeth is taken as the standard's pinion.
+        g2: the other one.
         transverse_contact_ratio: eps_alpha.
         line_load: F_t K_A / b (N/m); None counts as 100 N/mm or more.
         gear_blank_factor: C_R, 1 for solid disks.
