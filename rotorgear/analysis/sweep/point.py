@@ -157,7 +157,7 @@ def _standing(model: Model) -> bool:
     powers = [operation.power, *(load.power for load in model.loads.values())]
     varying = any(load.varies for load in model.loads.values())
     tables = any(bearing.table for bearing in model.bearings.values())
-    inner = any(section for shaft in model.shafts.values() for section in shaft.sections)
+    inner = any(shaft.internal_damping for shaft in model.shafts.values())
     # Laws of one's own may depend on the speed as they like.
     return all(power is None for power in powers) and not (varying or tables or inner or model.nonlinear_elements)
 

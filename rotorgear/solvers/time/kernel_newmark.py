@@ -14,7 +14,7 @@ import numpy as np
 
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import contact_step, schedule_all
-from rotorgear.solvers.time.kernel_time import add_products, count_events, lu_solve, rotation_at, row_products
+from rotorgear.solvers.time.kernel_time import count_events, lu_solve, rotation_at, row_products, subtract_products
 
 
 @compiled
@@ -109,7 +109,7 @@ def newmark_loop(
             rhs[i] = load[i]
             q[i] = qp
             v[i] = vp
-        add_products(first_nz, column, K, D, qm, vm, rhs)
+        subtract_products(first_nz, column, K, D, qm, vm, rhs)
         if am != 0.0:
             row_products(first_nz, column, M, a, Ma)
             for i in range(n):

@@ -22,7 +22,7 @@ def rotation_at(t, times, speeds, angles):
 
 
 @compiled(fast=True)
-def add_products(first, column, K, D, q, v, out):
+def subtract_products(first, column, K, D, q, v, out):
     """Subtract K q + D v from out; both matrices in one pattern by rows."""
     for i in range(out.size):
         total = 0.0

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import pytest
+
 import rotorgear as rg
+from rotorgear.analysis.sweep import point as sweep_point
 from rotorgear.analysis.sweep.point import PointMaker
 from rotorgear.analysis.transient.task import prepare
 from rotorgear.errors import AnalysisError
@@ -21,3 +26,26 @@ def test_a_transient_and_a_sweep_of_a_shipped_model_have_the_same_dofs() -> None
         assert dofs == prepare(model, None, None).local.local.n, path.name
         compared += 1
     assert compared > 5
+
+
+def test_only_shafts_with_internal_damping_find_their_state_at_rest_anew_at_each_speed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    flexible = rg.load(ROOT / "models" / "flexible_pair.toml")
+    assert flexible.operation
+    made: list[float] = []
+    built = sweep_point.local_model
+
+    def counted(*args: Any) -> Any:
+        made.append(args[-1])
+        return built(*args)
+
+    monkeypatch.setattr(sweep_point, "local_model", counted)
+    damped = {name: shaft.model_copy(update={"internal_damping": 1e-6}) for name, shaft in flexible.shafts.items()}
+    for shafts, times in ((flexible.shafts, 1), (damped, 3)):
+        made.clear()
+        maker = PointMaker()
+        for speed in (300.0, 400.0, 500.0):
+            operation = flexible.operation.model_copy(update={"speed": speed})
+            maker(flexible.model_copy(update={"shafts": shafts, "operation": operation}))
+        assert len(made) == times
