@@ -1,15 +1,14 @@
 """Ball bearing: Hertz contacts of Z balls that turn with the cage, clearance, and coupling of radial, axial and tilting motion.
 
-Ball j stands at phi_j = order * angle + phase + 2 pi j/Z. With the distance
-A = r_i + r_e - D_w of the groove centres at rest, the inner one moves by
+Ball j stands at phi_j = order * angle + phase + 2 pi j/Z. With the distance A = r_i + r_e - D_w of the groove centres at rest,
+the inner one moves by
 
     u = x cos phi + y sin phi,   w = z + R_i (tx sin phi - ty cos phi)
     delta = sqrt((A cos a0 + u)^2 + (A sin a0 + w)^2) - A,   Q = c_p delta^(3/2) where delta > 0
 
-and F is the gradient of the energy 2/5 c_p sum delta^(5/2), so that the law is conservative but for the turning of the
-balls. A deep
-groove bearing stands centred: A cos a0 = A - s/2, A sin a0 = 0. ISO/TS 16281:2008; de Mul, Vree and Maas, J. Tribology
-111 (1989) 142.
+and F is the gradient of the energy 2/5 c_p sum delta^(5/2), so that the law is conservative except for the motion
+of the balls. A deep groove bearing stands centred: A cos a0 = A - s/2, A sin a0 = 0. ISO/TS 16281:2008; de Mul, Vree and Maas,
+J. Tribology 111 (1989) 142.
 """
 
 from __future__ import annotations

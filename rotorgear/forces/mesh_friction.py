@@ -1,8 +1,8 @@
 """Sliding friction of the teeth of one helix: it acts across the line of action, with the place of contact as its arm.
 
 Displacements: d0 along the flank normal, which gives the normal force N of `mesh_contact`, d1 across the line of
-action at the pitch
-point, d2 the relative rotation. At the place xi of a contact, xi = p_bt (p/2 pi) from the pitch point, the flanks slide with
+action at the pitch point, d2 the relative rotation. At the place xi of a contact, xi = p_bt (p/2 pi) from the pitch point, the
+flanks slide with
 
     v_s = xi W + d1' + xi d2',    W = |w_p| + |w_g|,    F1 = sum F_s,  F2 = sum xi F_s,   F_s = mu N_j tanh(v_s/v_0)
 

@@ -1,8 +1,7 @@
 """A force or torque that turns with a shaft or oscillates: F = -A cos(p), p = order * angle + phase, A grows with speed^power.
 
 As two components (x, y) it turns in the sense of its order: an unbalance u has A = u speed^2, power 2. The sign is
-that of a force on the structure, so
-the law, whose force acts against the displacement, gives -A.
+that of a force on the structure, so the law, whose force acts against the displacement, gives -A.
 """
 
 from __future__ import annotations

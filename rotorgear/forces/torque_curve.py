@@ -2,9 +2,9 @@
 
     M = M0 s(t) [1 + a cos(order * angle + phase)] (|w|/w0)^power,   w = ratio * speed + v
 
-power 2 is the propeller law, 0 a constant torque, -1 constant power. s(t) is a step from 1 to `step` between t1 and t1
-+ rise (half a cosine): a
-turbine that is cut back. The law's force is -M, so that a positive torque drives in the positive sense.
+power 2 is the propeller law, 0 a constant torque, -1 constant power. s(t) is a step from 1 to `step` between t1 and
+t1 + rise (half a cosine), such as a turbine that is cut back. The law's force is -M, so that a positive torque drives in the
+positive sense.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ import numpy as np
 from rotorgear.analysis.campbell.branches import Track, track
 from rotorgear.analysis.campbell.crossings import Chain, crossings, margins, roots
 from rotorgear.analysis.campbell.discretise import system_for_speeds
-from rotorgear.analysis.campbell.snapshot_basis import Request, Snapshot, SpeedModes
+from rotorgear.analysis.campbell.snapshot_basis import Request, SpeedModes
 from rotorgear.analysis.campbell.speed_family import merged
 from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, operating_speed
 from rotorgear.analysis.common.clock import Clock
@@ -131,25 +131,31 @@ def _chains(
     chains = []
     tracks = []
     for group in range(len(parts)):
-        watched = max((own[group] for own in wanted), default=0)
+        watched = max((counts[group] for counts in wanted), default=0)
         if not watched:
             continue
         tracks.append(track(lambda speed, group=group: found.at(speed)[group], grid, watched + 1))  # type: ignore[misc]
         number = tracks[-1].number
-        limit = np.array([own[group] for own in wanted])[:, None]
+        limit = np.array([counts[group] for counts in wanted])[:, None]
         kept = np.any((number >= 0) & (number < limit) & of_interest[:, None], axis=0)
         chains += [_chain(found, grid, group, number[:, k]) for k in np.flatnonzero(kept)]
-    return sorted(chains, key=_place), tracks
+
+    def first_place(chain: Chain) -> tuple[int, float]:
+        first = int(np.argmax(np.isfinite(chain.s)))
+        return first, float(np.abs(chain.s[first]))
+
+    return sorted(chains, key=first_place), tracks
 
 
 def _wanted(found: SpeedModes, speed: float, request: Request) -> list[int]:
     """How many of the lowest modes of each group are asked for at a speed."""
-    size = [np.abs(found.damped(part.s)) for part in found.at(speed)]
-    together = np.sort(np.concatenate(size))
+    frequencies = [np.abs(found.damped(part.s)) for part in found.at(speed)]
+    together = np.sort(np.concatenate(frequencies))
     count = request.asked(together)
     if count == 0:
-        return [0] * len(size)
-    return [int(np.sum(own <= together[count - 1] * (1.0 + 1e-12))) for own in size]
+        return [0] * len(frequencies)
+    # Equal frequencies of two groups count in both: rounding must not decide which of them is asked for.
+    return [int(np.sum(group <= together[count - 1] * (1.0 + 1e-12))) for group in frequencies]
 
 
 def _chain(found: SpeedModes, grid: np.ndarray, group: int, number: np.ndarray) -> Chain:
@@ -164,11 +170,6 @@ def _chain(found: SpeedModes, grid: np.ndarray, group: int, number: np.ndarray) 
     return Chain(group, s, q)
 
 
-def _place(chain: Chain) -> tuple[int, float]:
-    first = int(np.argmax(np.isfinite(chain.s)))
-    return first, float(np.abs(chain.s[first]))
-
-
 def _error_estimate(
     system: System, found: SpeedModes, chains: list[Chain], grid: np.ndarray, wanted: bool
 ) -> np.ndarray:
@@ -178,7 +179,8 @@ def _error_estimate(
         return estimate
     for snapshot in found.snapshots[:2]:
         k = int(np.argmin(np.abs(grid - snapshot.speed)))
-        error = _at_snapshot(system, snapshot)
+        parts = errors_of(system, snapshot.speed, snapshot.s, snapshot.vectors, np.zeros(len(snapshot.s), bool))
+        error = total_error(parts, len(snapshot.s))
         for b, chain in enumerate(chains):
             if np.isfinite(chain.s[k]):
                 distance = np.abs(snapshot.s - chain.s[k])
@@ -186,11 +188,6 @@ def _error_estimate(
                 if distance[near] <= 1e-6 * abs(chain.s[k]):
                     estimate[b] = np.fmax(estimate[b], error[near])
     return estimate
-
-
-def _at_snapshot(system: System, snapshot: Snapshot) -> np.ndarray:
-    parts = errors_of(system, snapshot.speed, snapshot.s, snapshot.vectors, np.zeros(len(snapshot.s), bool))
-    return total_error(parts, len(snapshot.s))
 
 
 def _onsets(found: SpeedModes, chains: list[Chain], grid: np.ndarray) -> tuple[Onset, ...]:

@@ -119,17 +119,12 @@ def _by_whirl(system: System, order: float, top: float) -> dict[str, list[float]
     seen = shapes.portraits(shapes.coordinates(0, np.vstack([one, 1j * one])), speeds)
     bending = seen.energies.kinetic_by_motion.get("bending", np.zeros(len(found)))
     for k, speed in enumerate(speeds):
-        net = sum(
-            float(v[k]) * _share(seen.energies.kinetic_by_shaft, name, k) for name, v in seen.whirl_by_shaft.items()
-        )
+        # Shafts of one gearbox may whirl in opposite senses: the mode has that of the shafts which bend most.
+        bends = {shaft: v[k] for (shaft, motion), v in seen.energies.kinetic_by_shaft.items() if motion == "bending"}
+        net = sum(float(v[k]) * float(bends.get(name, 0.0)) for name, v in seen.whirl_by_shaft.items())
         kind = "other" if bending[k] < 0.5 else ("forward" if net > 0.0 else "backward")
         table[kind].append(float(speed))
     return {kind: sorted(values, key=abs) for kind, values in table.items()}
-
-
-def _share(shares: dict[tuple[str, str], np.ndarray], shaft: str, k: int) -> float:
-    own = shares.get((shaft, "bending"))
-    return 0.0 if own is None else float(own[k])
 
 
 def _padded(rows: list[list[float]]) -> np.ndarray:
@@ -156,15 +151,16 @@ def with_radial_stiffness(model: Model, value: float) -> Model:
         rows[:2, :] = 0.0
         rows[:, :2] = 0.0
         rows[0, 0] = rows[1, 1] = value
-        own = data["bearings"][name]
-        own.pop("table", None)
-        own.pop("damping", None)
-        own["stiffness"] = {"matrix": rows.tolist()}
+        entry = data["bearings"][name]
+        entry.pop("table", None)
+        entry.pop("damping", None)
+        entry["stiffness"] = {"matrix": rows.tolist()}
     return Model(**data)
 
 
-def _default(own: dict[str, np.ndarray]) -> np.ndarray:
-    present = np.concatenate(list(own.values()))
+def _default(stiffnesses: dict[str, np.ndarray]) -> np.ndarray:
+    """Stiffnesses in N/m from some decades below the softest bearing to some above the stiffest."""
+    present = np.concatenate(list(stiffnesses.values()))
     present = present[present > 0.0]
     if not present.size:
         raise AnalysisError("no bearing has a radial stiffness, so there is none to vary")

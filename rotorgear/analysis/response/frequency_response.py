@@ -122,7 +122,7 @@ def frf(
 
 
 def _evenly_spaced(fmin: float | None, fmax: float | None, points: int) -> np.ndarray:
-    """Frequencies in Hz; without a lowest one the range starts one step above 0, where a free rotation has no receptance."""
+    """Frequencies in Hz; without `fmin` from one step above 0, where the receptance of a rigid-body rotation is infinite."""
     if points < 2:
         raise AnalysisError(f"points: got {points}, expected at least 2")
     if fmax is None:

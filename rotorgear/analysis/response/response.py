@@ -24,7 +24,6 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
-from rotorgear.results.modal import NodeTable
 from rotorgear.results.response import ResponseResult
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.plan import Plan
@@ -101,8 +100,11 @@ def response(
     progress(0.96, "error estimate")
     estimate = mesh_error(plant, orders, chosen, run.readings, (zeta, DAMPED * top), setup.mean_force)
     at = _shape_speed(model, shape_speed, chosen, run.readings)
-    nodes, shapes = _shapes(plant, orders, at)
-    stacked = _stacked(run.readings)
+    shape_w, shape_loads = plant.loads(orders, at)
+    deflections = solve_orders(plant, plant.dynamics(at), shape_w, shape_loads)
+    nodes, shapes = shapes_at_stations(system, system.dofs.expand(deflections))
+    quantities = ("mesh_force", "transmission_error", "bearing_force", "acceleration", "displacement")
+    stacked = {name: np.stack([getattr(reading, name) for reading in run.readings], axis=1) for name in quantities}
     progress(1.0, "done")
     return ResponseResult(
         model=model,
@@ -112,14 +114,14 @@ def response(
         contact_mesh=setup.lines.names,
         contact_helix=np.array([state.contact.helix for state in setup.lines.states], dtype=int),
         mean_force=setup.mean_force,
-        mesh_force=stacked[0],
-        transmission_error=stacked[1],
+        mesh_force=stacked["mesh_force"],
+        transmission_error=stacked["transmission_error"],
         bearings=tuple(model.bearings),
-        bearing_force=stacked[2],
+        bearing_force=stacked["bearing_force"],
         points=tuple(model.points),
-        acceleration=stacked[3],
+        acceleration=stacked["acceleration"],
         places=tuple(plant.places),
-        displacement=stacked[4],
+        displacement=stacked["displacement"],
         shape_speed=at,
         shapes=shapes,
         nodes=nodes,
@@ -131,7 +133,10 @@ def response(
         discretisation=pieces(system),
         seconds={"total": time.perf_counter() - clock},
         left_out=(*left, *setup.notes, *notes, *rolling_notes(model, rolls=False)),
-        warnings=(*speed_warnings(plant, orders, chosen, (modes, w, zeta)), *parting(setup, stacked[0], chosen)),
+        warnings=(
+            *speed_warnings(plant, orders, chosen, (modes, w, zeta)),
+            *parting(setup, stacked["mesh_force"], chosen),
+        ),
         method=f"{run.method} ({how}: {why})",
     )
 
@@ -164,11 +169,6 @@ def _within(orders: list[Order], speeds: np.ndarray, fmax: float | None) -> tupl
     return kept, [f"{order.name}: above {fmax:g} Hz at the highest speed" for order in orders if order.ratio > limit]
 
 
-def _stacked(readings: list[Readings]) -> list[np.ndarray]:
-    names = ("mesh_force", "transmission_error", "bearing_force", "acceleration", "displacement")
-    return [np.stack([getattr(item, name) for item in readings], axis=1) for name in names]
-
-
 def _speeds(
     model: Model,
     given: Sequence[float] | Sequence[str] | None,
@@ -187,14 +187,15 @@ def _speeds(
             raise AnalysisError(f"points: got {points}, expected at least 1")
         low = LOWEST * (operating or 0.0) if start is None else speed_in_si(start)
         high = HIGHEST * (operating or 0.0) if stop is None else speed_in_si(stop)
-        found = np.linspace(low, high, points)
+        speeds = np.linspace(low, high, points)
     else:
-        found = np.array([speed_in_si(speed) for speed in given], float)
-    if not found.size or not np.all(np.isfinite(found)):
+        speeds = np.array([speed_in_si(speed) for speed in given], float)
+    if not speeds.size or not np.all(np.isfinite(speeds)):
         raise AnalysisError("speeds: got none, expected at least one rotational speed")
-    if np.any(found == 0.0) or np.any(np.sign(found) != np.sign(found[0])):
+    # One sense, because the sense of rotation chooses the working flanks, and with them the linearised model.
+    if np.any(speeds == 0.0) or np.any(np.sign(speeds) != np.sign(speeds[0])):
         raise AnalysisError("speeds: all of one sense and none of them 0; at standstill nothing excites the model")
-    return found[np.argsort(np.abs(found), kind="stable")]
+    return speeds[np.argsort(np.abs(speeds), kind="stable")]
 
 
 def _check(method: str, modal_damping: float, fmax: float | None, elements: int | None, accuracy: float | None) -> None:
@@ -217,9 +218,3 @@ def _shape_speed(model: Model, given: float | str | None, speeds: np.ndarray, re
         return operating
     largest = [float(np.abs(item.stacked).max(initial=0.0)) for item in readings]
     return float(speeds[int(np.argmax(largest))])
-
-
-def _shapes(plant: Plant, orders: list[Order], speed: float) -> tuple[NodeTable, np.ndarray]:
-    w, f = plant.loads(orders, speed)
-    q = solve_orders(plant, plant.dynamics(speed), w, f)
-    return shapes_at_stations(plant.system, plant.system.dofs.expand(q))

@@ -19,7 +19,7 @@ from rotorgear.gears.loaded.stiffness import loaded_cycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, in_space
 from rotorgear.gears.loaded.tooth_solution import TeethSolution, solve_teeth
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, compliance_key
+from rotorgear.gears.tooth_fe.compliance_model import compliance_key
 from rotorgear.gears.tooth_fe.sector import clockwise
 from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
@@ -56,28 +56,26 @@ def tooth_fields(
         )
     problem, cycle = loaded_cycle(teeth, request.base_force, np.array([at]), part_of(progress, 0.0, 0.4))
     names = tuple(gear.name for gear in request.mesh.gears)
-    found = [
+    fields = [
         _gear(names[i], teeth, problem, cycle, at, i, part_of(progress, 0.4 + 0.3 * i, 0.7 + 0.3 * i)) for i in (0, 1)
     ]
     progress(1.0, "done")
-    return ToothFields(request.name, at, (found[0], found[1]), _contact(problem, cycle, at))
-
-
-def _key(teeth: ToothPair, gear: int) -> ComplianceKey:
-    g, body = ((teeth.first, teeth.first_body), (teeth.second, teeth.second_body))[gear]
-    return compliance_key(g, teeth.fe, body.poisson_ratio, teeth.width, body.inner_radius, space=in_space(teeth)[0])
+    return ToothFields(request.name, at, (fields[0], fields[1]), _contact(problem, cycle, at))
 
 
 def _gear(
     name: str, teeth: ToothPair, problem: ContactProblem, cycle: MeshCycle, at: float, gear: int, progress: Progress
 ) -> ToothField:
-    key = _key(teeth, gear)
+    geometry, gear_body = ((teeth.first, teeth.first_body), (teeth.second, teeth.second_body))[gear]
+    key = compliance_key(
+        geometry, teeth.fe, gear_body.poisson_ratio, teeth.width, gear_body.inner_radius, space=in_space(teeth)[0]
+    )
     solution = solve_teeth(key, _loads(problem, cycle, gear), progress)
     module = problem.module
-    E = (teeth.first_body, teeth.second_body)[gear].youngs_modulus
     # A plane model carries the force of a unit width.
     thickness = module if key.width else teeth.width
-    stretch = 1.0 / (E * thickness)
+    # Compliances are kept for a Young's modulus of 1.
+    stretch = 1.0 / (gear_body.youngs_modulus * thickness)
     strength = 1.0 / (thickness * module)
     stress = [solution.pitch.stress(u) for u in solution.displacement]
     mises, largest = (strength * np.concatenate([part[i] for part in stress]) for i in (0, 1))
@@ -103,11 +101,11 @@ def _loads(problem: ContactProblem, cycle: MeshCycle, gear: int) -> dict[int, np
     place = problem.place(gear, slices.z)
     spread = patch_loads(slices, gear, problem.compliance[gear], problem.module, place, cycle.patch)
     side = 1 if gear == 0 else -1
-    found = {}
+    loads = {}
     for pair in np.unique(slices.pair[cycle.force > 0.0]):
-        own = slices.pair == pair
-        found[side * int(pair)] = -np.asarray(spread.loads[own].T @ cycle.force[own])
-    return found
+        of_pair = slices.pair == pair
+        loads[side * int(pair)] = -np.asarray(spread.loads[of_pair].T @ cycle.force[of_pair])
+    return loads
 
 
 def _placed(
@@ -153,16 +151,20 @@ def _contact(problem: ContactProblem, cycle: MeshCycle, at: float) -> ContactFie
     """The loaded slices as pieces of contact lines on the plane of action."""
     line = problem.line
     slices = cycle.slices
-    own = cycle.force > 0.0
-    z = (slices.z @ slices.weight)[own, None] + 0.5 * slices.length[own, None] * np.array([-1.0, 1.0])
-    roll = line.pitch_point + (at + slices.pair[own, None]) * line.base_pitch + z * np.tan(line.base_helix_angle)
+    loaded = cycle.force > 0.0
+    z = (slices.z @ slices.weight)[loaded, None] + 0.5 * slices.length[loaded, None] * np.array([-1.0, 1.0])
+    roll = line.pitch_point + (at + slices.pair[loaded, None]) * line.base_pitch + z * np.tan(line.base_helix_angle)
     c = np.cos(line.pressure_angle)
     s = np.sin(line.pressure_angle)
     x = roll * c - line.base_radius[0] * s
     y = roll * s + line.base_radius[0] * c
-    length = slices.length[own] / np.cos(line.base_helix_angle)
+    length = slices.length[loaded] / np.cos(line.base_helix_angle)
     return ContactField(
-        np.stack([x, y, z], -1), cycle.force[own] / length, cycle.strip[own], cycle.pressure[own], slices.pair[own]
+        np.stack([x, y, z], -1),
+        cycle.force[loaded] / length,
+        cycle.strip[loaded],
+        cycle.pressure[loaded],
+        slices.pair[loaded],
     )
 
 
