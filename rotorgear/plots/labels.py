@@ -11,7 +11,7 @@ _TRIALS = tuple((r * np.cos(a), r * np.sin(a)) for r in (0.03, 0.045) for a in n
 
 
 def spread(places: list[float], least: float) -> list[float]:
-    """Places moved apart to a least distance, as little as it takes, in their order."""
+    """Places moved apart by the least amounts that keep their order and a distance of `least` between neighbours."""
     order = np.argsort(places, kind="stable")
     found = np.array([places[k] for k in order], float)
     for _ in range(200):

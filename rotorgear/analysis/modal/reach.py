@@ -49,7 +49,7 @@ class Reach:
         return (np.arange(len(size)) < inside) | (lowest < edge)
 
     def is_certain(self, size: np.ndarray, error: np.ndarray, complete: bool) -> bool:
-        """Whether a mode beyond those asked for is known to stay there, or there is none."""
+        """Whether the search went far enough: all modes are found, or one of them is certain to lie beyond those asked for."""
         return complete or not bool(np.all(self.watched(size, error)))
 
     def further(self) -> Reach:

@@ -19,7 +19,7 @@ _STATE = ("q", "v", "a", "F", "before", "sums", "last", "events")
 
 
 class Stream(Protocol):
-    """Where chunks go while a run goes on, and whence an interrupted run starts again."""
+    """Where a run writes its chunks, and from where an interrupted run continues."""
 
     def begin(self, settings: dict[str, str]) -> list[dict[str, np.ndarray]]:
         """Say what is run; returns the chunks that are there already of the same run, all or none."""

@@ -40,7 +40,7 @@ class Grid:
 
 
 def quantity(value: float | str, dimension: str, name: str) -> float:
-    """Parse an argument; AnalysisError with its name where it is none."""
+    """Parse a quantity; AnalysisError with the name of the argument where it is not one."""
     try:
         return parse_quantity(value, dimension)
     except QuantityError as error:
