@@ -56,6 +56,8 @@ _UNIT_TEXT = re.compile(r"[A-Za-z0-9µμ°·²³*/^()\s%-]*\Z")
 _EXPONENT_OR_RECIPROCAL = re.compile(r"\^\s*-?[0-9](?![0-9])|^1(?=\s*/)")
 # No length, mass, stiffness ... of a machine comes near this bound, and powers and products within it stay finite.
 LARGEST = 1e30
+# Revolutions per minute in a radian per second.
+RPM_PER_RAD_S = 30.0 / math.pi
 _TURN = 2.0 * math.pi
 # Factors to SI where a frequency and a rotational speed would be mixed up by dimensional analysis alone.
 _RPM = _TURN / 60

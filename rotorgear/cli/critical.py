@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -24,8 +23,6 @@ from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
     pass
-
-_RPM = 30.0 / math.pi
 
 
 def critical(

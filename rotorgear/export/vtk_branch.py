@@ -14,7 +14,8 @@ from rotorgear.export.polydata import add_texts, import_pyvista, save_mesh, soli
 from rotorgear.export.solids import build_solids
 from rotorgear.export.vtk import check_amplitude
 from rotorgear.progress import Progress, silent
-from rotorgear.results.campbell import RPM, CampbellResult
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.campbell import CampbellResult
 
 
 def write_branch(
@@ -65,7 +66,7 @@ def write_branch(
             mesh.field_data["log_decrement"] = result.log_decrement[[k], branch]
             names.append(f"branch_{branch + 1:02d}_{k:03d}.vtp")
             save_mesh(mesh, scratch / names[-1])
-            steps.append((float(result.speeds[k] * RPM), names[-1]))
+            steps.append((float(result.speeds[k] * RPM_PER_RAD_S), names[-1]))
         names.append(f"branch_{branch + 1:02d}.pvd")
         (scratch / names[-1]).write_text(collection(steps), encoding="utf-8")
         written = publish(scratch, Path(directory), names)

@@ -15,7 +15,7 @@ from rotorgear.export.polydata import add_texts, import_pyvista, save_mesh, soli
 from rotorgear.export.solids import Solids, build_solids
 from rotorgear.export.vtk import Motion, check_amplitude, write_frames
 from rotorgear.progress import Progress, silent
-from rotorgear.results.campbell import RPM
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.response import ResponseResult
 from rotorgear.results.static import StaticResult
 
@@ -80,7 +80,7 @@ def _write_orders(
     progress: Progress,
 ) -> Iterator[str]:
     """Write every order and yield the names of its files, what refers to others last."""
-    rpm = result.shape_speed * RPM
+    rpm = result.shape_speed * RPM_PER_RAD_S
     for o, order in enumerate(result.orders):
         progress(o / len(result.orders), order)
         motion = Motion(*solids.scaled(result.shapes[:, :, o], amplitude))

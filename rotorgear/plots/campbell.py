@@ -9,7 +9,8 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.plots.figure import axes_for
 from rotorgear.plots.labels import Labels, spread
-from rotorgear.results.campbell import RPM, WHIRL_WORDS, CampbellResult, Crossing, ExcitationOrder
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.campbell import WHIRL_WORDS, CampbellResult, Crossing, ExcitationOrder
 
 COLOURS = ("motion", "mesh", "damping")
 _MOTION = {"bending": (0.12, 0.37, 0.66), "axial": (0.18, 0.60, 0.25), "torsion": (0.80, 0.23, 0.13)}
@@ -44,11 +45,11 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
     _whirl(axis, result)
     _lines(axis, result, (left, right), top)
     _crossings(axis, result, top)
-    if result.operating_speed is not None and left <= result.operating_speed * RPM <= right:
-        axis.axvline(result.operating_speed * RPM, color="black", lw=0.8)
+    if result.operating_speed is not None and left <= result.operating_speed * RPM_PER_RAD_S <= right:
+        axis.axvline(result.operating_speed * RPM_PER_RAD_S, color="black", lw=0.8)
         axis.annotate(
             "operating speed",
-            (result.operating_speed * RPM, top),
+            (result.operating_speed * RPM_PER_RAD_S, top),
             xytext=(0, 3),
             textcoords="offset points",
             fontsize=7,
@@ -158,7 +159,7 @@ def _crossings(axis: Any, result: CampbellResult, top: float) -> None:
     met = [item for item in result.crossings if item.excited]
     if not met:
         return
-    x = np.array([item.speed * RPM for item in met])
+    x = np.array([item.speed * RPM_PER_RAD_S for item in met])
     y = np.array([item.frequency_hz for item in met])
     size = 6.0 + 60.0 * np.sqrt([item.participation for item in met])
     axis.scatter(x, y, s=size, facecolors="none", edgecolors="black", lw=0.7, zorder=5)
@@ -167,11 +168,11 @@ def _crossings(axis: Any, result: CampbellResult, top: float) -> None:
     for item in sorted(met, key=lambda item: -_telling(item, result)):
         if labels.count >= _MOST_LABELS:
             break
-        place = labels.place(item.speed * RPM, item.frequency_hz)
+        place = labels.place(item.speed * RPM_PER_RAD_S, item.frequency_hz)
         if place is not None:
             axis.annotate(
-                f"{item.speed * RPM:.0f}",
-                (item.speed * RPM, item.frequency_hz),
+                f"{item.speed * RPM_PER_RAD_S:.0f}",
+                (item.speed * RPM_PER_RAD_S, item.frequency_hz),
                 xytext=place,
                 fontsize=7,
                 zorder=6,

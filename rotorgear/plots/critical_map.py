@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.plots.figure import axes_for
-from rotorgear.results.campbell import RPM
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.critical import CriticalMap
 
 _STYLE = {"forward": ("-", "#1f5fa8"), "backward": ("--", "#c2571a"), "other": (":", "#777777")}
@@ -29,7 +29,7 @@ def critical_map(result: CriticalMap, ax: Any = None) -> Any:
     title = f"{result.model.title or 'Critical speeds'}\nundamped critical speeds of {result.line}"
     axis = axes_for(ax, (9.0, 6.0), title)
     for kind, (style, colour) in _STYLE.items():
-        values = np.abs(getattr(result, kind)) * RPM
+        values = np.abs(getattr(result, kind)) * RPM_PER_RAD_S
         for column in range(values.shape[1]):
             axis.loglog(
                 result.stiffness,

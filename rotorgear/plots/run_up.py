@@ -9,6 +9,7 @@ import numpy as np
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import figure_for
 from rotorgear.plots.static import plain_axis
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.response import ResponseResult
 
 _MOST_LINES = len(COLOURS)
@@ -89,7 +90,7 @@ def _lines(axis: Any, result: ResponseResult, names: list[str], sizes: np.ndarra
     operating = result.model.operation.speed if result.model.operation else None
     first, last = sorted((float(result.speeds[0]), float(result.speeds[-1])))
     if operating and first <= operating <= last:
-        axis.axvline(operating * 30.0 / np.pi, color="#777777", lw=0.9, ls="--")
+        axis.axvline(operating * RPM_PER_RAD_S, color="#777777", lw=0.9, ls="--")
     axis.set_title(label + (f" ({more} weaker left out)" if more > 0 else ""), fontsize=9.5)
     axis.legend(frameon=False, fontsize=7, ncols=2 if len(ranked) > 2 else 1, loc="upper left")
     plain_axis(axis)

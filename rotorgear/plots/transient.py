@@ -12,6 +12,7 @@ from rotorgear.analysis.transient.spectra import spectrum
 from rotorgear.errors import AnalysisError
 from rotorgear.export.files import filling, publish
 from rotorgear.plots.figure import axes_for, figure_for, save
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.transient import TransientResult
 
 _SIZE = (8.0, 5.0)
@@ -268,7 +269,7 @@ def spectrogram(result: TransientResult, ax: Any = None) -> Any:
         scaling="spectrum",
     )
     axes = axes_for(ax, _SIZE, result.model.title)
-    speeds = np.interp(result.settle + t, result.time, result.speed) * 30.0 / np.pi
+    speeds = np.interp(result.settle + t, result.time, result.speed) * RPM_PER_RAD_S
     level = 10.0 * np.log10(np.maximum(2.0 * power, 1e-12 * power.max()))
     picture = axes.pcolormesh(speeds, f, level, vmin=level.max() - _SHOWN_DB, shading="auto", rasterized=True)
     axes.figure.colorbar(picture, ax=axes, label="dB of the amplitude squared")

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NodeTable, Piece
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
 
 WHIRL_WORDS = ("", "forward", "backward", "mixed", "planar")
-RPM = 30.0 / np.pi
 
 
 class ExcitationOrder(Record):
@@ -108,7 +108,7 @@ class CampbellResult(ModelResult, kind="campbell"):
     @property
     def speed_rpm(self) -> np.ndarray:
         """Speeds of the input shaft in rpm, (k,)."""
-        return np.asarray(self.speeds * RPM)
+        return np.asarray(self.speeds * RPM_PER_RAD_S)
 
     @derived("frequency", "Hz", "speed", "branch", json=by_branch("frequency_hz"), note=" of a branch, the damped one")
     def frequency_hz(self) -> np.ndarray:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.results.campbell import RPM, ExcitationOrder
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.modal import NodeTable, Piece
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
@@ -57,7 +58,7 @@ class CriticalResult(ModelResult, kind="critical"):
     @derived("critical speeds of the input shaft", "rpm", "critical_speed", form=".2f")
     def critical_speed_rpm(self) -> np.ndarray:
         """Speeds of the input shaft in rpm, (c,)."""
-        return np.array([item.speed * RPM for item in self.speeds])
+        return np.array([item.speed * RPM_PER_RAD_S for item in self.speeds])
 
     speeds: tuple[CriticalSpeed, ...] = of(
         "critical speeds", "", "critical_speed", record=CriticalSpeed, json=_columns_of_speeds()

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NODE_COUNT, NodeTable, Piece
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Written, derived, of
@@ -43,7 +44,7 @@ class ResponseResult(ModelResult, kind="response"):
     @property
     def speed_rpm(self) -> np.ndarray:
         """Speeds of the reference shaft in rpm, (s,)."""
-        return self.speeds * 30.0 / np.pi
+        return self.speeds * RPM_PER_RAD_S
 
     @derived("frequency", "Hz", "order", "speed", note=" of each order at each speed")
     def frequency_hz(self) -> np.ndarray:

@@ -20,6 +20,8 @@ from dataclasses import MISSING, Field, dataclass, field, fields
 from itertools import count
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, dataclass_transform, overload
 
+from rotorgear.quantity import RPM_PER_RAD_S
+
 if TYPE_CHECKING:
     import numpy as np
 
@@ -28,7 +30,7 @@ _SAME_KEY = "\0"  # written under the field's own name
 _places = count()  # fields and computed fields of a class share one order, that of the page
 # A key that ends so is written in its unit: the unit stands with the written key, SI with the stored field.
 _WRITTEN_UNITS = {
-    ("rad/s", "_rpm"): ("rpm", 30.0 / math.pi),
+    ("rad/s", "_rpm"): ("rpm", RPM_PER_RAD_S),
     ("rad", "_deg"): ("deg", 180.0 / math.pi),
 }
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NodeTable
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
@@ -92,7 +93,7 @@ class Quantity(Record):
 
 
 def _first_and_last(result: Any, speed: np.ndarray) -> list[float]:
-    return [float(speed[0] * 30.0 / np.pi), float(speed[-1] * 30.0 / np.pi)]
+    return [float(speed[0] * RPM_PER_RAD_S), float(speed[-1] * RPM_PER_RAD_S)]
 
 
 class TransientResult(ModelResult, kind="transient"):

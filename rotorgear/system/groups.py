@@ -24,6 +24,7 @@ from rotorgear.model.layout.mean_load import MeanLoad, MeshForce
 from rotorgear.model.parts.nonlinear_element import NonlinearElement
 from rotorgear.model.parts.supports import Bearing, DampingMatrix, StiffnessMatrix
 from rotorgear.model.parts.tables import Tables
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.system.nodes import Element, Nodes
 
 # Motion of the six dofs of a node.
@@ -127,10 +128,10 @@ def table_values(part: str, bearing: Bearing | NonlinearElement, speed: float) -
     """
     speeds = np.array([row.speed for row in bearing.table])
     if not speeds[0] * (1.0 - 1e-12) <= speed <= speeds[-1] * (1.0 + 1e-12):
-        rpm = 30.0 / np.pi
+        rpm, first, last = (value * RPM_PER_RAD_S for value in (speed, speeds[0], speeds[-1]))
         raise AnalysisError(
-            f"{part}: its shaft turns at {speed * rpm:.6g} rpm, but its table covers {speeds[0] * rpm:.6g} to "
-            f"{speeds[-1] * rpm:.6g} rpm; ask for a speed inside (--speed) or add rows to the table"
+            f"{part}: its shaft turns at {rpm:.6g} rpm, but its table covers {first:.6g} to "
+            f"{last:.6g} rpm; ask for a speed inside (--speed) or add rows to the table"
         )
     right = int(np.clip(np.searchsorted(speeds, speed), 1, len(speeds) - 1))
     share = float(np.clip((speed - speeds[right - 1]) / (speeds[right] - speeds[right - 1]), 0.0, 1.0))

@@ -28,6 +28,7 @@ from rotorgear.analysis.static.tangent import about_equilibrium_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import CampbellResult, Crossing, ExcitationOrder, Margin, Onset
 from rotorgear.system.system import System
 
@@ -342,10 +343,10 @@ def _warnings(system: System, found: SpeedModes, tracks: list[Track], onsets: tu
     notes = list(system.nodes.merged)
     for onset in onsets[:3]:
         what = f"branch {onset.branch}" if onset.branch else "a motion that does not oscillate"
-        notes.append(f"{what} is unstable from {onset.speed * 30.0 / np.pi:.6g} rpm on: the motion grows")
+        notes.append(f"{what} is unstable from {onset.speed * RPM_PER_RAD_S:.6g} rpm on: the motion grows")
     unsure = [speed for track in tracks for speed in track.unsure]
     if unsure:
-        places = ", ".join(f"{speed * 30.0 / np.pi:.6g}" for speed in unsure[:3])
+        places = ", ".join(f"{speed * RPM_PER_RAD_S:.6g}" for speed in unsure[:3])
         notes.append(f"two branches can't be told apart near {places} rpm: they meet or part there in a point")
     return tuple(notes)
 

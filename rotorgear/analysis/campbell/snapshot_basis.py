@@ -16,6 +16,7 @@ from rotorgear.analysis.modal.modes import Modes, Wanted
 from rotorgear.analysis.modal.solve import group_notes, solve, with_modal_damping
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress, silent
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.solvers.eigen.reduced_pencil import Eigen, Pencil, eigen
 from rotorgear.solvers.eigen.subspace import Subspace
 from rotorgear.system.components import dof_motions
@@ -158,7 +159,7 @@ class SpeedModes:
                 continue
             if len(self.snapshots) >= _MOST_SNAPSHOTS or not self._add(middle):
                 raise ConvergenceError(
-                    f"modes from a basis of {self.size} columns are {error:.1e} off at {middle.speed * 30 / np.pi:.6g} rpm, "
+                    f"modes from a basis of {self.size} columns are {error:.1e} off at {middle.speed * RPM_PER_RAD_S:.6g} rpm, "
                     f"above {TOLERANCE:g}; ask for fewer modes or a narrower range of speeds, or use modal at single speeds"
                 )
             self._project()

@@ -12,10 +12,10 @@ from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.model import Model
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.description import GearRow, MeshRow, ModelDescription, PlaceRow, ShaftRow, TorqueRow
 from rotorgear.system.system import System
 
-_RPM = 30.0 / math.pi
 _COUNTED = (
     "shafts",
     "gears",
@@ -44,7 +44,7 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
     return ModelDescription(
         title=model.title,
         reference_shaft=model.reference_shaft,
-        speed_rpm=None if speed is None else speed * _RPM,
+        speed_rpm=None if speed is None else speed * RPM_PER_RAD_S,
         shafts=tuple(_shaft(system, name, speed) for name in model.shafts),
         gears=tuple(_gear(system, gear) for gear in system.layout.gears),
         places=tuple(_places(system)),
@@ -81,7 +81,7 @@ def _mass(system: System, shaft: str) -> tuple[float, float, float]:
 def _shaft(system: System, name: str, speed: float | None) -> ShaftRow:
     ratio = system.train.ratio(name)
     own, bodies, polar = _mass(system, name)
-    rpm = None if speed is None else ratio * speed * _RPM
+    rpm = None if speed is None else ratio * speed * RPM_PER_RAD_S
     return ShaftRow(name, ratio, rpm, system.model.shafts[name].length, own, bodies, polar)
 
 

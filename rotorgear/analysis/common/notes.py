@@ -24,7 +24,7 @@ def rolling_notes(model: Model, *, rolls: bool) -> Iterator[str]:
         else "its stiffness carries, not its rolling elements, which transients and sweeps take"
     )
     for name, bearing in model.bearings.items():
-        if bearing.rolling is not None:
+        if bearing.rolling is not None and bearing.stiffness is not None:
             yield f"bearings.{name}: {said}"
 
 

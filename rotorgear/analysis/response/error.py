@@ -10,6 +10,7 @@ from rotorgear.analysis.response.orders import Order, orders_of
 from rotorgear.analysis.response.plant import Plant, Readings
 from rotorgear.analysis.response.run_up import solve_orders
 from rotorgear.analysis.static.mean_state import Setup
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.system.contacts import contact_lines
 
 _CHECKED_ON_FINER = 4
@@ -78,9 +79,10 @@ def speed_warnings(
             width = min(width, float(np.min(2.0 * own[met] * w[elastic][met])) / order.ratio)
     if width >= _SPEEDS_A_PEAK * step:
         return []
-    rpm = 30.0 / np.pi
+    apart = step * RPM_PER_RAD_S
+    wide = width * RPM_PER_RAD_S
     return [
-        f"speeds are {step * rpm:.4g} rpm apart, but the sharpest resonance met is {width * rpm:.2g} rpm wide at half power: "
+        f"speeds are {apart:.4g} rpm apart, but the sharpest resonance met is {wide:.2g} rpm wide at half power: "
         "its peak may be higher than shown; more points or a narrower range show it"
     ]
 
@@ -100,7 +102,7 @@ def parting(setup: Setup, force: np.ndarray, speeds: np.ndarray) -> list[str]:
                 f"meshes.{mesh} carries no mean force: its teeth part, and the linear answer takes them as joined"
             )
             continue
-        rpm = np.abs(speeds[over]) * 30.0 / np.pi
+        rpm = np.abs(speeds[over]) * RPM_PER_RAD_S
         found.append(
             f"meshes.{mesh}: its dynamic force exceeds the mean force at {len(over)} of {len(speeds)} speeds, between "
             f"{rpm.min():.6g} and {rpm.max():.6g} rpm; there the teeth part, and the linear answer ends"

@@ -15,6 +15,7 @@ import scipy.sparse as sp
 from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.errors import AnalysisError
 from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.solvers.sparse.equilibrium import Equilibrium
 from rotorgear.solvers.sparse.newton import settle
 from rotorgear.solvers.sparse.static import UnbalancedLoadError
@@ -179,7 +180,7 @@ def _laws_at_rest(
     if not found.converged:
         names = ", ".join(part.part for part in parts)
         raise AnalysisError(
-            f"no equilibrium was found with {names} under these loads at {speed * 30.0 / np.pi:.6g} rpm: look for a law that "
+            f"no equilibrium was found with {names} under these loads at {speed * RPM_PER_RAD_S:.6g} rpm: look for a law that "
             "can't carry the load, such as a journal bearing at standstill"
         )
     states = []

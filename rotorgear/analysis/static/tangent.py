@@ -17,6 +17,7 @@ from rotorgear.analysis.static.solve import LawState, equilibrate
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.supports import DampingMatrix, StiffnessMatrix, TableRow
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.system.system import System
 
 # Tangents that change less over speed are one stiffness.
@@ -64,7 +65,7 @@ def about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Mod
         table, _, name = part.partition(".")
         own = changed.setdefault(table, dict(getattr(model, table)))
         own[name] = own[name].model_copy(update=_linear(model, part, at, [state[part] for state in states]))
-    where = " to ".join(f"{speed * 30.0 / np.pi:.6g}" for speed in dict.fromkeys((at[0], at[-1])))
+    where = " to ".join(f"{speed * RPM_PER_RAD_S:.6g}" for speed in dict.fromkeys((at[0], at[-1])))
     notes.append(
         f"what is not linear of {', '.join(sorted(wanted))}: linearised about the static equilibrium at {where} rpm"
     )

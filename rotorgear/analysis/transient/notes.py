@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.model.model import Model
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.transient import TransientResult
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium
 from rotorgear.system.local import LocalModel
@@ -55,7 +56,7 @@ def transient_warnings(
             "take a smaller step or record more often"
         )
     if not local.local.rotation.is_constant and _held(result.model):
-        rpm = float(np.abs(result.speed).max()) * 30.0 / np.pi
+        rpm = float(np.abs(result.speed).max()) * RPM_PER_RAD_S
         notes.append(
             f"{_held(result.model)} are held at their values for the largest speed, {rpm:.6g} rpm, over the whole run-up"
         )

@@ -12,7 +12,7 @@ from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import Bearing, DampingMatrix, Pedestal, RollingElements, StiffnessMatrix, TableRow
 from rotorgear.model.parts.tables import Tables
-from rotorgear.quantity import millimetres
+from rotorgear.quantity import RPM_PER_RAD_S, millimetres
 
 
 def motions(model: Tables) -> Iterator[Problem]:
@@ -111,7 +111,7 @@ def _given_tangent(address: str, element: NonlinearElement) -> Iterator[Problem]
 def _table(address: str, table: tuple[TableRow, ...]) -> Iterator[Problem]:
     speeds = [row.speed for row in table]
     if len(speeds) == 1 or any(b <= a for a, b in pairwise(speeds)) or any(s < 0 for s in speeds):
-        rpm = ", ".join(f"{speed * 30.0 / math.pi:.6g}" for speed in speeds)
+        rpm = ", ".join(f"{speed * RPM_PER_RAD_S:.6g}" for speed in speeds)
         yield Problem(
             f"{address}.table", f"speeds of {rpm} rpm", "at least two rows with speeds that rise from 0 or more"
         )

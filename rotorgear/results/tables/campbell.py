@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from rotorgear.quantity import RPM_PER_RAD_S
+
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from rotorgear.results.campbell import CampbellResult
-
-_RPM = 30.0 / math.pi
 
 
 def campbell_table(result: CampbellResult, *, crossings: bool = False) -> RenderableType:
@@ -66,7 +66,7 @@ def _branches(result: CampbellResult) -> Any:
 
 def _margins(result: CampbellResult) -> Any:
     assert result.operating_speed is not None
-    table = plain_table(f"Margins at {result.operating_speed * _RPM:.6g} rpm")
+    table = plain_table(f"Margins at {result.operating_speed * RPM_PER_RAD_S:.6g} rpm")
     table.add_column("line", overflow="fold")
     for name in ("Hz", "branch", "Hz", "margin %", "takes part %", "crossing rpm"):
         table.add_column(name, justify="right")
@@ -79,7 +79,7 @@ def _margins(result: CampbellResult) -> Any:
             _number(item.mode_hz, ".2f"),
             _number(100.0 * item.margin, "+.2f"),
             _number(100.0 * item.participation, ".2f") if known else "-",
-            _number(item.crossing_speed * _RPM, ".1f"),
+            _number(item.crossing_speed * RPM_PER_RAD_S, ".1f"),
         )
     return table
 
@@ -96,7 +96,7 @@ def _crossings(result: CampbellResult) -> Any:
     for item in result.crossings:
         share = f"{100.0 * item.participation:.2f}" if item.excited else "not excited"
         table.add_row(
-            f"{item.speed * _RPM:.2f}",
+            f"{item.speed * RPM_PER_RAD_S:.2f}",
             f"{item.frequency_hz:.3f}",
             str(item.branch),
             item.line,

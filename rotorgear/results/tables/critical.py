@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.tables.campbell import plain_table
 from rotorgear.results.tables.common import heading, lines
 
@@ -13,15 +14,13 @@ if TYPE_CHECKING:
 
     from rotorgear.results.critical import CriticalMap, CriticalResult
 
-_RPM = 30.0 / math.pi
-
 
 def critical_table(result: CriticalResult) -> RenderableType:
     """Return the critical speeds and the notes as one rich renderable."""
     from rich.console import Group
 
     kind = "damped" if result.damped else "undamped"
-    title = f"{result.model.title or 'Critical speeds'}: {kind} critical speeds to {result.top_speed * _RPM:.6g} rpm"
+    title = f"{result.model.title or 'Critical speeds'}: {kind} critical speeds to {result.top_speed * RPM_PER_RAD_S:.6g} rpm"
     bound = 10.0 ** math.ceil(math.log10(max(result.worst_residual, 1e-12)))
     notes = (
         f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
@@ -46,7 +45,7 @@ def _speeds(result: CriticalResult) -> Any:
         share = f"{100.0 * item.participation:.2f}" if item.excited else "none"
         zeta = [f"{round(100.0 * item.damping_ratio, 3) + 0.0:.3f}"] if result.damped else []
         row = [
-            f"{item.speed * _RPM:.2f}",
+            f"{item.speed * RPM_PER_RAD_S:.2f}",
             f"{item.frequency_hz:.3f}",
             item.line,
             *zeta,
@@ -65,7 +64,7 @@ def critical_map_table(chart: CriticalMap) -> RenderableType:
     table.add_column("forward", overflow="fold")
     table.add_column("backward", overflow="fold")
     for k in range(0, len(chart.stiffness), max(1, len(chart.stiffness) // 8)):
-        rows = [[f"{v * _RPM:.0f}" for v in values[k] if v == v] for values in (chart.forward, chart.backward)]
+        rows = [[f"{v * RPM_PER_RAD_S:.0f}" for v in values[k] if v == v] for values in (chart.forward, chart.backward)]
         table.add_row(f"{chart.stiffness[k]:.2e}", *(", ".join(row) for row in rows))
     own: RenderableType = table
     return own

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.tables.common import error_words, heading, lines, table
 
 if TYPE_CHECKING:
@@ -12,7 +12,6 @@ if TYPE_CHECKING:
 
     from rotorgear.results.frequency_response import FrequencyResponse
 
-_RPM = 30.0 / math.pi
 # So many peaks of each response are listed.
 _PEAKS = 6
 
@@ -23,7 +22,11 @@ def frf_table(result: FrequencyResponse, *, quantity: str = "receptance") -> Ren
 
     hz = result.frequency_hz
     title = f"{result.model.title or 'Model'}: {quantity}, {hz[0]:.6g} to {hz[-1]:.6g} Hz"
-    speed = f", {result.model.reference_shaft} at {result.speed * _RPM:.6g} rpm" if result.speed else ", at standstill"
+    speed = (
+        f", {result.model.reference_shaft} at {result.speed * RPM_PER_RAD_S:.6g} rpm"
+        if result.speed
+        else ", at standstill"
+    )
     out = table("force at", "response at", "peak Hz", quantity, left=2)
     for i, entry in enumerate(result.inputs):
         for o, place in enumerate(result.outputs):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rotorgear.quantity import RPM_PER_RAD_S
+
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
@@ -43,12 +45,11 @@ def _modes(result: ModalResult) -> Any:
 
 
 def _title(result: ModalResult) -> str:
-    import math
 
     if result.speed is None:
         how = "undamped, at standstill"
     else:
-        how = f"damped, {result.model.reference_shaft} at {result.speed * 30.0 / math.pi:.6g} rpm"
+        how = f"damped, {result.model.reference_shaft} at {result.speed * RPM_PER_RAD_S:.6g} rpm"
     return f"{result.model.title or 'Modes'}: {how}"
 
 

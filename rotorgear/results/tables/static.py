@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.tables.common import error_words, heading, lines, table
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def static_table(result: StaticResult, *, sensitivity: bool = False) -> Renderab
     from rich.console import Group
 
     speed = (
-        "" if result.speed is None else f", {result.model.reference_shaft} at {result.speed * 30.0 / math.pi:.6g} rpm"
+        "" if result.speed is None else f", {result.model.reference_shaft} at {result.speed * RPM_PER_RAD_S:.6g} rpm"
     )
     parts: list[Any] = [heading(f"{result.model.title or 'Model'}: statics{speed}")]
     if result.torque:

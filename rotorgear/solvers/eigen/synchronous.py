@@ -18,6 +18,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.solvers.eigen.quadratic import newton, scaled
 from rotorgear.solvers.sparse.factor import factor_general, factor_symmetric, single_thread
 
@@ -162,7 +163,9 @@ def _polished(family: Affine, order: float, s: complex, x: np.ndarray) -> Synchr
         speed -= step
     residual = abs(value.imag - order * speed) / (order * speed)
     if residual > BACK_SUBSTITUTED:
-        raise ConvergenceError(f"a critical speed near {speed * 30 / np.pi:.6g} rpm keeps a residual of {residual:.1e}")
+        raise ConvergenceError(
+            f"a critical speed near {speed * RPM_PER_RAD_S:.6g} rpm keeps a residual of {residual:.1e}"
+        )
     return Synchronous(float(speed), complex(value), v, float(residual))
 
 
