@@ -38,11 +38,6 @@ def about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Mod
         AnalysisError: there is no equilibrium at one of the speeds.
     """
     notes = [
-        f"the rolling elements of bearings.{name}: the stiffness given beside them is taken"
-        for name, bearing in model.bearings.items()
-        if bearing.rolling is not None and bearing.stiffness is not None
-    ]
-    notes += [
         f"the law of nonlinear_elements.{name}: the stiffness given beside it is taken"
         for name, element in model.nonlinear_elements.items()
         if element.is_given
@@ -89,18 +84,20 @@ def _linear(model: Model, part: str, speeds: Sequence[float], states: Sequence[L
     owner = getattr(model, table)[name]
     given = np.array(owner.damping.as_rows()) if owner.damping else np.zeros((6, 6))
     used = [DOF_NAMES.index(d) for d in owner.directions] if table == "nonlinear_elements" else None
+    # The linear bearing has no rolling elements any more, so that no note speaks of two descriptions.
+    linear: dict[str, Any] = {} if table == "nonlinear_elements" else {"rolling": None}
     pairs = [(_six(state.stiffness, used), given + _six(state.damping, used)) for state in states]
     ratio = abs(float(model.layout.train.ratio(owner.shaft)))
     first = pairs[0]
     size = [max(float(np.abs(A).max()), 1e-300) for A in first]
     change = max(float(np.abs(A - B).max()) / s for pair in pairs for A, B, s in zip(pair, first, size, strict=True))
     if change <= _CONSTANT or ratio == 0.0:
-        return {"stiffness": _matrix(first[0]), "damping": DampingMatrix(matrix=_rows(first[1]))}
+        return {**linear, "stiffness": _matrix(first[0]), "damping": DampingMatrix(matrix=_rows(first[1]))}
     rows = tuple(
         TableRow(speed=ratio * abs(speed), stiffness=_matrix(K), damping=DampingMatrix(matrix=_rows(C)))
         for speed, (K, C) in zip(speeds, pairs, strict=True)
     )
-    return {"table": rows, "damping": None}
+    return {**linear, "table": rows, "damping": None}
 
 
 def _six(A: np.ndarray, used: list[int] | None) -> np.ndarray:
