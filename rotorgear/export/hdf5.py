@@ -32,6 +32,13 @@ class ReadError(RotorgearError):
 def save(result: Result, path: str | Path) -> Path:
     """Write a result to an HDF5 file and return its path.
 
+    Args:
+        result: of any verb.
+        path: file to write; what is there is replaced when all is written.
+
+    Returns:
+        The path.
+
     Raises:
         WriteError: the file can't be written; what was there before stays.
     """
@@ -47,6 +54,12 @@ def save(result: Result, path: str | Path) -> Path:
 
 def read(path: str | Path) -> Any:
     """Read a result from an HDF5 file.
+
+    Args:
+        path: of a file that `save` wrote.
+
+    Returns:
+        The result, equal to the one that was saved.
 
     Raises:
         ReadError: no such file, no HDF5, not written by rotorgear, written by a newer one, or damaged.

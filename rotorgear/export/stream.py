@@ -85,5 +85,13 @@ def read_chunk(path: Path) -> dict[str, np.ndarray]:
 
 
 def stream(path: str | Path, *, resume: bool = False) -> ChunkStream:
-    """Return where a long transient keeps its chunks; with `resume` an interrupted run of the same settings goes on."""
+    """Return where a long transient keeps its chunks; with `resume` an interrupted run of the same settings goes on.
+
+    Args:
+        path: of the result; the chunks stand in a folder beside it.
+        resume: whether to go on with an interrupted run.
+
+    Returns:
+        What `transient` and `sweep` take as `stream`.
+    """
     return ChunkStream(path, resume=resume)

@@ -118,7 +118,19 @@ def parameter(
     below: float | None = None,
     choices: tuple[str, ...] = (),
 ) -> Any:
-    """Declare a parameter of a law: its SI unit, what it means, its default and its bounds; see `Parameter`."""
+    """Declare a parameter of a law: its SI unit, what it means, its default and its bounds.
+
+    Args:
+        unit: SI unit of the value, "" for none.
+        meaning: what it is, in words.
+        default: value where none is given; without it one has to be given.
+        least, above: bounds from below, the value itself allowed or not.
+        most, below: bounds from above, the value itself allowed or not.
+        choices: texts that are allowed, for a parameter that is a word.
+
+    Returns:
+        The field of a dataclass.
+    """
     known = None if default is MISSING else default
     about = {"parameter": Parameter(unit, meaning, known, least, above, most, below, choices)}
     return field(metadata=about) if default is MISSING else field(default=default, metadata=about)

@@ -67,7 +67,14 @@ def register(name: str, law: type[ForceLaw]) -> None:
 
 
 def register_law(name: str) -> Callable[[Law], Law]:
-    """Register the class below, as a decorator."""
+    """Register the class below, as a decorator.
+
+    Args:
+        name: by which a model file names the law.
+
+    Returns:
+        The decorator; it gives the class back as it is.
+    """
 
     def registered(cls: Law) -> Law:
         register(name, cls)

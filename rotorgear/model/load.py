@@ -16,6 +16,12 @@ from rotorgear.quantity import nearest
 def load(path: str | Path) -> Model:
     """Read a model from a TOML file.
 
+    Args:
+        path: of the file, with the ending .toml or any other.
+
+    Returns:
+        The model, checked.
+
     Raises:
         ModelError: the file can't be read, is no TOML, or holds mistakes; all of them at once.
     """
@@ -34,7 +40,14 @@ def load(path: str | Path) -> Model:
 
 
 def loads(text: str, source: str = "model") -> Model:
-    """Read a model from the text of a file; `source` names it in errors.
+    """Read a model from the text of a file.
+
+    Args:
+        text: in TOML.
+        source: what errors call it.
+
+    Returns:
+        The model, checked.
 
     Raises:
         ModelError: the text is no TOML, or holds mistakes; all of them at once.

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib
+import inspect
+import re
 
 import pytest
 
@@ -38,3 +40,48 @@ def test_the_package_lists_its_names_for_completion() -> None:
 
 def test_the_stub_and_the_mark_of_types_lie_in_the_package() -> None:
     assert (ROOT / "rotorgear" / "py.typed").exists()
+
+
+PAGES = {page: page.read_text(encoding="utf-8") for page in [*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]}
+EXAMPLES = "\n".join(
+    block
+    for text in PAGES.values()
+    for block in re.findall(r"<!-- run -->\n```python\n(.*?)```", text, flags=re.DOTALL)
+)
+FUNCTIONS = [name for name in NAMES if inspect.isfunction(getattr(rg, name))]
+# A window, machines elsewhere, the spectrum of a rig, compiled equations of one's own, and studies of minutes: pages describe
+# them, and no test of the docs runs them.
+WITHOUT_EXAMPLE = {
+    "view",
+    "cluster",
+    "compare_spectrum",
+    "flow_exponents",
+    "transient_convergence_study",
+    "sweep_convergence_study",
+    "mesh_convergence_study",
+}
+# What the page on force laws of one's own will run.
+WITHOUT_EXAMPLE |= {"parameter", "register_law", "force_function", "schedule_function", "no_schedule"}
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name != "plot"])
+def test_a_public_name_has_a_docstring_and_stands_on_the_page_of_names(name: str) -> None:
+    assert inspect.getdoc(getattr(rg, name))
+    assert f"### `rg.{name}`" in PAGES[ROOT / "docs" / "api.md"]
+
+
+@pytest.mark.parametrize("name", sorted(rg.plot.__all__))
+def test_a_picture_stands_on_the_page_of_names(name: str) -> None:
+    assert f"### `rg.plot.{name}`" in PAGES[ROOT / "docs" / "api.md"]
+
+
+@pytest.mark.parametrize("name", [name for name in FUNCTIONS if name != "no_schedule"])
+def test_a_public_function_says_what_it_takes(name: str) -> None:
+    function = getattr(rg, name)
+    if inspect.signature(function).parameters:
+        assert "Args:" in (inspect.getdoc(function) or "")
+
+
+@pytest.mark.parametrize("name", [name for name in FUNCTIONS if name not in WITHOUT_EXAMPLE])
+def test_a_public_function_is_used_in_an_example_that_the_tests_of_the_docs_run(name: str) -> None:
+    assert re.search(rf"\brg\.{name}\(", EXAMPLES)

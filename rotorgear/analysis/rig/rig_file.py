@@ -45,6 +45,12 @@ class _Column:
 def read_rig_lines(path: str | Path) -> tuple[RigLine, ...]:
     """Return the rig lines of a CSV file in the order of the file; frequencies and uncertainties in Hz.
 
+    Args:
+        path: of the file, with a header row.
+
+    Returns:
+        The lines.
+
     Raises:
         ModelError: every mistake of the file at once, each with file, line and column: no such file, no frequency
             column, unknown or repeated columns, numbers that are none, negative or NaN, frequencies given twice, no

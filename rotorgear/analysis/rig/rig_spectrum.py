@@ -19,7 +19,17 @@ TOLERANCE = 0.01
 def compare_spectrum(
     result: TransientResult, lines: SpectralLines, rig: Sequence[RigLine], tolerance: float = TOLERANCE
 ) -> RigSpectrum:
-    """Put the nearest spectral line within a relative tolerance beside each rig line, and say why where there is none."""
+    """Put the nearest spectral line within a relative tolerance beside each rig line, and say why where there is none.
+
+    Args:
+        result: a transient.
+        lines: lines in the spectrum of one of its histories, from `spectral_lines`.
+        rig: lines of a rig.
+        tolerance: largest |f_line / f_rig - 1|.
+
+    Returns:
+        One row a rig line.
+    """
     excitations = excitation_lines(result.model, float(result.speed[-1]))
     near = []
     sources = []

@@ -86,7 +86,17 @@ def _at_even_angles(result: TransientResult, values: np.ndarray) -> tuple[np.nda
 def spectral_lines(
     result: TransientResult, name: str, *, window: str = "flattop", count: int = _MOST_LINES
 ) -> SpectralLines:
-    """Return the strongest lines of a history at constant speed, each with the shaft or mesh order it belongs to."""
+    """Return the strongest lines of a history at constant speed, each with the shaft or mesh order it belongs to.
+
+    Args:
+        result: a transient at constant speed.
+        name: of the history.
+        window: of the amplitudes; the flat top keeps heights between two bins.
+        count: how many lines at most.
+
+    Returns:
+        The lines, lowest frequency first.
+    """
     found = spectrum(result, name, window=window)
     hann = spectrum(result, name, window="hann")
     a = found.amplitude

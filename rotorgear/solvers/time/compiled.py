@@ -100,10 +100,24 @@ def compiled(
 
 
 def schedule_function(function: Callable[..., Any]) -> Any:
-    """Compile the time-dependent part of a force law: (angle, speed, time, parameters, state)."""
+    """Compile the time-dependent part of a force law.
+
+    Args:
+        function: (angle, speed, time, parameters, state).
+
+    Returns:
+        The compiled function.
+    """
     return compiled(function, signature=SCHEDULE)
 
 
 def force_function(function: Callable[..., Any]) -> Any:
-    """Compile the force of a law: (parameters, state, d, v, force, tangent in d, tangent in v, energy)."""
+    """Compile the force of a law.
+
+    Args:
+        function: (parameters, state, d, v, force, tangent in d, tangent in v, energy).
+
+    Returns:
+        The compiled function.
+    """
     return compiled(function, signature=FORCE)
