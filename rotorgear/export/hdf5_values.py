@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.model.model import Model
-from rotorgear.results.schema import Record
+from rotorgear.results.schema import Record, record_name
 
 
 def stored_fields(cls: type[Record]) -> list[str]:
@@ -69,14 +69,14 @@ def _put_nothing(h5: ModuleType, parent: Any, name: str, value: None) -> None:
 
 def _put_record(h5: ModuleType, parent: Any, name: str, value: Any) -> None:
     group = parent.create_group(name)
-    group.attrs["record"] = type(value).__name__
+    group.attrs["record"] = record_name(type(value))
     for name in stored_fields(type(value)):
         put_value(h5, group, name, getattr(value, name))
 
 
 def _put_records(h5: ModuleType, parent: Any, name: str, value: tuple[Any, ...]) -> None:
     group = parent.create_group(name)
-    group.attrs["record"] = type(value[0]).__name__
+    group.attrs["record"] = record_name(type(value[0]))
     for name in stored_fields(type(value[0])):
         column = tuple(getattr(record, name) for record in value)
         put_value(h5, group, name, column if isinstance(column[0], str | tuple) else np.array(column))

@@ -85,15 +85,17 @@ class CriticalMap(ModelResult, kind="critical_map"):
     """
 
     line: str = of("excitation line", note=" of the map")
-    stiffness: np.ndarray = of("radial stiffness of all bearings", "N/m", "stiffness", json="stiffness_n_per_m")
+    stiffness: np.ndarray = of(
+        "stiffness", "N/m", "stiffness", json="stiffness_n_per_m", note=", radial, of all bearings"
+    )
     forward: np.ndarray = of(
-        "critical speeds with forward whirl", "rad/s", "stiffness", "critical_speed", json="forward_rpm"
+        "critical speeds with forward whirl", "rad/s", "stiffness", "forward_speed", json="forward_rpm"
     )
     backward: np.ndarray = of(
-        "critical speeds with backward whirl", "rad/s", "stiffness", "critical_speed", json="backward_rpm"
+        "critical speeds with backward whirl", "rad/s", "stiffness", "backward_speed", json="backward_rpm"
     )
     other: np.ndarray = of(
-        "critical speeds of modes that do not whirl", "rad/s", "stiffness", "critical_speed", json="other_rpm"
+        "critical speeds of modes that do not whirl", "rad/s", "stiffness", "other_speed", json="other_rpm"
     )
     bearings: dict[str, np.ndarray] = of(
         "radial stiffness along x and y that the bearings of the model have",

@@ -54,9 +54,10 @@ class ResponseResult(ModelResult, kind="response"):
     contact_mesh: tuple[str, ...] = of("mesh of each contact", "", "contact", json=None)
     contact_helix: np.ndarray = of("0 or 1 for the helix at the smaller or larger z", "", "contact", json=None)
     mean_force: np.ndarray = of(
-        "static force of each contact",
+        "mean force",
         "N",
         "contact",
+        note=": the static force of each contact, about which the response is linear",
         json=Written(
             "mean_mesh_force_n",
             lambda result, force: {

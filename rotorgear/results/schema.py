@@ -192,7 +192,8 @@ class Record:
         inherited = {name for base in cls.__mro__[1:] for name in getattr(base, "declarations", {})}
         order = sorted(found.values(), key=lambda one: (one.name in inherited, one.place))
         cls.declarations = {one.name: one for one in order}
-        Record.known[cls.__name__] = cls
+        Record.known[record_name(cls)] = cls
+        Record.known.setdefault(cls.__name__, cls)  # files of 0.1 name a record by its class alone
 
     def __post_init__(self) -> None:
         for item in fields(self):
@@ -228,6 +229,11 @@ class Record:
                 for entry in declared.written():
                     out[entry.key] = plain(entry.value(self, stored))
         return out
+
+
+def record_name(cls: type[Record]) -> str:
+    """Name of a record in files: its class, and the file that it stands in, since two results may have rows of one name."""
+    return f"{cls.__module__.rpartition('.')[2]}.{cls.__name__}"
 
 
 def _named(declared: Declared, name: str) -> Declared:

@@ -78,7 +78,7 @@ class SweepResult(ModelResult, kind="sweep"):
     """
 
     address: tuple[str, ...] = of("address of a parameter", "", "parameter", json=None)
-    unit: tuple[str, ...] = of("units", "", "parameter", json=None)
+    unit: tuple[str, ...] = of("unit", "", "parameter", json=None)
     values: np.ndarray = of("values", "", "point", "parameter", json=None)
     shape: np.ndarray = of("points along each parameter", "", "parameter", json=None)
     run: tuple[str, ...] = of("where the runs started", "", "run", json=None)

@@ -130,13 +130,13 @@ class TransientResult(ModelResult, kind="transient"):
     contact: tuple[str, ...] = of("names of the contacts", "", "contact", json=None)
     deflection: np.ndarray = of("approach of the flanks", "m", "record", "contact", json=None)
     mesh_force: np.ndarray = of("force along the flank normal", "N", "record", "contact", json=None)
-    mean_force: np.ndarray = of("static force of each contact", "N", "contact", json=None)
+    mean_force: np.ndarray = of("mean force", "N", "contact", json=None, note=": the static force")
     contact_time: np.ndarray = of(
         "share of the time on the working flank, apart, on the coast flank", "", "contact", "state", json=None
     )
     contact_losses: np.ndarray = of("contact losses", "", "contact", json=None)
     channel: tuple[str, ...] = of("names of the channels", "", "channel", json=None)
-    unit: tuple[str, ...] = of("units", "", "channel", json=None)
+    unit: tuple[str, ...] = of("unit", "", "channel", json=None)
     values: np.ndarray = of("values", "", "record", "channel", json=None)
     quantity: tuple[str, ...] = of("names of the statistics with an error", "", "quantity", json=None)
     quantity_value: np.ndarray = of("values of the statistics", "", "quantity", json=None)

@@ -62,6 +62,8 @@ def setting(value: Any) -> Any:
         return {str(key): setting(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple | set | frozenset | range):
         return tuple(setting(entry) for entry in value)
+    if isinstance(value, Result):
+        return value.kind
     if isinstance(value, Record):
         return setting(value.to_dict())
     if isinstance(value, Path):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rotorgear.analysis.common.excitation import excitation_lines
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.rig.compare import compare_lines
 from rotorgear.analysis.rig.rig_file import read_rig_lines
@@ -50,6 +51,7 @@ def _understanding_lists(verb: Callable[..., Comparison]) -> Callable[..., Compa
 
 
 @_understanding_lists
+@recorded
 def compare(
     source: Model | ModalResult,
     rig: str | Path | Sequence[RigLine | float],

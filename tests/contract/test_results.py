@@ -1,0 +1,222 @@
+"""What every result must hold: a short text, equality, read-only arrays, its origin, declared keys, rows, one vocabulary."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from dataclasses import fields, replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.export.hdf5 import read, save
+from rotorgear.model.model_hash import model_hash
+from rotorgear.results.keys import keys_of
+from rotorgear.results.kinds import kinds
+from rotorgear.results.result import Result
+from rotorgear.results.schema import Record, of
+from rotorgear.results.spectrum import SpectralLines
+from tests.paths import ROOT
+
+# Names that mean two things since 0.1: files and scripts hold them. A new one is a mistake.
+HOMONYMS = {"amplitude", "bearing_force", "bearings", "error_estimate", "mesh", "motion", "reason", "settle"}
+# Studies and stresses of teeth take minutes; they are of the same classes as the others.
+SLOW = {"mesh_convergence", "sweep_convergence", "tooth_field"}
+
+
+@cache
+def model(name: str) -> rg.Model:
+    return rg.load(ROOT / "models" / f"{name}.toml")
+
+
+@cache
+def example(kind: str) -> Result:
+    """A small result of a kind."""
+    rotor = model("jeffcott")
+    disk = next(iter(rotor.disks))
+    made: dict[str, Any] = {
+        "modal": lambda: rg.modal(rotor, speed="1000 rpm", modes=4, elements=1),
+        "campbell": lambda: rg.campbell(rotor, points=3, elements=1),
+        "critical": lambda: rg.critical(rotor, stop="3000 rpm", elements=1),
+        "critical_map": lambda: rg.critical_map(rotor, stop="3000 rpm", elements=1),
+        "frf": lambda: rg.frf(
+            rotor, np.linspace(1.0, 50.0, 8), inputs=[f"disks.{disk}:y"], outputs=[f"disks.{disk}:y"], elements=1
+        ),
+        "static": lambda: rg.static(model("helical_pair"), elements=1),
+        "response": lambda: rg.response(model("backlash_pair"), points=3),
+        "check": lambda: rg.check(model("geared_pair")),
+        "gear": lambda: rg.gear(model("helical_pair")),
+        "mesh": lambda: rg.mesh(model("helical_pair"), stiffness="iso", positions=16),
+        "transient": lambda: rg.transient(model("backlash_pair"), time=2e-3, discard=1e-3, error_estimate=False),
+        "sweep": lambda: rg.sweep(model("backlash_pair"), {"operation.speed": ["8000 rpm"]}, discard=2, sample=9),
+        "spectral_lines": lambda: rg.spectral_lines(
+            example("transient"),
+            f"force {example('transient').contact[0]}",  # type: ignore[attr-defined]
+        ),
+        "convergence": lambda: rg.convergence_study(model("torsion_chain"), modes=2),
+        "compare": lambda: rg.compare(example("modal"), [rg.RigLine(101.0)]),
+        "rig_spectrum": lambda: rg.compare_spectrum(
+            example("transient"), example("spectral_lines"), [rg.RigLine(2000.0)]
+        ),
+    }
+    result: Result = made[kind]()
+    return result
+
+
+KINDS = sorted(set(kinds()) - SLOW)
+each_kind = pytest.mark.parametrize("kind", KINDS)
+
+
+def arrays_in(value: Any) -> list[np.ndarray]:
+    """All arrays in a value, however deep."""
+    if isinstance(value, np.ndarray):
+        return [value]
+    if isinstance(value, Record):
+        return [found for item in fields(value) for found in arrays_in(getattr(value, item.name))]
+    if isinstance(value, dict):
+        return [found for entry in value.values() for found in arrays_in(entry)]
+    if isinstance(value, tuple):
+        return [found for entry in value for found in arrays_in(entry)]
+    return []
+
+
+@each_kind
+def test_the_text_of_a_result_fits_on_a_screen_and_is_the_commands_table(kind: str) -> None:
+    result = example(kind)
+    shown = repr(result)
+    lines = shown.splitlines()
+    assert 1 < len(lines) <= 40
+    assert "no table" not in lines[0]
+    whole = result.text().splitlines()
+    assert lines[:39] == whole[:39]
+    assert len(whole) <= 40 or lines[-1].startswith(f"... and {len(whole) - 39} more")
+    assert result._repr_html_().startswith("<pre>")
+
+
+def test_markup_in_names_is_shown_as_it_is() -> None:
+    named = replace(example("spectral_lines"), name="<b>[red]x</b>")
+    assert "&lt;b&gt;[red]x&lt;/b&gt;" in named._repr_html_()
+
+
+@each_kind
+def test_a_pickled_and_a_saved_copy_are_equal_and_a_changed_one_is_not(kind: str, tmp_path: Any) -> None:
+    result = example(kind)
+    assert pickle.loads(pickle.dumps(result)) == result
+    save(result, tmp_path / "result.h5")
+    assert read(tmp_path / "result.h5") == result
+    assert replace(result, method="another") != result
+    with pytest.raises(TypeError):
+        hash(result)
+
+
+@each_kind
+def test_arrays_are_read_only_also_out_of_a_pickle(kind: str) -> None:
+    for result in (example(kind), pickle.loads(pickle.dumps(example(kind)))):
+        assert not any(array.flags.writeable for array in arrays_in(result))
+
+
+@each_kind
+def test_a_result_says_where_it_is_from(kind: str) -> None:
+    result = example(kind)
+    assert result.rotorgear_version == rg.__version__
+    assert result.status == "success"
+    assert result.seconds["total"] >= 0.0
+    assert result.settings
+    assert len(result.model_hash) == 64
+    if isinstance(getattr(result, "model", None), rg.Model):
+        assert result.model_hash == model_hash(result.model)  # type: ignore[attr-defined]
+
+
+@each_kind
+def test_what_is_written_is_declared(kind: str) -> None:
+    data = json.loads(json.dumps(example(kind).to_dict(), allow_nan=False))
+    declared = {key.path.partition(".")[0].removesuffix("[]").split("[")[0] for key in keys_of(kinds()[kind])}
+    assert set(data) == declared
+
+
+@each_kind
+def test_axes_say_the_shape_of_every_array_and_one_axis_has_one_length(kind: str) -> None:
+    def check(record: Record) -> None:
+        lengths: dict[str, int] = {}
+        for item in fields(record):
+            declared = record.declarations[item.name]  # every field is declared
+            value = getattr(record, item.name)
+            if isinstance(value, np.ndarray):
+                assert len(declared.axes) == value.ndim, item.name
+                for axis, length in zip(declared.axes, value.shape, strict=True):
+                    assert lengths.setdefault(axis, length) == length, (item.name, axis)
+            elif isinstance(value, Record):
+                check(value)
+            elif isinstance(value, tuple) and value and isinstance(value[0], Record):
+                for entry in value:
+                    check(entry)
+
+    check(example(kind))
+
+
+def test_one_name_means_one_thing_in_all_results() -> None:
+    said: dict[str, tuple[str, str]] = {}
+    for cls in kinds().values():
+        for name, declared in cls.declarations.items():
+            if declared.record is None and name not in HOMONYMS:
+                words = (declared.label, declared.unit)
+                assert said.setdefault(name, words) == words, f"{cls.__name__}.{name}"
+
+
+def test_every_field_has_a_label() -> None:
+    kinds()
+    for cls in Record.known.values():
+        for item in fields(cls):
+            assert cls.declarations[item.name].label, f"{cls.__name__}.{item.name}"
+
+
+def test_rows_of_modes_and_of_records_are_flat_and_plain() -> None:
+    rows = example("modal").rows("mode")
+    assert [row["mode"] for row in rows] == [1, 2, 3, 4]
+    assert rows[2]["frequency_hz"] == pytest.approx(example("modal").frequency_hz[2])  # type: ignore[attr-defined]
+    assert type(rows[0]["damping_ratio"]) is float
+    assert "kinetic_by_motion.bending" in rows[0]
+    shares = example("campbell").rows("lines")
+    assert set(shares[0]) >= {"name", "order"}
+    pairs = example("campbell").rows("speed", "branch")
+    assert len(pairs) == len(example("campbell").eigenvalues.ravel())  # type: ignore[attr-defined]
+    with pytest.raises(rg.AnalysisError, match=r"got 'modes', expected one of .*mode"):
+        example("modal").rows("modes")
+
+
+def test_a_data_set_has_names_units_and_the_origin() -> None:
+    pytest.importorskip("xarray")
+    data = example("modal").to_xarray()
+    assert data["frequency_hz"].dims == ("mode",)
+    assert data["frequency_hz"].attrs == {"long_name": "frequency", "units": "Hz"}
+    assert data.attrs["model_hash"] == example("modal").model_hash
+    assert "bending" in data["kinetic_by_motion"]["motion"].values
+
+
+def test_a_field_appears_everywhere_from_one_line(tmp_path: Any) -> None:
+    class Toy(SpectralLines, kind="toy"):
+        phase: np.ndarray = of(
+            "phase", "rad", "line", json="phase_deg", default_factory=lambda: np.zeros(2), kw_only=True
+        )
+
+    try:
+        toy = Toy(
+            "x", "m", np.array([1.0, 2.0]), np.array([3.0, 4.0]), ("", ""), "hann", 0.1, phase=np.array([0.0, np.pi])
+        )
+        assert toy.to_dict()["phase_deg"] == [0.0, 180.0]
+        assert ("phase_deg[]", "deg", "phase") in [(key.path, key.unit, key.text) for key in keys_of(Toy)]
+        assert toy.rows("line")[1]["phase"] == pytest.approx(np.pi)
+        assert not toy.phase.flags.writeable
+        assert replace(toy, phase=np.array([0.0, 1.0])) != toy
+    finally:
+        del Result.kinds["toy"], Record.known["Toy"]
+
+
+def test_a_changed_value_changes_the_hash_of_a_model_and_the_order_of_its_tables_does_not() -> None:
+    rotor = model("jeffcott")
+    same = rg.Model(**dict(reversed(rotor.model_dump(exclude_none=True).items())))
+    assert model_hash(same) == model_hash(rotor)
+    assert model_hash(rotor.model_copy(update={"title": "another"})) != model_hash(rotor)
