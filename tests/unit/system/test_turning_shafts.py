@@ -195,3 +195,27 @@ def test_damping_that_turns_with_the_shaft_does_not_see_a_whirl_that_turns_with_
 
     still = moved(0.0)
     assert moved(3e-4) == pytest.approx(still, abs=1e-8 * np.abs(still).max())
+
+
+def test_terms_taken_by_strains_are_those_of_the_matrices_on_counter_rotating_shafts() -> None:
+    shaft = {"sections": [{"length": 0.5, "outer_diameter": 0.03}], "internal_damping": 2e-4}
+    bearing = {"shaft": "rotor", "stiffness": {"x": 2e6, "y": 3e6, "xy": 4e5, "yx": -4e5}, "damping": {"radial": 300.0}}
+    model = driven(
+        2.0,
+        shaft,
+        materials=STEEL,
+        bearings={end: {"at": end, **bearing} for end in ("start", "end")},
+        damping={"rayleigh_beta": 1e-5},
+    )
+    system = rg.System(model, 2)
+    for speed in (70.0, -130.0):
+        forms = system.strain_forms(speed)
+        B = forms.strain
+        for D, whole in (
+            (forms.modulus, system.stiffness(speed)),
+            (forms.viscosity, system.damping(speed)),
+            (forms.circulation, system.circulatory(speed)),
+        ):
+            expected = whole.toarray()
+            assert (B.T @ D @ B).toarray() == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+            assert np.abs(expected).max() > 0.0
