@@ -8,8 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from rotorgear.errors import AnalysisError
-
 Picture = Callable[..., Any]
 _ways: list[Callable[[str], Picture | None]] = []
 
@@ -27,5 +25,8 @@ def picture_of(kind: str) -> Picture:
     """
     picture = _ways[0](kind) if _ways else None
     if picture is None:
+        # Not above: the face imports this file, and the errors bring dataclasses along, which cost more than all the rest.
+        from rotorgear.errors import AnalysisError
+
         raise AnalysisError(f"a result of the kind '{kind}' has no picture; its table and its numbers say it all")
     return picture
