@@ -129,7 +129,13 @@ def inertia_problems(layout: Layout) -> Iterator[Problem]:
 def _body(layout: Layout, address: str, name: str, part: Gear | Disk) -> Iterator[Problem]:
     """Mass and inertias: all that the motions of the model need, or the sizes to compute them from."""
     model = layout.model
-    found = list(_given_inertia(model, address, part) if inertia_is_given(part) else _sizes(address, part))
+    found: list[Problem] = []
+    if inertia_is_given(part):
+        found += _given_inertia(model, address, part)
+    elif isinstance(part, Disk):  # the sizes of a gear are those of its teeth, which are checked with them
+        for key in ("outer_diameter", "width"):
+            if getattr(part, key) is None:
+                found.append(missing(f"{address}.{key}", "outer_diameter and width, or mass and moments of inertia"))
     yield from found
     if found:
         return
@@ -171,10 +177,3 @@ def _given_inertia(model: Tables, address: str, part: Gear | Disk) -> Iterator[P
                 yield _unwanted(f"{address}.{key}", millimetres(size), "a disk has sizes or given inertias, not both")
     elif part.body != GearBody():
         yield _unwanted(f"{address}.body", "a table", "a gear has a body or given inertias, not both")
-
-
-def _sizes(address: str, part: Gear | Disk) -> Iterator[Problem]:
-    if isinstance(part, Disk):
-        for key in ("outer_diameter", "width"):
-            if getattr(part, key) is None:
-                yield missing(f"{address}.{key}", "outer_diameter and width, or mass and moments of inertia")

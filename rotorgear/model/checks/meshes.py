@@ -135,7 +135,22 @@ def _faces(address: str, mesh: MeshLayout) -> Iterator[Problem]:
 
 def _axes(address: str, mesh: MeshLayout, *, in_bending: bool) -> Iterator[Problem]:
     line = mesh.centre_line
-    found = list(_no_axes(address, mesh, in_bending=in_bending) if line is None else _given_twice(address, mesh.part))
+    found: list[Problem] = []
+    if line is not None:
+        for key in ("centre_line_angle", "pressure_angle"):
+            if (angle := getattr(mesh.part, key)) is not None:
+                hint = "it follows from the positions of the shafts"
+                found.append(Problem(f"{address}.{key}", degrees(angle), "nothing here", hint))
+    elif in_bending:  # torsion alone needs no direction of the mesh force
+        pinion = mesh.pinion.part
+        gear = mesh.gear.part
+        if mesh.part.centre_line_angle is None:
+            why = "positions of both shafts, or the angle of the centre line here"
+            found.append(missing(f"{address}.centre_line_angle", why))
+        angles = (pinion.transverse_pressure_angle, gear.transverse_pressure_angle, mesh.part.pressure_angle)
+        if pinion.lumped and all(angle is None for angle in angles):
+            why = "positions of both shafts, or the working transverse pressure angle here"
+            found.append(missing(f"{address}.pressure_angle", why))
     try:
         found += [] if line is None else _distance(address, mesh, line[0])
         if not found:
@@ -143,14 +158,6 @@ def _axes(address: str, mesh: MeshLayout, *, in_bending: bool) -> Iterator[Probl
     except RotorgearError as error:
         found.append(Problem(address, "", str(error)))
     yield from found
-
-
-def _given_twice(address: str, mesh: Mesh) -> Iterator[Problem]:
-    for key in ("centre_line_angle", "pressure_angle"):
-        if (angle := getattr(mesh, key)) is not None:
-            yield Problem(
-                f"{address}.{key}", degrees(angle), "nothing here", "it follows from the positions of the shafts"
-            )
 
 
 def _distance(address: str, mesh: MeshLayout, given: float) -> Iterator[Problem]:
@@ -173,19 +180,6 @@ def _distance(address: str, mesh: MeshLayout, given: float) -> Iterator[Problem]
         )
         hint = "check the positions of the shafts, the teeth, the module and the profile shifts"
         yield Problem(address, f"axes {millimetres(given)} apart", text, "" if mesh.pinion.part.lumped else hint)
-
-
-def _no_axes(address: str, mesh: MeshLayout, *, in_bending: bool) -> Iterator[Problem]:
-    pinion = mesh.pinion.part
-    if not in_bending:
-        return
-    if mesh.part.centre_line_angle is None:
-        yield missing(f"{address}.centre_line_angle", "positions of both shafts, or the angle of the centre line here")
-    angles = (pinion.transverse_pressure_angle, mesh.gear.part.transverse_pressure_angle, mesh.part.pressure_angle)
-    if pinion.lumped and all(angle is None for angle in angles):
-        yield missing(
-            f"{address}.pressure_angle", "positions of both shafts, or the working transverse pressure angle here"
-        )
 
 
 def massless_gears(layout: Layout) -> Iterator[Problem]:

@@ -40,10 +40,14 @@ def unknown_names(model: Tables, broken: Broken) -> Iterator[Problem]:
     """Names of shafts, gears and other parts that are not there."""
     for item in references(model):
         table, name = item.target
-        if item.key == "on":
-            yield from _unknown_part(model, item.address, table, name, broken)
-        elif not _is_known(model, table, name, broken):
-            yield unknown(item.address, name, _names(model, table, broken), f"a {table.removesuffix('s')}")
+        if item.key != "on":
+            if not _is_known(model, table, name, broken):
+                yield unknown(item.address, name, _names(model, table, broken), f"a {table.removesuffix('s')}")
+        # What a point is on is written with its table, which may be wrong itself: then all parts on shafts are valid.
+        elif table not in ON_SHAFTS or not _is_known(model, table, name, broken):
+            tables = [table] if table in ON_SHAFTS else ON_SHAFTS
+            valid = [f"{owner}.{part}" for owner in tables for part in _names(model, owner, broken)]
+            yield unknown(item.address, f"{table}.{name}" if name else table, valid, "a part such as 'bearings.left'")
 
 
 def _names(model: Tables, table: str, broken: Broken) -> list[str]:
@@ -55,14 +59,6 @@ def _names(model: Tables, table: str, broken: Broken) -> list[str]:
 
 def _is_known(model: Tables, table: str, name: str, broken: Broken) -> bool:
     return name in getattr(model, table) or (table, name) in broken or (table, "") in broken
-
-
-def _unknown_part(model: Tables, address: str, table: str, name: str, broken: Broken) -> Iterator[Problem]:
-    if table in ON_SHAFTS and _is_known(model, table, name, broken):
-        return
-    tables = [table] if table in ON_SHAFTS else ON_SHAFTS
-    valid = [f"{owner}.{part}" for owner in tables for part in _names(model, owner, broken)]
-    yield unknown(address, f"{table}.{name}" if name else table, valid, "a part such as 'bearings.left'")
 
 
 def points(model: Tables) -> Iterator[Problem]:

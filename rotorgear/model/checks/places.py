@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 from rotorgear.errors import Problem
 from rotorgear.model.checks.references import ON_SHAFTS
-from rotorgear.model.parts.supports import Coupling
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import millimetres
 
@@ -49,19 +48,17 @@ def _station(model: Tables, address: str, shaft: str, at: float | str, offset: f
 def coupled_points(model: Tables) -> Iterator[Problem]:
     """A coupling joins two points, and their shafts are coaxial."""
     for name, coupling in model.couplings.items():
-        yield from _coupling(model, f"couplings.{name}", coupling)
-
-
-def _coupling(model: Tables, address: str, coupling: Coupling) -> Iterator[Problem]:
-    first = model.shafts[coupling.from_shaft]
-    second = model.shafts[coupling.to_shaft]
-    if coupling.from_shaft == coupling.to_shaft and first.station(coupling.from_at) == second.station(coupling.to_at):
-        yield Problem(address, "one and the same point twice", "two points")
-    if not model.has("bending") or first.position is None or second.position is None:
-        return
-    distance = max(abs(a - b) for a, b in zip(first.position, second.position, strict=True))
-    if distance > 1e-9 + 1e-6 * max(first.length, second.length):
-        apart = f"shafts whose axes are {millimetres(distance)} apart"
-        yield Problem(
-            address, apart, "coaxial shafts", "a coupling joins shafts on one axis, a mesh joins parallel ones"
-        )
+        address = f"couplings.{name}"
+        first = model.shafts[coupling.from_shaft]
+        second = model.shafts[coupling.to_shaft]
+        one_shaft = coupling.from_shaft == coupling.to_shaft
+        if one_shaft and first.station(coupling.from_at) == second.station(coupling.to_at):
+            yield Problem(address, "one and the same point twice", "two points")
+        # Positions may be left out, and torsion alone knows no axes: nothing to compare then.
+        if not model.has("bending") or first.position is None or second.position is None:
+            continue
+        distance = max(abs(a - b) for a, b in zip(first.position, second.position, strict=True))
+        if distance > 1e-9 + 1e-6 * max(first.length, second.length):
+            apart = f"shafts whose axes are {millimetres(distance)} apart"
+            hint = "a coupling joins shafts on one axis, a mesh joins parallel ones"
+            yield Problem(address, apart, "coaxial shafts", hint)

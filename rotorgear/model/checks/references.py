@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from rotorgear.model.parts.shaft import LIBRARY, Shaft
+from rotorgear.model.parts.shaft import LIBRARY
 from rotorgear.model.parts.tables import Tables
 
 PartName = tuple[str, str]  # (table, name); the name "" stands for the whole table
@@ -92,7 +92,16 @@ def without(model: Tables, dropped: Iterable[PartName]) -> Tables:
         gone |= lost
     rest = sound(model, gone)
     known = {*LIBRARY, *rest.materials}
-    shafts = {name: _of_known_material(shaft, known) for name, shaft in rest.shafts.items()}
+    shafts = {}
+    for shaft_name, shaft in rest.shafts.items():
+        sections = tuple(
+            section
+            if section.material is None or section.material in known
+            else section.model_copy(update={"material": None})
+            for section in shaft.sections
+        )
+        material = shaft.material if shaft.material in known else "steel"
+        shafts[shaft_name] = shaft.model_copy(update={"sections": sections, "material": material})
     bodies: dict[str, Any] = {
         table: {
             name: part
@@ -108,14 +117,3 @@ def without(model: Tables, dropped: Iterable[PartName]) -> Tables:
 def _is_lost(model: Tables, target: PartName, gone: set[PartName]) -> bool:
     table, name = target
     return target in gone or ((table, "") in gone and name not in getattr(model, table, {}))
-
-
-def _of_known_material(shaft: Shaft, known: set[str]) -> Shaft:
-    sections = tuple(
-        section
-        if section.material is None or section.material in known
-        else section.model_copy(update={"material": None})
-        for section in shaft.sections
-    )
-    material = shaft.material if shaft.material in known else "steel"
-    return shaft.model_copy(update={"sections": sections, "material": material})

@@ -47,15 +47,11 @@ def _mended(data: dict[str, Any], item: Any, broken: set[PartName], renamed: set
     table = str(loc[0])
     depth = 2 if table in TABLES and len(loc) > 1 and isinstance(data.get(table), dict) else 1
     broken.add((table, str(loc[1]) if depth == 2 else ""))
-    wrong = loc[: depth + 1] if _may_be_left_out(loc, depth) else loc[:depth]
-    return _edited(data, wrong[:-1], lambda parts: parts.pop(wrong[-1], None))
-
-
-def _may_be_left_out(loc: Loc, depth: int) -> bool:
-    """Whether the part is still one without the key that is wrong in it; its names of other parts can be checked then."""
+    # A part is still one without a key that isn't required; its names of other parts can be checked then.
     owner = class_at(loc[:depth], Tables)
     field = owner.model_fields.get(str(loc[depth])) if owner and len(loc) > depth else None
-    return field is not None and not field.is_required()
+    wrong = loc[:depth] if field is None or field.is_required() else loc[: depth + 1]
+    return _edited(data, wrong[:-1], lambda parts: parts.pop(wrong[-1], None))
 
 
 def _rename(table: dict[Any, Any], old: Any, new: str) -> None:

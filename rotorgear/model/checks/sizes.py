@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from rotorgear.errors import Problem
-from rotorgear.model.parts.nonlinear_element import NonlinearElement
 from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import Bearing, DampingMatrix, Pedestal, RollingElements, StiffnessMatrix, TableRow
@@ -75,7 +74,14 @@ def matrices(model: Tables) -> Iterator[Problem]:
         if not (support.stiffness or support.damping or support.fixed):
             yield Problem(f"supports.{name}", "neither stiffness, damping nor fixed", "at least one of them")
     for name, element in model.nonlinear_elements.items():
-        yield from _given_tangent(f"nonlinear_elements.{name}", element)
+        address = f"nonlinear_elements.{name}"
+        if element.stiffness is not None and element.table:
+            yield Problem(address, "stiffness and table", "one of the two")
+        if element.damping is not None and element.stiffness is None:
+            wanted = "a stiffness beside it, or neither: then the law's own tangents serve"
+            yield Problem(f"{address}.damping", "damping without stiffness", wanted)
+        yield from _six_by_six(address, element.stiffness, element.damping)
+        yield from _table(address, element.table)
     for name, coupling in model.couplings.items():
         yield from _six_by_six(f"couplings.{name}", coupling.stiffness, coupling.damping)
 
@@ -94,18 +100,6 @@ def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
         yield from _rolling(address, bearing, bearing.rolling)
     if bearing.pedestal:
         yield from _pedestal(f"{address}.pedestal", bearing.pedestal)
-
-
-def _given_tangent(address: str, element: NonlinearElement) -> Iterator[Problem]:
-    if element.stiffness is not None and element.table:
-        yield Problem(address, "stiffness and table", "one of the two")
-    if element.damping is not None and element.stiffness is None:
-        text = "damping without stiffness"
-        yield Problem(
-            f"{address}.damping", text, "a stiffness beside it, or neither: then the law's own tangents serve"
-        )
-    yield from _six_by_six(address, element.stiffness, element.damping)
-    yield from _table(address, element.table)
 
 
 def _table(address: str, table: tuple[TableRow, ...]) -> Iterator[Problem]:

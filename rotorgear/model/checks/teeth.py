@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from rotorgear.errors import Problem, RotorgearError
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.measure import ball_contact_diameter, ideal_ball_diameter, with_allowance
-from rotorgear.gears.geometry.outline import ToothOutline, tooth_outline
+from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.model.checks.flank import flank_problems
 from rotorgear.model.checks.pairs import ball_diameter
 from rotorgear.model.parts.gear import Gear
@@ -23,8 +23,25 @@ def tooth_problems(address: str, gear: Gear, geometry: GearGeometry) -> Iterator
     except RotorgearError as error:
         yield Problem(address, "", str(error))
         return
-    yield from _allowances(address, gear)
-    yield from _relief(address, gear, outline)
+    allowance = gear.allowance
+    for key, value, most, what in (
+        ("upper_thickness_allowance", allowance.upper, 0.0, "0 or a negative length"),
+        ("lower_thickness_allowance", allowance.lower, allowance.upper, "a length not above the upper allowance"),
+    ):
+        if value > most:
+            hint = "allowances make a tooth thinner, for the backlash"
+            yield Problem(f"{address}.{key}", millimetres(value), what, hint)
+    # An amount and the diameter where it starts come together, and the start lies on the involute, below the tip.
+    start = gear.tip_relief_diameter
+    if gear.tip_relief and start is None:
+        yield Problem(f"{address}.tip_relief_diameter", "", "missing", "required: where the tip relief starts")
+    if start is not None and not gear.tip_relief:
+        yield Problem(f"{address}.tip_relief", "", "missing", "required: amount of the tip relief at the tip circle")
+    low = 2.0 * outline.form_radius
+    high = 2.0 * outline.tip_radius
+    if start is not None and not low <= start < high:
+        limits = f"a diameter on the involute, from {millimetres(low)} to below {millimetres(high)}"
+        yield Problem(f"{address}.tip_relief_diameter", millimetres(start), limits)
     yield from flank_problems(f"{address}.flank", gear.flank, outline, gear.width or 0.0)
     if gear.accuracy_grade is not None and gear.accuracy_grade > _LAST_GRADE:
         yield Problem(
@@ -45,30 +62,3 @@ def _ball(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem]
     if gear.ball_diameter is not None and touched > geometry.effective_tip_diameter:
         wanted = f"a ball that touches the flanks below the tip, such as {1e3 * ideal_ball_diameter(geometry):.4g} mm"
         yield Problem(f"{address}.{key}", millimetres(gear.ball_diameter), wanted)
-
-
-def _allowances(address: str, gear: Gear) -> Iterator[Problem]:
-    own = gear.allowance
-    for key, value, most, what in (
-        ("upper_thickness_allowance", own.upper, 0.0, "0 or a negative length"),
-        ("lower_thickness_allowance", own.lower, own.upper, "a length not above the upper allowance"),
-    ):
-        if value > most:
-            yield Problem(
-                f"{address}.{key}", millimetres(value), what, "allowances make a tooth thinner, for the backlash"
-            )
-
-
-def _relief(address: str, gear: Gear, outline: ToothOutline) -> Iterator[Problem]:
-    start = gear.tip_relief_diameter
-    if start is None:
-        if gear.tip_relief:
-            yield Problem(f"{address}.tip_relief_diameter", "", "missing", "required: where the tip relief starts")
-        return
-    if not gear.tip_relief:
-        yield Problem(f"{address}.tip_relief", "", "missing", "required: amount of the tip relief at the tip circle")
-    low = 2.0 * outline.form_radius
-    high = 2.0 * outline.tip_radius
-    if not low <= start < high:
-        limits = f"a diameter on the involute, from {millimetres(low)} to below {millimetres(high)}"
-        yield Problem(f"{address}.tip_relief_diameter", millimetres(start), limits)
