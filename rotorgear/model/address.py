@@ -56,10 +56,14 @@ def changed(data: Mapping[str, Any], changes: Iterable[tuple[list[Place], Any]])
     for places, value in changes:
         for place in places:
             owner = value_at(copy, place[:-1])
+            key: Any = place[-1]
             if value is None and isinstance(owner, dict):
-                owner.pop(place[-1], None)
-            else:
-                owner[place[-1]] = _as_before(owner, place[-1], value)
+                owner.pop(key, None)
+                continue
+            old = owner[key] if isinstance(owner, list) else owner.get(key)
+            # Where a whole number stands, a whole float is one too: numbers of teeth and harmonics are swept in floats.
+            whole = isinstance(old, int) and isinstance(value, float) and value.is_integer()
+            owner[key] = int(value) if whole else value
     return copy
 
 
@@ -80,13 +84,6 @@ def with_values(model: Tables, values: Mapping[str, Any]) -> dict[str, Any]:
     if problems:
         raise ModelError(problems)
     return changed(data, changes)
-
-
-def _as_before(owner: Any, key: Any, value: Any) -> Any:
-    """A value, as a whole number where one stands: teeth and harmonics swept in floats."""
-    old = owner[key] if isinstance(owner, list) else owner.get(key)
-    whole = isinstance(old, int) and isinstance(value, float) and value.is_integer()
-    return int(value) if whole else value
 
 
 def _keys(value: Any, part: str, address: str, last: bool) -> list[str | int]:

@@ -29,7 +29,10 @@ def load(path: str | Path) -> Model:
     try:
         text = path.read_text(encoding="utf-8-sig")  # some editors put a byte order mark in front
     except FileNotFoundError:
-        raise _refused(path, "there is no such file", _neighbours(path)) from None
+        names = sorted(item.name for item in path.parent.glob("*.toml")) if path.parent.is_dir() else []
+        guess = nearest(path.name, names)
+        hint = f"did you mean '{path.parent / guess}'?" if guess else ""
+        raise _refused(path, "there is no such file", hint) from None
     except UnicodeDecodeError as error:
         place = f"byte {error.object[error.start]:#04x} at position {error.start}"
         raise _refused(path, f"not a text in UTF-8: {place}", "a model file is plain text") from None
@@ -89,10 +92,3 @@ def schema() -> dict[str, Any]:
     data["$id"] = f"model-{SCHEMA_VERSION}.schema.json"
     data["title"] = "rotorgear model"
     return data
-
-
-def _neighbours(path: Path) -> str:
-    folder = path.parent
-    names = sorted(item.name for item in folder.glob("*.toml")) if folder.is_dir() else []
-    guess = nearest(path.name, names)
-    return f"did you mean '{folder / guess}'?" if guess else ""

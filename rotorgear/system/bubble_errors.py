@@ -12,7 +12,6 @@ other sign.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,23 +55,20 @@ def bubble_errors(system: System, speed: float | None, s: np.ndarray, x: np.ndar
     first, second = _frequency_form(system, speed, s, x, y)
     right = system.dofs.expand(x)
     left = system.dofs.expand(y)
-    found: dict[PieceKey, np.ndarray] = {}
-    for shaft, order, elements in _flexible(system):
-        moved = _moved(system, speed or 0.0, shaft, order, elements, s, right, left)  # (e, m)
-        for number in sorted({element.piece for element in elements}):
-            own = [k for k, element in enumerate(elements) if element.piece == number]
-            change = np.abs(moved[own].sum(axis=0))
-            finite = np.where(np.isfinite(change), change, 0.0)
-            share = 2.0 * finite / (first + np.sqrt(first**2 + 4.0 * second * finite))
-            found[shaft, number] = np.where(np.isfinite(change), share, np.inf)
-    return found
-
-
-def _flexible(system: System) -> Iterator[tuple[str, int, list[Element]]]:
+    errors: dict[PieceKey, np.ndarray] = {}
     for shaft in system.model.shafts:
         for rigid, order, elements in alike(system.model, system.nodes, shaft):
-            if not rigid:
-                yield shaft, order, elements
+            if rigid:
+                continue
+            moved = _moved(system, speed or 0.0, shaft, order, elements, s, right, left)  # (e, m)
+            for piece in sorted({element.piece for element in elements}):
+                of_piece = [k for k, element in enumerate(elements) if element.piece == piece]
+                change = np.abs(moved[of_piece].sum(axis=0))
+                finite = np.where(np.isfinite(change), change, 0.0)
+                # Root of second e^2 + first e = |d| in the form that loses no digits where the square matters little.
+                share = 2.0 * finite / (first + np.sqrt(first**2 + 4.0 * second * finite))
+                errors[shaft, piece] = np.where(np.isfinite(change), share, np.inf)
+    return errors
 
 
 def _frequency_form(

@@ -43,7 +43,7 @@ def contact_lines(system: System) -> ContactLines:
     count = len(states)
     size = system.dofs.transform.shape[0]
     v, turned, rotation = np.zeros((3, size, count))
-    stiffness, damping = np.zeros((2, count))
+    stiffness, damping, gap = np.zeros((3, count))
     for k, (state, group) in enumerate(zip(states, groups, strict=True)):
         strain = group.matrices.strain
         D = group.matrices.modulus
@@ -59,8 +59,10 @@ def contact_lines(system: System) -> ContactLines:
         contact = state.contact
         rotation[dofs[5], k] = sense * contact.pinion_base_radius
         rotation[dofs[11], k] = sense * contact.gear_base_radius
+        mesh = system.layout.mesh(contact.mesh).part
+        gap[k] = mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0)
     T = system.dofs.transform.T
-    return ContactLines(states, T @ v, T @ turned, T @ rotation, stiffness, damping, _gaps(system, states))
+    return ContactLines(states, T @ v, T @ turned, T @ rotation, stiffness, damping, gap)
 
 
 def _quarter_turn(vector: np.ndarray) -> np.ndarray:
@@ -70,9 +72,3 @@ def _quarter_turn(vector: np.ndarray) -> np.ndarray:
         out[first] = -vector[first + 1]
         out[first + 1] = vector[first]
     return out
-
-
-def _gaps(system: System, states: tuple[MeshForce, ...]) -> np.ndarray:
-    parts = [system.layout.mesh(state.contact.mesh).part for state in states]
-    late = [part.helix_index_error if state.contact.helix else 0.0 for part, state in zip(parts, states, strict=True)]
-    return np.array([part.index_error + more for part, more in zip(parts, late, strict=True)])

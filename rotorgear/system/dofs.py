@@ -78,16 +78,13 @@ def map_dofs(layout: Layout, nodes: Nodes) -> DofMap:
     by_motion += int(inside.sum())
     groups = rigid_groups(model, nodes)
     counts = {"motions": by_motion, "supports": by_support, "rigid sections": sum(6 * (len(g) - 1) for g in groups)}
-    if not groups:
-        return _selection(np.concatenate([held.ravel(), inside]), counts)
-    return _tied(nodes, held, inside, groups, counts)
-
-
-def _selection(held: np.ndarray, counts: dict[str, int]) -> DofMap:
-    free = np.flatnonzero(~held)
-    column = np.full(held.size, -1)
+    if groups:
+        return _tied(nodes, held, inside, groups, counts)
+    free = np.flatnonzero(~np.concatenate([held.ravel(), inside]))
+    size = held.size + inside.size
+    column = np.full(size, -1)
     column[free] = np.arange(free.size)
-    T = sp.csr_array((np.ones(free.size), (free, np.arange(free.size))), shape=(held.size, free.size))
+    T = sp.csr_array((np.ones(free.size), (free, np.arange(free.size))), shape=(size, free.size))
     return DofMap(T, column, True, counts)
 
 

@@ -81,9 +81,21 @@ def constant_groups(layout: Layout, load: MeanLoad, nodes: Nodes) -> list[Elemen
         matrices = rigid_body(b.mass, b.polar_inertia, b.diametral_inertia)
         node = nodes.at(body.shaft, body.z)
         found.append(ElementGroup(body.part, body.shaft, matrices, node_dofs(node), layout.train.ratio(body.shaft)))
-    found += list(_meshes(layout, load, nodes))
+    for force in load.forces:
+        c = force.contact
+        geometry = contact_geometry(force)
+        matrices = gear_mesh(geometry, c.stiffness, mesh_damping(layout, force, geometry))
+        dofs = node_dofs(nodes.at(c.pinion_shaft, c.pinion_z), nodes.at(c.gear_shaft, c.gear_z))
+        found.append(ElementGroup(f"meshes.{c.mesh}", "", matrices, dofs))
     for name, bearing in model.bearings.items():
-        found += list(_pedestal(nodes, name, bearing))
+        pedestal = bearing.pedestal
+        if pedestal is not None:
+            part = f"bearings.{name}.pedestal"
+            dofs = node_dofs(nodes.of_pedestal(name))
+            matrices = grounded_spring(_rows(pedestal.stiffness), _rows(pedestal.damping))
+            found.append(ElementGroup(part, bearing.shaft, matrices, dofs))
+            if pedestal.mass:
+                found.append(ElementGroup(part, bearing.shaft, rigid_body(pedestal.mass, 0.0, 0.0), dofs))
         if not bearing.table:
             found.append(_bearing(layout, nodes, name, bearing, _rows(bearing.stiffness), _rows(bearing.damping)))
     for name, support in model.supports.items():
@@ -93,7 +105,13 @@ def constant_groups(layout: Layout, load: MeanLoad, nodes: Nodes) -> list[Elemen
     for name, element in model.nonlinear_elements.items():
         if not element.table:
             found.append(_element(layout, nodes, name, element, _rows(element.stiffness), _rows(element.damping)))
-    found += list(_couplings(layout, nodes))
+    for name, coupling in model.couplings.items():
+        first, second = layout.places(f"couplings.{name}")
+        matrices = linking_spring(
+            _rows(coupling.stiffness), _rows(coupling.damping), np.array([0, 0, first.z]), np.array([0, 0, second.z])
+        )
+        dofs = node_dofs(nodes.at(*first), nodes.at(*second))
+        found.append(ElementGroup(f"couplings.{name}", "", matrices, dofs))
     return found
 
 
@@ -226,15 +244,6 @@ def contact_geometry(force: MeshForce) -> ContactGeometry:
     )
 
 
-def _meshes(layout: Layout, load: MeanLoad, nodes: Nodes) -> Iterator[ElementGroup]:
-    for force in load.forces:
-        c = force.contact
-        geometry = contact_geometry(force)
-        damping = mesh_damping(layout, force, geometry)
-        dofs = node_dofs(nodes.at(c.pinion_shaft, c.pinion_z), nodes.at(c.gear_shaft, c.gear_z))
-        yield ElementGroup(f"meshes.{c.mesh}", "", gear_mesh(geometry, c.stiffness, damping), dofs)
-
-
 def mesh_damping(layout: Layout, force: MeshForce, geometry: ContactGeometry) -> float:
     """Damping coefficient of one helix in N s/m: given, or from the ratio and the inertia of that helix' share of the gears."""
     both = layout.mesh(force.contact.mesh)
@@ -281,24 +290,3 @@ def _element(
         return ElementGroup(part, element.shaft, grounded_spring(stiffness, damping), node_dofs(node))
     origin = np.zeros(3)  # the law knows relative displacements of two nodes, whatever lies between them
     return ElementGroup(part, "", linking_spring(stiffness, damping, origin, origin), node_dofs(other[0], node))
-
-
-def _pedestal(nodes: Nodes, name: str, bearing: Bearing) -> Iterator[ElementGroup]:
-    if bearing.pedestal is None:
-        return
-    dofs = node_dofs(nodes.of_pedestal(name))
-    part = f"bearings.{name}.pedestal"
-    matrices = grounded_spring(_rows(bearing.pedestal.stiffness), _rows(bearing.pedestal.damping))
-    yield ElementGroup(part, bearing.shaft, matrices, dofs)
-    if bearing.pedestal.mass:
-        yield ElementGroup(part, bearing.shaft, rigid_body(bearing.pedestal.mass, 0.0, 0.0), dofs)
-
-
-def _couplings(layout: Layout, nodes: Nodes) -> Iterator[ElementGroup]:
-    for name, coupling in layout.model.couplings.items():
-        first, second = layout.places(f"couplings.{name}")
-        matrices = linking_spring(
-            _rows(coupling.stiffness), _rows(coupling.damping), np.array([0, 0, first.z]), np.array([0, 0, second.z])
-        )
-        dofs = node_dofs(nodes.at(*first), nodes.at(*second))
-        yield ElementGroup(f"couplings.{name}", "", matrices, dofs)

@@ -14,8 +14,7 @@ import scipy.sparse as sp
 
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector
 from rotorgear.model.layout.mean_load import MeshForce
-from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
-from rotorgear.model.parts.mesh import Mesh
+from rotorgear.model.parts.excitation import ErrorHarmonic, StiffnessHarmonic
 from rotorgear.solvers.time.local_system import LocalSystem
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.assembly import assemble
@@ -84,7 +83,11 @@ def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
     )
     T = system.dofs.transform
     columns = np.hstack([np.zeros((T.shape[0], 0)), *(part.columns for part in parts)])
-    load = T.T @ (torque_load(system) + _weight(system))
+    operation = system.model.operation
+    steady = torque_load(system)
+    if operation and operation.gravity:
+        steady = steady + weight_loads(system, operation.gravity)
+    load = T.T @ steady
     forces = gather(tuple(part.law for part in parts))
     alone = {part.part for part in without_linear_part(system)}
     about = forces.reference_stiffness.copy()
@@ -115,23 +118,19 @@ def torque_load(system: System) -> np.ndarray:
     return f
 
 
-def _weight(system: System) -> np.ndarray:
-    operation = system.model.operation
-    gravity = operation.gravity if operation else None
-    return weight_loads(system, gravity) if gravity else np.zeros(system.dofs.transform.shape[0])
-
-
 def _mesh_parts(system: System) -> list[LocalPart]:
     load = system.load.about_nominal_flanks
     found = []
     for force in load.forces:
+        contact = force.contact
         geometry = contact_geometry(force)
-        label = f"{force.contact.mesh} helix {force.contact.helix + 1}"
-        if len(load.of_mesh(force.contact.mesh)) == 1:
-            label = force.contact.mesh
-        law = _mesh_law(system, force, geometry, load.phase(force.contact) or 0.0)
-        part = f"meshes.{force.contact.mesh}"
-        dofs = _dofs(system, force)
+        label = f"{contact.mesh} helix {contact.helix + 1}"
+        if len(load.of_mesh(contact.mesh)) == 1:
+            label = contact.mesh
+        law = _mesh_law(system, force, geometry, load.phase(contact) or 0.0)
+        part = f"meshes.{contact.mesh}"
+        pinion = system.nodes.at(contact.pinion_shaft, contact.pinion_z)
+        dofs = node_dofs(pinion, system.nodes.at(contact.gear_shaft, contact.gear_z))[0]
         column = columns_at(system, dofs, contact_vector(geometry)[None])
         found.append(LocalPart(part, label, law, column, is_mesh=True))
         rubbing = friction_part(system, force, geometry, label, law, dofs, column)
@@ -145,12 +144,6 @@ def _mesh_parts(system: System) -> list[LocalPart]:
     return found
 
 
-def _dofs(system: System, force: MeshForce) -> np.ndarray:
-    contact = force.contact
-    pinion = system.nodes.at(contact.pinion_shaft, contact.pinion_z)
-    return node_dofs(pinion, system.nodes.at(contact.gear_shaft, contact.gear_z))[0]
-
-
 def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase: float) -> MeshContact:
     from rotorgear.forces.mesh_contact import MeshContact
 
@@ -162,16 +155,24 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
     order = teeth * abs(system.train.ratio(pinion.shaft)) * system.direction
     stiffness_cos, stiffness_sin = _series(mesh.stiffness_variation)
     error_cos, error_sin = _series(mesh.transmission_error)
+    # Damping grows over a small share of the mean deflection; penetration damping refers to that deflection itself.
     deflection = (force.normal_force / contact.stiffness) or _UNLOADED
+    ramp = mesh.regularisation_depth
+    if ramp is None:
+        ramp = deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP)
     damping = mesh_damping(system.layout, force, geometry) + model.damping.rayleigh_beta * contact.stiffness
     gap = "bilateral" if mesh.backlash is None else {"line": "dead zone", "own normals": "unilateral"}[mesh.coast_flank]
+    impact = mesh.corner_impact
+    blow: dict[str, Any] = {}
+    if impact is not None:
+        blow = {"impact": impact.force, "impact_share": impact.duration, "impact_phase": -impact.at}
     return MeshContact(
         stiffness=contact.stiffness,
         damping=damping,
         backlash=mesh.backlash or 0.0,
         gap=gap,
         contact_damping=mesh.contact_damping,
-        ramp=_ramp(mesh, deflection),
+        ramp=ramp,
         order=order,
         phase=phase,
         stiffness_cos=stiffness_cos,
@@ -180,15 +181,8 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         error_cos=error_cos,
         error_sin=error_sin,
         pieces=cycle_pieces(system, force),
-        **_impact(mesh.corner_impact),
+        **blow,
     )
-
-
-def _ramp(mesh: Mesh, deflection: float) -> float:
-    """Depth in m over which the damping grows: given, or from the mean deflection; of penetration damping, that deflection."""
-    if mesh.regularisation_depth is not None:
-        return mesh.regularisation_depth
-    return deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP)
 
 
 def _back(law: MeshContact) -> MeshContact:
@@ -209,18 +203,11 @@ def cycle_pieces(system: System, force: MeshForce) -> tuple[tuple[float, float, 
         return ()
     curve = system.load.curve(force)
     share = curve.transverse / curve.transverse.mean()
-    if (
-        not force.pinion_drives
-    ):  # its positions count along the path from approach of the pinion: time runs the other way
+    # Positions count along the path from approach of the pinion: where the gear drives, time runs the other way.
+    if not force.pinion_drives:
         share = np.roll(share[::-1], 1)
     ends = np.roll(share, -1)
     return tuple((i / share.size, float(a), float(b)) for i, (a, b) in enumerate(zip(share, ends, strict=True)))
-
-
-def _impact(impact: CornerImpact | None) -> dict[str, Any]:
-    if impact is None:
-        return {}
-    return {"impact": impact.force, "impact_share": impact.duration, "impact_phase": -impact.at}
 
 
 def _series(harmonics: tuple[ErrorHarmonic | StiffnessHarmonic, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -24,7 +24,11 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     """Return R (n, r), a basis of the motions of the free dofs that strain none of the element groups."""
     P = _candidates(system)
     T = system.dofs.transform
-    rows = [_normalised(held) for held in [_off_range(system, P)] if held.size]
+    # What of the candidates the free dofs can't follow must vanish: (I - T T+) P, each row scaled to its largest entry.
+    off_range = P[system.dofs.column < 0] if system.dofs.selects else P - T.toarray() @ la.lstsq(T.toarray(), P)[0]
+    largest = np.abs(off_range).max(axis=1)
+    held = largest > 1e-12
+    rows = [off_range[held] / largest[held, None]]
     for group in groups:
         B = group.matrices.strain
         D = group.matrices.modulus
@@ -35,7 +39,7 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
         strains = np.einsum("esd,edp->esp", B, P[group.dofs])
         sizes = np.einsum("esd,edp->esp", np.abs(B), np.abs(P[group.dofs])).max(axis=2)
         rows.append((strains / np.where(sizes > 0.0, sizes, 1.0)[:, :, None])[used])
-    A = np.vstack(rows) if rows else np.zeros((0, P.shape[1]))
+    A = np.vstack(rows)
     null = la.null_space(A, rcond=_ZERO) if A.shape[0] else np.eye(P.shape[1])
     motions = P @ null
     if not motions.shape[1]:  # LAPACK refuses a least-squares problem without a right-hand side
@@ -64,17 +68,3 @@ def _candidates(system: System) -> np.ndarray:
             block[[6 * k, 6 * k + 1, 6 * k + 2], [0, 1, 2]] = 1.0
             columns.append(block)
     return np.hstack(columns)
-
-
-def _off_range(system: System, P: np.ndarray) -> np.ndarray:
-    """What of the candidates the free dofs can't follow: rows that must vanish."""
-    if system.dofs.selects:
-        return P[system.dofs.column < 0]
-    T = system.dofs.transform.toarray()
-    return np.asarray(P - T @ la.lstsq(T, P)[0])
-
-
-def _normalised(rows: np.ndarray) -> np.ndarray:
-    size = np.abs(rows).max(axis=1)
-    kept = size > 1e-12
-    return np.asarray(rows[kept] / size[kept, None])

@@ -22,11 +22,14 @@ class AppliedTorque:
 def applied_torques(layout: Layout) -> tuple[list[AppliedTorque], list[Problem]]:
     """Return the torques that drive and load the train, balanced in power, and the problems where they can't be."""
     loads, problems = _loads(layout)
+    operation = layout.model.operation
     found: list[AppliedTorque] = []
     open_ends: list[tuple[str, Load]] = []
     for name, load in loads.items():
-        torque = _size(layout, load)
-        if torque is None:
+        torque = load.torque
+        if load.power is not None and operation is not None and operation.speed:
+            torque = load.power / abs(operation.speed * layout.train.ratio(load.shaft))
+        if torque is None:  # an open end, which takes the rest
             open_ends.append((name, load))
         else:
             sign = layout.train.sense(load.shaft) * (1 if load.kind == "input" else -1)
@@ -58,14 +61,6 @@ def _loads(layout: Layout) -> tuple[dict[str, Load], list[Problem]]:
         if layout.train.ratios[load.shaft] == 0
     ]
     return ({} if problems else loads), problems
-
-
-def _size(layout: Layout, load: Load) -> float | None:
-    """Size of a load's torque in N m, given or from its power; None where it takes the rest."""
-    operation = layout.model.operation
-    if load.power is None or operation is None or not operation.speed:
-        return load.torque
-    return load.power / abs(operation.speed * layout.train.ratio(load.shaft))
 
 
 def _balanced(

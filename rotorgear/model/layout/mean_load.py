@@ -183,7 +183,11 @@ def torque_flow(layout: Layout, direction: int = 1) -> MeanLoad:
             before = curves
             curves = _loaded(layout, lines, squeeze)
             lines, squeeze = _solved(layout, applied, curves)
-            if _agree(curves, before):
+            if all(
+                abs(now.mean / old.mean - 1.0) <= _AGREED
+                for name in curves
+                for now, old in zip(curves[name], before[name], strict=True)
+            ):
                 break
         else:
             raise ConvergenceError(
@@ -204,14 +208,6 @@ def _with_stiffness(states: Sequence[MeshForce], curves: Curves, kind: Kind) -> 
             state = replace(state, contact=replace(contact, stiffness=normal))
         found.append(state)
     return tuple(found)
-
-
-def _agree(curves: Curves, before: Curves) -> bool:
-    return all(
-        abs(now.mean / old.mean - 1.0) <= _AGREED
-        for name in curves
-        for now, old in zip(curves[name], before[name], strict=True)
-    )
 
 
 def _solved(layout: Layout, applied: Sequence[AppliedTorque], curves: Curves) -> tuple[list[Contact], list[float]]:

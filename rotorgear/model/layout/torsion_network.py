@@ -7,18 +7,13 @@ each connected group, which takes no torque where the loads balance.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.applied_torques import AppliedTorque
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import Contact
 from rotorgear.model.layout.places import Place
-from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.tables import Tables
-
-if TYPE_CHECKING:
-    import numpy as np
 
 # Places on a shaft nearer than this to each other (relative, and of a millimetre) are one.
 _SAME_PLACE = 1e-9
@@ -77,38 +72,31 @@ def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequ
     network = _Network(layout.model, [*places, *(Place(item.shaft, item.z) for item in applied)])
     network.springs += [(network.node(*first), network.node(*second), k) for (first, second), k in couplings]
 
-    squeeze = np.zeros(
-        (len(lines), network.size)
-    )  # of each contact along the flank normal, from the twist of the nodes
+    # Each contact is squeezed along its flank normal by r_b cos(beta_b) times the twist of its two nodes: delta = S q.
+    squeeze = np.zeros((len(lines), network.size))
     for row, line, (pinion, gear) in zip(squeeze, lines, ends, strict=True):
         row[network.node(*pinion)] += line.pinion_base_radius * np.cos(line.base_helix_angle)
         row[network.node(*gear)] += line.gear_base_radius * np.cos(line.base_helix_angle)
     stiffness = np.array([line.stiffness for line in lines])
-    torques = np.zeros(network.size)
-    for item in applied:
-        torques[network.node(item.shaft, item.z)] += item.torque
-    K = _stiffness_of_springs(network) + (squeeze.T * stiffness) @ squeeze
-    return [float(force) for force in stiffness * (squeeze @ _twist(K, torques, _held(network, layout.train)))]
-
-
-def _stiffness_of_springs(network: _Network) -> np.ndarray:
-    import numpy as np
-
+    # K = sum of the springs + S^T diag(k) S
     K = np.zeros((network.size, network.size))
     for first, second, k in network.springs:
         K[first, first] += k
         K[second, second] += k
         K[first, second] -= k
         K[second, first] -= k
-    return K
-
-
-def _twist(K: np.ndarray, torques: np.ndarray, held: list[int]) -> np.ndarray:
-    """Solve K q = torques with some nodes held."""
-    import numpy as np
-
-    free = np.setdiff1d(np.arange(len(torques)), held)
-    twist = np.zeros(len(torques))
+    K = K + (squeeze.T * stiffness) @ squeeze
+    torques = np.zeros(network.size)
+    for item in applied:
+        torques[network.node(item.shaft, item.z)] += item.torque
+    # Shafts that turn together have one rotation that strains nothing: K q = torques is solved with one node of each held.
+    held: dict[int, int] = {}
+    for shaft, group in layout.train.group.items():
+        node = network.first_node(shaft)
+        if node is not None:
+            held.setdefault(group, node)
+    free = np.setdiff1d(np.arange(network.size), list(held.values()))
+    twist = np.zeros(network.size)
     try:
         twist[free] = np.linalg.solve(K[np.ix_(free, free)], torques[free])
     except np.linalg.LinAlgError:
@@ -116,17 +104,7 @@ def _twist(K: np.ndarray, torques: np.ndarray, held: list[int]) -> np.ndarray:
             "The torque flow can't be solved: the stiffnesses of meshes, couplings and shafts in torsion differ by more "
             "than numbers can hold. Check the smallest and the largest of them."
         ) from None
-    return twist
-
-
-def _held(network: _Network, train: Train) -> list[int]:
-    """One node of each group of shafts that turn together."""
-    held: dict[int, int] = {}
-    for shaft, group in train.group.items():
-        node = network.first_node(shaft)
-        if node is not None:
-            held.setdefault(group, node)
-    return list(held.values())
+    return [float(force) for force in stiffness * (squeeze @ twist)]
 
 
 def _stretch(
