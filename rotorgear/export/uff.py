@@ -46,18 +46,16 @@ def write_uff(result: ModalResult, path: str | Path, *, modes: Sequence[int] | N
     if wrong:
         raise AnalysisError(f"modes: got {wrong[0]}, expected numbers from 0 to {count - 1}")
     with replacing(path) as scratch:
-        lines = [*_units(), *_nodes(result), *(line for k in chosen for line in _shape(result, k))]
+        ones = "".join(f"{x:25.16E}".replace("E", "D") for x in (1.0, 1.0, 1.0))
+        zero = f"{0.0:25.16E}".replace("E", "D")
+        units = _dataset(164, [f"{1:10d}{'SI: Meter (newton)':>20s}{2:10d}", ones, zero])
+        lines = [*units, *_nodes(result), *(line for k in chosen for line in _shape(result, k))]
         scratch.write_text("\n".join(lines) + "\n", encoding="ascii", errors="replace")
     return Path(path)
 
 
 def _dataset(number: int, lines: Iterable[str]) -> list[str]:
     return [f"{-1:6d}", f"{number:6d}", *lines, f"{-1:6d}"]
-
-
-def _units() -> list[str]:
-    factors = "".join(f"{x:25.16E}".replace("E", "D") for x in (1.0, 1.0, 1.0))
-    return _dataset(164, [f"{1:10d}{'SI: Meter (newton)':>20s}{2:10d}", factors, f"{0.0:25.16E}".replace("E", "D")])
 
 
 def _nodes(result: ModalResult) -> list[str]:

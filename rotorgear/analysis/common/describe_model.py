@@ -62,7 +62,9 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
 
 def _mass(system: System, shaft: str) -> tuple[float, float, float]:
     """Mass of a shaft, mass of the bodies on it (kg), and the polar inertia of both (kg m^2)."""
-    own = bodies = polar = 0.0
+    bare = 0.0
+    bodies = 0.0
+    polar = 0.0
     for group in system.groups:
         M = group.matrices.mass
         if M is None or group.shaft != shaft:
@@ -72,17 +74,17 @@ def _mass(system: System, shaft: str) -> tuple[float, float, float]:
         mass = float(M[:, x][:, :, x].sum())
         polar += float(M[:, tz][:, :, tz].sum())
         if group.part == f"shafts.{shaft}":
-            own += mass
+            bare += mass
         else:
             bodies += mass
-    return own, bodies, polar
+    return bare, bodies, polar
 
 
 def _shaft(system: System, name: str, speed: float | None) -> ShaftRow:
     ratio = system.train.ratio(name)
-    own, bodies, polar = _mass(system, name)
+    bare, bodies, polar = _mass(system, name)
     rpm = None if speed is None else ratio * speed * RPM_PER_RAD_S
-    return ShaftRow(name, ratio, rpm, system.model.shafts[name].length, own, bodies, polar)
+    return ShaftRow(name, ratio, rpm, system.model.shafts[name].length, bare, bodies, polar)
 
 
 def _gear(system: System, gear: GearLayout) -> GearRow:
@@ -116,6 +118,7 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
     gear = mesh.gear.part
     forces = system.load.of_mesh(name)
     contact = forces[0].contact
+    phases = [system.load.phase(force.contact) for force in forces]
     line = mesh.centre_line
     pair = mesh.pair
     damping = [
@@ -137,17 +140,13 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
         transverse_contact_ratio=pair.transverse_contact_ratio if pair else None,
         overlap_ratio=pair.overlap_ratio if pair else None,
         mesh_frequency_hz=None if speed is None else system.layout.mesh_frequency(name, speed),
-        phase_pitches=tuple(_pitches(system.load.phase(force.contact)) for force in forces),
+        phase_pitches=tuple(None if phi is None else phi / (2.0 * math.pi) % 1.0 for phi in phases),
         normal_force_n=tuple(force.normal_force for force in forces),
         driver=(mesh.pinion if forces[0].pinion_drives else mesh.gear).name,
         flank_assumed=any(force.assumed for force in forces),
         stiffness_n_per_m=sum(force.contact.stiffness for force in forces),
         damping_n_s_per_m=sum(damping),
     )
-
-
-def _pitches(phase: float | None) -> float | None:
-    return None if phase is None else phase / (2.0 * math.pi) % 1.0
 
 
 def _torques(system: System, speed: float | None) -> tuple[TorqueRow, ...]:

@@ -47,20 +47,15 @@ def excitation_orders(
         once = model.layout.mesh_frequency(name, 2.0 * math.pi) or 0.0
         for order in mesh_orders:
             add("mesh", f"{order:g}x", order * once, name)
-            for label, distance in _sidebands(model, name, sidebands) if once else ():
-                add("sideband", f"{order:g}x {label}", order * once + distance, name)
+            # A fault of a gear comes round once a turn and modulates the mesh order: lines at the distance of its speed.
+            for gear in model.layout.mesh(name).gears if once else ():
+                for k in range(1, sidebands + 1):
+                    distance = k * abs(train.ratio(gear.shaft))
+                    add("sideband", f"{order:g}x + {k}x {gear.shaft}", order * once + distance, name)
+                    add("sideband", f"{order:g}x - {k}x {gear.shaft}", order * once - distance, name)
     return tuple(
         ExcitationOrder(
             f"{'shaft' if kind == 'shaft' else 'mesh'} {', '.join(names)} {label}", kind, tuple(names), order
         )
         for (kind, label, order), names in found.items()
     )
-
-
-def _sidebands(model: Model, mesh: str, count: int) -> list[tuple[str, float]]:
-    found = []
-    for gear in model.layout.mesh(mesh).gears:
-        for k in range(1, count + 1):
-            step = k * abs(model.layout.train.ratio(gear.shaft))
-            found += [(f"+ {k}x {gear.shaft}", step), (f"- {k}x {gear.shaft}", -step)]
-    return found

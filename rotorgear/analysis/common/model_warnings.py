@@ -12,17 +12,19 @@ from rotorgear.system.system import System
 
 def model_warnings(system: System) -> Iterator[str]:
     """Yield a sentence for everything that is worth a second look."""
-    yield from _gears(system)
-    yield from _meshes(system)
-    yield from mesh_stiffness_warnings(system)
-    yield from _train(system)
-    yield from _couplings(system)
-
-
-def _gears(system: System) -> Iterator[str]:
     for name, gear in system.model.gears.items():
         for sentence in check_gear(gear.geometry) if gear.geometry else ():
             yield f"gears.{name}: {sentence}"
+    yield from _meshes(system)
+    yield from mesh_stiffness_warnings(system)
+    yield from _train(system)
+    # A coupling ties its two points as if they were at one place: far apart, a shaft likely starts where it should not.
+    for name, coupling in system.model.couplings.items():
+        first, second = (place.z for place in system.layout.places(f"couplings.{name}"))
+        length = max(system.model.shafts[coupling.from_shaft].length, system.model.shafts[coupling.to_shaft].length)
+        if length and abs(second - first) > 0.25 * length:
+            gap = 1e3 * abs(second - first)
+            yield f"couplings.{name}: its two points are {gap:.6g} mm apart along z; check the shafts' start"
 
 
 def _meshes(system: System) -> Iterator[str]:
@@ -50,15 +52,6 @@ def _train(system: System) -> Iterator[str]:
         yield "no torque is given: driving flanks follow from the sense of rotation, power flowing out from the input shaft"
     for name, bearing in model.bearings.items():
         if bearing.table and model.operation and model.operation.speed is not None:
-            own = abs(train.ratio(bearing.shaft) * model.operation.speed)
-            if not bearing.table[0].speed <= own <= bearing.table[-1].speed:
+            turning = abs(train.ratio(bearing.shaft) * model.operation.speed)
+            if not bearing.table[0].speed <= turning <= bearing.table[-1].speed:
                 yield f"bearings.{name}: its table does not reach the operating speed"
-
-
-def _couplings(system: System) -> Iterator[str]:
-    for name, coupling in system.model.couplings.items():
-        first, second = (place.z for place in system.layout.places(f"couplings.{name}"))
-        length = max(system.model.shafts[coupling.from_shaft].length, system.model.shafts[coupling.to_shaft].length)
-        if length and abs(second - first) > 0.25 * length:
-            gap = 1e3 * abs(second - first)
-            yield f"couplings.{name}: its two points are {gap:.6g} mm apart along z; check the shafts' start"

@@ -11,8 +11,8 @@ def pieces(system: System) -> tuple[Piece, ...]:
     found = []
     for shaft, elements in system.nodes.elements.items():
         for number in sorted({element.piece for element in elements}):
-            own = [element for element in elements if element.piece == number]
-            start = system.nodes.z[own[0].left]
-            end = system.nodes.z[own[-1].right]
-            found.append(Piece(shaft, start, end, len(own), own[0].order))
+            cut = [element for element in elements if element.piece == number]
+            start = system.nodes.z[cut[0].left]
+            end = system.nodes.z[cut[-1].right]
+            found.append(Piece(shaft, start, end, len(cut), cut[0].order))
     return tuple(found)

@@ -70,7 +70,11 @@ def compare_lines(
     modes = _Modes.of(frequency_hz, descriptions, rigid, damping_ratio)
     lines = sorted(rig_lines, key=lambda line: line.frequency_hz)
     rig_hz = np.array([line.frequency_hz for line in lines])
-    _check_lines(rig_hz)
+    if rig_hz.size == 0:
+        raise AnalysisError("there are no rig lines to compare with: give at least one measured frequency")
+    repeated = rig_hz[1:][np.diff(rig_hz) == 0.0]
+    if repeated.size:
+        raise AnalysisError(f"the rig line {repeated[0]:g} Hz is given twice: keep one of them")
     _check_settings(tolerance, excitation_tolerance, samples)
     limits = _band(rig_hz, tolerance, band)
     pairs = {row: int(modes.elastic[column]) for row, column in assign(rig_hz, modes.elastic_hz, tolerance)}
@@ -180,14 +184,6 @@ class _Neighbourhood:
     def _driving(self, frequency: float, uncertainty: float = 0.0) -> tuple[ExcitationLine, ...]:
         reach = max(self.excitation_tolerance * frequency, uncertainty) + ROUNDING * frequency
         return tuple(line for line in self.excitations if abs(line.frequency_hz - frequency) <= reach)
-
-
-def _check_lines(rig_hz: NDArray[np.float64]) -> None:
-    if rig_hz.size == 0:
-        raise AnalysisError("there are no rig lines to compare with: give at least one measured frequency")
-    repeated = rig_hz[1:][np.diff(rig_hz) == 0.0]
-    if repeated.size:
-        raise AnalysisError(f"the rig line {repeated[0]:g} Hz is given twice: keep one of them")
 
 
 def _check_settings(tolerance: float, excitation_tolerance: float, samples: int) -> None:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -78,23 +77,16 @@ def _rows(file: Path) -> list[tuple[int, list[str]]]:
     """Return (line number, stripped cells) of every row that says something."""
     try:
         text = file.read_text(encoding="utf-8-sig")
-        rows = list(_parse(text))
+        # A comment becomes an empty line, so that the reader's line numbers stay those of the file.
+        lines = ["" if line.lstrip().startswith("#") else line for line in text.splitlines()]
+        # The header tells the delimiter: below it, commas may also stand in numbers and labels.
+        delimiter = max(",;\t", key=next((line for line in lines if line.strip()), "").count)
+        reader = csv.reader(lines, delimiter=delimiter, skipinitialspace=True)
+        rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise _one_problem(file, "", "a readable CSV file in UTF-8", reason) from error
-    return rows
-
-
-def _parse(text: str) -> Iterator[tuple[int, list[str]]]:
-    # A comment becomes an empty line, so that the reader's line numbers stay those of the file.
-    lines = ["" if line.lstrip().startswith("#") else line for line in text.splitlines()]
-    header = next((line for line in lines if line.strip()), "")
-    delimiter = max(",;\t", key=header.count)
-    reader = csv.reader(lines, delimiter=delimiter, skipinitialspace=True)
-    for row in reader:
-        cells = [cell.strip() for cell in row]
-        if any(cells):
-            yield reader.line_num, cells
+    return [(number, cells) for number, cells in rows if any(cells)]
 
 
 def _columns(header: list[str], where: str, file: Path) -> list[_Column | None]:

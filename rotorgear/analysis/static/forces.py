@@ -69,11 +69,11 @@ def support_forces(found: Equilibrated) -> dict[str, np.ndarray]:
 
 def _at_node(nodes: Nodes, found: Equilibrated, rest: np.ndarray, node: int) -> np.ndarray:
     """What is missing for equilibrium at a node, with that of the nodes which rigid sections tie to it."""
-    own = np.zeros(6)
+    missing = np.zeros(6)
     for other in found.system.rigid_with(node):
         arm = rigid_transfer(np.array([0.0, 0.0, nodes.z[other] - nodes.z[node]]))
-        own += arm.T @ rest[6 * other : 6 * other + 6]
-    return own
+        missing += arm.T @ rest[6 * other : 6 * other + 6]
+    return missing
 
 
 def inner_forces(found: Equilibrated) -> np.ndarray:

@@ -29,19 +29,18 @@ class Sensitivity:
 def sensitivities(found: Equilibrated) -> Sensitivity:
     """Return the derivatives of all contact forces."""
     lines = found.lines
-    active = np.where(found.closed, found.lines.stiffness, 0.0)
-    approach = lines.vectors.T @ found.q
+    active = np.where(found.closed, lines.stiffness, 0.0)
     count = len(active)
     names: list[str] = []
     units: list[str] = []
     rights: list[np.ndarray] = []  # df - dK q
-    own: list[np.ndarray] = []  # the part of dF that does not go through dq
+    directs: list[np.ndarray] = []  # the part of dF that does not go through dq
 
     def add(name: str, unit: str, right: np.ndarray, direct: np.ndarray) -> None:
         names.append(name)
         units.append(unit)
         rights.append(right)
-        own.append(direct)
+        directs.append(direct)
 
     meshes = list(dict.fromkeys(lines.names))
     for mesh in meshes:
@@ -62,25 +61,19 @@ def sensitivities(found: Equilibrated) -> Sensitivity:
         turning = lines.turned.T @ found.q
         right = -(lines.turned @ (mine * found.force) + lines.vectors @ (mine * active * turning))
         add(f"meshes.{mesh}.centre_line_angle", "N/rad", right, mine * active * turning)
-    return _solved(found, names, units, np.array(rights).T, np.array(own), approach)
 
-
-def _solved(
-    found: Equilibrated, names: list[str], units: list[str], rights: np.ndarray, own: np.ndarray, approach: np.ndarray
-) -> Sensitivity:
-    active = np.where(found.closed, found.lines.stiffness, 0.0)
     # Round-off of a stiffness term on the free motions is no load; a term that really pushes one has no derivative.
     kept = []
     dropped = []
     columns = []
-    for k, right in enumerate(rights.T):
+    for k, right in enumerate(rights):
         try:
             columns.append(found.solver.solve(right[:, None])[:, 0])
             kept.append(k)
         except AnalysisError:
             dropped.append(names[k])
     dq = np.array(columns).T if columns else np.zeros((len(found.q), 0))
-    force = (active[:, None] * (found.lines.vectors.T @ dq)).T + own[kept]
+    force = (active[:, None] * (lines.vectors.T @ dq)).T + np.array(directs)[kept]
     left = (f"no derivative by {', '.join(dropped)}: it would set the free motions going",) if dropped else ()
     return Sensitivity(tuple(names[k] for k in kept), tuple(units[k] for k in kept), force, left)
 

@@ -22,14 +22,14 @@ def share_rows(found: Equilibrated, derivative: np.ndarray) -> tuple[tuple[Share
     indexes = _index_derivatives(found)
     for gear, meshes in _groups(found).items():
         mine = [np.array([name == mesh for name in found.lines.names]) for mesh in meshes]
-        force = np.array([found.force[own].sum() for own in mine])
+        force = np.array([found.force[contacts].sum() for contacts in mine])
         total = force.sum()
         if not total:
             continue
-        change = np.array([derivative[:, own].sum(axis=1) for own in mine])  # (meshes, k)
+        change = np.array([derivative[:, contacts].sum(axis=1) for contacts in mine])  # (meshes, k)
         share = force / total
         moved = (change - share[:, None] * change.sum(axis=0)) / total
-        stiff = np.array([indexes[np.ix_(own, own)].max() for own in mine]).max()
+        stiff = np.array([indexes[np.ix_(contacts, contacts)].max() for contacts in mine]).max()
         loop = stiff > _DECIDED * float(found.lines.stiffness.max())
         for mesh, part, row in zip(meshes, share, moved, strict=True):
             rows.append(Share(gear, mesh, float(part), float(len(meshes) * part), "stiffness" if loop else "loads"))
@@ -58,9 +58,9 @@ def _groups(found: Equilibrated) -> dict[str, list[str]]:
     for state in found.lines.states:
         contact = state.contact
         for gear, drives in ((contact.pinion, state.pinion_drives), (contact.gear, not state.pinion_drives)):
-            own = sides.setdefault((gear, drives), [])
-            if contact.mesh not in own:
-                own.append(contact.mesh)
+            meshes = sides.setdefault((gear, drives), [])
+            if contact.mesh not in meshes:
+                meshes.append(contact.mesh)
     return {gear: meshes for (gear, _), meshes in sides.items() if len(meshes) > 1}
 
 

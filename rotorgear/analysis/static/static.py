@@ -18,7 +18,6 @@ from rotorgear.analysis.static.sensitivity import Sensitivity, sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError
-from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mean_load import MeanLoad
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
@@ -101,6 +100,10 @@ def _result(
     nodes, moved = shapes_at_stations(system, q[:, None])
     shares, share_change = share_rows(found, change.force)
     approach = found.lines.vectors.T @ found.q - found.lines.gap
+    loops = system.layout.assembly.loops
+    # A free motion is no mistake in statics: where the loads do not push it, forces are the same wherever it stands.
+    count = found.motions.shape[1]
+    free = f"{count} free motion{'s'[: count != 1]} handled exactly, on a determinate support"
     return StaticResult(
         model=system.model,
         speed=speed,
@@ -122,7 +125,7 @@ def _result(
         force_derivative=change.force,
         share_derivative=share_change,
         mesh_phase=phases_in_pitches(system.load),
-        assembly=_assembly(system.layout),
+        assembly=tuple(LoopAssembly(loop.mesh, loop.gear, math.degrees(loop.clocking), loop.rest) for loop in loops),
         torque={item.name: item.torque for item in system.load.applied},
         point_displacement={n: float(v[0]) for n, v in point_amplitudes(system, moved).items()},
         imbalance=imbalance(found),
@@ -131,28 +134,14 @@ def _result(
         seconds={"total": time.perf_counter() - start},
         left_out=(*_left_out(found), *change.left_out),
         warnings=(*system.nodes.merged, *_warnings(found)),
-        method=f"direct, sparse LU; {_free(found)}",
+        method=f"direct, sparse LU; {free if count else 'all motions held'}",
         place_displacement=displacement_places(system, moved[:, :, 0]),
-    )
-
-
-def _free(found: Equilibrated) -> str:
-    count = found.motions.shape[1]
-    return (
-        f"{count} free motion{'s'[: count != 1]} handled exactly, on a determinate support"
-        if count
-        else "all motions held"
     )
 
 
 def phases_in_pitches(load: MeanLoad) -> dict[str, float]:
     """Phase of each mesh in pitches, 0 to 1; NaN where teeth are missing."""
     return {name: math.nan if phi is None else phi / (2.0 * math.pi) for name, phi in load.phases.items()}
-
-
-def _assembly(layout: Layout) -> tuple[LoopAssembly, ...]:
-    loops = layout.assembly.loops
-    return tuple(LoopAssembly(loop.mesh, loop.gear, math.degrees(loop.clocking), loop.rest) for loop in loops)
 
 
 def _left_out(found: Equilibrated) -> tuple[str, ...]:
@@ -175,7 +164,8 @@ def _warnings(found: Equilibrated) -> list[str]:
     }
     for state, closed in zip(found.lines.states, found.closed, strict=True):
         contact = state.contact
-        which = f"meshes.{contact.mesh}" + (f" helix {contact.helix + 1}" if _has_two(found, contact.mesh) else "")
+        two = found.lines.names.count(contact.mesh) == 2
+        which = f"meshes.{contact.mesh}" + (f" helix {contact.helix + 1}" if two else "")
         if not closed:
             notes.append(f"{which} carries nothing: its flanks stand apart under these loads and index errors")
         elif state.torque_sense != flow[contact.mesh, contact.helix]:
@@ -186,7 +176,3 @@ def _warnings(found: Equilibrated) -> list[str]:
         "given; leave out the clocking of one of its gears and it closes the loop"
         for loop in open_loops
     ]
-
-
-def _has_two(found: Equilibrated, mesh: str) -> bool:
-    return found.lines.names.count(mesh) == 2

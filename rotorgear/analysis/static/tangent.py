@@ -58,8 +58,8 @@ def about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Mod
     changed: dict[str, dict[str, Any]] = {}
     for part in sorted(wanted):
         table, _, name = part.partition(".")
-        own = changed.setdefault(table, dict(getattr(model, table)))
-        own[name] = own[name].model_copy(update=_linear(model, part, at, [state[part] for state in states]))
+        parts = changed.setdefault(table, dict(getattr(model, table)))
+        parts[name] = parts[name].model_copy(update=_linear(model, part, at, [state[part] for state in states]))
     where = " to ".join(f"{speed * RPM_PER_RAD_S:.6g}" for speed in dict.fromkeys((at[0], at[-1])))
     notes.append(
         f"what is not linear of {', '.join(sorted(wanted))}: linearised about the static equilibrium at {where} rpm"
@@ -71,11 +71,11 @@ def about_equilibrium_of(
     model: Model | System, speeds: Sequence[float | None]
 ) -> tuple[Model | System, Model, tuple[str, ...]]:
     """The same of a model or an assembled system: linear, as it was given, and the sentences."""
-    own = model.model if isinstance(model, System) else model
-    linear, notes = about_equilibrium(own, speeds)
+    given = model.model if isinstance(model, System) else model
+    linear, notes = about_equilibrium(given, speeds)
     if not isinstance(model, System):
-        return linear, own, notes
-    return (model if linear is own else System(linear, plan=model.plan, load=model.load)), own, notes
+        return linear, given, notes
+    return (model if linear is given else System(linear, plan=model.plan, load=model.load)), given, notes
 
 
 def _linear(model: Model, part: str, speeds: Sequence[float], states: Sequence[LawState]) -> dict[str, Any]:
@@ -103,8 +103,8 @@ def _linear(model: Model, part: str, speeds: Sequence[float], states: Sequence[L
 def _six(A: np.ndarray, used: list[int] | None) -> np.ndarray:
     """Tangents (k, k) among the six displacements of a node."""
     full = np.zeros((6, 6))
-    own = list(range(len(A))) if used is None else used
-    full[np.ix_(own, own)] = A
+    dofs = list(range(len(A))) if used is None else used
+    full[np.ix_(dofs, dofs)] = A
     return full
 
 

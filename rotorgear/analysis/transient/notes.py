@@ -80,11 +80,11 @@ def _drifting(result: TransientResult) -> list[str]:
     name = ""
     for gear, part in result.model.gears.items():
         history = f"gears.{gear} speed fluctuation"
-        own = abs(float(train.ratio(part.shaft)) * result.speed[-1])
-        if history not in result.channel or own == 0.0:
+        prescribed = abs(float(train.ratio(part.shaft)) * result.speed[-1])
+        if history not in result.channel or prescribed == 0.0:
             continue
         values = result.history(history)
-        share = abs(float(values[-max(len(values) // 10, 1) :].mean())) / own
+        share = abs(float(values[-max(len(values) // 10, 1) :].mean())) / prescribed
         if share > worst:
             worst = share
             name = gear

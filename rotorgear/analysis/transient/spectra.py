@@ -54,6 +54,7 @@ def spectrum(result: TransientResult, name: str, *, window: str = "hann", orders
     Raises:
         AnalysisError: unknown history or window, too few records, or orders of a shaft at rest.
     """
+    from scipy.interpolate import CubicSpline
     from scipy.signal import get_window
 
     if window not in _WIDTH:
@@ -65,21 +66,18 @@ def spectrum(result: TransientResult, name: str, *, window: str = "hann", orders
     spacing = result.spacing
     over = "Hz"
     if orders:
-        values, spacing, over = *_at_even_angles(result, values), "order"
+        # The transform wants even spacing: equal angles, at which one order stays in one bin while the speed changes.
+        angle = np.abs(result.angle[result.counted])
+        if np.any(np.diff(angle) <= 0.0):
+            raise AnalysisError("orders need a shaft that turns on in one sense: its speed goes through zero here")
+        even = np.linspace(angle[0], angle[-1], values.size)
+        values = CubicSpline(angle, values)(even)
+        spacing = float(even[1] - even[0]) / (2.0 * np.pi)
+        over = "order"
     w = get_window(window, values.size)
     amplitude = 2.0 * np.abs(np.fft.rfft((values - values.mean()) * w)) / w.sum()
     frequency = np.fft.rfftfreq(values.size, spacing)
     return Spectrum(name, unit, frequency, amplitude, window, _WIDTH[window] / (values.size * spacing), over)
-
-
-def _at_even_angles(result: TransientResult, values: np.ndarray) -> tuple[np.ndarray, float]:
-    from scipy.interpolate import CubicSpline
-
-    angle = np.abs(result.angle[result.counted])
-    if np.any(np.diff(angle) <= 0.0):
-        raise AnalysisError("orders need a shaft that turns on in one sense: its speed goes through zero here")
-    even = np.linspace(angle[0], angle[-1], values.size)
-    return CubicSpline(angle, values)(even), float(even[1] - even[0]) / (2.0 * np.pi)
 
 
 @recorded

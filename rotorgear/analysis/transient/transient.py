@@ -138,8 +138,8 @@ def _result(
 ) -> TransientResult:
     system = task.local.system
     local = task.local.local
-    own: Statistics = statistics(found, task, grid.settled)
-    errors, largest = _errors(own, found, others, task, grid)
+    of_run: Statistics = statistics(found, task, grid.settled)
+    errors, largest = _errors(of_run, found, others, task, grid)
     t = found.table("t")
     meshes = [i for i, part in enumerate(task.local.parts) if part.is_mesh]
     columns = [int(local.forces.first[i]) for i in meshes]
@@ -164,8 +164,8 @@ def _result(
         channel=task.channels.names,
         unit=task.channels.units,
         values=found.table("values"),
-        quantity=own.name,
-        quantity_value=own.value,
+        quantity=of_run.name,
+        quantity_value=of_run.value,
         quantity_error=errors,
         energy=found.ledger,
         step=grid.spacing / grid.every,
@@ -207,15 +207,14 @@ def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progr
 
 
 def _errors(
-    own: Statistics, found: Histories, others: list[tuple[Histories, float]], task: Task, grid: Grid
+    of_run: Statistics, found: Histories, others: list[tuple[Histories, float]], task: Task, grid: Grid
 ) -> tuple[np.ndarray, float]:
     """Errors of the statistics: the sum of those that the comparisons tell, and the largest."""
     if not others or any(run.status != "success" for run in (found, *(run for run, _ in others))):
-        return np.full(own.value.size, np.nan), float("nan")
-    pairs = [compared(own, statistics(run, task, _settled_of(run, grid)), factor) for run, factor in others]
+        return np.full(of_run.value.size, np.nan), float("nan")
+    pairs = []
+    for run, factor in others:
+        # A run of another step has records of its own: the first that counts is found by its time.
+        settled = int(np.searchsorted(run.table("t"), grid.settled * grid.spacing * (1.0 - 1e-9)))
+        pairs.append(compared(of_run, statistics(run, task, settled), factor))
     return np.sum([errors for errors, _ in pairs], axis=0), float(sum(largest for _, largest in pairs))
-
-
-def _settled_of(run: Histories, grid: Grid) -> int:
-    t = run.table("t")
-    return int(np.searchsorted(t, grid.settled * grid.spacing * (1.0 - 1e-9)))
