@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rotorgear.quantity import RPM_PER_RAD_S
 
 if TYPE_CHECKING:
@@ -26,8 +28,19 @@ def campbell_table(result: CampbellResult, *, crossings: bool = False) -> Render
         parts.append(_margins(result))
     if crossings:
         parts.append(_crossings(result))
-    parts += [Text(line) for line in _notes(result, crossings)]
-    return Group(*parts, "")
+    notes = [""]
+    if any(not item.branch for item in result.margins):
+        notes.append("-: the line lies above all branches (--fmax follows more), or can't excite any")
+    if not crossings:
+        excited = f"{sum(item.excited for item in result.crossings)} of them of modes that the line can excite"
+        notes.append(f"{len(result.crossings)} crossings, {excited}; --crossings lists them")
+    notes.append(f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}")
+    estimates = result.error_estimate[np.isfinite(result.error_estimate)]
+    if estimates.size:
+        notes.append(f"error: estimated relative discretisation error of each frequency, largest {estimates.max():.1e}")
+    notes += [f"left out: {note}" for note in result.left_out]
+    notes += [f"Warning: {note}" for note in result.warnings]
+    return Group(*parts, *(Text(note) for note in notes), "")
 
 
 def plain_table(title: str = "") -> Any:
@@ -109,23 +122,3 @@ def _crossings(result: CampbellResult) -> Any:
 
 def _number(value: float, form: str) -> str:
     return format(value + 0.0, form) if math.isfinite(value) else "-"
-
-
-def _notes(result: CampbellResult, crossings: bool) -> list[str]:
-    import numpy as np
-
-    lines = [""]
-    if any(not item.branch for item in result.margins):
-        lines.append("-: the line lies above all branches (--fmax follows more), or can't excite any")
-    excited = sum(item.excited for item in result.crossings)
-    if not crossings:
-        lines.append(
-            f"{len(result.crossings)} crossings, {excited} of them of modes that the line can excite; --crossings lists them"
-        )
-    estimates = result.error_estimate[np.isfinite(result.error_estimate)]
-    lines.append(f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}")
-    if estimates.size:
-        lines.append(f"error: estimated relative discretisation error of each frequency, largest {estimates.max():.1e}")
-    lines += [f"left out: {note}" for note in result.left_out]
-    lines += [f"Warning: {note}" for note in result.warnings]
-    return lines

@@ -17,7 +17,16 @@ def compare_table(comparison: Comparison) -> RenderableType:
     from rich.console import Group
     from rich.text import Text
 
-    rest = [_chance(comparison), *(f"Warning: {warning}." for warning in comparison.warnings)]
+    chance = comparison.chance
+    by_chance = (
+        f"Chance: {100 * chance.coverage:.1f} % of the band {chance.band_low_hz:.1f} to {chance.band_high_hz:.1f} Hz "
+        f"(measured in log frequency) lies within {100 * comparison.tolerance:.3g} % of one of its "
+        f"{chance.modes_in_band} modes. Of {chance.samples} random lists of {comparison.rig_count}, the mean matches "
+        f"{chance.expected_random_matches:.2f}; {100 * chance.probability_as_many:.3g} % match as many as the rig, "
+        f"{100 * chance.probability_as_close:.3g} % come as close. Independent lines in closed form: "
+        f"{chance.binomial_expected:.2f}, {100 * chance.binomial_probability:.3g} %."
+    )
+    rest = [by_chance, *(f"Warning: {warning}." for warning in comparison.warnings)]
     parts: list[RenderableType] = [
         *([_matches(comparison)] if comparison.matches else []),
         *(Text(f"{_unmatched_line(line, comparison.tolerance)}\n") for line in comparison.unmatched_rig),
@@ -89,19 +98,6 @@ def _unmatched_modes(comparison: Comparison) -> Iterable[RenderableType]:
     yield Columns([Text(f"{mode.mode_number:>4} {mode.frequency_hz:>8.1f}") for mode in modes], padding=(0, 2))
     met = [f"mode {mode.mode_number} with {_names(mode.excitations)}" for mode in modes if mode.excitations]
     yield Text(f"Of these coincide: {'; '.join(met)}.\n" if met else "")
-
-
-def _chance(comparison: Comparison) -> str:
-    chance = comparison.chance
-    count = comparison.rig_count
-    return (
-        f"Chance: {100 * chance.coverage:.1f} % of the band {chance.band_low_hz:.1f} to {chance.band_high_hz:.1f} Hz "
-        f"(measured in log frequency) lies within {100 * comparison.tolerance:.3g} % of one of its "
-        f"{chance.modes_in_band} modes. Of {chance.samples} random lists of {count}, the mean matches "
-        f"{chance.expected_random_matches:.2f}; {100 * chance.probability_as_many:.3g} % match as many as the rig, "
-        f"{100 * chance.probability_as_close:.3g} % come as close. Independent lines in closed form: "
-        f"{chance.binomial_expected:.2f}, {100 * chance.binomial_probability:.3g} %."
-    )
 
 
 def _candidate(candidate: Candidate, separator: str = " ") -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.tables.campbell import plain_table
@@ -21,6 +21,7 @@ def critical_table(result: CriticalResult) -> RenderableType:
 
     kind = "damped" if result.damped else "undamped"
     title = f"{result.model.title or 'Critical speeds'}: {kind} critical speeds to {result.top_speed * RPM_PER_RAD_S:.6g} rpm"
+    # The residuals' power of ten; below 1e-12 they are rounding.
     bound = 10.0 ** math.ceil(math.log10(max(result.worst_residual, 1e-12)))
     notes = (
         f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
@@ -28,33 +29,28 @@ def critical_table(result: CriticalResult) -> RenderableType:
         *(f"left out: {note}" for note in result.left_out),
         *(f"Warning: {note}" for note in result.warnings),
     )
-    return Group(heading(title), _speeds(result), "", *lines(*notes))
-
-
-def _speeds(result: CriticalResult) -> Any:
-    table = plain_table()
-    table.add_column("rpm", justify="right")
-    table.add_column("Hz", justify="right")
-    table.add_column("line", overflow="fold", min_width=14)
+    speeds = plain_table()
+    speeds.add_column("rpm", justify="right")
+    speeds.add_column("Hz", justify="right")
+    speeds.add_column("line", overflow="fold", min_width=14)
     if result.damped:
-        table.add_column("zeta %", justify="right")
-    table.add_column("whirl")
-    table.add_column("part %", justify="right")
-    table.add_column("what moves", overflow="fold")
+        speeds.add_column("zeta %", justify="right")
+    speeds.add_column("whirl")
+    speeds.add_column("part %", justify="right")
+    speeds.add_column("what moves", overflow="fold")
     for item in result.speeds:
-        share = f"{100.0 * item.participation:.2f}" if item.excited else "none"
+        # A damping ratio that rounds to nothing is 0, not -0.
         zeta = [f"{round(100.0 * item.damping_ratio, 3) + 0.0:.3f}"] if result.damped else []
-        row = [
+        speeds.add_row(
             f"{item.speed * RPM_PER_RAD_S:.2f}",
             f"{item.frequency_hz:.3f}",
             item.line,
             *zeta,
             item.whirl,
-            share,
+            f"{100.0 * item.participation:.2f}" if item.excited else "none",
             item.description,
-        ]
-        table.add_row(*row)
-    return table
+        )
+    return Group(heading(title), speeds, "", *lines(*notes))
 
 
 def critical_map_table(chart: CriticalMap) -> RenderableType:
@@ -66,5 +62,5 @@ def critical_map_table(chart: CriticalMap) -> RenderableType:
     for k in range(0, len(chart.stiffness), max(1, len(chart.stiffness) // 8)):
         rows = [[f"{v * RPM_PER_RAD_S:.0f}" for v in values[k] if v == v] for values in (chart.forward, chart.backward)]
         table.add_row(f"{chart.stiffness[k]:.2e}", *(", ".join(row) for row in rows))
-    own: RenderableType = table
-    return own
+    chart_as_table: RenderableType = table
+    return chart_as_table

@@ -10,7 +10,7 @@ from rotorgear.results.tables.common import heading, lines
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from rotorgear.results.description import MeshRow, ModelDescription
+    from rotorgear.results.description import ModelDescription
 
 _MESH_LEGEND = (
     "[dim]at: direction from pinion to gear from +x; a_wt: working transverse pressure angle; beta_b: base helix angle in deg; "
@@ -38,11 +38,21 @@ def check_table(d: ModelDescription) -> RenderableType:
     if d.gears:
         parts += ["", _gears(d), _GEAR_LEGEND]
     if d.places:
-        parts += ["", _places(d)]
+        # A line for each shaft: z of what stands on it beside the gears.
+        places = _table(("shaft", "left"), ("z mm of the other parts on it", "left"))
+        for shaft in dict.fromkeys(row.shaft for row in d.places):
+            places.add_row(
+                shaft, ", ".join(f"{row.part} {1e3 * row.z_m:.5g}" for row in d.places if row.shaft == shaft)
+            )
+        parts += ["", places]
     if d.meshes:
         parts += ["", _meshes(d), _MESH_LEGEND, "", _forces(d), _FORCE_LEGEND]
     if d.torques:
-        parts += ["", _torques(d)]
+        torques = _table(("load", "left"), ("shaft", "left"), ("torque N m about z", "right"), ("power in kW", "right"))
+        for load in d.torques:
+            power = "-" if load.power_w is None else f"{1e-3 * load.power_w:.3f}"
+            torques.add_row(load.name, load.shaft, f"{load.torque_n_m:.2f}", power)
+        parts += ["", torques]
     notes = [
         "",
         f"{mass}{d.nodes} nodes, {d.dofs} dofs with {d.mesh}",
@@ -110,14 +120,6 @@ def _gears(d: ModelDescription) -> Any:
     return table
 
 
-def _places(d: ModelDescription) -> Any:
-    """A line for each shaft: z of what stands on it beside the gears."""
-    table = _table(("shaft", "left"), ("z mm of the other parts on it", "left"))
-    for shaft in dict.fromkeys(row.shaft for row in d.places):
-        table.add_row(shaft, ", ".join(f"{row.part} {1e3 * row.z_m:.5g}" for row in d.places if row.shaft == shaft))
-    return table
-
-
 def _meshes(d: ModelDescription) -> Any:
     table = _table(
         ("mesh", "left"),
@@ -167,25 +169,14 @@ def _forces(d: ModelDescription) -> Any:
             name = row.name if helices == 1 else f"{row.name} {'L' if number == 0 else 'R'}"
             a = math.radians(row.pressure_angle_deg)
             b = math.radians(row.base_helix_angle_deg)
+            # F_t = F_n cos(beta_b) cos(alpha_wt), F_r = F_n cos(beta_b) sin(alpha_wt), F_a = F_n sin(beta_b).
             parts = (force, force * math.cos(b) * math.cos(a), force * math.cos(b) * math.sin(a), force * math.sin(b))
             table.add_row(
                 name,
-                _driver(row),
+                f"{row.driver} (assumed)" if row.flank_assumed else row.driver,
                 _number(row.phase_pitches[number], 1.0, 3),
                 *(f"{part:.5g}" for part in parts),
                 f"{row.stiffness_n_per_m / helices:.4g}",
                 f"{row.damping_n_s_per_m / helices:.4g}",
             )
-    return table
-
-
-def _driver(row: MeshRow) -> str:
-    return f"{row.driver} (assumed)" if row.flank_assumed else row.driver
-
-
-def _torques(d: ModelDescription) -> Any:
-    table = _table(("load", "left"), ("shaft", "left"), ("torque N m about z", "right"), ("power in kW", "right"))
-    for row in d.torques:
-        power = "-" if row.power_w is None else f"{1e-3 * row.power_w:.3f}"
-        table.add_row(row.name, row.shaft, f"{row.torque_n_m:.2f}", power)
     return table

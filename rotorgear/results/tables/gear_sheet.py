@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.results.gear_sheet import GearRow, GearSheet, MeshSheetRow
@@ -73,7 +73,7 @@ GEAR_ROWS: Sequence[Row] = (
     ("virtual teeth z_n", _plain("virtual_teeth", 3)),
     ("tooth thickness s_n mm", _mm("normal_thickness_m")),
     ("tip thickness s_an mm", _mm("tip_thickness_m")),
-    ("thickness allowances um", lambda row: _allowances(row)),
+    ("thickness allowances um", _allowances),
     ("tip relief C_a um", lambda row: _text(row.tip_relief_m or None, 1e6, 1)),
     ("  from diameter mm", _mm("tip_relief_diameter_m")),
     ("span over teeth k", lambda row: str(row.span_teeth)),
@@ -129,24 +129,18 @@ def gear_table(sheet: GearSheet) -> RenderableType:
     """Return the sheet as one rich renderable."""
     from rich.console import Group
 
-    return Group(*_parts(sheet))
-
-
-def _parts(sheet: GearSheet) -> Iterator[Any]:
-    yield heading(sheet.title or "Gears")
+    parts: list[Any] = [heading(sheet.title or "Gears")]
     for rows, columns, head in ((GEAR_ROWS, sheet.gears, "gear"), (MESH_ROWS, sheet.meshes, "mesh")):
         for first in range(0, len(columns), _COLUMNS):
-            yield ""
-            yield _table(head, rows, columns[first : first + _COLUMNS])
-    yield ""
-    yield from lines(*(f"left out: {note}" for note in sheet.left_out))
-    for table, parts in (("gears", sheet.gears), ("meshes", sheet.meshes)):
-        yield from lines(*(f"Warning: {table}.{part.name}: {text}" for part in parts for text in part.warnings))
+            parts += ["", _table(head, rows, columns[first : first + _COLUMNS])]
+    notes = [f"left out: {note}" for note in sheet.left_out]
+    for table, members in (("gears", sheet.gears), ("meshes", sheet.meshes)):
+        notes += [f"Warning: {table}.{member.name}: {text}" for member in members for text in member.warnings]
     for row in sheet.meshes:
-        yield from lines(f"meshes.{row.name}: {row.stiffness_definition} stiffness; body: {row.stiffness_body}")
-        yield from lines(
-            f"meshes.{row.name}: {'K_v by ' * (row.dynamic_factor is not None)}{row.dynamic_factor_method}"
-        )
+        method = f"{'' if row.dynamic_factor is None else 'K_v by '}{row.dynamic_factor_method}"
+        notes.append(f"meshes.{row.name}: {row.stiffness_definition} stiffness; body: {row.stiffness_body}")
+        notes.append(f"meshes.{row.name}: {method}")
+    return Group(*parts, "", *lines(*notes))
 
 
 def _table(head: str, rows: Sequence[Row], columns: Sequence[GearRow | MeshSheetRow]) -> Any:
@@ -158,6 +152,6 @@ def _table(head: str, rows: Sequence[Row], columns: Sequence[GearRow | MeshSheet
         table.add_column(column.name, justify="right", overflow="fold")
     for label, cell in rows:
         cells = [cell(column) for column in columns]
-        if any(text != "-" for text in cells):
+        if any(text != "-" for text in cells):  # a quantity that none of them has gets no row
             table.add_row(label, *cells)
     return table

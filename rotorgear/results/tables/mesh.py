@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,38 +17,37 @@ def mesh_table(found: MeshResult, *, harmonics: int = 0) -> RenderableType:
     """Return stiffness, transmission error and, where asked for, so many orders of the mesh as one rich renderable."""
     from rich.console import Group
 
-    return Group(*_parts(found, harmonics))
-
-
-def _parts(found: MeshResult, harmonics: int) -> Iterator[Any]:
-    yield heading(found.title or "Mesh", f": mesh '{found.mesh}', {found.pinion} and {found.gear}")
-    yield from lines(*_setting(found))
-    yield ""
-    yield _main(found)
-    if harmonics:
-        yield ""
-        yield _harmonics(found, harmonics)
-    if found.loads:
-        yield ""
-        yield _loads(found)
-    yield ""
-    yield from lines(*(f"Warning: {text}" for text in found.warnings))
-    if found.dofs:
-        yield f"{found.dofs} dofs, {found.seconds['total']:.2f} s"
-
-
-def _setting(found: MeshResult) -> Iterator[str]:
     preset = "" if found.preset is None else f", preset {found.preset}"
-    yield f"stiffness model {found.stiffness_model}{preset}: {found.definition}, {PLANE}"
-    yield f"body: {found.body}"
+    setting = [f"stiffness model {found.stiffness_model}{preset}: {found.definition}, {PLANE}", f"body: {found.body}"]
     if found.load is None:
-        yield "no load"
-        return
-    load = found.load
-    yield (
-        f"load: {load.pinion_torque_n_m:.6g} N m on the pinion, F_bt {load.base_force_n:.6g} N, F_n {load.normal_force_n:.6g} N "
-        f"({load.source})"
-    )
+        setting.append("no load")
+    else:
+        load = found.load
+        setting.append(
+            f"load: {load.pinion_torque_n_m:.6g} N m on the pinion, F_bt {load.base_force_n:.6g} N, "
+            f"F_n {load.normal_force_n:.6g} N ({load.source})"
+        )
+    title = heading(found.title or "Mesh", f": mesh '{found.mesh}', {found.pinion} and {found.gear}")
+    parts: list[Any] = [title, *lines(*setting), "", _main(found)]
+    if harmonics:
+        parts += ["", _harmonics(found, harmonics)]
+    if found.loads:
+        loads = table(
+            "load factor", "mean stiffness", "peak to peak", "STE peak to peak", "contact ratio", no_wrap=True
+        )
+        for point in found.loads:
+            loads.add_row(
+                f"{point.factor:g}",
+                f"{point.mean_stiffness_n_per_m:.5g} N/m",
+                f"{point.peak_to_peak_stiffness_n_per_m:.4g} N/m",
+                f"{1e6 * point.ste_peak_to_peak_m:.4f} um",
+                f"{point.contact_ratio:.3f}",
+            )
+        parts += ["", loads]
+    parts += ["", *lines(*(f"Warning: {text}" for text in found.warnings))]
+    if found.dofs:
+        parts.append(f"{found.dofs} dofs, {found.seconds['total']:.2f} s")
+    return Group(*parts)
 
 
 def _main(found: MeshResult) -> Any:
@@ -88,24 +86,11 @@ def _harmonics(found: MeshResult, count: int) -> Any:
     out = table("mesh order", "stiffness", "phase", "transmission error", "phase", no_wrap=True)
     k = found.harmonics(count)
     e = found.ste_harmonics(count)
-    # Below this share of the mean an order is rounding, and its phase says nothing.
     for order in range(len(k)):
+        # Below this share of the mean an order is rounding, and its phase says nothing.
         small = abs(k[order]) < 1e-9 * found.mean_stiffness
         cells = [f"{abs(k[order]):.4g} N/m", "-" if small else f"{np.degrees(np.angle(k[order])):.1f} deg"]
         if e is not None:
             cells += [f"{1e6 * abs(e[order]):.4f} um", "-" if small else f"{np.degrees(np.angle(e[order])):.1f} deg"]
         out.add_row(str(order + 1), *cells)
-    return out
-
-
-def _loads(found: MeshResult) -> Any:
-    out = table("load factor", "mean stiffness", "peak to peak", "STE peak to peak", "contact ratio", no_wrap=True)
-    for point in found.loads:
-        out.add_row(
-            f"{point.factor:g}",
-            f"{point.mean_stiffness_n_per_m:.5g} N/m",
-            f"{point.peak_to_peak_stiffness_n_per_m:.4g} N/m",
-            f"{1e6 * point.ste_peak_to_peak_m:.4f} um",
-            f"{point.contact_ratio:.3f}",
-        )
     return out

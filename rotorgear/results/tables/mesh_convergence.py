@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rotorgear.results.tables.common import heading, lines, table
 
@@ -17,27 +16,25 @@ def mesh_convergence_table(study: MeshConvergenceStudy) -> RenderableType:
     """Return the study as one rich renderable."""
     from rich.console import Group
 
-    return Group(*_parts(study))
-
-
-def _parts(study: MeshConvergenceStudy) -> Iterator[Any]:
-    yield heading(study.title or "Mesh", f": mesh '{study.mesh}', F_bt {study.base_force_n:.6g} N on a helix")
-    yield from lines(
+    title = heading(study.title or "Mesh", f": mesh '{study.mesh}', F_bt {study.base_force_n:.6g} N on a helix")
+    legend = lines(
         f"body: {study.body}",
         f"errors in % against {study.reference};",
         "after the stroke what the analysis itself estimates",
     )
-    yield ""
-    out = table("mesh", "elements", "dofs", "FE", "contact", "k", "k pp", "STE pp", no_wrap=True)
+    ladder = table("mesh", "elements", "dofs", "FE", "contact", "k", "k pp", "STE pp", no_wrap=True)
     for rung in study.rungs:
         cells = []
         for name in ("mean_stiffness", "peak_to_peak_stiffness", "ste_peak_to_peak"):
             estimate = rung.estimate
             said = "-" if estimate is None else f"{100 * getattr(estimate, name):.2g}"
             cells.append(f"{100 * getattr(rung.error, name):.2g}/{said}")
-        elements = f"{rung.elements}" + (f"x{rung.layers}" if rung.layers else "")
-        method = rung.method.removeprefix("preset ")
-        seconds = [f"{rung.fe_seconds:.2f} s", f"{rung.contact_seconds:.2f} s"]
-        out.add_row(method, elements, str(rung.dofs), *seconds, *cells)
-    yield out
-    yield ""
+        ladder.add_row(
+            rung.method.removeprefix("preset "),
+            f"{rung.elements}" + (f"x{rung.layers}" if rung.layers else ""),
+            str(rung.dofs),
+            f"{rung.fe_seconds:.2f} s",
+            f"{rung.contact_seconds:.2f} s",
+            *cells,
+        )
+    return Group(title, *legend, "", ladder, "")

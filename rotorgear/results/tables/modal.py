@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.tables.common import error_words
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -15,64 +18,37 @@ if TYPE_CHECKING:
 def modal_table(result: ModalResult, *, energies: bool = False) -> RenderableType:
     """Return modes, notes and, where asked for, energy shares as one rich renderable that fits 80 columns."""
     from rich.console import Group
+    from rich.table import Table
     from rich.text import Text
 
-    parts: list[RenderableType] = [Text(_title(result), style="bold"), _modes(result)]
-    if energies:
-        parts.append(_energies(result))
-    parts += [Text(line) for line in _notes(result)]
-    return Group(*parts, "")
-
-
-def _modes(result: ModalResult) -> Any:
-    from rich.table import Table
-
     damped = result.speed is not None
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    table.add_column("mode", justify="right")
-    table.add_column("Hz", justify="right")
-    table.add_column("error", justify="right")
+    how = "undamped, at standstill"
+    if result.speed is not None:
+        how = f"damped, {result.model.reference_shaft} at {result.speed * RPM_PER_RAD_S:.6g} rpm"
+    modes = Table(box=None, pad_edge=False, header_style="bold")
+    modes.add_column("mode", justify="right")
+    modes.add_column("Hz", justify="right")
+    modes.add_column("error", justify="right")
     if damped:
-        table.add_column("zeta %", justify="right")
-        table.add_column("whirl")
-    table.add_column("what moves", overflow="fold")
+        modes.add_column("zeta %", justify="right")
+        modes.add_column("whirl")
+    modes.add_column("what moves", overflow="fold")
     for k in range(len(result)):
-        row = [str(k + 1), f"{result.frequency_hz[k]:.4f}", _error(result, k)]
+        # A rigid body has no frequency whose error could be relative to it.
+        error = float(result.error_estimate[k])
+        known = not result.rigid[k] and error == error
+        row = [str(k + 1), f"{result.frequency_hz[k]:.4f}", error_words(error) if known else "-"]
         if damped:
             row += [f"{100.0 * result.damping_ratio[k]:.3f}", result.whirl[k]]
-        table.add_row(*row, result.description[k])
-    return table
-
-
-def _title(result: ModalResult) -> str:
-
-    if result.speed is None:
-        how = "undamped, at standstill"
-    else:
-        how = f"damped, {result.model.reference_shaft} at {result.speed * RPM_PER_RAD_S:.6g} rpm"
-    return f"{result.model.title or 'Modes'}: {how}"
-
-
-def _error(result: ModalResult, k: int) -> str:
-    value = float(result.error_estimate[k])
-    if result.rigid[k] or value != value:
-        return "-"
-    return f"{value:.0e}" if value >= 1e-9 else "<1e-9"
-
-
-def _notes(result: ModalResult) -> list[str]:
-    import numpy as np
-
+        modes.add_row(*row, result.description[k])
+    notes = ["", f"{result.dofs} dofs, {result.mesh_text}, {result.seconds['total']:.2f} s; {result.method}"]
     estimates = result.error_estimate[np.isfinite(result.error_estimate)]
-    lines = [
-        "",
-        f"{result.dofs} dofs, {result.mesh_text}, {result.seconds['total']:.2f} s; {result.method}",
-    ]
     if estimates.size:
-        lines.append(f"error: estimated relative error of each frequency; largest {estimates.max():.1e}")
-    lines += [f"left out: {note}" for note in result.left_out]
-    lines += [f"Warning: {note}" for note in result.warnings]
-    return lines
+        notes.append(f"error: estimated relative error of each frequency; largest {estimates.max():.1e}")
+    notes += [f"left out: {note}" for note in result.left_out]
+    notes += [f"Warning: {note}" for note in result.warnings]
+    title = Text(f"{result.model.title or 'Modes'}: {how}", style="bold")
+    return Group(title, modes, *([_energies(result)] if energies else []), *(Text(note) for note in notes), "")
 
 
 def _energies(result: ModalResult) -> Any:

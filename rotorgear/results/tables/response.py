@@ -21,19 +21,21 @@ def response_table(result: ResponseResult) -> RenderableType:
     first = result.speed_rpm[0]
     last = result.speed_rpm[-1]
     speeds = f"{first:.6g} rpm" if len(result.speeds) == 1 else f"{first:.6g} to {last:.6g} rpm"
-    parts: list[Any] = [
-        heading(f"{result.model.title or 'Model'}: forced response, {result.model.reference_shaft} at {speeds}")
+    title = f"{result.model.title or 'Model'}: forced response, {result.model.reference_shaft} at {speeds}"
+    orders = table("no", "order", "times input", f"Hz at {abs(last):.6g} rpm", left=2)
+    for o, (order, ratio) in enumerate(zip(result.orders, result.ratio, strict=True)):
+        orders.add_row(str(o + 1), order, f"{ratio:.6g}", f"{result.frequency_hz[o, -1]:.2f}")
+    notes = [
+        *(["DTE: dynamic transmission error, r_b1 theta_1 + r_b2 theta_2"] if result.contact_mesh else []),
+        "amplitudes are half of peak to peak, each order by itself; forces without their mean",
+        f"{len(result.speeds)} speeds, {result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
+        f"solver error {error_words(result.solver_error)} at {result.checked} points checked; "
+        f"on a finer mesh the peaks change by {error_words(result.error_estimate)}",
+        f"damping ratio added to every elastic mode: {result.damping_ratio:g}",
+        *(f"left out: {note}" for note in result.left_out),
+        *(f"Warning: {note}" for note in result.warnings),
     ]
-    parts += ["", _orders(result)]
-    parts += ["", _largest(result)]
-    return Group(*parts, "", *lines(*_notes(result)), "")
-
-
-def _orders(result: ResponseResult) -> Any:
-    out = table("no", "order", "times input", f"Hz at {abs(result.speed_rpm[-1]):.6g} rpm", left=2)
-    for number, (order, ratio) in enumerate(zip(result.orders, result.ratio, strict=True), 1):
-        out.add_row(str(number), order, f"{ratio:.6g}", f"{result.frequency_hz[number - 1, -1]:.2f}")
-    return out
+    return Group(heading(title), "", orders, "", _largest(result), "", *lines(*notes), "")
 
 
 def _largest(result: ResponseResult) -> Any:
@@ -70,16 +72,3 @@ def _row(out: Any, result: ResponseResult, what: str, name: str, size: np.ndarra
         f"{result.frequency_hz[o, s]:.1f}",
         f"{factor * size[o, s]:.4g} {unit}",
     )
-
-
-def _notes(result: ResponseResult) -> list[str]:
-    texts = [
-        *(["DTE: dynamic transmission error, r_b1 theta_1 + r_b2 theta_2"] if result.contact_mesh else []),
-        "amplitudes are half of peak to peak, each order by itself; forces without their mean",
-        f"{len(result.speeds)} speeds, {result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
-        f"solver error {error_words(result.solver_error)} at {result.checked} points checked; "
-        f"on a finer mesh the peaks change by {error_words(result.error_estimate)}",
-        f"damping ratio added to every elastic mode: {result.damping_ratio:g}",
-    ]
-    texts += [f"left out: {note}" for note in result.left_out]
-    return texts + [f"Warning: {note}" for note in result.warnings]

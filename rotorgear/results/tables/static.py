@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from rotorgear.results.static import StaticResult
 
-# What one line of the sensitivity table is for, by the end of the parameter's name: factor, its words, and the sign of a turn.
+# The change that one line of the sensitivity table is for, by the end of the parameter's name, and its words.
 _STEPS = {
     "index_error": (10e-6, "10 um later"),
     "stiffness": (0.1, "10 % stiffer"),
@@ -36,13 +36,41 @@ def static_table(result: StaticResult, *, sensitivity: bool = False) -> Renderab
     if result.contact_mesh:
         parts += ["", _meshes(result)]
     if result.shares:
-        parts += ["", _shares(result)]
+        shares = table("shared by", "mesh", "share %", "times mean", "decided by", left=2)
+        for row in result.shares:
+            shares.add_row(row.gear, row.mesh, f"{100.0 * row.share:.3f}", f"{row.factor:.4f}", row.decided_by)
+        shares.add_row("sharing factor", "", "", f"{result.sharing_factor:.4f}", "K_gamma")
+        parts += ["", shares]
         if sensitivity:
             parts += ["", *_sensitivities(result)]
-    parts += lines(*(f"Loop: {text}" for text in _loops(result)))
+    for loop in result.assembly:
+        if loop.gear:
+            closes = (
+                f"with all teeth aligned to the shafts' marks {loop.rest_pitches:+.4f} pitches are missing; "
+                f"{loop.gear} clocked by {loop.clocking_deg:+.4f} deg closes it"
+            )
+            parts += lines(f"Loop: {loop.mesh} closes a loop: {closes}")
+        else:
+            missing = f"{loop.rest_pitches:+.4f} pitches missing"
+            parts += lines(f"Loop: {loop.mesh} closes a loop with the clockings given: {missing}")
     if result.bearing_force or result.support_force:
         parts += ["", _supports(result)]
-    return Group(*parts, "", _displacements(result), "", *lines(*_notes(result)), "")
+    moves = table("moves", "x um", "y um", "z um", "tilt_x", "tilt_y", "twist")
+    for place, value in result.place_displacement.items():
+        moves.add_row(
+            place.partition(".")[2].replace(" left", " L").replace(" right", " R"),
+            *(f"{_rounded(1e6 * x, 5e-4):.3f}" for x in value[:3]),
+            *(f"{_rounded(1e6 * x, 0.05):.1f}" for x in value[3:]),
+        )
+    notes = [
+        "tilts and twist in urad; L and R: helix at the smaller and the larger z",
+        f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
+        f"error: forces change by {error_words(result.error_estimate)} when every element is halved; "
+        f"residual {error_words(result.imbalance)}",
+        *(f"left out: {note}" for note in result.left_out),
+        *(f"Warning: {note}" for note in result.warnings),
+    ]
+    return Group(*parts, "", moves, "", *lines(*notes), "")
 
 
 def _meshes(result: StaticResult) -> Any:
@@ -57,21 +85,9 @@ def _meshes(result: StaticResult) -> Any:
             f"{result.mesh_force[k]:.1f}",
             f"{100.0 * result.helix_share[k]:.2f}" if two else "-",
             f"{1e6 * result.mesh_deflection[k]:.3f}",
-            *(f"{_signless(value):.0f}" for value in result.mesh_force_on_gear[k]),
+            *(f"{_rounded(value, 0.5):.0f}" for value in result.mesh_force_on_gear[k]),
             "-" if phase != phase else f"{phase:.4f}",
         )
-    return out
-
-
-def _signless(value: float) -> float:
-    return value if abs(value) >= 0.5 else 0.0
-
-
-def _shares(result: StaticResult) -> Any:
-    out = table("shared by", "mesh", "share %", "times mean", "decided by", left=2)
-    for row in result.shares:
-        out.add_row(row.gear, row.mesh, f"{100.0 * row.share:.3f}", f"{row.factor:.4f}", row.decided_by)
-    out.add_row("sharing factor", "", "", f"{result.sharing_factor:.4f}", "K_gamma")
     return out
 
 
@@ -92,21 +108,6 @@ def _sensitivities(result: StaticResult) -> list[Any]:
     return [heading(f"Share of {first.mesh} in {first.gear}", f", change in percentage points{more}"), out]
 
 
-def _loops(result: StaticResult) -> list[str]:
-    texts = []
-    for loop in result.assembly:
-        if loop.gear:
-            texts.append(
-                f"{loop.mesh} closes a loop: with all teeth aligned to the shafts' marks {loop.rest_pitches:+.4f} pitches are "
-                f"missing; {loop.gear} clocked by {loop.clocking_deg:+.4f} deg closes it"
-            )
-        else:
-            texts.append(
-                f"{loop.mesh} closes a loop with the clockings given: {loop.rest_pitches:+.4f} pitches missing"
-            )
-    return texts
-
-
 def _supports(result: StaticResult) -> Any:
     out = table("on the shaft, from", "Fx N", "Fy N", "Fz N", "Mx N m", "My N m", "Mz N m")
     for kind, forces in (("", result.bearing_force), ("support ", result.support_force)):
@@ -122,27 +123,5 @@ def _supports(result: StaticResult) -> Any:
 
 
 def _rounded(value: float, least: float) -> float:
+    """The value, or 0 where its digits would all be zeros: rounding alone decides its sign, and "-0.0" says nothing."""
     return value if abs(value) >= least else 0.0
-
-
-def _displacements(result: StaticResult) -> Any:
-    out = table("moves", "x um", "y um", "z um", "tilt_x", "tilt_y", "twist")
-    for place, value in result.place_displacement.items():
-        name = place.partition(".")[2].replace(" left", " L").replace(" right", " R")
-        out.add_row(
-            name,
-            *(f"{_rounded(1e6 * x, 5e-4):.3f}" for x in value[:3]),
-            *(f"{_rounded(1e6 * x, 0.05):.1f}" for x in value[3:]),
-        )
-    return out
-
-
-def _notes(result: StaticResult) -> list[str]:
-    texts = [
-        "tilts and twist in urad; L and R: helix at the smaller and the larger z",
-        f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
-        f"error: forces change by {error_words(result.error_estimate)} when every element is halved; "
-        f"residual {error_words(result.imbalance)}",
-    ]
-    texts += [f"left out: {note}" for note in result.left_out]
-    return texts + [f"Warning: {note}" for note in result.warnings]

@@ -25,7 +25,8 @@ def sweep_table(result: SweepResult) -> RenderableType:
     from rich.console import Group
     from rich.text import Text
 
-    parts: list[RenderableType] = [Text(_title(result), style="bold"), Text("")]
+    title = f"{result.model.title or 'Sweep'}: {len(result.values)} points over {' and '.join(result.address)}"
+    parts: list[RenderableType] = [Text(title, style="bold"), Text("")]
     if len(result.shape) == 1:
         parts += [Text(_route(result, r)) for r in range(len(result.run))]
         parts.append(Text(""))
@@ -34,13 +35,25 @@ def sweep_table(result: SweepResult) -> RenderableType:
     if rows > _MOST:
         parts.append(Text(f"... {rows - _MOST} more lines: see --json, --save and --plot"))
     parts += _portraits(result)
-    parts += [Text(line) for line in _notes(result)]
-    return Group(*parts, "")
-
-
-def _title(result: SweepResult) -> str:
-    what = " and ".join(result.address)
-    return f"{result.model.title or 'Sweep'}: {len(result.values)} points over {what}"
+    columns = "p-p, K_dyn, contact loss and coast flank: of the worst contact"
+    if result.lyapunov.shape[2]:
+        columns = f"LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; {columns}"
+    steps = result.steps[result.steps > 0]  # a point that failed has none
+    fewest = int(steps.min())
+    most = int(steps.max())
+    notes = [
+        "",
+        columns,
+        f"T is {result.period_words}; {result.settle} periods discarded, {result.count} sampled; repeats within "
+        f"{100.0 * result.tolerance:g} % of the peak to peak; chaotic: LE > {result.chaos:g}",
+        f"{result.dofs} dofs, {fewest if fewest == most else f'{fewest} to {most}'} steps a mesh period, "
+        f"{result.seconds['total']:.2f} s",
+        result.method,
+    ]
+    if result.reduction:
+        notes.append(result.reduction.sentence)
+    notes += [f"Warning: {note}" for note in result.warnings]
+    return Group(*parts, *(Text(note) for note in notes), "")
 
 
 def _route(result: SweepResult, run: int) -> str:
@@ -107,23 +120,3 @@ def _largest(values: Any, form: str) -> str:
 
 def _number(value: float, form: str) -> str:
     return format(value, form) if value == value else "-"
-
-
-def _notes(result: SweepResult) -> list[str]:
-    what = "p-p, K_dyn, contact loss and coast flank: of the worst contact"
-    if result.lyapunov.shape[2]:
-        what = f"LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; {what}"
-    sound = result.steps[result.steps > 0]
-    first = int(sound.min())
-    last = int(sound.max())
-    steps = f"{first}" if first == last else f"{first} to {last}"
-    lines = [
-        "",
-        what,
-        f"T is {result.period_words}; {result.settle} periods discarded, {result.count} sampled; repeats within "
-        f"{100.0 * result.tolerance:g} % of the peak to peak; chaotic: LE > {result.chaos:g}",
-        f"{result.dofs} dofs, {steps} steps a mesh period, {result.seconds['total']:.2f} s",
-        result.method,
-    ]
-    lines += [result.reduction.sentence] if result.reduction else []
-    return lines + [f"Warning: {note}" for note in result.warnings]

@@ -20,31 +20,31 @@ def transient_table(result: TransientResult) -> RenderableType:
     from rich.console import Group
     from rich.text import Text
 
-    parts: list[RenderableType] = [Text(_title(result), style="bold"), _contacts(result), Text("")]
-    if result.channel:
-        parts.append(_channels(result))
-    parts += [Text(line) for line in _notes(result)]
-    return Group(*parts, "")
-
-
-def _title(result: TransientResult) -> str:
     rpm = [f"{w * 9.549296585513721:.5g}" for w in (result.speed[0], result.speed[-1])]
     turns = rpm[0] if rpm[0] == rpm[1] else f"{rpm[0]} to {rpm[1]}"
-    shaft = result.model.reference_shaft
-    counted = result.time[-1] - result.settle
-    return f"{result.model.title or 'Transient'}: {shaft} at {turns} rpm, {counted:.4g} s after {result.settle:.4g} s"
-
-
-def _table(title: str = "") -> Any:
-    from rich.table import Table
-
-    return Table(
-        box=None, pad_edge=False, header_style="bold", title=title or None, title_justify="left", title_style="bold"
-    )
+    counted = f"{result.time[-1] - result.settle:.4g} s after {result.settle:.4g} s"
+    title = f"{result.model.title or 'Transient'}: {result.model.reference_shaft} at {turns} rpm, {counted}"
+    parts: list[RenderableType] = [Text(title, style="bold"), _contacts(result), Text("")]
+    if result.channel:
+        parts.append(_channels(result))
+    notes = [
+        "",
+        f"{result.dofs} dofs, {result.steps} steps of {result.step:.4g} s, {result.seconds['total']:.2f} s; {result.method} "
+        f"({result.reason})",
+    ]
+    if result.error_estimate == result.error_estimate:
+        more_modes = ", and one of more modes" if "modes with" in result.method else ""
+        notes.append(f"error: statistics within {result.error_estimate:.1e}, from a run of twice the step{more_modes}")
+    notes.append(f"energy error: {result.energy.share:.1e} of the largest term")
+    notes += [f"left out: {note}" for note in result.left_out]
+    notes += [f"Warning: {note}" for note in result.warnings]
+    return Group(*parts, *(Text(note) for note in notes), "")
 
 
 def _contacts(result: TransientResult) -> Any:
-    table = _table()
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False, header_style="bold")
     table.add_column("contact", overflow="fold")
     for name in ("static N", "mean", "rms", "largest", "K_dyn", "DTE um", "loss %", "coast %", "losses"):
         table.add_column(name, justify="right")
@@ -65,7 +65,9 @@ def _contacts(result: TransientResult) -> Any:
 
 
 def _channels(result: TransientResult) -> Any:
-    table = _table()
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False, header_style="bold")
     table.add_column("channel", overflow="fold")
     for name in ("mean", "rms", "largest", "smallest"):
         table.add_column(name, justify="right")
@@ -87,20 +89,3 @@ def _value(value: float) -> str:
     if not math.isfinite(value):
         return "-"
     return f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.4g}"
-
-
-def _notes(result: TransientResult) -> list[str]:
-    lines = [
-        "",
-        f"{result.dofs} dofs, {result.steps} steps of {result.step:.4g} s, {result.seconds['total']:.2f} s; {result.method} "
-        f"({result.reason})",
-    ]
-    if result.error_estimate == result.error_estimate:
-        lines.append(
-            f"error: statistics within {result.error_estimate:.1e}, from a run of twice the step"
-            + (", and one of more modes" if "modes with" in result.method else "")
-        )
-    lines.append(f"energy error: {result.energy.share:.1e} of the largest term")
-    lines += [f"left out: {note}" for note in result.left_out]
-    lines += [f"Warning: {note}" for note in result.warnings]
-    return lines
