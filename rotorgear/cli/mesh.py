@@ -78,7 +78,7 @@ def mesh(
 
     checked = rg.load(model)
     with progress_bar("mesh") as progress:
-        found = rg.mesh(
+        result = rg.mesh(
             checked,
             mesh,
             stiffness=stiffness,
@@ -91,17 +91,17 @@ def mesh(
             load_factors=parse_factors(load_factors),
             progress=progress,
         )
-    console().print(found.table(harmonics=harmonics))
-    write_json(found.to_dict(max(harmonics, 8)), json)
+    console().print(result.table(harmonics=harmonics))
+    write_json(result.to_dict(max(harmonics, 8)), json)
     if plot:
-        console().print(f"drawn: {rg.plot.save(rg.plot.mesh(found), plot)}")
+        console().print(f"drawn: {rg.plot.save(rg.plot.mesh(result), plot)}")
     if vtk:
         from rotorgear.analysis.teeth.tooth_field import tooth_fields
         from rotorgear.export.tooth_vtk import write_tooth_vtk
 
         with progress_bar("vtk") as progress:
             fields = tooth_fields(
-                checked, found.mesh, torque=torque, preset=found.preset, body=body, at=at, progress=progress
+                checked, result.mesh, torque=torque, preset=result.preset, body=body, at=at, progress=progress
             )
         for path in write_tooth_vtk(fields, vtk):
             console().print(f"wrote {path}")

@@ -101,7 +101,13 @@ def modal(
     if comparison:
         data["comparison"] = comparison.to_dict()
     write_json(data, json)
-    _write(result, save, vtk, plot, _within(chosen, len(result)))
+    # Only the result knows how many modes there are, so the numbers of --shapes are held against it here.
+    if chosen is None:
+        chosen = list(range(min(len(result), _DEFAULT_SHAPES)))
+    beyond = [number + 1 for number in chosen if number >= len(result)]
+    if beyond:
+        raise AnalysisError(f"--shapes: there is no mode {beyond[0]}, the result has {len(result)}")
+    _write(result, save, vtk, plot, chosen)
 
 
 def _write(result: ModalResult, save: Path | None, vtk: Path | None, plot: Path | None, chosen: list[int]) -> None:
@@ -131,19 +137,10 @@ def _numbers(text: str | None) -> list[int] | None:
     """Mode numbers, counted from 1 in the text and from 0 in the result."""
     if text is None:
         return None
-    found: list[int] = []
+    chosen: list[int] = []
     for part in text.split(","):
         first, _, last = part.strip().partition("-")
         if not first.isdigit() or (last and not last.isdigit()) or int(first) < 1:
             raise AnalysisError(f"--shapes: got '{text}', expected numbers of modes such as 1,6,9-12")
-        found += range(int(first) - 1, int(last or first))
-    return found
-
-
-def _within(chosen: list[int] | None, count: int) -> list[int]:
-    if chosen is None:
-        return list(range(min(count, _DEFAULT_SHAPES)))
-    beyond = [number + 1 for number in chosen if number >= count]
-    if beyond:
-        raise AnalysisError(f"--shapes: there is no mode {beyond[0]}, the result has {count}")
+        chosen += range(int(first) - 1, int(last or first))
     return chosen

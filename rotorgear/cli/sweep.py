@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from rotorgear.cli.common import JsonOption, ModelFile, console, progress_bar, write_json
 from rotorgear.errors import AnalysisError, RotorgearError
-
-if TYPE_CHECKING:
-    from rotorgear.results.sweep import SweepResult
 
 # Points that --plot draws portraits and spectra of.
 _PORTRAITS = 9
@@ -137,13 +134,7 @@ def sweep(
                 typer.echo(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)
             raise
     console().print(result.table())
-    _write(result, save, plot, json)
-
-
-def _write(result: SweepResult, save: Path | None, plot: Path | None, json: Path | None) -> None:
-    """Write the files, first the one that holds everything."""
-    import rotorgear as rg
-
+    # First the file that holds everything.
     if save:
         rg.save(result, save)
         rg.stream(save).close()

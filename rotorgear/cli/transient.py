@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from rotorgear.cli.common import JsonOption, ModelFile, console, parse_speed, progress_bar, write_json
 from rotorgear.errors import AnalysisError
-
-if TYPE_CHECKING:
-    from rotorgear.results.transient import TransientResult
 
 
 def transient(
@@ -138,15 +135,6 @@ def transient(
             out.print(beside.table())
             data["rig"] = beside.to_dict()
     write_json(data, json)
-    _write(result, save, plot, vtk)
-    if result.status != "success":
-        typer.echo("the run ended early: what it gave so far stands above", err=True)
-        raise typer.Exit(1)
-
-
-def _write(result: TransientResult, save: Path | None, plot: Path | None, vtk: Path | None) -> None:
-    import rotorgear as rg
-
     if save and result.status == "success":
         rg.save(result, save)
         rg.stream(save).close()
@@ -159,3 +147,6 @@ def _write(result: TransientResult, save: Path | None, plot: Path | None, vtk: P
     if vtk:
         paths = rg.write_motion(result, vtk)
         typer.echo(f"wrote {len(paths)} files to {vtk}; open motion.pvd in ParaView")
+    if result.status != "success":
+        typer.echo("the run ended early: what it gave so far stands above", err=True)
+        raise typer.Exit(1)

@@ -42,7 +42,17 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
     axis.set_xlim(left, right)
     axis.set_ylim(0.0, top)
     _branches(axis, result, colour)
-    _whirl(axis, result)
+    # About eight markers of whirl a branch, each branch beginning elsewhere, so that close branches don't hide each other's.
+    step = max(1, len(result.speeds) // 8)
+    for word, marker in _MARKERS.items():
+        x = []
+        y = []
+        for b in range(len(result)):
+            for k in range((b * step) // 3 % step + 1, len(result.speeds), step):
+                if WHIRL_WORDS[result.whirl[k, b]] == word and np.isfinite(result.frequency_hz[k, b]):
+                    x.append(result.speed_rpm[k])
+                    y.append(result.frequency_hz[k, b])
+        axis.plot(x, y, marker, color="#222222", ms=3.6, mfc="white", mew=0.7, ls="none", zorder=4)
     _lines(axis, result, (left, right), top)
     _crossings(axis, result, top)
     if result.operating_speed is not None and left <= result.operating_speed * RPM_PER_RAD_S <= right:
@@ -89,21 +99,6 @@ def _branches(axis: Any, result: CampbellResult, colour: str) -> None:
 
 def _mean(values: np.ndarray) -> np.ndarray:
     return np.asarray(0.5 * (values[:-1] + values[1:]))
-
-
-def _whirl(axis: Any, result: CampbellResult) -> None:
-    """About eight markers a branch, each branch beginning elsewhere, so that close branches don't hide each other's."""
-    count = len(result.speeds)
-    step = max(1, count // 8)
-    for word, marker in _MARKERS.items():
-        x = []
-        y = []
-        for b in range(len(result)):
-            for k in range((b * step) // 3 % step + 1, count, step):
-                if WHIRL_WORDS[result.whirl[k, b]] == word and np.isfinite(result.frequency_hz[k, b]):
-                    x.append(result.speed_rpm[k])
-                    y.append(result.frequency_hz[k, b])
-        axis.plot(x, y, marker, color="#222222", ms=3.6, mfc="white", mew=0.7, ls="none", zorder=4)
 
 
 def _lines(axis: Any, result: CampbellResult, ends: tuple[float, float], top: float) -> None:

@@ -43,13 +43,13 @@ def _curve(axis: Any, study: ConvergenceStudy, key: str, label: str) -> None:
     families = dict.fromkeys(rung.family for rung in study.rungs)
     others = {family: ("osd^v<>"[i % 7], f"C{i}", family) for i, family in enumerate(families)}
     for family, (marker, colour, name) in {**others, **{key: _STYLE[key] for key in _STYLE if key in families}}.items():
-        own = [rung for rung in study.rungs if rung.family == family and rung.error < float("inf")]
-        if own:
+        rungs = [rung for rung in study.rungs if rung.family == family and rung.error < float("inf")]
+        if rungs:
             # An error of exactly zero has no place on a logarithmic axis.
-            x = [getattr(rung, key) for rung in own]
-            y = [max(rung.error, 1e-16) for rung in own]
+            x = [getattr(rung, key) for rung in rungs]
+            y = [max(rung.error, 1e-16) for rung in rungs]
             axis.loglog(x, y, marker=marker, color=colour, lw=1.2, ms=5, label=name)
-            axis.loglog(x, [max(rung.estimate, 1e-16) for rung in own], "x", color=colour, ms=5, alpha=0.6)
+            axis.loglog(x, [max(rung.estimate, 1e-16) for rung in rungs], "x", color=colour, ms=5, alpha=0.6)
     axis.loglog([], [], "x", color="#444444", alpha=0.6, label="its own estimate")
     from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 

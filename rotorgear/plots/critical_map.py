@@ -29,6 +29,7 @@ def critical_map(result: CriticalMap, ax: Any = None) -> Any:
     title = f"{result.model.title or 'Critical speeds'}\nundamped critical speeds of {result.line}"
     axis = axes_for(ax, (9.0, 6.0), title)
     for kind, (style, colour) in _STYLE.items():
+        name = "torsion or axial" if kind == "other" else f"{kind} whirl"
         values = np.abs(getattr(result, kind)) * RPM_PER_RAD_S
         for column in range(values.shape[1]):
             axis.loglog(
@@ -37,7 +38,7 @@ def critical_map(result: CriticalMap, ax: Any = None) -> Any:
                 style,
                 color=colour,
                 lw=1.4,
-                label=_label(kind) if column == 0 else None,
+                label=name if column == 0 else None,
             )
     _bearings(axis, result)
     axis.set_xlabel("radial stiffness of every bearing, N/m")
@@ -48,10 +49,6 @@ def critical_map(result: CriticalMap, ax: Any = None) -> Any:
     return axis
 
 
-def _label(kind: str) -> str:
-    return "torsion or axial" if kind == "other" else f"{kind} whirl"
-
-
 def _bearings(axis: Any, result: CriticalMap) -> None:
     """A vertical line at each different stiffness that a bearing has, named after the bearings that have it."""
     names: dict[float, list[str]] = {}
@@ -59,14 +56,14 @@ def _bearings(axis: Any, result: CriticalMap) -> None:
         for value, suffix in ((x, "" if x == y else " x"), (y, "" if x == y else " y")):
             if value > 0.0 and f"{name}{suffix}" not in names.setdefault(float(value), []):
                 names[float(value)].append(f"{name}{suffix}")
-    for value, own in names.items():
+    for value, alike in names.items():
         if result.stiffness[0] <= value <= result.stiffness[-1]:
             axis.axvline(value, color="#444444", lw=0.8)
-            more = f" and {len(own) - 3} more" if len(own) > 3 else ""
+            more = f" and {len(alike) - 3} more" if len(alike) > 3 else ""
             axis.text(
                 value,
                 0.02,
-                " " + ", ".join(own[:3]) + more,
+                " " + ", ".join(alike[:3]) + more,
                 rotation=90,
                 fontsize=7,
                 va="bottom",

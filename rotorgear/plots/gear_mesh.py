@@ -71,9 +71,14 @@ def gear(result: GearSheet, fig: Any = None, *, mesh: str | None = None) -> np.n
     row = next(row for row in result.meshes if row.name == name)
     figure = figure_for(fig, (11.0, 5.6), "")
     whole, near = figure.subplots(1, 2, width_ratios=[1.0, 1.25])
+    teeth = result.pairs[name]
     for axis in (whole, near):
-        _draw(axis, result.pairs[name], (row.pinion, row.gear))
-    _look_near(near, result.pairs[name])
+        _draw(axis, teeth, (row.pinion, row.gear))
+    # A few teeth around the pitch point.
+    pitch = 1e3 * on_line_of_action(teeth, 0.0)[0]
+    reach = 5.0e3 * teeth.first.transverse_module
+    near.set_xlim(pitch - 1.25 * reach, pitch + 1.25 * reach)
+    near.set_ylim(-reach, reach)
     whole.set_title(f"{name}: centre distance {1e3 * row.centre_distance_m:.3f} mm", fontsize=10)
     ratios = f"eps_alpha {row.transverse_contact_ratio:.3f}, eps_beta {row.overlap_ratio:.3f}"
     near.set_title(f"working pressure angle {row.working_pressure_angle_deg:.3f} deg, {ratios}", fontsize=10)
@@ -110,11 +115,3 @@ def _draw(axis: Any, teeth: ToothPair, names: tuple[str, str]) -> None:
     axis.tick_params(labelsize=8)
     axis.set_xlabel("x, mm", fontsize=8)
     axis.set_ylabel("y, mm", fontsize=8)
-
-
-def _look_near(axis: Any, teeth: ToothPair) -> None:
-    """Show a few teeth around the pitch point."""
-    pitch = 1e3 * on_line_of_action(teeth, 0.0)[0]
-    reach = 5.0e3 * teeth.first.transverse_module
-    axis.set_xlim(pitch - 1.25 * reach, pitch + 1.25 * reach)
-    axis.set_ylim(-reach, reach)

@@ -13,19 +13,19 @@ _TRIALS = tuple((r * np.cos(a), r * np.sin(a)) for r in (0.03, 0.045) for a in n
 def spread(places: list[float], least: float) -> list[float]:
     """Places moved apart by the least amounts that keep their order and a distance of `least` between neighbours."""
     order = np.argsort(places, kind="stable")
-    found = np.array([places[k] for k in order], float)
+    moved = np.array([places[k] for k in order], float)
     for _ in range(200):
-        gaps = np.diff(found)
+        gaps = np.diff(moved)
         tight = np.flatnonzero(gaps < least * 0.999)
         if not tight.size:
             break
         for k in tight:
-            push = 0.5 * (least - (found[k + 1] - found[k]))
+            push = 0.5 * (least - (moved[k + 1] - moved[k]))
             if push > 0.0:
-                found[k] -= push
-                found[k + 1] += push
-    back = np.empty(len(found))
-    back[order] = found
+                moved[k] -= push
+                moved[k + 1] += push
+    back = np.empty(len(moved))
+    back[order] = moved
     return [float(value) for value in back]
 
 

@@ -31,11 +31,27 @@ def mesh(result: MeshResult, fig: Any = None) -> np.ndarray:
     load = "" if result.load is None else f", {result.load.pinion_torque_n_m:.5g} N m on the pinion"
     figure = figure_for(fig, (11.0, 3.7 * rows), f"{result.mesh}: {result.stiffness_model}{load}")
     axes = figure.subplots(rows, 2, squeeze=False)
-    _stiffness(axes[0, 0], result)
+    stiffness = axes[0, 0]
+    stiffness.plot(*_closed(result, 1e-9 * result.stiffness), color=_BLUE, lw=1.6, label=result.definition)
+    if result.tangent is not None:
+        stiffness.plot(*_closed(result, 1e-9 * result.tangent), color=_ORANGE, lw=1.2, label="tangent")
+    stiffness.axhline(1e-9 * result.mean_stiffness, color=_GREY, lw=0.9, ls="--", label="mean")
+    stiffness.legend(frameon=False, fontsize=8)
+    stiffness.set_title(f"stiffness, {'all helices' if result.helices > 1 else 'one helix'}, transverse", fontsize=10)
+    _plain_axis(stiffness, "stiffness, N/nm")
     _error(axes[0, 1], result)
     if result.helix:
-        _sharing(axes[1, 0], result, result.helix[0])
-        _pressure(axes[1, 1], result, result.helix[0])
+        helix = result.helix[0]
+        sharing = axes[1, 0]
+        for pair, share in helix.share.items():
+            if np.any(share > 0.0):
+                carried = np.where(share > 0.0, 100.0 * share, np.nan)
+                sharing.plot(result.position, carried, lw=1.6, label=f"pair {pair}")
+        sharing.set_ylim(0.0, None)
+        sharing.legend(frameon=False, fontsize=8, ncols=2)
+        sharing.set_title(f"load sharing, contact ratio {helix.contact_ratio:.2f} under load", fontsize=10)
+        _plain_axis(sharing, "share of the load, %")
+        _pressure(axes[1, 1], result, helix)
     return np.asarray(axes)
 
 
@@ -52,16 +68,6 @@ def _plain_axis(axis: Any, label: str) -> None:
     axis.ticklabel_format(axis="y", useOffset=False)
 
 
-def _stiffness(axis: Any, result: MeshResult) -> None:
-    axis.plot(*_closed(result, 1e-9 * result.stiffness), color=_BLUE, lw=1.6, label=result.definition)
-    if result.tangent is not None:
-        axis.plot(*_closed(result, 1e-9 * result.tangent), color=_ORANGE, lw=1.2, label="tangent")
-    axis.axhline(1e-9 * result.mean_stiffness, color=_GREY, lw=0.9, ls="--", label="mean")
-    axis.legend(frameon=False, fontsize=8)
-    axis.set_title(f"stiffness, {'all helices' if result.helices > 1 else 'one helix'}, transverse", fontsize=10)
-    _plain_axis(axis, "stiffness, N/nm")
-
-
 def _error(axis: Any, result: MeshResult) -> None:
     axis.set_title("transmission error along the line of action", fontsize=10)
     if result.transmission_error is None or result.no_load_error is None:
@@ -69,23 +75,12 @@ def _error(axis: Any, result: MeshResult) -> None:
         return
     axis.plot(*_closed(result, 1e6 * result.transmission_error), color=_BLUE, lw=1.6, label="under load")
     if np.ptp(result.no_load_error) > 0.0:
+        # Both curves about one mean: what is compared is how much they vary.
         shift = float(result.transmission_error.mean() - result.no_load_error.mean())
         label = f"without load, {1e6 * shift:+.3g} um"
         axis.plot(*_closed(result, 1e6 * (result.no_load_error + shift)), color=_GREY, lw=1.2, ls="--", label=label)
         axis.legend(frameon=False, fontsize=8)
     _plain_axis(axis, "transmission error, um")
-
-
-def _sharing(axis: Any, result: MeshResult, helix: HelixContact) -> None:
-    for pair, share in helix.share.items():
-        if not np.any(share > 0.0):
-            continue
-        own = np.where(share > 0.0, 100.0 * share, np.nan)
-        axis.plot(result.position, own, lw=1.6, label=f"pair {pair}")
-    axis.set_ylim(0.0, None)
-    axis.legend(frameon=False, fontsize=8, ncols=2)
-    axis.set_title(f"load sharing, contact ratio {helix.contact_ratio:.2f} under load", fontsize=10)
-    _plain_axis(axis, "share of the load, %")
 
 
 def _pressure(axis: Any, result: MeshResult, helix: HelixContact) -> None:

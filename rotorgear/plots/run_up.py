@@ -53,26 +53,26 @@ def _quantities(result: ResponseResult) -> list[tuple[str, list[str], np.ndarray
     meshes = list(dict.fromkeys(result.contact_mesh))
 
     def by_mesh(values: np.ndarray) -> np.ndarray:
-        own = [np.abs(values[:, :, result.contacts_of(mesh)]).max(axis=2) for mesh in meshes]
-        return np.stack(own, axis=2) if own else np.zeros((len(result.orders), len(result.speeds), 0))
+        largest = [np.abs(values[:, :, result.contacts_of(mesh)]).max(axis=2) for mesh in meshes]
+        return np.stack(largest, axis=2) if largest else np.zeros((len(result.orders), len(result.speeds), 0))
 
     bearings = np.linalg.norm(np.abs(result.bearing_force), axis=3)
     turning = ("tilt_x", "tilt_y", "torsion")
     linear = [k for k, name in enumerate(result.points) if result.model.points[name].direction not in turning]
     angular = [k for k, name in enumerate(result.points) if result.model.points[name].direction in turning]
-    found = [
+    quantities = [
         ("Dynamic mesh force of a helix", meshes, by_mesh(result.mesh_force), "N"),
         ("Dynamic transmission error", meshes, 1e6 * by_mesh(result.transmission_error), "um"),
         ("Bearing force", list(result.bearings), bearings, "N"),
         *(
-            ("Acceleration", [result.points[k] for k in own], np.abs(result.acceleration[:, :, own]), unit)
-            for own, unit in ((linear, "m/s$^2$"), (angular, "rad/s$^2$"))
+            ("Acceleration", [result.points[k] for k in points], np.abs(result.acceleration[:, :, points]), unit)
+            for points, unit in ((linear, "m/s$^2$"), (angular, "rad/s$^2$"))
         ),
     ]
     if not meshes and not result.bearings:
         orbit = 1e6 * np.abs(result.displacement[:, :, :, :2]).max(axis=3)
-        found.append(("Displacement", list(result.places), orbit, "um"))
-    return found
+        quantities.append(("Displacement", list(result.places), orbit, "um"))
+    return quantities
 
 
 def _lines(axis: Any, result: ResponseResult, names: list[str], sizes: np.ndarray, label: str) -> None:

@@ -78,14 +78,14 @@ def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> list[A
         return []
     axes = np.atleast_1d(figure.subplots(len(shafts), 1, sharex=True))
     for axis, name in zip(axes, shafts, strict=True):
-        own = result.nodes.on_shaft(name)
-        z = 1e3 * result.nodes.position[own, 2]
+        nodes = result.nodes.on_shaft(name)
+        z = 1e3 * result.nodes.position[nodes, 2]
         for dof, label in enumerate("xy"):
-            axis.plot(z, 1e6 * result.displacement[own, dof], color=COLOURS[dof], label=label, lw=1.6)
+            axis.plot(z, 1e6 * result.displacement[nodes, dof], color=COLOURS[dof], label=label, lw=1.6)
         layout = result.model.layout
-        own_parts = [(gear.shaft, gear.z, "#999999") for gear in layout.gears]
-        own_parts += [(*layout.place(f"bearings.{bearing}"), "#009E73") for bearing in result.model.bearings]
-        for shaft, at, colour in own_parts:
+        parts_on_shafts = [(gear.shaft, gear.z, "#999999") for gear in layout.gears]
+        parts_on_shafts += [(*layout.place(f"bearings.{bearing}"), "#009E73") for bearing in result.model.bearings]
+        for shaft, at, colour in parts_on_shafts:
             if shaft == name:
                 axis.axvline(1e3 * at, color=colour, lw=0.8, ls=":")
         axis.set_ylabel(f"{name}\num", fontsize=9)

@@ -84,12 +84,11 @@ def bifurcation(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np
     exponent = bool(result.lyapunov.shape[2])
     rows = 3 if exponent else 2
     axes = figure_for(fig, _SIZE, "").subplots(rows, 1, sharex=True, height_ratios=(3, 1, 1)[:rows])
+    dot = float(np.clip(120.0 / len(result.values), 0.8, 3.0))  # the finer, the more points stand side by side
     for r, name in enumerate(result.run):
         x = np.repeat(result.values[:, 0], result.count)
         y = 1e6 * result.section[:, r, :, contact, 0].ravel()
-        axes[0].plot(
-            x, y, ".", ms=_dot(result), mew=0, color=_colour(result, r), alpha=0.7, label=name, rasterized=True
-        )
+        axes[0].plot(x, y, ".", ms=dot, mew=0, color=_colour(result, r), alpha=0.7, label=name, rasterized=True)
         if exponent:
             axes[1].errorbar(
                 result.values[:, 0],
@@ -126,11 +125,6 @@ def bifurcation(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np
     for one in axes:
         one.grid(alpha=0.25)
     return np.asarray(axes)
-
-
-def _dot(result: SweepResult) -> float:
-    """Size of a dot: the finer, the more points stand side by side."""
-    return float(np.clip(120.0 / len(result.values), 0.8, 3.0))
 
 
 def _colour(result: SweepResult, run: int) -> str:

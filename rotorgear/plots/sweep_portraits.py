@@ -17,11 +17,6 @@ _ORDERS = 4.0
 _DECADES = 5
 
 
-def _size(count: int) -> tuple[float, float]:
-    """Inches of a figure with so many portraits."""
-    return (5.0, 4.0) if count == 1 else (8.0, 6.0) if count <= 9 else (10.5, 8.0)
-
-
 def portraits(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np.ndarray:
     """Draw velocity over displacement of a contact through some periods, with the Poincare points on top.
 
@@ -36,12 +31,12 @@ def portraits(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np.n
     Raises:
         AnalysisError: the sweep kept no trajectories. MissingExtraError: matplotlib is not installed.
     """
-    own, figure, panels = _panels(result, fig)
+    kept, figure, panels = _panels(result, fig)
     for k, one in enumerate(panels):
-        for j in range(len(own.run)):
-            path = 1e6 * own.trajectory(k, j)[:, contact]
-            points = 1e6 * own.section(k, j)[:, contact]
-            line, dot = _colours(own, j)
+        for j in range(len(kept.run)):
+            path = 1e6 * kept.trajectory(k, j)[:, contact]
+            points = 1e6 * kept.section(k, j)[:, contact]
+            line, dot = _colours(kept, j)
             one.plot(
                 path[:, DISPLACEMENT],
                 1e-3 * path[:, VELOCITY],
@@ -73,14 +68,14 @@ def portrait_spectra(result: SweepResult, fig: Any = None, *, contact: int = 0) 
     Raises:
         AnalysisError: the sweep kept no trajectories. MissingExtraError: matplotlib is not installed.
     """
-    own, figure, panels = _panels(result, fig)
+    kept, figure, panels = _panels(result, fig)
     for k, one in enumerate(panels):
         largest = 0.0
-        for j in range(len(own.run)):
-            order, amplitude = own.spectrum(k, j, contact)
+        for j in range(len(kept.run)):
+            order, amplitude = kept.spectrum(k, j, contact)
             shown = (order > 0.0) & (order <= _ORDERS + 0.2)
             one.semilogy(
-                order[shown], 1e6 * amplitude[shown], lw=0.6, color=_colours(own, j)[1], label=_name(result, k, j)
+                order[shown], 1e6 * amplitude[shown], lw=0.6, color=_colours(kept, j)[1], label=_name(result, k, j)
             )
             largest = max(largest, float(np.nanmax(1e6 * amplitude[shown], initial=0.0)))
         one.set_xlim(0.0, _ORDERS + 0.2)
@@ -90,7 +85,7 @@ def portrait_spectra(result: SweepResult, fig: Any = None, *, contact: int = 0) 
         one.set_xticks(np.arange(0.0, _ORDERS + 0.5))
         one.set_xticks(np.arange(0.5, _ORDERS, 1.0), minor=True)
         one.grid(which="both", axis="x", lw=0.4, alpha=0.35)
-    which = "that of the fastest mesh" if own.turns.max() > 1 else "the mesh frequency"
+    which = "that of the fastest mesh" if kept.turns.max() > 1 else "the mesh frequency"
     figure.supxlabel(f"frequency over {which}", fontsize=9)
     figure.supylabel(f"amplitude of the displacement of {result.contact[contact]}, um", fontsize=9)
     return np.array(panels)
@@ -98,29 +93,30 @@ def portrait_spectra(result: SweepResult, fig: Any = None, *, contact: int = 0) 
 
 def _panels(result: SweepResult, fig: Any) -> tuple[Portraits, Any, list[Any]]:
     """One pair of axes for each point, named by its values and response types."""
-    own = result.portraits
-    if own is None:
+    kept = result.portraits
+    if kept is None:
         raise AnalysisError("the sweep kept no trajectories: ask for them (portraits, --portraits)")
-    count = len(own.point)
-    figure = figure_for(fig, _size(count), "")
+    count = len(kept.point)
+    inches = (5.0, 4.0) if count == 1 else (8.0, 6.0) if count <= 9 else (10.5, 8.0)
+    figure = figure_for(fig, inches, "")
     columns = int(np.ceil(np.sqrt(count)))
     grid = list(figure.subplots(int(np.ceil(count / columns)), columns, squeeze=False).flat)
     for one in grid[count:]:
         one.set_visible(False)
-    for one, p in zip(grid, own.point.tolist(), strict=False):
+    for one, p in zip(grid, kept.point.tolist(), strict=False):
         values = ", ".join(f"{x:.6g} {unit}".strip() for x, unit in zip(result.values[p], result.unit, strict=True))
-        kinds = [result.motion_at(p, r) for r in own.run.tolist()]
+        kinds = [result.motion_at(p, r) for r in kept.run.tolist()]
         if len(kinds) > 1:
-            kinds = [f"{result.run[r]} {kind}" for r, kind in zip(own.run.tolist(), kinds, strict=True)]
+            kinds = [f"{result.run[r]} {kind}" for r, kind in zip(kept.run.tolist(), kinds, strict=True)]
         one.set_title(f"{values}: {', '.join(kinds)}", fontsize=8)
         one.tick_params(labelsize=7)
-    return own, figure, grid[:count]
+    return kept, figure, grid[:count]
 
 
 def _name(result: SweepResult, k: int, j: int) -> str | None:
     """Name of a run where the legend of the first panel tells several apart."""
-    own = result.portraits
-    return result.run[own.run[j]] if own is not None and k == 0 and len(own.run) > 1 else None
+    kept = result.portraits
+    return result.run[kept.run[j]] if kept is not None and k == 0 and len(kept.run) > 1 else None
 
 
 def _legend(result: SweepResult, k: int, one: Any) -> None:
@@ -128,6 +124,6 @@ def _legend(result: SweepResult, k: int, one: Any) -> None:
         one.legend(fontsize=6, loc="best", frameon=False)
 
 
-def _colours(own: Portraits, j: int) -> tuple[str, str]:
+def _colours(kept: Portraits, j: int) -> tuple[str, str]:
     """Of the trajectory of a run, and of its Poincare points."""
-    return ("#888888", "k") if len(own.run) == 1 else (COLOURS[j % len(COLOURS)], COLOURS[j % len(COLOURS)])
+    return ("#888888", "k") if len(kept.run) == 1 else (COLOURS[j % len(COLOURS)], COLOURS[j % len(COLOURS)])

@@ -203,7 +203,14 @@ class Comparison(Result, kind="compare"):
     @derived("what the agreement is worth", note=", in one sentence")
     def verdict(self) -> str:
         """One sentence that says what the agreement is worth."""
-        return f"{_finding(self)}{_driven(self)}."
+        # A rig line at a frequency of excitation may be forced response, which says nothing about the modes.
+        lines: Sequence[Match | UnmatchedRigLine] = (*self.matches, *self.unmatched_rig)
+        driven = sum(1 for line in lines if line.excitations)
+        if driven == 0:
+            return f"{_finding(self)}."
+        verb = "coincides" if driven == 1 else "coincide"
+        which = f"{driven} of the {self.rig_count} rig lines {verb} with an excitation line"
+        return f"{_finding(self)}; {which} and may be no natural frequency at all."
 
 
 def _finding(comparison: Comparison) -> str:
@@ -220,27 +227,13 @@ def _finding(comparison: Comparison) -> str:
     cover = f"{_percent(chance.coverage)} of the band lies {within} of some mode"
     if chance.number_is_evidence:
         rare = f"{random}, and as many in {_percent(chance.probability_as_many)} of cases"
-        worth = f"so the agreement is evidence for the model {_UNFITTED}{_missing(count - matched)}"
-        return f"{head}, while {cover}: {rare}, {worth}"
+        missing = count - matched
+        rest = f", though {missing} rig line{'s have' if missing > 1 else ' has'} no mode" if missing else ""
+        return f"{head}, while {cover}: {rare}, so the agreement is evidence for the model {_UNFITTED}{rest}"
     if chance.closeness_is_evidence:
         close = f"{_percent(chance.probability_as_close)} of random lists come as close, which is evidence {_UNFITTED}"
         return f"{head}, but {cover}: {random}, so that alone is no evidence for the model; only {close}"
     return f"{head}, but {cover}: {random}, so the agreement is no evidence for the model"
-
-
-def _missing(count: int) -> str:
-    return f", though {count} rig line{'s have' if count > 1 else ' has'} no mode" if count else ""
-
-
-def _driven(comparison: Comparison) -> str:
-    """Return the clause on rig lines that may be forced response, or nothing."""
-    lines: Sequence[Match | UnmatchedRigLine] = (*comparison.matches, *comparison.unmatched_rig)
-    driven = sum(1 for line in lines if line.excitations)
-    if driven == 0:
-        return ""
-    verb = "coincides" if driven == 1 else "coincide"
-    which = f"{driven} of the {comparison.rig_count} rig lines {verb} with an excitation line"
-    return f"; {which} and may be no natural frequency at all"
 
 
 def _percent(share: float) -> str:

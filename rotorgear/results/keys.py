@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rotorgear.results.result import Result
-from rotorgear.results.schema import Declared, Record, Written
+from rotorgear.results.schema import Record
 
 
 @dataclass(frozen=True)
@@ -26,18 +26,15 @@ def keys_of(cls: type[Record], prefix: str = "") -> Iterator[Key]:
     title = [one for one in declared if one.name == "title"]
     for one in [*title, *(one for one in declared if one.name != "title")]:
         for written in one.written():
-            yield from _keys(one, written, prefix)
-
-
-def _keys(declared: Declared, written: Written, prefix: str) -> Iterator[Key]:
-    axes = declared.axes if written.axes is None else written.axes
-    path = prefix + written.key + "".join(f".{axis}" if axis.isupper() else "[]" for axis in axes)
-    unit = declared.unit if written.unit is None else written.unit
-    label = declared.label if written.label is None else written.label
-    note = written.note if written.note is not None else declared.note if written.label is None else ""
-    if declared.record is not None and written.label is None:
-        if note:
-            yield Key(path.removesuffix("[]"), "", label + note)
-        yield from keys_of(declared.record, f"{path}.")
-    else:
-        yield Key(path, unit, label + note)
+            axes = one.axes if written.axes is None else written.axes
+            path = prefix + written.key + "".join(f".{axis}" if axis.isupper() else "[]" for axis in axes)
+            unit = one.unit if written.unit is None else written.unit
+            label = one.label if written.label is None else written.label
+            # A label of the key's own does without the note of the field.
+            note = written.note if written.note is not None else one.note if written.label is None else ""
+            if one.record is None or written.label is not None:
+                yield Key(path, unit, label + note)
+                continue
+            if note:
+                yield Key(path.removesuffix("[]"), "", label + note)
+            yield from keys_of(one.record, f"{path}.")

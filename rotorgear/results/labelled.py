@@ -52,14 +52,14 @@ def rows(result: Record, *axes: str) -> list[dict[str, Any]]:
         if axis in axes
     }
     shown = [column for column in columns if column.axes and set(column.axes) <= set(axes)]
-    found = []
+    entries = []
     for place in product(*(range(sizes[axis]) for axis in axes)):
         at = dict(zip(axes, place, strict=True))
         row: dict[str, Any] = {axis: number + 1 for axis, number in at.items()}
         for column in shown:
             row[column.name] = _python(column.values[tuple(at[axis] for axis in column.axes)])
-        found.append(row)
-    return found
+        entries.append(row)
+    return entries
 
 
 def _flat(record: Record) -> dict[str, Any]:

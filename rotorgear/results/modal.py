@@ -20,8 +20,8 @@ class NodeTable(Record):
 
     def on_shaft(self, shaft: str) -> np.ndarray:
         """Numbers of a shaft's nodes from left to right, without pedestals."""
-        own = np.array([i for i, name in enumerate(self.shaft) if name == shaft and not self.pedestal[i]], dtype=int)
-        return own[np.argsort(self.position[own, 2], kind="stable")] if own.size else own
+        on_it = np.array([i for i, name in enumerate(self.shaft) if name == shaft and not self.pedestal[i]], dtype=int)
+        return on_it[np.argsort(self.position[on_it, 2], kind="stable")] if on_it.size else on_it
 
     def nearest(self, shaft: str, z: float) -> int:
         """Number of the node of a shaft nearest to z."""

@@ -64,8 +64,8 @@ class Portraits(Record):
 
     def trajectory(self, k: int, run: int = 0) -> np.ndarray:
         """Records of a run, (s, c, 3)."""
-        found: np.ndarray = self.values[k, run, : self.periods[k] * self.records[k]]
-        return found
+        recorded: np.ndarray = self.values[k, run, : self.periods[k] * self.records[k]]
+        return recorded
 
     def section(self, k: int, run: int = 0) -> np.ndarray:
         """Its Poincare points, (periods, c, 3)."""
@@ -94,16 +94,14 @@ class Portraits(Record):
         order, a = self.spectrum(k, run, contact, what)
         if not np.all(np.isfinite(a)):
             return []
-        inner = np.flatnonzero((a[1:-1] >= a[:-2]) & (a[1:-1] > a[2:])) + 1
-        found = [
-            _between(order, a, i) for i in inner.tolist() if a[i] > max(_SHARE * a.max(), _ABOVE * _surroundings(a, i))
-        ]
-        return sorted(found, key=lambda line: -line[1])[:_MOST_LINES]
-
-
-def _surroundings(a: np.ndarray, i: int) -> float:
-    """Median of the bins on both sides of a line."""
-    return float(np.median(np.concatenate([a[max(0, i - _SIDE) : i - 1], a[i + 2 : i + 2 + _SIDE]])))
+        maxima = np.flatnonzero((a[1:-1] >= a[:-2]) & (a[1:-1] > a[2:])) + 1
+        strong = []
+        for i in maxima.tolist():
+            # Hann's window spreads a line over the bins next to it, so they are no part of its surroundings.
+            around = np.concatenate([a[max(0, i - _SIDE) : i - 1], a[i + 2 : i + 2 + _SIDE]])
+            if a[i] > max(_SHARE * a.max(), _ABOVE * float(np.median(around))):
+                strong.append(_between(order, a, i))
+        return sorted(strong, key=lambda line: -line[1])[:_MOST_LINES]
 
 
 def _between(order: np.ndarray, a: np.ndarray, i: int) -> tuple[float, float]:

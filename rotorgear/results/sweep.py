@@ -168,22 +168,22 @@ class SweepResult(ModelResult, kind="sweep"):
     @derived("lines of the points that keep their trajectory", "", "portrait", record=Portrait, json="portraits")
     def portrait_lines(self) -> tuple[Portrait, ...]:
         """Length and lines of the trajectories; none where none were kept."""
-        own = self.portraits
-        if own is None:
+        kept = self.portraits
+        if kept is None:
             return ()
         return tuple(
             Portrait(
                 values=tuple(self.values[p].tolist()),
                 start=self.run[r],
-                periods=int(own.periods[k]),
-                records_per_period=int(own.records[k]),
+                periods=int(kept.periods[k]),
+                records_per_period=int(kept.records[k]),
                 contacts=tuple(
-                    ContactLines(name, tuple(SpectrumLine(order, a) for order, a in own.lines(k, j, c)))
+                    ContactLines(name, tuple(SpectrumLine(order, a) for order, a in kept.lines(k, j, c)))
                     for c, name in enumerate(self.contact)
                 ),
             )
-            for k, p in enumerate(own.point.tolist())
-            for j, r in enumerate(own.run.tolist())
+            for k, p in enumerate(kept.point.tolist())
+            for j, r in enumerate(kept.run.tolist())
         )
 
     @property
@@ -206,11 +206,11 @@ class SweepResult(ModelResult, kind="sweep"):
 
     def route(self, run: int = 0) -> list[tuple[str, int, int]]:
         """Response types along the points with the first and last point of each."""
-        found: list[tuple[str, int, int]] = []
+        stretches: list[tuple[str, int, int]] = []
         for p in range(len(self.values)):
             kind = self.motion_at(p, run)
-            if found and found[-1][0] == kind:
-                found[-1] = (kind, found[-1][1], p)
+            if stretches and stretches[-1][0] == kind:
+                stretches[-1] = (kind, stretches[-1][1], p)
             else:
-                found.append((kind, p, p))
-        return found
+                stretches.append((kind, p, p))
+        return stretches

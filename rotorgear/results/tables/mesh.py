@@ -13,29 +13,32 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
-def mesh_table(found: MeshResult, *, harmonics: int = 0) -> RenderableType:
+def mesh_table(result: MeshResult, *, harmonics: int = 0) -> RenderableType:
     """Return stiffness, transmission error and, where asked for, so many orders of the mesh as one rich renderable."""
     from rich.console import Group
 
-    preset = "" if found.preset is None else f", preset {found.preset}"
-    setting = [f"stiffness model {found.stiffness_model}{preset}: {found.definition}, {PLANE}", f"body: {found.body}"]
-    if found.load is None:
+    preset = "" if result.preset is None else f", preset {result.preset}"
+    setting = [
+        f"stiffness model {result.stiffness_model}{preset}: {result.definition}, {PLANE}",
+        f"body: {result.body}",
+    ]
+    if result.load is None:
         setting.append("no load")
     else:
-        load = found.load
+        load = result.load
         setting.append(
             f"load: {load.pinion_torque_n_m:.6g} N m on the pinion, F_bt {load.base_force_n:.6g} N, "
             f"F_n {load.normal_force_n:.6g} N ({load.source})"
         )
-    title = heading(found.title or "Mesh", f": mesh '{found.mesh}', {found.pinion} and {found.gear}")
-    parts: list[Any] = [title, *lines(*setting), "", _main(found)]
+    title = heading(result.title or "Mesh", f": mesh '{result.mesh}', {result.pinion} and {result.gear}")
+    parts: list[Any] = [title, *lines(*setting), "", _main(result)]
     if harmonics:
-        parts += ["", _harmonics(found, harmonics)]
-    if found.loads:
+        parts += ["", _harmonics(result, harmonics)]
+    if result.loads:
         loads = table(
             "load factor", "mean stiffness", "peak to peak", "STE peak to peak", "contact ratio", no_wrap=True
         )
-        for point in found.loads:
+        for point in result.loads:
             loads.add_row(
                 f"{point.factor:g}",
                 f"{point.mean_stiffness_n_per_m:.5g} N/m",
@@ -44,35 +47,35 @@ def mesh_table(found: MeshResult, *, harmonics: int = 0) -> RenderableType:
                 f"{point.contact_ratio:.3f}",
             )
         parts += ["", loads]
-    parts += ["", *lines(*(f"Warning: {text}" for text in found.warnings))]
-    if found.dofs:
-        parts.append(f"{found.dofs} dofs, {found.seconds['total']:.2f} s")
+    parts += ["", *lines(*(f"Warning: {text}" for text in result.warnings))]
+    if result.dofs:
+        parts.append(f"{result.dofs} dofs, {result.seconds['total']:.2f} s")
     return Group(*parts)
 
 
-def _main(found: MeshResult) -> Any:
-    helices = f"all {found.helices} helices" if found.helices > 1 else "one helix"
+def _main(result: MeshResult) -> Any:
+    helices = f"all {result.helices} helices" if result.helices > 1 else "one helix"
     out = table("", helices, "per width of a helix", "est. error", no_wrap=True)
-    errors = found.errors
-    per = 1e-9 / (found.face_width * found.helices) if found.face_width else None
+    errors = result.errors
+    per = 1e-9 / (result.face_width * result.helices) if result.face_width else None
 
     def row(name: str, value: float, error: float | None) -> None:
         width = f"{per * value:.4f} N/(mm um)" if per else "-"
         out.add_row(name, f"{value:.5g} N/m", width, "-" if error is None else f"{100 * error:.2g} %")
 
-    row("mean stiffness", found.mean_stiffness, errors.mean_stiffness if errors else None)
-    row("peak to peak", found.peak_to_peak_stiffness, errors.peak_to_peak_stiffness if errors else None)
-    if found.tangent is not None:
-        row("mean tangent stiffness", float(found.tangent.mean()), None)
-    row("mean along the normal", found.mean_normal_stiffness, None)
-    if found.transmission_error is not None and found.no_load_error is not None:
-        ste = found.transmission_error
+    row("mean stiffness", result.mean_stiffness, errors.mean_stiffness if errors else None)
+    row("peak to peak", result.peak_to_peak_stiffness, errors.peak_to_peak_stiffness if errors else None)
+    if result.tangent is not None:
+        row("mean tangent stiffness", float(result.tangent.mean()), None)
+    row("mean along the normal", result.mean_normal_stiffness, None)
+    if result.transmission_error is not None and result.no_load_error is not None:
+        ste = result.transmission_error
         error = errors.ste_peak_to_peak if errors else None
         out.add_row("transmission error, mean", f"{1e6 * ste.mean():.4f} um", "", "")
         out.add_row("peak to peak", f"{1e6 * np.ptp(ste):.4f} um", "", "-" if error is None else f"{100 * error:.2g} %")
-        out.add_row("peak to peak, no load", f"{1e6 * np.ptp(found.no_load_error):.4f} um", "", "")
-    if found.helix:
-        helix = found.helix
+        out.add_row("peak to peak, no load", f"{1e6 * np.ptp(result.no_load_error):.4f} um", "", "")
+    if result.helix:
+        helix = result.helix
         ratio = np.mean([item.contact_ratio for item in helix])
         out.add_row("contact ratio under load", f"{ratio:.3f}", f"{helix[0].geometric_contact_ratio:.3f} without", "")
         share = max(float(values.max()) for item in helix for values in item.share.values())
@@ -82,13 +85,13 @@ def _main(found: MeshResult) -> Any:
     return out
 
 
-def _harmonics(found: MeshResult, count: int) -> Any:
+def _harmonics(result: MeshResult, count: int) -> Any:
     out = table("mesh order", "stiffness", "phase", "transmission error", "phase", no_wrap=True)
-    k = found.harmonics(count)
-    e = found.ste_harmonics(count)
+    k = result.harmonics(count)
+    e = result.ste_harmonics(count)
     for order in range(len(k)):
         # Below this share of the mean an order is rounding, and its phase says nothing.
-        small = abs(k[order]) < 1e-9 * found.mean_stiffness
+        small = abs(k[order]) < 1e-9 * result.mean_stiffness
         cells = [f"{abs(k[order]):.4g} N/m", "-" if small else f"{np.degrees(np.angle(k[order])):.1f} deg"]
         if e is not None:
             cells += [f"{1e6 * abs(e[order]):.4f} um", "-" if small else f"{np.degrees(np.angle(e[order])):.1f} deg"]

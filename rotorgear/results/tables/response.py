@@ -42,9 +42,9 @@ def _largest(result: ResponseResult) -> Any:
     """The largest amplitude of each quantity and the order, speed and frequency of it."""
     out = table("largest of", "", "order no", "rpm", "Hz", "amplitude", left=2)
     for mesh in dict.fromkeys(result.contact_mesh):
-        own = result.contacts_of(mesh)
-        _row(out, result, "mesh force", mesh, np.abs(result.mesh_force[:, :, own]).max(axis=2), 1.0, "N")
-        error = np.abs(result.transmission_error[:, :, own]).max(axis=2)
+        contacts = result.contacts_of(mesh)
+        _row(out, result, "mesh force", mesh, np.abs(result.mesh_force[:, :, contacts]).max(axis=2), 1.0, "N")
+        error = np.abs(result.transmission_error[:, :, contacts]).max(axis=2)
         _row(out, result, "DTE", mesh, error, 1e6, "um")
     for k, name in enumerate(result.bearings):
         force = np.abs(result.bearing_force[:, :, k]).max(axis=2)

@@ -39,6 +39,6 @@ def rig_spectrum_table(beside: RigSpectrum) -> RenderableType:
     for rig, f, a, source, reason in zip(
         beside.rig_hz, beside.frequency_hz, beside.amplitude, beside.source, beside.reason, strict=True
     ):
-        found = not reason
-        out.add_row(f"{rig:.6g}", f"{f:.2f}" if found else "-", f"{a:.4g}" if found else "-", reason or source)
+        explained = not reason
+        out.add_row(f"{rig:.6g}", f"{f:.2f}" if explained else "-", f"{a:.4g}" if explained else "-", reason or source)
     return Group(Text(f"Rig lines within {100.0 * beside.tolerance:g} %", style="bold"), out, "")

@@ -96,17 +96,17 @@ def _portraits(result: SweepResult) -> list[Any]:
     """The strongest lines in the spectra of the points that keep their trajectory."""
     from rich.text import Text
 
-    own = result.portraits
-    if own is None:
+    kept = result.portraits
+    if kept is None:
         return []
-    several = len(own.run) > 1
+    several = len(kept.run) > 1
     names = [f"{a.rpartition('.')[2]} {u}".strip() for a, u in zip(result.address, result.unit, strict=True)]
     most = _LINES - len(names) - several
     out = table(*names, *(["start"] if several else []), "response", *["f: um"] * most, left=0)
-    for k, p in enumerate(own.point.tolist()):
-        for j, r in enumerate(own.run.tolist()):
+    for k, p in enumerate(kept.point.tolist()):
+        for j, r in enumerate(kept.run.tolist()):
             worst = int(np.nanargmax(np.nan_to_num(result.peak_to_peak[p, r])))
-            lines = [f"{f:.3g}: {1e6 * a:.3g}" for f, a in own.lines(k, j, worst)[:most]]
+            lines = [f"{f:.3g}: {1e6 * a:.3g}" for f, a in kept.lines(k, j, worst)[:most]]
             cells = [f"{x:.6g}" for x in result.values[p]] + ([result.run[r]] if several else [])
             out.add_row(*cells, result.motion_at(p, r), *(lines or ["-"]))
     head = "Strongest lines of the displacement: f over the mesh frequency, amplitude"

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from rotorgear.quantity import RPM_PER_RAD_S
+
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
@@ -20,7 +22,7 @@ def transient_table(result: TransientResult) -> RenderableType:
     from rich.console import Group
     from rich.text import Text
 
-    rpm = [f"{w * 9.549296585513721:.5g}" for w in (result.speed[0], result.speed[-1])]
+    rpm = [f"{w * RPM_PER_RAD_S:.5g}" for w in (result.speed[0], result.speed[-1])]
     turns = rpm[0] if rpm[0] == rpm[1] else f"{rpm[0]} to {rpm[1]}"
     counted = f"{result.time[-1] - result.settle:.4g} s after {result.settle:.4g} s"
     title = f"{result.model.title or 'Transient'}: {result.model.reference_shaft} at {turns} rpm, {counted}"
