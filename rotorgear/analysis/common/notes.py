@@ -8,6 +8,7 @@ import numpy as np
 
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out, mesh_stiffness_warnings
 from rotorgear.model.model import Model
+from rotorgear.model.parts.nonlinear_element import element_law
 from rotorgear.system.system import System
 
 
@@ -47,7 +48,13 @@ def left_out(system: System, speed: float | None, *, rolls: bool = False) -> tup
         elif not system.gyroscopic.nnz:
             notes.append("gyroscopic matrix: nothing that turns can tilt")
         if not np.any(system.damping(speed).data) and not system.model.damping.modal_ratio:
-            notes.append("damping matrix: nothing damps")
+            # The law of a nonlinear element is in no matrix until it is linearised: a film damps all the same.
+            laws = [
+                f"nonlinear_elements.{name}"
+                for name, element in system.model.nonlinear_elements.items()
+                if not element.is_given and element_law(element, 1.0).uses_velocity
+            ]
+            notes.append("damping matrix: " + (f"empty; only {', '.join(laws)} can damp" if laws else "nothing damps"))
     return (*notes, *rolling_notes(system.model, rolls=rolls), *mesh_stiffness_left_out(system))
 
 

@@ -54,6 +54,7 @@ def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndar
     """Force of the shaft on each bearing, by its springs and dampers or its rolling elements."""
     found: list[tuple[str, str, dict[str, np.ndarray]]] = []
     T = local.system.dofs.transform
+    beta = local.system.model.damping.rayleigh_beta
     firsts = local.local.forces.first
     rolling = {
         part.part: (int(first), part.law.components)
@@ -71,15 +72,18 @@ def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndar
             continue
         own = T[group.dofs[0], :].toarray()
         matrices = group.matrices
-        stiffness = sum(
-            (A[0] for A in (matrices.stiffness, matrices.circulatory) if A is not None), np.zeros((own.shape[0],) * 2)
-        )
+        none = np.zeros((own.shape[0],) * 2)
+        stiffness = sum((A[0] for A in (matrices.stiffness, matrices.circulatory) if A is not None), none)
+        damping = none if matrices.damping is None else matrices.damping[0]
+        # C = beta K damps in every part that has a stiffness, so a bearing has its share; alpha M is of the masses.
+        if beta and matrices.stiffness is not None:
+            damping = damping + beta * matrices.stiffness[0]
         for k, axis in enumerate(_AXES):
             rows = {} if group.part in rolling else {"q": stiffness[-6 + k] @ own}
             if group.part in rolling and k < rolling[group.part][1]:
                 rows["F"] = np.eye(local.local.m)[rolling[group.part][0] + k]
-            if matrices.damping is not None:
-                rows["v"] = matrices.damping[0][-6 + k] @ own
+            if damping.any():
+                rows["v"] = damping[-6 + k] @ own
             if any(row.any() for row in rows.values()):
                 found.append((f"{group.part} force {axis}", "N", rows))
     return found

@@ -64,6 +64,11 @@ def test_the_journal_stands_where_ocvirks_load_relation_puts_it(rpm: float) -> N
     assert state.d[0] > 0.0
 
 
+def test_check_does_not_say_that_nothing_damps_where_a_film_does() -> None:
+    said = [note for note in rg.check(rotor()).left_out if note.startswith("damping matrix")]
+    assert said == ["damping matrix: empty; only nonlinear_elements.left, nonlinear_elements.right can damp"]
+
+
 @pytest.mark.parametrize("e", [0.1, 0.4, 0.7, 0.9])
 def test_stiffness_and_damping_are_those_published_for_the_short_bearing(e: float) -> None:
     # Friswell, Penny, Garvey and Lees, Dynamics of Rotating Machines, section 5.5.1: axes along and across the load.
