@@ -18,7 +18,7 @@ from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, all_finer, 
 from rotorgear.analysis.modal.request import MOST_MODES, check_count
 from rotorgear.analysis.modal.result import modal_result
 from rotorgear.analysis.modal.solve import solve
-from rotorgear.analysis.static.tangent import about_equilibrium_of
+from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import MOTIONS
@@ -72,11 +72,10 @@ def modal(
     if unknown:
         raise AnalysisError(f"only: got {', '.join(sorted(unknown))}, expected motions among {', '.join(MOTIONS)}")
     clock = Clock()
-    model, given, notes = about_equilibrium_of(model, [speed])
     if modes is None and fmax is None:
         modes = DEFAULT_MODES
     fixed = isinstance(model, System) or elements is not None
-    system = _system(model, speed, Plan(elements) if elements else (Plan() if fixed else START))
+    system, notes = _system(model, speed, Plan(elements) if elements else (Plan() if fixed else START))
     if not (fixed or error_estimate):
         raise AnalysisError(
             "a mesh that is refined to an accuracy needs the error estimate; give elements to do without"
@@ -107,12 +106,12 @@ def modal(
                     f"a flexible shaft has modes without end, and more than {MOST_MODES} are not sought: "
                     "ask for fewer (--modes)"
                 )
-            plan: Plan | None = all_finer(system)
+            finer: Plan | None = all_finer(system)
         else:
             watched = reach.watched(size, estimate)
-            plan = refined(system, {piece: part[watched] for piece, part in parts.items()}, target)
-        if plan is not None:
-            system = _system(system.model, speed, plan)
+            finer = refined(system, {piece: part[watched] for piece, part in parts.items()}, target)
+        if finer is not None:
+            system = system.with_plan(finer)
         elif reach.is_certain(size, estimate, found.is_complete):
             break
         else:
@@ -126,6 +125,7 @@ def modal(
     progress(0.9, "energies")
     result = modal_result(system, speed, (modes, fmax), found.first(kept), q[:, :kept], estimate[:kept], clock)
     progress(1.0, "done")
+    given = model.model if isinstance(model, System) else model
     return replace(result, model=given, left_out=(*result.left_out, *notes))
 
 
@@ -144,9 +144,14 @@ def _solved(system: System, wanted: Wanted) -> Modes:
         ) from error
 
 
-def _system(model: Model | System, speed: float | None, plan: Plan) -> System:
-    """The system of a model, discretised by a plan; a system that was given is taken as it is."""
-    system = model if isinstance(model, System) else System(model, plan=plan, load=model.mean_load(direction_of(speed)))
+def _system(model: Model | System, speed: float | None, plan: Plan) -> tuple[System, tuple[str, ...]]:
+    """The linear system about the static equilibrium, cut by a plan, and what was linearised; a linear one is taken as it is."""
+    given = model.model if isinstance(model, System) else model
+    linear, notes = about_equilibrium(given, [speed])
+    if isinstance(model, System):
+        system = model if linear is given else System(linear, plan=model.plan, load=model.load)
+    else:
+        system = System(linear, plan=plan, load=linear.mean_load(direction_of(speed)))
     if system.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
-    return system
+    return system, notes
