@@ -115,11 +115,11 @@ def _moved(
     if spin:
         r = r + s * spin * (bubbles.gyroscopic[which] @ x)
         t = t - s * spin * (bubbles.gyroscopic[which] @ y)
-    own = bubbles.squared[which][:, :, None]
-    coarse = np.any(own < _RESOLVED * np.abs(s) ** 2, axis=1)
+    w2 = bubbles.squared[which][:, :, None]
+    coarse = np.any(w2 < _RESOLVED * np.abs(s) ** 2, axis=1)
     # Rotating damping couples the planes of a bubble: seen in the sense of each whirl, the stiffness is w^2 (1 -+ i eta W).
-    held = squared + elastic * own
-    gaps = np.array([held + turn * 1j * internal * spin * own for turn in (1.0, -1.0)])
+    held = squared + elastic * w2
+    gaps = np.array([held + turn * 1j * internal * spin * w2 for turn in (1.0, -1.0)])
     gap = gaps[0] if not internal * spin else np.where(np.abs(gaps[0]) < np.abs(gaps[1]), *gaps)
     moved = np.sum(t * r / np.where(gap != 0.0, gap, np.inf), axis=1)
     if bubbles.lumping is not None:
@@ -136,8 +136,8 @@ def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, m
     K = rich.stiffness
     assert K is not None
     used = 12 + np.flatnonzero([motion in motions for motion in bubble_motions(order + _RICHER, shear)])
-    own = np.concatenate([np.arange(12), 12 + bubble_places(order, order + _RICHER, shear)])
-    new = ~np.isin(used, own)
+    present = np.concatenate([np.arange(12), 12 + bubble_places(order, order + _RICHER, shear)])
+    new = ~np.isin(used, present)
     squared = []
     mass = []
     stiffness = []
@@ -146,9 +146,9 @@ def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, m
         values, modes = la.eigh(K[k][np.ix_(used, used)], rich.mass[k][np.ix_(used, used)])
         taken = modes[new].T  # the residual against bubbles that are there already is zero
         squared.append(values)
-        mass.append(taken @ rich.mass[k][np.ix_(used[new], own)])
-        stiffness.append(taken @ K[k][np.ix_(used[new], own)])
-        gyroscopic.append(taken @ rich.gyroscopic[k][np.ix_(used[new], own)])
+        mass.append(taken @ rich.mass[k][np.ix_(used[new], present)])
+        stiffness.append(taken @ K[k][np.ix_(used[new], present)])
+        gyroscopic.append(taken @ rich.gyroscopic[k][np.ix_(used[new], present)])
     lumping = None
     if lumped:
         plain = distinct_elements(kinds, lumped=True).mass

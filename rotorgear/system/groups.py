@@ -124,12 +124,13 @@ def table_groups(layout: Layout, nodes: Nodes, speed: float) -> list[ElementGrou
     found = []
     for name, bearing in layout.model.bearings.items():
         if bearing.table:
-            own = abs(layout.train.ratio(bearing.shaft) * speed)
-            found.append(_bearing(layout, nodes, name, bearing, *table_values(f"bearings.{name}", bearing, own)))
+            shaft_speed = abs(layout.train.ratio(bearing.shaft) * speed)
+            values = table_values(f"bearings.{name}", bearing, shaft_speed)
+            found.append(_bearing(layout, nodes, name, bearing, *values))
     for name, element in layout.model.nonlinear_elements.items():
         if element.table:
-            own = abs(layout.train.ratio(element.shaft) * speed)
-            values = table_values(f"nonlinear_elements.{name}", element, own)
+            shaft_speed = abs(layout.train.ratio(element.shaft) * speed)
+            values = table_values(f"nonlinear_elements.{name}", element, shaft_speed)
             found.append(_element(layout, nodes, name, element, *values))
     return found
 
@@ -254,9 +255,10 @@ def mesh_damping(layout: Layout, force: MeshForce, geometry: ContactGeometry) ->
         return 0.0
     diagonals = []
     for gear in both.gears:
-        own = [node.body for node in gear.node_bodies]
+        bodies = [node.body for node in gear.node_bodies]
         mass, polar, tilt = (
-            sum(getattr(b, key) for b in own) / both.helices for key in ("mass", "polar_inertia", "diametral_inertia")
+            sum(getattr(b, key) for b in bodies) / both.helices
+            for key in ("mass", "polar_inertia", "diametral_inertia")
         )
         diagonals.append(np.array([mass, mass, mass, tilt, tilt, polar]))
     if mesh.equivalent_mass == "general":

@@ -26,10 +26,10 @@ def left_shapes(system: System, speed: float | None, s: np.ndarray, x: np.ndarra
         return x
     if not skew.nnz and not (at and system.gyroscopic.nnz):
         return np.asarray(x.conj())
-    own = np.ones(len(s), dtype=bool) if skew.nnz else np.abs(s.real) > _LIGHT * np.abs(s)
+    unsure = np.ones(len(s), dtype=bool) if skew.nnz else np.abs(s.real) > _LIGHT * np.abs(s)
     D = system.velocity_terms(speed)
     y = x.astype(complex)
-    for k in np.flatnonzero(own):
+    for k in np.flatnonzero(unsure):
         y[:, k] = _iterated(system.mass, D, sp.csc_array(system.stiffness(at) + skew), s[k] * (1.0 + _ASIDE), y[:, k])
     return y
 

@@ -112,25 +112,27 @@ def _bearing_law(bearing: Bearing, ratio: float) -> ForceLaw:
 
     rolling = bearing.rolling
     assert rolling is not None
+    # Elements that roll without slip between a turning inner ring and a still outer one: the cage turns at
+    # (1 - D_w cos(alpha) / D_pw) / 2 of the shaft.
     slip_free = 0.5 * (1.0 - rolling.element_diameter * np.cos(rolling.contact_angle) / rolling.pitch_diameter)
     linear = np.diag(np.array(bearing.stiffness.as_rows())) if bearing.stiffness else np.zeros(6)
     order = float(ratio * slip_free)
     if rolling.kind == "roller":
         return RollerBearing(
-            rolling.elements,
-            rolling.length or 0.0,
-            rolling.clearance,
-            order,
+            rollers=rolling.elements,
+            length=rolling.length or 0.0,
+            clearance=rolling.clearance,
+            order=order,
             reference=(float(linear[0]), float(linear[1])),
         )
     return BallBearing(
-        rolling.elements,
-        rolling.element_diameter,
-        rolling.pitch_diameter,
-        rolling.inner_groove,
-        rolling.outer_groove,
-        rolling.clearance,
-        rolling.contact_angle,
+        balls=rolling.elements,
+        ball_diameter=rolling.element_diameter,
+        pitch_diameter=rolling.pitch_diameter,
+        inner_groove=rolling.inner_groove,
+        outer_groove=rolling.outer_groove,
+        clearance=rolling.clearance,
+        contact_angle=rolling.contact_angle,
         order=order,
         reference=tuple(map(float, linear[:5])),
     )

@@ -131,13 +131,13 @@ def discretise(layout: Layout, plan: Plan) -> Nodes:
 
 def _merged_places(model: Tables, shaft: str, wanted: list[tuple[float, str]]) -> tuple[list[float], list[str]]:
     """Return the different places of a shaft in order, and sentences about those that were merged."""
-    own = model.shafts[shaft]
-    tolerance = MERGE_DISTANCE * own.length
+    part = model.shafts[shaft]
+    tolerance = MERGE_DISTANCE * part.length
     kept: list[tuple[float, str]] = []
     notes = []
     for z, what in sorted(wanted):
         if kept and z - kept[-1][0] <= tolerance:
-            if z != kept[-1][0] and z - kept[-1][0] > 4.0 * np.finfo(float).eps * max(abs(z), own.length):
+            if z != kept[-1][0] and z - kept[-1][0] > 4.0 * np.finfo(float).eps * max(abs(z), part.length):
                 notes.append(
                     f"shafts.{shaft}: {what} at {z:.9g} m taken to {kept[-1][1]} at {kept[-1][0]:.9g} m, one node"
                 )
@@ -147,35 +147,45 @@ def _merged_places(model: Tables, shaft: str, wanted: list[tuple[float, str]]) -
 
 
 def _add_shaft(nodes: Nodes, model: Tables, shaft: str, wanted: list[tuple[float, str]], plan: Plan) -> None:
-    own = model.shafts[shaft]
+    part = model.shafts[shaft]
     breaks, notes = _merged_places(model, shaft, wanted)
     nodes.merged += notes
-    ends = np.cumsum([own.start, *[section.length for section in own.sections]])
+    ends = np.cumsum([part.start, *[section.length for section in part.sections]])
     z: list[float] = [breaks[0]]
     pieces: list[Element] = []
     first = len(nodes)
     for piece, (left, right) in enumerate(pairwise(breaks)):
-        number = int(np.clip(np.searchsorted(ends, 0.5 * (left + right)) - 1, 0, len(own.sections) - 1))
-        section = own.sections[number]
+        number = int(np.clip(np.searchsorted(ends, 0.5 * (left + right)) - 1, 0, len(part.sections) - 1))
+        section = part.sections[number]
         count, order = (1, 1) if section.rigid else plan.of((shaft, piece), section.elements)
-        if own.mass_matrix == "lumped":  # it has no orders; more elements serve
+        if part.mass_matrix == "lumped":  # it has no orders; more elements serve
             count = count * order
             order = 1
         if len(pieces) + count > MOST_ELEMENTS:
             raise AnalysisError(
                 f"shafts.{shaft}: more than {MOST_ELEMENTS} elements on one shaft, got {count} between two places; ask for fewer"
             )
-        motions = bubble_motions(order, own.shear_deformation)
+        motions = bubble_motions(order, part.shear_deformation)
         edges = np.linspace(left, right, count + 1)
         # A short section far along the shaft: the difference of its ends has lost digits that its length has.
-        slack = 8.0 * np.finfo(float).eps * max(abs(own.start), abs(own.end))
+        slack = 8.0 * np.finfo(float).eps * max(abs(part.start), abs(part.end))
         whole = abs(left - ends[number]) <= slack and abs(right - ends[number + 1]) <= slack
         length = (section.length if whole else right - left) / count
         share = np.clip((edges - ends[number]) / section.length, 0.0, 1.0)
         for k in range(count):
             node = first + len(z) - 1
-            within = (number, float(share[k]), float(share[k + 1]))
-            pieces.append(Element(node, node + 1, length, *within, piece, order, len(nodes.internal)))
+            element = Element(
+                left=node,
+                right=node + 1,
+                length=length,
+                section=number,
+                start=float(share[k]),
+                stop=float(share[k + 1]),
+                piece=piece,
+                order=order,
+                internal=len(nodes.internal),
+            )
+            pieces.append(element)
             nodes.internal += motions
             z.append(float(edges[k + 1]))
     nodes.z += z

@@ -55,10 +55,10 @@ def _candidates(system: System) -> np.ndarray:
     nodes = system.nodes
     columns = []
     for name, shaft in system.model.shafts.items():
-        own = [k for k in nodes.on_shaft(name) if not nodes.pedestal[k]]
+        numbers = [k for k in nodes.on_shaft(name) if not nodes.pedestal[k]]
         block = np.zeros((system.dofs.transform.shape[0], 6))
         middle = shaft.start + 0.5 * shaft.length
-        for k in own:
+        for k in numbers:
             block[6 * k : 6 * k + 6] = rigid_transfer(np.array([0.0, 0.0, nodes.z[k] - middle]))
         block[:, 3:] /= max(shaft.length, 1e-3)
         columns.append(block)

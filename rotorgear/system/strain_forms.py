@@ -39,7 +39,7 @@ class StrainForms:
 
 def strain_forms(groups: Iterable[ElementGroup], dofs: DofMap, speed: float, rayleigh_beta: float) -> StrainForms:
     """Return the strains of all elements at a reference speed in rad/s."""
-    own = [group for group in groups if group.matrices.strain is not None]
+    strained = [group for group in groups if group.matrices.strain is not None]
 
     def viscosity(group: ElementGroup) -> np.ndarray | None:
         D = group.matrices.modulus
@@ -57,18 +57,18 @@ def strain_forms(groups: Iterable[ElementGroup], dofs: DofMap, speed: float, ray
 
     first = 0
     rows = []
-    for group in own:
+    for group in strained:
         assert group.matrices.strain is not None
         e, s, _ = group.matrices.strain.shape
         rows.append(first + np.arange(e * s).reshape(e, s))
         first += e * s
     B = _scattered(
-        [(r, group.dofs, group.matrices.strain) for r, group in zip(rows, own, strict=True)],
+        [(r, group.dofs, group.matrices.strain) for r, group in zip(rows, strained, strict=True)],
         (first, dofs.transform.shape[0]),
     )
 
     def block(term: Local) -> sp.csr_array:
-        return _scattered([(r, r, term(group)) for r, group in zip(rows, own, strict=True)], (first, first))
+        return _scattered([(r, r, term(group)) for r, group in zip(rows, strained, strict=True)], (first, first))
 
     return StrainForms(
         sp.csr_array(B @ dofs.transform), block(lambda g: g.matrices.modulus), block(viscosity), block(circulation)

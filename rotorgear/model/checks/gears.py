@@ -144,20 +144,15 @@ def _body(layout: Layout, address: str, name: str, part: Gear | Disk) -> Iterato
     except (ValueError, RotorgearError) as error:
         own_bore = part.bore if isinstance(part, Disk) else part.body.bore
         bored = own_bore is None and "bore" in str(error)
-        yield Problem(
-            address, "", str(error), "where no bore is given it is the shaft's diameter there" if bored else ""
-        )
+        hint = "where no bore is given it is the shaft's diameter there" if bored else ""
+        yield Problem(address, "", str(error), hint)
         return
     if not model.has("bending"):
         return
     if body.polar_inertia > 2.0 * body.diametral_inertia * (1.0 + 1e-6) and body.diametral_inertia > 0.0:
         limit = f"at most twice the diametral one, {2 * body.diametral_inertia:.6g} kg m^2"
-        yield Problem(
-            f"{address}.polar_inertia",
-            f"{body.polar_inertia:.6g} kg m^2",
-            limit,
-            "a flat disk has that, no body has more",
-        )
+        hint = "a flat disk has that, no body has more"
+        yield Problem(f"{address}.polar_inertia", f"{body.polar_inertia:.6g} kg m^2", limit, hint)
     elif isinstance(part, Gear) and part.node_count == 2:
         least = body.mass * part.helix_offset**2
         if body.diametral_inertia - least < -1e-9 * body.diametral_inertia:

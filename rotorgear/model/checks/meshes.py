@@ -59,35 +59,27 @@ def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator
         if getattr(mesh, key) and not (pinion.teeth and gear.teeth):
             yield Problem(f"{address}.{key}", "harmonics of a mesh whose frequency is unknown", "teeth of both gears")
     if mesh.stiffness_variation and not isinstance(mesh.stiffness, int | float):
-        yield Problem(
-            f"{address}.stiffness_variation", "harmonics beside a stiffness that varies itself", "one of the two"
-        )
+        text = "harmonics beside a stiffness that varies itself"
+        yield Problem(f"{address}.stiffness_variation", text, "one of the two")
     if mesh.corner_impact and not 0.0 < mesh.corner_impact.duration < 1.0:
-        yield Problem(
-            f"{address}.corner_impact.duration",
-            f"{mesh.corner_impact.duration:g}",
-            "a share of the mesh cycle between 0 and 1",
-        )
+        wanted = "a share of the mesh cycle between 0 and 1"
+        yield Problem(f"{address}.corner_impact.duration", f"{mesh.corner_impact.duration:g}", wanted)
     if mesh.friction_coefficient or mesh.lubricant_viscosity:
         if mesh.friction_coefficient and mesh.lubricant_viscosity:
             yield Problem(address, "friction_coefficient and lubricant_viscosity", "one of the two")
         if not (pinion.normal_module and gear.normal_module and (pinion.width or gear.width)):
-            yield Problem(
-                address,
-                "friction between gears without teeth",
-                "teeth, module and width of both gears: they place the contacts",
-            )
-    for key in ("helix_index_error",):
-        if getattr(mesh, key) and pinion.kind != "herringbone":
-            yield Problem(f"{address}.{key}", "a value", "nothing here", "only a herringbone pair has two helices")
+            wanted = "teeth, module and width of both gears: they place the contacts"
+            yield Problem(address, "friction between gears without teeth", wanted)
+    if mesh.helix_index_error and pinion.kind != "herringbone":
+        hint = "only a herringbone pair has two helices"
+        yield Problem(f"{address}.helix_index_error", "a value", "nothing here", hint)
 
 
 def _teeth(address: str, mesh: Mesh, pinion: Gear) -> Iterator[Problem]:
     """A stiffness model needs teeth, and a stagger two helices."""
     if mesh.stagger and pinion.kind != "herringbone":
-        yield Problem(
-            f"{address}.stagger", f"{mesh.stagger:g}", "0, or herringbone gears", "one helix has nothing to lead"
-        )
+        hint = "one helix has nothing to lead"
+        yield Problem(f"{address}.stagger", f"{mesh.stagger:g}", "0, or herringbone gears", hint)
     if isinstance(mesh.stiffness, str) and pinion.lumped:
         wanted = "a stiffness such as '5e8 N/m' between gears that are given by their base radius"
         yield Problem(f"{address}.stiffness", f"'{mesh.stiffness}'", wanted, "a stiffness model needs teeth")
@@ -125,11 +117,8 @@ def _faces(address: str, mesh: MeshLayout) -> Iterator[Problem]:
             yield Problem(address, text, "gears at one z, or widths that say where the faces meet")
             return
         if face and face[1] <= face[0]:
-            low = millimetres(one)
-            high = millimetres(other)
-            yield Problem(
-                address, f"faces around z = {low} and z = {high}", "faces that overlap", "check at, width and gap"
-            )
+            text = f"faces around z = {millimetres(one)} and z = {millimetres(other)}"
+            yield Problem(address, text, "faces that overlap", "check at, width and gap")
             return
 
 

@@ -30,14 +30,14 @@ def stations(model: Tables) -> Iterator[Problem]:
 
 
 def _station(model: Tables, address: str, shaft: str, at: float | str, offset: float = 0.0) -> Iterator[Problem]:
-    own = model.shafts[shaft]
-    z = own.station(at)
-    slack = 1e-9 * max(own.length, abs(own.start), 1e-6)
-    if own.start - slack <= z - offset and z + offset <= own.end + slack:
+    part = model.shafts[shaft]
+    z = part.station(at)
+    slack = 1e-9 * max(part.length, abs(part.start), 1e-6)
+    if part.start - slack <= z - offset and z + offset <= part.end + slack:
         return
-    run = f"shaft '{shaft}', which runs from {millimetres(own.start)} to {millimetres(own.end)}"
-    if not own.sections:
-        run = f"shaft '{shaft}', which has no sections and is one point at {millimetres(own.start)}"
+    run = f"shaft '{shaft}', which runs from {millimetres(part.start)} to {millimetres(part.end)}"
+    if not part.sections:
+        run = f"shaft '{shaft}', which has no sections and is one point at {millimetres(part.start)}"
     if offset:
         value = f"{millimetres(z)} with helices at {millimetres(z - offset)} and {millimetres(z + offset)}"
         yield Problem(address, value, f"both helices on {run}", "nodes = 1 puts the whole gear at one place")

@@ -28,9 +28,8 @@ def materials(model: Tables) -> Iterator[Problem]:
         if not any(given):
             yield Problem(address, "neither poisson_ratio nor shear_modulus", "one of them")
         elif all(given):
-            yield Problem(
-                address, "poisson_ratio and shear_modulus", "one of them", "the other follows from E = 2 G (1 + nu)"
-            )
+            hint = "the other follows from E = 2 G (1 + nu)"
+            yield Problem(address, "poisson_ratio and shear_modulus", "one of them", hint)
         elif not -1.0 < material.nu < 0.5:
             hint = "it follows from nu = E/2G - 1" if material.shear_modulus else ""
             yield Problem(address, f"a Poisson's ratio of {material.nu:.4g}", "one between -1 and 0.5", hint)
@@ -106,9 +105,8 @@ def _table(address: str, table: tuple[TableRow, ...]) -> Iterator[Problem]:
     speeds = [row.speed for row in table]
     if len(speeds) == 1 or any(b <= a for a, b in pairwise(speeds)) or any(s < 0 for s in speeds):
         rpm = ", ".join(f"{speed * RPM_PER_RAD_S:.6g}" for speed in speeds)
-        yield Problem(
-            f"{address}.table", f"speeds of {rpm} rpm", "at least two rows with speeds that rise from 0 or more"
-        )
+        wanted = "at least two rows with speeds that rise from 0 or more"
+        yield Problem(f"{address}.table", f"speeds of {rpm} rpm", wanted)
     for number, row in enumerate(table):
         yield from _six_by_six(f"{address}.table[{number}]", row.stiffness, row.damping)
 
@@ -117,16 +115,14 @@ def _rolling(address: str, bearing: Bearing, rolling: RollingElements) -> Iterat
     """Rolling elements that fit into their bearing, beside a stiffness that the linear analyses take."""
     here = f"{address}.rolling"
     if bearing.table or (bearing.stiffness and bearing.stiffness.given & {"matrix", "xy", "yx"}):
-        yield Problem(
-            here, "rolling elements beside a table or cross terms", "stiffness along x, y, axial and tilt beside them"
-        )
+        wanted = "stiffness along x, y, axial and tilt beside them"
+        yield Problem(here, "rolling elements beside a table or cross terms", wanted)
     if rolling.elements < 3:
         yield Problem(f"{here}.elements", str(rolling.elements), "at least 3")
     if rolling.elements * rolling.element_diameter > math.pi * rolling.pitch_diameter:
         text = f"{rolling.elements} of {millimetres(rolling.element_diameter)}"
-        yield Problem(
-            f"{here}.element_diameter", text, f"elements that fit on a circle of {millimetres(rolling.pitch_diameter)}"
-        )
+        wanted = f"elements that fit on a circle of {millimetres(rolling.pitch_diameter)}"
+        yield Problem(f"{here}.element_diameter", text, wanted)
     if (rolling.kind == "roller") != (rolling.length is not None):
         got = "a roller without length" if rolling.kind == "roller" else "a length of balls"
         yield Problem(f"{here}.length", got, "a length for rollers, none for balls")
@@ -134,20 +130,15 @@ def _rolling(address: str, bearing: Bearing, rolling: RollingElements) -> Iterat
         yield Problem(f"{here}.contact_angle", "an angle", "0 for cylindrical rollers")
     for key in ("inner_groove", "outer_groove"):
         if getattr(rolling, key) <= 0.5:
-            yield Problem(
-                f"{here}.{key}", f"{getattr(rolling, key):g}", "more than 0.5: a groove is wider than its ball"
-            )
+            wanted = "more than 0.5: a groove is wider than its ball"
+            yield Problem(f"{here}.{key}", f"{getattr(rolling, key):g}", wanted)
     if not abs(rolling.contact_angle) < 1.4:
-        yield Problem(
-            f"{here}.contact_angle", f"{math.degrees(rolling.contact_angle):.6g} deg", "an angle below 80 deg"
-        )
+        angle = f"{math.degrees(rolling.contact_angle):.6g} deg"
+        yield Problem(f"{here}.contact_angle", angle, "an angle below 80 deg")
     reach = 2.0 * (rolling.inner_groove + rolling.outer_groove - 1.0) * rolling.element_diameter
     if rolling.kind == "ball" and reach > 0.0 and rolling.clearance >= reach * math.cos(rolling.contact_angle):
-        yield Problem(
-            f"{here}.clearance",
-            millimetres(rolling.clearance),
-            f"less than {millimetres(reach)}: the balls would fall out",
-        )
+        wanted = f"less than {millimetres(reach)}: the balls would fall out"
+        yield Problem(f"{here}.clearance", millimetres(rolling.clearance), wanted)
 
 
 def _pedestal(address: str, pedestal: Pedestal) -> Iterator[Problem]:

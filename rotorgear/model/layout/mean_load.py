@@ -227,8 +227,8 @@ def _loaded(layout: Layout, lines: Sequence[Contact], squeeze: Sequence[float]) 
     found = {}
     for mesh in layout.meshes:
         if mesh.is_modelled:
-            own = [force for line, force in zip(lines, squeeze, strict=True) if line.mesh == mesh.name]
-            mean = sum(own) / len(own)
+            forces = [force for line, force in zip(lines, squeeze, strict=True) if line.mesh == mesh.name]
+            mean = sum(forces) / len(forces)
             load = abs(mean) if abs(mean) > UNLOADED * largest else None
             found[mesh.name] = mesh.helix_stiffness(load, sense=1 if mean >= 0.0 else -1)
     return found
@@ -242,14 +242,13 @@ def _states(
     largest = max((abs(force) for force in squeeze), default=0.0)
     states = []
     for contact, force in zip(lines, squeeze, strict=True):
-        own = train.sense(contact.pinion_shaft)
+        pinion_sense = train.sense(contact.pinion_shaft)
         unloaded = abs(force) <= UNLOADED * largest
         if unloaded:  # the shaft nearer to the input is taken to drive, in its own sense
             drives = train.depth[contact.pinion_shaft] <= train.depth[contact.gear_shaft]
-            sense = direction * (own if drives else -own)
+            sense = direction * (pinion_sense if drives else -pinion_sense)
         else:
             sense = 1 if force > 0 else -1
-        states.append(
-            MeshForce(contact, 0.0 if unloaded else abs(force), sense, sense == direction * own, assumed=unloaded)
-        )
+        carried = 0.0 if unloaded else abs(force)
+        states.append(MeshForce(contact, carried, sense, sense == direction * pinion_sense, assumed=unloaded))
     return tuple(states)

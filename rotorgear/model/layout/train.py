@@ -100,7 +100,14 @@ def walk(model: Tables) -> tuple[Train, list[Problem]]:
         given = model.shafts[start].speed_ratio
         first: Fraction | float = Fraction(1) if number == 0 else (given or Fraction(0))
         problems += _walk_group(train, at_shaft, start, first)
-    problems += _contradictions(model, train)
+    # A shaft's own ratio serves where no mesh or coupling reaches it; elsewhere it may only repeat what the train gives.
+    for name, shaft in model.shafts.items():
+        if shaft.speed_ratio is None or name not in train.ratios or _same(shaft.speed_ratio, train.ratio(name)):
+            continue
+        by = train.reached_by[name] or "it is the reference shaft"
+        follows = f"{train.ratio(name):.9g}, which follows from the train ({by})"
+        address = f"shafts.{name}.speed_ratio"
+        problems.append(Problem(address, f"{shaft.speed_ratio:.9g}", follows, "leave speed_ratio out"))
     return train, problems
 
 
@@ -128,7 +135,8 @@ def _walk_group(train: Train, at_shaft: dict[str, list[Link]], start: str, ratio
                 )
                 continue
             if other not in train.ratios:
-                train.ratios[other], train.depth[other] = speed, train.depth[shaft] + 1
+                train.ratios[other] = speed
+                train.depth[other] = train.depth[shaft] + 1
                 train.group[other] = group
                 train.reached_by[other] = link.part
                 queue.append(other)
@@ -144,12 +152,10 @@ def _same(first: Fraction | float, second: Fraction | float) -> bool:
 
 
 def _loop_problem(train: Train, link: Link, shaft: str, speed: Fraction | float) -> Problem:
-    first = train.ratios[shaft]
-    second = speed
     return Problem(
         link.part,
-        f"ratio {_ratio_text(second)} of shaft '{shaft}' on this path of a closed loop",
-        f"{_ratio_text(first)}, as on the path through {train.reached_by[shaft] or 'the input shaft'}",
+        f"ratio {_ratio_text(speed)} of shaft '{shaft}' on this path of a closed loop",
+        f"{_ratio_text(train.ratios[shaft])}, as on the path through {train.reached_by[shaft] or 'the input shaft'}",
         "change the numbers of teeth so that both paths give one ratio",
     )
 
@@ -157,20 +163,3 @@ def _loop_problem(train: Train, link: Link, shaft: str, speed: Fraction | float)
 def _ratio_text(ratio: Fraction | float) -> str:
     exact = f" ({ratio.numerator}/{ratio.denominator})" if isinstance(ratio, Fraction) and ratio.denominator > 1 else ""
     return f"{float(ratio):.9g}{exact}"
-
-
-def _contradictions(model: Tables, train: Train) -> list[Problem]:
-    found = []
-    for name, shaft in model.shafts.items():
-        if shaft.speed_ratio is None or name not in train.ratios or _same(shaft.speed_ratio, train.ratio(name)):
-            continue
-        by = train.reached_by[name] or "it is the reference shaft"
-        found.append(
-            Problem(
-                f"shafts.{name}.speed_ratio",
-                f"{shaft.speed_ratio:.9g}",
-                f"{train.ratio(name):.9g}, which follows from the train ({by})",
-                "leave speed_ratio out",
-            )
-        )
-    return found
