@@ -30,47 +30,38 @@ def static(result: StaticResult, fig: Any = None) -> np.ndarray:
     top, bottom = figure.subfigures(2, 1, height_ratios=[3.4, 1.8 * max(len(shafts), 1)]) if upper else (None, figure)
     axes = []
     if top is not None:
-        left, right = top.subplots(1, 2, width_ratios=[1.0, 1.1])
-        _mesh_bars(left, result)
-        _bearing_bars(right, result)
-        axes += [left, right]
+        forces, bearings = top.subplots(1, 2, width_ratios=[1.0, 1.1])
+        meshes = list(dict.fromkeys(result.contact_mesh))
+        helices = max((int(h) for h in result.contact_helix), default=0) + 1
+        for helix in range(helices):
+            at = [k for k in range(len(result.contact_mesh)) if result.contact_helix[k] == helix]
+            x = [meshes.index(result.contact_mesh[k]) + (helix - 0.5 * (helices - 1)) * 0.38 for k in at]
+            label = ("helix at smaller z", "helix at larger z")[helix] if helices == 2 else None
+            bars = forces.bar(x, result.mesh_force[at] / 1e3, width=0.36, color=COLOURS[helix], label=label)
+            forces.bar_label(bars, fmt="%.1f", fontsize=8, padding=1)
+        shares = {row.mesh: row.share for row in result.shares}
+        names = [f"{mesh}\n{100.0 * shares[mesh]:.1f} %" if mesh in shares else mesh for mesh in meshes]
+        forces.set_xticks(range(len(meshes)), names, fontsize=9)
+        forces.set_ylabel("normal force, kN")
+        forces.set_title("Meshes, with the share of each branch" if shares else "Meshes", fontsize=10)
+        forces.margins(y=0.15)
+        if helices == 2:
+            forces.legend(frameon=False, fontsize=8)
+        plain_axis(forces)
+        radial = [float(np.hypot(*force[:2])) / 1e3 for force in result.bearing_force.values()]
+        axial = [abs(float(force[2])) / 1e3 for force in result.bearing_force.values()]
+        y = np.arange(len(result.bearing_force))
+        bearings.barh(y - 0.19, radial, height=0.36, color=COLOURS[0], label="radial")
+        bearings.barh(y + 0.19, axial, height=0.36, color=COLOURS[1], label="axial")
+        bearings.set_yticks(y, list(result.bearing_force), fontsize=9)
+        bearings.invert_yaxis()
+        bearings.set_xlabel("force, kN")
+        bearings.set_title("Bearings", fontsize=10)
+        if result.bearing_force:
+            bearings.legend(frameon=False, fontsize=8)
+        plain_axis(bearings)
+        axes += [forces, bearings]
     return np.array([*axes, *_deflections(bottom, result, shafts)])
-
-
-def _mesh_bars(axis: Any, result: StaticResult) -> None:
-    meshes = list(dict.fromkeys(result.contact_mesh))
-    helices = max((int(h) for h in result.contact_helix), default=0) + 1
-    for helix in range(helices):
-        at = [k for k in range(len(result.contact_mesh)) if result.contact_helix[k] == helix]
-        x = [meshes.index(result.contact_mesh[k]) + (helix - 0.5 * (helices - 1)) * 0.38 for k in at]
-        label = ("helix at smaller z", "helix at larger z")[helix] if helices == 2 else None
-        bars = axis.bar(x, result.mesh_force[at] / 1e3, width=0.36, color=COLOURS[helix], label=label)
-        axis.bar_label(bars, fmt="%.1f", fontsize=8, padding=1)
-    shares = {row.mesh: row.share for row in result.shares}
-    names = [f"{mesh}\n{100.0 * shares[mesh]:.1f} %" if mesh in shares else mesh for mesh in meshes]
-    axis.set_xticks(range(len(meshes)), names, fontsize=9)
-    axis.set_ylabel("normal force, kN")
-    axis.set_title("Meshes, with the share of each branch" if shares else "Meshes", fontsize=10)
-    axis.margins(y=0.15)
-    if helices == 2:
-        axis.legend(frameon=False, fontsize=8)
-    plain_axis(axis)
-
-
-def _bearing_bars(axis: Any, result: StaticResult) -> None:
-    names = list(result.bearing_force)
-    radial = [float(np.hypot(*result.bearing_force[name][:2])) / 1e3 for name in names]
-    axial = [abs(float(result.bearing_force[name][2])) / 1e3 for name in names]
-    y = np.arange(len(names))
-    axis.barh(y - 0.19, radial, height=0.36, color=COLOURS[0], label="radial")
-    axis.barh(y + 0.19, axial, height=0.36, color=COLOURS[1], label="axial")
-    axis.set_yticks(y, names, fontsize=9)
-    axis.invert_yaxis()
-    axis.set_xlabel("force, kN")
-    axis.set_title("Bearings", fontsize=10)
-    if names:
-        axis.legend(frameon=False, fontsize=8)
-    plain_axis(axis)
 
 
 def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> list[Any]:

@@ -133,36 +133,32 @@ def spectra(result: TransientResult, fig: Any = None) -> np.ndarray:
     names = [n for n in result.channel if n.endswith("acceleration")] or [f"force {c}" for c in result.contact]
     names = names[:3]
     orders = bool(np.ptp(result.speed) > 0.0)
+    # Meshes of one frequency share their lines, which then carry the names of all of them.
+    meshes_of: dict[float, str] = {}
+    for mesh, frequency in result.mesh_frequency.items():
+        f = round(frequency, 6)
+        meshes_of[f] = f"{meshes_of[f]}, {mesh}" if f in meshes_of else mesh
     figure = figure_for(fig, _SIZE, result.model.title)
     panels = np.atleast_1d(figure.subplots(len(names), 1, sharex=True))
     for axes, name in zip(panels, names, strict=True):
-        found = spectrum(result, name, orders=orders)
-        top = float(found.amplitude.max()) or 1.0
-        seen = found.frequency[found.amplitude > _SHOWN_SHARE * top]
-        reach = 1.1 * float(seen.max()) if seen.size else float(found.frequency[-1])
-        axes.semilogy(found.frequency[1:], found.amplitude[1:], lw=0.8)
-        for number, (mesh, f) in enumerate([] if orders else _different(result.mesh_frequency)):
+        lines = spectrum(result, name, orders=orders)
+        top = float(lines.amplitude.max()) or 1.0
+        seen = lines.frequency[lines.amplitude > _SHOWN_SHARE * top]
+        reach = 1.1 * float(seen.max()) if seen.size else float(lines.frequency[-1])
+        axes.semilogy(lines.frequency[1:], lines.amplitude[1:], lw=0.8)
+        for number, (f, meshes) in enumerate([] if orders else meshes_of.items(), 1):
             for k in range(1, int(reach / f) + 1):
-                axes.axvline(
-                    k * f, color=f"C{number + 1}", lw=0.7, ls=":", label=f"orders of {mesh}" if k == 1 else None
-                )
+                label = f"orders of {meshes}" if k == 1 else None
+                axes.axvline(k * f, color=f"C{number}", lw=0.7, ls=":", label=label)
         axes.set_xlim(0.0, reach)
         axes.set_ylim(0.3 * _SHOWN_SHARE * top, 3.0 * top)
         if result.mesh_frequency and not orders:
             axes.legend(fontsize=7, loc="upper right")
-        axes.set_ylabel(f"amplitude, {found.unit}")
+        axes.set_ylabel(f"amplitude, {lines.unit}")
         axes.set_title(name, fontsize=9)
         axes.grid(alpha=0.3)
     axes.set_xlabel("order of the input shaft" if orders else "frequency, Hz")
     return panels
-
-
-def _different(frequencies: dict[str, float]) -> list[tuple[str, float]]:
-    """Meshes of one frequency under one name."""
-    found: dict[float, str] = {}
-    for name, f in frequencies.items():
-        found[round(f, 6)] = f"{found[round(f, 6)]}, {name}" if round(f, 6) in found else name
-    return [(name, f) for f, name in found.items()]
 
 
 def _orbits(result: TransientResult) -> list[str]:

@@ -45,7 +45,9 @@ def waterfall(result: ResponseResult, ax: Any = None, *, at: str | None = None) 
     step = float(rpm[chosen[-1]] - rpm[chosen[0]]) / len(chosen)
     shown = [o for o in range(len(result.orders)) if size[o].max() >= _SHOWN * top]
     widest = 1.03 * float(result.frequency_hz[shown].max())
-    peak = f"{title}: highest peak {top:.4g} {unit}{_left_out(result, shown)}"
+    weak = len(result.orders) - len(shown)
+    left_out = f" ({weak} order{'s'[: weak != 1]} below {100.0 * _SHOWN:g} % of it left out)" if weak else ""
+    peak = f"{title}: highest peak {top:.4g} {unit}{left_out}"
     axis = axes_for(ax, (10.0, 7.0), f"{result.model.title}\n{peak}")
     labelled = -widest
     for order in shown:  # the way of each order, lowest first
@@ -109,8 +111,3 @@ def _spectrum(at: np.ndarray, height: np.ndarray, widest: float) -> tuple[np.nda
     hz = hz[(hz >= 0.0) & (hz <= widest)]
     peaks = np.clip(1.0 - np.abs(hz[:, None] - at) / width, 0.0, None) * height
     return hz, peaks.max(axis=1)
-
-
-def _left_out(result: ResponseResult, shown: list[int]) -> str:
-    count = len(result.orders) - len(shown)
-    return f" ({count} order{'s'[: count != 1]} below {100.0 * _SHOWN:g} % of it left out)" if count else ""

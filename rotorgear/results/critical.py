@@ -38,10 +38,10 @@ def _columns_of_speeds() -> tuple[Written, ...]:
         return Written(
             name,
             lambda result, speeds: [getattr(item, name) for item in speeds],
-            one.unit,
-            ("critical_speed",),
-            one.label,
-            one.note,
+            unit=one.unit,
+            axes=("critical_speed",),
+            label=one.label,
+            note=one.note,
         )
 
     return tuple(column(name) for name in CriticalSpeed.declarations if name != "speed")

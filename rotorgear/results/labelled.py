@@ -38,7 +38,11 @@ def rows(result: Record, *axes: str) -> list[dict[str, Any]]:
     """
     declared = result.declarations.get(axes[0]) if len(axes) == 1 else None
     if declared is not None and declared.record is not None and declared.axes:
-        return [_flat(record) for record in getattr(result, axes[0])]
+        # A record is one row; what is itself a list of records stays one.
+        return [
+            {name: _python(getattr(record, name)) for name, one in record.declarations.items() if not one.computed}
+            for record in getattr(result, axes[0])
+        ]
     columns = list(_columns(result))
     known = sorted({axis for column in columns for axis in column.axes})
     lists = [one.name for one in result.declarations.values() if one.record is not None and one.axes]
@@ -60,11 +64,6 @@ def rows(result: Record, *axes: str) -> list[dict[str, Any]]:
             row[column.name] = _python(column.values[tuple(at[axis] for axis in column.axes)])
         entries.append(row)
     return entries
-
-
-def _flat(record: Record) -> dict[str, Any]:
-    """A record as one row; what is itself a list of records stays one."""
-    return {name: _python(getattr(record, name)) for name, one in record.declarations.items() if not one.computed}
 
 
 def _python(value: Any) -> Any:

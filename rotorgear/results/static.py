@@ -68,16 +68,16 @@ def _forces(name: str, kind: str) -> tuple[Written, Written]:
         Written(
             f"{kind}_force_n",
             lambda result, loads: {part: load[:3] for part, load in loads.items()},
-            "N",
-            (name, "xyz"),
-            "force on the shaft",
+            unit="N",
+            axes=(name, "xyz"),
+            label="force on the shaft",
         ),
         Written(
             f"{kind}_moment_n_m",
             lambda result, loads: {part: load[3:] for part, load in loads.items()},
-            "N m",
-            (name, "xyz"),
-            "moment on the shaft",
+            unit="N m",
+            axes=(name, "xyz"),
+            label="moment on the shaft",
         ),
     )
 

@@ -171,10 +171,17 @@ class TransientResult(ModelResult, kind="transient"):
         """Statistics of the channels."""
         rows = []
         for i, name in enumerate(self.channel):
-            own = self.values[self.counted, i]
-            largest = float(own.max(initial=-np.inf))
-            smallest = float(own.min(initial=np.inf))
-            rows.append(ChannelStatistics(name, self.unit[i], _mean(own), _rms(own), largest, smallest))
+            values = self.values[self.counted, i]
+            rows.append(
+                ChannelStatistics(
+                    name=name,
+                    unit=self.unit[i],
+                    mean=_mean(values),
+                    rms=_rms(values),
+                    largest=float(values.max(initial=-np.inf)),
+                    smallest=float(values.min(initial=np.inf)),
+                )
+            )
         return tuple(rows)
 
     @derived("statistics with an error", "", "quantity", record=Quantity)
@@ -205,8 +212,8 @@ class TransientResult(ModelResult, kind="transient"):
     @property
     def dynamic_factor(self) -> np.ndarray:
         """(c,) largest mesh force over the static mean force; NaN where no load flows."""
-        own = self.mesh_force[self.counted]
-        peak = own.max(axis=0) if own.size else np.full(len(self.contact), np.nan)
+        force = self.mesh_force[self.counted]
+        peak = force.max(axis=0) if force.size else np.full(len(self.contact), np.nan)
         safe = np.where(self.mean_force > 0.0, self.mean_force, 1.0)
         return np.where(self.mean_force > 0.0, peak / safe, np.nan)
 

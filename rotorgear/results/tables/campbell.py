@@ -23,7 +23,22 @@ def campbell_table(result: CampbellResult, *, crossings: bool = False) -> Render
     first = result.speed_rpm[0]
     last = result.speed_rpm[-1]
     title = f"{result.model.title or 'Modes'}: {result.model.reference_shaft} at {first:.6g} to {last:.6g} rpm"
-    parts: list[RenderableType] = [Text(title, style="bold"), _branches(result)]
+    branches = plain_table()
+    branches.add_column("branch", justify="right")
+    for speed in (first, last):
+        branches.add_column(f"Hz at {speed:.6g}", justify="right")
+    branches.add_column("log dec.", justify="right")
+    branches.add_column("whirl")
+    branches.add_column("what moves", overflow="fold")
+    for b in range(len(result)):
+        branches.add_row(
+            str(b + 1),
+            *(_number(value, ".4f") for value in result.frequency_hz[[0, -1], b]),
+            _number(result.log_decrement[-1, b], ".4f"),
+            result.whirl_word(-1, b),
+            result.description[b],
+        )
+    parts: list[RenderableType] = [Text(title, style="bold"), branches]
     if result.margins:
         parts.append(_margins(result))
     if crossings:
@@ -55,26 +70,6 @@ def plain_table(title: str = "") -> Any:
         title_style="bold",
         header_style="bold",
     )
-
-
-def _branches(result: CampbellResult) -> Any:
-    table = plain_table()
-    table.add_column("branch", justify="right")
-    for speed in (result.speed_rpm[0], result.speed_rpm[-1]):
-        table.add_column(f"Hz at {speed:.6g}", justify="right")
-    table.add_column("log dec.", justify="right")
-    table.add_column("whirl")
-    table.add_column("what moves", overflow="fold")
-    for b in range(len(result)):
-        hertz = result.frequency_hz[[0, -1], b]
-        table.add_row(
-            str(b + 1),
-            *(_number(value, ".4f") for value in hertz),
-            _number(result.log_decrement[-1, b], ".4f"),
-            result.whirl_word(-1, b),
-            result.description[b],
-        )
-    return table
 
 
 def _margins(result: CampbellResult) -> Any:
@@ -121,4 +116,5 @@ def _crossings(result: CampbellResult) -> Any:
 
 
 def _number(value: float, form: str) -> str:
+    """A number, -0.0 as 0.0; a stroke for what is not known."""
     return format(value + 0.0, form) if math.isfinite(value) else "-"

@@ -9,12 +9,13 @@ from rotorgear.results.comparison import Candidate, Comparison, ExcitationLine, 
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
-    from rich.table import Table
 
 
 def compare_table(comparison: Comparison) -> RenderableType:
     """Return the comparison as one rich renderable that fits 80 columns."""
+    from rich import box
     from rich.console import Group
+    from rich.table import Table
     from rich.text import Text
 
     chance = comparison.chance
@@ -27,32 +28,29 @@ def compare_table(comparison: Comparison) -> RenderableType:
         f"{chance.binomial_expected:.2f}, {100 * chance.binomial_probability:.3g} %."
     )
     rest = [by_chance, *(f"Warning: {warning}." for warning in comparison.warnings)]
+    matches = Table(title="Rig comparison", title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in ("rig Hz", "mode", "model Hz", "error %"):
+        matches.add_column(name, justify="right", no_wrap=True)
+    matches.add_column("runner-up", no_wrap=True)
+    matches.add_column("note", overflow="fold", ratio=1)
+    for match in comparison.matches:
+        cells = (
+            f"{match.rig.frequency_hz:.1f}",
+            str(match.mode_number),
+            f"{match.mode_frequency_hz:.1f}",
+            f"{match.error_percent:+.2f}",
+            _candidate(match.runner_up, "\n") if match.runner_up else "",
+            "\n".join(_notes(match)),
+        )
+        matches.add_row(*(Text(cell) for cell in cells))  # brackets in a label are no markup
     parts: list[RenderableType] = [
-        *([_matches(comparison)] if comparison.matches else []),
+        *([matches] if comparison.matches else []),
         *(Text(f"{_unmatched_line(line, comparison.tolerance)}\n") for line in comparison.unmatched_rig),
         *_unmatched_modes(comparison),
         *(Text(f"{paragraph}\n") for paragraph in rest),
         Text(comparison.verdict, style="bold"),
     ]
     return Group(*parts)
-
-
-def _matches(comparison: Comparison) -> Table:
-    from rich import box
-    from rich.table import Table
-    from rich.text import Text
-
-    table = Table(title="Rig comparison", title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("rig Hz", "mode", "model Hz", "error %"):
-        table.add_column(name, justify="right", no_wrap=True)
-    table.add_column("runner-up", no_wrap=True)
-    table.add_column("note", overflow="fold", ratio=1)
-    for match in comparison.matches:
-        runner_up = _candidate(match.runner_up, "\n") if match.runner_up else ""
-        row = [f"{match.rig.frequency_hz:.1f}", str(match.mode_number), f"{match.mode_frequency_hz:.1f}"]
-        cells = [*row, f"{match.error_percent:+.2f}", runner_up, "\n".join(_notes(match))]
-        table.add_row(*(Text(cell) for cell in cells))
-    return table
 
 
 def _notes(match: Match) -> list[str]:

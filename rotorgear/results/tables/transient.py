@@ -20,13 +20,31 @@ _UNSHOWN = ("gears.",)
 def transient_table(result: TransientResult) -> RenderableType:
     """Return contacts, channels and notes as one rich renderable that fits 80 columns."""
     from rich.console import Group
+    from rich.table import Table
     from rich.text import Text
 
     rpm = [f"{w * RPM_PER_RAD_S:.5g}" for w in (result.speed[0], result.speed[-1])]
     turns = rpm[0] if rpm[0] == rpm[1] else f"{rpm[0]} to {rpm[1]}"
     counted = f"{result.time[-1] - result.settle:.4g} s after {result.settle:.4g} s"
     title = f"{result.model.title or 'Transient'}: {result.model.reference_shaft} at {turns} rpm, {counted}"
-    parts: list[RenderableType] = [Text(title, style="bold"), _contacts(result), Text("")]
+    contacts = Table(box=None, pad_edge=False, header_style="bold")
+    contacts.add_column("contact", overflow="fold")
+    for name in ("static N", "mean", "rms", "largest", "K_dyn", "DTE um", "loss %", "coast %", "losses"):
+        contacts.add_column(name, justify="right")
+    for row in result.contacts:
+        contacts.add_row(
+            row.name,
+            _value(row.static_force_n),
+            _value(row.mean_force_n),
+            _value(row.rms_force_n),
+            _value(row.largest_force_n),
+            f"{row.dynamic_factor:.3f}" if math.isfinite(row.dynamic_factor) else "-",
+            f"{1e6 * row.peak_to_peak_dte_m if math.isfinite(row.peak_to_peak_dte_m) else 0.0:.2f}",
+            f"{100.0 * row.apart_share:.1f}",
+            f"{100.0 * row.back_share:.1f}",
+            str(row.losses),
+        )
+    parts: list[RenderableType] = [Text(title, style="bold"), contacts, Text("")]
     if result.channel:
         parts.append(_channels(result))
     notes = [
@@ -41,29 +59,6 @@ def transient_table(result: TransientResult) -> RenderableType:
     notes += [f"left out: {note}" for note in result.left_out]
     notes += [f"Warning: {note}" for note in result.warnings]
     return Group(*parts, *(Text(note) for note in notes), "")
-
-
-def _contacts(result: TransientResult) -> Any:
-    from rich.table import Table
-
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    table.add_column("contact", overflow="fold")
-    for name in ("static N", "mean", "rms", "largest", "K_dyn", "DTE um", "loss %", "coast %", "losses"):
-        table.add_column(name, justify="right")
-    for row in result.contacts:
-        table.add_row(
-            row.name,
-            _value(row.static_force_n),
-            _value(row.mean_force_n),
-            _value(row.rms_force_n),
-            _value(row.largest_force_n),
-            f"{row.dynamic_factor:.3f}" if math.isfinite(row.dynamic_factor) else "-",
-            f"{1e6 * row.peak_to_peak_dte_m if math.isfinite(row.peak_to_peak_dte_m) else 0.0:.2f}",
-            f"{100.0 * row.apart_share:.1f}",
-            f"{100.0 * row.back_share:.1f}",
-            str(row.losses),
-        )
-    return table
 
 
 def _channels(result: TransientResult) -> Any:
