@@ -69,8 +69,8 @@ def critical_map(
         raise AnalysisError(f"there is no turning shaft '{shaft}'; there are {', '.join(model.shafts)}")
     given = model
     model, _ = about_equilibrium(model, [highest_speed(model, stop)])
-    own = {name: radial_stiffness(bearing) for name, bearing in model.bearings.items()}
-    values = np.sort(np.asarray(stiffness if stiffness is not None else _default(own), float))
+    radial = {name: radial_stiffness(bearing) for name, bearing in model.bearings.items()}
+    values = np.sort(np.asarray(stiffness if stiffness is not None else _default(radial), float))
     if not values.size or not np.all(np.isfinite(values) & (values > 0.0)):
         raise AnalysisError("the support stiffness must be positive, in N/m")
     top = highest_speed(model, stop)
@@ -91,7 +91,12 @@ def critical_map(
         system = System(with_radial_stiffness(model, float(value)), plan=stiffest.plan, load=stiffest.load)
         rows.append(_by_whirl(system, line.order, top))
     clock.lap("critical speeds")
-    tables = {kind: _padded([row[kind] for row in rows]) for kind in ("forward", "backward", "other")}
+    tables = {}
+    for kind in ("forward", "backward", "other"):
+        # How many lie below the top speed depends on the stiffness: NaN fills the rows up.
+        width = max((len(row[kind]) for row in rows), default=0)
+        filled = [row[kind] + [np.nan] * (width - len(row[kind])) for row in rows]
+        tables[kind] = np.array(filled).reshape(len(rows), width)
     return CriticalMap(
         model=given,
         line=line.name,
@@ -99,7 +104,7 @@ def critical_map(
         forward=tables["forward"],
         backward=tables["backward"],
         other=tables["other"],
-        bearings=own,
+        bearings=radial,
         top_speed=top,
         dofs=stiffest.n,
         seconds=clock.total(),
@@ -125,11 +130,6 @@ def _by_whirl(system: System, order: float, top: float) -> dict[str, list[float]
         kind = "other" if bending[k] < 0.5 else ("forward" if net > 0.0 else "backward")
         table[kind].append(float(speed))
     return {kind: sorted(values, key=abs) for kind, values in table.items()}
-
-
-def _padded(rows: list[list[float]]) -> np.ndarray:
-    width = max(map(len, rows), default=0)
-    return np.array([row + [np.nan] * (width - len(row)) for row in rows]).reshape(len(rows), width)
 
 
 def radial_stiffness(bearing: Bearing) -> np.ndarray:

@@ -188,9 +188,9 @@ class SpeedModes:
         new = 0
         for part in self._parts:
             for vectors in (snapshot.rigid, snapshot.vectors):
-                own = vectors[part.dofs]
-                own = own[:, np.abs(own).max(axis=0, initial=0.0) > 0.0]
-                new += part.space.add(own) if own.shape[1] else 0
+                here = vectors[part.dofs]
+                here = here[:, np.abs(here).max(axis=0, initial=0.0) > 0.0]
+                new += part.space.add(here) if here.shape[1] else 0
         return new
 
     def _project(self) -> None:
@@ -199,9 +199,9 @@ class SpeedModes:
             counts = [0]
             sizes = []
             for snapshot in self.snapshots:
-                own = np.abs(snapshot.vectors[part.dofs]).max(axis=0, initial=0.0) > 0.0
-                counts.append(int(own.sum()))
-                sizes += [np.abs(snapshot.s[own])]
+                moves = np.abs(snapshot.vectors[part.dofs]).max(axis=0, initial=0.0) > 0.0
+                counts.append(int(moves.sum()))
+                sizes += [np.abs(snapshot.s[moves])]
             size = np.concatenate(sizes) if sizes else np.zeros(0)
             if not part.space.size or not size.size:
                 part.family = self.family.reduced(V[:, :0])

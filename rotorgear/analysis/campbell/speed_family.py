@@ -67,11 +67,11 @@ class SpeedFamily:
 
     def _table(self, speed: float) -> tuple[sp.csc_array, sp.csc_array]:
         """Damping and stiffness of the bearings with tables at a speed, sparse (n, n)."""
-        own = table_groups(self.system.layout, self.system.nodes, float(speed))
-        K = assemble(own, self.system.dofs, _whole_stiffness)
-        C = assemble(own, self.system.dofs, lambda g: g.matrices.damping)
+        bearings = table_groups(self.system.layout, self.system.nodes, float(speed))
+        K = assemble(bearings, self.system.dofs, _whole_stiffness)
+        C = assemble(bearings, self.system.dofs, lambda g: g.matrices.damping)
         beta = self.system.model.damping.rayleigh_beta
-        symmetric = assemble(own, self.system.dofs, lambda g: g.matrices.stiffness)
+        symmetric = assemble(bearings, self.system.dofs, lambda g: g.matrices.stiffness)
         return sp.csc_array(C + beta * symmetric), K
 
     @property

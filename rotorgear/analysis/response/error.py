@@ -40,10 +40,10 @@ def mesh_error(
     wanted = {order.name: order for order in orders_of(finer, lines, mean)}
     for o in np.argsort(-size.max(axis=0))[:_CHECKED_ON_FINER]:
         s = int(np.argmax(size[:, o]))
-        own = [wanted[orders[o].name]]
-        w, f = rich.loads(own, float(speeds[s]))
+        order = [wanted[orders[o].name]]
+        w, f = rich.loads(order, float(speeds[s]))
         q = solve_orders(rich, rich.dynamics(float(speeds[s])), w, f)
-        there = rich.read(own, float(speeds[s]), w, q).stacked[0]
+        there = rich.read(order, float(speeds[s]), w, q).stacked[0]
         largest = float(np.abs(there).max(initial=0.0))
         if largest:
             worst = max(worst, float(np.abs(there - forces[s, o]).max()) / largest)
@@ -63,8 +63,8 @@ def speed_warnings(
         if not plant.has_tables
         else plant.system.damping(float(speeds[-1]))
     )
-    own = np.einsum("nm,nm->m", shapes, C @ shapes)[elastic] / (2.0 * w[elastic]) + zeta
-    if float(own.max()) <= 0.0:
+    ratios = np.einsum("nm,nm->m", shapes, C @ shapes)[elastic] / (2.0 * w[elastic]) + zeta
+    if float(ratios.max()) <= 0.0:
         return [
             "nothing damps the model: amplitudes near a resonance are as high as the nearest speed happens to be; give a damping"
         ]
@@ -76,7 +76,7 @@ def speed_warnings(
     for order in orders:
         met = (w[elastic] >= order.ratio * float(np.min(np.abs(speeds)))) & (w[elastic] <= order.ratio * top)
         if met.any():
-            width = min(width, float(np.min(2.0 * own[met] * w[elastic][met])) / order.ratio)
+            width = min(width, float(np.min(2.0 * ratios[met] * w[elastic][met])) / order.ratio)
     if width >= _SPEEDS_A_PEAK * step:
         return []
     apart = step * RPM_PER_RAD_S
@@ -92,12 +92,13 @@ def parting(setup: Setup, force: np.ndarray, speeds: np.ndarray) -> list[str]:
     found = []
     lines = setup.lines
     for mesh in dict.fromkeys(lines.names):
-        own = [k for k, name in enumerate(lines.names) if name == mesh]
-        share = np.abs(force[:, :, own]).max(axis=0) / np.maximum(setup.mean_force[own], 1e-300)  # (s, own)
+        contacts = [k for k, name in enumerate(lines.names) if name == mesh]
+        mean = np.maximum(setup.mean_force[contacts], 1e-300)
+        share = np.abs(force[:, :, contacts]).max(axis=0) / mean  # (s, contacts)
         over = np.flatnonzero(share.max(axis=1) > 1.0)
         if not over.size:
             continue
-        if not np.any(setup.mean_force[own] > 0.0):
+        if not np.any(setup.mean_force[contacts] > 0.0):
             found.append(
                 f"meshes.{mesh} carries no mean force: its teeth part, and the linear answer takes them as joined"
             )

@@ -115,7 +115,7 @@ def frf(
         seconds={"total": time.perf_counter() - clock},
         left_out=(*first.notes, *notes, *rolling_notes(model, rolls=False)),
         warnings=()
-        if zeta or _is_damped(system, turns)
+        if zeta or system.damping(turns).nnz
         else ("nothing damps the model: heights near a resonance are those of the nearest frequency; give a damping",),
         method="direct sparse LU at every frequency",
     )
@@ -176,7 +176,3 @@ def _strongest(receptance: np.ndarray) -> np.ndarray:
     flat = np.abs(receptance).reshape(len(receptance), -1)
     order = np.argsort(-(flat / np.where(flat.max(axis=0) > 0.0, flat.max(axis=0), 1.0)).max(axis=1))
     return np.unique(np.concatenate([flat.argmax(axis=0), order[:_CHECKED_ON_FINER]]))
-
-
-def _is_damped(system: System, speed: float) -> bool:
-    return bool(system.damping(speed).nnz)

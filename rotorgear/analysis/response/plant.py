@@ -67,7 +67,8 @@ class Plant:
         self.places = part_nodes(system)
         rows = [6 * node + dof for node in self.places.values() for dof in range(6)]
         self._place_rows = sp.csr_array(system.dofs.transform)[rows, :]
-        self._points = [_row(system, name) for name in system.model.points]
+        points = system.model.points.items()
+        self._points = [dof_row(system, *system.layout.place(f"points.{name}"), p.direction) for name, p in points]
         self._parts: tuple[sp.csc_array, ...] | None = None
         self._read: tuple[np.ndarray, np.ndarray] | None = None
 
@@ -109,11 +110,11 @@ class Plant:
         if self._read is not None and not self.has_tables:
             return self._read
         system = self.system
-        own = {g.part: g for g in system.groups_at(speed) if g.part.startswith("bearings.")}
+        bearings = {g.part: g for g in system.groups_at(speed) if g.part.startswith("bearings.")}
         K, C = (np.zeros((3 * len(system.model.bearings), system.dofs.transform.shape[0])) for _ in "KC")
         beta = system.model.damping.rayleigh_beta
         for k, name in enumerate(system.model.bearings):
-            group = own[f"bearings.{name}"]
+            group = bearings[f"bearings.{name}"]
             m = group.matrices
             columns = group.dofs[0]
             for term in (m.stiffness, m.circulatory):
@@ -126,12 +127,6 @@ class Plant:
         T = system.dofs.transform
         self._read = np.asarray((T.T @ K.T).T), np.asarray((T.T @ C.T).T)
         return self._read
-
-
-def _row(system: System, name: str) -> np.ndarray:
-    """Row that gives the displacement of a named point along its direction, (n,)."""
-    shaft, z = system.layout.place(f"points.{name}")
-    return dof_row(system, shaft, z, system.model.points[name].direction)
 
 
 def dof_row(system: System, shaft: str, z: float, direction: str) -> np.ndarray:

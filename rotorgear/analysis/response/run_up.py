@@ -65,8 +65,8 @@ def solve_orders(plant: Plant, dynamics: Dynamics, w: np.ndarray, f: np.ndarray)
     """Direct solution of every order, (n, o), each distinct frequency factored once."""
     q = np.zeros(f.shape, complex)
     for value in np.unique(w):
-        own = np.flatnonzero(w == value)
-        q[:, own] = dynamics.solve(float(value), f[:, own])
+        alike = np.flatnonzero(w == value)
+        q[:, alike] = dynamics.solve(float(value), f[:, alike])
     return q
 
 

@@ -11,11 +11,11 @@ from rotorgear.system.groups import ElementGroup
 from rotorgear.system.nodes import Nodes
 
 
-def forces_on_gears(found: Equilibrated) -> np.ndarray:
+def forces_on_gears(equilibrium: Equilibrated) -> np.ndarray:
     """Force of the pinion on the gear at each contact, (c, 3): the normal force along v's own direction."""
-    groups = [group for group in found.system.groups if group.part.startswith("meshes.")]
+    groups = [group for group in equilibrium.system.groups if group.part.startswith("meshes.")]
     rows = []
-    for group, force in zip(groups, found.force, strict=True):
+    for group, force in zip(groups, equilibrium.force, strict=True):
         assert group.matrices.strain is not None
         rows.append(force * group.matrices.strain[0, 0, :3])
     return np.array(rows).reshape(-1, 3)
@@ -33,68 +33,68 @@ def _inner(group: ElementGroup, q: np.ndarray) -> np.ndarray:
     return np.asarray(np.einsum("esd,est,etf,ef->ed", B, total, B, q[group.dofs]))
 
 
-def bearing_forces(found: Equilibrated) -> dict[str, np.ndarray]:
+def bearing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     """Force and moment of each bearing on its shaft, (6,), and of each nonlinear element by its address."""
-    q = found.system.dofs.expand(found.q)
+    q = equilibrium.system.dofs.expand(equilibrium.q)
     forces = {
         group.part.removeprefix("bearings."): -_inner(group, q)[0, -6:]
-        for group in found.groups
+        for group in equilibrium.groups
         if group.part.startswith("bearings.") and not group.part.endswith(".pedestal")
     }
-    for law in found.laws:
-        node = found.system.nodes.at(*found.system.layout.place(law.part.part))
+    for law in equilibrium.laws:
+        node = equilibrium.system.nodes.at(*equilibrium.system.layout.place(law.part.part))
         on_shaft = -law.part.columns[6 * node : 6 * node + 6] @ law.force
         name = law.part.part.removeprefix("bearings.")
         forces[name] = forces.get(name, 0.0) + on_shaft
     return forces
 
 
-def support_forces(found: Equilibrated) -> dict[str, np.ndarray]:
+def support_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     """Force and moment of each support on its shaft, (6,): of its springs, and what it holds fixed."""
-    system = found.system
-    q = system.dofs.expand(found.q)
-    rest = inner_forces(found) - found.loads
+    system = equilibrium.system
+    q = system.dofs.expand(equilibrium.q)
+    rest = inner_forces(equilibrium) - equilibrium.loads
     forces = {}
-    for group in found.groups:
+    for group in equilibrium.groups:
         if group.part.startswith("supports."):
             forces[group.part.removeprefix("supports.")] = -_inner(group, q)[0, -6:]
     for name, support in system.model.supports.items():
         node = system.nodes.at(*system.layout.place(f"supports.{name}"))
         held = [k for k, dof in enumerate(DOF_NAMES) if dof in support.fixed or "all" in support.fixed]
         if held:
-            wrench = _at_node(system.nodes, found, rest, node)
+            wrench = _at_node(system.nodes, equilibrium, rest, node)
             forces[name][held] += wrench[held]
     return forces
 
 
-def _at_node(nodes: Nodes, found: Equilibrated, rest: np.ndarray, node: int) -> np.ndarray:
+def _at_node(nodes: Nodes, equilibrium: Equilibrated, rest: np.ndarray, node: int) -> np.ndarray:
     """What is missing for equilibrium at a node, with that of the nodes which rigid sections tie to it."""
     missing = np.zeros(6)
-    for other in found.system.rigid_with(node):
+    for other in equilibrium.system.rigid_with(node):
         arm = rigid_transfer(np.array([0.0, 0.0, nodes.z[other] - nodes.z[node]]))
         missing += arm.T @ rest[6 * other : 6 * other + 6]
     return missing
 
 
-def inner_forces(found: Equilibrated) -> np.ndarray:
+def inner_forces(equilibrium: Equilibrated) -> np.ndarray:
     """Sum of the forces of all elements on all dofs, (a,), contacts with their gaps closed first."""
-    q = found.system.dofs.expand(found.q)
+    q = equilibrium.system.dofs.expand(equilibrium.q)
     total = np.zeros_like(q)
-    meshes = iter(found.force[found.closed])
-    for group in found.groups:
+    meshes = iter(equilibrium.force[equilibrium.closed])
+    for group in equilibrium.groups:
         if group.part.startswith("meshes."):
             assert group.matrices.strain is not None
             np.add.at(total, group.dofs, next(meshes) * group.matrices.strain[:, 0, :])
         else:
             np.add.at(total, group.dofs, _inner(group, q))
-    for law in found.laws:
+    for law in equilibrium.laws:
         total += law.part.columns @ law.force
     return total
 
 
-def imbalance(found: Equilibrated) -> float:
+def imbalance(equilibrium: Equilibrated) -> float:
     """Largest force that is missing at a free dof, relative to the largest force there is."""
-    inner = inner_forces(found)
-    rest = found.system.dofs.transform.T @ (inner - found.loads)
-    size = max(float(np.max(np.abs(inner), initial=0.0)), float(np.max(np.abs(found.loads), initial=0.0)))
+    inner = inner_forces(equilibrium)
+    rest = equilibrium.system.dofs.transform.T @ (inner - equilibrium.loads)
+    size = max(float(np.max(np.abs(inner), initial=0.0)), float(np.max(np.abs(equilibrium.loads), initial=0.0)))
     return float(np.max(np.abs(rest), initial=0.0) / size) if size else 0.0

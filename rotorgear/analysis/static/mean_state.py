@@ -41,12 +41,12 @@ def mean_state(system: System, speed: float) -> Setup:
             else ()
         )
         return Setup(system, lines, np.zeros(len(lines.states)), notes)
-    found = equilibrate(system, speed)
-    if not found.closed.all():
-        name = found.lines.names[int(np.flatnonzero(~found.closed)[0])]
+    equilibrium = equilibrate(system, speed)
+    if not equilibrium.closed.all():
+        name = equilibrium.lines.names[int(np.flatnonzero(~equilibrium.closed)[0])]
         raise AnalysisError(
             f"meshes.{name} carries nothing under the mean loads, so there is no linear response about them; give more torque or "
             "a smaller index error"
         )
-    settled = found.system.with_load(found.system.load.with_forces(found.force))
-    return Setup(settled, contact_lines(settled), found.force, ())
+    settled = equilibrium.system.with_load(equilibrium.system.load.with_forces(equilibrium.force))
+    return Setup(settled, contact_lines(settled), equilibrium.force, ())

@@ -26,10 +26,10 @@ class Sensitivity:
     left_out: tuple[str, ...] = ()
 
 
-def sensitivities(found: Equilibrated) -> Sensitivity:
+def sensitivities(equilibrium: Equilibrated) -> Sensitivity:
     """Return the derivatives of all contact forces."""
-    lines = found.lines
-    active = np.where(found.closed, lines.stiffness, 0.0)
+    lines = equilibrium.lines
+    active = np.where(equilibrium.closed, lines.stiffness, 0.0)
     count = len(active)
     names: list[str] = []
     units: list[str] = []
@@ -52,14 +52,14 @@ def sensitivities(found: Equilibrated) -> Sensitivity:
             mine = np.array(second) * active
             add(f"meshes.{mesh}.helix_index_error", "N/m", lines.vectors @ mine, -mine)
     for mesh in meshes:
-        mine = np.array([name == mesh for name in lines.names]) * found.force
+        mine = np.array([name == mesh for name in lines.names]) * equilibrium.force
         add(f"meshes.{mesh}.stiffness", "N", -lines.vectors @ mine, mine)
-    for part, right in _stiffness_terms(found).items():
+    for part, right in _stiffness_terms(equilibrium).items():
         add(part, "N", right, np.zeros(count))
     for mesh in meshes:
         mine = np.array([name == mesh for name in lines.names], float)
-        turning = lines.turned.T @ found.q
-        right = -(lines.turned @ (mine * found.force) + lines.vectors @ (mine * active * turning))
+        turning = lines.turned.T @ equilibrium.q
+        right = -(lines.turned @ (mine * equilibrium.force) + lines.vectors @ (mine * active * turning))
         add(f"meshes.{mesh}.centre_line_angle", "N/rad", right, mine * active * turning)
 
     # Round-off of a stiffness term on the free motions is no load; a term that really pushes one has no derivative.
@@ -68,22 +68,22 @@ def sensitivities(found: Equilibrated) -> Sensitivity:
     columns = []
     for k, right in enumerate(rights):
         try:
-            columns.append(found.solver.solve(right[:, None])[:, 0])
+            columns.append(equilibrium.solver.solve(right[:, None])[:, 0])
             kept.append(k)
         except AnalysisError:
             dropped.append(names[k])
-    dq = np.array(columns).T if columns else np.zeros((len(found.q), 0))
+    dq = np.array(columns).T if columns else np.zeros((len(equilibrium.q), 0))
     force = (active[:, None] * (lines.vectors.T @ dq)).T + np.array(directs)[kept]
     left = (f"no derivative by {', '.join(dropped)}: it would set the free motions going",) if dropped else ()
     return Sensitivity(tuple(names[k] for k in kept), tuple(units[k] for k in kept), force, left)
 
 
-def _stiffness_terms(found: Equilibrated) -> dict[str, np.ndarray]:
+def _stiffness_terms(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     """-K_part q of every shaft, bearing, support and coupling: part.stiffness -> (n,)."""
-    system = found.system
-    q = system.dofs.expand(found.q)
+    system = equilibrium.system
+    q = system.dofs.expand(equilibrium.q)
     terms: dict[str, np.ndarray] = {}
-    for group in found.groups:
+    for group in equilibrium.groups:
         K = group.matrices.stiffness
         if K is None or group.part.startswith("meshes."):
             continue

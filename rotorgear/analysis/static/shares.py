@@ -15,14 +15,14 @@ from rotorgear.results.static import Share
 _DECIDED = 1e-7
 
 
-def share_rows(found: Equilibrated, derivative: np.ndarray) -> tuple[tuple[Share, ...], np.ndarray]:
+def share_rows(equilibrium: Equilibrated, derivative: np.ndarray) -> tuple[tuple[Share, ...], np.ndarray]:
     """Return the shares of all groups of meshes, and their derivatives (k, g) from those of the contact forces (k, c)."""
     rows: list[Share] = []
     changes: list[np.ndarray] = []
-    indexes = _index_derivatives(found)
-    for gear, meshes in _groups(found).items():
-        mine = [np.array([name == mesh for name in found.lines.names]) for mesh in meshes]
-        force = np.array([found.force[contacts].sum() for contacts in mine])
+    indexes = _index_derivatives(equilibrium)
+    for gear, meshes in _groups(equilibrium).items():
+        mine = [np.array([name == mesh for name in equilibrium.lines.names]) for mesh in meshes]
+        force = np.array([equilibrium.force[contacts].sum() for contacts in mine])
         total = force.sum()
         if not total:
             continue
@@ -30,32 +30,32 @@ def share_rows(found: Equilibrated, derivative: np.ndarray) -> tuple[tuple[Share
         share = force / total
         moved = (change - share[:, None] * change.sum(axis=0)) / total
         stiff = np.array([indexes[np.ix_(contacts, contacts)].max() for contacts in mine]).max()
-        loop = stiff > _DECIDED * float(found.lines.stiffness.max())
+        loop = stiff > _DECIDED * float(equilibrium.lines.stiffness.max())
         for mesh, part, row in zip(meshes, share, moved, strict=True):
             rows.append(Share(gear, mesh, float(part), float(len(meshes) * part), "stiffness" if loop else "loads"))
             changes.append(row)
     return tuple(rows), np.array(changes).T.reshape(len(derivative), len(rows))
 
 
-def _index_derivatives(found: Equilibrated) -> np.ndarray:
+def _index_derivatives(equilibrium: Equilibrated) -> np.ndarray:
     """|dF_i / de_j| of whole meshes' index errors, (c, c)."""
-    active = np.where(found.closed, found.lines.stiffness, 0.0)
-    names = np.array(found.lines.names)
+    active = np.where(equilibrium.closed, equilibrium.lines.stiffness, 0.0)
+    names = np.array(equilibrium.lines.names)
     out = np.zeros((len(active), len(active)))
-    for mesh in dict.fromkeys(found.lines.names):
+    for mesh in dict.fromkeys(equilibrium.lines.names):
         mine = np.where(names == mesh, active, 0.0)
-        dq = found.solver.solve((found.lines.vectors @ mine)[:, None])[:, 0]
-        change = active * (found.lines.vectors.T @ dq) - mine
+        dq = equilibrium.solver.solve((equilibrium.lines.vectors @ mine)[:, None])[:, 0]
+        change = active * (equilibrium.lines.vectors.T @ dq) - mine
         # A gap in both helices moves their sum in a loop only; between the helices alone it is no matter of the branch.
-        total = sum(abs(change[names == other].sum()) for other in dict.fromkeys(found.lines.names))
+        total = sum(abs(change[names == other].sum()) for other in dict.fromkeys(equilibrium.lines.names))
         out[:, names == mesh] = total
     return out
 
 
-def _groups(found: Equilibrated) -> dict[str, list[str]]:
+def _groups(equilibrium: Equilibrated) -> dict[str, list[str]]:
     """Gear -> its meshes on the driving side, or on the driven side, where there are several."""
     sides: dict[tuple[str, bool], list[str]] = {}
-    for state in found.lines.states:
+    for state in equilibrium.lines.states:
         contact = state.contact
         for gear, drives in ((contact.pinion, state.pinion_drives), (contact.gear, not state.pinion_drives)):
             meshes = sides.setdefault((gear, drives), [])
@@ -64,8 +64,8 @@ def _groups(found: Equilibrated) -> dict[str, list[str]]:
     return {gear: meshes for (gear, _), meshes in sides.items() if len(meshes) > 1}
 
 
-def helix_shares(found: Equilibrated) -> np.ndarray:
+def helix_shares(equilibrium: Equilibrated) -> np.ndarray:
     """Share of each contact in the force of its mesh, (c,); 0 where the mesh carries nothing."""
-    names = np.array(found.lines.names)
-    total = np.array([found.force[names == name].sum() for name in names])
-    return np.where(total > 0.0, found.force / np.where(total > 0.0, total, 1.0), 0.0)
+    names = np.array(equilibrium.lines.names)
+    total = np.array([equilibrium.force[names == name].sum() for name in names])
+    return np.where(total > 0.0, equilibrium.force / np.where(total > 0.0, total, 1.0), 0.0)

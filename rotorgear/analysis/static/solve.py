@@ -75,18 +75,18 @@ def equilibrate(system: System, speed: float) -> Equilibrated:
                 f"no set of flanks carries the loads: meshes {names} open and close in turn; check index errors and loads"
             )
         tried.add(state)
-        found = _solve(system, speed, closed)
-        size = _PULLS * float(np.max(np.abs(found.force), initial=0.0))
-        gap = found.lines.vectors.T @ found.q - found.lines.gap
-        worst = int(np.argmin(found.force)) if found.force.size else -1
-        through = np.flatnonzero(~closed & (found.lines.stiffness * gap > size))
+        equilibrium = _solve(system, speed, closed)
+        size = _PULLS * float(np.max(np.abs(equilibrium.force), initial=0.0))
+        gap = equilibrium.lines.vectors.T @ equilibrium.q - equilibrium.lines.gap
+        worst = int(np.argmin(equilibrium.force)) if equilibrium.force.size else -1
+        through = np.flatnonzero(~closed & (equilibrium.lines.stiffness * gap > size))
         if through.size:
             closed = closed.copy()
             closed[through[0]] = True
-        elif worst >= 0 and found.force[worst] < -size:
+        elif worst >= 0 and equilibrium.force[worst] < -size:
             system, closed = _released(system, speed, closed, worst)
         else:
-            return found
+            return equilibrium
 
 
 def _released(system: System, speed: float, closed: np.ndarray, worst: int) -> tuple[System, np.ndarray]:

@@ -59,12 +59,12 @@ def static(
     system = System(model, plan=plan, load=model.mean_load(direction_of(given)).of_kind("static"))
     _check_loaded(system)
     progress(0.1, f"solving {system.n} dofs")
-    found = equilibrate(system, given or 0.0)
+    equilibrium = equilibrate(system, given or 0.0)
     progress(0.5, "sensitivities")
-    change = sensitivities(found)
+    change = sensitivities(equilibrium)
     progress(0.8, "error estimate")
-    estimate = _estimate(found, given or 0.0)
-    result = _result(found, given, change, estimate, start)
+    estimate = _estimate(equilibrium, given or 0.0)
+    result = _result(equilibrium, given, change, estimate, start)
     progress(1.0, "done")
     return result
 
@@ -81,45 +81,47 @@ def _check_loaded(system: System) -> None:
         )
 
 
-def _estimate(found: Equilibrated, speed: float) -> float:
+def _estimate(equilibrium: Equilibrated, speed: float) -> float:
     """Relative change of all forces when every element is halved."""
-    finer = found.system.with_plan(Plan(2 * found.system.plan.elements))
+    finer = equilibrium.system.with_plan(Plan(2 * equilibrium.system.plan.elements))
     other = equilibrate(finer, speed)
-    here = np.concatenate([found.force, *bearing_forces(found).values(), *support_forces(found).values()])
+    here = np.concatenate(
+        [equilibrium.force, *bearing_forces(equilibrium).values(), *support_forces(equilibrium).values()]
+    )
     there = np.concatenate([other.force, *bearing_forces(other).values(), *support_forces(other).values()])
     size = float(np.max(np.abs(there), initial=0.0))
     return float(np.max(np.abs(here - there), initial=0.0) / size) if size else 0.0
 
 
 def _result(
-    found: Equilibrated, speed: float | None, change: Sensitivity, estimate: float, start: float
+    equilibrium: Equilibrated, speed: float | None, change: Sensitivity, estimate: float, start: float
 ) -> StaticResult:
-    system = found.system
-    states = found.lines.states
-    q = system.dofs.expand(found.q)
+    system = equilibrium.system
+    states = equilibrium.lines.states
+    q = system.dofs.expand(equilibrium.q)
     nodes, moved = shapes_at_stations(system, q[:, None])
-    shares, share_change = share_rows(found, change.force)
-    approach = found.lines.vectors.T @ found.q - found.lines.gap
+    shares, share_change = share_rows(equilibrium, change.force)
+    approach = equilibrium.lines.vectors.T @ equilibrium.q - equilibrium.lines.gap
     loops = system.layout.assembly.loops
     # A free motion is no mistake in statics: where the loads do not push it, forces are the same wherever it stands.
-    count = found.motions.shape[1]
+    count = equilibrium.motions.shape[1]
     free = f"{count} free motion{'s'[: count != 1]} handled exactly, on a determinate support"
     return StaticResult(
         model=system.model,
         speed=speed,
         nodes=nodes,
         displacement=moved[:, :, 0],
-        contact_mesh=found.lines.names,
+        contact_mesh=equilibrium.lines.names,
         contact_helix=np.array([state.contact.helix for state in states], dtype=int),
         driver=tuple(state.contact.pinion if state.pinion_drives else state.contact.gear for state in states),
-        carries=found.closed,
-        mesh_force=found.force,
-        mesh_force_on_gear=forces_on_gears(found),
-        mesh_deflection=np.where(found.closed, approach, 0.0),
-        bearing_force=bearing_forces(found),
-        support_force=support_forces(found),
+        carries=equilibrium.closed,
+        mesh_force=equilibrium.force,
+        mesh_force_on_gear=forces_on_gears(equilibrium),
+        mesh_deflection=np.where(equilibrium.closed, approach, 0.0),
+        bearing_force=bearing_forces(equilibrium),
+        support_force=support_forces(equilibrium),
         shares=shares,
-        helix_share=helix_shares(found),
+        helix_share=helix_shares(equilibrium),
         parameter=change.name,
         parameter_unit=change.unit,
         force_derivative=change.force,
@@ -128,12 +130,12 @@ def _result(
         assembly=tuple(LoopAssembly(loop.mesh, loop.gear, math.degrees(loop.clocking), loop.rest) for loop in loops),
         torque={item.name: item.torque for item in system.load.applied},
         point_displacement={n: float(v[0]) for n, v in point_amplitudes(system, moved).items()},
-        imbalance=imbalance(found),
+        imbalance=imbalance(equilibrium),
         error_estimate=estimate,
         dofs=system.n,
         seconds={"total": time.perf_counter() - start},
-        left_out=(*_left_out(found), *change.left_out),
-        warnings=(*system.nodes.merged, *_warnings(found)),
+        left_out=(*_left_out(equilibrium), *change.left_out),
+        warnings=(*system.nodes.merged, *_warnings(equilibrium)),
         method=f"direct, sparse LU; {free if count else 'all motions held'}",
         place_displacement=displacement_places(system, moved[:, :, 0]),
     )
@@ -144,9 +146,9 @@ def phases_in_pitches(load: MeanLoad) -> dict[str, float]:
     return {name: math.nan if phi is None else phi / (2.0 * math.pi) for name, phi in load.phases.items()}
 
 
-def _left_out(found: Equilibrated) -> tuple[str, ...]:
-    model = found.system.model
-    notes = list(found.notes)
+def _left_out(equilibrium: Equilibrated) -> tuple[str, ...]:
+    model = equilibrium.system.model
+    notes = list(equilibrium.notes)
     absent = [motion for motion in ("bending", "axial", "torsion") if not model.has(motion)]
     if absent:
         notes.append(f"{' and '.join(absent)}: not among the motions of the model")
@@ -156,21 +158,21 @@ def _left_out(found: Equilibrated) -> tuple[str, ...]:
     return (*notes, *rolling_notes(model, rolls=False))
 
 
-def _warnings(found: Equilibrated) -> list[str]:
+def _warnings(equilibrium: Equilibrated) -> list[str]:
     notes = []
     flow = {
         (force.contact.mesh, force.contact.helix): force.torque_sense
-        for force in found.system.model.mean_load(found.system.direction).forces
+        for force in equilibrium.system.model.mean_load(equilibrium.system.direction).forces
     }
-    for state, closed in zip(found.lines.states, found.closed, strict=True):
+    for state, closed in zip(equilibrium.lines.states, equilibrium.closed, strict=True):
         contact = state.contact
-        two = found.lines.names.count(contact.mesh) == 2
+        two = equilibrium.lines.names.count(contact.mesh) == 2
         which = f"meshes.{contact.mesh}" + (f" helix {contact.helix + 1}" if two else "")
         if not closed:
             notes.append(f"{which} carries nothing: its flanks stand apart under these loads and index errors")
         elif state.torque_sense != flow[contact.mesh, contact.helix]:
             notes.append(f"{which} carries on the other flank than the torque flow in torsion says")
-    open_loops = [loop for loop in found.system.layout.assembly.loops if not loop.gear and abs(loop.rest) > 1e-6]
+    open_loops = [loop for loop in equilibrium.system.layout.assembly.loops if not loop.gear and abs(loop.rest) > 1e-6]
     return notes + [
         f"meshes.{loop.mesh} closes a loop that can't be put together: {loop.rest:+.4f} pitches are missing with the clockings "
         "given; leave out the clocking of one of its gears and it closes the loop"

@@ -64,21 +64,18 @@ def mesh_convergence_study(
     steps = len(runs) + 4
     truth = _run(replace(teeth, fe=finest), request.base_force, part_of(progress, 0.0, 4.0 / steps))
     rungs = []
-    for number, (name, own) in enumerate(runs):
-        run = _run(own, request.base_force, part_of(progress, (number + 4) / steps, (number + 5) / steps))
-        rungs.append(_rung(name, own, run, truth.cycle, request.base_force))
+    for number, (name, pair) in enumerate(runs):
+        run = _run(pair, request.base_force, part_of(progress, (number + 4) / steps, (number + 5) / steps))
+        rungs.append(_rung(name, pair, run, truth.cycle, request.base_force))
     progress(1.0, "done")
     size = finest.mesh_size(teeth.width / teeth.first.normal_module, space=space)
-    words = f"{_words(size)}, {truth.problem.unknowns} dofs, {truth.problem.slices} slices"
+    layers = f" in {size.face} layers" if size.face else ""
+    words = f"{size.elements} elements a pitch{layers}, {truth.problem.unknowns} dofs, {truth.problem.slices} slices"
     return MeshConvergenceStudy(model.title, request.name, truth.problem.body, request.base_force, words, tuple(rungs))
 
 
 def _elements(teeth: ToothPair) -> int:
     return teeth.fe.mesh_size(teeth.width / teeth.first.normal_module, space=in_space(teeth)[0]).elements
-
-
-def _words(size: MeshSize) -> str:
-    return f"{size.elements} elements a pitch" + (f" in {size.face} layers" if size.face else "")
 
 
 def _run(teeth: ToothPair, load: float, progress: Progress) -> _Run:

@@ -66,11 +66,11 @@ def _gear(name: str, gear: Gear) -> GearRow:
     g = gear.geometry
     assert g is not None
     outline = tooth_outline(g)
-    own = gear.allowance
+    allowance = gear.allowance
     ball = ball_diameter(gear, g)
     k = best_span(g)
-    thick = with_allowance(g, own.upper)
-    thin = with_allowance(g, own.lower)
+    thick = with_allowance(g, allowance.upper)
+    thin = with_allowance(g, allowance.lower)
     return GearRow(
         name=name,
         kind=gear.kind,
@@ -97,8 +97,8 @@ def _gear(name: str, gear: Gear) -> GearRow:
         virtual_teeth=g.virtual_teeth,
         normal_thickness_m=normal_thickness(g),
         tip_thickness_m=g.normal_tip_thickness,
-        upper_thickness_allowance_m=own.upper,
-        lower_thickness_allowance_m=own.lower,
+        upper_thickness_allowance_m=allowance.upper,
+        lower_thickness_allowance_m=allowance.lower,
         span_teeth=k,
         span_m=g.base_tangent_length(k),
         span_upper_m=thick.base_tangent_length(k),
@@ -176,11 +176,11 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
     )
 
 
-def _of_factor(model: Model, own: MeshLayout, factor: DynamicFactor) -> Iterator[str]:
+def _of_factor(model: Model, mesh: MeshLayout, factor: DynamicFactor) -> Iterator[str]:
     """Warnings of K_v, and a sentence for a gear with further mates, whose resonances method B doesn't know."""
     yield from factor.warnings
-    for gear in (own.part.pinion, own.part.gear):
-        if factor.resonance_ratio and sum(gear in (mesh.pinion, mesh.gear) for mesh in model.meshes.values()) > 1:
+    for gear in (mesh.part.pinion, mesh.part.gear):
+        if factor.resonance_ratio and sum(gear in (other.pinion, other.gear) for other in model.meshes.values()) > 1:
             yield f"K_v: '{gear}' has other mates too; N and K_v are those of this pair by itself"
 
 

@@ -120,12 +120,12 @@ def _solve(
     """All helices at one load; they share it evenly, and the mesh approaches by their mean."""
     cycles: list[MeshCycle] = []
     kinds = [teeth if ahead > 0 else mirrored(teeth) for ahead in request.senses]
-    for helix, own in enumerate(kinds):
-        if helix and own == kinds[0] and stagger == 0.0:
+    for helix, pair in enumerate(kinds):
+        if helix and pair == kinds[0] and stagger == 0.0:
             cycles.append(cycles[0])
             continue
         told = part_of(progress, helix / request.helices, (helix + 1) / request.helices)
-        problem, cycle = loaded_cycle(own, base_force, u + helix * stagger, told)
+        problem, cycle = loaded_cycle(pair, base_force, u + helix * stagger, told)
         cycles.append(cycle)
     error = np.mean([cycle.deflection for cycle in cycles], axis=0)
     no_load = np.mean([cycle.no_load for cycle in cycles], axis=0)
@@ -153,7 +153,8 @@ def _refined(
     assert request.teeth is not None
     said = []
     for preset in PRESETS:
-        teeth = _preset(request.teeth, preset)
+        fe = replace(request.teeth.fe, preset=preset, size=None)
+        teeth = replace(request.teeth, fe=fe)
         if coarser(teeth) is None:
             continue  # uncoupled slices can't know their error
         found, errors = _with_errors(request, teeth, u, stagger, True, progress)
@@ -165,10 +166,6 @@ def _refined(
         f"No preset reaches a relative accuracy of {accuracy:g} of stiffness, its ripple and the transmission error's ripple: "
         f"the estimates are {', '.join(said)}. Ask for less, or take --preset fine with its estimate."
     )
-
-
-def _preset(teeth: ToothPair, preset: str) -> ToothPair:
-    return replace(teeth, fe=replace(teeth.fe, preset=preset, size=None))  # type: ignore[arg-type]
 
 
 def _load_point(request: MeshRequest, teeth: ToothPair, factor: float, u: np.ndarray, stagger: float) -> LoadPoint:

@@ -74,7 +74,11 @@ def mesh_request(
         raise AnalysisError(f"--stiffness: there is no stiffness model '{chosen}': {hint}.")
     if chosen == "given" and isinstance(given, str):
         raise AnalysisError(f"--stiffness given: meshes.{mesh.name} names the model '{given}' and gives no numbers.")
-    teeth = None if chosen == "given" else _with(mesh.teeth, fe)
+    teeth: ToothPair | None = None
+    if chosen != "given":
+        wanted = {key: value for key, value in fe.items() if value is not None}
+        settings: ToothFe = replace(mesh.teeth.fe, **wanted)  # type: ignore[arg-type]
+        teeth = replace(mesh.teeth, fe=settings)
     load, sense = _load(model, mesh, torque)
     if load is None and chosen in MODELS and MODELS[chosen].needs_load:
         raise AnalysisError(
@@ -97,12 +101,6 @@ def _mesh_name(model: Model, name: str | None) -> str:
         hint = f"did you mean '{guess}'?" if guess else f"there are {', '.join(names)}."
         raise AnalysisError(f"There is no mesh '{name}': {hint}")
     return name
-
-
-def _with(teeth: ToothPair, fe: dict[str, object]) -> ToothPair:
-    wanted = {key: value for key, value in fe.items() if value is not None}
-    settings: ToothFe = replace(teeth.fe, **wanted)  # type: ignore[arg-type]
-    return replace(teeth, fe=settings)
 
 
 def _load(model: Model, mesh: MeshLayout, given: float | str | None) -> tuple[MeshLoad | None, int]:

@@ -66,10 +66,10 @@ def damped(model: Model | System, modal_damping: float | None) -> Model | System
         return model
     if not 0.0 <= modal_damping < 1.0:
         raise AnalysisError(f"the damping ratio of the modes must lie between 0 and 1, got {modal_damping:g}")
-    own = model.model if isinstance(model, System) else model
-    damping = own.damping.model_copy(update={"modal_ratio": modal_damping})
-    own = own.model_copy(update={"damping": damping})
-    return System(own, plan=model.plan, load=model.load) if isinstance(model, System) else own
+    given = model.model if isinstance(model, System) else model
+    damping = given.damping.model_copy(update={"modal_ratio": modal_damping})
+    changed = given.model_copy(update={"damping": damping})
+    return System(changed, plan=model.plan, load=model.load) if isinstance(model, System) else changed
 
 
 def run_task(
