@@ -1,17 +1,24 @@
-"""The stiffness models by name. A model is a function of a `ToothPair`, the load of one helix and the number of positions."""
+"""The stiffness models by name. A model is a function of a `ToothPair`, the load of one helix and the number of positions.
+
+The model file takes its names from here, so that nothing of numerics is loaded until a stiffness is asked for.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
+from typing import TYPE_CHECKING
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 from rotorgear.quantity import nearest
 
-StiffnessModel = Callable[[ToothPair, float | None, int], MeshStiffness]
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
+
+    StiffnessModel = Callable[[ToothPair, float | None, int], MeshStiffness]
 
 
 @dataclass(frozen=True)

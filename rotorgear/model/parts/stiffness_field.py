@@ -11,11 +11,10 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, WithJsonSchema
 
+from rotorgear.gears.stiffness_models import MODELS
 from rotorgear.model.parts.fields import Unit, refuse
 from rotorgear.quantity import DIMENSIONS, nearest
 
-# Names of the stiffness models, as gears/stiffness_models.py has them; a test compares both: no numerics load here.
-STIFFNESS_MODELS = ("iso", "contact_line", "potential_energy", "tooth_fe")
 _LEAST_VALUES = 3
 _MOST_HARMONICS = 100
 _VALUES_A_HARMONIC = 8
@@ -34,11 +33,11 @@ def _parse(value: Any) -> Any:
             raise refuse(f"at least {_LEAST_VALUES} stiffnesses, evenly spaced over one mesh period")
         return tuple(_UNIT.parse(item) for item in value)
     if isinstance(value, str) and value.strip() and not any(character.isdigit() for character in value):
-        if value in STIFFNESS_MODELS:
+        if value in MODELS:
             return value
-        guess = nearest(value, list(STIFFNESS_MODELS))
+        guess = nearest(value, list(MODELS))
         hint = f"; did you mean '{guess}'?" if guess else ""
-        raise refuse(f"a stiffness such as '{_example()}' or one of {', '.join(STIFFNESS_MODELS)}{hint}")
+        raise refuse(f"a stiffness such as '{_example()}' or one of {', '.join(MODELS)}{hint}")
     return _UNIT.parse(value)
 
 
@@ -76,7 +75,7 @@ def _example() -> str:
 
 def _schema() -> dict[str, Any]:
     one = _UNIT.schema()
-    names = {"type": "string", "enum": list(STIFFNESS_MODELS)}
+    names = {"type": "string", "enum": list(MODELS)}
     several = {"type": "array", "minItems": _LEAST_VALUES, "items": {"anyOf": one["anyOf"]}}
     shares = {"type": "array", "minItems": 1, "maxItems": _MOST_HARMONICS, "items": {"type": "number"}}
     angles = {"type": "array", "maxItems": _MOST_HARMONICS, "items": {"anyOf": _ANGLE.schema()["anyOf"]}}

@@ -23,8 +23,7 @@ from rotorgear.gears.stiffness.given import given_stiffness
 from rotorgear.gears.stiffness.iso import iso_tooth_stiffness
 from rotorgear.gears.stiffness.mesh_stiffness import ToothBody, ToothPair
 from rotorgear.gears.stiffness.tooth_beam import tooth_compliance
-from rotorgear.gears.stiffness_models import MODELS, mesh_stiffness
-from rotorgear.model.parts.stiffness_field import STIFFNESS_MODELS
+from rotorgear.gears.stiffness_models import mesh_stiffness
 
 deg = math.radians
 ANALYTIC = ("contact_line", "iso", "potential_energy")
@@ -196,10 +195,6 @@ def test_a_given_table_keeps_its_values_along_the_flank_normal() -> None:
     found = given_stiffness([1e9, 2e9, 3e9], 0.4, 2, None, 64)
     assert found.normal == pytest.approx([1e9, 2e9, 3e9], rel=1e-14)
     assert found.mean_normal == pytest.approx(2e9, rel=1e-14)
-
-
-def test_the_file_knows_the_models_that_there_are() -> None:
-    assert set(STIFFNESS_MODELS) == set(MODELS)
 
 
 def test_a_model_that_does_not_exist_is_answered_with_the_nearest() -> None:
