@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rotorgear.analysis.sweep.cluster import versions
 from rotorgear.errors import RotorgearError
 from rotorgear.export.files import WriteError, reason_of, replacing
 
@@ -30,16 +31,26 @@ class ChunkStream:
         """Make the folder, or read the chunks of the same run that are there.
 
         Raises:
-            RotorgearError: chunks of another run are there, or of this one and it was not asked to go on.
+            RotorgearError: chunks of another run are there, or of another rotorgear.
             WriteError: the folder can't be made, or the result would go to the name of a folder.
         """
         if self.path.is_dir():
             raise WriteError(self.path, "it is a folder; give the name of a file")
-        # Settings as digests: enough to tell another run, whatever their size.
-        mark = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in settings.items()}
+        # Settings as digests: enough to tell another run, whatever their size. What the chunks were computed with stands in
+        # words: histories whose halves come from two programs would belong to neither.
+        run = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in settings.items()}
+        mark = {"program": versions(), "run": run}
         note = self.folder / "settings.json"
         if self._resume and note.is_file():
-            if json.loads(note.read_text(encoding="utf-8")) != mark:
+            there = json.loads(note.read_text(encoding="utf-8"))
+            for name, own in versions().items():
+                other = there.get("program", {}).get(name, "unknown")
+                if other != own:
+                    raise RotorgearError(
+                        f"{self.folder} was computed with {name} {other}, and here is {own}: go on with that one, or start "
+                        "without resume"
+                    )
+            if there.get("run") != run:
                 raise RotorgearError(
                     f"{self.folder} holds a run with another model or other settings; repeat those, or start without resume"
                 )

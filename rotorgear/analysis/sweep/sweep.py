@@ -13,7 +13,6 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.sweep.axes import Axis, Family, axis_of, points_of
 from rotorgear.analysis.sweep.blocks import Pool, Workers, blocks, packed, unpacked, waves
 from rotorgear.analysis.sweep.classify import CHAOS, TOLERANCE
-from rotorgear.analysis.sweep.cluster import versions
 from rotorgear.analysis.sweep.gather import gathered
 from rotorgear.analysis.sweep.notes import coarse_shafts
 from rotorgear.analysis.sweep.point import Point, PointMaker
@@ -24,6 +23,7 @@ from rotorgear.analysis.sweep.shrink import shrunk
 from rotorgear.analysis.transient.histories import Stream
 from rotorgear.errors import RotorgearError
 from rotorgear.model.model import Model
+from rotorgear.model.model_hash import model_hash
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.sweep import SweepResult
@@ -119,8 +119,7 @@ def sweep(
             raise RotorgearError(next(filter(None, failure)))
         laps = {"points": clock.perf_counter() - begun}
         settings = {"models": "".join(models), "run": f"{request} {[axis.address for axis in axes]} {chosen.tolist()}"}
-        # What another version of the program kept would be no part of this sweep.
-        kept = stream.begin({"program": str(versions()), **settings}) if stream else []
+        kept = stream.begin(settings) if stream else []
         shape = [len(axis.values) for axis in axes]
         orbits = _run(points, chosen, shape, request, Workers(workers, executor), stream, kept, progress)
     laps["integration"] = clock.perf_counter() - begun - laps["points"]
@@ -144,7 +143,7 @@ def _ready(
     request: Request,
     progress: Progress,
 ) -> tuple[list[str], list[Point | Large | None], list[str]]:
-    """Models as texts, the points made ready, and why a point failed."""
+    """Hashes of the models, the points made ready, and why a point failed."""
     maker = PointMaker(request.reduction, request.elements)
     family = None if change else Family(model, axes)
     texts: list[str] = []
@@ -157,7 +156,7 @@ def _ready(
         text = repr(value)
         try:
             own = change(model, value) if change else family.at(value)  # type: ignore[union-attr]
-            text = own.model_dump_json(exclude_none=True)
+            text = model_hash(own)
             point = maker(own)
         except RotorgearError as error:
             reason = str(error)

@@ -14,6 +14,7 @@ from rotorgear.analysis.transient.request import Grid, mesh_frequencies, rotatio
 from rotorgear.analysis.transient.statistics import Statistics, compared, statistics
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
+from rotorgear.model.model_hash import model_hash
 from rotorgear.progress import Progress
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium, still_forces
 from rotorgear.solvers.time.local_system import Integrator, state_at_rest
@@ -87,7 +88,7 @@ def run_task(
     h = grid.spacing / grid.every
     system = task.local.local
     settings = {
-        "model": task.local.system.model.model_dump_json(exclude_none=True),
+        "model": model_hash(task.local.system.model),
         "run": f"{h!r} {grid.records} {grid.every} {grid.settled} {system.n} {integrator.name} {key} "
         f"{system.rotation.times.tolist()} {system.rotation.speeds.tolist()}",
     }

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import errno
+import hashlib
+import json
 import os
 import signal
 import subprocess
@@ -18,6 +20,7 @@ import rotorgear as rg
 from rotorgear.errors import RotorgearError
 from rotorgear.export.files import WriteError
 from rotorgear.export.stream import read_chunk
+from rotorgear.model.model_hash import model_hash
 from tests.paths import ROOT
 from tests.unit.analysis.spur_pair import spur_pair
 
@@ -62,6 +65,31 @@ def test_another_run_is_not_continued(tmp_path: Path) -> None:
     stopped(tmp_path / "run.h5", 1, "newmark")
     with pytest.raises(RotorgearError, match="another model or other settings"):
         rg.transient(spur_pair(), **SETTINGS, method="newmark", stream=rg.stream(tmp_path / "run.h5", resume=True))
+
+
+@pytest.mark.parametrize("name", ["rotorgear", "rotorgear with the source", "numpy"])
+def test_a_run_is_not_continued_by_another_program(tmp_path: Path, name: str) -> None:
+    stopped(tmp_path / "run.h5", 1, "newmark")
+    note = tmp_path / "run.h5.parts" / "settings.json"
+    kept = json.loads(note.read_text())
+    kept["program"][name] = "0.0"
+    note.write_text(json.dumps(kept))
+    with pytest.raises(
+        RotorgearError, match=f"was computed with {name} 0.0, and here is .*: go on with that one, or start"
+    ):
+        rg.transient(
+            spur_pair(meshes__pair__backlash="20 um"),
+            **SETTINGS,
+            method="newmark",
+            stream=rg.stream(tmp_path / "run.h5", resume=True),
+        )
+
+
+def test_a_run_is_marked_with_the_hash_of_its_model(tmp_path: Path) -> None:
+    stopped(tmp_path / "run.h5", 1, "newmark")
+    kept = json.loads((tmp_path / "run.h5.parts" / "settings.json").read_text())
+    name = model_hash(spur_pair(meshes__pair__backlash="20 um"))
+    assert kept["run"]["model"] == hashlib.sha256(name.encode()).hexdigest()
 
 
 def test_a_full_disk_ends_the_run_with_a_sentence_and_keeps_the_chunks_before(
