@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.quantity import RPM_PER_RAD_S
 from tests.paths import MODELS
 
 Table = dict[str, Any]
@@ -95,7 +96,7 @@ def driven_by_the_wheel(table: Table) -> Table:
 
 def table_speed(table: Table) -> float:
     """Speed of the output shaft in rad/s, with its sense."""
-    return -2970.0 * np.pi / 30.0 * table["gears"]["pinion"]["teeth"] / table["gears"]["wheel"]["teeth"]
+    return -2970.0 / RPM_PER_RAD_S * table["gears"]["pinion"]["teeth"] / table["gears"]["wheel"]["teeth"]
 
 
 def eigenvalues(table: Table) -> np.ndarray:

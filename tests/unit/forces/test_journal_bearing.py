@@ -10,6 +10,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.forces.journal_bearing import JournalBearing
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.system.system import System
 
 VISCOSITY = 0.02
@@ -103,12 +104,12 @@ def test_the_film_sets_the_rotor_whirling_at_half_its_speed() -> None:
     speeds = [f"{rpm} rpm" for rpm in (2000, 4000, 6000, 8000, 10000)]
     result = rg.campbell(rotor(), speeds=speeds, modes=6)
     onset = min(result.onsets, key=lambda each: abs(each.speed))
-    assert 2000.0 < onset.speed * 30.0 / np.pi < 10000.0
+    assert 2000.0 < onset.speed * RPM_PER_RAD_S < 10000.0
     assert onset.frequency_hz == pytest.approx(0.5 * onset.speed / (2.0 * np.pi), rel=0.1)
     assert any("linearised about the static equilibrium at 2000 to 10000 rpm" in note for note in result.left_out)
     # The threshold that modes tell is where a transient about the equilibrium begins to grow.
     for factor, grows in ((0.85, False), (1.15, True)):
-        modes = rg.modal(rotor(factor * onset.speed * 30.0 / np.pi), speed=factor * onset.speed, modes=6)
+        modes = rg.modal(rotor(factor * onset.speed * RPM_PER_RAD_S), speed=factor * onset.speed, modes=6)
         assert bool(np.max(modes.eigenvalues.real) > 0.0) is grows
 
 
