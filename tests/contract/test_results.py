@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.analysis.teeth.tooth_field import tooth_fields
 from rotorgear.export.hdf5 import read, save
 from rotorgear.model.model_hash import model_hash
 from rotorgear.results.keys import keys_of
@@ -20,11 +21,10 @@ from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
 from rotorgear.results.spectrum import SpectralLines
 from tests.paths import ROOT
+from tests.unit.analysis.geared import pair_file
 
 # Names that mean two things since 0.1: files and scripts hold them. A new one is a mistake.
 HOMONYMS = {"amplitude", "bearing_force", "bearings", "error_estimate", "mesh", "motion", "reason", "settle"}
-# Studies and stresses of teeth take minutes; they are of the same classes as the others.
-SLOW = {"mesh_convergence", "sweep_convergence", "tooth_field"}
 
 
 @cache
@@ -57,6 +57,11 @@ def example(kind: str) -> Result:
             f"force {example('transient').contact[0]}",  # type: ignore[attr-defined]
         ),
         "convergence": lambda: rg.convergence_study(model("torsion_chain"), modes=2),
+        "mesh_convergence": lambda: rg.mesh_convergence_study(rg.loads(pair_file())),
+        "sweep_convergence": lambda: rg.sweep_convergence_study(
+            model("backlash_pair"), speed="8000 rpm", steps=[20], counts=[4], starts=2
+        ),
+        "tooth_field": lambda: tooth_fields(rg.loads(pair_file()), preset="preview"),
         "compare": lambda: rg.compare(example("modal"), [rg.RigLine(101.0)]),
         "rig_spectrum": lambda: rg.compare_spectrum(
             example("transient"), example("spectral_lines"), [rg.RigLine(2000.0)]
@@ -66,7 +71,7 @@ def example(kind: str) -> Result:
     return result
 
 
-KINDS = sorted(set(kinds()) - SLOW)
+KINDS = sorted(kinds())
 each_kind = pytest.mark.parametrize("kind", KINDS)
 
 
