@@ -326,6 +326,7 @@ class ForceLaw(ABC):
 
     def evaluate_many(self, d: Any, v: Any = 0.0, *, time: Any = 0.0, angle: Any = 0.0, speed: Any = 0.0) -> LawValues:
         """`evaluate` at r instants in one compiled loop: d and v (r, k); time, angle and speed (r,) or the same for all."""
+        from rotorgear.solvers.time.arguments import Answer, Instants
         from rotorgear.solvers.time.kernel_contact import evaluate_instants, no_force, no_schedule
 
         schedule, force = self.functions()
@@ -335,29 +336,25 @@ class ForceLaw(ABC):
         d, v = (np.array(np.broadcast_to(np.asarray(x, float), (r, k)), order="C") for x in (d, v))
         time, angle, speed = (np.array(np.broadcast_to(np.asarray(x, float), r)) for x in (time, angle, speed))
         p = np.ascontiguousarray(self.parameters(), dtype=float)
-        F = np.zeros((r, k))
-        Kd = np.zeros((r, k * k))
-        Kv = np.zeros((r, k * k))
-        energy = np.zeros((r, 4))
+        answer = Answer(np.zeros((r, k)), np.zeros((r, k * k)), np.zeros((r, k * k)), np.zeros((r, 4)))
         # As tuples of two, so that numba takes the functions by pointer and keeps the loop on disk, whatever the law.
         evaluate_instants(
             (schedule, no_schedule),
             (force, no_force),
-            self.state_size(),
             p,
-            angle,
-            speed,
-            time,
-            d,
-            v,
-            F,
-            Kd,
-            Kv,
-            energy,
+            np.zeros(self.state_size()),
+            Instants(angle, speed, time, d, v),
+            answer,
         )
-        stored, power_in, dissipated, contact = energy.T
+        stored, power_in, dissipated, contact = answer.energy.T
         return LawValues(
-            F, Kd.reshape(r, k, k), Kv.reshape(r, k, k), stored, power_in, dissipated, contact.astype(np.int64)
+            answer.F,
+            answer.Kd.reshape(r, k, k),
+            answer.Kv.reshape(r, k, k),
+            stored,
+            power_in,
+            dissipated,
+            contact.astype(np.int64),
         )
 
 

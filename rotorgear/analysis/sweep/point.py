@@ -222,9 +222,7 @@ def table_of(point: Point, steps: int) -> np.ndarray:
     angles = np.pi / steps / point.order * np.arange(rows)
     forces = point.forces
     states = np.zeros((rows, max(1, int(forces.state_first[-1]))))
-    tabulate(
-        forces.schedules, forces.kind, forces.parameters, forces.parameters_first, forces.state_first, angles, states
-    )
+    tabulate(forces.arguments(), angles, states)
     table = np.zeros((rows, forces.m, TABLE_ROWS))
     for i, law in enumerate(forces.laws):
         state = states[:, forces.state_first[i] : forces.state_first[i + 1]]

@@ -25,10 +25,10 @@ SUMS = 14
 
 
 @compiled
-def tabulate(schedules, kind, parameters, parameters_first, state_first, angles, out):
+def tabulate(laws, angles, out):
     """State (r, s) of all laws at angles (r,) of the reference, at unit speed."""
     for i in range(angles.size):
-        schedule_all(schedules, kind, parameters, parameters_first, state_first, angles[i], 1.0, 0.0, out[i])
+        schedule_all(laws, angles[i], 1.0, 0.0, out[i])
 
 
 @compiled(fast=True)

@@ -8,13 +8,13 @@ Equations I (Springer 1993), II.5.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from scipy.integrate import DOP853
 
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.sparse.factor import factor_general
+from rotorgear.solvers.time.arguments import Answer, Kept, Turning
 from rotorgear.solvers.time.local_system import LocalSystem, PlainFields, Records, State, blank_records
 
 MOST_DOFS = 600
@@ -101,8 +101,8 @@ class ExplicitStepper:
         r = done // every
         t = (state.step + every * np.arange(1, r + 1)) * self.h
         state.step += done
-        fields = PlainFields(kept["q"][:r], kept["v"][:r], kept["a"][:r])
-        return Records(t, kept["d"][:r], kept["F"][:r], kept["energy"][:r], fields, done, status, solver.nfev)
+        fields = PlainFields(kept.q[:r], kept.v[:r], kept.a[:r])
+        return Records(t, kept.d[:r], kept.F[:r], kept.energy[:r], fields, done, status, solver.nfev)
 
     def _sizes(self, state: State) -> np.ndarray:
         """Sizes (2n,) that errors of displacements and velocities are taken relative to."""
@@ -112,7 +112,7 @@ class ExplicitStepper:
         far = max(_size(state.q), _smallest(s), _size(state.v) / typical)
         return np.concatenate([np.full(s.n, far), np.full(s.n, far * typical)])
 
-    def _look(self, state: State, kept: dict[str, Any], number: int, every: int, y: np.ndarray) -> None:
+    def _look(self, state: State, kept: Kept, number: int, every: int, y: np.ndarray) -> None:
         """Take the state over after a step, with what forces did in it."""
         n = self.system.n
         t = (state.step + number) * self.h
@@ -131,13 +131,13 @@ class ExplicitStepper:
         state.last[:] = now
         if number % every == 0:
             r = number // every - 1
-            kept["q"][r] = state.q
-            kept["v"][r] = state.v
-            kept["a"][r] = state.a
-            kept["d"][r] = self.system.B.T @ state.q
-            kept["F"][r] = F
-            kept["energy"][r, :, 0] = powers[:, 0]
-            kept["energy"][r, :, 1:] = state.sums - 0.5 * self.h * powers[:, 1:3]
+            kept.q[r] = state.q
+            kept.v[r] = state.v
+            kept.a[r] = state.a
+            kept.d[r] = self.system.B.T @ state.q
+            kept.F[r] = F
+            kept.energy[r, :, 0] = powers[:, 0]
+            kept.energy[r, :, 1:] = state.sums - 0.5 * self.h * powers[:, 1:3]
 
 
 class _LocalForces:
@@ -154,30 +154,17 @@ class _LocalForces:
         from rotorgear.solvers.time.kernel_contact import force_all, schedule_all
         from rotorgear.solvers.time.kernel_time import rotation_at
 
-        laws = self._system.forces
+        forces = self._system.forces
+        laws = forces.arguments()
         rotation = self._system.rotation
-        _, forces, kind, first, parameters, parameters_first, state_first, block_first = laws.arguments()
-        angle, speed = rotation_at(t, rotation.times, rotation.speeds, rotation.angles)
-        schedule_all(laws.schedules, kind, parameters, parameters_first, state_first, angle, speed, t, self._state)
-        F = np.zeros(laws.m)
-        energy = np.zeros(4 * len(laws.laws))
+        turning = Turning(rotation.times, rotation.speeds, rotation.angles)
+        angle, speed = rotation_at(t, turning)
+        schedule_all(laws, angle, speed, t, self._state)
+        F = np.zeros(forces.m)
+        energy = np.zeros(4 * len(forces.laws))
         d = np.ascontiguousarray(self._Bt @ q)
-        w = np.ascontiguousarray(self._Bt @ v)
-        force_all(
-            forces,
-            kind,
-            first,
-            parameters,
-            parameters_first,
-            state_first,
-            block_first,
-            self._state,
-            d,
-            w,
-            F,
-            *self._tangents,
-            energy,
-        )
+        v = np.ascontiguousarray(self._Bt @ v)
+        force_all(laws, self._state, d, v, Answer(F, *self._tangents, energy))
         return F, energy
 
 

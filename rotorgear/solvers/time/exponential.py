@@ -7,12 +7,21 @@ linear within a step and found by Newton's method on m unknowns. Hochbruck and O
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.eigen.complex_modes import ComplexModes, complex_modes
+from rotorgear.solvers.time.arguments import (
+    Compliance,
+    ModalKept,
+    ModalMotion,
+    ModalStep,
+    Reference,
+    RigidStep,
+    Span,
+    Turning,
+)
 from rotorgear.solvers.time.local_system import LocalSystem, Records, State, blank_records
 
 
@@ -91,25 +100,16 @@ class ExponentialStepper:
         rows = C if needs_v else C[:m]
         G = (e[:, None] * self._Q1 + Q0).T
         rotation = system.rotation
-        self._fixed: tuple[Any, ...] = (
-            needs_v,
-            rotation.times,
-            rotation.speeds,
-            rotation.angles,
-            *_parts(e),
-            *_parts(G),
-            *_parts(h * first * push),
-            *_parts(self._Q1.T),
-            *_parts(rows),
-            np.ascontiguousarray(Br),
-            self._rigid_load,
-            np.ascontiguousarray(Z),
-            np.ascontiguousarray(compliance[:m]),
-            np.ascontiguousarray(compliance[m:]),
-            k_ref,
-            c_ref,
-            *system.forces.arguments(),
+        self._turning = Turning(rotation.times, rotation.speeds, rotation.angles)
+        self._modal = ModalStep(*_parts(e), *_parts(G), *_parts(h * first * push), *_parts(self._Q1.T), *_parts(rows))
+        self._rigid = RigidStep(np.ascontiguousarray(Br), self._rigid_load)
+        self._reference = Reference(
+            Z=np.ascontiguousarray(Z),
+            compliance=Compliance(np.ascontiguousarray(compliance[:m]), np.ascontiguousarray(compliance[m:])),
+            k=k_ref,
+            c=c_ref,
         )
+        self._laws = system.forces.arguments()
         self._rows: dict[tuple[str, int], tuple[np.ndarray, ...]] = {}
 
     def start(self, state: State) -> None:
@@ -119,7 +119,7 @@ class ExponentialStepper:
         if "yr" in state.inner and state.inner["yr"].size == modes.s.size:
             return
         weighted = modes.basis.T @ (system.M @ np.column_stack([state.q, state.v]))
-        z = self._modal(weighted)
+        z = self._on_modes(weighted)
         laws = system.forces
         u = (
             laws.reference_stiffness @ (system.B.T @ state.q)
@@ -136,7 +136,7 @@ class ExponentialStepper:
             "u": u,
         }
 
-    def _modal(self, coordinates: np.ndarray) -> np.ndarray:
+    def _on_modes(self, coordinates: np.ndarray) -> np.ndarray:
         """z (nz,) with the given basis coordinates and velocities (b, 2), by least squares on the modes themselves."""
         X = self.modes.basis.T @ (self._system.M @ self.modes.shapes)
         real = np.vstack([np.hstack([X.real, -X.imag]), np.hstack([(X * self.modes.s).real, -(X * self.modes.s).imag])])
@@ -158,40 +158,27 @@ class ExponentialStepper:
         nr = self.modes.rigid.shape[1]
         kept = blank_records(steps, every, 0, system)
         r = steps // every
-        z = np.zeros((r, 2 * nz))
-        rigid = np.zeros((r, 2 * nr))
-        u = np.zeros((r, system.m))
+        modal = ModalKept(z=np.zeros((r, 2 * nz)), rigid=np.zeros((r, 2 * nr)), u=np.zeros((r, system.m)))
         done, status, solutions = exponential_loop(
-            steps,
-            every,
-            state.step,
-            self.h,
-            *self._fixed,
-            inner["yr"],
-            inner["yi"],
-            inner["r0"],
-            inner["r1"],
-            inner["u"],
-            state.F,
-            state.before,
+            Span(steps, every, state.step, self.h),
+            self._turning,
+            self._modal,
+            self._rigid,
+            self._reference,
+            self._laws,
+            ModalMotion(inner["yr"], inner["yi"], inner["r0"], inner["r1"], inner["u"]),
+            state.carried,
             self._tolerance,
-            z,
-            rigid,
-            u,
-            kept["d"],
-            kept["F"],
-            kept["energy"],
-            state.sums,
-            state.last,
-            state.events,
+            modal,
+            kept,
         )
         count = done // every
         t = (state.step + every * np.arange(1, count + 1)) * self.h
         state.step += done
-        fields = ModalFields(self, z[:count], rigid[:count], u[:count])
+        fields = ModalFields(self, modal.z[:count], modal.rigid[:count], modal.u[:count])
         if count and count * every == done:
             state.q, state.v, state.a = (fields.last(kind) for kind in "qva")
-        return Records(t, kept["d"][:count], kept["F"][:count], kept["energy"][:count], fields, done, status, solutions)
+        return Records(t, kept.d[:count], kept.F[:count], kept.energy[:count], fields, done, status, solutions)
 
     def projected(self, kind: str, Y: np.ndarray) -> tuple[np.ndarray, ...]:
         """What gives Y q, Y v or Y a from modal coordinates, rigid ones, u and the load."""

@@ -8,8 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.solvers.time.arguments import Answer, ContactWork
 from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
 
+# Where a law's four energies stand.
+STORED, POWER_IN, DISSIPATED, SIDE = range(4)
+ENERGIES = 4
 _EPS = 2.220446049250313e-16
 _ITERATIONS = 60
 FAILED = -1
@@ -27,8 +31,13 @@ def no_force(parameters, state, d, v, force, in_d, in_v, energy):
 
 
 @compiled
-def schedule_all(schedules, kind, parameters, parameters_first, state_first, angle, speed, time, state):
+def schedule_all(laws, angle, speed, time, state):
     """Fill the state of all laws at a time."""
+    schedules = laws.schedules
+    kind = laws.kind
+    parameters = laws.parameters
+    parameters_first = laws.parameters_first
+    state_first = laws.state_first
     for i in range(kind.size):
         schedules[kind[i]](
             angle,
@@ -40,10 +49,19 @@ def schedule_all(schedules, kind, parameters, parameters_first, state_first, ang
 
 
 @compiled
-def force_all(
-    forces, kind, first, parameters, parameters_first, state_first, block_first, state, d, v, F, Kd, Kv, energy
-):
-    """Forces (m,), tangents (sum of k*k,) and energies (4 l,) of all laws."""
+def force_all(laws, state, d, v, answer):
+    """Fill the answer of all laws to d and v (m,)."""
+    forces = laws.forces
+    kind = laws.kind
+    first = laws.first
+    parameters = laws.parameters
+    parameters_first = laws.parameters_first
+    state_first = laws.state_first
+    block_first = laws.block_first
+    F = answer.F
+    Kd = answer.Kd
+    Kv = answer.Kv
+    energy = answer.energy
     for i in range(kind.size):
         a = first[i]
         b = first[i + 1]
@@ -57,17 +75,58 @@ def force_all(
             F[a:b],
             Kd[p:q],
             Kv[p:q],
-            energy[4 * i : 4 * i + 4],
+            energy[ENERGIES * i : ENERGIES * (i + 1)],
         )
 
 
 @compiled
-def evaluate_instants(schedules, forces, size, p, angle, speed, time, d, v, F, Kd, Kv, energy):
-    """One law at r instants: forces (r, k), tangents (r, k*k) and energies (r, 4) at d and v (r, k); its state has `size`."""
-    state = np.zeros(size)
-    for i in range(angle.size):
-        schedules[0](angle[i], speed[i], time[i], p, state)
-        forces[0](p, state, d[i], v[i], F[i], Kd[i], Kv[i], energy[i])
+def evaluate_instants(schedules, forces, parameters, state, instants, answer):
+    """Fill the answer of one law, the first of the functions, to d and v at r instants."""
+    for i in range(instants.angle.size):
+        schedules[0](instants.angle[i], instants.speed[i], instants.time[i], parameters, state)
+        forces[0](
+            parameters,
+            state,
+            instants.d[i],
+            instants.v[i],
+            answer.F[i],
+            answer.Kd[i],
+            answer.Kv[i],
+            answer.energy[i],
+        )
+
+
+@compiled
+def take_account(energy, h, carried):
+    """Sum up energies put in and dissipated; count steps on the front side, apart and on the back, and contact losses."""
+    sums = carried.sums
+    last = carried.last
+    events = carried.events
+    for law in range(last.size):
+        sums[law, 0] += h * energy[ENERGIES * law + POWER_IN]
+        sums[law, 1] += h * energy[ENERGIES * law + DISSIPATED]
+        now = int(energy[ENERGIES * law + SIDE])
+        if now > 0:
+            events[law, 0] += 1
+        elif now < 0:
+            events[law, 2] += 1
+        else:
+            events[law, 1] += 1
+            if last[law] != 0:
+                events[law, 3] += 1
+        last[law] = now
+
+
+@compiled
+def record_forces(r, h, work, carried, kept):
+    """Record local displacements, forces and energies, whose sums follow the trapezoidal rule."""
+    kept.d[r] = work.d
+    kept.F[r] = carried.F
+    energy = work.answer.energy
+    for law in range(carried.last.size):
+        kept.energy[r, law, 0] = energy[ENERGIES * law + STORED]
+        kept.energy[r, law, 1] = carried.sums[law, 0] - 0.5 * h * energy[ENERGIES * law + POWER_IN]
+        kept.energy[r, law, 2] = carried.sums[law, 1] - 0.5 * h * energy[ENERGIES * law + DISSIPATED]
 
 
 @compiled
@@ -100,35 +159,44 @@ def solve_small(A, b, n):
 
 
 @compiled
-def contact_step(
-    forces,
-    kind,
-    first,
-    parameters,
-    parameters_first,
-    state_first,
-    block_first,
-    state,
-    d_free,
-    v_free,
-    Ad,
-    Av,
-    F,
-    d,
-    v,
-    trial,
-    Kd,
-    Kv,
-    energy,
-    J,
-    tolerance,
-):
-    """Find F with F = law(d_free - Ad F, v_free - Av F), from the guess in F; d, v and energy are filled.
+def contact_work(laws, m):
+    """Arrays for `contact_step`."""
+    blocks = laws.block_first[-1]
+    return ContactWork(
+        np.zeros(laws.state_first[-1]),
+        np.empty(m),
+        np.empty(m),
+        np.empty(m),
+        np.empty(m),
+        Answer(np.empty(m), np.zeros(blocks), np.zeros(blocks), np.zeros(ENERGIES * laws.kind.size)),
+        np.empty(m),
+        np.empty((m, m)),
+    )
+
+
+@compiled
+def contact_step(laws, compliance, work, F, tolerance):
+    """Find F with F = law(d_free - Ad F, v_free - Av F), from the guess in F; d, v and the answer in `work` are filled.
 
     Returns the number of linear solutions, or FAILED or NOT_FINITE.
     """
+    kind = laws.kind
+    Ad = compliance.Ad
+    Av = compliance.Av
+    d_free = work.d_free
+    v_free = work.v_free
+    d = work.d
+    v = work.v
+    state = work.state
+    answer = work.answer
+    trial = answer.F
+    Kd = answer.Kd
+    Kv = answer.Kv
+    step = work.step
+    J = work.J
+    first = laws.first
+    block_first = laws.block_first
     m = F.size
-    step = np.empty(m)
     last = np.inf
     share = 1.0
     for iteration in range(_ITERATIONS):
@@ -140,22 +208,7 @@ def contact_step(
                 y -= Av[i, j] * F[j]
             d[i] = x
             v[i] = y
-        force_all(
-            forces,
-            kind,
-            first,
-            parameters,
-            parameters_first,
-            state_first,
-            block_first,
-            state,
-            d,
-            v,
-            trial,
-            Kd,
-            Kv,
-            energy,
-        )
+        force_all(laws, state, d, v, answer)
         size = 0.0
         worst = 0.0
         floor = 0.0

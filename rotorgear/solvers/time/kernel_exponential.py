@@ -12,18 +12,26 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.time.compiled import compiled
-from rotorgear.solvers.time.kernel_contact import contact_step, schedule_all
-from rotorgear.solvers.time.kernel_time import count_events, rotation_at
+from rotorgear.solvers.time.kernel_contact import contact_step, contact_work, record_forces, schedule_all, take_account
+from rotorgear.solvers.time.kernel_time import rotation_at
 
 _BLOCK = 256
 
 
 @compiled(fast=True)
-def modal_pass(er, ei, Gr, Gi, gr, gi, Cr, Ci, u, yr, yi, out):
+def modal_pass(modal, u, yr, yi, out):
     """y <- e y + G u + g and out = Re(C y), block by block so that y stays in the fast cache.
 
     Slices whose index starts at 0, and several rows at once: only so do the loops become vector instructions.
     """
+    er = modal.er
+    ei = modal.ei
+    gr = modal.gr
+    gi = modal.gi
+    Gr = modal.Gr
+    Gi = modal.Gi
+    Cr = modal.Cr
+    Ci = modal.Ci
     nz = yr.size
     m = u.size
     rows = out.size
@@ -93,94 +101,54 @@ def modal_pass(er, ei, Gr, Gi, gr, gi, Cr, Ci, u, yr, yi, out):
 
 
 @compiled
-def exponential_loop(
-    steps,
-    every,
-    step0,
-    h,
-    needs_v,
-    times,
-    speeds,
-    angles,
-    er,
-    ei,
-    Gr,
-    Gi,
-    gr,
-    gi,
-    Qr,
-    Qi,
-    Cr,
-    Ci,
-    Br,
-    rigid_load,
-    Z,
-    Ad,
-    Av,
-    k_ref,
-    c_ref,
-    schedules,
-    forces,
-    kind,
-    first,
-    parameters,
-    parameters_first,
-    state_first,
-    block_first,
-    yr,
-    yi,
-    r0,
-    r1,
-    u,
-    F,
-    before,
-    tolerance,
-    records_z,
-    records_r,
-    records_u,
-    records_d,
-    records_F,
-    records_E,
-    sums,
-    last,
-    events,
-):
-    """Advance `steps` steps in place and record every `every`-th; returns steps done, status and linear solutions."""
+def exponential_loop(span, turning, modal, rigid, reference, laws, motion, carried, tolerance, kept_modal, kept):
+    """Advance `motion` and `carried` in place over a span and record; returns steps done, status and linear solutions."""
+    h = span.h
+    yr = motion.yr
+    yi = motion.yi
+    r0 = motion.r0
+    r1 = motion.r1
+    u = motion.u
+    F = carried.F
+    before = carried.before
+    B = rigid.B
+    load = rigid.load
+    Z = reference.Z
+    k_ref = reference.k
+    c_ref = reference.c
+    compliance = reference.compliance
+    Qr = modal.Qr
+    Qi = modal.Qi
     m = F.size
     nr = r0.size
     nz = yr.size
-    state = np.zeros(state_first[-1])
-    Kd = np.zeros(block_first[-1])
-    Kv = np.zeros(block_first[-1])
-    energy = np.zeros(4 * kind.size)
-    J = np.empty((m, m))
-    d = np.empty(m)
-    w = np.empty(m)
-    trial = np.empty(m)
-    d_free = np.empty(m)
-    v_free = np.empty(m)
-    out = np.empty(2 * m if needs_v else m)
+    work = contact_work(laws, m)
+    state = work.state
+    d_free = work.d_free
+    v_free = work.v_free
+    energy = work.answer.energy
+    d = work.d
+    v = work.v
+    out = np.empty(modal.Cr.shape[0])
     free = np.zeros(2 * m)
-    pushed = np.empty(nr)
     solutions = 0
-    for number in range(1, steps + 1):
-        t = (step0 + number) * h
-        angle, speed = rotation_at(t, times, speeds, angles)
-        schedule_all(schedules, kind, parameters, parameters_first, state_first, angle, speed, t, state)
-        modal_pass(er, ei, Gr, Gi, gr, gi, Cr, Ci, u, yr, yi, out)
+    for number in range(1, span.steps + 1):
+        t = (span.begun + number) * h
+        angle, speed = rotation_at(t, turning)
+        schedule_all(laws, angle, speed, t, state)
+        modal_pass(modal, u, yr, yi, out)
         for i in range(out.size):
             free[i] = out[i]
         for k in range(nr):
-            total = rigid_load[k]
+            total = load[k]
             for j in range(m):
-                total += Br[k, j] * u[j]
-            pushed[k] = total
+                total += B[k, j] * u[j]
             # The share of u1 comes through the compliances Ad and Av; the constant load acts from both ends.
-            r0[k] += h * r1[k] + h * h * (total / 3.0 + rigid_load[k] / 6.0)
-            r1[k] += 0.5 * h * (total + rigid_load[k])
+            r0[k] += h * r1[k] + h * h * (total / 3.0 + load[k] / 6.0)
+            r1[k] += 0.5 * h * (total + load[k])
             for j in range(m):
-                free[j] += Br[k, j] * r0[k]
-                free[m + j] += Br[k, j] * r1[k]
+                free[j] += B[k, j] * r0[k]
+                free[m + j] += B[k, j] * r1[k]
         for i in range(m):
             x = 0.0
             y = 0.0
@@ -190,65 +158,35 @@ def exponential_loop(
             d_free[i] = x
             v_free[i] = y
             F[i], before[i] = 2.0 * F[i] - before[i], F[i]
-        code = contact_step(
-            forces,
-            kind,
-            first,
-            parameters,
-            parameters_first,
-            state_first,
-            block_first,
-            state,
-            d_free,
-            v_free,
-            Ad,
-            Av,
-            F,
-            d,
-            w,
-            trial,
-            Kd,
-            Kv,
-            energy,
-            J,
-            tolerance,
-        )
+        code = contact_step(laws, compliance, work, F, tolerance)
         if code < 0:
             return number - 1, code, solutions
         solutions += code
         for i in range(m):
             total = -F[i]
             for j in range(m):
-                total += k_ref[i, j] * d[j] + c_ref[i, j] * w[j]
+                total += k_ref[i, j] * d[j] + c_ref[i, j] * v[j]
             u[i] = total
         for k in range(nr):
             total = 0.0
             for j in range(m):
-                total += Br[k, j] * u[j]
+                total += B[k, j] * u[j]
             r0[k] += h * h * total / 6.0
             r1[k] += 0.5 * h * total
-        for law in range(kind.size):
-            sums[law, 0] += h * energy[4 * law + 1]
-            sums[law, 1] += h * energy[4 * law + 2]
-        count_events(energy, last, events)
-        if number % every == 0:
-            r = number // every - 1
+        take_account(energy, h, carried)
+        if number % span.every == 0:
+            r = number // span.every - 1
             for j in range(nz):
                 real = yr[j]
                 imaginary = yi[j]
                 for i in range(m):
                     real += Qr[i, j] * u[i]
                     imaginary += Qi[i, j] * u[i]
-                records_z[r, j] = real
-                records_z[r, nz + j] = imaginary
+                kept_modal.z[r, j] = real
+                kept_modal.z[r, nz + j] = imaginary
             for k in range(nr):
-                records_r[r, k] = r0[k]
-                records_r[r, nr + k] = r1[k]
-            records_u[r] = u
-            records_d[r] = d
-            records_F[r] = F
-            for law in range(kind.size):
-                records_E[r, law, 0] = energy[4 * law]
-                records_E[r, law, 1] = sums[law, 0] - 0.5 * h * energy[4 * law + 1]
-                records_E[r, law, 2] = sums[law, 1] - 0.5 * h * energy[4 * law + 2]
-    return steps, 0, solutions
+                kept_modal.rigid[r, k] = r0[k]
+                kept_modal.rigid[r, nr + k] = r1[k]
+            kept_modal.u[r] = u
+            record_forces(r, h, work, carried, kept)
+    return span.steps, 0, solutions

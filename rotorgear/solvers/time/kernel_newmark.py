@@ -13,92 +13,48 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.time.compiled import compiled
-from rotorgear.solvers.time.kernel_contact import contact_step, schedule_all
-from rotorgear.solvers.time.kernel_time import count_events, lu_solve, rotation_at, row_products, subtract_products
+from rotorgear.solvers.time.kernel_contact import contact_step, contact_work, record_forces, schedule_all, take_account
+from rotorgear.solvers.time.kernel_time import inertia_products, lu_solve, rotation_at, subtract_products
 
 
 @compiled
-def newmark_loop(
-    steps,
-    every,
-    step0,
-    h,
-    am,
-    af,
-    beta,
-    gamma,
-    times,
-    speeds,
-    angles,
-    first_nz,
-    column,
-    K,
-    D,
-    M,
-    Lp,
-    Li,
-    Lx,
-    Up,
-    Ui,
-    Ux,
-    diagonal,
-    row_place,
-    column_place,
-    Bt_first,
-    Bt_column,
-    Bt_value,
-    P,
-    Ad,
-    Av,
-    load,
-    schedules,
-    forces,
-    kind,
-    first,
-    parameters,
-    parameters_first,
-    state_first,
-    block_first,
-    q,
-    v,
-    a,
-    F,
-    before,
-    tolerance,
-    records_q,
-    records_v,
-    records_a,
-    records_d,
-    records_F,
-    records_E,
-    sums,
-    last,
-    events,
-):
-    """Advance `steps` steps in place and record every `every`-th; returns steps done and the status of the last."""
+def newmark_loop(span, weights, turning, structure, step, laws, motion, carried, tolerance, kept):
+    """Advance `motion` and `carried` in place over a span and record; returns steps done, status and linear solutions."""
+    h = span.h
+    am = weights.am
+    af = weights.af
+    beta = weights.beta
+    gamma = weights.gamma
+    q = motion.q
+    v = motion.v
+    a = motion.a
+    F = carried.F
+    before = carried.before
+    load = structure.load
+    Bt_first = step.Bt.first
+    Bt_column = step.Bt.column
+    Bt_value = step.Bt.value
+    factors = step.S
+    compliance = step.compliance
+    P = step.P
     n = q.size
     m = F.size
-    state = np.zeros(state_first[-1])
-    Kd = np.zeros(block_first[-1])
-    Kv = np.zeros(block_first[-1])
-    energy = np.zeros(4 * kind.size)
-    J = np.empty((m, m))
-    d = np.empty(m)
-    w = np.empty(m)
-    trial = np.empty(m)
-    d_free = np.empty(m)
-    v_free = np.empty(m)
+    work = contact_work(laws, m)
+    state = work.state
+    d_free = work.d_free
+    v_free = work.v_free
+    energy = work.answer.energy
     Ma = np.zeros(n)
     qm = np.empty(n)
     vm = np.empty(n)
     rhs = np.empty(n)
-    work = np.empty(n)
+    permuted = np.empty(n)
     a_free = np.empty(n)
     solutions = 0
-    for number in range(1, steps + 1):
-        t = (step0 + number) * h
-        angle, speed = rotation_at(t, times, speeds, angles)
-        schedule_all(schedules, kind, parameters, parameters_first, state_first, angle, speed, t, state)
+    for number in range(1, span.steps + 1):
+        t = (span.begun + number) * h
+        angle, speed = rotation_at(t, turning)
+        schedule_all(laws, angle, speed, t, state)
         old = h * h * (0.5 - beta)
         new = h * (1.0 - gamma)
         for i in range(n):
@@ -109,16 +65,16 @@ def newmark_loop(
             rhs[i] = load[i]
             q[i] = qp
             v[i] = vp
-        subtract_products(first_nz, column, K, D, qm, vm, rhs)
+        subtract_products(structure, qm, vm, rhs)
         if am != 0.0:
-            row_products(first_nz, column, M, a, Ma)
+            inertia_products(structure, a, Ma)
             for i in range(n):
                 rhs[i] -= am * Ma[i]
         if af != 0.0:
             for j in range(m):
                 for p in range(Bt_first[j], Bt_first[j + 1]):
                     rhs[Bt_column[p]] -= af * Bt_value[p] * F[j]
-        lu_solve(Lp, Li, Lx, Up, Ui, Ux, diagonal, row_place, column_place, rhs, work, a_free)
+        lu_solve(factors, rhs, permuted, a_free)
         for j in range(m):
             x = 0.0
             y = 0.0
@@ -129,29 +85,7 @@ def newmark_loop(
             d_free[j] = x
             v_free[j] = y
             F[j], before[j] = 2.0 * F[j] - before[j], F[j]  # a guess that goes on as before
-        code = contact_step(
-            forces,
-            kind,
-            first,
-            parameters,
-            parameters_first,
-            state_first,
-            block_first,
-            state,
-            d_free,
-            v_free,
-            Ad,
-            Av,
-            F,
-            d,
-            w,
-            trial,
-            Kd,
-            Kv,
-            energy,
-            J,
-            tolerance,
-        )
+        code = contact_step(laws, compliance, work, F, tolerance)
         if code < 0:
             return number - 1, code, solutions
         solutions += code
@@ -162,19 +96,11 @@ def newmark_loop(
             a[i] = total
             q[i] += beta * h * h * total
             v[i] += gamma * h * total
-        for law in range(kind.size):
-            sums[law, 0] += h * energy[4 * law + 1]
-            sums[law, 1] += h * energy[4 * law + 2]
-        count_events(energy, last, events)
-        if number % every == 0:
-            r = number // every - 1
-            records_q[r] = q
-            records_v[r] = v
-            records_a[r] = a
-            records_d[r] = d
-            records_F[r] = F
-            for law in range(kind.size):
-                records_E[r, law, 0] = energy[4 * law]
-                records_E[r, law, 1] = sums[law, 0] - 0.5 * h * energy[4 * law + 1]
-                records_E[r, law, 2] = sums[law, 1] - 0.5 * h * energy[4 * law + 2]
-    return steps, 0, solutions
+        take_account(energy, h, carried)
+        if number % span.every == 0:
+            r = number // span.every - 1
+            kept.q[r] = q
+            kept.v[r] = v
+            kept.a[r] = a
+            record_forces(r, h, work, carried, kept)
+    return span.steps, 0, solutions

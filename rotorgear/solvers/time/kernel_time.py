@@ -1,4 +1,4 @@
-"""Compiled: what all time loops share. Prescribed angle, sparse products and triangular solutions, event counts."""
+"""Compiled: what all time loops share. Prescribed angle, sparse products and triangular solutions."""
 
 from __future__ import annotations
 
@@ -8,8 +8,11 @@ from rotorgear.solvers.time.compiled import compiled
 
 
 @compiled
-def rotation_at(t, times, speeds, angles):
+def rotation_at(t, turning):
     """Angle and speed of the reference at a time; see solvers/time/motion.py."""
+    times = turning.times
+    speeds = turning.speeds
+    angles = turning.angles
     k = times.size
     if k == 1 or t <= times[0]:
         return angles[0] + speeds[0] * (t - times[0]), speeds[0]
@@ -22,8 +25,12 @@ def rotation_at(t, times, speeds, angles):
 
 
 @compiled(fast=True)
-def subtract_products(first, column, K, D, q, v, out):
-    """Subtract K q + D v from out; both matrices in one pattern by rows."""
+def subtract_products(structure, q, v, out):
+    """Subtract K q + D v from out."""
+    first = structure.first
+    column = structure.column
+    K = structure.K
+    D = structure.D
     for i in range(out.size):
         total = 0.0
         for p in range(first[i], first[i + 1]):
@@ -32,18 +39,30 @@ def subtract_products(first, column, K, D, q, v, out):
 
 
 @compiled(fast=True)
-def row_products(first, column, value, x, out):
-    """Sparse matrix by rows times x."""
+def inertia_products(structure, x, out):
+    """out = M x."""
+    first = structure.first
+    column = structure.column
+    M = structure.M
     for i in range(out.size):
         total = 0.0
         for p in range(first[i], first[i + 1]):
-            total += value[p] * x[column[p]]
+            total += M[p] * x[column[p]]
         out[i] = total
 
 
 @compiled(fast=True)
-def lu_solve(Lp, Li, Lx, Up, Ui, Ux, diagonal, row_place, column_place, b, y, x):
-    """Solve A x = b from SuperLU's factors by columns, without their diagonals; `diagonal` is 1/diag(U)."""
+def lu_solve(factors, b, y, x):
+    """Solve A x = b from its `Triangles`; y is overwritten."""
+    diagonal = factors.diagonal
+    row_place = factors.row_place
+    column_place = factors.column_place
+    Lp = factors.Lp
+    Li = factors.Li
+    Lx = factors.Lx
+    Up = factors.Up
+    Ui = factors.Ui
+    Ux = factors.Ux
     n = b.size
     for i in range(n):
         y[row_place[i]] = b[i]
@@ -60,19 +79,3 @@ def lu_solve(Lp, Li, Lx, Up, Ui, Ux, diagonal, row_place, column_place, b, y, x)
                 y[Ui[p]] -= Ux[p] * value
     for i in range(n):
         x[i] = y[column_place[i]]
-
-
-@compiled
-def count_events(energy, last, events):
-    """Count, for each law, steps on the front side, apart, and on the back side, and the contact losses."""
-    for law in range(last.size):
-        now = int(energy[4 * law + 3])
-        if now > 0:
-            events[law, 0] += 1
-        elif now < 0:
-            events[law, 2] += 1
-        else:
-            events[law, 1] += 1
-            if last[law] != 0:
-                events[law, 3] += 1
-        last[law] = now

@@ -12,6 +12,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from rotorgear.solvers.time.arguments import Laws
+
 # Different laws that one model may hold; the compiled loops take a tuple of this length.
 MOST_LAWS = 8
 
@@ -110,9 +112,9 @@ class LocalForces:
         """Number of relative displacements."""
         return int(self.first[-1])
 
-    def arguments(self) -> tuple[Any, ...]:
-        """What the compiled loops take, in their order."""
-        return (
+    def arguments(self) -> Laws:
+        """What the compiled loops take."""
+        return Laws(
             self.schedules,
             self.forces,
             self.kind,

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
 
+from rotorgear.solvers.time.arguments import Carried, Kept
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.motion import Rotation
 
@@ -81,6 +82,11 @@ class State:
     last: np.ndarray
     events: np.ndarray
     inner: dict[str, np.ndarray] = field(default_factory=dict)
+
+    @property
+    def carried(self) -> Carried:
+        """What the local forces carry on, for the compiled loops to change in place."""
+        return Carried(self.F, self.before, self.sums, self.last, self.events)
 
     def copy(self) -> State:
         """Return a copy with arrays of its own."""
@@ -244,10 +250,16 @@ def acceleration(M: sp.csc_array, force: np.ndarray) -> np.ndarray:
     return a
 
 
-def blank_records(steps: int, every: int, n: int, system: LocalSystem) -> dict[str, Any]:
+def blank_records(steps: int, every: int, n: int, system: LocalSystem) -> Kept:
     """Arrays for the records of some steps."""
     r = steps // every
     m = system.m
     laws = len(system.forces.laws)
-    shapes = {"q": (r, n), "v": (r, n), "a": (r, n), "d": (r, m), "F": (r, m), "energy": (r, laws, 3)}
-    return {name: np.zeros(shape) for name, shape in shapes.items()}
+    return Kept(
+        q=np.zeros((r, n)),
+        v=np.zeros((r, n)),
+        a=np.zeros((r, n)),
+        d=np.zeros((r, m)),
+        F=np.zeros((r, m)),
+        energy=np.zeros((r, laws, 3)),
+    )

@@ -15,6 +15,17 @@ import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.sparse.factor import factor_general
+from rotorgear.solvers.time.arguments import (
+    Compliance,
+    Motion,
+    NewmarkStep,
+    Span,
+    SparseRows,
+    Structure,
+    Triangles,
+    Turning,
+    Weights,
+)
 from rotorgear.solvers.time.local_system import LocalSystem, PlainFields, Records, State, blank_records
 
 
@@ -87,25 +98,19 @@ class NewmarkStepper:
         condensed = (1.0 - af) * (B.T @ P)
         Bt = sp.csr_array(system.B.T)
         rotation = system.rotation
-        self._fixed: tuple[Any, ...] = (
-            am,
-            af,
-            beta,
-            gamma,
-            rotation.times,
-            rotation.speeds,
-            rotation.angles,
-            *_one_pattern(system.K, D, system.M),
-            *_triangles(factor._lu),
-            Bt.indptr.astype(np.int32),
-            Bt.indices.astype(np.int32),
-            Bt.data.astype(float),
-            np.ascontiguousarray(P),
-            np.ascontiguousarray(beta * h**2 * condensed),
-            np.ascontiguousarray(gamma * h * condensed),
-            np.ascontiguousarray(system.load, dtype=float),
-            *system.forces.arguments(),
+        first, column, (K, D_nz, M) = _one_pattern(system.K, D, system.M)
+        self._weights = Weights(float(am), float(af), float(beta), float(gamma))
+        self._turning = Turning(rotation.times, rotation.speeds, rotation.angles)
+        self._structure = Structure(first, column, K, D_nz, M, np.ascontiguousarray(system.load, dtype=float))
+        self._step = NewmarkStep(
+            S=_triangles(factor._lu),
+            Bt=SparseRows(Bt.indptr.astype(np.int32), Bt.indices.astype(np.int32), Bt.data.astype(float)),
+            P=np.ascontiguousarray(P),
+            compliance=Compliance(
+                np.ascontiguousarray(beta * h**2 * condensed), np.ascontiguousarray(gamma * h * condensed)
+            ),
         )
+        self._laws = system.forces.arguments()
         self._tolerance = tolerance
 
     def start(self, state: State) -> None:
@@ -117,35 +122,25 @@ class NewmarkStepper:
 
         kept = blank_records(steps, every, self._system.n, self._system)
         done, status, solutions = newmark_loop(
-            steps,
-            every,
-            state.step,
-            self.h,
-            *self._fixed,
-            state.q,
-            state.v,
-            state.a,
-            state.F,
-            state.before,
+            Span(steps, every, state.step, self.h),
+            self._weights,
+            self._turning,
+            self._structure,
+            self._step,
+            self._laws,
+            Motion(state.q, state.v, state.a),
+            state.carried,
             self._tolerance,
-            kept["q"],
-            kept["v"],
-            kept["a"],
-            kept["d"],
-            kept["F"],
-            kept["energy"],
-            state.sums,
-            state.last,
-            state.events,
+            kept,
         )
         t = (state.step + every * np.arange(1, done // every + 1)) * self.h
         state.step += done
         r = t.size
-        fields = PlainFields(kept["q"][:r], kept["v"][:r], kept["a"][:r])
-        return Records(t, kept["d"][:r], kept["F"][:r], kept["energy"][:r], fields, done, status, solutions)
+        fields = PlainFields(kept.q[:r], kept.v[:r], kept.a[:r])
+        return Records(t, kept.d[:r], kept.F[:r], kept.energy[:r], fields, done, status, solutions)
 
 
-def _one_pattern(*matrices: sp.csc_array) -> tuple[np.ndarray, ...]:
+def _one_pattern(*matrices: sp.csc_array) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
     """Row starts and columns of the union of some sparse matrices, and the values of each in it."""
     pattern = sp.csr_array(
         sum(
@@ -167,21 +162,21 @@ def _one_pattern(*matrices: sp.csc_array) -> tuple[np.ndarray, ...]:
         place = np.searchsorted(rows.astype(np.int64) * full.shape[1] + pattern.indices, key)
         np.add.at(value, place, coordinates.data)
         values.append(value)
-    return (pattern.indptr.astype(np.int32), pattern.indices.astype(np.int32), *values)
+    return pattern.indptr.astype(np.int32), pattern.indices.astype(np.int32), values
 
 
-def _triangles(lu: Any) -> tuple[np.ndarray, ...]:
-    """SuperLU's factors by columns without their diagonals, 1/diag(U) and both orders."""
+def _triangles(lu: Any) -> Triangles:
+    """SuperLU's factors without their diagonals."""
     L = sp.csc_array(sp.tril(lu.L, -1))
     U = sp.csc_array(sp.triu(lu.U, 1))
-    return (
-        L.indptr.astype(np.int32),
-        L.indices.astype(np.int32),
-        L.data.copy(),
-        U.indptr.astype(np.int32),
-        U.indices.astype(np.int32),
-        U.data.copy(),
-        1.0 / lu.U.diagonal(),
-        lu.perm_r.astype(np.int32),
-        lu.perm_c.astype(np.int32),
+    return Triangles(
+        Lp=L.indptr.astype(np.int32),
+        Li=L.indices.astype(np.int32),
+        Lx=L.data.copy(),
+        Up=U.indptr.astype(np.int32),
+        Ui=U.indices.astype(np.int32),
+        Ux=U.data.copy(),
+        diagonal=1.0 / lu.U.diagonal(),
+        row_place=lu.perm_r.astype(np.int32),
+        column_place=lu.perm_c.astype(np.int32),
     )
