@@ -1,7 +1,8 @@
 """The one command that runs what CI runs:  python3 check.py
 
 It keeps a virtual environment of its own (`.venv-check`, or the directory named by ROTORGEAR_VENV) with the project and its
-test tools, and runs in it, on one thread each: ruff format, ruff check, mypy, the tests of the docs beside all other tests.
+test tools, and runs in it, on one thread each: ruff format, ruff check, mypy, and all tests, those of the docs among them, on two
+cores.
 Needs Python 3.11 with venv, no more.
 """
 
@@ -13,11 +14,9 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
 
 ROOT = Path(__file__).resolve().parent
 OLDEST_PYTHON = (3, 11)
@@ -43,11 +42,12 @@ FORMAT = Step("format", ("-m", "ruff", "format", "--check", "."), ("-m", "ruff",
 LINT = Step("lint", ("-m", "ruff", "check", "."), ("-m", "ruff", "check", "--fix", "."))
 TYPES = Step("types", ("-m", "mypy"))
 DOCS = Step("docs", (*PYTEST, "tests/docs"))
-TESTS = Step("tests", (*PYTEST, "tests", "--ignore=tests/docs"))
+# The tests of a file stay together: they share models and compiled code, and the blocks of a page share variables.
+TESTS = Step("tests", (*PYTEST, "tests", "-n", "2", "--dist", "loadfile"))
 FAST_TESTS = Step("tests", (*PYTEST, "tests/unit", "tests/contract"))
 LONG_TESTS = Step("long", (*PYTEST, "tests", "-m", "long"))
 
-USUAL = (FORMAT, LINT, TYPES, DOCS, TESTS)
+USUAL = (FORMAT, LINT, TYPES, TESTS)
 FAST = (FORMAT, LINT, TYPES, FAST_TESTS)
 
 
@@ -72,7 +72,7 @@ def main(arguments: list[str] | None = None) -> int:
 def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="check.py", description="Run what CI runs: format, lint, types, docs, tests.")
-    names = [step.name for step in (*USUAL, LONG_TESTS)]
+    names = [step.name for step in (*USUAL, DOCS, LONG_TESTS)]
     which = parser.add_mutually_exclusive_group()
     which.add_argument(
         "--only", metavar="NAME", choices=names, action="append", help=f"one check of: {', '.join(names)}"
@@ -87,7 +87,7 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
 def chosen(options: argparse.Namespace) -> tuple[Step, ...]:
     """Return the steps to run, in order."""
     if options.only:
-        steps = tuple(step for step in (*USUAL, LONG_TESTS) if step.name in options.only)
+        steps = tuple(step for step in (*USUAL, DOCS, LONG_TESTS) if step.name in options.only)
     else:
         steps = FAST if options.fast else USUAL
     return (*steps, LONG_TESTS) if options.long and LONG_TESTS not in steps else steps
@@ -145,50 +145,19 @@ def run_steps(steps: tuple[Step, ...], venv: Path, fix: bool, keep_going: bool) 
     environment.pop("PYTHONPATH", None)
     lines: list[str] = []
     failed = False
-    rest = list(steps)
-    while rest and (keep_going or not failed):
-        # The docs take one core for minutes: the tests run beside them on the other.
-        count = 2 if rest[:2] == [DOCS, TESTS] else 1
-        side_by_side, rest = rest[:count], rest[count:]
+    for step in steps:
+        if failed and not keep_going:
+            lines.append(f"{step.name:8s} not run")
+            continue
+        arguments = step.fix if fix and step.fix else step.run
+        say(f"{step.name}: {' '.join(arguments[1:])}")
         start = time.perf_counter()
-        with tempfile.TemporaryFile() as kept:
-            running = {
-                s: start_step(s, venv, fix, environment, kept if s != side_by_side[-1] else None) for s in side_by_side
-            }
-            try:
-                while running:
-                    for step in [s for s, process in running.items() if process.poll() is not None]:
-                        code = running.pop(step).returncode
-                        took = time.perf_counter() - start
-                        lines.append(f"{step.name:8s} {'passed' if code == 0 else 'FAILED'} {took:8.1f} s")
-                        failed |= code != 0
-                    time.sleep(0.05)
-            finally:
-                for process in running.values():
-                    process.kill()
-            if count > 1:
-                say(f"what {side_by_side[0].name} printed")
-                kept.seek(0)
-                print(kept.read().decode(errors="replace"), flush=True)
-    lines += [f"{step.name:8s} not run" for step in rest]
+        code = subprocess.run([str(python_of(venv)), *arguments], cwd=ROOT, env=environment, check=False).returncode
+        lines.append(f"{step.name:8s} {'passed' if code == 0 else 'FAILED'} {time.perf_counter() - start:8.1f} s")
+        failed |= code != 0
     say("summary")
     print("\n".join(lines), flush=True)
     return int(failed)
-
-
-def start_step(
-    step: Step, venv: Path, fix: bool, environment: dict[str, str], output: IO[bytes] | None = None
-) -> subprocess.Popen[bytes]:
-    """Start a step, with its output to a file where one is given."""
-    arguments = step.fix if fix and step.fix else step.run
-    say(f"{step.name}: {' '.join(arguments[1:])}")
-    return subprocess.Popen(
-        [str(python_of(venv)), *arguments],
-        cwd=ROOT,
-        env=environment,
-        stdout=output,
-        stderr=output and subprocess.STDOUT,
-    )
 
 
 def say(text: str) -> None:

@@ -102,7 +102,11 @@ def test_a_rig_is_compared_with_a_result_a_model_or_as_before_with_lists() -> No
     rig = [20.0, rg.RigLine(60.0)]
     result = rg.modal(model, fmax=1.15 * 60.0)
     of_result = rg.compare(result, rig, known_to_hz=1.15 * 60.0)
-    assert of_result.to_dict() == rg.compare(model, rig).to_dict()
+    first, second = of_result.to_dict(), rg.compare(model, rig).to_dict()
+    for cost in ("seconds", "seconds_by_step", "settings"):
+        first.pop(cost, None)
+        second.pop(cost, None)
+    assert first == second
     with pytest.warns(FutureWarning, match=r"is now 'compare\(result, rig\)'"):
         of_lists = rg.compare(
             result.frequency_hz, result.description, [rg.RigLine(20.0), rg.RigLine(60.0)], rigid=result.rigid

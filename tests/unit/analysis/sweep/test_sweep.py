@@ -27,7 +27,8 @@ from validation.oscillators import integrate, local_system
 PAIR = ROOT / "models" / "backlash_pair.toml"
 SHORT: dict[str, Any] = {"discard": 40, "sample": 40}
 # Fields that tell the cost of a run, not its outcome.
-COST = ("seconds",)
+# What it cost, and the arguments it was asked with: the number of workers is one.
+COST = ("seconds", "settings")
 
 
 def same(a: rg.SweepResult, b: rg.SweepResult) -> bool:
