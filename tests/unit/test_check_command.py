@@ -69,11 +69,12 @@ def test_a_directory_that_is_no_environment_is_never_cleared(clone: Path) -> Non
 @pytest.mark.parametrize(
     ("arguments", "names"),
     [
-        ([], ["format", "lint", "types", "docs", "tests"]),
+        ([], ["format", "lint", "types", "tests"]),
         (["--fast"], ["format", "lint", "types", "tests"]),
         (["--only", "types"], ["types"]),
         (["--only", "tests", "--only", "lint"], ["lint", "tests"]),
-        (["--long"], ["format", "lint", "types", "docs", "tests", "long"]),
+        (["--only", "docs"], ["docs"]),
+        (["--long"], ["format", "lint", "types", "tests", "long"]),
         (["--only", "long", "--long"], ["long"]),
     ],
 )
