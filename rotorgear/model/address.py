@@ -61,6 +61,10 @@ def changed(data: Mapping[str, Any], changes: Iterable[tuple[list[Place], Any]])
                 owner.pop(key, None)
                 continue
             old = owner[key] if isinstance(owner, list) else owner.get(key)
+            if isinstance(old, dict) and "radial" in old and isinstance(value, str | int | float):
+                # One number for the stiffness or damping of a bearing is the radial one, as on a drawing; the others stay.
+                old["radial"] = value
+                continue
             # Where a whole number stands, a whole float is one too: numbers of teeth and harmonics are swept in floats.
             whole = isinstance(old, int) and isinstance(value, float) and value.is_integer()
             owner[key] = int(value) if whole else value

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import rotorgear as rg
@@ -53,6 +54,8 @@ stiffness = { radial = "1e6 N/m" }
     model = rg.loads(text)
     soft = rg.modal(model, fmax=40.0, elements=1).frequency_hz
     stiff = rg.modal(model.with_("bearings.only.stiffness.radial", "4e6 N/m"), fmax=40.0, elements=1).frequency_hz
+    held = model.with_("bearings.only.stiffness.axial", "3e6 N/m").with_("bearings.only.stiffness", "4e6 N/m")
+    assert np.diag(held.bearings["only"].stiffness.as_rows())[:3] == pytest.approx([4e6, 4e6, 3e6])
     assert stiff[stiff > 1.0][:2] == pytest.approx(2.0 * soft[soft > 1.0][:2], rel=1e-4)
 
 
