@@ -131,4 +131,7 @@ def data_set(result: Record) -> Any:
         else:
             arrays.append(xr.DataArray(column.values, dims=column.axes, name=column.name, attrs=about))
     merged = xr.merge(arrays, join="outer", compat="no_conflicts", combine_attrs="drop")
+    # Newer versions of xarray drop the attributes of the variables as well as those of the whole.
+    for array in arrays:
+        merged[array.name].attrs = dict(array.attrs)
     return merged.assign_coords(coordinates)
