@@ -95,7 +95,8 @@ def main(other: str, rounds: int = 5) -> None:
     sides = []
     for root in (other, str(here.parents[2])):
         environment = {**os.environ, "PYTHONPATH": root, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-        command = [sys.executable, str(here), "serve"]
+        theirs = Path(root) / here.relative_to(here.parents[2])  # names of modules differ between versions
+        command = [sys.executable, str(theirs if theirs.exists() else here), "serve"]
         sides.append(
             subprocess.Popen(
                 command, env=environment, cwd=root, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
