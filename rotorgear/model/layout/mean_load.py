@@ -29,6 +29,7 @@ from rotorgear.model.layout.mesh_layout import Contact
 from rotorgear.model.layout.torsion_network import contact_forces
 
 if TYPE_CHECKING:
+    from rotorgear.gears.loaded.contact_map import ContactMap
     from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness
 
     Curves = Mapping[str, tuple[MeshStiffness, ...]]
@@ -154,6 +155,17 @@ class MeanLoad:
         if mesh not in self.curves:
             return None
         return self.layout.mesh(mesh).both_helices(self.curves[mesh], self.of_mesh(mesh)[0].torque_sense)
+
+    def contact_map(self, force: MeshForce) -> ContactMap | None:
+        """Map F(delta, u) of one helix from its loaded teeth, along the path of contact; None where the file gives none.
+
+        Its working load is the mean one of the mesh, so that equal helices share one map. In time u runs with the mesh phase phi
+        (`phase`): u = phi / 2 pi where the pinion drives, and the other way, u = -phi / 2 pi, where the gear does.
+        """
+        helices = self.of_mesh(force.contact.mesh)
+        mean = sum(state.normal_force for state in helices) / len(helices)
+        mesh = self.layout.mesh(force.contact.mesh)
+        return mesh.contact_map(force.contact.helix, mean, force.torque_sense)
 
     def curve(self, force: MeshForce) -> MeshStiffness:
         """Stiffness of one helix over its mesh period, along the path of contact of the pinion."""

@@ -23,6 +23,7 @@ from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.mesh import Mesh
 
 if TYPE_CHECKING:
+    from rotorgear.gears.loaded.contact_map import ContactMap
     from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 
 # Positions in a mesh period at which a stiffness model is asked.
@@ -307,6 +308,22 @@ class MeshLayout:
                 mesh_stiffness(given, teeth if ahead > 0 else mirrored(teeth), load, positions)
                 for ahead in self.helix_senses(sense)
             )
+        except AnalysisError as error:
+            raise AnalysisError(f"meshes.{self.name}: {error}") from None
+
+    def contact_map(self, helix: int, normal_force: float, sense: int = 1) -> ContactMap | None:
+        """F(delta, u) of one helix about a mean force (N) along the flank normal; None where its teeth are not loaded ones.
+
+        `sense` is that of the torque on the pinion about +z. Raises what `rotorgear.gears.loaded.contact_map` raises.
+        """
+        if self.part.stiffness != "tooth_fe" or not normal_force:
+            return None
+        from rotorgear.gears.loaded.contact_map import contact_map
+
+        teeth = self.teeth if self.helix_senses(sense)[helix] > 0 else mirrored(self.teeth)
+        try:
+            # Rounding of the torque flow must not make another load: equal meshes are solved once.
+            return contact_map(teeth, float(f"{normal_force:.12g}"))
         except AnalysisError as error:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
 

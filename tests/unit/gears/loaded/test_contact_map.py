@@ -1,0 +1,42 @@
+"""The map F(delta, u) of a helix against the loaded contact that it was made of."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rotorgear.gears.loaded.contact_map import ContactMap
+
+
+@pytest.fixture(scope="module")
+def hertz() -> ContactMap:
+    """delta = delta_0(u) + c(u) F^0.9, as of a contact that stiffens with the load."""
+    u = np.arange(32) / 32
+    gap = 1e-6 * (1.0 + np.cos(2 * np.pi * u))
+    compliance = 2e-9 * (1.0 + 0.2 * np.sin(2 * np.pi * u))
+    load = np.concatenate([[0.0], np.geomspace(10.0, 5e4, 40)])
+    return ContactMap(u, 1, load, gap[:, None] + compliance[:, None] * load**0.9)
+
+
+def test_force_and_approach_are_inverse_to_each_other(hertz: ContactMap) -> None:
+    u = np.linspace(-1.3, 2.1, 41)
+    F = np.geomspace(1.0, 2e5, 41)
+    assert hertz.force(hertz.approach_at(F, u), u) == pytest.approx(F, rel=1e-9)
+
+
+def test_no_force_before_the_first_touch(hertz: ContactMap) -> None:
+    u = np.linspace(0.0, 1.0, 17)
+    assert np.all(hertz.force(hertz.no_load(u) - 1e-9, u) == 0.0)
+    assert np.all(hertz.stiffness(hertz.no_load(u) - 1e-9, u) == 0.0)
+
+
+def test_stiffness_is_the_slope_of_the_force(hertz: ContactMap) -> None:
+    u = np.linspace(0.0, 1.0, 9)
+    delta = hertz.approach_at(1.3e4, u)
+    step = 1e-4 * delta
+    slope = (hertz.force(delta + step, u) - hertz.force(delta - step, u)) / (2.0 * step)
+    assert hertz.stiffness(delta, u) == pytest.approx(slope, rel=1e-3)
+
+
+def test_it_repeats_after_its_periods(hertz: ContactMap) -> None:
+    assert hertz.approach_at(5e3, 0.4) == pytest.approx(hertz.approach_at(5e3, 7.4), rel=1e-12)
