@@ -71,12 +71,13 @@ def modal(
 ) -> None:
     """Natural frequencies and mode shapes; undamped at standstill, or damped and gyroscopic at a --speed."""
     import rotorgear as rg
-    from rotorgear.analysis.rig.compare_result import ABOVE_RIG
 
     rig = rg.read_rig_lines(compare) if compare else ()
     chosen = _numbers(shapes)
     built = rg.load(model)
     if rig and modes is None and fmax is None:
+        from rotorgear.analysis.rig.compare_result import ABOVE_RIG
+
         fmax = ABOVE_RIG * max(line.frequency_hz for line in rig)
     with progress_bar("modal") as progress:
         result = rg.modal(

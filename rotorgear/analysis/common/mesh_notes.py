@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness
 from rotorgear.system.system import System
+
+if TYPE_CHECKING:
+    from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness
 
 
 def mesh_stiffness_left_out(system: System) -> Iterator[str]:

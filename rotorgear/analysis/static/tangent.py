@@ -9,16 +9,18 @@ load, as always: the tangent at that load where a stiffness model knows it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rotorgear.analysis.static.solve import LawState, equilibrate
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.supports import DampingMatrix, StiffnessMatrix, TableRow
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.system.system import System
+
+if TYPE_CHECKING:
+    from rotorgear.analysis.static.solve import LawState
 
 # Tangents that change less over speed are one stiffness.
 _CONSTANT = 1e-9
@@ -50,6 +52,9 @@ def about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Mod
     }
     if not wanted:
         return model, tuple(notes)
+    # Most models have no such part: what finds an equilibrium is loaded for the others only.
+    from rotorgear.analysis.static.solve import equilibrate
+
     operating = model.operation.speed if model.operation else None
     at = sorted({(operating or 0.0) if speed is None else float(speed) for speed in speeds}, key=abs)
     load = model.mean_load(-1 if min(at) < 0.0 else 1).of_kind("static")
