@@ -15,6 +15,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, SupportsFloat
 
+from rotorgear.common_units import COMMON_UNITS
+
 
 @dataclass(frozen=True)
 class Dimension:
@@ -158,6 +160,12 @@ def _factor(unit: str, dimension: str) -> float:
         raise QuantityError(_expected(wanted))
     if not unit:
         raise QuantityError(f"{_expected(wanted)}; a number in SI stands without quotes")
+    common = COMMON_UNITS[dimension].get(unit)
+    return _factor_by_pint(unit, wanted) if common is None else common
+
+
+def _factor_by_pint(unit: str, wanted: Dimension) -> float:
+    """Return the factor from any unit that pint knows to the SI unit of a dimension."""
     try:
         factor, given = _base_units(_expression(unit))
         _, needed = _base_units(wanted.unit)

@@ -11,7 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rotorgear.quantity import DIMENSIONS, QuantityError, millimetres, nearest, parse_quantity
+from rotorgear.common_units import COMMON_UNITS
+from rotorgear.quantity import DIMENSIONS, QuantityError, _factor_by_pint, millimetres, nearest, parse_quantity
 
 
 @pytest.mark.parametrize(
@@ -63,6 +64,17 @@ def test_a_text_is_read_with_its_unit(text: str, dimension: str, value: float) -
 @pytest.mark.parametrize("dimension", DIMENSIONS)
 def test_every_example_is_a_quantity_of_its_dimension(dimension: str) -> None:
     assert math.isfinite(parse_quantity(DIMENSIONS[dimension].example, dimension))
+
+
+def test_common_units_are_those_of_pint() -> None:
+    # To 1 ulp or so: releases of pint multiply the same definitions in other orders.
+    for dimension, units in COMMON_UNITS.items():
+        for unit, factor in units.items():
+            assert _factor_by_pint(unit, DIMENSIONS[dimension]) == pytest.approx(factor, rel=4e-16, abs=0.0), unit
+
+
+def test_every_dimension_has_common_units_or_a_table_of_its_own() -> None:
+    assert set(DIMENSIONS) == {*COMMON_UNITS, "speed", "frequency", "ratio"}
 
 
 @pytest.mark.parametrize("dimension", DIMENSIONS)
