@@ -1,11 +1,15 @@
-"""Loaded tooth contact over a mesh cycle: forces of all slices, transmission error and stiffness.
+"""Loaded tooth contact at one position of the mesh cycle: forces of all slices, approach and tangent stiffness.
 
-Unknown are the normal forces F >= 0 of the slices and the approach delta of the gears along the line of action:
-    C F + gap - delta cos b_b >= 0,   F >= 0,   sum F = T_1 / (r_b1 cos b_b),
-with C from the finite-element compliance of the patches; on its diagonal the patch of half-width c is replaced by the Hertz strip
-of half-width a: K F' (1/4 + ln(c cos b_b / a)) for each body, K = 2 (1 - nu^2)/(pi E), F' = F cos b_b / dz, a^2 = 4 F' R/(pi E*).
-a depends on F, so the contact is solved again until the forces rest. (c lies in the transverse section; c cos b_b is the patch's
-half-width across the contact line.) Reference: K. L. Johnson, Contact Mechanics, sections 4.2 and 5.6.
+Unknown are the normal forces F >= 0 of the slices and the approach delta of the gears along the flank normal:
+    C F + g(F) + gap - delta >= 0,   F >= 0,   F (C F + g(F) + gap - delta) = 0,   sum F = T_1 / (r_b1 cos b_b),
+with C from the finite-element compliance of patches of half-width c, and g what the Hertz strip of half-width a adds to it:
+    g = K F' (1/4 + ln(c/a)) for each body,   F' = F / l,   a^2 = 4 F' R/(pi E*),   K = 2 (1 - nu^2)/(pi E),
+l being the length of the slice's contact line. dg/dF' = K (ln(c/a) - 1/4) is positive while a < c / e^(1/4): the conditions are
+those of the least of a convex energy,
+    E(F) = F C F / 2 + sum of the integrals of g + gap F   over   F >= 0, sum F = given.
+Newton's method with the exact tangent of g: each round solves a quadratic problem with its inequalities, and a line search
+along it never lets the energy rise, so that the rounds can't run in a circle.
+References: K. L. Johnson, Contact Mechanics, sections 4.2 and 5.6; Nocedal and Wright, Numerical Optimization, chapters 3 and 18.
 """
 
 from __future__ import annotations
@@ -18,14 +22,18 @@ import scipy.linalg as la
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.time.unilateral import unilateral
 
-# Rounds of force and half-width: few are needed as a rule, since a enters by its logarithm only.
-_OUTER_ROUNDS = 80
-# Change of the forces over the load at which they count as resting.
-_FORCE_TOLERANCE = 1e-12
-# Share of the mean load per slice that an unloaded slice counts as carrying: its strip must have a width.
+# Newton's rounds: four to eight as a rule.
+_ROUNDS = 100
+# Change of the forces over the load in the last round. The error left after it is about its square.
+_FORCE_TOLERANCE = 1e-10
+# Energies are known to this share of load times approach.
+_ENERGY_ROUNDING = 1e-16
+# A line search ends where the slope of the energy has fallen to this share of the first one.
+_SLOPE_LEFT = 0.1
+# Share of the mean load per slice below which g is taken proportional to F: its true tangent at zero is infinite.
 _TRACE = 1e-6
-# The local part of a slice's compliance is kept above this share of K, so that it stays positive.
-_LEAST_LOCAL = 0.05
+# dg/dF' over K is kept above this, as it is at c = 1.3 a: wider strips than the patches are not physical, but must stay convex.
+_LEAST_TANGENT = 0.01
 
 
 @dataclass(frozen=True)
@@ -36,8 +44,8 @@ class PositionContact:
         compliance: C without its local part (n, n) (m/N) between normal forces and approaches, patches spread over c.
         gap: (n,) along the flank normal before loading (m).
         length: (n,) length of each slice's contact line, dz / cos b_b (m).
-        local: (n, 2) K of both bodies (m^2/N).
-        log_width: (n, 2) logarithm of the patches' half-widths across the contact line (m).
+        local: (2,) K of both bodies (m^2/N).
+        log_width: (n, 2) logarithm of the patches' half-widths c across the contact line (m).
         radius: (n,) relative radius of curvature R (m).
         modulus: E* of the pair (Pa).
     """
@@ -75,50 +83,124 @@ def hertz_half_width(load: np.ndarray, radius: np.ndarray, modulus: float) -> np
     return np.sqrt(4.0 * np.maximum(load, 0.0) * radius / (np.pi * modulus))
 
 
-def solve_contact(contact: PositionContact, total: float) -> ContactState:
+def solve_contact(contact: PositionContact, total: float, start: np.ndarray | None = None) -> ContactState:
     """Solve one position for a total normal force (N).
+
+    Args:
+        contact: the slices.
+        total: sum of the normal forces (N).
+        start: (n,) forces to begin with, of any positive sum; default: spread evenly.
 
     Raises:
         ConvergenceError: the compliance is not positive definite, or the forces don't come to rest.
     """
-    n = len(contact.gap)
-    force = np.full(n, total / n)
-    start: np.ndarray | None = None
-    for _ in range(_OUTER_ROUNDS):
-        C = contact.compliance + np.diag(_local(contact, force, total, tangent=False))
-        previous = force
-        force, approach = unilateral(C, contact.gap, total, start)
-        start = force > 0.0  # the slices in contact hardly change between rounds
-        change = float(np.abs(force - previous).max()) / total
-        if change <= _FORCE_TOLERANCE:
-            break
-    else:
-        raise ConvergenceError(
-            f"The loaded contact did not come to rest in {_OUTER_ROUNDS} rounds; the last change was {change:.1e} of the "
-            "load. Use a finer preset or a smaller misalignment."
+    force = np.full(len(contact.gap), total / len(contact.gap)) if start is None else start * (total / start.sum())
+    for _ in range(_ROUNDS):
+        added, tangent = _local(contact, force, total)
+        target, approach = unilateral(
+            contact.compliance + np.diag(tangent), contact.gap + added - tangent * force, total, force > 0.0
         )
+        step = target - force
+        opening = contact.compliance @ force + added + contact.gap
+        fall = -float(step @ opening)
+        small = float(np.abs(step).max()) <= _FORCE_TOLERANCE * total
+        if small or fall <= _ENERGY_ROUNDING * total * abs(approach):
+            return _state(contact, target, approach, total)
+        force = force + _share_of_step(contact, force, step, fall, total) * step
+    raise ConvergenceError(
+        f"The loaded contact did not come to rest in {_ROUNDS} rounds; the last change was "
+        f"{float(np.abs(step).max()) / total:.1e} of the load. Use a finer preset or a smaller misalignment."
+    )
 
-    # Contact conditions: no opening where a force acts, no overlap anywhere.
-    opening = C @ force + contact.gap - approach
-    loaded = np.flatnonzero(force > 0.0)
+
+def _share_of_step(contact: PositionContact, force: np.ndarray, step: np.ndarray, fall: float, total: float) -> float:
+    """Share t of a step up to which the energy falls: its slope, which rises with t, is not positive there.
+
+    fall: less the slope at t = 0.
+    """
+    opening = contact.compliance @ force + contact.gap
+    change = contact.compliance @ step
+
+    def slope(t: float) -> float:
+        return float(step @ (opening + t * change + _local(contact, force + t * step, total)[0]))
+
+    low = 0.0
+    at_low = -fall
+    high = 1.0
+    at_high = slope(high)
+    if at_high <= 0.0:
+        return 1.0
+    for _ in range(60):
+        # The chord's zero; in the middle where it clings to an end.
+        t = low - at_low * (high - low) / (at_high - at_low)
+        t = min(max(t, low + 0.1 * (high - low)), high - 1e-9 * (high - low))
+        at_t = slope(t)
+        if at_t > 0.0:
+            high = t
+            at_high = at_t
+            continue
+        low = t
+        at_low = at_t
+        if at_t >= -_SLOPE_LEFT * fall:
+            break
+    return low
+
+
+def _state(contact: PositionContact, force: np.ndarray, approach: float, total: float) -> ContactState:
+    """The solution with its tangent stiffness and the violation of its conditions."""
+    # No opening where a force acts, no overlap anywhere.
+    opening = contact.compliance @ force + _local(contact, force, total)[0] + contact.gap - approach
+    loaded = force > 0.0
     residual = max(float(np.abs(opening[loaded]).max()), float(np.maximum(-opening, 0.0).max()))
-
-    # Tangent stiffness dF / d delta = 1^T C_t^-1 1 over the slices in contact: all of them approach alike.
-    C_t = contact.compliance[np.ix_(loaded, loaded)] + np.diag(_local(contact, force, total, tangent=True)[loaded])
-    tangent = float(la.solve(C_t, np.ones(len(loaded)), assume_a="pos", check_finite=False).sum())
     return ContactState(
         force=force,
         approach=approach,
-        tangent=tangent,
+        tangent=float(_stiffness(contact, force, np.ones((len(force), 1)))[0, 0]),
         strip=hertz_half_width(force / contact.length, contact.radius, contact.modulus),
         residual=residual,
     )
 
 
-def _local(contact: PositionContact, force: np.ndarray, total: float, *, tangent: bool) -> np.ndarray:
-    """Local compliance (n,) of the slices, secant or tangent; an unloaded slice counts as carrying a trace of the load."""
-    load = np.maximum(force, _TRACE * total / len(force)) / contact.length
-    a = hertz_half_width(load, contact.radius, contact.modulus)
-    # d(F' ln 1/a)/dF' takes 1/2 off the secant's 1/4 + ln(c/a), because a grows as sqrt(F').
-    share = (-0.25 if tangent else 0.25) + contact.log_width - np.log(a)[:, None]
-    return np.asarray(np.sum(contact.local * np.maximum(share, _LEAST_LOCAL), axis=1) / contact.length)
+def moment_and_tangents(contact: PositionContact, state: ContactState, z: np.ndarray) -> tuple[float, np.ndarray]:
+    """Moment of the slices' forces about the middle of the face, and how force and moment follow approach and tilt.
+
+    A tilt phi about the middle opens the flanks by phi z:  C F + g(F) + gap + phi z - delta = 0 where slices touch. So with
+    X = (C + dg/dF)^-1 over these slices, dF = X (1 ddelta - z dphi).
+
+    Args:
+        contact, state: a position and its solution.
+        z: (n,) places of the slices from the middle of the face (m).
+
+    Returns:
+        M = sum F z (N m), and d(F, M)/d(delta, phi) (2, 2) in N/m, N, N and N m.
+    """
+    shapes = np.stack([np.ones(len(z)), z], axis=1)
+    return float(state.force @ z), _stiffness(contact, state.force, shapes) * np.array([1.0, -1.0])
+
+
+def _stiffness(contact: PositionContact, force: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    """S' (C + dg/dF)^-1 S over the slices in contact, for shapes S (n, m) of approach: (m, m)."""
+    loaded = np.flatnonzero(force > 0.0)
+    tangent = _local(contact, force, float(force.sum()))[1]
+    C = contact.compliance[np.ix_(loaded, loaded)] + np.diag(tangent[loaded])
+    S = shapes[loaded]
+    return np.asarray(S.T @ la.solve(C, S, assume_a="pos", check_finite=False))
+
+
+def _local(contact: PositionContact, force: np.ndarray, total: float) -> tuple[np.ndarray, np.ndarray]:
+    """g (n,) in m and dg/dF (n,) in m/N of slices under forces (n,) of the sum `total`."""
+    load = force / contact.length
+    trace = _TRACE * total / len(force) / contact.length
+    above_trace = np.maximum(load, trace)
+    a = hertz_half_width(above_trace, contact.radius, contact.modulus)
+    share = contact.log_width - np.log(a)[:, None]  # ln(c/a) of both bodies
+
+    # Beyond the load at which the tangent has fallen to its least value, g goes on along that tangent.
+    least = 0.25 + _LEAST_TANGENT
+    held = above_trace[:, None] * np.exp(2.0 * np.minimum(share - least, 0.0))
+    secant = held * (0.25 + np.maximum(share, least)) + _LEAST_TANGENT * (above_trace[:, None] - held)
+    tangent = np.maximum(share - 0.25, _LEAST_TANGENT)
+    below = load < trace
+    tangent[below] = secant[below] / trace[below, None]
+    secant[below] *= (load / trace)[below, None]
+    return np.asarray(secant @ contact.local), np.asarray(tangent @ contact.local) / contact.length
