@@ -83,6 +83,10 @@ class MeshSheetRow(Record):
     transverse_contact_ratio: float = of("transverse contact ratio ε_α")
     overlap_ratio: float = of("overlap ratio ε_β", note=", of one helix")
     total_contact_ratio: float = of("total contact ratio ε_γ")
+    involute_contact_ratio: float = of(
+        "transverse contact ratio of the involutes that are there",
+        note=": less than ε_α, which the tip circles give, where a tip reaches below the involute of its mate",
+    )
     base_pitch_m: float = of("transverse base pitch p_bt", "m")
     approach_length_m: float = of("path of contact before the pitch point", "m", note=", pinion driving")
     recess_length_m: float = of("path of contact after the pitch point", "m", note=", pinion driving")
@@ -118,10 +122,18 @@ class MeshSheetRow(Record):
     iso_mesh_stiffness_n_per_m2: float = of("mesh stiffness c_γα of ISO 6336-1 per face width", "N/m^2")
     iso_lead_stiffness_n_per_m2: float = of("mesh stiffness c_γβ of ISO 6336-1 per face width", "N/m^2")
     stiffness_model: str = of("stiffness model", note=' that the file names, or `"given"`')
-    stiffness_n_per_m: float = of("mean stiffness in use", "N/m", note=", along the flank normal, of all helices")
-    stiffness_peak_to_peak_n_per_m: float = of("peak to peak of the stiffness in use over a mesh period", "N/m")
-    stiffness_definition: str = of("definition of the stiffness", note=': `"secant"` or `"tangent"`')
-    stiffness_body: str = of("what the teeth stand on in this stiffness")
+    stiffness_n_per_m: float | None = of(
+        "mean stiffness in use",
+        "N/m",
+        note=", along the flank normal, of all helices; `null` where the model needs a load and there is none",
+    )
+    stiffness_peak_to_peak_n_per_m: float | None = of(
+        "peak to peak of the stiffness in use over a mesh period", "N/m", note="; `null` as before"
+    )
+    stiffness_definition: str | None = of(
+        "definition of the stiffness", note=': `"secant"` or `"tangent"`; `null` as before'
+    )
+    stiffness_body: str | None = of("what the teeth stand on in this stiffness", note="; `null` as before")
     pitch_line_velocity_m_per_s: float | None = of(
         "pitch line velocity v at the reference circle", "m/s", note="; `null` without a speed"
     )

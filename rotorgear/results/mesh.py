@@ -52,7 +52,9 @@ class HelixContact(Record):
         "share of a tooth pair in the load", "", "PAIR", "position", json="load_share", note=" over `position`"
     )
     contact_ratio: float = of("mean number of pairs that carry load")
-    geometric_contact_ratio: float = of("total contact ratio without load")
+    geometric_contact_ratio: float = of(
+        "total contact ratio without load", note=", of the involutes that are there: undercut shortens it"
+    )
     position: np.ndarray = of("number of the position", "", "slice", json=None)
     pair: np.ndarray = of("number of the tooth pair", "", "slice", json=None)
     z: np.ndarray = of("place from the middle of the face", "m", "slice", json=None)

@@ -11,6 +11,7 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.teeth.dynamic_factor import mesh_dynamic_factor
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.geometry import GearGeometry, check_gear
+from rotorgear.gears.geometry.line_of_action import generated_line
 from rotorgear.gears.geometry.measure import (
     best_span,
     normal_thickness,
@@ -24,7 +25,9 @@ from rotorgear.gears.stiffness.contact_lines import contact_line_length, mean_co
 from rotorgear.gears.stiffness.dynamic_factor import DynamicFactor
 from rotorgear.gears.stiffness.iso import pair_iso_stiffness
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.stiffness_models import MODELS
 from rotorgear.model.checks.pairs import ball_diameter, mesh_findings
+from rotorgear.model.layout.applied_torques import applied_torques
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.model import Model
 from rotorgear.model.parts.gear import Gear
@@ -53,11 +56,19 @@ def gear(model: Model, mesh: str | None = None) -> GearSheet:
         raise AnalysisError("The model has no gears with teeth: those given by base_radius have no tooth geometry.")
     whole = [item for item in meshes if item.pinion.geometry]
     lumped = [name for name, gear in model.gears.items() if name in wanted and not gear.geometry]
+    rows = tuple(_mesh(model, item) for item in whole)
+    left_out = [f"gears.{name}: given by its base radius, without teeth" for name in lumped]
+    left_out += [
+        f"meshes.{row.name}: the stiffness of '{row.stiffness_model}' is that of loaded teeth, and no torque flows: give torque, "
+        "power or loads"
+        for row in rows
+        if row.stiffness_n_per_m is None
+    ]
     return GearSheet(
         title=model.title,
         gears=tuple(_gear(gear.name, gear.part) for gear in toothed),
-        meshes=tuple(_mesh(model, item) for item in whole),
-        left_out=tuple(f"gears.{name}: given by its base radius, without teeth" for name in lumped),
+        meshes=rows,
+        left_out=tuple(left_out),
         pairs={item.name: item.teeth for item in whole},
     )
 
@@ -116,15 +127,23 @@ def _gear(name: str, gear: Gear) -> GearRow:
 
 def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
     teeth = mesh.teeth
-    forces = model.mean_load().of_mesh(mesh.name)
     g1 = teeth.first
     g2 = teeth.second
     pair = teeth.pair
     backlash = mesh.backlash
     lines = contact_line_length(teeth, (np.arange(_POSITIONS) + 0.5) / _POSITIONS)
     iso = pair_iso_stiffness(teeth)
-    force = sum(force.normal_force for force in forces) / len(forces)
-    curve = mesh.stiffness(force or None, sense=forces[0].torque_sense).about_load
+    force = 0.0
+    sense = 1
+    if applied_torques(model.layout)[0]:
+        forces = model.mean_load().of_mesh(mesh.name)
+        force = sum(force.normal_force for force in forces) / len(forces)
+        sense = forces[0].torque_sense
+    given = mesh.part.stiffness
+    needs_load = isinstance(given, str) and MODELS[given].needs_load
+    curve = None
+    if force or not needs_load:
+        curve = mesh.stiffness(force or None, sense=sense).about_load
     base = math.cos(pair.base_helix_angle)
     dynamic = mesh_dynamic_factor(model, mesh.name, force * base or None)
     factor = dynamic if isinstance(dynamic, DynamicFactor) else None
@@ -144,6 +163,7 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
         transverse_contact_ratio=pair.transverse_contact_ratio,
         overlap_ratio=pair.overlap_ratio,
         total_contact_ratio=pair.total_contact_ratio,
+        involute_contact_ratio=generated_line(g1, g2, pair).contact_ratio,
         base_pitch_m=teeth.base_pitch,
         approach_length_m=-pair.start_of_contact,
         recess_length_m=pair.end_of_contact,
@@ -161,18 +181,22 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
         iso_single_stiffness_n_per_m2=iso.single,
         iso_mesh_stiffness_n_per_m2=iso.mesh_alpha,
         iso_lead_stiffness_n_per_m2=iso.mesh_beta,
-        stiffness_model=curve.model,
-        stiffness_n_per_m=curve.mean_normal,
-        stiffness_peak_to_peak_n_per_m=curve.peak_to_peak / base**2,
-        stiffness_definition=curve.definition,
-        stiffness_body=curve.body,
+        stiffness_model=given if isinstance(given, str) else "given",
+        stiffness_n_per_m=curve.mean_normal if curve else None,
+        stiffness_peak_to_peak_n_per_m=curve.peak_to_peak / base**2 if curve else None,
+        stiffness_definition=curve.definition if curve else None,
+        stiffness_body=curve.body if curve else None,
         pitch_line_velocity_m_per_s=_velocity(model, mesh.pinion.shaft, g1),
         tangential_force_n=force * base * math.cos(g1.transverse_pressure_angle) if force else None,
         base_tangential_force_n=force * base if force else None,
         dynamic_factor=factor.value if factor else None,
         resonance_ratio=factor.resonance_ratio if factor else None,
         dynamic_factor_method=dynamic if isinstance(dynamic, str) else dynamic.method,
-        warnings=(*mesh_findings(mesh), *curve.warnings, *(_of_factor(model, mesh, factor) if factor else ())),
+        warnings=(
+            *mesh_findings(mesh),
+            *(curve.warnings if curve else ()),
+            *(_of_factor(model, mesh, factor) if factor else ()),
+        ),
     )
 
 

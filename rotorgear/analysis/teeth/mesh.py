@@ -247,7 +247,7 @@ def _result(
         tangent=found.tangent,
         transmission_error=found.error,
         no_load_error=found.no_load,
-        helix=tuple(_helix(cycle, teeth) for cycle in found.cycles),
+        helix=tuple(_helix(cycle, teeth, found.problem) for cycle in found.cycles),
         errors=errors,
         dofs=found.problem.unknowns,
         seconds=clock.total(),
@@ -256,7 +256,7 @@ def _result(
     )
 
 
-def _helix(cycle: MeshCycle, teeth: ToothPair) -> HelixContact:
+def _helix(cycle: MeshCycle, teeth: ToothPair, problem: ContactProblem) -> HelixContact:
     s = cycle.slices
     return HelixContact(
         stiffness=cycle.secant,
@@ -265,7 +265,7 @@ def _helix(cycle: MeshCycle, teeth: ToothPair) -> HelixContact:
         no_load_error=cycle.no_load,
         share=cycle.share_by_pair(),
         contact_ratio=cycle.contact_ratio,
-        geometric_contact_ratio=teeth.pair.total_contact_ratio,
+        geometric_contact_ratio=problem.line.contact_ratio + teeth.pair.overlap_ratio,
         position=s.position,
         pair=s.pair,
         z=s.z @ s.weight,

@@ -13,6 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.geometry.outline import tooth_outline
+from rotorgear.gears.geometry.pair import PairGeometry
+
 
 @dataclass(frozen=True)
 class LineOfAction:
@@ -57,6 +61,11 @@ class LineOfAction:
         return min(self.tip[0], self.length - self.form[1])
 
     @property
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio of the involutes that are there: that of the tip circles unless a tip reaches below one."""
+        return max(self.end - self.start, 0.0) / self.base_pitch
+
+    @property
     def interference(self) -> bool:
         """Whether a tip reaches below the involute of its mate."""
         # A tip that ends at the form circle, as many are designed to, must not count as interference by rounding.
@@ -88,3 +97,17 @@ class LineOfAction:
         t = np.sqrt(np.maximum((across**2 + along**2) / mate**2 - 1.0, 0.0))
         effective = mate * (self.pressure_angle + np.arctan2(across, along) + t - np.arctan(t))
         return tip + excess + effective - self.length, mate * t
+
+
+def generated_line(first: GearGeometry, second: GearGeometry, pair: PairGeometry) -> LineOfAction:
+    """Line of action of a pair, with the form circles of its generated teeth; AnalysisError for teeth that can't be made."""
+    outlines = [tooth_outline(g) for g in (first, second)]
+    return LineOfAction(
+        base_radius=(first.base_radius, second.base_radius),
+        form=(outlines[0].form_roll_length, outlines[1].form_roll_length),
+        tip=(outlines[0].tip_roll_length, outlines[1].tip_roll_length),
+        centre_distance=pair.centre_distance,
+        pressure_angle=pair.working_transverse_pressure_angle,
+        base_pitch=first.transverse_base_pitch,
+        base_helix_angle=first.base_helix_angle,
+    )

@@ -10,8 +10,7 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.flank import FlankModification
 from rotorgear.gears.geometry.geometry import THIN_TIP
-from rotorgear.gears.geometry.line_of_action import LineOfAction
-from rotorgear.gears.geometry.outline import tooth_outline
+from rotorgear.gears.geometry.line_of_action import LineOfAction, generated_line
 from rotorgear.gears.loaded.contact_points import Slices
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, compliance_key, gear_compliance
@@ -88,21 +87,11 @@ class ContactProblem:
 
 def line_of_action(teeth: ToothPair) -> LineOfAction:
     """Line of action of a pair, with the form circles of its generated teeth."""
-    outlines = [tooth_outline(g) for g in (teeth.first, teeth.second)]
-    line = LineOfAction(
-        base_radius=(teeth.first.base_radius, teeth.second.base_radius),
-        form=(outlines[0].form_roll_length, outlines[1].form_roll_length),
-        tip=(outlines[0].tip_roll_length, outlines[1].tip_roll_length),
-        centre_distance=teeth.pair.centre_distance,
-        pressure_angle=teeth.pair.working_transverse_pressure_angle,
-        base_pitch=teeth.base_pitch,
-        base_helix_angle=teeth.first.base_helix_angle,
-    )
-    if line.end - line.start < line.base_pitch and line.base_helix_angle == 0.0:
-        ratio = (line.end - line.start) / line.base_pitch
+    line = generated_line(teeth.first, teeth.second, teeth.pair)
+    if line.contact_ratio < 1.0 and line.base_helix_angle == 0.0:
         raise AnalysisError(
-            f"The transverse contact ratio is {ratio:.3f}: below 1 there are positions where no teeth touch. Raise the addendum "
-            "or reduce the centre distance."
+            f"The transverse contact ratio is {line.contact_ratio:.3f}: below 1 there are positions where no teeth touch. "
+            "Raise the addendum or reduce the centre distance."
         )
     return line
 
@@ -189,7 +178,10 @@ def _warnings(teeth: ToothPair, line: LineOfAction) -> tuple[str, ...]:
     """What is unfavourable about the teeth, or cut off their model."""
     notes = []
     if line.interference:
-        notes.append("a tip reaches below the involute of its mate: contact is taken to end at the form circle")
+        notes.append(
+            "a tip reaches below the involute of its mate: contact is taken to end at the form circle, which leaves a transverse "
+            f"contact ratio of {line.contact_ratio:.3f} of the {teeth.pair.transverse_contact_ratio:.3f} of the tip circles"
+        )
     for name, g in (("pinion", teeth.first), ("gear", teeth.second)):
         if g.normal_tip_thickness < THIN_TIP * g.normal_module:
             notes.append(f"the teeth of the {name} are thinner than {THIN_TIP:g} normal modules at the tip")

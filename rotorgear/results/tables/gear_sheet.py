@@ -28,6 +28,10 @@ def _plain(key: str, digits: int = 4) -> Callable[[Any], str]:
     return lambda row: _text(getattr(row, key), 1.0, digits)
 
 
+def _significant(key: str, digits: int) -> Callable[[Any], str]:
+    return lambda row: "-" if getattr(row, key) is None else f"{getattr(row, key):.{digits}g}"
+
+
 def _text(value: float | None, factor: float, digits: int) -> str:
     if value is None:
         return "-"
@@ -47,6 +51,12 @@ def _allowances(row: GearRow) -> str:
     upper = 1e6 * row.upper_thickness_allowance_m
     lower = 1e6 * row.lower_thickness_allowance_m
     return f"{upper:g} {lower:g}" if lower else "-"
+
+
+def _involute_left(row: MeshSheetRow) -> str:
+    """Contact ratio of the involutes that are there, where a tip reaches below one of them."""
+    cut = row.involute_contact_ratio < row.transverse_contact_ratio * (1.0 - 1e-9)
+    return f"{row.involute_contact_ratio:.4f}" if cut else "-"
 
 
 GEAR_ROWS: Sequence[Row] = (
@@ -98,6 +108,7 @@ MESH_ROWS: Sequence[Row] = (
     ("working helix angle deg", _plain("working_helix_angle_deg")),
     ("base helix angle deg", _plain("base_helix_angle_deg")),
     ("contact ratio eps_alpha", _plain("transverse_contact_ratio")),
+    ("  of the involute left", _involute_left),
     ("overlap ratio eps_beta", _plain("overlap_ratio")),
     ("total contact ratio", _plain("total_contact_ratio")),
     ("base pitch mm", _mm("base_pitch_m")),
@@ -115,8 +126,8 @@ MESH_ROWS: Sequence[Row] = (
     ("ISO c' N/(mm um)", lambda row: f"{1e-9 * row.iso_single_stiffness_n_per_m2:.3f}"),
     ("ISO c_gamma_alpha N/(mm um)", lambda row: f"{1e-9 * row.iso_mesh_stiffness_n_per_m2:.3f}"),
     ("stiffness of all helices", lambda row: row.stiffness_model),
-    ("  mean, normal N/m", lambda row: f"{row.stiffness_n_per_m:.4g}"),
-    ("  peak to peak N/m", lambda row: f"{row.stiffness_peak_to_peak_n_per_m:.3g}"),
+    ("  mean, normal N/m", _significant("stiffness_n_per_m", 4)),
+    ("  peak to peak N/m", _significant("stiffness_peak_to_peak_n_per_m", 3)),
     ("pitch line velocity m/s", _plain("pitch_line_velocity_m_per_s", 2)),
     ("tangential F_t, a helix N", _plain("tangential_force_n", 0)),
     ("base force F_bt a helix N", _plain("base_tangential_force_n", 0)),
@@ -138,7 +149,8 @@ def gear_table(sheet: GearSheet) -> RenderableType:
         notes += [f"Warning: {table}.{member.name}: {text}" for member in members for text in member.warnings]
     for row in sheet.meshes:
         method = f"{'' if row.dynamic_factor is None else 'K_v by '}{row.dynamic_factor_method}"
-        notes.append(f"meshes.{row.name}: {row.stiffness_definition} stiffness; body: {row.stiffness_body}")
+        if row.stiffness_definition is not None:
+            notes.append(f"meshes.{row.name}: {row.stiffness_definition} stiffness; body: {row.stiffness_body}")
         notes.append(f"meshes.{row.name}: {method}")
     return Group(*parts, "", *lines(*notes))
 

@@ -77,7 +77,7 @@ def _main(result: MeshResult) -> Any:
     if result.helix:
         helix = result.helix
         ratio = np.mean([item.contact_ratio for item in helix])
-        out.add_row("contact ratio under load", f"{ratio:.3f}", f"{helix[0].geometric_contact_ratio:.3f} without", "")
+        out.add_row("contact ratio under load", f"{ratio:.3f}", f"{helix[0].geometric_contact_ratio:.3f} geometric", "")
         share = max(float(values.max()) for item in helix for values in item.share.values())
         out.add_row("largest share of a pair", f"{100 * share:.1f} %", "", "")
         out.add_row("largest line load", f"{1e-3 * max(item.line_load.max() for item in helix):.4g} N/mm", "", "")

@@ -12,8 +12,10 @@ from typer.testing import CliRunner
 
 import rotorgear as rg
 from rotorgear.cli.main import app
+from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.plots.gear_mesh import contact_points, gear_contour
 from tests.paths import MODELS
+from tests.unit.analysis.geared import pair_file
 
 PAIR = MODELS / "helical_pair.toml"
 
@@ -116,3 +118,32 @@ def test_a_pinion_with_two_mates_is_told_that_k_v_knows_one() -> None:
     assert "'pinion_1' has other mates too" in " ".join(rows["stage_1a"].warnings)
     assert "'wheel_a'" not in " ".join(rows["stage_1a"].warnings)
     assert rows["stage_1a"].dynamic_factor == pytest.approx(rows["stage_1b"].dynamic_factor, rel=1e-6)
+
+
+def test_without_a_torque_the_sheet_has_all_but_the_stiffness_of_loaded_teeth_and_says_so() -> None:
+    bare = rg.gear(rg.loads(pair_file(torque="")))
+    loaded = rg.gear(rg.loads(pair_file(mesh='stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }')))
+    assert bare.gears == loaded.gears
+    assert bare.meshes[0].iso_mesh_stiffness_n_per_m2 == loaded.meshes[0].iso_mesh_stiffness_n_per_m2
+    assert bare.meshes[0].stiffness_n_per_m is None
+    assert "meshes.pair: the stiffness of 'tooth_fe' is that of loaded teeth" in " ".join(bare.left_out)
+    assert loaded.left_out == ()
+    assert "mean, normal" not in bare.text()
+    assert "mean, normal" in loaded.text()
+
+
+def test_of_an_undercut_pair_the_contact_ratio_of_the_involute_that_is_left_stands_beside_that_of_the_tips() -> None:
+    """Path from form circle to form circle by hand: contact starts where the pinion's involute begins."""
+    data = tomllib.loads(pair_file(torque=""))
+    data["gears"]["pinion"]["teeth"] = 10
+    data["shafts"]["two"]["position"] = ["225 mm", "0 mm"]
+    data["shafts"]["one"]["sections"] = [{"length": "300 mm", "outer_diameter": "25 mm"}]
+    row = rg.gear(rg.Model(**data)).meshes[0]
+    teeth = rg.gear(rg.Model(**data)).pairs["pair"]
+    form = tooth_outline(teeth.first).form_radius
+    start = np.sqrt(form**2 - teeth.first.base_radius**2)
+    end = np.sqrt((0.5 * teeth.first.effective_tip_diameter) ** 2 - teeth.first.base_radius**2)
+    assert row.involute_contact_ratio == pytest.approx((end - start) / teeth.base_pitch, rel=1e-12)
+    assert row.involute_contact_ratio < row.transverse_contact_ratio - 0.1
+    assert "of the involute left" in rg.gear(rg.Model(**data)).text()
+    assert "of the involute left" not in rg.gear(rg.load(PAIR)).text()
