@@ -34,6 +34,10 @@ def static(
     sensitivity: Annotated[
         bool, typer.Option("--sensitivity", help="Also list the sensitivities of the load shares of the branches.")
     ] = False,
+    tilt: Annotated[
+        bool,
+        typer.Option("--tilt", help="All meshes feel the tilt of their shafts: misalignment and load along the faces."),
+    ] = False,
     json: JsonOption = None,
     save: SaveOption = None,
     plot: PlotOption = None,
@@ -43,7 +47,7 @@ def static(
     import rotorgear as rg
 
     with progress_bar("static") as progress:
-        result = rg.static(rg.load(model), speed=parse_speed(speed), elements=elements, progress=progress)
+        result = rg.static(rg.load(model), speed=parse_speed(speed), elements=elements, tilt=tilt, progress=progress)
     out = console()
     out.print(result.table(sensitivity=sensitivity))
     write_json(result.to_dict(), json)

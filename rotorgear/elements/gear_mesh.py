@@ -5,6 +5,14 @@
     v_p = [ n ; ( r_w1 e + xi n_t + z_cp k) x n ]      v_g = [ -n ; -(-r_w2 e + xi n_t + z_cg k) x n ]
     K = k v v^T
 
+Along the face, a place z from the contact's plane approaches by v . q + z (v_t . q), with the tilt of the gears about the
+normal of the plane of action,
+
+    v_t = [ 0 ; cos b k x n_t ; 0 ; -cos b k x n_t ].
+
+A mesh that carries over the width of its face resists it too: K = k v v^T + k_t v_t v_t^T, with the contact's plane where the
+stiffness of the face has its centre, and k_t = k b^2/12 for one that is uniform over a width b.
+
 One contact point serves both bodies: that makes all six rigid motions of the pair free of strain. (The widespread form with
 each gear's arm to its own base tangent point fails a rigid tilt by up to a_w sin a sin b per rad.) Conventions:
 docs/conventions.md.
@@ -73,6 +81,16 @@ def contact_vector(geometry: ContactGeometry) -> np.ndarray:
     return np.concatenate([n, np.cross(pinion, n), -n, -np.cross(gear, n)])
 
 
+def tilt_vector(geometry: ContactGeometry) -> np.ndarray:
+    """The 12 entries v_t that give the tilt of the flanks along the face, approach per metre of z, from the dofs, shape (12,)."""
+    g = geometry
+    e, t = _frame(g.psi)
+    n_t = g.torque_sense * cos(g.pressure_angle) * t + sin(g.pressure_angle) * e
+    # n . (theta x z k) = z theta . (k x n); the axial part of n drops out.
+    turned = cos(g.base_helix_angle) * np.cross([0.0, 0.0, 1.0], n_t)
+    return np.concatenate([np.zeros(3), turned, np.zeros(3), -turned])
+
+
 def sliding_vectors(geometry: ContactGeometry) -> np.ndarray:
     """What the dofs of pinion and gear add to the sliding of the flanks.
 
@@ -91,13 +109,26 @@ def sliding_vectors(geometry: ContactGeometry) -> np.ndarray:
     return np.array([np.concatenate([across, np.cross(pinion, across), -across, -np.cross(gear, across)]), turned])
 
 
-def gear_mesh(geometry: ContactGeometry, stiffness: float, damping: float = 0.0) -> ElementMatrices:
-    """Spring (N/m) and damper (N s/m) along the flank normal between pinion and gear, 12 dofs, one strain."""
+def gear_mesh(
+    geometry: ContactGeometry, stiffness: float, damping: float = 0.0, tilt_stiffness: float = 0.0
+) -> ElementMatrices:
+    """Spring (N/m) and damper (N s/m) along the flank normal between pinion and gear, 12 dofs.
+
+    Without a tilt stiffness (N m, moment about the place of contact for a tilt in m/m) it has one strain, the approach of the
+    flanks; with it a second one, their tilt, damped in the same proportion.
+    """
     v = contact_vector(geometry)
+    if not tilt_stiffness:
+        return ElementMatrices(
+            strain=v[None, None],
+            modulus=np.array([[[stiffness]]]),
+            viscosity=np.array([[[damping]]]) if damping else None,
+        )
+    modulus = np.diag([stiffness, tilt_stiffness])
     return ElementMatrices(
-        strain=v[None, None],
-        modulus=np.array([[[stiffness]]]),
-        viscosity=np.array([[[damping]]]) if damping else None,
+        strain=np.array([[v, tilt_vector(geometry)]]),
+        modulus=modulus[None],
+        viscosity=damping / stiffness * modulus[None] if damping else None,
     )
 
 

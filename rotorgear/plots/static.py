@@ -8,11 +8,11 @@ import numpy as np
 
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import figure_for
-from rotorgear.results.static import StaticResult
+from rotorgear.results.static import MeshFace, StaticResult
 
 
 def static(result: StaticResult, fig: Any = None) -> np.ndarray:
-    """Draw how branches and helices share the load, the forces of bearings, and the deflection of every shaft.
+    """Draw how branches and helices share the load, the forces of bearings, loads along faces, and the deflection of every shaft.
 
     Args:
         result: a static result.
@@ -30,7 +30,8 @@ def static(result: StaticResult, fig: Any = None) -> np.ndarray:
     top, bottom = figure.subfigures(2, 1, height_ratios=[3.4, 1.8 * max(len(shafts), 1)]) if upper else (None, figure)
     axes = []
     if top is not None:
-        forces, bearings = top.subplots(1, 2, width_ratios=[1.0, 1.1])
+        faces = [row for row in result.faces if row.fed_back]
+        forces, bearings, *along = top.subplots(1, 3 if faces else 2, width_ratios=[1.0, 1.1, 1.1][: 3 if faces else 2])
         meshes = list(dict.fromkeys(result.contact_mesh))
         helices = max((int(h) for h in result.contact_helix), default=0) + 1
         for helix in range(helices):
@@ -60,8 +61,27 @@ def static(result: StaticResult, fig: Any = None) -> np.ndarray:
         if result.bearing_force:
             bearings.legend(frameon=False, fontsize=8)
         plain_axis(bearings)
-        axes += [forces, bearings]
+        axes += [forces, bearings, *along]
+        for axis in along:
+            _along_faces(axis, faces)
     return np.array([*axes, *_deflections(bottom, result, shafts)])
+
+
+def _along_faces(axis: Any, faces: list[MeshFace]) -> None:
+    """Load per width over the face of each helix, and where its resultant stands."""
+    for number, row in enumerate(faces):
+        colour = COLOURS[number % len(COLOURS)]
+        side = f" {'LR'[row.helix]}" if [other.mesh for other in faces].count(row.mesh) == 2 else ""
+        label = f"{row.mesh}{side}, $K_{{H\\beta}}$ {row.face_load_factor:.2f}"
+        axis.plot(1e3 * row.z_m, 1e-3 * row.line_load_n_per_m, color=colour, lw=1.6, label=label)
+        if row.load_place_m is not None:
+            axis.axvline(1e3 * row.load_place_m, color=colour, lw=0.8, ls=":")
+    axis.set_ylim(bottom=0.0)
+    axis.set_xlabel("z from the middle of the face, mm")
+    axis.set_ylabel("load per width, N/mm")
+    axis.set_title("Along the face (dotted: resultant)", fontsize=10)
+    axis.legend(frameon=False, fontsize=8)
+    plain_axis(axis)
 
 
 def _deflections(figure: Any, result: StaticResult, shafts: list[str]) -> list[Any]:

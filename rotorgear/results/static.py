@@ -49,6 +49,39 @@ class Sensitivity(Record):
     share: np.ndarray = of("derivative of each row of `shares`", "", "share")
 
 
+class MeshFace(Record):
+    """How a helix carries along its face, in equilibrium with its shafts."""
+
+    mesh: str = of("mesh")
+    helix: int = of("helix", note=": 0 at the smaller z, 1 at the larger")
+    shaft_misalignment_m: float = of(
+        "misalignment over the face by the shafts",
+        "m",
+        note=": f_ma, from the tilt of both gears; positive where the flanks stand apart at larger z",
+        form=".2e",
+    )
+    given_misalignment_m: float = of("misalignment over the face that the model gives", "m", form=".2e")
+    fed_back: bool = of("whether the teeth feel the misalignment by the shafts", note="; what follows is `null` if not")
+    face_load_factor: float | None = of(
+        "face load factor", note=" K_Hbeta: largest load per width over the mean one", form=".3f"
+    )
+    load_place_m: float | None = of("place of the resulting force", "m", note=" from the middle of the face along z")
+    peak_place_m: float | None = of("place of the largest load per width", "m", note=" from the middle of the face")
+    peak_pressure_pa: float | None = of(
+        "largest contact pressure", "Pa", note=" of the mesh cycle; `null` where the teeth are not looked at"
+    )
+    tilt_stiffness_n_m: float | None = of(
+        "stiffness against tilt", "N m", note=": moment for a tilt of the flanks in m/m, about the centre of stiffness"
+    )
+    z_m: np.ndarray = of("places along the face", "m", "place", note=" from its middle")
+    line_load_n_per_m: np.ndarray = of("load per width, mean of the mesh cycle", "N/m", "place")
+
+    @property
+    def misalignment_m(self) -> float:
+        """The whole misalignment (m): what `misalignment` of the mesh in a file would be for rigid shafts."""
+        return self.shaft_misalignment_m + self.given_misalignment_m
+
+
 def by_mesh(key: str, *axes: str) -> Written:
     """A key under which the values of contacts stand by mesh; `axes` are those behind the contact's."""
 
@@ -128,6 +161,21 @@ class StaticResult(ModelResult, kind="static"):
         """The largest sharing factor of all groups of meshes; 1 where none shares."""
         return max((row.factor for row in self.shares), default=1.0)
 
+    faces: tuple[MeshFace, ...] = of(
+        "load along the faces",
+        "",
+        "face",
+        note=", of meshes that feel the tilt of their shafts, or whose stiffness is that of loaded teeth",
+        record=MeshFace,
+        default=(),
+        kw_only=True,
+    )
+    passes: int = of(
+        "passes until shafts and loads along the faces agreed",
+        note="; 0 where no mesh feels the tilt",
+        default=0,
+        kw_only=True,
+    )
     bearing_force: dict[str, np.ndarray] = of(
         "force and moment on the shaft", "N, N m", "BEARING", "component", json=_forces("BEARING", "bearing")
     )

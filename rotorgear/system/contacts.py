@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.elements.gear_mesh import tilt_vector
 from rotorgear.model.layout.mean_load import MeshForce
+from rotorgear.system.groups import contact_geometry
 from rotorgear.system.system import System
 
 
@@ -20,6 +22,11 @@ class ContactLines:
         rotation: r_b1 tz_1 + r_b2 tz_2 over the free dofs in the sense that presses the teeth, (n, c), in m along the line
             of action of the transverse plane.
         stiffness, damping: N/m and N s/m along the flank normal, (c,); gap: m that must close before a contact carries, (c,).
+        tilt: v_t over the free dofs, tilt of the flanks along the face, (n, c).
+        tilted: dv_t/dpsi, (n, c).
+        tilt_stiffness: N m, (c,), 0 where a contact does not resist the tilt.
+        start: N, force of a contact whose flanks have not approached, (c,): F = start + k (v . q - gap).
+        couple: N m about the contact's place without tilt, (c,): M - e F = couple + k_t (v_t . q).
     """
 
     states: tuple[MeshForce, ...]
@@ -29,6 +36,19 @@ class ContactLines:
     stiffness: np.ndarray
     damping: np.ndarray
     gap: np.ndarray
+    tilt: np.ndarray
+    tilted: np.ndarray
+    tilt_stiffness: np.ndarray
+    start: np.ndarray
+    couple: np.ndarray
+
+    def force(self, q: np.ndarray) -> np.ndarray:
+        """Force (c,) along the flank normals at the displacements q (n,) of the free dofs, were all contacts closed."""
+        return np.asarray(self.start + self.stiffness * (self.vectors.T @ q - self.gap))
+
+    def moment(self, q: np.ndarray) -> np.ndarray:
+        """Moment (c,) against the tilt of the flanks about the places of contact, in N m."""
+        return np.asarray(self.couple + self.tilt_stiffness * (self.tilt.T @ q))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -42,8 +62,8 @@ def contact_lines(system: System) -> ContactLines:
     groups = [group for group in system.groups if group.part.startswith("meshes.")]
     count = len(states)
     size = system.dofs.transform.shape[0]
-    v, turned, rotation = np.zeros((3, size, count))
-    stiffness, damping, gap = np.zeros((3, count))
+    v, turned, rotation, tilt, tilted = np.zeros((5, size, count))
+    stiffness, damping, gap, tilt_stiffness, start, couple = np.zeros((6, count))
     for k, (state, group) in enumerate(zip(states, groups, strict=True)):
         strain = group.matrices.strain
         D = group.matrices.modulus
@@ -61,8 +81,28 @@ def contact_lines(system: System) -> ContactLines:
         rotation[dofs[11], k] = sense * contact.gear_base_radius
         mesh = system.layout.mesh(contact.mesh).part
         gap[k] = mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0)
+        v_t = tilt_vector(contact_geometry(state))
+        tilt[dofs, k] = v_t
+        tilted[dofs, k] = _quarter_turn(v_t)
+        if state.face is not None:
+            tilt_stiffness[k] = state.face.tilt_stiffness
+            start[k] = state.face.force
+            couple[k] = state.face.couple
     T = system.dofs.transform.T
-    return ContactLines(states, T @ v, T @ turned, T @ rotation, stiffness, damping, gap)
+    return ContactLines(
+        states=states,
+        vectors=T @ v,
+        turned=T @ turned,
+        rotation=T @ rotation,
+        stiffness=stiffness,
+        damping=damping,
+        gap=gap,
+        tilt=T @ tilt,
+        tilted=T @ tilted,
+        tilt_stiffness=tilt_stiffness,
+        start=start,
+        couple=couple,
+    )
 
 
 def _quarter_turn(vector: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -84,7 +84,8 @@ def constant_groups(layout: Layout, load: MeanLoad, nodes: Nodes) -> list[Elemen
     for force in load.forces:
         c = force.contact
         geometry = contact_geometry(force)
-        matrices = gear_mesh(geometry, c.stiffness, mesh_damping(layout, force, geometry))
+        tilt_stiffness = force.face.tilt_stiffness if force.face else 0.0
+        matrices = gear_mesh(geometry, c.stiffness, mesh_damping(layout, force, geometry), tilt_stiffness)
         dofs = node_dofs(nodes.at(c.pinion_shaft, c.pinion_z), nodes.at(c.gear_shaft, c.gear_z))
         found.append(ElementGroup(f"meshes.{c.mesh}", "", matrices, dofs))
     for name, bearing in model.bearings.items():
@@ -227,10 +228,11 @@ def element_data(model: Tables, name: str, elements: list[Element]) -> ShaftElem
 
 
 def contact_geometry(force: MeshForce) -> ContactGeometry:
-    """Geometry of one contact with its driving flank."""
+    """Geometry of one contact with its driving flank, where the stiffness of its face has its centre."""
     c = force.contact
     # Recess follows the driving flank; the element measures from the pitch point towards where the pinion would recede.
     past_pitch_point = c.contact_position if force.pinion_drives else -c.contact_position
+    along = force.face.place if force.face else 0.0
     return ContactGeometry(
         psi=c.psi,
         pressure_angle=c.pressure_angle,
@@ -239,8 +241,8 @@ def contact_geometry(force: MeshForce) -> ContactGeometry:
         torque_sense=force.torque_sense,
         pinion_base_radius=c.pinion_base_radius,
         gear_base_radius=c.gear_base_radius,
-        pinion_offset=c.contact_z - c.pinion_z,
-        gear_offset=c.contact_z - c.gear_z,
+        pinion_offset=c.contact_z + along - c.pinion_z,
+        gear_offset=c.contact_z + along - c.gear_z,
         contact_position=past_pitch_point,
     )
 
@@ -268,6 +270,23 @@ def mesh_damping(layout: Layout, force: MeshForce, geometry: ContactGeometry) ->
             diagonals[0][5], diagonals[1][5], geometry.pinion_base_radius, geometry.gear_base_radius
         )
     return 2.0 * mesh.damping_ratio * float(np.sqrt(force.contact.stiffness * equivalent))
+
+
+def resists_tilt(group: ElementGroup) -> bool:
+    """Whether a group is a mesh with a stiffness against the tilt of its flanks."""
+    B = group.matrices.strain
+    return group.part.startswith("meshes.") and B is not None and B.shape[1] == 2
+
+
+def tilt_only(group: ElementGroup) -> ElementGroup:
+    """A mesh that resists a tilt without the spring along its flank normal, whose force is a law of its own."""
+    m = group.matrices
+    assert m.strain is not None
+    assert m.modulus is not None
+    viscosity = None if m.viscosity is None else m.viscosity[:, 1:, 1:]
+    return replace(
+        group, matrices=ElementMatrices(strain=m.strain[:, 1:], modulus=m.modulus[:, 1:, 1:], viscosity=viscosity)
+    )
 
 
 def _bearing(

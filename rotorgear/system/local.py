@@ -18,7 +18,8 @@ from rotorgear.model.parts.excitation import ErrorHarmonic, StiffnessHarmonic
 from rotorgear.solvers.time.local_system import LocalSystem
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.assembly import assemble
-from rotorgear.system.groups import ElementGroup, contact_geometry, mesh_damping, node_dofs
+from rotorgear.system.contacts import contact_lines
+from rotorgear.system.groups import ElementGroup, contact_geometry, mesh_damping, node_dofs, resists_tilt, tilt_only
 from rotorgear.system.loads import weight_loads
 from rotorgear.system.local_parts import (
     LocalPart,
@@ -70,6 +71,7 @@ def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
         for group in system.groups_at(speed)
         if not group.part.startswith(("meshes.", "nonlinear_elements."))
     )
+    groups = (*groups, *(tilt_only(group) for group in system.groups if resists_tilt(group)))
     K = assemble(groups, system.dofs, lambda g: g.matrices.stiffness)
     C = assemble(groups, system.dofs, lambda g: g.matrices.damping)
     damping = system.model.damping
@@ -87,7 +89,8 @@ def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
     steady = torque_load(system)
     if operation and operation.gravity:
         steady = steady + weight_loads(system, operation.gravity)
-    load = T.T @ steady
+    lines = contact_lines(system)
+    load = T.T @ steady - lines.tilt @ lines.couple
     forces = gather(tuple(part.law for part in parts))
     alone = {part.part for part in without_linear_part(system)}
     about = forces.reference_stiffness.copy()
@@ -162,6 +165,9 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         ramp = deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP)
     damping = mesh_damping(system.layout, force, geometry) + model.damping.rayleigh_beta * contact.stiffness
     gap = "bilateral" if mesh.backlash is None else {"line": "dead zone", "own normals": "unilateral"}[mesh.coast_flank]
+    error = mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0)
+    if force.face is not None:  # a face of which a part carries touches before, or after, its middle does
+        error -= force.face.force / contact.stiffness
     impact = mesh.corner_impact
     blow: dict[str, Any] = {}
     if impact is not None:
@@ -177,7 +183,7 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         phase=phase,
         stiffness_cos=stiffness_cos,
         stiffness_sin=stiffness_sin,
-        error_mean=mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0),
+        error_mean=error,
         error_cos=error_cos,
         error_sin=error_sin,
         pieces=cycle_pieces(system, force),

@@ -24,6 +24,8 @@ def mesh_stiffness_left_out(system: System) -> Iterator[str]:
         elif curve := system.load.whole_curve(name):
             taken = sum(force.contact.stiffness for force in system.load.of_mesh(name))
             yield f"meshes.{name}: {_of_model(curve.about_load, taken)}"
+        if mesh.stiffness == "tooth_fe" and not mesh.tilt:
+            yield f"meshes.{name}: the tilt of its gears along the face, which its teeth do not feel without tilt = true"
 
 
 def _of_model(curve: MeshStiffness, taken: float) -> str:

@@ -18,7 +18,7 @@ from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, all_finer, 
 from rotorgear.analysis.modal.request import MOST_MODES, check_count
 from rotorgear.analysis.modal.result import modal_result
 from rotorgear.analysis.modal.solve import solve
-from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.analysis.static.tangent import about_equilibrium, about_state_of
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import MOTIONS
@@ -149,7 +149,7 @@ def _system(model: Model | System, speed: float | None, plan: Plan) -> tuple[Sys
     given = model.model if isinstance(model, System) else model
     linear, notes = about_equilibrium(given, [speed])
     if isinstance(model, System):
-        system = model if linear is given else System(linear, plan=model.plan, load=model.load)
+        system = about_state_of(model, linear)
     else:
         system = System(linear, plan=plan, load=linear.mean_load(direction_of(speed)))
     if system.n == 0:

@@ -80,11 +80,13 @@ def inner_forces(equilibrium: Equilibrated) -> np.ndarray:
     """Sum of the forces of all elements on all dofs, (a,), contacts with their gaps closed first."""
     q = equilibrium.system.dofs.expand(equilibrium.q)
     total = np.zeros_like(q)
-    meshes = iter(equilibrium.force[equilibrium.closed])
+    closed = equilibrium.closed
+    meshes = zip(equilibrium.force[closed], equilibrium.moment[closed], strict=True)
     for group in equilibrium.groups:
         if group.part.startswith("meshes."):
             assert group.matrices.strain is not None
-            np.add.at(total, group.dofs, next(meshes) * group.matrices.strain[:, 0, :])
+            strains = group.matrices.strain[0]
+            np.add.at(total, group.dofs[0], np.array(next(meshes))[: len(strains)] @ strains)
         else:
             np.add.at(total, group.dofs, _inner(group, q))
     for law in equilibrium.laws:

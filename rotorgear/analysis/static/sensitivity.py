@@ -2,7 +2,8 @@
 
     K dq = df - dK q,    dF_i = k_i (v_i . dq + dv_i . q - de_i) + dk_i (v_i . q - e_i)
 
-for every parameter at once, with the factors of K that are there. Stiffnesses are scaled as a whole: the derivative is that
+for every parameter at once, with the factors of K that are there; the moments of meshes that resist a tilt of their flanks add
+the same terms with v_t. Stiffnesses are scaled as a whole: the derivative is that
 for 100 % of it. Haftka and Gurdal, Elements of Structural Optimization, 3rd ed., chapter 7 (Kluwer 1992).
 """
 
@@ -30,6 +31,7 @@ def sensitivities(equilibrium: Equilibrated) -> Sensitivity:
     """Return the derivatives of all contact forces."""
     lines = equilibrium.lines
     active = np.where(equilibrium.closed, lines.stiffness, 0.0)
+    resists = np.where(equilibrium.closed, lines.tilt_stiffness, 0.0)
     count = len(active)
     names: list[str] = []
     units: list[str] = []
@@ -52,14 +54,18 @@ def sensitivities(equilibrium: Equilibrated) -> Sensitivity:
             mine = np.array(second) * active
             add(f"meshes.{mesh}.helix_index_error", "N/m", lines.vectors @ mine, -mine)
     for mesh in meshes:
-        mine = np.array([name == mesh for name in lines.names]) * equilibrium.force
-        add(f"meshes.{mesh}.stiffness", "N", -lines.vectors @ mine, mine)
+        own = np.array([name == mesh for name in lines.names], float)
+        mine = own * equilibrium.force
+        right = -(lines.vectors @ mine + lines.tilt @ (own * equilibrium.moment))
+        add(f"meshes.{mesh}.stiffness", "N", right, mine)
     for part, right in _stiffness_terms(equilibrium).items():
         add(part, "N", right, np.zeros(count))
     for mesh in meshes:
         mine = np.array([name == mesh for name in lines.names], float)
         turning = lines.turned.T @ equilibrium.q
         right = -(lines.turned @ (mine * equilibrium.force) + lines.vectors @ (mine * active * turning))
+        right -= lines.tilted @ (mine * equilibrium.moment)
+        right -= lines.tilt @ (mine * resists * (lines.tilted.T @ equilibrium.q))
         add(f"meshes.{mesh}.centre_line_angle", "N/rad", right, mine * active * turning)
 
     # Round-off of a stiffness term on the free motions is no load; a term that really pushes one has no derivative.

@@ -44,7 +44,10 @@ class LawState:
 
 @dataclass(frozen=True)
 class Equilibrated:
-    """A solved system: q (n,), forces of the c contacts (0 where open), and what derivatives need."""
+    """A solved system: q (n,), forces of the c contacts (0 where open), and what derivatives need.
+
+    `moment` (c,) is that of the contacts against the tilt of their flanks, about their places (N m).
+    """
 
     system: System
     groups: list[ElementGroup]
@@ -55,6 +58,7 @@ class Equilibrated:
     loads: np.ndarray
     q: np.ndarray
     force: np.ndarray
+    moment: np.ndarray
     notes: tuple[str, ...]
     laws: tuple[LawState, ...] = ()
 
@@ -77,9 +81,9 @@ def equilibrate(system: System, speed: float) -> Equilibrated:
         tried.add(state)
         equilibrium = _solve(system, speed, closed)
         size = _PULLS * float(np.max(np.abs(equilibrium.force), initial=0.0))
-        gap = equilibrium.lines.vectors.T @ equilibrium.q - equilibrium.lines.gap
+        pressed = equilibrium.lines.force(equilibrium.q)
         worst = int(np.argmin(equilibrium.force)) if equilibrium.force.size else -1
-        through = np.flatnonzero(~closed & (equilibrium.lines.stiffness * gap > size))
+        through = np.flatnonzero(~closed & (pressed > size))
         if through.size:
             closed = closed.copy()
             closed[through[0]] = True
@@ -115,9 +119,12 @@ def _solve(system: System, speed: float, closed: np.ndarray) -> Equilibrated:
         if not group.part.startswith("nonlinear_elements.") and (not group.part.startswith("meshes.") or next(meshes))
     ]
     groups, notes = without_torsion_to_ground(system, groups)
-    active = np.where(closed, lines.stiffness, 0.0)
+    at_rest = np.zeros(system.n)
     loads = outer_loads(system)
-    f = system.dofs.transform.T @ loads + lines.vectors @ (active * lines.gap)
+    f = system.dofs.transform.T @ loads - (
+        lines.vectors @ np.where(closed, lines.force(at_rest), 0.0)
+        + lines.tilt @ np.where(closed, lines.moment(at_rest), 0.0)
+    )
     parts = without_linear_part(system)
     size = max(float(np.abs(loads).max(initial=0.0)), 1.0)
     about = [expansion_stiffness(part.law, size, speed) for part in parts]
@@ -134,8 +141,9 @@ def _solve(system: System, speed: float, closed: np.ndarray) -> Equilibrated:
     if parts:  # derivatives are about the state found
         K, R = _held(system, [*groups, *(law_group(law.part, law.stiffness) for law in laws)], speed)
         solver = Equilibrium(K, R)
-    force = active * (lines.vectors.T @ q - lines.gap)
-    return Equilibrated(system, groups, lines, closed, solver, R, loads, q, force, notes, tuple(laws))
+    force = np.where(closed, lines.force(q), 0.0)
+    moment = np.where(closed, lines.moment(q), 0.0)
+    return Equilibrated(system, groups, lines, closed, solver, R, loads, q, force, moment, notes, tuple(laws))
 
 
 def _held(system: System, groups: list[ElementGroup], speed: float) -> tuple[sp.csc_array, np.ndarray]:

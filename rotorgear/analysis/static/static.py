@@ -13,20 +13,24 @@ from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import direction_of, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.static.along_faces import AlongFaces, equilibrate_along_faces, misalignments
 from rotorgear.analysis.static.forces import bearing_forces, forces_on_gears, imbalance, support_forces
 from rotorgear.analysis.static.sensitivity import Sensitivity, sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError
+from rotorgear.gears.stiffness.face_load import uniform_line
 from rotorgear.model.layout.mean_load import MeanLoad
 from rotorgear.model.model import Model
-from rotorgear.progress import Progress, silent
-from rotorgear.results.static import LoopAssembly, StaticResult
+from rotorgear.progress import Progress, part_of, silent
+from rotorgear.results.static import LoopAssembly, MeshFace, StaticResult
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 # Enough for a smooth line of deflection; the forces do not depend on it.
 DEFAULT_ELEMENTS = 4
+# Teeth that don't feel their shafts: a face load factor above this, by a line of springs, is worth a warning.
+_NOTICED = 1.1
 
 
 @recorded
@@ -35,6 +39,7 @@ def static(
     *,
     speed: float | str | None = None,
     elements: int | None = None,
+    tilt: bool = False,
     progress: Progress = silent,
 ) -> StaticResult:
     """Return deflections, forces, load sharing and its sensitivities.
@@ -44,10 +49,12 @@ def static(
         speed: of the input shaft in rad/s or with its unit; it chooses the working flanks and the values of bearings with
             tables. None: the operating speed.
         elements: basic elements in each shaft segment; 4 where it is not given. They are exact in statics.
+        tilt: all meshes between gears with a width feel the tilt of their shafts, whatever the model says.
         progress: callable that is told fraction and step.
 
     Raises:
         AnalysisError: nothing loads the model, it is a mechanism that the loads push, or no set of flanks carries them.
+        ConvergenceError: shafts and loads along the faces don't come to agree.
     """
     start = time.perf_counter()
     given = speed_in_si(speed)
@@ -55,18 +62,29 @@ def static(
         given = model.operation.speed
     if elements is not None and elements < 1:
         raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
+    if tilt:
+        model = _with_tilt(model)
     plan = Plan(elements or DEFAULT_ELEMENTS)
     system = System(model, plan=plan, load=model.mean_load(direction_of(given)).of_kind("static"))
     _check_loaded(system)
     progress(0.1, f"solving {system.n} dofs")
-    equilibrium = equilibrate(system, given or 0.0)
+    found = equilibrate_along_faces(system, given or 0.0, part_of(progress, 0.1, 0.5))
+    equilibrium = found.equilibrium
     progress(0.5, "sensitivities")
     change = sensitivities(equilibrium)
     progress(0.8, "error estimate")
     estimate = _estimate(equilibrium, given or 0.0)
-    result = _result(equilibrium, given, change, estimate, start)
+    result = _result(found, given, change, estimate, start)
     progress(1.0, "done")
     return result
+
+
+def _with_tilt(model: Model) -> Model:
+    """The model with all its meshes feeling the tilt of their shafts."""
+    wide = {name for name in model.meshes if all(gear.part.width for gear in model.layout.mesh(name).gears)}
+    if not wide:
+        raise AnalysisError("no mesh has a face that could feel a tilt: give the widths of its gears")
+    return model.with_({f"meshes.{name}.tilt": True for name in wide})
 
 
 def _check_loaded(system: System) -> None:
@@ -93,15 +111,18 @@ def _estimate(equilibrium: Equilibrated, speed: float) -> float:
     return float(np.max(np.abs(here - there), initial=0.0) / size) if size else 0.0
 
 
-def _result(
-    equilibrium: Equilibrated, speed: float | None, change: Sensitivity, estimate: float, start: float
-) -> StaticResult:
+def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimate: float, start: float) -> StaticResult:
+    equilibrium = found.equilibrium
     system = equilibrium.system
+    faces = _face_rows(found)
     states = equilibrium.lines.states
     q = system.dofs.expand(equilibrium.q)
     nodes, moved = shapes_at_stations(system, q[:, None])
     shares, share_change = share_rows(equilibrium, change.force)
-    approach = equilibrium.lines.vectors.T @ equilibrium.q - equilibrium.lines.gap
+    # In the middle of the face, wherever its stiffness has its centre.
+    place = np.array([0.0 if state.face is None else state.face.place for state in states])
+    tilt = equilibrium.lines.tilt.T @ equilibrium.q
+    approach = equilibrium.lines.vectors.T @ equilibrium.q - place * tilt - equilibrium.lines.gap
     loops = system.layout.assembly.loops
     # A free motion is no mistake in statics: where the loads do not push it, forces are the same wherever it stands.
     count = equilibrium.motions.shape[1]
@@ -134,11 +155,74 @@ def _result(
         error_estimate=estimate,
         dofs=system.n,
         seconds={"total": time.perf_counter() - start},
-        left_out=(*_left_out(equilibrium), *change.left_out),
-        warnings=(*system.nodes.merged, *_warnings(equilibrium)),
+        faces=faces,
+        passes=found.passes,
+        left_out=(*_left_out(equilibrium), *_unfelt(faces), *change.left_out),
+        warnings=(*system.nodes.merged, *_warnings(equilibrium), *_face_warnings(found, faces)),
         method=f"direct, sparse LU; {free if count else 'all motions held'}",
         place_displacement=displacement_places(system, moved[:, :, 0]),
     )
+
+
+def _face_rows(found: AlongFaces) -> tuple[MeshFace, ...]:
+    """The load along each face that feels the tilt of its shafts, or that has teeth which could."""
+    rows = []
+    equilibrium = found.equilibrium
+    for k, (state, whole) in enumerate(zip(equilibrium.lines.states, misalignments(equilibrium), strict=True)):
+        contact = state.contact
+        mesh = equilibrium.system.layout.mesh(contact.mesh).part
+        face = found.faces[k]
+        if face is None and (mesh.stiffness != "tooth_fe" or not equilibrium.closed[k]):
+            continue
+        rows.append(
+            MeshFace(
+                mesh=contact.mesh,
+                helix=contact.helix,
+                shaft_misalignment_m=float(whole) - mesh.misalignment,
+                given_misalignment_m=mesh.misalignment,
+                fed_back=face is not None,
+                face_load_factor=face.load_factor if face else None,
+                load_place_m=face.load_place if face else None,
+                peak_place_m=face.peak_place if face else None,
+                peak_pressure_pa=face.peak_pressure if face else None,
+                tilt_stiffness_n_m=face.static.tilt_stiffness if face else None,
+                z_m=face.z if face else np.zeros(0),
+                line_load_n_per_m=face.line_load if face else np.zeros(0),
+            )
+        )
+    return tuple(rows)
+
+
+def _unfelt(faces: tuple[MeshFace, ...]) -> list[str]:
+    return [
+        f"meshes.{row.mesh}: the misalignment of {1e6 * row.shaft_misalignment_m:+.3g} um over the face by the shafts is not fed "
+        "back to the teeth; tilt = true does it"
+        for row in faces
+        if not row.fed_back
+    ]
+
+
+def _face_warnings(found: AlongFaces, faces: tuple[MeshFace, ...]) -> list[str]:
+    """What the contacts say, and where shafts misalign teeth that don't feel it."""
+    notes = [
+        f"meshes.{name}: {note}"
+        for name, face in zip(found.equilibrium.lines.names, found.faces, strict=True)
+        if face is not None
+        for note in face.warnings
+    ]
+    force = dict(zip(found.equilibrium.lines.names, found.equilibrium.force, strict=True))
+    stiffness = dict(zip(found.equilibrium.lines.names, found.equilibrium.lines.stiffness, strict=True))
+    for row in faces:
+        if row.fed_back:
+            continue
+        width = found.equilibrium.system.layout.mesh(row.mesh).width
+        factor = uniform_line(stiffness[row.mesh], width, force[row.mesh], row.misalignment_m).load_factor
+        if factor > _NOTICED:
+            notes.append(
+                f"meshes.{row.mesh}: its shafts misalign the flanks by {1e6 * row.shaft_misalignment_m:+.3g} um over the face, "
+                f"which its teeth do not feel: the face load factor may be up to {factor:.2g}; give tilt = true"
+            )
+    return list(dict.fromkeys(notes))
 
 
 def phases_in_pitches(load: MeanLoad) -> dict[str, float]:

@@ -3,7 +3,8 @@
 A nonlinear element, or a bearing given by its rolling elements alone, has the stiffness dF/dd and the damping dF/dv of its law
 at the static equilibrium under the loads, at rest but for the rotation. What does not depend on speed becomes one stiffness; what
 does, such as the film of a journal bearing, a table over speed, as a file may give it. Meshes have the stiffness of their mean
-load, as always: the tangent at that load where a stiffness model knows it.
+load, as always: the tangent at that load where a stiffness model knows it; those that feel the tilt of their shafts are about
+the load along their faces in the equilibrium.
 """
 
 from __future__ import annotations
@@ -50,9 +51,14 @@ def about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Mod
     wanted |= {
         f"nonlinear_elements.{name}" for name, element in model.nonlinear_elements.items() if not element.is_given
     }
+    # Most models have none of these parts: what finds an equilibrium is loaded for the others only.
+    if any(mesh.tilt for mesh in model.meshes.values()):
+        from rotorgear.analysis.static.along_faces import about_faces
+
+        model, along = about_faces(model, speeds)
+        notes += along
     if not wanted:
         return model, tuple(notes)
-    # Most models have no such part: what finds an equilibrium is loaded for the others only.
     from rotorgear.analysis.static.solve import equilibrate
 
     operating = model.operation.speed if model.operation else None
@@ -80,7 +86,15 @@ def about_equilibrium_of(
     linear, notes = about_equilibrium(given, speeds)
     if not isinstance(model, System):
         return linear, given, notes
-    return (model if linear is given else System(linear, plan=model.plan, load=model.load)), given, notes
+    return about_state_of(model, linear), given, notes
+
+
+def about_state_of(system: System, linear: Model) -> System:
+    """An assembled system about the state of the linear model that was made from its own."""
+    if linear is system.model:
+        return system
+    load = system.load if linear.meshes is system.model.meshes else linear.mean_load(system.direction)
+    return System(linear, plan=system.plan, load=load)
 
 
 def _linear(model: Model, part: str, speeds: Sequence[float], states: Sequence[LawState]) -> dict[str, Any]:

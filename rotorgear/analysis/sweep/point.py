@@ -8,6 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
+from rotorgear.analysis.static.along_faces import about_faces
 from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
 from rotorgear.analysis.sweep.reduce import Large, Reduced, Wanted
 from rotorgear.errors import AnalysisError
@@ -123,7 +124,7 @@ class PointMaker:
         return replace(known, speed=speed) if isinstance(known, Large) else ready(known, speed, modal_ratio)
 
     def _still(self, model: Model, speed: float) -> Still | Large:
-        system = System(model, plan=plan_in_time(self._elements))
+        system = System(about_faces(model, [speed])[0], plan=plan_in_time(self._elements))
         if system.n == 0:
             raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
         found = local_model(system, Rotation.constant(speed), speed)

@@ -228,6 +228,10 @@ def _result(
         notes.append(
             "preview: slices along the face do not feel each other, which is tens of percent off in the ripple of a helical pair"
         )
+    if teeth.tilts:
+        notes.append(
+            "tilt: the shafts are rigid here; statics finds the misalignment over the face by their deflection"
+        )
     return MeshResult(
         title=model.title,
         mesh=request.name,

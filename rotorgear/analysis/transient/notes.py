@@ -27,6 +27,12 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
     still = [name for name, mesh in meshes.items() if not mesh.transmission_error and not mesh.stiffness_variation]
     if still:
         notes.append(f"excitation by {', '.join(still)}: neither transmission error nor stiffness variation is given")
+    tilted = [name for name, mesh in meshes.items() if mesh.face_loads]
+    if tilted:
+        notes.append(
+            f"how the load moves along the face of {', '.join(tilted)} in time: the flanks resist a tilt by the tangent about "
+            "the static equilibrium, even where they part"
+        )
     return tuple(notes)
 
 

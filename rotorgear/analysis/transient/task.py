@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
+from rotorgear.analysis.static.along_faces import about_faces
+from rotorgear.analysis.static.tangent import about_state_of
 from rotorgear.analysis.transient.channels import Channels, channels
 from rotorgear.analysis.transient.histories import Histories, Stream, integrate
 from rotorgear.analysis.transient.request import Grid, mesh_frequencies, rotation_of
@@ -53,6 +55,7 @@ def prepare(
     direction = -1 if largest < 0.0 else 1
     if direction != given.direction:
         given = given.with_load(given.model.mean_load(direction))
+    given = about_state_of(given, about_faces(given.model, [largest])[0])
     if given.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     local = local_model(given, rotation, largest)

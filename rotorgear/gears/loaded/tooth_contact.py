@@ -100,7 +100,12 @@ def in_space(teeth: ToothPair) -> tuple[bool, bool]:
     """Whether the teeth need a three-dimensional model, and whether slices that don't feel each other stand in for it."""
     fe = teeth.fe
     flanks = (teeth.first_flank, teeth.second_flank)
-    varies = teeth.first.helix_angle > 0.0 or any(flank.along_face for flank in flanks) or bool(teeth.misalignment)
+    varies = (
+        teeth.first.helix_angle > 0.0
+        or teeth.tilts
+        or any(flank.along_face for flank in flanks)
+        or bool(teeth.misalignment)
+    )
     space = fe.space if fe.space is not None else varies and fe.preset != "preview"
     return space, varies and not space
 

@@ -62,6 +62,7 @@ class ToothPair:
         misalignment: of the flanks over the whole face (m), positive where they stand apart at larger z; only for the loaded
             contact.
         fe: settings of the finite-element model; only for the loaded contact.
+        tilts: whether the flanks may tilt, so that the loaded contact looks along the face even where nothing varies there yet.
     """
 
     first: GearGeometry
@@ -74,6 +75,7 @@ class ToothPair:
     second_flank: FlankModification = _EXACT
     misalignment: float = 0.0
     fe: ToothFe = _DEFAULT_FE
+    tilts: bool = False
 
     @property
     def base_pitch(self) -> float:

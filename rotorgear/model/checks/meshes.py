@@ -49,7 +49,7 @@ def mesh_problems(layout: Layout) -> Iterator[Problem]:
             yield Problem(address, f"two gears on shaft '{pinion.shaft}'", "gears on two shafts")
         else:
             yield from _excitations(address, mesh, pinion, gear)
-            found = [*_mates(address, pinion, gear), *_faces(address, both), *_teeth(address, mesh, pinion)]
+            found = [*_mates(address, pinion, gear), *_faces(address, both), *_teeth(address, mesh, pinion, gear)]
             yield from found or _axes(address, both, in_bending=layout.model.has("bending"))
 
 
@@ -75,8 +75,11 @@ def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator
         yield Problem(f"{address}.helix_index_error", "a value", "nothing here", hint)
 
 
-def _teeth(address: str, mesh: Mesh, pinion: Gear) -> Iterator[Problem]:
-    """A stiffness model needs teeth, and a stagger two helices."""
+def _teeth(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator[Problem]:
+    """A stiffness model needs teeth, a stagger two helices, and a tilt a face."""
+    if mesh.tilt and not (pinion.width and gear.width):
+        hint = "the flanks resist a tilt over the width of their face"
+        yield Problem(f"{address}.tilt", "true between gears without a width", "a width of both gears", hint)
     if mesh.stagger and pinion.kind != "herringbone":
         hint = "one helix has nothing to lead"
         yield Problem(f"{address}.stagger", f"{mesh.stagger:g}", "0, or herringbone gears", hint)

@@ -25,11 +25,12 @@ from typing import TYPE_CHECKING, Literal
 from rotorgear.errors import ConvergenceError
 from rotorgear.model.layout.applied_torques import AppliedTorque, applied_torques
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.layout.mesh_layout import Contact
+from rotorgear.model.layout.mesh_layout import Contact, MeshLayout
 from rotorgear.model.layout.torsion_network import contact_forces
 
 if TYPE_CHECKING:
     from rotorgear.gears.loaded.contact_map import ContactMap
+    from rotorgear.gears.stiffness.face_load import FaceLoad
     from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness
 
     Curves = Mapping[str, tuple[MeshStiffness, ...]]
@@ -44,6 +45,23 @@ Kind = Literal["dynamic", "static"]
 
 
 @dataclass(frozen=True)
+class FaceState:
+    """A contact along its face, linear about its mean state: F = force + k (v . q - gap), M - e F = couple + k_t (v_t . q).
+
+    Attributes:
+        place: e, where v stands, from the middle of the face (m).
+        tilt_stiffness: k_t (N m).
+        force: N where the flanks have not approached: 0 for a line that carries over its whole face.
+        couple: N m about e where the shafts have not tilted.
+    """
+
+    place: float
+    tilt_stiffness: float
+    force: float
+    couple: float
+
+
+@dataclass(frozen=True)
 class MeshForce:
     """Mean state of one contact.
 
@@ -52,6 +70,7 @@ class MeshForce:
         torque_sense: s of the conventions: sense about +z of the torque that the pinion's shaft puts into the pinion.
         pinion_drives: whether the power flows from pinion to gear.
         assumed: True where no load flows and the sense was taken from the walk over the train.
+        face: how the contact resists a tilt along its face; None for one that does not.
     """
 
     contact: Contact
@@ -59,6 +78,7 @@ class MeshForce:
     torque_sense: int
     pinion_drives: bool
     assumed: bool
+    face: FaceState | None = None
 
     @property
     def on_other_flank(self) -> MeshForce:
@@ -99,7 +119,7 @@ class MeanLoad:
 
     def of_kind(self, kind: Kind) -> MeanLoad:
         """The same state with the other stiffness of the contacts."""
-        return replace(self, kind=kind, forces=_with_stiffness(self.forces, self.curves, kind))
+        return replace(self, kind=kind, forces=_with_stiffness(self.layout, self.forces, self.curves, kind))
 
     def with_forces(self, forces: Iterable[float]) -> MeanLoad:
         """The same flanks under other forces: N along the flank normal, one for each contact."""
@@ -109,6 +129,16 @@ class MeanLoad:
     def on_other_flank(self, mesh: str) -> MeanLoad:
         """The same state with one mesh working on its other flanks."""
         forces = (state.on_other_flank if state.contact.mesh == mesh else state for state in self.forces)
+        return replace(self, forces=tuple(forces))
+
+    def about_faces(self, faces: Iterable[FaceLoad | None]) -> MeanLoad:
+        """The same state linear about other loads along the faces, one for each contact; None leaves a contact as it is."""
+        forces = (
+            state
+            if face is None
+            else about_face(state, face, self.layout.mesh(state.contact.mesh).part.misalignment, self.kind)
+            for state, face in zip(self.forces, faces, strict=True)
+        )
         return replace(self, forces=tuple(forces))
 
     def of_mesh(self, mesh: str) -> tuple[MeshForce, ...]:
@@ -206,11 +236,11 @@ def torque_flow(layout: Layout, direction: int = 1) -> MeanLoad:
                 "The split of the torque and the mesh stiffness that depends on it don't come to agree: "
                 "give the stiffness of one mesh of the loop as a number."
             )
-    states = _with_stiffness(_states(layout, lines, squeeze, direction), curves, "dynamic")
+    states = _with_stiffness(layout, _states(layout, lines, squeeze, direction), curves, "dynamic")
     return MeanLoad(layout, direction, tuple(applied), states, curves)
 
 
-def _with_stiffness(states: Sequence[MeshForce], curves: Curves, kind: Kind) -> tuple[MeshForce, ...]:
+def _with_stiffness(layout: Layout, states: Sequence[MeshForce], curves: Curves, kind: Kind) -> tuple[MeshForce, ...]:
     found = []
     for state in states:
         contact = state.contact
@@ -218,8 +248,33 @@ def _with_stiffness(states: Sequence[MeshForce], curves: Curves, kind: Kind) -> 
             curve = curves[contact.mesh][contact.helix]
             normal = curve.dynamic_normal if kind == "dynamic" else curve.static_normal
             state = replace(state, contact=replace(contact, stiffness=normal))
+        mesh = layout.mesh(contact.mesh)
+        if mesh.part.face_loads:
+            state = about_face(state, mesh.part.face_loads[contact.helix], mesh.part.misalignment, kind)
+        elif mesh.part.tilt:
+            state = _on_whole_face(state, mesh)
         found.append(state)
     return tuple(found)
+
+
+def about_face(state: MeshForce, face: FaceLoad, given: float, kind: Kind) -> MeshForce:
+    """A contact about the state of its helix along the face; `given` is the misalignment (m) before the shafts tilt."""
+    spring = face.static if kind == "static" else face.dynamic
+    tilt = (given - face.misalignment) / face.width
+    along = FaceState(
+        place=spring.place,
+        tilt_stiffness=spring.tilt_stiffness,
+        force=face.force - spring.stiffness * (face.approach + spring.place * tilt),
+        couple=face.moment - spring.place * face.force - spring.tilt_stiffness * tilt,
+    )
+    return replace(state, contact=replace(state.contact, stiffness=spring.stiffness), face=along)
+
+
+def _on_whole_face(state: MeshForce, mesh: MeshLayout) -> MeshForce:
+    """A contact that carries evenly over its whole face, k b^2/12 against tilt: what is known without a load."""
+    tilt_stiffness = state.contact.stiffness * mesh.width**2 / 12.0
+    askew = mesh.part.misalignment / mesh.width
+    return replace(state, face=FaceState(0.0, tilt_stiffness, 0.0, -tilt_stiffness * askew))
 
 
 def _solved(layout: Layout, applied: Sequence[AppliedTorque], curves: Curves) -> tuple[list[Contact], list[float]]:

@@ -24,6 +24,7 @@ from rotorgear.model.parts.mesh import Mesh
 
 if TYPE_CHECKING:
     from rotorgear.gears.loaded.contact_map import ContactMap
+    from rotorgear.gears.stiffness.face_load import FaceLoad
     from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 
 # Positions in a mesh period at which a stiffness model is asked.
@@ -239,7 +240,47 @@ class MeshLayout:
             self.gear.flank,
             self.part.misalignment,
             ToothFe(fe.preset, fe.body, fe.rim_thickness, fe.pitches, fe.exclude_torsion),
+            self.part.tilt,
         )
+
+    def helix_teeth(self, helix: int, sense: int = 1) -> ToothPair:
+        """The teeth of one helix as contact runs over them, with the misalignment of the state that the mesh is about.
+
+        `sense` is that of the torque on the pinion about +z. Raises what `teeth` raises.
+        """
+        teeth = self.teeth
+        if self.part.face_loads:
+            teeth = replace(teeth, misalignment=self.part.face_loads[helix].misalignment)
+        return teeth if self.helix_senses(sense)[helix] > 0 else mirrored(teeth)
+
+    def face_load(
+        self, helix: int, normal_force: float, misalignment: float, stiffness: float, sense: int = 1
+    ) -> FaceLoad:
+        """How a helix carries along its face: by its loaded teeth, or as a line of springs of another mesh's stiffness.
+
+        Args:
+            normal_force: mean force (N) along the flank normal on this helix.
+            misalignment: over the face (m), positive where the flanks stand apart at larger z.
+            stiffness: of this helix along the flank normal (N/m), for a mesh without loaded teeth.
+            sense: of the torque on the pinion about +z.
+
+        Raises:
+            AnalysisError: teeth or a load that the loaded contact can't do.
+        """
+        if self.part.stiffness != "tooth_fe":
+            from rotorgear.gears.stiffness.face_load import uniform_line
+
+            return uniform_line(stiffness, self.width, normal_force, misalignment)
+        from rotorgear.gears.loaded.face import loaded_face
+
+        teeth = replace(self.teeth, misalignment=misalignment)
+        load = float(f"{normal_force:.12g}")
+        try:
+            if self.helix_senses(sense)[helix] > 0:
+                return loaded_face(teeth, load)
+            return loaded_face(mirrored(teeth), load).mirrored
+        except AnalysisError as error:
+            raise AnalysisError(f"meshes.{self.name}: {error}") from None
 
     @property
     def is_modelled(self) -> bool:
@@ -302,11 +343,9 @@ class MeshLayout:
             # A file gives both helices together, in phase: half of it is one helix.
             one = given_stiffness([value / self.helices for value in values], angle, 1, load, positions)
             return (one,) * self.helices
-        teeth = self.teeth
         try:
             return tuple(
-                mesh_stiffness(given, teeth if ahead > 0 else mirrored(teeth), load, positions)
-                for ahead in self.helix_senses(sense)
+                mesh_stiffness(given, self.helix_teeth(helix, sense), load, positions) for helix in range(self.helices)
             )
         except AnalysisError as error:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
@@ -320,10 +359,9 @@ class MeshLayout:
             return None
         from rotorgear.gears.loaded.contact_map import contact_map
 
-        teeth = self.teeth if self.helix_senses(sense)[helix] > 0 else mirrored(self.teeth)
         try:
             # Rounding of the torque flow must not make another load: equal meshes are solved once.
-            return contact_map(teeth, float(f"{normal_force:.12g}"))
+            return contact_map(self.helix_teeth(helix, sense), float(f"{normal_force:.12g}"))
         except AnalysisError as error:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
 

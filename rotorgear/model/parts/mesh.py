@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from pydantic import Field
+from pydantic import Field, PrivateAttr
 
 from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic
 from rotorgear.model.parts.fields import (
     Angle,
     Damping,
+    Flag,
     Length,
     NonNegativeLength,
     Part,
@@ -20,6 +21,9 @@ from rotorgear.model.parts.fields import (
 )
 from rotorgear.model.parts.flank import ToothFeTable
 from rotorgear.model.parts.stiffness_field import StiffnessValue
+
+if TYPE_CHECKING:
+    from rotorgear.gears.stiffness.face_load import FaceLoad
 
 
 class Mesh(Part):
@@ -50,6 +54,11 @@ class Mesh(Part):
     )
     misalignment: Length = Field(
         0.0, description="distance of the flanks at the end of larger z of the common face less that at its other end"
+    )
+    tilt: Flag = Field(
+        False,
+        description="whether the flanks feel the tilt of their shafts: the mesh resists it over the width of its face, and "
+        "statics finds misalignment and load distribution together with the shafts",
     )
     tooth_fe: ToothFeTable = Field(default_factory=ToothFeTable, description="settings of stiffness = 'tooth_fe'")
     contact_position: Length = Field(
@@ -107,3 +116,17 @@ class Mesh(Part):
         "continuous; default: 2 % of the mean deflection. With penetration: the penetration at which the coefficient has its "
         "given value; default: the mean deflection",
     )
+
+    # How each helix carries along its face in the static equilibrium; no file gives it, and a linear analysis is about it.
+    _face_loads: tuple[FaceLoad, ...] = PrivateAttr(())
+
+    @property
+    def face_loads(self) -> tuple[FaceLoad, ...]:
+        """State of each helix along its face that the mesh is about; empty where none was looked for."""
+        return self._face_loads
+
+    def about(self, face_loads: tuple[FaceLoad, ...]) -> Mesh:
+        """The same mesh about a state of its helices along their faces."""
+        settled = self.model_copy()
+        settled._face_loads = face_loads
+        return settled

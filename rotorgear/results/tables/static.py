@@ -35,6 +35,8 @@ def static_table(result: StaticResult, *, sensitivity: bool = False) -> Renderab
         parts += lines(f"torques about z: {torques}")
     if result.contact_mesh:
         parts += ["", _meshes(result)]
+    if result.faces:
+        parts += ["", _faces(result)]
     if result.shares:
         shares = table("shared by", "mesh", "share %", "times mean", "decided by", left=2)
         for row in result.shares:
@@ -65,6 +67,7 @@ def static_table(result: StaticResult, *, sensitivity: bool = False) -> Renderab
     notes = [
         "tilts and twist in urad; L and R: helix at the smaller and the larger z",
         f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
+        *_along(result),
         f"error: forces change by {error_words(result.error_estimate)} when every element is halved; "
         f"residual {error_words(result.imbalance)}",
         *(f"left out: {note}" for note in result.left_out),
@@ -87,6 +90,34 @@ def _meshes(result: StaticResult) -> Any:
             f"{1e6 * result.mesh_deflection[k]:.3f}",
             *(f"{_rounded(value, 0.5):.0f}" for value in result.mesh_force_on_gear[k]),
             "-" if phase != phase else f"{phase:.4f}",
+        )
+    return out
+
+
+def _along(result: StaticResult) -> list[str]:
+    """What the table of the faces means."""
+    if not result.faces:
+        return []
+    agreed = (
+        f"; shafts and faces agreed in {result.passes} pass{'es'[: 2 * (result.passes != 1)]}" if result.passes else ""
+    )
+    return [
+        f"f_ma: misalignment by the shafts, + where flanks stand apart at larger z; z from the middle of the face{agreed}"
+    ]
+
+
+def _faces(result: StaticResult) -> Any:
+    out = table("along the face", "f_ma um", "given um", "K_Hbeta", "F at z mm", "peak at mm", "p_max MPa", left=1)
+    for row in result.faces:
+        two = len(result.contacts_of(row.mesh)) == 2
+        out.add_row(
+            f"{row.mesh} {'LR'[row.helix]}" if two else row.mesh,
+            f"{_rounded(1e6 * row.shaft_misalignment_m, 5e-4):+.3f}",
+            f"{1e6 * row.given_misalignment_m:+.3f}" if row.given_misalignment_m else "-",
+            "-" if row.face_load_factor is None else f"{row.face_load_factor:.3f}",
+            "-" if row.load_place_m is None else f"{_rounded(1e3 * row.load_place_m, 5e-4):+.3f}",
+            "-" if row.peak_place_m is None else f"{_rounded(1e3 * row.peak_place_m, 5e-3):+.2f}",
+            "-" if row.peak_pressure_pa is None else f"{1e-6 * row.peak_pressure_pa:.1f}",
         )
     return out
 

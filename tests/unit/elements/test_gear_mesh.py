@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, flank_normal, sliding_vectors
+from rotorgear.elements.gear_mesh import (
+    ContactGeometry,
+    contact_vector,
+    flank_normal,
+    gear_mesh,
+    sliding_vectors,
+    tilt_vector,
+)
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.system.system import System
-from tests.contract.small_models import lumped_gear, lumped_pair, pair_points, random_contact
+from tests.contract.small_models import lumped_gear, lumped_pair, pair_points, random_contact, rigid_motions
 
 Z = np.array([0.0, 0.0, 1.0])
 
@@ -119,3 +127,44 @@ def test_the_given_damping_of_a_herringbone_mesh_is_that_of_both_helices() -> No
         slope = np.arcsin(np.sin(0.5) * np.cos(np.radians(20.0)))
         expected = 350.0 * (base * np.cos(slope)) ** 2
         assert rate @ (system.damping() @ rate) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_mesh_with_a_face_is_two_meshes_of_half_its_width(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    g = random_contact(rng)
+    width = rng.uniform(0.02, 0.2)
+    k = 3e8
+    at = width / (2.0 * np.sqrt(3.0))
+    halves = 0.0
+    for z in (at, -at):
+        v = contact_vector(replace(g, pinion_offset=g.pinion_offset + z, gear_offset=g.gear_offset + z))
+        halves = halves + 0.5 * k * np.outer(v, v)
+    K = gear_mesh(g, k, tilt_stiffness=k * width**2 / 12.0).stiffness
+    assert K is not None
+    assert K[0] == pytest.approx(halves, rel=1e-12, abs=1e-12 * k)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_rigid_motions_of_a_pair_neither_press_nor_tilt_its_flanks(seed: int) -> None:
+    g = random_contact(np.random.default_rng(seed))
+    strain = gear_mesh(g, 1e8, tilt_stiffness=1e4).strain
+    assert strain is not None
+    strains = strain[0] @ rigid_motions(pair_points(g))
+    assert np.abs(strains).max() < 1e-12
+
+
+def test_the_tilt_of_the_flanks_is_what_more_face_adds_to_their_approach() -> None:
+    g = random_contact(np.random.default_rng(1))
+    farther = replace(g, pinion_offset=g.pinion_offset + 0.02, gear_offset=g.gear_offset + 0.02)
+    assert (contact_vector(farther) - contact_vector(g)) / 0.02 == pytest.approx(tilt_vector(g), abs=1e-14)
+
+
+def test_a_mesh_without_tilt_stiffness_has_one_strain_and_damping_keeps_the_proportion() -> None:
+    g = random_contact(np.random.default_rng(2))
+    one = gear_mesh(g, 1e8, 500.0)
+    both = gear_mesh(g, 1e8, 500.0, tilt_stiffness=2e4)
+    assert one.strain is not None
+    assert one.strain.shape == (1, 1, 12)
+    assert both.stiffness is not None
+    assert both.damping == pytest.approx(500.0 / 1e8 * both.stiffness)

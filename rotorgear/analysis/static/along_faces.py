@@ -1,0 +1,135 @@
+"""Equilibrium of the shafts and the loads along the faces of their meshes.
+
+Shafts that bend under the load tilt the flanks against each other: with the tilt v_t . q (m/m) of the gears about the normal of
+the plane of action, a face of width b has the misalignment
+
+    f = f_given - b v_t . q,
+
+which shifts the load along the face; the load bends the shafts by its force F and its moment M about the middle of the face.
+Both rest by Newton's method: the face answers to F and f with its approach, its moment and its tangents (`FaceLoad`), the
+structure to the face, linear about that answer, with another F and f.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.analysis.static.solve import Equilibrated, equilibrate
+from rotorgear.errors import ConvergenceError
+from rotorgear.gears.stiffness.face_load import FaceLoad
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, silent
+from rotorgear.system.system import System
+
+# The misalignment rests when it changes by no more than this share of itself and of the approach. The next pass of Newton's
+# method would change it by the square of that.
+_AT_REST = 1e-6
+_PASSES = 25
+
+
+@dataclass(frozen=True)
+class AlongFaces:
+    """An equilibrium with the loads along its faces.
+
+    Attributes:
+        equilibrium: of the structure.
+        faces: of each contact that feels the tilt of its shafts and carries, else None.
+        passes: how often the faces were asked; 0 where none is.
+    """
+
+    equilibrium: Equilibrated
+    faces: tuple[FaceLoad | None, ...]
+    passes: int
+
+
+def equilibrate_along_faces(system: System, speed: float, progress: Progress = silent) -> AlongFaces:
+    """Return the equilibrium in which shafts and faces agree.
+
+    Raises:
+        AnalysisError: no loads, a motion that nothing holds and the loads push, flanks that can't be settled, or teeth that the
+            loaded contact can't do.
+        ConvergenceError: the misalignment does not come to rest.
+    """
+    equilibrium = equilibrate(system, speed)
+    whole = equilibrium.lines.stiffness
+    feels = [state.face is not None for state in equilibrium.lines.states]
+    if not any(feels):
+        return AlongFaces(equilibrium, (None,) * len(feels), 0)
+    for count in range(1, _PASSES + 1):
+        progress(count / (count + 1.0), f"load along the faces, pass {count}")
+        faces = tuple(
+            _face_load(equilibrium, contact, float(whole[contact]))
+            if feels[contact] and equilibrium.force[contact] > 0.0
+            else None
+            for contact in range(len(feels))
+        )
+        load = equilibrium.system.load.about_faces(faces)
+        equilibrium = equilibrate(equilibrium.system.with_load(load), speed)
+        changes = [
+            abs(f - face.misalignment) / (abs(face.misalignment) + face.force / face.static.stiffness)
+            for f, face in zip(misalignments(equilibrium), faces, strict=True)
+            if face is not None
+        ]
+        if max(changes, default=0.0) <= _AT_REST:
+            return AlongFaces(equilibrium, faces, count)
+    raise ConvergenceError(
+        f"shafts and loads along the faces did not come to agree in {_PASSES} passes; the misalignment still changes by "
+        f"{100.0 * max(changes):.2g} %. Look for a shaft that hardly anything holds against tilting."
+    )
+
+
+def _face_load(equilibrium: Equilibrated, contact: int, stiffness: float) -> FaceLoad:
+    """The load along one face under the force and the misalignment of an equilibrium; `stiffness` (N/m) is that of the face."""
+    state = equilibrium.lines.states[contact]
+    mesh = equilibrium.system.layout.mesh(state.contact.mesh)
+    force = float(equilibrium.force[contact])
+    f = float(misalignments(equilibrium)[contact])
+    return mesh.face_load(state.contact.helix, force, f, stiffness, state.torque_sense)
+
+
+def misalignments(equilibrium: Equilibrated) -> np.ndarray:
+    """Misalignment f (c,) of all contacts in m: what is given, and what the tilt of the shafts adds over the face."""
+    meshes = [equilibrium.system.layout.mesh(name) for name in equilibrium.lines.names]
+    given = np.array([mesh.part.misalignment for mesh in meshes])
+    width = np.array([mesh.width for mesh in meshes])
+    return np.asarray(given - width * (equilibrium.lines.tilt.T @ equilibrium.q))
+
+
+def about_faces(model: Model, speeds: Sequence[float | None]) -> tuple[Model, tuple[str, ...]]:
+    """Return the model about the loads along its faces in the static equilibrium, and a sentence on each such mesh.
+
+    A model whose meshes feel no tilt, or that nothing loads, comes back as it is.
+
+    Args:
+        model: a checked model.
+        speeds: of the reference shaft in rad/s, of one sense; the equilibrium is that of the operating speed if it has the same
+            sense, else that of the first one. None stands for standstill.
+
+    Raises:
+        What `equilibrate_along_faces` raises.
+    """
+    tilted = [name for name, mesh in model.meshes.items() if mesh.tilt and not mesh.face_loads]
+    asked = [speed for speed in speeds if speed is not None]
+    operating = (model.operation.speed if model.operation else None) or 0.0
+    speed = operating if not asked or operating * min(asked, key=abs) > 0.0 else asked[0]
+    load = model.mean_load(-1 if speed < 0.0 else 1).of_kind("static") if tilted else None
+    if load is None or not load.applied:
+        return model, ()
+    found = equilibrate_along_faces(System(model, load=load), speed)
+    meshes = dict(model.meshes)
+    notes = []
+    for name in tilted:
+        faces = [face for face, mesh in zip(found.faces, found.equilibrium.lines.names, strict=True) if mesh == name]
+        carrying = tuple(face for face in faces if face is not None)
+        if len(carrying) < len(faces):
+            continue  # an open helix has no state to be about
+        meshes[name] = meshes[name].about(carrying)
+        askew = " and ".join(f"{1e6 * face.misalignment:+.3g} um" for face in carrying)
+        notes.append(
+            f"meshes.{name}: the load moves along the face; it is linear about the static equilibrium with its shafts, "
+            f"misaligned by {askew} over the face"
+        )
+    return model.model_copy(update={"meshes": meshes}), tuple(notes)

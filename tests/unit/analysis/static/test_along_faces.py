@@ -1,0 +1,159 @@
+"""Shafts and loads along the faces in equilibrium: closed form, linear states about it, and what it says."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import rotorgear as rg
+from rotorgear.analysis.static.along_faces import about_faces
+from rotorgear.analysis.static.mean_state import mean_state
+from rotorgear.analysis.transient.notes import transient_left_out
+from rotorgear.analysis.transient.task import prepare
+from rotorgear.errors import ModelError
+from rotorgear.gears.stiffness.face_load import uniform_line
+from rotorgear.system.system import System
+from tests.contract.small_models import clamp, lumped_gear, lumped_pair
+from tests.paths import MODELS
+
+STIFFNESS = 4e8
+WIDTH = 0.03
+# From the pinion's bearing to the middle of its face, and what the bearing puts against tilting.
+ARM = 0.08
+HOLDS = 2e5
+
+
+def overhung(torque: float = 200.0, **mesh: Any) -> rg.Model:
+    """A rigid spur pinion beside a bearing that gives way to tilting only; its wheel stands still."""
+    gear: dict[str, Any] = {"kind": "spur", "normal_module": "4 mm", "width": WIDTH}
+    return rg.Model(
+        operation={"input_shaft": "one", "output_shaft": "two", "speed": 100.0, "torque": torque},
+        shafts={
+            "one": {"position": [0.0, 0.0], "sections": [{"length": 0.2, "outer_diameter": 0.05, "rigid": True}]},
+            "two": {"position": [0.12, 0.0], "sections": [{"length": 0.2, "outer_diameter": 0.05, "rigid": True}]},
+        },
+        gears={
+            "pinion": {"shaft": "one", "at": 0.02 + ARM, "teeth": 24, **gear},
+            "wheel": {"shaft": "two", "at": 0.02 + ARM, "teeth": 36, **gear},
+        },
+        meshes={"pair": {"pinion": "pinion", "gear": "wheel", "stiffness": STIFFNESS, "tilt": True, **mesh}},
+        supports={
+            "left": {**clamp("x", "y", "z", shaft="one", at=0.02), "stiffness": {"tilt": HOLDS}},
+            "wheel": clamp("x", "y", "z", "tilt_x", "tilt_y", shaft="two", at=0.02),
+        },
+    )
+
+
+@pytest.mark.parametrize(("torque", "speed"), [(20.0, 100.0), (200.0, 100.0), (200.0, -100.0)])
+@pytest.mark.parametrize("given", [0.0, 3e-5, -4e-5])
+def test_a_rigid_pinion_on_a_tilting_bearing_stands_where_its_lever_says(
+    torque: float, speed: float, given: float
+) -> None:
+    result = rg.static(overhung(torque, misalignment=given), speed=speed)
+    force = torque / (0.5 * 0.004 * 24 * np.cos(np.radians(20.0)))
+    assert result.mesh_force[0] == pytest.approx(force, rel=1e-9)
+
+    # The force pushes the pinion back at ARM + M/F from the bearing, which turns by that moment over its stiffness.
+    def left_over(f: float) -> float:
+        face = uniform_line(STIFFNESS, WIDTH, force, f)
+        return given + WIDTH * force * (ARM + face.load_place) / HOLDS - f
+
+    f = brentq(left_over, -1e-2, 1e-2, xtol=1e-16)
+    face = uniform_line(STIFFNESS, WIDTH, force, f)
+    row = result.faces[0]
+    assert row.misalignment_m == pytest.approx(f, rel=1e-6)
+    assert row.shaft_misalignment_m == pytest.approx(f - given, rel=1e-6)
+    assert row.face_load_factor == pytest.approx(face.load_factor, rel=1e-6)
+    assert row.load_place_m == pytest.approx(face.load_place, rel=1e-5)
+    assert result.passes <= 10
+    assert result.imbalance < 1e-10
+    # The bearing takes the force at its lever: the moment against it is what tilts.
+    moment = np.linalg.norm(result.support_force["left"][3:5])
+    assert moment == pytest.approx(force * (ARM + face.load_place), rel=1e-5)
+
+
+@pytest.mark.parametrize("holds", [1e3, 1e4, 3e6])
+def test_few_passes_suffice_however_soft_the_bearing(holds: float) -> None:
+    result = rg.static(overhung().with_("supports.left.stiffness.tilt", holds))
+    assert 1 <= result.passes <= 10
+    assert result.faces[0].face_load_factor is not None
+
+
+def test_the_misalignment_found_as_a_given_one_on_rigid_shafts_is_the_same_state() -> None:
+    found = rg.static(overhung()).faces[0]
+    rigid = overhung(misalignment=found.misalignment_m).with_("supports.left.stiffness.tilt", 1e15)
+    again = rg.static(rigid).faces[0]
+    assert again.misalignment_m == pytest.approx(found.misalignment_m, rel=1e-6)
+    assert again.face_load_factor == pytest.approx(found.face_load_factor, rel=1e-6)
+    assert again.line_load_n_per_m == pytest.approx(found.line_load_n_per_m, rel=1e-6, abs=1.0)
+
+
+def test_a_linear_model_about_the_state_has_its_forces_and_its_tangent() -> None:
+    model = overhung()
+    found = rg.static(model)
+    linear, notes = about_faces(model, [100.0])
+    assert "misaligned by" in notes[0]
+    setup = mean_state(System(linear, load=linear.mean_load().of_kind("static")), 100.0)
+    assert setup.mean_force == pytest.approx(found.mesh_force, rel=1e-6)
+    face = uniform_line(STIFFNESS, WIDTH, float(found.mesh_force[0]), found.faces[0].misalignment_m)
+    assert setup.lines.stiffness == pytest.approx([face.static.stiffness], rel=1e-6)
+    assert setup.lines.tilt_stiffness == pytest.approx([face.static.tilt_stiffness], rel=1e-6)
+    # About a state it stays there, however often it is asked.
+    assert about_faces(linear, [100.0])[0] is linear
+
+
+def test_a_mesh_that_feels_no_tilt_is_as_before() -> None:
+    model = overhung(tilt=False)
+    result = rg.static(model)
+    assert result.faces == ()
+    assert result.passes == 0
+    assert about_faces(model, [None])[0] is model
+    assert rg.static(model, tilt=True).faces[0].face_load_factor is not None
+
+
+def test_a_transient_starts_from_the_equilibrium_and_says_how_it_takes_the_tilt() -> None:
+    model = overhung()
+    task = prepare(model, None, None)
+    assert task.rest_force == pytest.approx(rg.static(model).mesh_force, rel=1e-6)
+    moved = task.local.system.dofs.expand(task.rest.q)
+    node = 6 * task.local.system.nodes.at("one", 0.02 + ARM)
+    assert moved[node : node + 5] == pytest.approx(rg.static(model).place_displacement["gears.pinion"][:5], rel=1e-6)
+    assert any("resist a tilt by the tangent" in note for note in transient_left_out(task.local))
+
+
+def test_a_tilt_without_a_face_is_refused() -> None:
+    with pytest.raises(ModelError, match=r"meshes\.pair\.tilt.*a width of both gears"):
+        lumped_pair(lumped_gear("one", 0.05), lumped_gear("two", 0.08), {"tilt": True})
+
+
+def test_teeth_of_an_overhung_pinion_rest_with_their_shafts() -> None:
+    model = rg.load(MODELS / "overhung_pinion.toml")
+    result = rg.static(model)
+    row = result.faces[0]
+    assert result.passes <= 10
+    assert result.imbalance < 1e-9
+
+    # What is found, given to the pair alone, is the same contact.
+    alone = rg.mesh(model.with_("meshes.stage.misalignment", row.misalignment_m), estimate=False)
+    assert alone.helix[0].largest_pressure_pa == pytest.approx(row.peak_pressure_pa, rel=1e-4)
+    # Teeth that feel nothing say so.
+    apart = rg.static(model.with_("meshes.stage.tilt", False))
+    assert any("its teeth do not feel" in note for note in apart.warnings)
+    assert any("is not fed back to the teeth" in note for note in apart.left_out)
+    assert not apart.faces[0].fed_back
+    # Its flanks stand askew as on rigid shafts under no moment: an upper bound.
+    assert abs(apart.faces[0].shaft_misalignment_m) > abs(row.shaft_misalignment_m)
+
+
+def test_teeth_on_rigid_shafts_carry_as_the_pair_alone() -> None:
+    model = rg.load(MODELS / "overhung_pinion.toml").with_("meshes.stage.misalignment", "15 um")
+    rigid: dict[str, Any] = {f"bearings.{name}.stiffness.tilt": 1e12 for name in model.bearings}
+    rigid |= {f"bearings.{name}.stiffness.radial": 1e14 for name in model.bearings}
+    rigid |= {f"shafts.{name}.sections[*].rigid": True for name in model.shafts}
+    row = rg.static(model.with_(rigid)).faces[0]
+    assert row.shaft_misalignment_m == pytest.approx(0.0, abs=1e-9)
+    alone = rg.mesh(model, estimate=False)
+    assert row.peak_pressure_pa == pytest.approx(alone.helix[0].largest_pressure_pa, rel=1e-4)

@@ -1,0 +1,77 @@
+"""A face of loaded teeth: what it answers to force and tilt, against difference quotients and its own slices."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rotorgear.gears.loaded.face import load_per_width, loaded_face
+from rotorgear.gears.tooth_fe.settings import ToothFe
+from rotorgear.model.layout.mesh_layout import mirrored
+from tests.unit.gears.tooth_pairs import LOAD, WIDTH, cycle, helical, pair
+
+POSITIONS = 16
+# In space and coupled; slices along the face of a spur pair that don't feel each other.
+PAIRS = {"helical": helical(misalignment=60e-6), "spur": pair(fe=ToothFe(preset="preview"), misalignment=20e-6)}
+
+
+# The coarse slices of the helical pair come off one at a time, and corners are cut anew where the misalignment changes.
+@pytest.mark.parametrize(("name", "near"), [("helical", 0.05), ("spur", 5e-3)])
+def test_static_springs_are_the_slopes_of_mean_deflection_and_moment(name: str, near: float) -> None:
+    teeth = PAIRS[name]
+    face = loaded_face(teeth, LOAD, POSITIONS)
+    h = 1e-3
+    more, less = (loaded_face(teeth, LOAD * (1.0 + s), POSITIONS) for s in (h, -h))
+    dF = 2.0 * h * LOAD
+    assert (more.approach - less.approach) / dF == pytest.approx(1.0 / face.static.stiffness, rel=1e-3)
+    assert (more.moment - less.moment) / dF == pytest.approx(face.static.place, rel=5e-3)
+
+    step = 1e-6
+    wider, closer = (
+        loaded_face(replace(teeth, misalignment=teeth.misalignment + s), LOAD, POSITIONS) for s in (step, -step)
+    )
+    # At a constant load: ddelta = -e dtilt, dM = k_t dtilt, and a misalignment is less tilt.
+    tilt = -2.0 * step / WIDTH
+    assert (wider.approach - closer.approach) / tilt == pytest.approx(-face.static.place, rel=near)
+    assert (wider.moment - closer.moment) / tilt == pytest.approx(face.static.tilt_stiffness, rel=near)
+
+
+def test_slices_that_do_not_feel_each_other_resist_a_tilt_like_a_line_of_springs() -> None:
+    teeth = pair(fe=ToothFe(preset="preview"), tilts=True)
+    face = loaded_face(teeth, LOAD, POSITIONS)
+    assert face.dynamic.tilt_stiffness == pytest.approx(face.dynamic.stiffness * WIDTH**2 / 12.0, rel=1e-3)
+    assert face.load_factor == pytest.approx(1.0, rel=1e-9)
+    assert face.moment == pytest.approx(0.0, abs=1e-9 * LOAD * WIDTH)
+
+
+def test_dynamic_stiffness_is_the_mean_tangent_of_the_curve() -> None:
+    teeth = PAIRS["helical"]
+    found = cycle(teeth, LOAD * np.cos(teeth.pair.base_helix_angle), POSITIONS)
+    cosine = np.cos(teeth.pair.base_helix_angle)
+    face = loaded_face(teeth, LOAD, POSITIONS)
+    assert face.dynamic.stiffness == pytest.approx(found.tangent.mean() / cosine**2, rel=1e-9)
+    assert face.peak_pressure == found.pressure.max()
+
+
+def test_the_load_over_the_face_is_that_of_all_slices() -> None:
+    found = cycle(PAIRS["helical"], LOAD, POSITIONS)
+    z, load = load_per_width(found, WIDTH, 16)
+    stretch = WIDTH / 16
+    normal = LOAD / np.cos(PAIRS["helical"].pair.base_helix_angle)
+    assert load.sum() * stretch == pytest.approx(normal, rel=1e-9)
+    # Stretches tell the moment but for where a slice stands inside of one.
+    assert load @ z * stretch == pytest.approx(found.moment.mean(), abs=0.02 * normal * WIDTH)
+
+
+def test_a_spur_pair_seen_from_its_other_end_is_the_opposite_misalignment() -> None:
+    teeth = PAIRS["spur"]
+    here = loaded_face(teeth, LOAD, POSITIONS)
+    there = loaded_face(mirrored(teeth), LOAD, POSITIONS).mirrored
+    assert there.moment == pytest.approx(here.moment, rel=1e-9)
+    assert there.peak_place == pytest.approx(here.peak_place, rel=1e-9)
+    assert there.line_load == pytest.approx(here.line_load, rel=1e-6)
+    # The flanks stand apart at larger z, so that the smaller one carries.
+    assert here.moment < 0.0
+    assert here.peak_place < 0.0
