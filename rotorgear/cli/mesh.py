@@ -42,7 +42,7 @@ def mesh(
         ),
     ] = None,
     body: Annotated[
-        str | None, typer.Option("--body", help="Body under the teeth: rim or ring.", show_default=False)
+        str | None, typer.Option("--body", help="Body under the teeth: rim, ring or wheel.", show_default=False)
     ] = None,
     positions: Annotated[int, typer.Option("--positions", help="Positions in one mesh period.")] = 64,
     periods: Annotated[

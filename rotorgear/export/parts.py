@@ -133,7 +133,8 @@ def _helix(model: Model, name: str, plane: float, rate: float, phase: float, det
     inner = max(0.5 * geometry.root_diameter - body.rim_thickness, hole)
     pieces = [twisted_prism(angles + phase, radii, z, rate * (z - plane), inner)]
     web = 0.5 * (body.web_thickness or 2.0 * half)
-    pieces.append(hollow_cylinder(inner, hole, plane - web, plane + web, detail.segments))
+    middle = plane + body.web_position
+    pieces.append(hollow_cylinder(inner, hole, middle - web, middle + web, detail.segments))
     if body.hub_diameter is not None:
         hub = 0.5 * (body.hub_width or 2.0 * half)
         pieces.append(hollow_cylinder(0.5 * body.hub_diameter, hole, plane - hub, plane + hub, detail.segments))

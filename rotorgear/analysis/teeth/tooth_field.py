@@ -7,6 +7,8 @@ by xi/r_b - (half angle at the base circle) - a_w from +y.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from rotorgear.analysis.common.recorded import recorded
@@ -16,10 +18,9 @@ from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.loaded.contact_points import patch_loads
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
 from rotorgear.gears.loaded.stiffness import loaded_cycle
-from rotorgear.gears.loaded.tooth_contact import ContactProblem, in_space
+from rotorgear.gears.loaded.tooth_contact import ContactProblem, gear_key, in_space
 from rotorgear.gears.loaded.tooth_solution import TeethSolution, solve_teeth
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-from rotorgear.gears.tooth_fe.compliance_model import compliance_key
 from rotorgear.gears.tooth_fe.sector import clockwise
 from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
@@ -54,6 +55,8 @@ def tooth_fields(
         raise AnalysisError(
             "The preview of a pair that changes along the face has no body to show: take --preset default."
         )
+    if any(teeth.fe.body_of(body.blank) == "wheel" for body in (teeth.first_body, teeth.second_body)):
+        teeth = replace(teeth, fe=replace(teeth.fe, space=True))  # a web carries a part of the face only
     problem, cycle = loaded_cycle(teeth, request.base_force, np.array([at]), part_of(progress, 0.0, 0.4))
     names = tuple(gear.name for gear in request.mesh.gears)
     fields = [
@@ -66,10 +69,8 @@ def tooth_fields(
 def _gear(
     name: str, teeth: ToothPair, problem: ContactProblem, cycle: MeshCycle, at: float, gear: int, progress: Progress
 ) -> ToothField:
-    geometry, gear_body = ((teeth.first, teeth.first_body), (teeth.second, teeth.second_body))[gear]
-    key = compliance_key(
-        geometry, teeth.fe, gear_body.poisson_ratio, teeth.width, gear_body.inner_radius, space=in_space(teeth)[0]
-    )
+    gear_body = (teeth.first_body, teeth.second_body)[gear]
+    key = gear_key(teeth, gear, space=in_space(teeth)[0])
     solution = solve_teeth(key, _loads(problem, cycle, gear), progress)
     module = problem.module
     # A plane model carries the force of a unit width.

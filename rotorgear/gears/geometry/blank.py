@@ -1,4 +1,4 @@
-"""Mass and moments of inertia of gear blanks made of concentric hollow cylinders.
+"""Gear blanks made of concentric hollow cylinders: their shape, mass and moments of inertia.
 
 m = rho pi (D^2 - d^2) w / 4,   I_p = m (D^2 + d^2) / 8,   I_d = I_p / 2 + m w^2 / 12 about the centre of mass;
 off-centre parts by the parallel-axis theorem. The teeth count as a solid ring up to the reference diameter.
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -20,6 +20,41 @@ class RigidBody:
     mass: float
     polar_inertia: float
     diametral_inertia: float
+
+
+@dataclass(frozen=True)
+class BlankShape:
+    """Sizes of the blank of one helix, in m or in normal modules; its rim is as wide as the face.
+
+    Attributes:
+        bore_radius: where it is held.
+        rim_radius: inside of the rim; the bore's for a solid blank.
+        web_thickness: along the axis.
+        web_position: of the web's middle along the axis, from the middle of the face.
+        hub_radius: outside of the hub; the bore's where the web reaches the bore.
+        hub_width: along the axis, about the middle of the face.
+    """
+
+    bore_radius: float
+    rim_radius: float
+    web_thickness: float
+    web_position: float
+    hub_radius: float
+    hub_width: float
+
+    @property
+    def is_solid(self) -> bool:
+        """Whether there is neither web nor hub."""
+        return self.rim_radius <= self.bore_radius
+
+    def mirrored(self) -> BlankShape:
+        """The blank seen from the other end of its axis."""
+        return replace(self, web_position=-self.web_position)
+
+
+def solid_blank(bore_radius: float) -> BlankShape:
+    """A full disc."""
+    return BlankShape(bore_radius, bore_radius, 0.0, 0.0, bore_radius, 0.0)
 
 
 def _require_positive(**lengths: float) -> None:
@@ -74,20 +109,21 @@ def gear_blank(
     root_diameter: float | None = None,
     rim_thickness: float | None = None,
     web_thickness: float | None = None,
+    web_position: float = 0.0,
     hub_diameter: float | None = None,
     hub_width: float | None = None,
 ) -> RigidBody:
-    """A gear body, one helix, all parts concentric and centred (m, kg/m^3).
+    """A gear body, one helix, all parts concentric, about the middle of the face (m, kg/m^3).
 
     Without rim_thickness: a solid ring from the bore to the reference diameter. With it: a rim from
-    root_diameter - 2 rim_thickness to the reference diameter, a web of web_thickness, and a hub (hub_width, or as wide
-    as the gear) around the bore; without hub_diameter the web reaches the bore.
+    root_diameter - 2 rim_thickness to the reference diameter, a web of web_thickness, its middle at web_position from that of
+    the face, and a hub (hub_width, or as wide as the gear) around the bore; without hub_diameter the web reaches the bore.
 
     Raises:
         ValueError: parts that don't fit, or one without another that it needs.
     """
     if rim_thickness is None:
-        if any(part is not None for part in (web_thickness, hub_diameter, hub_width)):
+        if web_position or any(part is not None for part in (web_thickness, hub_diameter, hub_width)):
             raise ValueError(
                 "a web or a hub needs a rim: give the rim thickness as well, or leave them out for a solid blank"
             )
@@ -116,10 +152,17 @@ def gear_blank(
         raise ValueError(
             f"a web {_millimetres(web_thickness)} thick is wider than the face width of {_millimetres(width)}"
         )
+    # The end of the web that is farther from the middle of the face.
+    reach = abs(web_position) + 0.5 * web_thickness
+    if reach > 0.5 * width * (1.0 + 1e-9):
+        raise ValueError(
+            f"a web {_millimetres(web_thickness)} thick at {_millimetres(web_position)} from the middle of the face reaches "
+            f"beyond the face width of {_millimetres(width)}"
+        )
     rim = hollow_cylinder(reference_diameter, rim_inside, width, density)
     web = hollow_cylinder(rim_inside, web_inside, web_thickness, density)
     if hub_diameter is None:
-        return stack([rim, web], [0.0, 0.0])
+        return _about_middle([rim, web], web_position)
 
     hub_width = width if hub_width is None else hub_width
     if hub_diameter <= bore:
@@ -130,5 +173,18 @@ def gear_blank(
         raise ValueError(
             f"a hub {_millimetres(hub_width)} wide is narrower than its web of {_millimetres(web_thickness)}"
         )
+    if reach > 0.5 * hub_width * (1.0 + 1e-9):
+        raise ValueError(
+            f"a web {_millimetres(web_thickness)} thick at {_millimetres(web_position)} from the middle of the face reaches "
+            f"beyond the hub, {_millimetres(hub_width)} wide"
+        )
     hub = hollow_cylinder(hub_diameter, bore, hub_width, density)
-    return stack([rim, web, hub], [0.0, 0.0, 0.0])
+    return _about_middle([rim, web, hub], web_position)
+
+
+def _about_middle(bodies: Sequence[RigidBody], web_position: float) -> RigidBody:
+    """Rim, web and hub as one body about the middle of the face: a web off the middle adds m e^2."""
+    offsets = [0.0, web_position, 0.0][: len(bodies)]
+    whole = stack(bodies, offsets)
+    arm = mass_centre(bodies, offsets)
+    return replace(whole, diametral_inertia=whole.diametral_inertia + whole.mass * arm**2)

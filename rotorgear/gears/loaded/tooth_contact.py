@@ -12,9 +12,17 @@ from rotorgear.gears.geometry.flank import FlankModification
 from rotorgear.gears.geometry.geometry import THIN_TIP
 from rotorgear.gears.geometry.line_of_action import LineOfAction, generated_line
 from rotorgear.gears.loaded.contact_points import Slices
+from rotorgear.gears.stiffness.blank_note import web_left_out
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, compliance_key, gear_compliance
+from rotorgear.gears.tooth_fe.compliance_model import (
+    ComplianceKey,
+    compliance_key,
+    gear_compliance,
+    held_radius,
+    wind_up,
+)
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
+from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.progress import Progress, silent
 
 # Stations of the preview along the face.
@@ -100,9 +108,13 @@ def in_space(teeth: ToothPair) -> tuple[bool, bool]:
     """Whether the teeth need a three-dimensional model, and whether slices that don't feel each other stand in for it."""
     fe = teeth.fe
     flanks = (teeth.first_flank, teeth.second_flank)
+    blanks = (teeth.first_body.blank, teeth.second_body.blank)
+    # A web off the middle of the face tilts its rim.
+    on_one_side = any(b is not None and b.web_position and fe.body_of(b) == "wheel" for b in blanks)
     varies = (
         teeth.first.helix_angle > 0.0
         or teeth.tilts
+        or on_one_side
         or any(flank.along_face for flank in flanks)
         or bool(teeth.misalignment)
     )
@@ -126,16 +138,16 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
     compliances = []
     scale = []
     held_radii = []
-    for i, (g, body) in enumerate(zip((teeth.first, teeth.second), bodies, strict=True)):
-        key = compliance_key(g, fe, body.poisson_ratio, teeth.width, body.inner_radius, space=space)
+    for i, body in enumerate(bodies):
+        key = gear_key(teeth, i, space=space)
         name = ("pinion", "gear")[i]
 
         def told(fraction: float, text: str, i: int = i, name: str = name) -> None:
             progress(0.5 * (i + fraction), f"{name}: {text}")
 
         told(0.0, "teeth")
-        compliances.append(_without_torsion(gear_compliance(key, told, fresh=fresh), key, teeth, i))
-        held_radii.append(module * key.inner_radius)
+        compliances.append(_without_torsion(gear_compliance(key, told, fresh=fresh), key, fe))
+        held_radii.append(module * held_radius(key))
         # A plane model is that of a unit width in the transverse section: cos b_b of the force, and again of the displacement,
         # lie in that section. In space the compliance of a body grows as 1 / (E m_n).
         scale.append((math.cos(line.base_helix_angle) ** 2 if not space else 1.0 / module) / body.youngs_modulus)
@@ -157,26 +169,30 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
         flanks=flanks,
         teeth=(teeth.first.teeth, teeth.second.teeth),
         misalignment=teeth.misalignment,
-        body=fe.body_text(fe.arc, (held_radii[0], held_radii[1])),
+        body=fe.body_text(
+            (fe.body_of(teeth.first_body.blank), fe.body_of(teeth.second_body.blank)), (held_radii[0], held_radii[1])
+        ),
         unknowns=sum(compliance.unknowns for compliance in compliances),
         warnings=_warnings(teeth, line),
     )
 
 
-def _without_torsion(compliance: GearCompliance, key: ComplianceKey, teeth: ToothPair, gear: int) -> GearCompliance:
-    """A ring's compliance without the wind-up of its disc between the held circle and the root, if that is asked for.
+def gear_key(teeth: ToothPair, gear: int, *, space: bool) -> ComplianceKey:
+    """What the compliance of the pinion (0) or the gear (1) depends on."""
+    geometry = (teeth.first, teeth.second)[gear]
+    body = (teeth.first_body, teeth.second_body)[gear]
+    # The gear's own face runs the other way.
+    blank = body.blank.mirrored() if body.blank is not None and gear == 1 else body.blank
+    return compliance_key(
+        geometry, teeth.fe, body.poisson_ratio, teeth.width, body.inner_radius, space=space, blank=blank
+    )
 
-    A torque r_b per unit of width turns the root against the bore by r_b (1/r_i^2 - 1/r_f^2)/(4 pi G), all flanks alike.
-    """
-    if not (teeth.fe.exclude_torsion and teeth.fe.body == "ring"):
+
+def _without_torsion(compliance: GearCompliance, key: ComplianceKey, fe: ToothFe) -> GearCompliance:
+    """The compliance without the rotation of the teeth about the axis against the held circle, if that is asked for."""
+    if not fe.exclude_torsion or key.arc:
         return compliance
-    g = key.geometry
-    shear = 0.5 / (1.0 + key.poisson_ratio)
-    twist = (1.0 / key.inner_radius**2 - 4.0 / g.root_diameter**2) / (4.0 * math.pi * shear)
-    wind_up = g.base_radius**2 * twist
-    if key.width:
-        wind_up *= math.cos(g.base_helix_angle) ** 2 / key.width
-    return replace(compliance, flexibility=compliance.flexibility - wind_up)
+    return replace(compliance, flexibility=compliance.flexibility - wind_up(key))
 
 
 def _warnings(teeth: ToothPair, line: LineOfAction) -> tuple[str, ...]:
@@ -187,7 +203,10 @@ def _warnings(teeth: ToothPair, line: LineOfAction) -> tuple[str, ...]:
             "a tip reaches below the involute of its mate: contact is taken to end at the form circle, which leaves a transverse "
             f"contact ratio of {line.contact_ratio:.3f} of the {teeth.pair.transverse_contact_ratio:.3f} of the tip circles"
         )
-    for name, g in (("pinion", teeth.first), ("gear", teeth.second)):
+    for name, g, body in (("pinion", teeth.first, teeth.first_body), ("gear", teeth.second, teeth.second_body)):
+        chosen = teeth.fe.body_of(body.blank)
+        if chosen != "wheel":
+            notes += web_left_out(name, g, body, teeth.width, f"body = '{chosen}'")
         if g.normal_tip_thickness < THIN_TIP * g.normal_module:
             notes.append(f"the teeth of the {name} are thinner than {THIN_TIP:g} normal modules at the tip")
         if g.tool_tip_radius_factor >= g.full_radius_factor * (1.0 - 1e-12):

@@ -2,7 +2,8 @@
 
 A slice of the pair has 1/k = c_1(xi_1) + c_2(xi_2) + 2 / (pi E*), 1/E* = sum (1 - nu^2)/E; slices of one contact line and
 lines of several pairs act in parallel, each by itself. That leaves out that neighbouring slices and teeth share one body:
-a preview beside tooth FE, too stiff along the face and too soft where two pairs share a ring.
+a preview beside tooth FE, too stiff along the face and too soft where two pairs share a ring. Of a gear with a web it takes the
+rim as the ring, held at its inside, and leaves out web and hub: a thinner rim comes out stiffer, and a warning says so.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import ToothOutline, tooth_outline
+from rotorgear.gears.stiffness.blank_note import web_left_out
 from rotorgear.gears.stiffness.contact_lines import contact_lines
 from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 from rotorgear.gears.stiffness.tooth_beam import RING_ANGLE, RING_RATIO, ring_shape, tooth_compliance
@@ -109,4 +111,5 @@ def _warnings(teeth: ToothPair) -> tuple[str, ...]:
             sentences.append(
                 f"gear {number}: theta_f = {angle:.3g} rad is outside 0.01 ... 0.12, the range of the ring formula"
             )
+        sentences += web_left_out(f"gear {number}", outline.geometry, body, teeth.width, "the elastic ring")
     return tuple(sentences)

@@ -18,6 +18,7 @@ from typing import Literal
 import numpy as np
 
 from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.blank import BlankShape
 from rotorgear.gears.geometry.flank import FlankModification
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.pair import PairGeometry
@@ -37,6 +38,7 @@ class ToothBody:
         inner_radius: radius (m) of the bore, or inside of the rim.
         web_share: thickness of the web over the face width of a helix; 1 for a solid disk.
         rim_thickness: of the rim below the root circle (m); None for a solid disk.
+        blank: its sizes (m), for the body "wheel"; None where they are not known.
     """
 
     youngs_modulus: float = 206e9
@@ -44,6 +46,7 @@ class ToothBody:
     inner_radius: float = 0.0
     web_share: float = 1.0
     rim_thickness: float | None = None
+    blank: BlankShape | None = None
 
 
 @dataclass(frozen=True)

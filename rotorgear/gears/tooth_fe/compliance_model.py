@@ -5,22 +5,31 @@ Everything is in normal modules and for a Young's modulus of 1, so that gears of
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from rotorgear.gears.geometry.blank import BlankShape, solid_blank
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.outline import ToothOutline, tooth_outline
+from rotorgear.gears.tooth_fe.blank_section import BlankSection, torsional_flexibility
 from rotorgear.gears.tooth_fe.compliance_cache import cached
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance, chained
 from rotorgear.gears.tooth_fe.mesh import LEAST_INNER, PitchMesh, pitch_mesh
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.sector import layered_sector, plane_sector
 from rotorgear.gears.tooth_fe.settings import ToothFe
-from rotorgear.progress import Progress, silent
+from rotorgear.gears.tooth_fe.wheel_compliance import wheel_flexibility
+from rotorgear.gears.tooth_fe.wheel_sector import WheelSector, even_wheel, layered_wheel
+from rotorgear.progress import Progress, part_of, silent
 
 # Teeth to either side of a loaded one whose response is kept; a pair further away is not felt.
 REACH = 4
+# Largest depth below the root circle, in normal modules, of the part of a rim that is meshed with the teeth.
+SEAT_DEPTH = 3.0
+# Radius over that of the root of the core that is held where shaft and gear are one: too small to matter.
+_LEAST_BORE = 0.1
 
 
 @dataclass(frozen=True)
@@ -33,7 +42,9 @@ class ComplianceKey:
         inner_radius: of the held circle.
         poisson_ratio: of the material.
         width: of the face; 0 for a plane model.
-        arc: pitches of a rim; 0 for a full ring.
+        arc: pitches of a rim; 0 for a full ring or a wheel.
+        blank: of a wheel; None where the inner circle is held.
+        face: width of the rim of a wheel, also of a plane model; 0 where the inner circle is held.
     """
 
     geometry: GearGeometry
@@ -42,10 +53,19 @@ class ComplianceKey:
     poisson_ratio: float
     width: float
     arc: int
+    blank: BlankShape | None = None
+    face: float = 0.0
 
 
 def compliance_key(
-    geometry: GearGeometry, fe: ToothFe, poisson_ratio: float, width: float, bore_radius: float, *, space: bool
+    geometry: GearGeometry,
+    fe: ToothFe,
+    poisson_ratio: float,
+    width: float,
+    bore_radius: float,
+    *,
+    space: bool,
+    blank: BlankShape | None = None,
 ) -> ComplianceKey:
     """What to compute for a gear.
 
@@ -56,6 +76,7 @@ def compliance_key(
         width: of the face (m).
         bore_radius: where a ring is held (m); 0 for a solid shaft and gear.
         space: whether the model is three-dimensional.
+        blank: of the gear (m), seen along its own face; None: a full disc of that bore.
     """
     m = geometry.normal_module
     tip = geometry.effective_tip_diameter / m
@@ -63,17 +84,48 @@ def compliance_key(
         geometry, normal_module=1.0, tip_diameter=_rounded(tip), profile_shift=_rounded(geometry.profile_shift)
     )
     root = 0.5 * unit.root_diameter
-    inner = bore_radius / m if fe.body == "ring" else max(root - fe.rim_thickness, LEAST_INNER * root)
-    if fe.body == "ring" and inner <= 0.0:
-        inner = 0.1 * root  # a solid shaft and gear: the held core is too small to matter
+    body = fe.body_of(blank)
+    wheel: BlankShape | None = None
+    if body == "wheel":
+        wheel = _in_modules(blank or solid_blank(bore_radius), m, root)
+        inner = _seat_radius(wheel, root)
+    elif body == "ring":
+        inner = bore_radius / m if bore_radius > 0.0 else _LEAST_BORE * root
+    else:
+        inner = max(root - fe.rim_thickness, LEAST_INNER * root)
     return ComplianceKey(
         unit,
-        fe.mesh_size(width / m, space=space),
+        fe.even_size if wheel and not space else fe.mesh_size(width / m, space=space),
         _rounded(inner),
         poisson_ratio,
         _rounded(width / m) if space else 0.0,
-        0 if fe.body == "ring" else fe.arc,
+        fe.arc if body == "rim" else 0,
+        wheel,
+        _rounded(width / m) if wheel else 0.0,
     )
+
+
+def held_radius(key: ComplianceKey) -> float:
+    """Radius in normal modules of the circle that is held: the bore of a wheel, else the inner circle of the pitches."""
+    return key.blank.bore_radius if key.blank else key.inner_radius
+
+
+def _in_modules(blank: BlankShape, module: float, root: float) -> BlankShape:
+    """A blank in normal modules, with a held core where shaft and gear are one."""
+    scaled = BlankShape(**{field.name: _rounded(getattr(blank, field.name) / module) for field in fields(BlankShape)})
+    bore = max(scaled.bore_radius, _rounded(_LEAST_BORE * root))
+    return replace(
+        scaled, bore_radius=bore, rim_radius=max(scaled.rim_radius, bore), hub_radius=max(scaled.hub_radius, bore)
+    )
+
+
+def _seat_radius(blank: BlankShape, root: float) -> float:
+    """Where the pitches of a wheel end: inside of a rim that is not too thick to be meshed with the teeth, else within it."""
+    depth = min(SEAT_DEPTH, (1.0 - LEAST_INNER) * root)
+    if not blank.is_solid and root - blank.rim_radius <= depth * (1.0 + 1e-9):
+        return blank.rim_radius
+    # A rim that is little thicker, or a solid blank with a thin wall, is cut in its own middle.
+    return max(root - depth, 0.5 * (root + max(blank.rim_radius, blank.bore_radius)))
 
 
 def _rounded(value: float) -> float:
@@ -99,14 +151,25 @@ def gear_compliance(key: ComplianceKey, progress: Progress = silent, *, fresh: b
 
 def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
     outline, mesh = pitch_of(key)
-    if key.width:
-        sector = layered_sector(mesh, key.poisson_ratio, key.width, key.size.face, progress)
-        height = np.linspace(-0.5 * key.width, 0.5 * key.width, 2 * key.size.face + 1)
-    else:
-        sector = plane_sector(mesh, key.poisson_ratio)
-        height = np.zeros(1)
+    height = np.linspace(-0.5 * key.width, 0.5 * key.width, 2 * key.size.face + 1) if key.width else np.zeros(1)
     teeth = key.geometry.teeth if key.arc == 0 else key.arc
-    G, asymmetry = chained(sector, teeth, min(REACH, (teeth - 1) // 2), ring=key.arc == 0)
+    reach = min(REACH, (teeth - 1) // 2)
+    if key.blank is not None:
+        wheel = wheel_sector(key, mesh, part_of(progress, 0.0, 0.6))
+        blank = BlankSection(key.blank, key.face, key.inner_radius, key.poisson_ratio)
+        G, asymmetry = wheel_flexibility(wheel, blank, teeth, reach, part_of(progress, 0.6, 1.0))
+        if not key.width:
+            # Means along the face for forces of the whole face: a plane model has those of a unit width.
+            G = G * key.face
+        unknowns = wheel.unknowns * teeth + blank.unknowns
+    else:
+        sector = (
+            layered_sector(mesh, key.poisson_ratio, key.width, key.size.face, progress)
+            if key.width
+            else plane_sector(mesh, key.poisson_ratio)
+        )
+        G, asymmetry = chained(sector, teeth, reach, ring=key.arc == 0)
+        unknowns = sector.unknowns * teeth
     return GearCompliance(
         flexibility=G,
         roll=mesh.roll,
@@ -114,6 +177,33 @@ def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
         flank_start=outline.form_roll_length,
         flank_end=outline.tip_roll_length,
         base_radius=outline.geometry.base_radius,
-        unknowns=sector.unknowns * teeth,
+        unknowns=unknowns,
         asymmetry=asymmetry,
+    )
+
+
+def wheel_sector(key: ComplianceKey, mesh: PitchMesh, progress: Progress = silent) -> WheelSector:
+    """The pitch of a wheel: in layers, or by polynomials along a face that is loaded evenly."""
+    assert key.blank is not None
+    if key.width:
+        return layered_wheel(mesh, key.poisson_ratio, key.width, key.size.face, progress)
+    return even_wheel(mesh, key.poisson_ratio, key.face, key.size.face, centred=key.blank.web_position == 0.0)
+
+
+def wind_up(key: ComplianceKey) -> float:
+    """Deflection along the flank normal of all teeth by the rotation that a unit normal force gives rim against bore.
+
+    In the units of the compliance: for a Young's modulus and a module of 1, of a plane model for a unit width. A ring or a full
+    disc of width b under shear, r phi' = T / (2 pi r^2 b G), turns by T (1/r_i^2 - 1/r_f^2) / (4 pi b G).
+    """
+    g = key.geometry
+    arm = g.base_radius * math.cos(g.base_helix_angle)
+    root = 0.5 * g.root_diameter
+    if key.blank is None:
+        shear = 0.5 / (1.0 + key.poisson_ratio)
+        twist = (1.0 / key.inner_radius**2 - 1.0 / root**2) / (4.0 * math.pi * shear)
+        return arm**2 * twist / (key.width or 1.0)
+    # A plane model has the force of a unit width.
+    return (
+        arm**2 * torsional_flexibility(key.blank, key.face, root, key.poisson_ratio) * (1.0 if key.width else key.face)
     )

@@ -60,11 +60,15 @@ class Pitch:
 
     def left_frame(self, cut: np.ndarray) -> np.ndarray:
         """Displacements of the left cut in the tooth's frame from those in the frames of its planes."""
-        return self._turned(cut, self.turn)
+        return self.plane_frame(cut)
 
     def right_frame(self, cut: np.ndarray) -> np.ndarray:
         """The same of the right cut, which is given in the frame of the next pitch."""
         return self._turned(cut, self.turn @ self.pitch_turn)
+
+    def plane_frame(self, nodes: np.ndarray) -> np.ndarray:
+        """The same of any nodes, given plane by plane in the frames of the planes."""
+        return self._turned(nodes, self.turn)
 
     def _turned(self, cut: np.ndarray, turn: np.ndarray) -> np.ndarray:
         u = cut.reshape(len(turn), -1, self.dimension)

@@ -10,6 +10,7 @@ Reference: Guyan/Irons static condensation; Przemieniecki, Theory of Matrix Stru
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -74,27 +75,31 @@ def layered_sector(
     mesh: PitchMesh, poisson_ratio: float, width: float, layers: int, progress: Progress = silent
 ) -> Sector:
     """Superelement of a helical pitch of face width `width` (normal modules) in so many layers; end faces free."""
+    b = mesh.outline.geometry.base_helix_angle
+    tilted = np.hstack([np.cos(b) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(b))])
+    frame, free, inside, keep = _frames(mesh, tilted)
+    K = layer_stiffness(mesh, poisson_ratio, width / layers, frame)
+    cut = 3 * len(mesh.left)
+    groups = [cut, cut, len(keep) - 2 * cut]
+    S = stacked_layers(K, 3 * len(mesh.points), inside, keep, layers, groups, progress)
+    planes = 2 * layers + 1
+    return Sector(S, planes * cut, planes * groups[2], len(free) * planes)
+
+
+def layer_stiffness(mesh: PitchMesh, poisson_ratio: float, height: float, frame: sp.csc_array) -> sp.csc_array:
+    """Stiffness of one layer in the unknowns of its three planes, each turned with the helix: all layers have the same."""
     skfem = scikit_fem()
     g = mesh.outline.geometry
-    height = width / layers
     twist = np.tan(g.base_helix_angle) / g.base_radius
     hexes, place_of = layer_mesh(mesh, height, twist)
-
-    # One layer, turned at each of its three planes into that plane's frame: all layers then have the same matrix.
     K_e = element_matrices(skfem.Basis(hexes, skfem.ElementHex2(), intorder=4), poisson_ratio)
-    p = 3 * len(mesh.points)
-    K = assembled(K_e, component_dofs(place_of[hexes.dofs.element_dofs], 3), 3 * p)
-    tilted = np.hstack(
-        [np.cos(g.base_helix_angle) * mesh.normal, np.full((len(mesh.normal), 1), -np.sin(g.base_helix_angle))]
-    )
-    frame, free, inside, keep = _frames(mesh, tilted)
+    K = assembled(K_e, component_dofs(place_of[hexes.dofs.element_dofs], 3), 9 * len(mesh.points))
     turn = [
         sp.csc_array(sp.kron(sp.eye_array(len(mesh.points)), clockwise(twist * h, 3))) @ frame
         for h in (0.0, 0.5 * height, height)
     ]
     T = sp.block_diag(turn, format="csc")
-    K = sp.csc_array(T.T @ K @ T)
-    return _stacked(K, p, inside, keep, layers, 3 * len(mesh.left), len(free) * (2 * layers + 1), progress)
+    return sp.csc_array(T.T @ K @ T)
 
 
 def layer_mesh(mesh: PitchMesh, height: float, twist: float) -> tuple[Any, np.ndarray]:
@@ -151,17 +156,28 @@ def _condensed(K: np.ndarray, inside: int) -> np.ndarray:
     return np.asarray(K[inside:, inside:] - W.T @ W)
 
 
-def _stacked(
+def stacked_layers(
     K: sp.csc_array,
     p: int,
     inside: np.ndarray,
     keep: np.ndarray,
     layers: int,
-    cut: int,
-    unknowns: int,
+    groups: list[int],
     progress: Progress,
-) -> Sector:
-    """Condense the middle plane of one layer, then stack layers: equal blocks are doubled, so few joints are worked out."""
+) -> np.ndarray:
+    """Stiffness of a stack of equal layers in the kept unknowns of all planes, group by group, plane by plane within a group.
+
+    The middle plane of one layer is condensed, then layers are stacked: equal blocks are doubled, so few joints are worked out.
+
+    Args:
+        K: of one layer with its three planes.
+        p: unknowns of a plane.
+        inside: those of a plane that are condensed.
+        keep: those that are kept.
+        layers: how many.
+        groups: how many of the kept ones belong together, in their order.
+        progress: told how far it is.
+    """
     i = len(inside)
     k = len(keep)
     order = np.concatenate([p + inside, inside, 2 * p + inside, keep, p + keep, 2 * p + keep])
@@ -184,9 +200,10 @@ def _stacked(
     progress(1.0, "pitch condensed")
     planes = 2 * layers + 1
     number = np.arange(planes * k).reshape(planes, k)
-    final = np.concatenate([number[:, :cut].ravel(), number[:, cut : 2 * cut].ravel(), number[:, 2 * cut :].ravel()])
+    ends = np.cumsum([0, *groups])
+    final = np.concatenate([number[:, low:high].ravel() for low, high in pairwise(ends)])
     S = S[np.ix_(final, final)]
-    return Sector(0.5 * (S + S.T), planes * cut, planes * (k - 2 * cut), unknowns)
+    return np.asarray(0.5 * (S + S.T))
 
 
 def _joined(lower: np.ndarray, upper: np.ndarray, i: int, k: int) -> np.ndarray:

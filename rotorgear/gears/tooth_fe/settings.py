@@ -2,6 +2,8 @@
 
 Bodies. "rim": an arc of seven pitches, held at its end cuts and on a circle three normal modules below the root, so the approach
 is measured against that circle. "ring": all pitches on a full disc of the face's width, held at the bore or inside of the rim.
+"wheel": all pitches on their blank of rim, web and hub, held at the bore. Where nothing is said, a gear with rim and web is a
+wheel, and any other one a rim.
 """
 
 from __future__ import annotations
@@ -10,10 +12,12 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.blank import BlankShape
 from rotorgear.gears.tooth_fe.points import MeshSize
 
 Preset = Literal["preview", "default", "fine"]
-Body = Literal["rim", "ring"]
+Body = Literal["rim", "ring", "wheel"]
+BODIES: tuple[Body, ...] = ("rim", "ring", "wheel")
 PRESETS: tuple[Preset, ...] = ("preview", "default", "fine")
 ARC = 7  # pitches of a rim
 RIM = 3.0  # depth of a rim below the root circle, in normal modules
@@ -25,10 +29,10 @@ class ToothFe:
 
     Attributes:
         preset: preview, default or fine.
-        body: "rim" or "ring".
+        body: "rim", "ring" or "wheel"; None: a wheel where the blank has rim and web, else a rim.
         rim_thickness: of the "rim" body in normal modules.
         arc: pitches of the "rim" body, an odd number.
-        exclude_torsion: leave the wind-up of the disc out of a "ring", where the rotor model has it already.
+        exclude_torsion: leave the wind-up between bore and teeth out of a "ring" or "wheel", where the rotor model has it.
         space: whether the model is three-dimensional; None: where the teeth are helical or change along the face.
         size: mesh size in place of the preset's.
         patch: largest half-width of a load patch in normal modules, in place of the preset's.
@@ -36,7 +40,7 @@ class ToothFe:
     """
 
     preset: Preset = "default"
-    body: Body = "rim"
+    body: Body | None = None
     rim_thickness: float = RIM
     arc: int = ARC
     exclude_torsion: bool = False
@@ -46,9 +50,10 @@ class ToothFe:
     slices: int | None = None
 
     def __post_init__(self) -> None:
-        for name, allowed in (("preset", PRESETS), ("body", ("rim", "ring"))):
-            if getattr(self, name) not in allowed:
-                raise AnalysisError(f"{name}: got '{getattr(self, name)}', expected one of {', '.join(allowed)}")
+        if self.preset not in PRESETS:
+            raise AnalysisError(f"preset: got '{self.preset}', expected one of {', '.join(PRESETS)}")
+        if self.body is not None and self.body not in BODIES:
+            raise AnalysisError(f"body: got '{self.body}', expected one of {', '.join(BODIES)}")
         if self.arc < 3 or self.arc % 2 == 0:
             raise AnalysisError(f"An arc needs an odd number of at least 3 pitches, not {self.arc}.")
         if not self.rim_thickness > 0.0:
@@ -59,13 +64,33 @@ class ToothFe:
         """c_0 in normal modules."""
         return self.patch or (0.2 if self.preset == "fine" else 0.3)
 
-    def body_text(self, arc_teeth: int, inner: tuple[float, float]) -> str:
-        """What the teeth stand on and where that is held, in a line; inner: radii of the held circles (m)."""
-        radii = " and ".join(f"{1e3 * radius:.5g}" for radius in inner)
-        if self.body == "rim":
-            return f"rim: arc of {arc_teeth} pitches, held at its end cuts and at radius {radii} mm"
+    def body_of(self, blank: BlankShape | None) -> Body:
+        """What the teeth of one gear stand on."""
+        if self.body is not None:
+            return self.body
+        return "rim" if blank is None or blank.is_solid else "wheel"
+
+    def body_text(self, bodies: tuple[Body, Body], held: tuple[float, float]) -> str:
+        """What the teeth of pinion and gear stand on and where that is held, in a line; held: radii of these circles (m)."""
+        if bodies[0] == bodies[1]:
+            return self._one_body(bodies[0], " and ".join(f"{1e3 * radius:.5g}" for radius in held))
+        first, second = (self._one_body(body, f"{1e3 * radius:.5g}") for body, radius in zip(bodies, held, strict=True))
+        return f"pinion {first}; gear {second}"
+
+    def _one_body(self, body: Body, radius: str) -> str:
+        if body == "rim":
+            return f"rim: arc of {self.arc} pitches, held at its end cuts and at radius {radius} mm"
+        if body == "wheel":
+            wound = "without the" if self.exclude_torsion else "with the"
+            return f"wheel: rim, web and hub held at radius {radius} mm, {wound} wind-up between bore and teeth"
         torsion = ", without the wind-up of the disc" if self.exclude_torsion else ""
-        return f"ring: full disc held at radius {radii} mm{torsion}"
+        return f"ring: full disc held at radius {radius} mm{torsion}"
+
+    @property
+    def even_size(self) -> MeshSize:
+        """Elements of a wheel that is loaded evenly along its face: polynomials up to `face` stand for layers."""
+        size = self.size or _EVEN[self.preset]
+        return size if size.face else replace(size, face=_LEAST_ORDER)
 
     def mesh_size(self, width: float, *, space: bool) -> MeshSize:
         """Elements for a face of `width` normal modules."""
@@ -77,6 +102,12 @@ class ToothFe:
         return replace(size, face=max(_LEAST_LAYERS, round(width / thickness)))
 
 
+# The same of a wheel loaded evenly along its face, with the highest polynomial along it in place of layers.
+_EVEN = {
+    "preview": MeshSize(7, 2, 4, 2, 3, 6),
+    "default": MeshSize(8, 3, 6, 3, 4, 8),
+    "fine": MeshSize(10, 3, 6, 3, 4, 10),
+}
 # Rows and columns as measured against finer meshes; see docs/mesh.md for error against run time.
 _PLANE = {
     "preview": MeshSize(6, 2, 4, 2, 4),
@@ -89,6 +120,8 @@ _SPACE = {
     "default": (MeshSize(8, 3, 6, 3, 4), 1.08),
     "fine": (MeshSize(10, 3, 6, 3, 4), 0.77),
 }
+# Highest polynomial along the face where a mesh size gives none.
+_LEAST_ORDER = 6
 # A narrow face has so many layers at least.
 _LEAST_LAYERS = 4
 

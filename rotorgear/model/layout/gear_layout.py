@@ -10,7 +10,7 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rotorgear.gears.geometry.blank import RigidBody, gear_blank
+from rotorgear.gears.geometry.blank import BlankShape, RigidBody, gear_blank, solid_blank
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.model.layout.bodies import NodeBody, given_body, inertia_is_given
 from rotorgear.model.layout.places import Place
@@ -107,6 +107,7 @@ class GearLayout:
             root_diameter=self.geometry.root_diameter,
             rim_thickness=gear.body.rim_thickness,
             web_thickness=gear.body.web_thickness,
+            web_position=gear.body.web_position,
             hub_diameter=gear.body.hub_diameter,
             hub_width=gear.body.hub_width,
         )
@@ -162,4 +163,20 @@ class GearLayout:
         if rim is not None and self.geometry is not None:
             inner = 0.5 * self.geometry.root_diameter - rim
         share = 1.0 if web is None or not self.part.width else web / self.part.width
-        return ToothBody(self.material.youngs_modulus, self.material.nu, inner, share, rim)
+        return ToothBody(self.material.youngs_modulus, self.material.nu, inner, share, rim, self.blank)
+
+    @property
+    def blank(self) -> BlankShape:
+        """Rim, web and hub of one helix; a full disc where the file gives no rim."""
+        given = self.part.body
+        bore = 0.5 * self.bore
+        if given.rim_thickness is None or given.web_thickness is None or self.geometry is None:
+            return solid_blank(bore)
+        return BlankShape(
+            bore_radius=bore,
+            rim_radius=0.5 * self.geometry.root_diameter - given.rim_thickness,
+            web_thickness=given.web_thickness,
+            web_position=given.web_position,
+            hub_radius=bore if given.hub_diameter is None else 0.5 * given.hub_diameter,
+            hub_width=given.hub_width or self.part.width or 0.0,
+        )

@@ -386,4 +386,14 @@ class MeshLayout:
 def mirrored(teeth: ToothPair) -> ToothPair:
     """The pair seen from the other end of the face: that of the other hand, or with the other flanks in contact."""
     flanks = [replace(flank, helix_slope=-flank.helix_slope) for flank in (teeth.first_flank, teeth.second_flank)]
-    return replace(teeth, misalignment=-teeth.misalignment, first_flank=flanks[0], second_flank=flanks[1])
+    bodies = [
+        replace(body, blank=body.blank and body.blank.mirrored()) for body in (teeth.first_body, teeth.second_body)
+    ]
+    return replace(
+        teeth,
+        misalignment=-teeth.misalignment,
+        first_flank=flanks[0],
+        second_flank=flanks[1],
+        first_body=bodies[0],
+        second_body=bodies[1],
+    )

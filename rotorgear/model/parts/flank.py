@@ -28,10 +28,13 @@ class ToothFeTable(Part):
     """How stiffness = 'tooth_fe' models the teeth of a mesh."""
 
     preset: Literal["preview", "default", "fine"] = Field("default", description="mesh of teeth and contact lines")
-    body: Literal["rim", "ring"] = Field(
-        "rim",
-        description="rim: a few teeth held below their roots; ring: a full disc held at its bore or inside of the rim",
+    body: Literal["rim", "ring", "wheel"] | None = Field(
+        None,
+        description="rim: a few teeth held below their roots; ring: a full disc held at its bore or inside of the rim; wheel: "
+        "rim, web and hub of the gear's body; default: wheel for a gear with rim and web, else rim",
     )
     rim_thickness: PositiveRatio = Field(3.0, description="depth of the rim's held circle below the root over m_n")
     pitches: Whole = Field(7, description="rim: pitches of the arc, an odd number of at least 3; its end cuts are held")
-    exclude_torsion: bool = Field(False, description="ring: leave the wind-up of the disc to the rotor model")
+    exclude_torsion: bool = Field(
+        False, description="ring, wheel: leave the wind-up between bore and teeth to the rotor model"
+    )

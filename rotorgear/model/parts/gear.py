@@ -27,11 +27,12 @@ from rotorgear.model.parts.flank import Flank
 
 
 class GearBody(Part):
-    """Shape of a gear's blank, for its mass: rim, web and hub. What is left out is solid."""
+    """Shape of a gear's blank, for its mass and its compliance: rim, web and hub. What is left out is solid."""
 
     bore: NonNegativeLength | None = Field(None, description="bore; default: the shaft's diameter there")
     rim_thickness: PositiveLength | None = Field(None, description="thickness of the rim below the tooth roots")
     web_thickness: PositiveLength | None = Field(None, description="thickness of the web along z, between rim and hub")
+    web_position: Length = Field(0.0, description="z of the web's middle from the middle of the face")
     hub_diameter: PositiveLength | None = Field(None, description="outer diameter of the hub")
     hub_width: PositiveLength | None = Field(None, description="width of the hub along z")
 
@@ -89,7 +90,7 @@ class Gear(Part):
     mass: Mass | None = Field(None, description="mass of the whole gear; default: from the blank")
     polar_inertia: Inertia | None = Field(None, description="moment of inertia about z of the whole gear")
     diametral_inertia: Inertia | None = Field(None, description="moment of inertia about x and y through its middle")
-    body: GearBody = Field(default_factory=GearBody, description="shape of the blank, for the mass")
+    body: GearBody = Field(default_factory=GearBody, description="shape of the blank, for mass and compliance")
     material: str | None = Field(None, description="material of the blank; default: the shaft's")
 
     @property

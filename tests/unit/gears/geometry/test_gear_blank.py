@@ -92,6 +92,14 @@ def test_a_longer_hub_adds_exactly_its_two_overhangs() -> None:
     assert numbers(longer) == pytest.approx(expected, rel=1e-13)
 
 
+def test_a_web_off_the_middle_adds_its_own_steiner_term() -> None:
+    centred, off = (gear_blank(0.36, 0.08, 0.065, STEEL, **WEBBED, web_position=e) for e in (0.0, -0.02))
+    inner = WEBBED["root_diameter"] - 2 * WEBBED["rim_thickness"]
+    web = hollow_cylinder(inner, WEBBED["hub_diameter"], WEBBED["web_thickness"], STEEL)
+    assert numbers(off)[:2] == pytest.approx(numbers(centred)[:2], rel=1e-14)
+    assert off.diametral_inertia - centred.diametral_inertia == pytest.approx(web.mass * 0.02**2, rel=1e-10)
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -105,6 +113,9 @@ def test_a_longer_hub_adds_exactly_its_two_overhangs() -> None:
         ({"web_thickness": 0.07}, "wider than the face width"),
         ({"hub_diameter": 0.07}, "above the bore"),
         ({"hub_width": 0.01}, "narrower than its web"),
+        ({"web_position": 0.03}, "beyond the face width"),
+        ({"web_position": 0.015, "hub_width": 0.03}, "beyond the hub"),
+        ({"rim_thickness": None, "web_thickness": None, "hub_diameter": None, "web_position": 0.01}, "needs a rim"),
         ({"root_diameter": 0.5}, "below the outer diameter"),
     ],
 )

@@ -5,20 +5,24 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from rotorgear.gears.geometry.blank import BlankShape
 from rotorgear.gears.loaded.tooth_solution import solve_teeth
 from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, compliance_key, gear_compliance
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from tests.unit.gears.tooth_pairs import COARSE, helical, spur
 
+WEBBED = BlankShape(30e-3, 67e-3, 15e-3, 5e-3, 40e-3, 54e-3)
+
 
 def key_of(body: str, *, space: bool) -> ComplianceKey:
     teeth = helical() if space else spur()
     fe = ToothFe(body=body, size=COARSE if space else None)  # type: ignore[arg-type]
-    return compliance_key(teeth.first, fe, 0.3, teeth.width, 30e-3, space=space)
+    return compliance_key(teeth.first, fe, 0.3, teeth.width, 30e-3, space=space, blank=WEBBED)
 
 
-@pytest.mark.parametrize("space", [False, True])
-@pytest.mark.parametrize("body", ["rim", "ring"])
+@pytest.mark.parametrize(
+    ("body", "space"), [("rim", False), ("rim", True), ("ring", False), ("ring", True), ("wheel", True)]
+)
 def test_the_flanks_move_as_the_condensed_compliance_says(body: str, space: bool) -> None:
     key = key_of(body, space=space)
     compliance = gear_compliance(key)

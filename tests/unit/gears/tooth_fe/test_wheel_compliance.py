@@ -1,0 +1,124 @@
+"""Teeth on rim, web and hub: a full disc as a wheel is the ring, both models along the face agree, thinner parts give more."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from rotorgear.gears.geometry.blank import BlankShape, solid_blank
+from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.gears.tooth_fe.compliance_model import compliance_key, gear_compliance, wind_up
+from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
+from rotorgear.gears.tooth_fe.points import MeshSize
+from rotorgear.gears.tooth_fe.settings import ToothFe
+from validation.benchmarks.wheel_compliance import TABLE, Expected, found
+
+SIZE = MeshSize(5, 2, 4, 2, 4, 4)
+EVEN = MeshSize(5, 2, 4, 2, 4, 8)  # polynomials up to the eighth along the face
+TEETH = 30
+ROOT = 0.5 * TEETH - 1.25
+WIDTH = 6.0
+
+
+def compliance(
+    blank: BlankShape,
+    *,
+    space: bool,
+    nu: float = 0.3,
+    helix: float = 0.0,
+    body: str = "wheel",
+    size: MeshSize = SIZE,
+) -> GearCompliance:
+    gear = GearGeometry(TEETH, 1.0, math.radians(20.0), math.radians(helix))
+    fe = ToothFe(body=body, size=size)  # type: ignore[arg-type]
+    return gear_compliance(compliance_key(gear, fe, nu, WIDTH, blank.bore_radius, space=space, blank=blank))
+
+
+def webbed(rim: float = 2.0, web: float = 1.5, position: float = 0.0) -> BlankShape:
+    return BlankShape(4.0, ROOT - rim, web, position, 6.0, WIDTH)
+
+
+def mean(found: GearCompliance) -> float:
+    """Mean deflection of the loaded tooth's flank under a load spread evenly over its nodes."""
+    return float(found.response(0).mean())
+
+
+def difference(one: GearCompliance, other: GearCompliance, tooth: int) -> float:
+    apart = np.abs(one.response(tooth) - other.response(tooth)).max()
+    return float(apart / np.abs(other.response(0)).max())
+
+
+@pytest.mark.parametrize(("space", "helix", "nu"), [(False, 0.0, 0.0), (True, 25.0, 0.3)])
+def test_a_full_disc_as_a_wheel_is_the_ring(space: bool, helix: float, nu: float) -> None:
+    """In the plane without Poisson's ratio, where free ends of the face change nothing; helical teeth in any case."""
+    blank = solid_blank(8.0)
+    wheel = compliance(blank, space=space, nu=nu, helix=helix)
+    ring = compliance(blank, space=space, nu=nu, helix=helix, body="ring")
+    for tooth in (0, 1, -1, 3):
+        assert difference(wheel, ring, tooth) <= 4e-3
+
+
+def test_polynomials_along_the_face_give_what_layers_give() -> None:
+    blank = webbed()
+    layers = compliance(blank, space=True)
+    even = compliance(blank, space=False, size=EVEN)
+    planes = len(layers.height)
+    along = np.zeros(planes)
+    for plane in range(0, planes - 1, 2):
+        along[plane : plane + 3] += np.array([1.0, 4.0, 1.0]) / 3.0 / (planes - 1)
+    for tooth in (0, 1):
+        G = layers.response(tooth).reshape(planes, len(even.roll), planes, len(even.roll))
+        flat = WIDTH * np.einsum("h,hrks,k->rs", along, G, along)
+        assert np.abs(flat - even.response(tooth)).max() <= 0.015 * np.abs(even.response(0)).max()
+
+
+def test_thinner_rims_and_webs_give_more() -> None:
+    rims = [mean(compliance(webbed(rim=rim), space=False)) for rim in (4.0, 2.0, 1.2)]
+    webs = [mean(compliance(webbed(web=web), space=False)) for web in (6.0, 1.5, 0.8)]
+    assert rims == sorted(rims)
+    assert webs == sorted(webs)
+    assert webs[0] == pytest.approx(mean(compliance(solid_blank(4.0), space=False)), rel=5e-3)
+
+
+def test_where_the_rim_is_cut_from_the_blank_does_not_matter() -> None:
+    """A rim of 3 modules is meshed with the teeth, one of 3.001 modules is cut in its own middle."""
+    whole, cut = (mean(compliance(webbed(rim=rim), space=False, size=EVEN)) for rim in (3.0, 3.001))
+    assert cut == pytest.approx(whole, rel=5e-3)
+
+
+def test_a_web_off_the_middle_tilts_the_rim() -> None:
+    low, high = (compliance(webbed(position=position), space=True) for position in (-2.0, 2.0))
+    planes = len(low.height)
+
+    def ends(found: GearCompliance) -> tuple[float, float]:
+        G = found.response(0).reshape(planes, -1, planes, len(found.roll))
+        deflection = G.mean(axis=(1, 2, 3))
+        return float(deflection[0]), float(deflection[-1])
+
+    # The end over the web gives less; the mirror image is the same turned round.
+    first, last = ends(low)
+    assert last > 1.3 * first
+    assert ends(high) == pytest.approx((last, first), rel=1e-9)
+
+
+def test_the_compliance_without_wind_up_stays_positive_and_loses_the_rotation_only() -> None:
+    gear = GearGeometry(TEETH, 1.0, math.radians(20.0), 0.0)
+    key = compliance_key(gear, ToothFe(body="wheel", size=SIZE), 0.3, WIDTH, 4.0, space=False, blank=webbed())
+    own = gear_compliance(key).response(0)
+    lost = wind_up(key)
+    assert 0.0 < lost < float(own.min())
+    assert np.linalg.eigvalsh(own - lost)[0] > 0.0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("row", TABLE, ids=lambda row: f"{row.rim} {row.web}")
+def test_the_wheel_in_3d_within_a_percent(row: Expected) -> None:
+    ours = found(row)
+    assert ours.mean == pytest.approx(row.mean, rel=0.01)
+    assert ours.middle == pytest.approx(row.middle, rel=0.01)
+    assert ours.ends == pytest.approx(row.ends, rel=0.01)
+    assert ours.wind_up == pytest.approx(row.wind_up, rel=0.01)
+    assert ours.mean - ours.wind_up == pytest.approx(row.mean - row.wind_up, rel=0.015)
+    assert ours.even == pytest.approx(row.mean, rel=0.015)
