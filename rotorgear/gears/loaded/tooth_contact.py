@@ -22,7 +22,7 @@ from rotorgear.gears.tooth_fe.compliance_model import (
     wind_up,
 )
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
-from rotorgear.gears.tooth_fe.settings import ToothFe
+from rotorgear.gears.tooth_fe.settings import Body, ToothFe
 from rotorgear.progress import Progress, silent
 
 # Stations of the preview along the face.
@@ -140,13 +140,14 @@ def contact_problem(teeth: ToothPair, progress: Progress = silent, *, fresh: boo
     held_radii = []
     for i, body in enumerate(bodies):
         key = gear_key(teeth, i, space=space)
+        chosen = fe.body_of(body.blank)
         name = ("pinion", "gear")[i]
 
         def told(fraction: float, text: str, i: int = i, name: str = name) -> None:
             progress(0.5 * (i + fraction), f"{name}: {text}")
 
         told(0.0, "teeth")
-        compliances.append(_without_torsion(gear_compliance(key, told, fresh=fresh), key, fe))
+        compliances.append(_without_torsion(gear_compliance(key, told, fresh=fresh), key, chosen, fe))
         held_radii.append(module * held_radius(key))
         # A plane model is that of a unit width in the transverse section: cos b_b of the force, and again of the displacement,
         # lie in that section. In space the compliance of a body grows as 1 / (E m_n).
@@ -188,9 +189,9 @@ def gear_key(teeth: ToothPair, gear: int, *, space: bool) -> ComplianceKey:
     )
 
 
-def _without_torsion(compliance: GearCompliance, key: ComplianceKey, fe: ToothFe) -> GearCompliance:
-    """The compliance without the rotation of the teeth about the axis against the held circle, if that is asked for."""
-    if not fe.exclude_torsion or key.arc:
+def _without_torsion(compliance: GearCompliance, key: ComplianceKey, body: Body, fe: ToothFe) -> GearCompliance:
+    """The compliance without the rotation of the teeth about the axis against the held circle, where that is left out."""
+    if not fe.excludes_torsion(body):
         return compliance
     return replace(compliance, flexibility=compliance.flexibility - wind_up(key))
 

@@ -11,6 +11,7 @@ in normal modules. Reference: E. L. Wilson, AIAA Journal 3 (1965) 2269, structur
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -21,9 +22,10 @@ from scipy.sparse.linalg import splu
 from rotorgear.gears.geometry.blank import BlankShape
 from rotorgear.gears.tooth_fe.elasticity import assembled, component_dofs, lame
 
-# Largest side of an element over the thickness of its part, and in normal modules.
+# Largest side of an element over the thickness of its part, and in normal modules along the radius and along the axis. Along the
+# axis it is no coarser than the layers of the teeth above: what they do between two nodes of the blank would meet no resistance.
 _ACROSS_PART = 1.0 / 6.0
-_LARGEST_SIDE = 3.0
+_LARGEST_SIDE = (3.0, 0.8)
 # Harmonics up to here are worked out one by one; beyond, K(n) is so smooth that a spline through some of them serves.
 _EVERY = 12
 _STEP = 1.25
@@ -121,6 +123,36 @@ class BlankSection:
         return float(2.0 * np.pi * first @ (self._inertia @ second))
 
 
+@dataclass(frozen=True)
+class BlankTorsion:
+    """A gear whose teeth turn against their bore.
+
+    Attributes:
+        flexibility: rotation of the root circle against the bore over the torque (rad/(N m)), of one helix.
+        polar_share: (2, 2) polar moment of inertia about (bore, teeth), over the whole: what lies between turns with both, in the
+            shape of the static twist.
+    """
+
+    flexibility: float
+    polar_share: np.ndarray
+
+
+def blank_torsion(
+    shape: BlankShape, width: float, radii: tuple[float, float], youngs_modulus: float, poisson_ratio: float
+) -> BlankTorsion:
+    """Torsion of a blank in SI units; radii: of the root circle and of the reference circle, up to which teeth count as solid."""
+    root, outside = radii
+    section = BlankSection(shape, width, root, poisson_ratio)
+    twist = section.twist()
+    flexibility = section.circle_mean(twist)
+    teeth = twist / flexibility
+    bore = 1.0 - teeth
+    cross = section.polar_moment(bore, teeth)
+    ring = 0.5 * np.pi * width * (outside**4 - root**4)
+    polar = np.array([[section.polar_moment(bore, bore), cross], [cross, section.polar_moment(teeth, teeth) + ring]])
+    return BlankTorsion(flexibility / youngs_modulus, polar / polar.sum())
+
+
 def torsional_flexibility(shape: BlankShape, width: float, root_radius: float, poisson_ratio: float) -> float:
     """Mean rotation of the root circle against the bore for a unit torque, without the teeth."""
     section = BlankSection(shape, width, root_radius, poisson_ratio)
@@ -133,8 +165,8 @@ def _dofs(nodes: np.ndarray) -> np.ndarray:
 
 def _section_mesh(parts: Sequence[Rectangle]) -> tuple[np.ndarray, np.ndarray]:
     """Nodes (p, 2) and cells (9, e) of quadratic rectangles over the parts of a section, on lines that all parts share."""
-    r = _lines([part[:2] for part in parts])
-    z = _lines([part[2:] for part in parts])
+    r = _lines([part[:2] for part in parts], _LARGEST_SIDE[0])
+    z = _lines([part[2:] for part in parts], _LARGEST_SIDE[1])
     rows, columns = np.meshgrid(np.arange(len(r) - 1), np.arange(len(z) - 1), indexing="ij")
     x = 0.5 * (r[rows] + r[rows + 1])
     y = 0.5 * (z[columns] + z[columns + 1])
@@ -151,14 +183,14 @@ def _section_mesh(parts: Sequence[Rectangle]) -> tuple[np.ndarray, np.ndarray]:
     return points, cells.reshape(-1, 9).T
 
 
-def _lines(intervals: Sequence[Sequence[float]]) -> np.ndarray:
+def _lines(intervals: Sequence[Sequence[float]], largest: float) -> np.ndarray:
     """Lines through the ends of all intervals, and between them so close that each interval has a few elements."""
     ends = np.unique(np.round(np.concatenate([np.asarray(interval) for interval in intervals]), 9))
     found = [ends[:1]]
     for low, high in pairwise(ends):
         middle = 0.5 * (low + high)
-        side = min((_ACROSS_PART * (b - a) for a, b in intervals if a < middle < b), default=_LARGEST_SIDE)
-        count = max(1, int(np.ceil((high - low) / min(side, _LARGEST_SIDE) - 1e-9)))
+        side = min((_ACROSS_PART * (b - a) for a, b in intervals if a < middle < b), default=largest)
+        count = max(1, int(np.ceil((high - low) / min(side, largest) - 1e-9)))
         found.append(np.linspace(low, high, count + 1)[1:])
     return np.concatenate(found)
 

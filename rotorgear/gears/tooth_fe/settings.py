@@ -43,7 +43,7 @@ class ToothFe:
     body: Body | None = None
     rim_thickness: float = RIM
     arc: int = ARC
-    exclude_torsion: bool = False
+    exclude_torsion: bool | None = None
     space: bool | None = None
     size: MeshSize | None = None
     patch: float | None = None
@@ -70,6 +70,12 @@ class ToothFe:
             return self.body
         return "rim" if blank is None or blank.is_solid else "wheel"
 
+    def excludes_torsion(self, body: Body) -> bool:
+        """Whether the wind-up between bore and teeth is left out."""
+        if body == "rim":
+            return False  # held just below the teeth, it has none
+        return bool(self.exclude_torsion)
+
     def body_text(self, bodies: tuple[Body, Body], held: tuple[float, float]) -> str:
         """What the teeth of pinion and gear stand on and where that is held, in a line; held: radii of these circles (m)."""
         if bodies[0] == bodies[1]:
@@ -81,9 +87,9 @@ class ToothFe:
         if body == "rim":
             return f"rim: arc of {self.arc} pitches, held at its end cuts and at radius {radius} mm"
         if body == "wheel":
-            wound = "without the" if self.exclude_torsion else "with the"
+            wound = "without the" if self.excludes_torsion(body) else "with the"
             return f"wheel: rim, web and hub held at radius {radius} mm, {wound} wind-up between bore and teeth"
-        torsion = ", without the wind-up of the disc" if self.exclude_torsion else ""
+        torsion = ", without the wind-up of the disc" if self.excludes_torsion(body) else ""
         return f"ring: full disc held at radius {radius} mm{torsion}"
 
     @property
