@@ -87,8 +87,9 @@ RULES: dict[type[BaseModel], str] = {
     GearBody: """
         Without a rim the blank is a solid ring from the bore to the reference circle. A rim needs a web.""",
     Flank: """
-        For [loaded teeth](mesh.md) only. Amounts are depths of removed material along the flank normal; tip relief stands
-        in the gear. `z` is that of the gear's shaft, and of each helix by itself in a herringbone.""",
+        For [loaded teeth](mesh.md) only; their shapes and the columns of `topography` stand there. Amounts are depths of
+        removed material along the flank normal; tip relief stands in the gear. `z` is that of the gear's shaft, and of each
+        helix by itself in a herringbone.""",
     ToothFeTable: """
         For `stiffness = "tooth_fe"` and [`rotorgear mesh`](mesh.md).""",
     Mesh: """

@@ -39,15 +39,16 @@ def load(path: str | Path) -> Model:
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise _refused(path, f"can't be read: {reason}") from None
-    return loads(text, path.name)
+    return loads(text, path.name, path.parent)
 
 
-def loads(text: str, source: str = "model") -> Model:
+def loads(text: str, source: str = "model", folder: str | Path = ".") -> Model:
     """Read a model from the text of a file.
 
     Args:
         text: in TOML.
         source: what errors call it.
+        folder: where files that it names lie; the current one by default.
 
     Returns:
         The model, checked.
@@ -61,10 +62,20 @@ def loads(text: str, source: str = "model") -> Model:
         raise ModelError([Problem(source, "", "not valid TOML: brackets within brackets too deep")], source) from None
     except ValueError as error:  # a TOMLDecodeError, or a number of thousands of digits
         raise ModelError([_syntax_problem(source, str(error), text)], source) from None
+    _find_topographies(data, Path(folder))
     try:
         return Model(**data)
     except ModelError as error:
         raise ModelError(error.problems, source) from None
+
+
+def _find_topographies(data: dict[str, Any], folder: Path) -> None:
+    """Let files of measured flanks be looked for beside the model file, not where the program runs."""
+    gears = data.get("gears")
+    for gear in gears.values() if isinstance(gears, dict) else ():
+        flank = gear.get("flank") if isinstance(gear, dict) else None
+        if isinstance(flank, dict) and isinstance(flank.get("topography"), str):
+            flank["topography"] = str(folder / flank["topography"])
 
 
 def _refused(path: Path, text: str, hint: str = "") -> ModelError:

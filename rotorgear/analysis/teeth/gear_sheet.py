@@ -132,6 +132,7 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
     pair = teeth.pair
     backlash = mesh.backlash
     lines = contact_line_length(teeth, (np.arange(_POSITIONS) + 0.5) / _POSITIONS)
+    line = generated_line(g1, g2, pair, (teeth.first_flank.tip_break, teeth.second_flank.tip_break))
     iso = pair_iso_stiffness(teeth)
     force = 0.0
     sense = 1
@@ -163,7 +164,7 @@ def _mesh(model: Model, mesh: MeshLayout) -> MeshSheetRow:
         transverse_contact_ratio=pair.transverse_contact_ratio,
         overlap_ratio=pair.overlap_ratio,
         total_contact_ratio=pair.total_contact_ratio,
-        involute_contact_ratio=generated_line(g1, g2, pair).contact_ratio,
+        involute_contact_ratio=line.contact_ratio,
         base_pitch_m=teeth.base_pitch,
         approach_length_m=-pair.start_of_contact,
         recess_length_m=pair.end_of_contact,

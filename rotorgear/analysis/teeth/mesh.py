@@ -105,7 +105,7 @@ def _periods(teeth: ToothPair, wanted: int | None) -> int:
         if not 1 <= wanted <= _MOST_PERIODS:
             raise AnalysisError(f"--periods: got {wanted}, expected 1 to {_MOST_PERIODS}")
         return wanted
-    wrong = [tooth for flank in (teeth.first_flank, teeth.second_flank) for tooth, error in flank.pitch_error if error]
+    wrong = (*teeth.first_flank.single_teeth, *teeth.second_flank.single_teeth)
     return min(max(wrong) + 2, _MOST_PERIODS) if wrong else 1
 
 

@@ -74,12 +74,13 @@ def mesh_request(
         raise AnalysisError(f"--stiffness: there is no stiffness model '{chosen}': {hint}.")
     if chosen == "given" and isinstance(given, str):
         raise AnalysisError(f"--stiffness given: meshes.{mesh.name} names the model '{given}' and gives no numbers.")
+    load, sense = _load(model, mesh, torque)
     teeth: ToothPair | None = None
     if chosen != "given":
         wanted = {key: value for key, value in fe.items() if value is not None}
-        settings: ToothFe = replace(mesh.teeth.fe, **wanted)  # type: ignore[arg-type]
-        teeth = replace(mesh.teeth, fe=settings)
-    load, sense = _load(model, mesh, torque)
+        working = mesh.working_teeth(sense)
+        settings: ToothFe = replace(working.fe, **wanted)  # type: ignore[arg-type]
+        teeth = replace(working, fe=settings)
     if load is None and chosen in MODELS and MODELS[chosen].needs_load:
         raise AnalysisError(
             f"meshes.{mesh.name} carries no torque, and the stiffness of loaded teeth needs one: give --torque, or power or "

@@ -25,7 +25,7 @@ class LineOfAction:
     Attributes:
         base_radius: r_b of both gears.
         form: roll lengths of both gears where the involute begins.
-        tip: roll lengths of both gears at the tip.
+        tip: roll lengths of both gears where it ends: at the tip, or below its rounding or chamfer.
         centre_distance: a_w.
         pressure_angle: a_wt, the working transverse pressure angle.
         base_pitch: p_bt, transverse.
@@ -99,13 +99,23 @@ class LineOfAction:
         return tip + excess + effective - self.length, mate * t
 
 
-def generated_line(first: GearGeometry, second: GearGeometry, pair: PairGeometry) -> LineOfAction:
-    """Line of action of a pair, with the form circles of its generated teeth; AnalysisError for teeth that can't be made."""
+def generated_line(
+    first: GearGeometry, second: GearGeometry, pair: PairGeometry, tip_breaks: tuple[float, float] = (0.0, 0.0)
+) -> LineOfAction:
+    """Line of action of a pair, from the form circles of its generated teeth to their tip form circles.
+
+    Args:
+        first, second: pinion and gear; pair: their geometry at the centre distance.
+        tip_breaks: roll lengths (m) that rounded or chamfered tips take off the involutes.
+
+    Raises:
+        AnalysisError: teeth that can't be made.
+    """
     outlines = [tooth_outline(g) for g in (first, second)]
     return LineOfAction(
         base_radius=(first.base_radius, second.base_radius),
         form=(outlines[0].form_roll_length, outlines[1].form_roll_length),
-        tip=(outlines[0].tip_roll_length, outlines[1].tip_roll_length),
+        tip=(outlines[0].tip_roll_length - tip_breaks[0], outlines[1].tip_roll_length - tip_breaks[1]),
         centre_distance=pair.centre_distance,
         pressure_angle=pair.working_transverse_pressure_angle,
         base_pitch=first.transverse_base_pitch,

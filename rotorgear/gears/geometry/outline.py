@@ -55,6 +55,26 @@ class ToothOutline:
         return math.sqrt(self.tip_radius**2 - self.geometry.base_radius**2)
 
     @property
+    def rounding_share(self) -> float:
+        """Length that a rounding of the tip edge takes off tip arc and flank, over its radius.
+
+        Flank and tip arc enclose 90 deg + alpha_a, alpha_a being the transverse profile angle at the tip. A circle that touches
+        both begins at radius / tan((90 deg + alpha_a)/2) from the edge on either.
+        """
+        edge = 0.5 * math.pi + math.atan(self.tip_roll_length / self.geometry.base_radius)
+        return 1.0 / math.tan(0.5 * edge)
+
+    def tip_form_roll_length(self, rounding: float = 0.0, chamfer: float = 0.0) -> float:
+        """xi_Fa (m), where the involute ends below a rounding (radius, m) or a chamfer (radial height, m) of the tip edge.
+
+        Along the flank the rounding takes off the arc (xi_a^2 - xi_Fa^2)/(2 r_b).
+        """
+        base = self.geometry.base_radius
+        radius = self.tip_radius - chamfer
+        square = (radius - base) * (radius + base) - 2.0 * base * rounding * self.rounding_share
+        return math.sqrt(max(square, 0.0))
+
+    @property
     def root_half_angle(self) -> float:
         """Angle at which the trochoid reaches the root circle; pi/z where no root arc is left."""
         return float(self.fillet(1.0)[1])

@@ -127,7 +127,7 @@ def contact_map(teeth: ToothPair, load: float, positions: int = POSITIONS) -> Co
     """
     problem = contact_problem(teeth)
     cosine = float(np.cos(problem.line.base_helix_angle))
-    wrong = [tooth for flank in (teeth.first_flank, teeth.second_flank) for tooth, error in flank.pitch_error if error]
+    wrong = (*teeth.first_flank.single_teeth, *teeth.second_flank.single_teeth)
     periods = max(wrong) + 2 if wrong else 1
     u = np.arange(positions * periods) / positions
     cycles = [mesh_cycle(problem, share * load * cosine, u) for share in _LOADS[1:]]

@@ -87,15 +87,17 @@ class ContactProblem:
             form = self.line.form[i]
             tip = self.line.tip[i]
             gap = gap + flank.depth(slices.roll[i], slices.z, form, tip, self.width)
-            if flank.pitch_error:
-                # Pair -n comes into mesh n periods after pair 0.
-                gap = gap + flank.pitch_depth(-slices.pair, self.teeth[i])[:, None]
+            # Pair -n comes into mesh n periods after pair 0.
+            gap = gap + flank.measured_depth(slices.roll[i], slices.z, -slices.pair, self.teeth[i])
+            gap = gap + flank.pitch_depth(-slices.pair, self.teeth[i])[:, None]
         return np.asarray(np.sum(gap * slices.weight, axis=1))
 
 
 def line_of_action(teeth: ToothPair) -> LineOfAction:
     """Line of action of a pair, with the form circles of its generated teeth."""
-    line = generated_line(teeth.first, teeth.second, teeth.pair)
+    line = generated_line(
+        teeth.first, teeth.second, teeth.pair, (teeth.first_flank.tip_break, teeth.second_flank.tip_break)
+    )
     if line.contact_ratio < 1.0 and line.base_helix_angle == 0.0:
         raise AnalysisError(
             f"The transverse contact ratio is {line.contact_ratio:.3f}: below 1 there are positions where no teeth touch. "

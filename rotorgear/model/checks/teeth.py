@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from rotorgear.errors import Problem, RotorgearError
@@ -38,7 +39,8 @@ def tooth_problems(address: str, gear: Gear, geometry: GearGeometry) -> Iterator
     if start is not None and not gear.tip_relief:
         yield Problem(f"{address}.tip_relief", "", "missing", "required: amount of the tip relief at the tip circle")
     low = 2.0 * outline.form_radius
-    high = 2.0 * outline.tip_radius
+    tip_form = outline.tip_form_roll_length(gear.flank.tip_rounding, gear.flank.tip_chamfer)
+    high = 2.0 * math.hypot(geometry.base_radius, tip_form)
     if start is not None and not low <= start < high:
         limits = f"a diameter on the involute, from {millimetres(low)} to below {millimetres(high)}"
         yield Problem(f"{address}.tip_relief_diameter", millimetres(start), limits)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from rotorgear.gears.geometry.blank import BlankShape, RigidBody, gear_blank, solid_blank
 from rotorgear.gears.geometry.geometry import GearGeometry
@@ -127,8 +127,22 @@ class GearLayout:
 
     @cached_property
     def flank(self) -> FlankModification:
-        """Modifications of the flank along roll length and face; none for a lumped gear."""
-        from rotorgear.gears.geometry.flank import FlankModification
+        """The left flank, which works where the torque on the pinion is positive about +z."""
+        return self.flank_of("left")
+
+    @property
+    def flanks_differ(self) -> bool:
+        """Whether left and right flanks were measured apart."""
+        measured = self.part.flank.topography
+        return measured is not None and any(grid.flank is not None for grid in measured.grids)
+
+    def flank_of(self, side: Literal["left", "right"]) -> FlankModification:
+        """Modifications of the flanks of one side along roll length and face; none for a lumped gear.
+
+        Sides are those of a tooth that points up, seen from the end of larger z. What is given beside a topography is that of
+        both sides.
+        """
+        from rotorgear.gears.geometry.flank import FlankGrid, FlankModification
         from rotorgear.gears.geometry.outline import tooth_outline
 
         geometry = self.geometry
@@ -140,15 +154,34 @@ class GearLayout:
         def roll(diameter: float | None) -> float:
             return math.sqrt(max(0.25 * (diameter or 0.0) ** 2 - geometry.base_radius**2, 0.0))
 
+        tip = outline.tip_form_roll_length(given.tip_rounding, given.tip_chamfer)
+        grids: dict[int | None, FlankGrid] = {}
+        # What was measured on one side alone counts there before what stands for both.
+        measured = sorted(given.topography.grids if given.topography else (), key=lambda grid: grid.flank is not None)
+        for grid in measured:
+            if grid.flank not in (None, side):
+                continue
+            places = grid.places
+            if given.topography and given.topography.by == "diameter":
+                places = tuple(roll(diameter) for diameter in places)
+            # A deviation is positive where material stands out, a depth where it is taken off.
+            depth = tuple(tuple(-value for value in row) for row in grid.deviation)
+            grids[grid.tooth] = FlankGrid(places, grid.z, depth)
         return FlankModification(
             tip_relief=self.part.tip_relief,
-            tip_relief_length=outline.tip_roll_length - roll(self.part.tip_relief_diameter),
+            tip_relief_length=tip - roll(self.part.tip_relief_diameter),
             root_relief=given.root_relief,
             root_relief_length=roll(given.root_relief_diameter) - outline.form_roll_length,
             crowning=given.crowning,
             end_relief=given.end_relief,
             end_relief_length=given.end_relief_length,
             helix_slope=given.helix_slope,
+            profile_crowning=given.profile_crowning,
+            profile_slope=given.profile_slope,
+            bias=given.bias,
+            tip_break=outline.tip_roll_length - tip,
+            topography=grids.pop(None, None),
+            tooth_topography=tuple((tooth, grid) for tooth, grid in grids.items() if tooth is not None),
             pitch_error=tuple((int(tooth), error) for tooth, error in sorted(given.pitch_errors.items())),
         )
 

@@ -243,12 +243,18 @@ class MeshLayout:
             self.part.tilt,
         )
 
+    def working_teeth(self, sense: int) -> ToothPair:
+        """The teeth with the flanks that work where the torque on the pinion has this sense about +z: the left ones for +1."""
+        if sense > 0 or not any(gear.flanks_differ for gear in self.gears):
+            return self.teeth
+        return replace(self.teeth, first_flank=self.pinion.flank_of("right"), second_flank=self.gear.flank_of("right"))
+
     def helix_teeth(self, helix: int, sense: int = 1) -> ToothPair:
         """The teeth of one helix as contact runs over them, with the misalignment of the state that the mesh is about.
 
         `sense` is that of the torque on the pinion about +z. Raises what `teeth` raises.
         """
-        teeth = self.teeth
+        teeth = self.working_teeth(sense)
         if self.part.face_loads:
             teeth = replace(teeth, misalignment=self.part.face_loads[helix].misalignment)
         return teeth if self.helix_senses(sense)[helix] > 0 else mirrored(teeth)
@@ -273,7 +279,7 @@ class MeshLayout:
             return uniform_line(stiffness, self.width, normal_force, misalignment)
         from rotorgear.gears.loaded.face import loaded_face
 
-        teeth = replace(self.teeth, misalignment=misalignment)
+        teeth = replace(self.working_teeth(sense), misalignment=misalignment)
         load = float(f"{normal_force:.12g}")
         try:
             if self.helix_senses(sense)[helix] > 0:
@@ -385,15 +391,14 @@ class MeshLayout:
 
 def mirrored(teeth: ToothPair) -> ToothPair:
     """The pair seen from the other end of the face: that of the other hand, or with the other flanks in contact."""
-    flanks = [replace(flank, helix_slope=-flank.helix_slope) for flank in (teeth.first_flank, teeth.second_flank)]
     bodies = [
         replace(body, blank=body.blank and body.blank.mirrored()) for body in (teeth.first_body, teeth.second_body)
     ]
     return replace(
         teeth,
         misalignment=-teeth.misalignment,
-        first_flank=flanks[0],
-        second_flank=flanks[1],
+        first_flank=teeth.first_flank.mirrored(),
+        second_flank=teeth.second_flank.mirrored(),
         first_body=bodies[0],
         second_body=bodies[1],
     )

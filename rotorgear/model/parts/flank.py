@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from rotorgear.model.parts.fields import Length, Name, NonNegativeLength, Part, PositiveLength, PositiveRatio, Whole
+from rotorgear.model.parts.topography import TopographyFile
 
 
 class Flank(Part):
@@ -14,10 +15,26 @@ class Flank(Part):
 
     root_relief: NonNegativeLength = Field(0.0, description="linear relief at the form circle")
     root_relief_diameter: PositiveLength | None = Field(None, description="diameter at which the root relief starts")
-    crowning: NonNegativeLength = Field(0.0, description="parabolic relief at both ends of the face")
+    crowning: NonNegativeLength = Field(0.0, description="lead crowning: parabolic relief at both ends of the face")
+    profile_crowning: NonNegativeLength = Field(
+        0.0, description="profile crowning (barrelling): parabolic relief at form circle and tip"
+    )
+    profile_slope: Length = Field(0.0, description="depth at the tip less that at the form circle")
     end_relief: NonNegativeLength = Field(0.0, description="linear relief at both ends of the face")
     end_relief_length: NonNegativeLength = Field(0.0, description="length of the end relief along the face")
     helix_slope: Length = Field(0.0, description="depth at the end of larger z less that at the end of smaller z")
+    bias: Length = Field(
+        0.0, description="twist of the flank: profile slope at the end of larger z less that at the end of smaller z"
+    )
+    tip_rounding: NonNegativeLength = Field(
+        0.0, description="radius of the rounded tip edge; the involute ends where it begins"
+    )
+    tip_chamfer: NonNegativeLength = Field(
+        0.0, description="radial height of the chamfered tip edge; the involute ends below it"
+    )
+    topography: TopographyFile | None = Field(
+        None, description="CSV file of measured deviations, beside the model file, added to the rest"
+    )
     pitch_errors: dict[Name, Length] = Field(
         default_factory=dict,
         description="tooth number -> how far its flank stands back along the line of action; tooth 0 meshes first",

@@ -1,0 +1,181 @@
+"""Measured flanks: deviations over roll length or diameter and face, read from a CSV file or given as numbers.
+
+One header row, one point a row, comma, semicolon or tab between the cells; blank rows and rows that start with # are skipped.
+Columns: `roll_length` or `diameter`, `z` and `deviation`, each with its unit in the header (`roll_length_mm`, `z (mm)`,
+`deviation_um`); `tooth` and `flank` (left or right) where the points belong to one tooth or one side. The points of each tooth
+and side make a whole grid, in any order. Deviations are positive where material stands out, as measuring machines print them
+(ISO 1328-1); z is measured from the middle of the face.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, WithJsonSchema
+
+from rotorgear.model.parts.fields import Length, Part, refuse
+from rotorgear.quantity import QuantityError, nearest, parse_quantity
+
+Side = Literal["left", "right"]
+_LENGTHS = ("roll_length", "diameter", "z", "deviation")
+_COLUMNS = (*_LENGTHS, "tooth", "flank")
+# Units of a header, as the quantities know them: both letters for micro are in use.
+_UNITS = {"m": "m", "mm": "mm", "um": "um", "\u00b5m": "um", "\u03bcm": "um"}
+# More points are no measurement of a flank.
+_MOST_ROWS = 200_000
+
+
+class MeasuredGrid(Part):
+    """Deviations of one flank, or of all flanks alike, on a grid."""
+
+    tooth: int | None = Field(None, description="number of the tooth; default: all teeth")
+    flank: Side | None = Field(None, description="side of the tooth; default: both")
+    places: tuple[Length, ...] = Field(description="roll lengths or diameters, rising")
+    z: tuple[Length, ...] = Field(description="places along the face from its middle, rising")
+    deviation: tuple[tuple[Length, ...], ...] = Field(
+        description="a row for each place, positive where material stands out"
+    )
+
+
+class Topography(Part):
+    """Measured deviations of a gear's flanks."""
+
+    by: Literal["roll_length", "diameter"] = Field(description="what the places of the grids are")
+    grids: tuple[MeasuredGrid, ...] = Field(description="one for each tooth and side that was measured")
+
+
+def _read(value: Any) -> Any:
+    """A path becomes the contents of its file; numbers stay."""
+    if not isinstance(value, str):
+        return value
+    file = Path(value)
+    try:
+        text = file.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise refuse(f"a CSV file of measured flanks; there is no '{value}'") from None
+    except UnicodeDecodeError:
+        raise refuse(f"a CSV file in UTF-8, which '{file.name}' is not") from None
+    except (OSError, ValueError) as error:
+        raise refuse(f"a CSV file that can be read: {error}") from None
+    return parse_topography(text, file.name)
+
+
+def parse_topography(text: str, name: str) -> dict[str, Any]:
+    """Fields of a `Topography` from the text of a CSV file.
+
+    Args:
+        text: of the file.
+        name: what errors call it.
+
+    Raises:
+        PydanticCustomError: what is wrong, with line and column; `Model` makes a `Problem` of it.
+    """
+    rows = _rows(text, name)
+    header = rows[0][1]
+    columns = [_column(cell, f"{name}:{rows[0][0]}") for cell in header]
+    names = [column for column, _ in columns]
+    repeated = {column for column in names if names.count(column) > 1}
+    if repeated:
+        raise refuse(f"each column once; {name} has '{min(repeated)}' twice")
+    by = [column for column in ("roll_length", "diameter") if column in names]
+    missing = [column for column in ("z", "deviation") if column not in names]
+    if len(by) != 1 or missing:
+        wanted = (
+            "one column of roll_length or diameter, one of z and one of deviation, with units: roll_length_mm, z_mm"
+        )
+        raise refuse(f"{wanted}, deviation_um; {name} has {', '.join(names)}")
+
+    # The points of each tooth and side, by place and z.
+    flanks: dict[tuple[int | None, str | None], dict[tuple[float, float], float]] = {}
+    for number, cells in rows[1:]:
+        line = f"{name}:{number}"
+        if len(cells) != len(columns):
+            raise refuse(f"{len(columns)} cells in each row; {line} has {len(cells)}")
+        found = {column: _cell(cell, column, unit, line) for cell, (column, unit) in zip(cells, columns, strict=True)}
+        points = flanks.setdefault((found.get("tooth"), found.get("flank")), {})
+        place = (found[by[0]], found["z"])
+        if place in points:
+            raise refuse(f"each point of a flank once; {line} repeats one")
+        points[place] = found["deviation"]
+    grids = [_grid(tooth, side, points, name) for (tooth, side), points in flanks.items()]
+    return {"by": by[0], "grids": grids}
+
+
+def _rows(text: str, name: str) -> list[tuple[int, list[str]]]:
+    """Line number and stripped cells of every row that says something, the header first."""
+    lines = text.splitlines()
+    written = [
+        (number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if len(written) < 2:
+        raise refuse(f"a header and at least one point, such as roll_length_mm,z_mm,deviation_um; {name} has none")
+    if len(written) > _MOST_ROWS:
+        raise refuse(f"up to {_MOST_ROWS} points; {name} has {len(written) - 1}")
+    delimiter = max(";\t,", key=written[0][1].count)
+    return [
+        (number, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]) for number, line in written
+    ]
+
+
+def _column(cell: str, line: str) -> tuple[str, str]:
+    """Name and unit of a column from its header: roll_length_mm, roll_length (mm), roll_length [mm]."""
+    words = [word for word in re.split(r"[\s_()\[\]]+", cell.lower()) if word]
+    unit = words.pop() if words and words[-1] in _UNITS else ""
+    column = "_".join(words)
+    if column not in _COLUMNS:
+        guess = nearest(column, list(_COLUMNS))
+        hint = f"did you mean '{guess}'?" if guess else f"there are {', '.join(_COLUMNS)}"
+        raise refuse(f"columns that are known; {line} has '{cell}' ({hint})")
+    if column in _LENGTHS and not unit:
+        raise refuse(
+            f"the unit of '{column}' in its header, such as {column}_{'um' if column == 'deviation' else 'mm'}; {line}"
+        )
+    return column, _UNITS.get(unit, "")
+
+
+def _cell(cell: str, column: str, unit: str, line: str) -> Any:
+    """Number (m), tooth or side of one cell; an empty tooth or side means all."""
+    if column == "flank":
+        if cell.lower() not in ("", "left", "right"):
+            raise refuse(f"left or right as flank; {line} has '{cell}'")
+        return cell.lower() or None
+    if column == "tooth":
+        if cell and not cell.isdigit():
+            raise refuse(f"the number of a tooth from 0 on; {line} has '{cell}'")
+        return int(cell) if cell else None
+    try:
+        value = parse_quantity(f"{float(cell)!r} {unit}", "length")
+    except (ValueError, QuantityError):
+        value = math.nan
+    if not math.isfinite(value):
+        raise refuse(f"a number as {column}; {line} has '{cell}'") from None
+    return value
+
+
+def _grid(tooth: int | None, side: str | None, points: dict[tuple[float, float], float], name: str) -> dict[str, Any]:
+    """The points of one flank as a grid, which they must fill."""
+    places = sorted({place for place, _ in points})
+    z = sorted({station for _, station in points})
+    whose = " ".join(
+        word for word in ("" if tooth is None else f"tooth {tooth}", f"{side} flank" if side else "") if word
+    )
+    empty = [(place, station) for place in places for station in z if (place, station) not in points]
+    if empty:
+        where = f"{1e3 * empty[0][0]:g} mm at z = {1e3 * empty[0][1]:g} mm"
+        raise refuse(
+            f"a whole grid, each place at each z; {name}{f' ({whose})' if whose else ''} lacks {len(empty)} of "
+            f"{len(places)} x {len(z)} points, the first {where}"
+        )
+    rows = [[points[place, station] for station in z] for place in places]
+    return {"tooth": tooth, "flank": side, "places": places, "z": z, "deviation": rows}
+
+
+TopographyFile = Annotated[
+    Topography,
+    BeforeValidator(_read),
+    WithJsonSchema({"type": "string", "description": "CSV file of measured flanks, beside the model file"}),
+]
