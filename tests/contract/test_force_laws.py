@@ -201,6 +201,7 @@ def test_damping_that_sets_in_with_contact_has_an_impulse() -> None:
 @pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
 def test_in_lanes_a_law_is_what_it_is_alone(name: str, law: ForceLaw) -> None:
     from rotorgear.solvers.contact.vectors import LANES
+    from rotorgear.solvers.lanes.arguments import ColumnValues
     from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, SIDE, contacts
 
     columns = Columns.of(law.columns(SPEED)).scaled(SPEED)
@@ -214,8 +215,9 @@ def test_in_lanes_a_law_is_what_it_is_alone(name: str, law: ForceLaw) -> None:
     d, found, F, used = (np.zeros((rows, LANES)) for rows in (2 * k, FOUND * k, k, k))
     d[0::2] = np.array([one for one, _ in moved]).T
     d[1::2] = np.array([rate for _, rate in moved]).T / SPEED
-    in_lanes = [np.repeat(each[:, :, None], LANES, axis=2) for each in (columns.values, table)]
-    contacts(columns.kind, columns.mode, *in_lanes, 1.0, d, F, found.reshape(k, FOUND, LANES), used)
+    values, tables = (np.repeat(each[:, :, None], LANES, axis=2) for each in (columns.values, table))
+    acting = ColumnValues(columns.kind, columns.mode, columns.jumps, columns.counted, True, values)
+    contacts(acting, tables, 1.0, d, F, found.reshape(k, FOUND, LANES), used)
     for lane, (one, rate) in enumerate(moved):
         alone = law.evaluate(one, rate, angle=ANGLE, speed=SPEED)
         assert SPEED**2 * F[:, lane] == pytest.approx(alone.force, rel=1e-12)

@@ -61,6 +61,20 @@ print(repr([
 ]))
 """
 
+# Run by Python instead of compiled: rows of lanes are numpy's, which the intrinsics of vectors.py stand for in compiled code.
+INTERPRETED = """
+import numpy as np
+from rotorgear.solvers.contact import vectors
+vectors.fill = lambda number: np.full(vectors.LANES, number)
+vectors.get = lambda array, row: array.reshape(-1, vectors.LANES)[row].copy()
+def put(array, row, value):
+    array.reshape(-1, vectors.LANES)[row] = value
+vectors.put = put
+vectors.where_positive = lambda sign, then, otherwise: np.where(sign > 0.0, then, otherwise)[()]
+vectors.larger = lambda a, b: np.where(a > b, a, b)[()]
+vectors.smaller = lambda a, b: np.where(a < b, a, b)[()]
+"""
+
 
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
@@ -71,8 +85,8 @@ def copy(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def answers(copy: Path, program: str) -> str:
-    environment = {**os.environ, "PYTHONPATH": str(copy), "ROTORGEAR_CACHE": str(copy / "cache")}
+def answers(copy: Path, program: str, **settings: str) -> str:
+    environment = {**os.environ, "PYTHONPATH": str(copy), "ROTORGEAR_CACHE": str(copy / "cache"), **settings}
     environment.pop("NUMBA_CACHE_DIR", None)
     run = subprocess.run(
         [sys.executable, "-c", program], cwd=copy, env=environment, capture_output=True, text=True, check=False
@@ -104,11 +118,28 @@ def test_a_change_of_an_inlined_function_reaches_the_compiled_loop(copy: Path) -
     assert answer(copy, INTEGRATE) != pytest.approx(before, rel=1e-3)
 
 
-@pytest.mark.long  # compiles all loops anew
-def test_the_contact_formula_stands_once_for_lanes_trajectory_integrator_and_equilibrium(copy: Path) -> None:
-    before = np.array(json.loads(answers(copy, EVERYWHERE)))
+def change_the_contact_formula(copy: Path) -> None:
     change(copy, "solvers/contact/gap_contact.py", "elastic = k * depth", "elastic = 1.5 * k * depth")
+
+
+def interpreted(copy: Path) -> np.ndarray:
+    return np.array(json.loads(answers(copy, INTERPRETED + EVERYWHERE, NUMBA_DISABLE_JIT="1")))
+
+
+def test_the_contact_formula_stands_once_for_lanes_trajectory_integrator_and_equilibrium(copy: Path) -> None:
+    before = interpreted(copy)
+    change_the_contact_formula(copy)
+    after = interpreted(copy)
+    assert np.all(np.abs(after - before) > 1e-3 * np.abs(before)), (before, after)
+
+
+@pytest.mark.long  # compiles all loops anew
+def test_compiled_loops_follow_a_change_of_the_contact_formula_and_agree_with_python(copy: Path) -> None:
+    before = np.array(json.loads(answers(copy, EVERYWHERE)))
+    assert before == pytest.approx(interpreted(copy), rel=1e-9)
+    change_the_contact_formula(copy)
     after = np.array(json.loads(answers(copy, EVERYWHERE)))
+    assert after == pytest.approx(interpreted(copy), rel=1e-9)
     assert np.all(np.abs(after - before) > 1e-3 * np.abs(before)), (before, after)
 
 

@@ -100,7 +100,7 @@ def _loads(problem: ContactProblem, cycle: MeshCycle, gear: int) -> dict[int, np
     """Forces along the outward normals at the flank nodes by tooth, counted clockwise in the gear's own frame (N)."""
     slices = cycle.slices
     place = problem.place(gear, slices.z)
-    spread = patch_loads(slices, gear, problem.compliance[gear], problem.module, place, cycle.patch)
+    spread = patch_loads(slices, gear, problem.compliance[gear], problem.module, place, cycle.patch, problem.patch)
     side = 1 if gear == 0 else -1
     loads = {}
     for pair in np.unique(slices.pair[cycle.force > 0.0]):

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-import scipy.sparse as sp
 
 from rotorgear.gears.geometry.line_of_action import LineOfAction
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
@@ -52,6 +51,24 @@ class Slices:
 
     def __len__(self) -> int:
         return len(self.pair)
+
+    def at(self, position: int) -> np.ndarray:
+        """Numbers of the slices at one position; they stand in the order of their positions."""
+        low, high = np.searchsorted(self.position, [position, position + 1])
+        return np.arange(low, high)
+
+    def take(self, here: np.ndarray | slice) -> Slices:
+        """Some of the slices."""
+        return Slices(
+            position=self.position[here],
+            pair=self.pair[here],
+            z=self.z[here],
+            length=self.length[here],
+            weight=self.weight,
+            roll=self.roll[:, here],
+            gap=self.gap[here],
+            corner=self.corner[here],
+        )
 
 
 def contact_slices(
@@ -151,16 +168,38 @@ class PatchLoads:
     """Unit normal forces on the slices of one gear.
 
     Attributes:
-        loads: nodal loads, sparse (n, nodes).
+        loads: nodal loads (n, nodes), in the order of the gear's compliance: planes along the face, nodes across in each.
+        layers: (n, 2) first and last layer of elements along the face that a slice loads.
+        across: nodes across the flank in a plane.
         log_width: (n,) mean logarithm of the patches' half-widths in the transverse section, in normal modules.
     """
 
-    loads: sp.csr_array
+    loads: np.ndarray
+    layers: np.ndarray
+    across: int
     log_width: np.ndarray
+
+    def moved(self, flexibility: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Displacements (m, nodes) of the flank's nodes for the slices `rows` (m,): P G, by the layers that a slice loads."""
+        found = np.empty((len(rows), self.loads.shape[1]))
+        first = self.layers[rows, 0]
+        for layer in np.unique(first):
+            of_layer = np.flatnonzero(first == layer)
+            these = rows[of_layer]
+            # Layer e has the planes 2 e to 2 e + 2.
+            nodes = slice(2 * layer * self.across, (2 * int(self.layers[these, 1].max()) + 3) * self.across)
+            found[of_layer] = self.loads[these, nodes] @ flexibility[nodes]
+        return found
 
 
 def patch_loads(
-    slices: Slices, gear: int, compliance: GearCompliance, module: float, place: np.ndarray, widths: tuple[float, float]
+    slices: Slices,
+    gear: int,
+    compliance: GearCompliance,
+    module: float,
+    place: np.ndarray,
+    least: np.ndarray,
+    most: float,
 ) -> PatchLoads:
     """Spread the slices over the flank of one gear.
 
@@ -170,33 +209,41 @@ def patch_loads(
         compliance: of that gear, in normal modules.
         module: normal module (m).
         place: (n, q) places along that gear's face from its middle, in its own direction (m).
-        widths: least and largest half-width c of a patch, in normal modules.
+        least: (n,) least half-width c of each slice's patch, in normal modules.
+        most: largest half-width, where none of the least ones is larger.
     """
     # Patches are measured along the flank: arc = xi^2 / (2 r_b). They end with the flank, so that no pressure acts beyond it.
     base = compliance.base_radius
     arc = (slices.roll[gear] / module) ** 2 / (2.0 * base)
     low = compliance.flank_start**2 / (2.0 * base)
     high = compliance.flank_end**2 / (2.0 * base)
-    c = np.clip(np.minimum(arc - low, high - arc), *widths)
+    c = np.clip(np.minimum(arc - low, high - arc), least[:, None], np.maximum(least, most)[:, None])
 
     # Gauss-Chebyshev, second kind: its weight function sqrt(1 - t^2) is the semi-elliptic pressure itself.
     k = np.arange(1, _ACROSS + 1) * np.pi / (_ACROSS + 1)
     spread = np.clip(arc[..., None] + c[..., None] * np.cos(k), low, high)
     weights = 2.0 / (_ACROSS + 1) * np.sin(k) ** 2
     across = _shares(compliance.roll**2 / (2.0 * base), spread, weights[None, None] * slices.weight[:, None])
-    if len(compliance.height) > 1:
-        along = _shares(compliance.height, place[..., None] / module, np.ones((1, 1, 1)))
-        loads = np.einsum("nqh,nqr->nhr", along, across).reshape(len(slices), -1)
-    else:
-        loads = across.sum(axis=1)
-    return PatchLoads(sp.csr_array(loads), np.sum(np.log(c) * slices.weight, axis=1))
+    log_width = np.sum(np.log(c) * slices.weight, axis=1)
+    if len(compliance.height) == 1:
+        return PatchLoads(across.sum(axis=1), np.zeros((len(slices), 2), int), len(compliance.roll), log_width)
+    z = place / module
+    along = _shares(compliance.height, z[..., None], np.ones((1, 1, 1)))
+    loads = np.matmul(along.transpose(0, 2, 1), across).reshape(len(slices), -1)
+    ends = np.stack([z.min(axis=1), z.max(axis=1)], axis=1)
+    return PatchLoads(loads, _element(compliance.height[::2], ends), len(compliance.roll), log_width)
+
+
+def _element(ends: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Number of the element, between rising ends, in which each place lies."""
+    return np.clip(np.searchsorted(ends, places, side="right") - 1, 0, len(ends) - 2)
 
 
 def _shares(nodes: np.ndarray, places: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """Sum of weighted quadratic shape functions at places (n, q, m) on a line of nodes (2 e + 1,), shape (n, q, nodes)."""
     n, q, m = places.shape
     ends = nodes[::2]
-    element = np.clip(np.searchsorted(ends, places, side="right") - 1, 0, len(ends) - 2)
+    element = _element(ends, places)
     t = np.clip(2.0 * (places - ends[element]) / (ends[element + 1] - ends[element]) - 1.0, -1.0, 1.0)
     shapes = (
         np.stack([0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)], -1)

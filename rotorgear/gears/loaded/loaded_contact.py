@@ -4,8 +4,8 @@ Unknown are the normal forces F >= 0 of the slices and the approach delta of the
     C F + g(F) + gap - delta >= 0,   F >= 0,   F (C F + g(F) + gap - delta) = 0,   sum F = T_1 / (r_b1 cos b_b),
 with C from the finite-element compliance of patches of half-width c, and g what the Hertz strip of half-width a adds to it:
     g = K F' (1/4 + ln(c/a)) for each body,   F' = F / l,   a^2 = 4 F' R/(pi E*),   K = 2 (1 - nu^2)/(pi E),
-l being the length of the slice's contact line. dg/dF' = K (ln(c/a) - 1/4) is positive while a < c / e^(1/4): the conditions are
-those of the least of a convex energy,
+l being the length of the slice's contact line. dg/dF' = K (ln(c/a) - 1/4), and C + dg/dF is positive definite while no strip is
+wider than its patch: the conditions are those of the least of a convex energy,
     E(F) = F C F / 2 + sum of the integrals of g + gap F   over   F >= 0, sum F = given.
 Newton's method with the exact tangent of g: each round solves a quadratic problem with its inequalities, and a line search
 along it never lets the energy rise, so that the rounds can't run in a circle.
@@ -32,8 +32,6 @@ _ENERGY_ROUNDING = 1e-16
 _SLOPE_LEFT = 0.1
 # Share of the mean load per slice below which g is taken proportional to F: its true tangent at zero is infinite.
 _TRACE = 1e-6
-# dg/dF' over K is kept above this, as it is at c = 1.3 a: wider strips than the patches are not physical, but must stay convex.
-_LEAST_TANGENT = 0.01
 
 
 @dataclass(frozen=True)
@@ -48,6 +46,8 @@ class PositionContact:
         log_width: (n, 2) logarithm of the patches' half-widths c across the contact line (m).
         radius: (n,) relative radius of curvature R (m).
         modulus: E* of the pair (Pa).
+        least_tangent: dg/dF' over K is kept above it: 0.01 is that of c = 1.3 a. Where slices feel each other through elements
+            that are hardly finer, wider strips than patches would not be convex; elsewhere it may be negative.
     """
 
     compliance: np.ndarray
@@ -57,6 +57,7 @@ class PositionContact:
     log_width: np.ndarray
     radius: np.ndarray
     modulus: float
+    least_tangent: float = 0.01
 
 
 @dataclass(frozen=True)
@@ -196,10 +197,10 @@ def _local(contact: PositionContact, force: np.ndarray, total: float) -> tuple[n
     share = contact.log_width - np.log(a)[:, None]  # ln(c/a) of both bodies
 
     # Beyond the load at which the tangent has fallen to its least value, g goes on along that tangent.
-    least = 0.25 + _LEAST_TANGENT
+    least = 0.25 + contact.least_tangent
     held = above_trace[:, None] * np.exp(2.0 * np.minimum(share - least, 0.0))
-    secant = held * (0.25 + np.maximum(share, least)) + _LEAST_TANGENT * (above_trace[:, None] - held)
-    tangent = np.maximum(share - 0.25, _LEAST_TANGENT)
+    secant = held * (0.25 + np.maximum(share, least)) + contact.least_tangent * (above_trace[:, None] - held)
+    tangent = np.maximum(share - 0.25, contact.least_tangent)
     below = load < trace
     tangent[below] = secant[below] / trace[below, None]
     secant[below] *= (load / trace)[below, None]

@@ -11,26 +11,28 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.loaded.contact_points import PatchLoads, Slices, contact_slices, patch_loads
-from rotorgear.gears.loaded.loaded_contact import (
-    PositionContact,
-    hertz_half_width,
-    moment_and_tangents,
-    solve_contact,
-)
+from rotorgear.gears.loaded.contact_points import Slices, contact_slices
+from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, moment_and_tangents, solve_contact
+from rotorgear.gears.loaded.slice_compliance import slice_compliances
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
-from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 from rotorgear.progress import Progress, silent
 
-# The patch stays wider than the Hertz strip by this factor, and than this in normal modules.
+# In space each patch stays wider than its Hertz strip by this factor; all are wider than this in normal modules.
 _STRIP_MARGIN = 1.3
 _LEAST_PATCH = 0.08
+# A patch that has to grow becomes so much wider than its strip asks for.
+_WIDENING = 1.02
+# In the plane a slice is a tooth pair's whole line. Its own compliance is seven times K / l and more, so that C + dg/dF stays
+# positive definite for strips up to six times as wide as their patches.
+_LEAST_TANGENT_IN_PLANE = -2.0
 # Corner contacts are followed up to this share of the base pitch.
 _MOST_BEYOND = 0.45
 # They are followed a little farther than they touch, so that the next pass does not ask for more.
 _MORE_BEYOND = 1.05
-# A pass asks for wider patches or farther corners; the next one has them.
+# Passes for the reach of corners, and for the widths of patches.
 _PASSES = 12
+# The reach of corners is found at every so many positions first.
+_STRIDE = 8
 # Wider strips (half-width over m_n) are no line contact any more.
 _WIDEST_STRIP = 0.5
 # Above such a pressure (Pa) no gear steel stays elastic.
@@ -58,8 +60,8 @@ class MeshCycle:
         strip: (n,) half-widths of the contact (m).
         pressure: (n,) largest Hertz pressure (Pa).
         residual: largest violation of the contact conditions (m).
-        least_eigenvalue: smallest one of all compliance matrices (m/N).
-        patch: least and largest half-width of the patches in normal modules.
+        contacts: (p,) the contact at each position, its slices in the order of `slices`.
+        patch: (n,) least half-widths of the patches in normal modules.
         beyond: how far corner contacts were followed before the start and after the end (m).
         warnings: sentences.
     """
@@ -76,8 +78,8 @@ class MeshCycle:
     strip: np.ndarray
     pressure: np.ndarray
     residual: float
-    least_eigenvalue: float
-    patch: tuple[float, float]
+    contacts: tuple[PositionContact, ...]
+    patch: np.ndarray
     beyond: tuple[float, float]
     warnings: tuple[str, ...] = ()
 
@@ -85,6 +87,11 @@ class MeshCycle:
     def secant(self) -> np.ndarray:
         """k(u) in N/m, (p,)."""
         return np.asarray(self.load / (self.deflection - self.no_load))
+
+    @property
+    def least_eigenvalue(self) -> float:
+        """Smallest eigenvalue of all compliance matrices (m/N)."""
+        return min(float(np.linalg.eigvalsh(contact.compliance)[0]) for contact in self.contacts)
 
     def share_by_pair(self) -> dict[int, np.ndarray]:
         """Share (p,) of each tooth pair in the load."""
@@ -105,29 +112,29 @@ def mesh_cycle(problem: ContactProblem, load: float, positions: np.ndarray, prog
     """Solve the contact at all positions for F_bt = load (N) on this helix.
 
     Raises:
+        AnalysisError: a load under which the contact is no line any more.
         ConvergenceError: a position has no solution to the tolerance.
     """
-    # Patches as for the Hertz strip at the pitch point, and corners as for a typical stiffness: guesses that spare passes.
-    line = problem.line
-    at_pitch_point = line.pitch_point * (line.length - line.pitch_point) / line.length
-    radius = at_pitch_point / float(np.cos(line.base_helix_angle))
-    strip = hertz_half_width(np.array(_FIRST_PEAK * load / problem.width), np.array(radius), problem.modulus)
-    least = _patch_for(float(strip), problem)
+    # Corners as for a typical stiffness: a guess that spares passes. A few positions correct it before all are solved.
     beyond = _beyond(problem, _FIRST_PEAK * load / (_FIRST_STIFFNESS * problem.width) + problem.largest_gap)
+    if len(positions) >= 2 * _STRIDE:
+        beyond = _followed(problem, load, positions[::_STRIDE], beyond, silent).beyond
+    return _followed(problem, load, positions, beyond, progress)
+
+
+def _followed(
+    problem: ContactProblem, load: float, positions: np.ndarray, beyond: tuple[float, float], progress: Progress
+) -> MeshCycle:
+    """The cycle with corners followed as far as they touch, but not much farther: slices that never touch cost time."""
     for _ in range(_PASSES):
-        cycle, wanted_patch, wanted_beyond = _swept(problem, load, positions, least, beyond, progress)
-        # Corners must be followed as far as they touch, but not much farther: slices that never touch cost time.
-        near = all(have <= _MORE_BEYOND**2 * want for have, want in zip(beyond, wanted_beyond, strict=True))
-        if wanted_patch <= least and near and all(np.array(wanted_beyond) <= beyond):
-            return cycle
-        least = max(least, 1.02 * wanted_patch)
-        beyond = (_MORE_BEYOND * wanted_beyond[0], _MORE_BEYOND * wanted_beyond[1])
+        cycle = _swept(problem, load, positions, beyond, progress)
+        approach = float((cycle.deflection - cycle.no_load).max())
+        wanted = _beyond(problem, approach + problem.largest_gap)
+        near = all(have <= _MORE_BEYOND**2 * want for have, want in zip(beyond, wanted, strict=True))
+        if near and all(np.array(wanted) <= beyond):
+            break
+        beyond = (_MORE_BEYOND * wanted[0], _MORE_BEYOND * wanted[1])
     return cycle
-
-
-def _patch_for(strip: float, problem: ContactProblem) -> float:
-    """Least half-width of a patch in normal modules for the widest strip (m)."""
-    return max(_LEAST_PATCH, _STRIP_MARGIN * strip / float(np.cos(problem.line.base_helix_angle)) / problem.module)
 
 
 def _beyond(problem: ContactProblem, approach: float) -> tuple[float, float]:
@@ -142,130 +149,95 @@ def _beyond(problem: ContactProblem, approach: float) -> tuple[float, float]:
 
 
 def _swept(
-    problem: ContactProblem,
-    load: float,
-    positions: np.ndarray,
-    least: float,
-    beyond: tuple[float, float],
-    progress: Progress,
-) -> tuple[MeshCycle, float, tuple[float, float]]:
-    """One sweep over all positions; also the patch and the reach of corners that its solution asks for."""
-    line = problem.line
-    cosine = float(np.cos(line.base_helix_angle))
-    p = len(positions)
-    slices = contact_slices(line, positions, problem.width, problem.slices, beyond, stations=problem.uncoupled)
-    widths = (least, max(problem.patch, least))
-    patches = [
-        patch_loads(slices, i, problem.compliance[i], problem.module, problem.place(i, slices.z), widths)
-        for i in (0, 1)
+    problem: ContactProblem, load: float, positions: np.ndarray, beyond: tuple[float, float], progress: Progress
+) -> MeshCycle:
+    """One sweep over all positions."""
+    cosine = float(np.cos(problem.line.base_helix_angle))
+    slices = contact_slices(problem.line, positions, problem.width, problem.slices, beyond, stations=problem.uncoupled)
+    gap = problem.gap(slices)
+    contacts, states, patch = _settled(problem, slices, gap, load / cosine, len(positions), progress)
+    force = np.concatenate([state.force for state in states])
+    strip = np.concatenate([state.strip for state in states])
+    place = slices.z @ slices.weight
+    along = [
+        moment_and_tangents(contact, state, place[slices.position == i])
+        for i, (contact, state) in enumerate(zip(contacts, states, strict=True))
     ]
 
-    # In the plane of action: length of the contact line dz / cos b_b, and R = rho_1 rho_2 / (rho_1 + rho_2) with
-    # rho = xi / cos b_b. The patches' half-widths lie in the transverse section; cos b_b brings them across the line.
-    gap = problem.gap(slices)
-    length = slices.length / cosine
-    R = np.sum(slices.roll[0] * slices.roll[1] / slices.roll.sum(axis=0) * slices.weight, axis=1) / cosine
-    log_width = np.log(problem.module * cosine) + np.stack([patch.log_width for patch in patches], -1)
-    responses = _Responses(problem, slices, patches)
-    force = np.zeros(len(slices))
-    strip = np.zeros(len(slices))
-    approach = np.zeros(p)
-    tangent = np.zeros(p)
-    moment = np.zeros(p)
-    along_face = np.zeros((p, 2, 2))
-    place = slices.z @ slices.weight
-    open_gap = np.zeros(p)
-    residual = 0.0
-    eigenvalue = np.inf
-    for i in range(p):
-        here = np.flatnonzero(slices.position == i)
-        C = responses.compliance(here)
-        contact = PositionContact(
-            compliance=C,
-            gap=gap[here],
-            length=length[here],
-            local=problem.local,
-            log_width=log_width[here],
-            radius=R[here],
-            modulus=problem.modulus,
-        )
-        state = solve_contact(contact, load / cosine)
-        widest = float(state.strip.max()) / problem.module
-        if widest > _WIDEST_STRIP:
-            raise AnalysisError(
-                f"At this load the contact strip would be {2.0 * widest:.2g} modules wide, which is no line contact any more: "
-                "reduce the torque."
-            )
-        force[here] = state.force
-        strip[here] = state.strip
-        approach[i] = state.approach
-        tangent[i] = state.tangent
-        moment[i], along_face[i] = moment_and_tangents(contact, state, place[here])
-        open_gap[i] = gap[here].min()  # without load the gears approach until the first slice touches
-        residual = max(residual, state.residual)
-        eigenvalue = min(eigenvalue, float(np.linalg.eigvalsh(C)[0]))
-        progress((i + 1) / p, f"contact {i + 1} of {p}")
-
     # Hertz: p_0 = 2 F' / (pi a). Along the line of action delta = delta_n / cos b_b and F_bt = F_n cos b_b.
-    pressure = np.where(force > 0.0, 2.0 * (force / length) / (np.pi * np.maximum(strip, 1e-300)), 0.0)
-    cycle = MeshCycle(
+    line_load = force * cosine / slices.length
+    pressure = np.where(force > 0.0, 2.0 * line_load / (np.pi * np.maximum(strip, 1e-300)), 0.0)
+    return MeshCycle(
         position=positions,
         load=load,
-        deflection=approach / cosine,
-        no_load=open_gap / cosine,
-        tangent=tangent * cosine**2,
-        moment=moment,
-        along_face=along_face,
+        deflection=np.array([state.approach for state in states]) / cosine,
+        # Without load the gears approach until the first slice touches.
+        no_load=np.array([contact.gap.min() for contact in contacts]) / cosine,
+        tangent=np.array([state.tangent for state in states]) * cosine**2,
+        moment=np.array([moment for moment, _ in along]),
+        along_face=np.array([tangents for _, tangents in along]),
         slices=slices,
         force=force,
         strip=strip,
         pressure=pressure,
-        residual=residual,
-        least_eigenvalue=eigenvalue,
-        patch=widths,
+        residual=max(state.residual for state in states),
+        contacts=tuple(contacts),
+        patch=patch,
         beyond=beyond,
         warnings=_notes(problem, slices, force, pressure, beyond),
     )
-    wanted = _beyond(problem, float((approach - open_gap).max()) / cosine + problem.largest_gap)
-    return cycle, _patch_for(float(strip.max()), problem), wanted
 
 
-class _Responses:
-    """Compliance between slices: P_i G_o P_j' of both gears, with o the distance of their tooth pairs."""
-
-    def __init__(self, problem: ContactProblem, slices: Slices, patches: list[PatchLoads]) -> None:
-        self.problem = problem
-        self.slices = slices
-        self.patches = patches
-        reach = int(slices.pair.max() - slices.pair.min()) if len(slices) else 0
-        self.moved: list[list[np.ndarray]] = []
-        for i in (0, 1):
-            compliance: GearCompliance = problem.compliance[i]
-            # Pair k + 1 of the pinion stands clockwise of pair k, that of the gear the other way.
-            side = 1 if i == 0 else -1
-            self.moved.append(
-                [patches[i].loads @ (problem.scale[i] * compliance.response(side * o)) for o in range(reach + 1)]
+def _settled(
+    problem: ContactProblem, slices: Slices, gap: np.ndarray, total: float, count: int, progress: Progress
+) -> tuple[list[PositionContact], list[ContactState], np.ndarray]:
+    """Contacts and states at all positions, with patches wider than the strips under them; and their least widths (n,)."""
+    cosine = float(np.cos(problem.line.base_helix_angle))
+    # In the plane of action: length of the contact line dz / cos b_b, and R = rho_1 rho_2 / (rho_1 + rho_2) with
+    # rho = xi / cos b_b.
+    length = slices.length / cosine
+    R = np.sum(slices.roll[0] * slices.roll[1] / slices.roll.sum(axis=0) * slices.weight, axis=1) / cosine
+    numbers = [slices.at(i) for i in range(count)]
+    patch = np.full(len(slices), _LEAST_PATCH)
+    contacts: dict[int, PositionContact] = {}
+    states: dict[int, ContactState] = {}
+    unsettled = list(range(count))
+    for _ in range(_PASSES):
+        for i, compliance in zip(unsettled, slice_compliances(problem, slices, unsettled, patch), strict=True):
+            here = numbers[i]
+            contacts[i] = PositionContact(
+                compliance=compliance.matrix,
+                gap=gap[here],
+                length=length[here],
+                local=problem.local,
+                log_width=compliance.log_width,
+                radius=R[here],
+                modulus=problem.modulus,
+                least_tangent=_LEAST_TANGENT_IN_PLANE if problem.plane else 0.01,
             )
+            states[i] = solve_contact(contacts[i], total, states[i].force if i in states else None)
+            _refuse_wide(float(states[i].strip.max()) / problem.module)
+            progress((i + 1) / count, f"contact {i + 1} of {count}")
+        if problem.plane:
+            break
+        # The patches' half-widths lie in the transverse section; cos b_b brings them across the line.
+        wanted = {i: _STRIP_MARGIN * states[i].strip / cosine / problem.module for i in unsettled}
+        unsettled = [i for i in unsettled if np.any(wanted[i] > patch[numbers[i]])]
+        if not unsettled:
+            break
+        for i in unsettled:
+            short = wanted[i] > patch[numbers[i]]
+            patch[numbers[i][short]] = _WIDENING * wanted[i][short]
+    return [contacts[i] for i in range(count)], [states[i] for i in range(count)], patch
 
-    def compliance(self, here: np.ndarray) -> np.ndarray:
-        """(n, n) in m/N of the slices `here` of one position."""
-        pair = self.slices.pair[here]
-        n = len(here)
-        distance = pair[:, None] - pair[None, :]
-        C = np.zeros((n, n))
-        for i in (0, 1):
-            loads = self.patches[i].loads[here]
-            for o in range(int(distance.max()) + 1):
-                part = (loads @ self.moved[i][o][here].T).T
-                C += np.where(distance == o, part, 0.0)
-        # Only distances o >= 0 are kept, since entry -o of a gear's flexibility is the transpose of entry o.
-        C = np.where(distance >= 0, C, C.T)
-        if self.problem.plane:
-            C = C / self.slices.length[here]  # a plane model answers to a force per width
-        if self.problem.uncoupled:
-            z = self.slices.z[here, 0]
-            C = np.where(np.abs(z[:, None] - z[None, :]) < 1e-9 * self.problem.width, C, 0.0)
-        return np.asarray(0.5 * (C + C.T))
+
+def _refuse_wide(strip: float) -> None:
+    """Refuse a contact whose half-width in normal modules makes it no line contact."""
+    if strip > _WIDEST_STRIP:
+        raise AnalysisError(
+            f"At this load the contact strip would be {2.0 * strip:.2g} modules wide, which is no line contact any more: "
+            "reduce the torque."
+        )
 
 
 def _notes(

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.contact.vectors import LANES, fill, get, put, work
-from rotorgear.solvers.lanes.columns import NEVER
+from rotorgear.solvers.lanes.arguments import TangentWork
 from rotorgear.solvers.lanes.kernel_jumps import add_used_along, missing, missing_along, push
 from rotorgear.solvers.lanes.kernel_laws import SPACE, force_laws, laws_along, schedule_laws
 from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, contacts, count, product, read_table
@@ -31,14 +31,17 @@ def slope_of(i, first, column, value, stage, at):
 
 
 @compiled(fast=True)
-def advance(number, h, first, column, value, stage, ahead, at, base, base_at, total):
+def advance(number, h, matrix, stage, ahead, at, base, base_at, total):
     """Add a stage's slopes to those of the step, and write the state of the next stage; the last one writes the step's end, too.
 
     Args:
-        number: of the stage, 0 to 3. h: the step. first, column, value: z'' from (z, z', F, 1).
+        number: of the stage, 0 to 3. h: the step. matrix: z'' from (z, z', F, 1).
         stage, ahead: rows of this stage and of the next one from `at` on. base: z and z' at the step's begin from `base_at` on.
         total: sums of slopes so far, (2 n, w).
     """
+    first = matrix.first
+    column = matrix.column
+    value = matrix.value
     n = total.shape[0] // 2
     weight = 1.0 if number == 0 else 2.0
     share = h if number == 2 else 0.5 * h
@@ -66,27 +69,20 @@ def advance(number, h, first, column, value, stage, ahead, at, base, base_at, to
 
 
 @compiled(fast=True)
-def tangent_stage(
-    number,
-    h,
-    across,
-    matrix,
-    found,
-    jumping,
-    jumps,
-    kept,
-    used,
-    start,
-    own,
-    laws,
-    blocks,
-    d,
-    stage,
-    ahead,
-    base,
-    totals,
-):
-    """One stage of all tangents: (t, 2 n + m + 1, w) of this stage and the next, (t, 2 n, w) of the step's begin and sums."""
+def tangent_stage(number, h, system, columns, laws, found, kept, stage, ahead, base, work):
+    """One stage of all tangents: (t, 2 n + m + 1, w) of this stage and the next, (t, 2 n, w) of the step's begin."""
+    matrix = system.matrix
+    first = system.across.first
+    column = system.across.column
+    value = system.across.value
+    jumps = columns.jumps
+    jumping = columns.jumping
+    d = work.d
+    blocks = work.blocks
+    totals = work.totals
+    used = work.used
+    start = work.start
+    own = laws.kind.size > 0
     t = stage.shape[0]
     rows = stage.shape[1]
     n = base.shape[1] // 2
@@ -94,7 +90,7 @@ def tangent_stage(
     for k in range(t):
         at = k * rows
         for j in range(2 * m):
-            put(d, j, slope_of(j, *across, stage, at))
+            put(d, j, slope_of(j, first, column, value, stage, at))
         for j in range(m):
             along = get(found, FOUND * j + IN_D) * get(d, 2 * j) + get(found, FOUND * j + IN_V) * get(d, 2 * j + 1)
             put(stage, at + 2 * n + j, along)
@@ -102,7 +98,7 @@ def tangent_stage(
             laws_along(laws, blocks, d, stage, at + 2 * n)
         if jumping:
             add_used_along(jumps, weight_of(number, h), found, kept, d, used, start, m * k, number == 0)
-        advance(number, h, *matrix, stage, ahead, at, base, 2 * n * k, totals[k])
+        advance(number, h, matrix, stage, ahead, at, base, 2 * n * k, totals[k])
 
 
 @compiled
@@ -112,66 +108,57 @@ def weight_of(number, h):
 
 
 @compiled(fast=True)
-def end_tangents(jumps, values, kept, across, pushes, d, moved, tangents, used, start, impulse):
+def end_tangents(system, columns, kept, moved, tangents, impulse, work):
     """Put the impulses of the damping right along all tangents."""
+    first = system.across.first
+    column = system.across.column
+    value = system.across.value
+    pushes = system.pushes
+    jumps = columns.jumps
+    values = columns.values
+    d = work.d
+    used = work.used
+    start = work.start
     t = moved.shape[0]
     rows = moved.shape[1]
     n = tangents.shape[1] // 2
     m = jumps.size
     for k in range(t):
         for j in range(2 * m):
-            put(d, j, slope_of(j, *across, moved, k * rows))
+            put(d, j, slope_of(j, first, column, value, moved, k * rows))
         missing_along(jumps, values, kept, d, used, start, m * k, impulse)
-        push(*pushes, impulse, moved, k * rows, tangents, 2 * n * k)
+        push(pushes, impulse, moved, k * rows, tangents, 2 * n * k)
 
 
 @compiled(fast=True, free=True)
-def lanes_loop(
-    turns,
-    steps,
-    begun,
-    counting,
-    matrix,
-    across,
-    pushes,
-    kind,
-    mode,
-    jumps,
-    values,
-    counted,
-    table,
-    laws,
-    clock,
-    rigid,
-    root,
-    state,
-    kept,
-    tangents,
-    last,
-    growth,
-    section,
-    sums,
-):
-    """Advance all lanes in place by common periods and record a section at the end of each.
+def lanes_loop(span, system, columns, table, laws, motion, records):
+    """Advance the motion of all lanes in place by common periods and record a section at the end of each.
 
-    Args:
-        turns: periods of the fastest excitation in a common one; steps: steps in one of those; begun: common periods before.
-        counting: whether the statistics count.
-        matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1).
-        across: d and d' of each column from (z, z'), (2 m, 2 n). pushes: -B, (n, m).
-        kind, mode, jumps, counted: of the columns, (m,); values: theirs, (m, 6, w), see `contacts`.
-        table: (2 turns steps + 1, m, 4, 1 or w), without its last row where no force is prescribed.
-        laws: see kernel_laws.py; clock (2, w): radians of the reference for one of the fastest excitation, and its rad/s.
-        rigid: orthonormal motions without strain, (r, n, w); root: S with S^T S the mean stiffness, (n, n, w).
-        state: z and z', (2 n, w); kept: of the end of the last step, see kernel_jumps.py.
-        tangents: (t, 2 n, w); last: (m, w) sides that touched last.
-        growth: (p, t, w), section: (p, 2 m, w), sums: (m, 14, w): what is found in p common periods.
+    table: (2 turns steps + 1, m, 4, 1 or w), without its last row where no force is prescribed.
     """
+    turns = span.turns
+    steps = span.steps
+    begun = span.begun
+    counting = span.counting
+    matrix = system.matrix
+    across = system.across
+    pushes = system.pushes
+    jumps = columns.jumps
+    jumping = columns.jumping
+    counted = columns.counted
+    values = columns.values
+    state = motion.state
+    kept = motion.kept
+    tangents = motion.tangents
+    last = motion.last
+    growth = records.growth
+    section = records.section
+    sums = records.sums
     n = state.shape[0] // 2
     m = counted.size
     t = tangents.shape[0]
     rows = 2 * n + m + 1
-    own = laws[2].size > 0
+    own = laws.kind.size > 0
     h = 2.0 * np.pi / steps
     now = work(4 * m).reshape(m, 4, LANES)
     found = work(FOUND * m).reshape(m, FOUND, LANES)
@@ -183,16 +170,13 @@ def lanes_loop(
     ahead[:] = 1.0
     moved = work(t * rows).reshape(t, rows, LANES)
     moved_ahead = work(t * rows).reshape(t, rows, LANES)
-    totals = work(t * 2 * n).reshape(t, 2 * n, LANES)
     weighed = work(t * 2 * n).reshape(t, 2 * n, LANES)
-    blocks = work(2 * laws[-1][-1]).reshape(2, laws[-1][-1], LANES)
-    condition = np.zeros((LANES, laws[-2][-1]))
+    blocks = work(2 * laws.block_first[-1]).reshape(2, laws.block_first[-1], LANES)
+    along = TangentWork(d, blocks, work(t * 2 * n).reshape(t, 2 * n, LANES), work(t * m), work(t * m))
+    condition = np.zeros((LANES, laws.state_first[-1]))
     space = np.zeros(SPACE)
-    jumping = np.any(jumps != NEVER)
     used = work(m)
     impulse = work(m)
-    used_along = work(t * m)
-    start = work(t * m)
     F = stage[2 * n : 2 * n + m]
     F_ahead = ahead[2 * n : 2 * n + m]
     stage[: 2 * n] = state
@@ -204,44 +188,25 @@ def lanes_loop(
                     at = 2 * step + (number + 1) // 2
                     read_table(table, at, now)
                     if own:
-                        schedule_laws(laws, clock, 0.5 * h * (2.0 * steps * turns * (begun + period) + at), condition)
-                product(*across, stage, d)
-                contacts(kind, mode, values, now, weight_of(number, h), d, F, found, used)
+                        schedule_laws(laws, 0.5 * h * (2.0 * steps * turns * (begun + period) + at), condition)
+                product(across, stage, d)
+                contacts(columns, now, weight_of(number, h), d, F, found, used)
                 if own:
-                    force_laws(laws, clock, condition, d, F, blocks, space)
+                    force_laws(laws, condition, d, F, blocks, space)
                 if number == 0 and counting:
                     count(counted, now, d, F, found, last, sums)
-                advance(number, h, *matrix, stage, ahead, 0, state, 0, total)
+                advance(number, h, matrix, stage, ahead, 0, state, 0, total)
                 if t:
-                    tangent_stage(
-                        number,
-                        h,
-                        across,
-                        matrix,
-                        found,
-                        jumping,
-                        jumps,
-                        kept,
-                        used_along,
-                        start,
-                        own,
-                        laws,
-                        blocks,
-                        d,
-                        moved,
-                        moved_ahead,
-                        tangents,
-                        totals,
-                    )
+                    tangent_stage(number, h, system, columns, laws, found, kept, moved, moved_ahead, tangents, along)
                 stage, ahead, moved, moved_ahead, F, F_ahead = ahead, stage, moved_ahead, moved, F_ahead, F
             if jumping:
-                product(*across, stage, d)
+                product(across, stage, d)
                 missing(jumps, values, now, d, used, kept, impulse)
-                push(*pushes, impulse, stage, 0, state, 0)
+                push(pushes, impulse, stage, 0, state, 0)
                 if t:
-                    end_tangents(jumps, values, kept, across, pushes, d, moved, tangents, used_along, start, impulse)
+                    end_tangents(system, columns, kept, moved, tangents, impulse, along)
             if t and (step + 1) % steps == 0:
-                orthonormal(tangents, weighed, root, rigid, growth[period])
+                orthonormal(tangents, weighed, system.root, system.rigid, growth[period])
                 moved[:, : 2 * n] = tangents
         for j in range(2 * m):
-            put(section, 2 * m * period + j, slope_of(j, *across, state, 0))
+            put(section, 2 * m * period + j, slope_of(j, across.first, across.column, across.value, state, 0))

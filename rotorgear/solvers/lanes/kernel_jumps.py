@@ -96,8 +96,11 @@ def missing_along(jumps, values, kept, d, used, start, at, impulse):
 
 
 @compiled(fast=True)
-def push(first, column, value, impulse, stage, at, state, state_at):
+def push(matrix, impulse, stage, at, state, state_at):
     """Add impulses to the velocities, by rows of -B, in the stage to come (rows from `at` on) and the state."""
+    first = matrix.first
+    column = matrix.column
+    value = matrix.value
     n = first.size - 1
     for i in range(n):
         total = fill(0.0)

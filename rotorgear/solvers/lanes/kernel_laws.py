@@ -15,9 +15,14 @@ SPACE = 3 * _MOST_COMPONENTS + 2 * _MOST_COMPONENTS**2 + 4
 
 
 @compiled
-def schedule_laws(laws, clock, time, state):
+def schedule_laws(laws, time, state):
     """Fill the state (w, s) of the laws in all lanes at a time in radians of the fastest excitation."""
-    schedules, _, kind, _, parameters, parameters_first, state_first, _ = laws
+    schedules = laws.schedules
+    kind = laws.kind
+    parameters = laws.parameters
+    parameters_first = laws.parameters_first
+    state_first = laws.state_first
+    clock = laws.clock
     for w in range(LANES if kind.size else 0):
         angle = time * clock[0, w]
         speed = clock[1, w] * clock[0, w]
@@ -32,12 +37,19 @@ def schedule_laws(laws, clock, time, state):
 
 
 @compiled
-def force_laws(laws, clock, state, d, F, tangents, work):
+def force_laws(laws, state, d, F, tangents, work):
     """Forces of the laws to F (m, w), their tangents in displacement and velocity to tangents (2, b, w).
 
     work: SPACE numbers.
     """
-    _, forces, kind, place, parameters, parameters_first, state_first, block_first = laws
+    forces = laws.forces
+    kind = laws.kind
+    place = laws.place
+    parameters = laws.parameters
+    parameters_first = laws.parameters_first
+    state_first = laws.state_first
+    block_first = laws.block_first
+    clock = laws.clock
     for i in range(kind.size):
         a = place[0, i]
         k = place[1, i]
@@ -73,7 +85,9 @@ def force_laws(laws, clock, state, d, F, tangents, work):
 @compiled(fast=True)
 def laws_along(laws, tangents, d, out, at):
     """Forces of the laws along a tangent's displacements and velocities d (2 m, w), to the rows of out from `at` on."""
-    _, _, kind, place, _, _, _, block_first = laws
+    kind = laws.kind
+    place = laws.place
+    block_first = laws.block_first
     size = tangents.shape[1]
     for i in range(kind.size):
         a = place[0, i]

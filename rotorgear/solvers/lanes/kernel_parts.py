@@ -5,8 +5,9 @@ Every array has the systems as its last axis of LANES entries, and is read by ro
 
 from __future__ import annotations
 
-from rotorgear.solvers.contact.gap_contact import contact
-from rotorgear.solvers.contact.vectors import fill, get, larger, put, smaller, where_positive
+from rotorgear.solvers.contact.gap_contact import gap_contact, tied_contact
+from rotorgear.solvers.contact.kinds import BILATERAL
+from rotorgear.solvers.contact.vectors import fill, formula, get, larger, put, smaller, where_positive
 from rotorgear.solvers.lanes.columns import ERROR, OWN_LAW, PRESCRIBED, PUSH, SLOPE, STIFFNESS, TABLE_ROWS
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import schedule_all
@@ -43,8 +44,11 @@ def read_table(table, at, out):
 
 
 @compiled(fast=True)
-def product(first, column, value, x, out):
+def product(matrix, x, out):
     """out = A x for a sparse matrix with values by lane."""
+    first = matrix.first
+    column = matrix.column
+    value = matrix.value
     for i in range(out.shape[0]):
         total = fill(0.0)
         for p in range(first[i], first[i + 1]):
@@ -53,12 +57,15 @@ def product(first, column, value, x, out):
 
 
 @compiled(fast=True)
-def contacts(kind, mode, values, table, weight, d, F, found, used):
+def contacts(columns, table, weight, d, F, found, used):
     """Forces (m, w) of the columns that are contacts or prescribed, their tangents, and the side that touches.
 
-    values (m, 6, w); table (m, 4, w); d (2 m, w): displacement and velocity; found (m, 4, w);
+    table (m, 4, w); d (2 m, w): displacement and velocity; found (m, 4, w);
     used (m, w): impulses of the damping, to which this one is added with its weight.
     """
+    kind = columns.kind
+    mode = columns.mode
+    values = columns.values
     for j in range(kind.size):
         if kind[j] == OWN_LAW:
             continue
@@ -66,23 +73,28 @@ def contacts(kind, mode, values, table, weight, d, F, found, used):
         if kind[j] == PRESCRIBED:
             put(F, j, prescribed)
             continue
+        k = get(values, VALUES * j + K) * get(table, TABLE_ROWS * j + STIFFNESS)
+        c = get(values, VALUES * j + C)
+        x = get(d, 2 * j) - get(table, TABLE_ROWS * j + ERROR)
         rate = get(d, 2 * j + 1) - get(table, TABLE_ROWS * j + SLOPE)
-        now = contact(
-            kind[j],
-            mode[j],
-            get(values, VALUES * j + K) * get(table, TABLE_ROWS * j + STIFFNESS),
-            get(values, VALUES * j + C),
-            get(values, VALUES * j + CLEARANCE),
-            get(values, VALUES * j + PER_DEPTH),
-            get(d, 2 * j) - get(table, TABLE_ROWS * j + ERROR),
-            rate,
-        )
-        put(F, j, now.force + prescribed)
-        put(found, FOUND * j + IN_D, now.stiffness)
-        put(found, FOUND * j + IN_V, now.damping)
-        put(found, FOUND * j + SIDE, now.side)
-        put(found, FOUND * j + GROWTH, now.growth)
-        put(used, j, get(used, j) + weight * (now.damping * rate))
+        if kind[j] == BILATERAL:
+            leave(tied_contact(k, c, x, rate), prescribed, weight, rate, j, F, found, used)
+        else:
+            clearance = get(values, VALUES * j + CLEARANCE)
+            per_depth = get(values, VALUES * j + PER_DEPTH)
+            now = gap_contact(mode[j], k, c, clearance, per_depth, x, rate)
+            leave(now, prescribed, weight, rate, j, F, found, used)
+
+
+@formula
+def leave(now, prescribed, weight, rate, j, F, found, used):
+    """Write what column j's contact found, and a force prescribed beside it; see `contacts`."""
+    put(F, j, now.force + prescribed)
+    put(found, FOUND * j + IN_D, now.stiffness)
+    put(found, FOUND * j + IN_V, now.damping)
+    put(found, FOUND * j + SIDE, now.side)
+    put(found, FOUND * j + GROWTH, now.growth)
+    put(used, j, get(used, j) + weight * (now.damping * rate))
 
 
 @compiled(fast=True)

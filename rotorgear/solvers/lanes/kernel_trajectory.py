@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.contact.gap_contact import contact, momentum
+from rotorgear.solvers.lanes.arguments import PathWork
 from rotorgear.solvers.lanes.columns import ALWAYS, ERROR, OWN_LAW, PRESCRIBED, PUSH, SLOPE, STIFFNESS
 from rotorgear.solvers.lanes.kernel_laws import SPACE
 from rotorgear.solvers.lanes.kernel_parts import CLEARANCE, DEPTH, FORCE, PER_DEPTH, C, K
@@ -38,9 +39,14 @@ def force(kind, mode, values, now, d, v):
 
 
 @compiled
-def own_schedules(laws, clock, time, condition):
+def own_schedules(laws, time, condition):
     """Fill the state (s,) of the laws at a time in radians of the fastest excitation."""
-    schedules, _, kind, _, parameters, parameters_first, state_first, _ = laws
+    schedules = laws.schedules
+    kind = laws.kind
+    parameters = laws.parameters
+    parameters_first = laws.parameters_first
+    state_first = laws.state_first
+    clock = laws.clock
     for i in range(kind.size):
         schedules[kind[i]](
             time * clock[0],
@@ -52,13 +58,18 @@ def own_schedules(laws, clock, time, condition):
 
 
 @compiled
-def own_forces(laws, clock, condition, space, local):
-    """Forces of the laws of kernel_laws.py to local (m, 3), one system.
-
-    clock (2,): radians of the reference for one of the fastest excitation, and its rad/s; space: SPACE numbers.
-    """
-    _, forces, kind, place, parameters, parameters_first, state_first, _ = laws
-    rate = clock[1]
+def own_forces(laws, work):
+    """Forces of the laws of kernel_laws.py to work.local, one system."""
+    forces = laws.forces
+    kind = laws.kind
+    place = laws.place
+    parameters = laws.parameters
+    parameters_first = laws.parameters_first
+    state_first = laws.state_first
+    rate = laws.clock[1]
+    local = work.local
+    condition = work.condition
+    space = work.space
     for i in range(kind.size):
         a = place[0, i]
         k = place[1, i]
@@ -84,11 +95,16 @@ def own_forces(laws, clock, condition, space, local):
 
 
 @compiled
-def slopes(K, D, B, load, kind, mode, values, now, laws, clock, condition, space, y, local, a):
-    """z'' (n,) of a state y = (z, z'), and d, d', F and its damping of each column, local (m, 4).
-
-    laws, clock, condition, space: of the columns that act by laws of their own, see `own_forces`.
-    """
+def slopes(system, columns, now, laws, work, y, a):
+    """z'' (n,) of a state y = (z, z') with the tables (m, 4) of now; fills work.local."""
+    K = system.K
+    D = system.D
+    B = system.B
+    load = system.load
+    kind = columns.kind
+    mode = columns.mode
+    values = columns.values
+    local = work.local
     n = K.shape[0]
     m = B.shape[1]
     z = y[:n]
@@ -103,7 +119,7 @@ def slopes(K, D, B, load, kind, mode, values, now, laws, clock, condition, space
         local[j, 1] = v
         if kind[j] != OWN_LAW:
             local[j, 2], local[j, 3] = force(kind[j], mode[j], values[j], now[j], d, v)
-    own_forces(laws, clock, condition, space, local)
+    own_forces(laws, work)
     for i in range(n):
         total = load[i]
         for k in range(n):
@@ -114,14 +130,18 @@ def slopes(K, D, B, load, kind, mode, values, now, laws, clock, condition, space
 
 
 @compiled(free=True)
-def trajectory(steps, every, begun, K, D, B, load, kind, mode, jumps, values, table, laws, clock, state, out):
+def trajectory(span, system, columns, table, laws, state, out):
     """Run on from a state (2 n,) in place; out (s, m, 3) gets d, d' and F once in `every` steps, beginning with the first state.
 
-    Args:
-        steps: in a period of the fastest excitation; begun: steps before. jumps, values: (m,), (m, 6).
-        table: (2 steps in a common period + 1, m, 4). laws, clock: see `own_forces`.
+    table: (2 steps in a common period + 1, m, 4).
     """
-    n = K.shape[0]
+    steps = span.steps
+    every = span.every
+    begun = span.begun
+    B = system.B
+    jumps = columns.jumps
+    values = columns.values
+    n = B.shape[0]
     h = 2.0 * np.pi / steps
     period = (table.shape[0] - 1) // 2
     m = B.shape[1]
@@ -131,8 +151,8 @@ def trajectory(steps, every, begun, K, D, B, load, kind, mode, jumps, values, ta
     local = np.zeros((m, 4))
     used = np.empty(m)
     edge = np.empty((m, 2))
-    condition = np.zeros(laws[6][-1])
-    space = np.zeros(SPACE)
+    condition = np.zeros(laws.state_first[-1])
+    work = PathWork(local, condition, np.zeros(SPACE))
     for step in range(out.shape[0] * every):
         y[:] = state
         total[:] = 0.0
@@ -140,9 +160,9 @@ def trajectory(steps, every, begun, K, D, B, load, kind, mode, jumps, values, ta
         for stage in range(4):
             half = (stage + 1) // 2
             if stage != 2:
-                own_schedules(laws, clock, 0.5 * h * (2.0 * (begun + step) + half), condition)
+                own_schedules(laws, 0.5 * h * (2.0 * (begun + step) + half), condition)
             now = table[2 * (step % period) + half]
-            slopes(K, D, B, load, kind, mode, values, now, laws, clock, condition, space, y, local, a)
+            slopes(system, columns, now, laws, work, y, a)
             if stage == 0 and step % every == 0:
                 out[step // every] = local[:, :3]
             weight = (1.0 if stage in (0, 3) else 2.0) * h / 6.0

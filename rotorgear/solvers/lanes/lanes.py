@@ -8,8 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.solvers.lanes.columns import ERROR
+from rotorgear.solvers.lanes.arguments import ColumnValues, LaneMotion, LaneRecords, LaneSpan, LaneSystem
+from rotorgear.solvers.lanes.columns import ERROR, NEVER
+from rotorgear.solvers.lanes.own_laws import acting_laws
 from rotorgear.solvers.lanes.small_system import SmallSystem
+from rotorgear.solvers.time.arguments import SparseRows
 
 # Steps between two questions whether to go on: a fraction of a second.
 _SLICE = 50_000
@@ -96,65 +99,51 @@ def run_block(
         raise ValueError(f"{count} systems in a block, expected 1 to {LANES}")
     filled = [*systems, *[systems[-1]] * (LANES - count)]
     first = systems[0]
-    (matrix, across), values = _matrices(filled), _stacked([s.columns.values for s in filled])
-    counted = first.columns.counted
-    kinds = (first.columns.kind, first.columns.mode)
+    c = first.columns
+    m = c.kind.size
     jumps = np.max([s.columns.jumps for s in filled], axis=0)
-    pushes = _sparse([-s.B for s in filled])
+    columns = ColumnValues(
+        c.kind, c.mode, jumps, c.counted, bool(np.any(jumps != NEVER)), _stacked([s.columns.values for s in filled])
+    )
+    system = _matrices(filled)
     wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
     pushed = any(np.any(s.columns.push) for s in systems)
     table = _stacked([one[:, :, : 4 if pushed else 3] for one in wide])
-    laws = own_laws(filled)
-    clock = _stacked([np.array([s.own.turn, s.w]) for s in filled])
-    rigid = _stacked([s.rigid for s in filled])
-    energy = _stacked([s.energy for s in filled])
+    parameters = np.ascontiguousarray(np.stack([s.own.forces.parameters for s in filled]))
+    laws = acting_laws(first.own, parameters, _stacked([np.array([s.own.turn, s.w]) for s in filled]))
     begins = [*starts, *[starts[-1]] * (LANES - count)]
-    state = _stacked([np.concatenate([s.z, s.dz]) for s in begins])
-    tangents = _tangents(first, plan.tangents)
-    kept = _kept(filled, begins, wide, values)
-    last = aligned((counted.size, LANES))
-    sums = blank_sums(counted.size)
+    motion = LaneMotion(
+        _stacked([np.concatenate([s.z, s.dz]) for s in begins]),
+        _kept(filled, begins, wide, columns.values),
+        _tangents(first, plan.tangents),
+        aligned((m, LANES)),
+    )
+    sums = blank_sums(m)
 
     def run(begun: int, periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         growth = aligned((periods, len(followed), LANES))
-        section = aligned((periods, 2 * counted.size, LANES))
+        section = aligned((periods, 2 * m, LANES))
         stride = plan.stride(first.turns)
         for p in range(0, periods, stride):
             if not go_on():
                 raise KeyboardInterrupt
             lanes_loop(
-                first.turns,
-                plan.steps,
-                begun + p,
-                counting,
-                matrix,
-                across,
-                pushes,
-                *kinds,
-                jumps,
-                values,
-                counted,
+                LaneSpan(first.turns, plan.steps, begun + p, counting),
+                system,
+                columns,
                 table,
                 laws,
-                clock,
-                rigid,
-                energy,
-                state,
-                kept,
-                followed,
-                last,
-                growth[p : p + stride],
-                section[p : p + stride],
-                sums,
+                motion._replace(tangents=followed),
+                LaneRecords(growth[p : p + stride], section[p : p + stride], sums),
             )
         return growth, section
 
     warm = min(plan.warm, plan.settle) if plan.tangents else 0
     with np.errstate(all="ignore"):
-        run(0, plan.settle - warm, False, tangents[:0])
-        run(plan.settle - warm, warm, False, tangents)
-        growth, section = run(plan.settle, plan.count, True, tangents)
-    return [_orbit(filled[i], i, growth, section, sums, state) for i in range(count)]
+        run(0, plan.settle - warm, False, motion.tangents[:0])
+        run(plan.settle - warm, warm, False, motion.tangents)
+        growth, section = run(plan.settle, plan.count, True, motion.tangents)
+    return [_orbit(filled[i], i, growth, section, sums, motion.state) for i in range(count)]
 
 
 def _orbit(
@@ -194,23 +183,6 @@ def _tangents(system: SmallSystem, count: int) -> np.ndarray:
     return _stacked([drawn] * LANES)
 
 
-def own_laws(systems: Sequence[SmallSystem]) -> tuple[Any, ...]:
-    """The laws that act by their own functions as kernel_laws.py takes them; parameters and state by lane."""
-    first = systems[0].own
-    own = first.forces
-    parameters = np.ascontiguousarray(np.stack([s.own.forces.parameters for s in systems]))
-    return (
-        own.schedules,
-        own.forces,
-        own.kind,
-        first.place,
-        parameters,
-        own.parameters_first,
-        own.state_first,
-        own.block_first,
-    )
-
-
 def aligned(shape: tuple[int, ...]) -> np.ndarray:
     """Zeros whose rows of lanes begin where vector registers read best."""
     size = int(np.prod(shape))
@@ -226,28 +198,28 @@ def _stacked(values: Sequence[Any]) -> np.ndarray:
     return found
 
 
-Sparse = tuple[np.ndarray, np.ndarray, np.ndarray]
-
-
-def _matrices(systems: Sequence[SmallSystem]) -> tuple[Sparse, Sparse]:
-    """z'' from (z, z', F, 1), and d, d' from (z, z')."""
-    return (
-        _sparse([np.hstack([-s.K, -s.D, -s.B, s.load[:, None]]) for s in systems]),
+def _matrices(systems: Sequence[SmallSystem]) -> LaneSystem:
+    """The systems' matrices side by side."""
+    return LaneSystem(
+        matrix=_sparse([np.hstack([-s.K, -s.D, -s.B, s.load[:, None]]) for s in systems]),
         # Displacement and velocity of a column lie side by side.
-        _sparse(
+        across=_sparse(
             [
                 np.stack([np.kron([1.0, 0.0], s.B.T), np.kron([0.0, 1.0], s.B.T)], axis=1).reshape(-1, 2 * s.n)
                 for s in systems
             ]
         ),
+        pushes=_sparse([-s.B for s in systems]),
+        rigid=_stacked([s.rigid for s in systems]),
+        root=_stacked([s.energy for s in systems]),
     )
 
 
-def _sparse(matrices: Sequence[np.ndarray]) -> Sparse:
+def _sparse(matrices: Sequence[np.ndarray]) -> SparseRows:
     """Row starts, columns and values by lane (p, w) of what is not zero in all lanes."""
     used = np.any([matrix != 0.0 for matrix in matrices], axis=0)
     first = np.concatenate([[0], np.cumsum(used.sum(axis=1))]).astype(np.int64)
-    return first, np.nonzero(used)[1].astype(np.int64), _stacked([matrix[used] for matrix in matrices])
+    return SparseRows(first, np.nonzero(used)[1].astype(np.int64), _stacked([matrix[used] for matrix in matrices]))
 
 
 def _kept(

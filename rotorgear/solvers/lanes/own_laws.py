@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.solvers.lanes.arguments import ActingLaws
 from rotorgear.solvers.time.local_forces import LocalForces, gather
 from rotorgear.solvers.time.local_system import LocalSystem, evaluated
 
@@ -33,6 +34,22 @@ def own_laws(forces: LocalForces, own: np.ndarray, turn: float) -> OwnLaws:
     chosen = [i for i in range(len(forces.laws)) if own[forces.first[i]]]
     place = np.array([[forces.first[i], forces.laws[i].components] for i in chosen], dtype=np.int64)
     return OwnLaws(gather(tuple(forces.laws[i] for i in chosen)), place.reshape(-1, 2).T.copy(), turn)
+
+
+def acting_laws(own: OwnLaws, parameters: np.ndarray, clock: np.ndarray) -> ActingLaws:
+    """The laws as the kernels take them, with the parameters and the clock of one system or of all lanes."""
+    of = own.forces
+    return ActingLaws(
+        of.schedules,
+        of.forces,
+        of.kind,
+        own.place,
+        parameters,
+        of.parameters_first,
+        of.state_first,
+        of.block_first,
+        clock,
+    )
 
 
 def steepest(local: LocalSystem, q: np.ndarray, own: OwnLaws, period: float) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.solvers.lanes.arguments import ColumnValues, PathSpan, PathSystem
+from rotorgear.solvers.lanes.columns import NEVER
 from rotorgear.solvers.lanes.lanes import Start
+from rotorgear.solvers.lanes.own_laws import acting_laws
 from rotorgear.solvers.lanes.small_system import SmallSystem
 
 
@@ -31,35 +34,14 @@ def recorded(
     if rest:
         raise ValueError(f"{system.turns * steps} steps in a common period are no multiple of {every}")
     c = system.columns
-    values = c.values
     out = np.empty((periods * length, c.kind.size, 3))
-    matrices = [np.ascontiguousarray(x, dtype=float) for x in (system.K, system.D, system.B, system.load)]
     state = np.concatenate([start.z, start.dz])
-    own = system.own.forces
-    laws = (
-        own.schedules,
-        own.forces,
-        own.kind,
-        system.own.place,
-        own.parameters,
-        own.parameters_first,
-        own.state_first,
-        own.block_first,
-    )
-    clock = np.array([system.own.turn, system.w])
-    before = begun * system.turns * steps
     trajectory(
-        steps,
-        every,
-        before,
-        *matrices,
-        c.kind,
-        c.mode,
-        c.jumps,
-        values,
+        PathSpan(steps, every, begun * system.turns * steps),
+        PathSystem(*(np.ascontiguousarray(x, dtype=float) for x in (system.K, system.D, system.B, system.load))),
+        ColumnValues(c.kind, c.mode, c.jumps, c.counted, bool(np.any(c.jumps != NEVER)), c.values),
         np.ascontiguousarray(table),
-        laws,
-        clock,
+        acting_laws(system.own, system.own.forces.parameters, np.array([system.own.turn, system.w])),
         state,
         out,
     )
