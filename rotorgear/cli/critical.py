@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -20,9 +20,6 @@ from rotorgear.cli.common import (
 )
 from rotorgear.cli.speed_options import ToOption, parse_mesh_orders, parse_orders
 from rotorgear.errors import AnalysisError
-
-if TYPE_CHECKING:
-    pass
 
 
 def critical(

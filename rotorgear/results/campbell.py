@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -73,10 +71,6 @@ class Onset(Record):
     frequency_hz: float = of("frequency", "Hz", note=" there")
 
 
-def _words_by_branch(result: Any, whirl: np.ndarray) -> list[list[str]]:
-    return [[WHIRL_WORDS[number] for number in branch] for branch in whirl.T.tolist()]
-
-
 def by_branch(key: str) -> Written:
     """A key that is written by branch, then by speed."""
     return Written(key, lambda result, values: _turned(values), axes=("branch", "speed"))
@@ -144,7 +138,11 @@ class CampbellResult(ModelResult, kind="campbell"):
         "",
         "speed",
         "branch",
-        json=Written("whirl", _words_by_branch, axes=("branch", "speed")),
+        json=Written(
+            "whirl",
+            lambda result, whirl: [[WHIRL_WORDS[number] for number in branch] for branch in whirl.T.tolist()],
+            axes=("branch", "speed"),
+        ),
         note=': `"forward"`, `"backward"`, `"mixed"`, `"planar"` or `""`; in Python numbers into `WHIRL_WORDS`',
     )
     whirl_by_shaft: dict[str, np.ndarray] = of(

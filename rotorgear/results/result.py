@@ -20,14 +20,6 @@ _LINES = 40
 _WIDTH = 80
 
 
-def _total(record: Any, seconds: dict[str, float]) -> float:
-    return float(seconds.get("total", 0.0))
-
-
-def _by_step(record: Any, seconds: dict[str, float]) -> dict[str, float]:
-    return {step: float(value) for step, value in seconds.items() if step != "total"}
-
-
 class Result(Record):
     """Base of all results.
 
@@ -43,8 +35,14 @@ class Result(Record):
         "s",
         "STEP",
         json=(
-            Written("seconds", _total, "s", ()),
-            Written("seconds_by_step", _by_step, "s", ("STEP",), note=" of each step of the analysis"),
+            Written("seconds", lambda record, seconds: float(seconds.get("total", 0.0)), "s", ()),
+            Written(
+                "seconds_by_step",
+                lambda record, seconds: {step: float(value) for step, value in seconds.items() if step != "total"},
+                "s",
+                ("STEP",),
+                note=" of each step of the analysis",
+            ),
         ),
         default_factory=dict,
         kw_only=True,

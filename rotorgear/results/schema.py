@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import MISSING, Field, dataclass, field, fields
+from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from itertools import count
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, dataclass_transform, overload
 
@@ -184,7 +184,7 @@ class Record:
         found: dict[str, Declared] = {}
         for item in fields(cls):
             if "declared" in item.metadata:
-                found[item.name] = _named(item.metadata["declared"], item.name)
+                found[item.name] = replace(item.metadata["declared"], name=item.name)
         for base in reversed(cls.__mro__):
             for name, value in vars(base).items():
                 if isinstance(value, Derived):
@@ -234,10 +234,6 @@ class Record:
 def record_name(cls: type[Record]) -> str:
     """Name of a record in files: its class, and the file that it stands in, since two results may have rows of one name."""
     return f"{cls.__module__.rpartition('.')[2]}.{cls.__name__}"
-
-
-def _named(declared: Declared, name: str) -> Declared:
-    return Declared(**{**vars(declared), "name": name})
 
 
 def read_only(value: Any) -> Any:

@@ -91,10 +91,6 @@ def by_mesh(key: str, *axes: str) -> Written:
     return Written(key, value, axes=("MESH", "helix", *axes))
 
 
-def _drivers(result: Any, driver: tuple[str, ...]) -> dict[str, str]:
-    return {mesh: driver[result.contacts_of(mesh)[0]] for mesh in dict.fromkeys(result.contact_mesh)}
-
-
 def _forces(name: str, kind: str) -> tuple[Written, Written]:
     """Force and moment of a support stand under keys of their own."""
     return (
@@ -149,7 +145,14 @@ class StaticResult(ModelResult, kind="static"):
     mesh_deflection: np.ndarray = of("approach of the flanks", "m", "contact", json=by_mesh("mesh_deflection_m"))
     carries: np.ndarray = of("whether the contact is closed", "", "contact", json=by_mesh("mesh_carries"))
     driver: tuple[str, ...] = of(
-        "gear that drives", "", "contact", json=Written("mesh_driver", _drivers, axes=("MESH",))
+        "gear that drives",
+        "",
+        "contact",
+        json=Written(
+            "mesh_driver",
+            lambda result, driver: {m: driver[result.contacts_of(m)[0]] for m in dict.fromkeys(result.contact_mesh)},
+            axes=("MESH",),
+        ),
     )
     helix_share: np.ndarray = of(
         "share of a contact in the force of its mesh", "", "contact", json=by_mesh("helix_share")

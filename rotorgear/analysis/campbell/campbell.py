@@ -252,6 +252,11 @@ def _result(
         return {name: spread(values) for name, values in shares.items()}
 
     strain = {name: v for name, v in seen.energies.strain.items() if name.startswith("meshes.")}
+    # A branch is described by its mode at the first speed where it oscillates: all of them exist there, but not everywhere.
+    first = [int(np.argmax(np.isfinite(chain.s))) for chain in chains]
+    columns = [shapes.coordinates(chain.group, chain.q[n][:, None]) for chain, n in zip(chains, first, strict=True)]
+    halvings = sum(branches.halvings for branches in tracks)
+    bound = 10.0 ** np.ceil(np.log10(max(found.error, 1e-10)))  # what is below is rounding
     result = CampbellResult(
         model=system.model,
         speeds=grid[kept],
@@ -261,7 +266,7 @@ def _result(
         kinetic_by_motion=every(seen.energies.kinetic_by_motion),
         strain_by_motion=every(seen.energies.strain_by_motion),
         mesh_strain={name.removeprefix("meshes."): v for name, v in every(strain).items()},
-        description=_descriptions(shapes, chains, grid),
+        description=shapes.descriptions(np.hstack(columns), grid[first]),
         error_estimate=estimate,
         basis_error=found.error,
         basis=shapes.stations,
@@ -277,7 +282,8 @@ def _result(
         seconds=clock.total(),
         left_out=_left_out(system, found, grid, operating),
         warnings=_warnings(system, found, tracks, onsets),
-        method=_method(found, tracks, len(grid)),
+        method=f"basis of {found.size} columns from {len(found.snapshots)} true solutions, {len(found.checks)} more as a "
+        f"check: off by at most {bound:.0e}; {len(grid)} speeds, {halvings} steps halved to follow the modes",
     )
     progress(1.0, "done")
     return result
@@ -318,12 +324,6 @@ def _margins(
     return margins(lines, met, operating, s[place], seen)
 
 
-def _descriptions(shapes: BasisShapes, chains: list[Chain], grid: np.ndarray) -> tuple[str, ...]:
-    first = [int(np.argmax(np.isfinite(chain.s))) for chain in chains]
-    columns = [shapes.coordinates(c.group, c.q[k][:, None]) for c, k in zip(chains, first, strict=True)]
-    return shapes.descriptions(np.hstack(columns), grid[first])
-
-
 def _left_out(system: System, found: SpeedModes, grid: np.ndarray, operating: float | None) -> tuple[str, ...]:
     notes = list(left_out(system, float(grid[-1])))
     rigid = found.snapshots[0].rigid.shape[1]
@@ -349,12 +349,3 @@ def _warnings(system: System, found: SpeedModes, tracks: list[Track], onsets: tu
         places = ", ".join(f"{speed * RPM_PER_RAD_S:.6g}" for speed in unsure[:3])
         notes.append(f"two branches can't be told apart near {places} rpm: they meet or part there in a point")
     return tuple(notes)
-
-
-def _method(found: SpeedModes, tracks: list[Track], count: int) -> str:
-    halvings = sum(track.halvings for track in tracks)
-    bound = 10.0 ** np.ceil(np.log10(max(found.error, 1e-10)))  # what is below is rounding
-    return (
-        f"basis of {found.size} columns from {len(found.snapshots)} true solutions, {len(found.checks)} more as a check: "
-        f"off by at most {bound:.0e}; {count} speeds, {halvings} steps halved to follow the modes"
-    )

@@ -104,7 +104,7 @@ def roots_of(system: System, family: SpeedFamily, order: float, top: float, damp
     found = []
     for whole in affine_pieces(system, family, top, damped):
         for dofs in groups:
-            for root in synchronous_speeds(_cut(whole, dofs), order):
+            for root in synchronous_speeds(whole.cut(dofs), order):
                 vector = np.zeros(system.n, complex)
                 vector[dofs] = root.vector
                 found.append(Synchronous(root.speed, root.eigenvalue, vector, root.residual))
@@ -144,11 +144,6 @@ def _matrices(system: System, speed: float, damped: bool) -> tuple[sp.csc_array,
         return sp.csc_array(gyroscopic), system.stiffness(speed)
     stiffness = system.stiffness(speed) + system.circulatory(speed)
     return sp.csc_array(system.damping(speed) + gyroscopic), sp.csc_array(stiffness)
-
-
-def _cut(whole: Affine, dofs: np.ndarray) -> Affine:
-    M, D0, D1, K0, K1 = (sp.csc_array(A[:, dofs][dofs]) for A in (whole.M, whole.D0, whole.D1, whole.K0, whole.K1))
-    return Affine(M, D0, D1, K0, K1, whole.low, whole.high)
 
 
 def _result(

@@ -46,6 +46,28 @@ class _Problem:
     forms: StrainForms | None = None
     guess: float | None = None
 
+    def cut(self, group: np.ndarray) -> _Problem:
+        """The problem of one group of dofs."""
+        if len(group) == self.M.shape[0]:
+            return self
+
+        def cut_out(A: sp.csc_array) -> sp.csc_array:
+            return sp.csc_array(A[:, group][group])
+
+        D = None if self.D is None else cut_out(self.D)
+        D = None if D is None or not D.nnz else D
+        K = cut_out(self.K)
+        K_symmetric = cut_out(self.K_symmetric)
+        S = None
+        if self.S is not None:
+            S = sp.csr_array(sp.csc_array(self.S)[:, group])
+            S = sp.csr_array(S[np.diff(S.indptr) > 0])
+        symmetric = self.symmetric or not (K - K_symmetric).nnz
+        damped = self.damped and D is not None and bool((D + D.T).nnz)
+        inertial = None if self.inertial is None else cut_out(self.inertial)
+        forms = None if self.forms is None else self.forms.cut(group)
+        return _Problem(cut_out(self.M), D, K, K_symmetric, S, symmetric, damped, inertial, forms, self.guess)
+
 
 def solve(system: System, wanted: Wanted) -> Modes:
     """Return the lowest modes of all groups that are asked for, lowest |s| first, rigid ones at the front.
@@ -63,7 +85,7 @@ def solve(system: System, wanted: Wanted) -> Modes:
     if not chosen:
         raise AnalysisError(f"no dof of the model moves in {' or '.join(wanted.only)}")
     try:
-        solved = [_solve_group(_part(whole, group, system.n), wanted, system) for group in chosen]
+        solved = [_solve_group(whole.cut(group), wanted, system) for group in chosen]
     except LooseDofError as error:
         # The solver knows the number of a dof within its group; the whole pencil tells which dofs of the model they are.
         try:
@@ -101,29 +123,6 @@ def _problem(system: System, speed: float | None) -> _Problem:
         forms=None if is_plain else system.strain_forms(at),
         guess=guess,
     )
-
-
-def _part(whole: _Problem, group: np.ndarray, n: int) -> _Problem:
-    """Cut one group of dofs out of the whole."""
-    if len(group) == n:
-        return whole
-
-    def cut(A: sp.csc_array) -> sp.csc_array:
-        return sp.csc_array(A[:, group][group])
-
-    D = None if whole.D is None else cut(whole.D)
-    D = None if D is None or not D.nnz else D
-    K = cut(whole.K)
-    K_symmetric = cut(whole.K_symmetric)
-    S = None
-    if whole.S is not None:
-        S = sp.csr_array(sp.csc_array(whole.S)[:, group])
-        S = sp.csr_array(S[np.diff(S.indptr) > 0])
-    symmetric = whole.symmetric or not (K - K_symmetric).nnz
-    damped = whole.damped and D is not None and bool((D + D.T).nnz)
-    inertial = None if whole.inertial is None else cut(whole.inertial)
-    forms = None if whole.forms is None else whole.forms.cut(group)
-    return _Problem(cut(whole.M), D, K, K_symmetric, S, symmetric, damped, inertial, forms, whole.guess)
 
 
 def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.tables.common import plain_table, table_of
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -39,10 +40,36 @@ def campbell_table(result: CampbellResult, *, crossings: bool = False) -> Render
             result.description[b],
         )
     parts: list[RenderableType] = [Text(title, style="bold"), branches]
-    if result.margins:
-        parts.append(_margins(result))
+    if result.operating_speed is not None and result.margins:
+        margins = table_of(
+            result.margins,
+            ("line", "left", lambda item: item.line),
+            ("Hz", "right", lambda item: f"{item.frequency_hz:.2f}"),
+            ("branch", "right", lambda item: str(item.branch) if item.branch else "-"),
+            ("Hz", "right", lambda item: _number(item.mode_hz, ".2f")),
+            ("margin %", "right", lambda item: _number(100.0 * item.margin, "+.2f")),
+            ("takes part %", "right", lambda item: _number(100.0 * item.participation, ".2f") if item.branch else "-"),
+            ("crossing rpm", "right", lambda item: _number(item.crossing_speed * RPM_PER_RAD_S, ".1f")),
+            title=f"Margins at {result.operating_speed * RPM_PER_RAD_S:.6g} rpm",
+        )
+        parts.append(margins)
     if crossings:
-        parts.append(_crossings(result))
+        met = table_of(
+            result.crossings,
+            ("rpm", "right", lambda item: f"{item.speed * RPM_PER_RAD_S:.2f}"),
+            ("Hz", "right", lambda item: f"{item.frequency_hz:.3f}"),
+            ("branch", "right", lambda item: str(item.branch)),
+            ("line", "left", lambda item: item.line),
+            ("whirl", "left", lambda item: item.whirl),
+            ("zeta %", "right", lambda item: _number(100.0 * item.damping_ratio, ".3f")),
+            (
+                "takes part %",
+                "right",
+                lambda item: f"{100.0 * item.participation:.2f}" if item.excited else "not excited",
+            ),
+            title="Crossings",
+        )
+        parts.append(met)
     notes = [""]
     if any(not item.branch for item in result.margins):
         notes.append("-: the line lies above all branches (--fmax follows more), or can't excite any")
@@ -56,63 +83,6 @@ def campbell_table(result: CampbellResult, *, crossings: bool = False) -> Render
     notes += [f"left out: {note}" for note in result.left_out]
     notes += [f"Warning: {note}" for note in result.warnings]
     return Group(*parts, *(Text(note) for note in notes), "")
-
-
-def plain_table(title: str = "") -> Any:
-    """An empty table without lines."""
-    from rich.table import Table
-
-    return Table(
-        box=None,
-        pad_edge=False,
-        title=f"\n{title}" if title else None,
-        title_justify="left",
-        title_style="bold",
-        header_style="bold",
-    )
-
-
-def _margins(result: CampbellResult) -> Any:
-    assert result.operating_speed is not None
-    table = plain_table(f"Margins at {result.operating_speed * RPM_PER_RAD_S:.6g} rpm")
-    table.add_column("line", overflow="fold")
-    for name in ("Hz", "branch", "Hz", "margin %", "takes part %", "crossing rpm"):
-        table.add_column(name, justify="right")
-    for item in result.margins:
-        known = item.branch > 0
-        table.add_row(
-            item.line,
-            f"{item.frequency_hz:.2f}",
-            str(item.branch) if known else "-",
-            _number(item.mode_hz, ".2f"),
-            _number(100.0 * item.margin, "+.2f"),
-            _number(100.0 * item.participation, ".2f") if known else "-",
-            _number(item.crossing_speed * RPM_PER_RAD_S, ".1f"),
-        )
-    return table
-
-
-def _crossings(result: CampbellResult) -> Any:
-    table = plain_table("Crossings")
-    table.add_column("rpm", justify="right")
-    table.add_column("Hz", justify="right")
-    table.add_column("branch", justify="right")
-    table.add_column("line", overflow="fold")
-    table.add_column("whirl")
-    table.add_column("zeta %", justify="right")
-    table.add_column("takes part %", justify="right")
-    for item in result.crossings:
-        share = f"{100.0 * item.participation:.2f}" if item.excited else "not excited"
-        table.add_row(
-            f"{item.speed * RPM_PER_RAD_S:.2f}",
-            f"{item.frequency_hz:.3f}",
-            str(item.branch),
-            item.line,
-            item.whirl,
-            _number(100.0 * item.damping_ratio, ".3f"),
-            share,
-        )
-    return table
 
 
 def _number(value: float, form: str) -> str:

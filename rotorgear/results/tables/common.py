@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, Literal
+
+# Heading of a column, the side it stands on, and what it says of a row.
+Column = tuple[str, Literal["left", "right"], Callable[[Any], str]]
 
 
 def heading(title: str, rest: str = "") -> Any:
@@ -26,6 +30,30 @@ def table(*names: str, left: int = 1, no_wrap: bool = False) -> Any:
     out = Table(box=None, pad_edge=False, header_style="bold")
     for number, name in enumerate(names):
         out.add_column(name, justify="left" if number < left else "right", no_wrap=no_wrap)
+    return out
+
+
+def plain_table(title: str = "") -> Any:
+    """An empty table without lines, its title in bold above it."""
+    from rich.table import Table
+
+    return Table(
+        box=None,
+        pad_edge=False,
+        title=f"\n{title}" if title else None,
+        title_justify="left",
+        title_style="bold",
+        header_style="bold",
+    )
+
+
+def table_of(rows: Iterable[Any], *columns: Column, title: str = "") -> Any:
+    """A table of records, a line for each; long texts are folded."""
+    out = plain_table(title)
+    for name, justify, _ in columns:
+        out.add_column(name, justify=justify, overflow="fold")
+    for row in rows:
+        out.add_row(*(cell(row) for _, _, cell in columns))
     return out
 
 

@@ -6,8 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.tables.campbell import plain_table
-from rotorgear.results.tables.common import heading, lines
+from rotorgear.results.tables.common import heading, lines, plain_table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.tables.common import error_words
+from rotorgear.results.tables.common import error_words, plain_table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -18,14 +18,13 @@ if TYPE_CHECKING:
 def modal_table(result: ModalResult, *, energies: bool = False) -> RenderableType:
     """Return modes, notes and, where asked for, energy shares as one rich renderable that fits 80 columns."""
     from rich.console import Group
-    from rich.table import Table
     from rich.text import Text
 
     damped = result.speed is not None
     how = "undamped, at standstill"
     if result.speed is not None:
         how = f"damped, {result.model.reference_shaft} at {result.speed * RPM_PER_RAD_S:.6g} rpm"
-    modes = Table(box=None, pad_edge=False, header_style="bold")
+    modes = plain_table()
     modes.add_column("mode", justify="right")
     modes.add_column("Hz", justify="right")
     modes.add_column("error", justify="right")
@@ -48,21 +47,16 @@ def modal_table(result: ModalResult, *, energies: bool = False) -> RenderableTyp
     notes += [f"left out: {note}" for note in result.left_out]
     notes += [f"Warning: {note}" for note in result.warnings]
     title = Text(f"{result.model.title or 'Modes'}: {how}", style="bold")
-    return Group(title, modes, *([_energies(result)] if energies else []), *(Text(note) for note in notes), "")
-
-
-def _energies(result: ModalResult) -> Any:
-    from rich.table import Table
-
-    table = Table(
-        box=None, pad_edge=False, title="\nEnergy shares", title_justify="left", title_style="bold", header_style="bold"
-    )
-    table.add_column("mode", justify="right")
-    table.add_column("kinetic, by part", overflow="fold")
-    table.add_column("strain, by part", overflow="fold")
-    for k in range(len(result)):
-        table.add_row(str(k + 1), _largest(result.kinetic_energy, k), _largest(result.strain_energy, k))
-    return table
+    parts: list[RenderableType] = [title, modes]
+    if energies:
+        shares = plain_table("Energy shares")
+        shares.add_column("mode", justify="right")
+        shares.add_column("kinetic, by part", overflow="fold")
+        shares.add_column("strain, by part", overflow="fold")
+        for k in range(len(result)):
+            shares.add_row(str(k + 1), _largest(result.kinetic_energy, k), _largest(result.strain_energy, k))
+        parts.append(shares)
+    return Group(*parts, *(Text(note) for note in notes), "")
 
 
 def _largest(shares: dict[str, Any], k: int) -> str:

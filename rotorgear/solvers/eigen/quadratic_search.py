@@ -28,6 +28,9 @@ from rotorgear.solvers.sparse.pencil import EPS
 _DENSE_UP_TO = 80  # dofs up to which LAPACK is as fast
 _BLOCK = 4
 _CONVERGED = 1e-12  # residual of T x = mu x relative to mu
+_EQUAL = (
+    1e-6  # relative distance below which Ritz values may be copies: one too many costs directions, one missed a mode
+)
 _SOUND = 1e-9  # backward error, and distance of two pairs, above and below which a Krylov result is not taken
 _TOO_BLURRED = 1e-8  # rounding of the smallest mu from which the upper spectrum is taken from the companion matrix
 _LARGEST_DENSE = 6000  # states: 0.6 GB a complex matrix
@@ -138,7 +141,11 @@ def _arnoldi(search: Search, wanted: int) -> Pairs:
     """
     krylov = search.krylov
     mu, Y = _converged(search, wanted)
-    while not krylov.exhausted and _most_copies(mu[:wanted]) >= krylov.width:
+    while not krylov.exhausted:
+        shown = mu[:wanted]
+        equal = np.abs(shown[:, None] - shown) <= _EQUAL * np.abs(shown)
+        if int(equal.sum(axis=0).max(initial=0)) < krylov.width:
+            break
         krylov.widen(krylov.width)
         for _ in range(3):
             krylov.expand()
@@ -149,12 +156,6 @@ def _arnoldi(search: Search, wanted: int) -> Pairs:
     X = krylov.polished(np.hstack([Y.real, Y.imag]))
     X = search.inverse.unbalanced(X[:, : Y.shape[1]] + 1j * X[:, Y.shape[1] :])
     return _selected(search, mu[:wanted], X, search.inverse.zeros, size, reach=float(1.0 / last))
-
-
-def _most_copies(mu: np.ndarray) -> int:
-    """Size of the largest group of equal values, to a millionth."""
-    near = np.abs(mu[:, None] - mu) <= 1e-6 * np.abs(mu)
-    return int(near.sum(axis=0).max(initial=0))
 
 
 def _converged(search: Search, wanted: int) -> tuple[np.ndarray, np.ndarray]:

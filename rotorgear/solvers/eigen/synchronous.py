@@ -46,6 +46,11 @@ class Affine:
         """D and K at a speed."""
         return sp.csc_array(self.D0 + speed * self.D1), sp.csc_array(self.K0 + speed * self.K1)
 
+    def cut(self, dofs: np.ndarray) -> Affine:
+        """The same of some dofs, that no other acts on."""
+        M, D0, D1, K0, K1 = (sp.csc_array(A[:, dofs][dofs]) for A in (self.M, self.D0, self.D1, self.K0, self.K1))
+        return Affine(M, D0, D1, K0, K1, self.low, self.high)
+
 
 @dataclass(frozen=True)
 class Synchronous:
