@@ -10,8 +10,12 @@ normal of the plane of action,
 
     v_t = [ 0 ; cos b k x n_t ; 0 ; -cos b k x n_t ].
 
-A mesh that carries over the width of its face resists it too: K = k v v^T + k_t v_t v_t^T, with the contact's plane where the
-stiffness of the face has its centre, and k_t = k b^2/12 for one that is uniform over a width b.
+A mesh that carries over the width of its face resists it too. With the centre of its stiffness at a place e from the middle,
+
+    v_e = v + e v_t,      K = k v_e v_e^T + k_t v_t v_t^T,
+
+k_t = k b^2/12 for a stiffness that is uniform over a width b. A gear that is cut on its shaft bends and twists with it: its
+part of v_t is then the difference of v at the nodes of both ends of the face over their distance.
 
 One contact point serves both bodies: that makes all six rigid motions of the pair free of strain. (The widespread form with
 each gear's arm to its own base tangent point fails a rigid tilt by up to a_w sin a sin b per rad.) Conventions:
@@ -20,7 +24,7 @@ docs/conventions.md.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, sin
 
 import numpy as np
@@ -55,6 +59,23 @@ class ContactGeometry:
     pinion_offset: float = 0.0
     gear_offset: float = 0.0
     contact_position: float = 0.0
+
+
+@dataclass(frozen=True)
+class Face:
+    """How a mesh carries along its face.
+
+    Attributes:
+        place: e (m), centre of its stiffness from the plane of the contact.
+        tilt_stiffness: k_t (N m), moment about the place for a tilt in m/m.
+        length: distance (m) of the ends of the face, for gears that are cut on their shafts.
+        integral: whether pinion and gear are cut on their shafts.
+    """
+
+    place: float
+    tilt_stiffness: float
+    length: float = 0.0
+    integral: tuple[bool, bool] = (False, False)
 
 
 def flank_normal(geometry: ContactGeometry) -> np.ndarray:
@@ -109,24 +130,42 @@ def sliding_vectors(geometry: ContactGeometry) -> np.ndarray:
     return np.array([np.concatenate([across, np.cross(pinion, across), -across, -np.cross(gear, across)]), turned])
 
 
-def gear_mesh(
-    geometry: ContactGeometry, stiffness: float, damping: float = 0.0, tilt_stiffness: float = 0.0
-) -> ElementMatrices:
-    """Spring (N/m) and damper (N s/m) along the flank normal between pinion and gear, 12 dofs.
+def face_strains(geometry: ContactGeometry, face: Face) -> np.ndarray:
+    """Approach at the place of the face and tilt along it from the dofs, shape (2, d).
 
-    Without a tilt stiffness (N m, moment about the place of contact for a tilt in m/m) it has one strain, the approach of the
-    flanks; with it a second one, their tilt, damped in the same proportion.
+    The dofs are those of pinion and gear, then those at the smaller and the larger z of the face of each gear that is cut on its
+    shaft: d = 12, 24 or 36.
     """
-    v = contact_vector(geometry)
-    if not tilt_stiffness:
+    sides = (slice(0, 6), slice(6, 12))
+    tilt = tilt_vector(geometry)
+    at_ends = contact_vector(replace(geometry, pinion_offset=0.0, gear_offset=0.0))
+    ends = []
+    for side, integral in zip(sides, face.integral, strict=True):
+        if integral:
+            tilt[side] = 0.0
+            ends += [-at_ends[side] / face.length, at_ends[side] / face.length]
+    along = np.concatenate([tilt, *ends])
+    middle = np.pad(contact_vector(geometry), (0, len(along) - 12))
+    return np.array([middle + face.place * along, along])
+
+
+def gear_mesh(
+    geometry: ContactGeometry, stiffness: float, damping: float = 0.0, face: Face | None = None
+) -> ElementMatrices:
+    """Spring (N/m) and damper (N s/m) along the flank normal between pinion and gear.
+
+    Without a face it has 12 dofs and one strain, the approach of the flanks; with a face the dofs of `face_strains` and a second
+    strain, their tilt, damped in the same proportion.
+    """
+    if face is None:
         return ElementMatrices(
-            strain=v[None, None],
+            strain=contact_vector(geometry)[None, None],
             modulus=np.array([[[stiffness]]]),
             viscosity=np.array([[[damping]]]) if damping else None,
         )
-    modulus = np.diag([stiffness, tilt_stiffness])
+    modulus = np.diag([stiffness, face.tilt_stiffness])
     return ElementMatrices(
-        strain=np.array([[v, tilt_vector(geometry)]]),
+        strain=face_strains(geometry, face)[None],
         modulus=modulus[None],
         viscosity=damping / stiffness * modulus[None] if damping else None,
     )

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.elements.gear_mesh import tilt_vector
+from rotorgear.elements.gear_mesh import face_strains
 from rotorgear.model.layout.mean_load import MeshForce
-from rotorgear.system.groups import contact_geometry
+from rotorgear.system.groups import contact_geometry, face_of
 from rotorgear.system.system import System
 
 
@@ -81,7 +81,7 @@ def contact_lines(system: System) -> ContactLines:
         rotation[dofs[11], k] = sense * contact.gear_base_radius
         mesh = system.layout.mesh(contact.mesh).part
         gap[k] = mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0)
-        v_t = tilt_vector(contact_geometry(state))
+        v_t = face_strains(contact_geometry(state), face_of(system.layout, state))[1]
         tilt[dofs, k] = v_t
         tilted[dofs, k] = _quarter_turn(v_t)
         if state.face is not None:
@@ -108,7 +108,7 @@ def contact_lines(system: System) -> ContactLines:
 def _quarter_turn(vector: np.ndarray) -> np.ndarray:
     """d/dpsi of a contact vector: displacements and rotations in the plane turn with the centre line."""
     out = np.zeros_like(vector)
-    for first in (0, 3, 6, 9):
+    for first in range(0, len(vector), 3):
         out[first] = -vector[first + 1]
         out[first + 1] = vector[first]
     return out

@@ -9,6 +9,7 @@ import numpy as np
 
 from rotorgear.elements.gear_mesh import (
     ContactGeometry,
+    Face,
     equivalent_mass_general,
     equivalent_mass_torsion,
     gear_mesh,
@@ -84,10 +85,9 @@ def constant_groups(layout: Layout, load: MeanLoad, nodes: Nodes) -> list[Elemen
     for force in load.forces:
         c = force.contact
         geometry = contact_geometry(force)
-        tilt_stiffness = force.face.tilt_stiffness if force.face else 0.0
-        matrices = gear_mesh(geometry, c.stiffness, mesh_damping(layout, force, geometry), tilt_stiffness)
-        dofs = node_dofs(nodes.at(c.pinion_shaft, c.pinion_z), nodes.at(c.gear_shaft, c.gear_z))
-        found.append(ElementGroup(f"meshes.{c.mesh}", "", matrices, dofs))
+        face = face_of(layout, force) if force.face else None
+        matrices = gear_mesh(geometry, c.stiffness, mesh_damping(layout, force, geometry), face)
+        found.append(ElementGroup(f"meshes.{c.mesh}", "", matrices, mesh_dofs(layout, nodes, force)))
     for name, bearing in model.bearings.items():
         pedestal = bearing.pedestal
         if pedestal is not None:
@@ -228,11 +228,10 @@ def element_data(model: Tables, name: str, elements: list[Element]) -> ShaftElem
 
 
 def contact_geometry(force: MeshForce) -> ContactGeometry:
-    """Geometry of one contact with its driving flank, where the stiffness of its face has its centre."""
+    """Geometry of one contact with its driving flank, in the middle of its face."""
     c = force.contact
     # Recess follows the driving flank; the element measures from the pitch point towards where the pinion would recede.
     past_pitch_point = c.contact_position if force.pinion_drives else -c.contact_position
-    along = force.face.place if force.face else 0.0
     return ContactGeometry(
         psi=c.psi,
         pressure_angle=c.pressure_angle,
@@ -241,10 +240,33 @@ def contact_geometry(force: MeshForce) -> ContactGeometry:
         torque_sense=force.torque_sense,
         pinion_base_radius=c.pinion_base_radius,
         gear_base_radius=c.gear_base_radius,
-        pinion_offset=c.contact_z + along - c.pinion_z,
-        gear_offset=c.contact_z + along - c.gear_z,
+        pinion_offset=c.contact_z - c.pinion_z,
+        gear_offset=c.contact_z - c.gear_z,
         contact_position=past_pitch_point,
     )
+
+
+def face_of(layout: Layout, force: MeshForce) -> Face:
+    """How one contact carries along its face; one without a face of its own in the middle of it and without tilt stiffness."""
+    c = force.contact
+    mesh = layout.mesh(c.mesh)
+    ends = mesh.face(c.helix)
+    place = force.face.place if force.face else 0.0
+    tilt_stiffness = force.face.tilt_stiffness if force.face else 0.0
+    if force.face is None or ends is None:
+        return Face(place, tilt_stiffness)
+    return Face(place, tilt_stiffness, ends[1] - ends[0], (mesh.pinion.part.integral, mesh.gear.part.integral))
+
+
+def mesh_dofs(layout: Layout, nodes: Nodes, force: MeshForce) -> np.ndarray:
+    """Numbers of the dofs of one contact: of both gears, and of the ends of a face that is cut on its shaft, shape (1, d)."""
+    c = force.contact
+    places = [(c.pinion_shaft, c.pinion_z), (c.gear_shaft, c.gear_z)]
+    mesh = layout.mesh(c.mesh)
+    ends = mesh.face(c.helix)
+    if force.face is not None and ends is not None:
+        places += [(gear.shaft, z) for gear in mesh.gears if gear.part.integral for z in ends]
+    return node_dofs(*(nodes.at(*place) for place in places))
 
 
 def mesh_damping(layout: Layout, force: MeshForce, geometry: ContactGeometry) -> float:

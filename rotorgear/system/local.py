@@ -12,14 +12,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector
+from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, face_strains
 from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.model.parts.excitation import ErrorHarmonic, StiffnessHarmonic
 from rotorgear.solvers.time.local_system import LocalSystem
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import contact_lines
-from rotorgear.system.groups import ElementGroup, contact_geometry, mesh_damping, node_dofs, resists_tilt, tilt_only
+from rotorgear.system.groups import (
+    ElementGroup,
+    contact_geometry,
+    face_of,
+    mesh_damping,
+    mesh_dofs,
+    node_dofs,
+    resists_tilt,
+    tilt_only,
+)
 from rotorgear.system.loads import weight_loads
 from rotorgear.system.local_parts import (
     LocalPart,
@@ -134,16 +143,16 @@ def _mesh_parts(system: System) -> list[LocalPart]:
         part = f"meshes.{contact.mesh}"
         pinion = system.nodes.at(contact.pinion_shaft, contact.pinion_z)
         dofs = node_dofs(pinion, system.nodes.at(contact.gear_shaft, contact.gear_z))[0]
-        column = columns_at(system, dofs, contact_vector(geometry)[None])
+        approach = face_strains(geometry, face_of(system.layout, force))[:1]
+        column = columns_at(system, mesh_dofs(system.layout, system.nodes, force)[0], approach)
         found.append(LocalPart(part, label, law, column, is_mesh=True))
         rubbing = friction_part(system, force, geometry, label, law, dofs, column)
         if rubbing is not None:
             found.append(rubbing)
         if law.gap == "unilateral":
-            other = contact_vector(replace(geometry, torque_sense=-geometry.torque_sense))
-            found.append(
-                LocalPart(part, f"{label} back", _back(law), columns_at(system, dofs, other[None]), is_mesh=True)
-            )
+            turned = replace(geometry, torque_sense=-geometry.torque_sense)
+            other = columns_at(system, dofs, contact_vector(turned)[None])
+            found.append(LocalPart(part, f"{label} back", _back(law), other, is_mesh=True))
     return found
 
 

@@ -106,6 +106,11 @@ def places(layout: Layout) -> dict[str, list[tuple[float, str]]]:
                 continue
             for place in layout.places(f"{table}.{name}"):
                 found[place.shaft].append((place.z, f"{table}.{name}"))
+    # Teeth that are cut on a shaft tilt with it between the ends of their face.
+    for mesh in layout.meshes:
+        for gear in mesh.gears if mesh.part.tilt else ():
+            for helix in range(mesh.helices if gear.part.integral else 0):
+                found[gear.shaft] += [(z, f"meshes.{mesh.name} face") for z in mesh.face(helix) or ()]
     return found
 
 

@@ -49,6 +49,7 @@ def mesh_problems(layout: Layout) -> Iterator[Problem]:
             yield Problem(address, f"two gears on shaft '{pinion.shaft}'", "gears on two shafts")
         else:
             yield from _excitations(address, mesh, pinion, gear)
+            yield from _on_shafts(address, both)
             found = [*_mates(address, pinion, gear), *_faces(address, both), *_teeth(address, mesh, pinion, gear)]
             yield from found or _axes(address, both, in_bending=layout.model.has("bending"))
 
@@ -123,6 +124,24 @@ def _faces(address: str, mesh: MeshLayout) -> Iterator[Problem]:
             text = f"faces around z = {millimetres(one)} and z = {millimetres(other)}"
             yield Problem(address, text, "faces that overlap", "check at, width and gap")
             return
+
+
+def _on_shafts(address: str, mesh: MeshLayout) -> Iterator[Problem]:
+    """A face that is cut on its shaft lies on it."""
+    if not mesh.part.tilt or mesh.pinion.part.kind != mesh.gear.part.kind:
+        return
+    for gear in mesh.gears:
+        shaft = gear.shaft_part
+        slack = 1e-9 * max(shaft.length, abs(shaft.start))
+        for helix in range(mesh.helices if gear.part.integral else 0):
+            low, high = mesh.face(helix) or (shaft.start, shaft.end)
+            if low < shaft.start - slack or high > shaft.end + slack:
+                text = f"a face from {millimetres(low)} to {millimetres(high)} on shaft '{gear.shaft}'"
+                run = (
+                    f"a shaft under the whole face; it runs from {millimetres(shaft.start)} to {millimetres(shaft.end)}"
+                )
+                yield Problem(f"gears.{gear.name}.integral", text, run, f"{address} has tilt = true")
+                return
 
 
 def _axes(address: str, mesh: MeshLayout, *, in_bending: bool) -> Iterator[Problem]:

@@ -11,6 +11,7 @@ from rotorgear.gears.geometry.backlash import Allowance
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.model.parts.fields import (
     Angle,
+    Flag,
     Inertia,
     Length,
     Mass,
@@ -53,6 +54,11 @@ class Gear(Part):
         None, description="hand of the helix; of a herringbone: of the helix at the smaller z"
     )
     width: PositiveLength | None = Field(None, description="face width (of one helix)")
+    integral: Flag = Field(
+        False,
+        description="whether the teeth are cut on the shaft: in meshes with tilt = true they bend and twist with it along "
+        "the face",
+    )
     gap: NonNegativeLength = Field(0.0, description="gap between the helices of a herringbone")
     profile_shift: SignedRatio = Field(0.0, description="profile shift coefficient x")
     addendum_factor: PositiveRatio = Field(1.0, description="addendum of the rack over m_n")

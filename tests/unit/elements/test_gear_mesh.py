@@ -12,7 +12,9 @@ import pytest
 import rotorgear as rg
 from rotorgear.elements.gear_mesh import (
     ContactGeometry,
+    Face,
     contact_vector,
+    face_strains,
     flank_normal,
     gear_mesh,
     sliding_vectors,
@@ -140,7 +142,7 @@ def test_a_mesh_with_a_face_is_two_meshes_of_half_its_width(seed: int) -> None:
     for z in (at, -at):
         v = contact_vector(replace(g, pinion_offset=g.pinion_offset + z, gear_offset=g.gear_offset + z))
         halves = halves + 0.5 * k * np.outer(v, v)
-    K = gear_mesh(g, k, tilt_stiffness=k * width**2 / 12.0).stiffness
+    K = gear_mesh(g, k, face=Face(0.0, k * width**2 / 12.0)).stiffness
     assert K is not None
     assert K[0] == pytest.approx(halves, rel=1e-12, abs=1e-12 * k)
 
@@ -148,7 +150,7 @@ def test_a_mesh_with_a_face_is_two_meshes_of_half_its_width(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(6))
 def test_rigid_motions_of_a_pair_neither_press_nor_tilt_its_flanks(seed: int) -> None:
     g = random_contact(np.random.default_rng(seed))
-    strain = gear_mesh(g, 1e8, tilt_stiffness=1e4).strain
+    strain = gear_mesh(g, 1e8, face=Face(0.01, 1e4)).strain
     assert strain is not None
     strains = strain[0] @ rigid_motions(pair_points(g))
     assert np.abs(strains).max() < 1e-12
@@ -163,8 +165,32 @@ def test_the_tilt_of_the_flanks_is_what_more_face_adds_to_their_approach() -> No
 def test_a_mesh_without_tilt_stiffness_has_one_strain_and_damping_keeps_the_proportion() -> None:
     g = random_contact(np.random.default_rng(2))
     one = gear_mesh(g, 1e8, 500.0)
-    both = gear_mesh(g, 1e8, 500.0, tilt_stiffness=2e4)
+    both = gear_mesh(g, 1e8, 500.0, Face(0.0, 2e4))
     assert one.strain is not None
     assert one.strain.shape == (1, 1, 12)
     assert both.stiffness is not None
     assert both.damping == pytest.approx(500.0 / 1e8 * both.stiffness)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("integral", [(True, False), (False, True), (True, True)])
+def test_gears_cut_on_their_shafts_are_free_of_strain_in_rigid_motions(seed: int, integral: tuple[bool, bool]) -> None:
+    g = random_contact(np.random.default_rng(seed))
+    points = pair_points(g)
+    ends = [points[k] * [1.0, 1.0, 0.0] + [0.0, 0.0, z] for k in (0, 1) if integral[k] for z in (-0.02, 0.02)]
+    strains = face_strains(g, Face(0.004, 1e4, 0.04, integral)) @ rigid_motions(np.array([*points, *ends]))
+    assert np.abs(strains).max() < 1e-12
+
+
+def test_a_rigid_shaft_under_its_teeth_tilts_them_as_its_node_does() -> None:
+    rng = np.random.default_rng(5)
+    g = random_contact(rng)
+    motion = rng.normal(size=(2, 6))
+    ends = [
+        rigid_transfer(np.array([0.0, 0.0, offset + z])) @ q
+        for offset, q in zip((g.pinion_offset, g.gear_offset), motion, strict=True)
+        for z in (-0.02, 0.02)
+    ]
+    whole = np.concatenate([*motion, *ends])
+    cut = face_strains(g, Face(0.004, 1e4, 0.04, (True, True))) @ whole
+    assert cut == pytest.approx(face_strains(g, Face(0.004, 1e4)) @ whole[:12], rel=1e-12)

@@ -82,6 +82,50 @@ def test_few_passes_suffice_however_soft_the_bearing(holds: float) -> None:
     assert result.faces[0].face_load_factor is not None
 
 
+def cut_on_its_shaft(integral: bool = True) -> rg.Model:
+    """Torsion alone: a wide pinion of 60 mm on a shaft of 20 mm, driven from its left end."""
+    gear: dict[str, Any] = {"kind": "spur", "normal_module": "2 mm", "at": 0.1, "width": 0.06}
+    return rg.Model(
+        motions=["torsion"],
+        operation={"input_shaft": "one", "output_shaft": "two", "speed": 100.0, "torque": 100.0},
+        shafts={
+            "one": {"sections": [{"length": 0.2, "outer_diameter": 0.02}], "material": "steel"},
+            "two": {"sections": [{"length": 0.2, "outer_diameter": 0.1}], "material": "steel"},
+        },
+        gears={
+            "pinion": {"shaft": "one", "teeth": 20, "integral": integral, **gear},
+            "wheel": {"shaft": "two", "teeth": 80, **gear},
+        },
+        meshes={
+            "pair": {"pinion": "pinion", "gear": "wheel", "stiffness": 2e8, "tilt": True, "centre_line_angle": 0.0}
+        },
+    )
+
+
+def test_a_pinion_cut_on_its_shaft_winds_up_under_its_teeth() -> None:
+    row = rg.static(cut_on_its_shaft()).faces[0]
+    # The torque runs through half of the face: f_0 = r_b^2 F b/(2 G J). The moment M of the load along the face takes
+    # r_b^2 M/(G J) of that, and is -k b f/12 while the whole face carries.
+    r_b = 0.5 * 0.002 * 20 * np.cos(np.radians(20.0))
+    twist = r_b**2 / (206e9 / 2.6 * np.pi * 0.02**4 / 32.0)
+    f = twist * (100.0 / r_b) * 0.06 / 2.0 / (1.0 + twist * 2e8 * 0.06 / 12.0)
+    assert abs(row.shaft_misalignment_m) == pytest.approx(f, rel=1e-6)
+    # The driven end winds up against the teeth: there they carry more.
+    assert row.peak_place_m == pytest.approx(-0.03)
+    assert rg.static(cut_on_its_shaft(integral=False)).faces[0].shaft_misalignment_m == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_pinion_cut_on_a_rigid_shaft_tilts_as_its_node_does() -> None:
+    apart = rg.static(overhung()).faces[0]
+    cut = rg.static(overhung().with_("gears.pinion.integral", True)).faces[0]
+    assert cut.misalignment_m == pytest.approx(apart.misalignment_m, rel=1e-9)
+
+
+def test_teeth_cut_on_a_shaft_that_ends_below_them_are_refused() -> None:
+    with pytest.raises(ModelError, match=r"gears\.pinion\.integral.*a shaft under the whole face"):
+        overhung().with_({"gears.pinion.integral": True, "gears.pinion.at": 0.19, "gears.wheel.at": 0.19})
+
+
 def test_the_misalignment_found_as_a_given_one_on_rigid_shafts_is_the_same_state() -> None:
     found = rg.static(overhung()).faces[0]
     rigid = overhung(misalignment=found.misalignment_m).with_("supports.left.stiffness.tilt", 1e15)
