@@ -1,4 +1,4 @@
-"""Draws a run-up over speed: mesh forces, dynamic transmission errors, bearing forces and accelerations, whole and by order."""
+"""Draws a run-up over speed: mesh forces, transmission errors, bearing forces and accelerations, whole and by order."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def _quantities(result: ResponseResult) -> list[tuple[str, list[str], np.ndarray
     angular = [k for k, name in enumerate(result.points) if result.model.points[name].direction in turning]
     quantities = [
         ("Dynamic mesh force of a helix", meshes, by_mesh(result.mesh_force), "N"),
-        ("Dynamic transmission error", meshes, 1e6 * by_mesh(result.transmission_error), "um"),
+        ("Transmission error", meshes, 1e6 * by_mesh(result.transmission_error), "um"),
         ("Bearing force", list(result.bearings), bearings, "N"),
         *(
             ("Acceleration", [result.points[k] for k in points], np.abs(result.acceleration[:, :, points]), unit)

@@ -81,8 +81,17 @@ class ResponseResult(ModelResult, kind="response"):
         "order",
         "speed",
         "contact",
-        json=_amplitudes_by_mesh("dynamic_transmission_error_m"),
-        note=", the dynamic one: r_b1 theta_1 + r_b2 theta_2 in the plane of action",
+        json=_amplitudes_by_mesh("transmission_error_m"),
+        note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2, of each helix",
+    )
+    approach: np.ndarray = of(
+        "approach",
+        "m",
+        "order",
+        "speed",
+        "contact",
+        json=_amplitudes_by_mesh("approach_m"),
+        note=" of the flanks in the transverse plane, bending and axial motion included",
     )
     bearings: tuple[str, ...] = of("names of the bearings", "", "bearing", json=None)
     bearing_force: np.ndarray = of(

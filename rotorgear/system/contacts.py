@@ -84,6 +84,7 @@ def contact_lines(system: System) -> ContactLines:
         v_t = face_strains(contact_geometry(state), face_of(system.layout, state))[1]
         tilt[dofs, k] = v_t
         tilted[dofs, k] = _quarter_turn(v_t)
+        start[k] = state.start or 0.0
         if state.face is not None:
             tilt_stiffness[k] = state.face.tilt_stiffness
             start[k] = state.face.force

@@ -1,4 +1,4 @@
-"""Fourier coefficients over a mesh cycle of what the file gives as a curve: stiffness from a model of the teeth, corner impacts.
+"""Fourier coefficients over a mesh cycle: of curves that the file gives, of corner impacts, and of the state of loaded teeth.
 
 A curve x(u) over a cycle u = 0 to 1 is its mean plus the sum of Re(c_n e^{2 pi i n u}).
 """
@@ -7,21 +7,27 @@ from __future__ import annotations
 
 import numpy as np
 
-# Harmonics of a curve that count: up to this one, and not below this share of the strongest.
+# Harmonics of a given curve that count: up to this one, and not below this share of the strongest.
 HIGHEST = 10
 SMALLEST = 0.01
-_NODES = 64
+# Harmonics of a given curve that are looked at, so that what is left out has a size.
+SEEN = 100
+# Harmonics of loaded teeth are left out while they are below the first share of the strongest, and while all of them together
+# change no peak to peak by more than the second share.
+_WEAK = 0.004
+_PEAK_TO_PEAK = 0.006
+_NODES = 256
 
 
 def harmonics_of_pieces(pieces: tuple[tuple[float, float, float], ...]) -> np.ndarray:
-    """Coefficients (HIGHEST,) of straight pieces (start, value there, value at its end), over their mean.
+    """Coefficients (SEEN,) of straight pieces (start, value there, value at its end), over their mean.
 
     By parts over each piece: with w = 2 pi n the integral of x e^{-iwu} is [x e^{-iwu}] i/w + [e^{-iwu}] x'/w^2 between its ends.
     """
     start, first, last = np.array(pieces, dtype=float).T
     end = np.append(start[1:], 1.0)
     mean = float((0.5 * (first + last) * (end - start)).sum())
-    w = 2.0 * np.pi * np.arange(1, HIGHEST + 1)[:, None]
+    w = 2.0 * np.pi * np.arange(1, SEEN + 1)[:, None]
     a = np.exp(-1j * w * start)
     b = np.exp(-1j * w * end)
     slope = (last - first) / (end - start)
@@ -29,16 +35,60 @@ def harmonics_of_pieces(pieces: tuple[tuple[float, float, float], ...]) -> np.nd
 
 
 def harmonics_of_pulse(duration: float, at: float) -> np.ndarray:
-    """Coefficients (HIGHEST,) of a half sine of height 1 that lasts a share of the cycle from `at` on."""
+    """Coefficients (SEEN,) of a half sine of height 1 that lasts a share of the cycle from `at` on."""
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     x = 0.5 * (nodes + 1.0)
-    n = np.arange(1, HIGHEST + 1)[:, None]
+    n = np.arange(1, SEEN + 1)[:, None]
     return np.asarray(
         duration * (weights * np.sin(np.pi * x) * np.exp(-2j * np.pi * n * (at + duration * x))).sum(axis=1)
     )
 
 
-def strong(coefficients: np.ndarray) -> list[tuple[int, complex]]:
-    """Numbers and coefficients of the harmonics that count."""
+def strong(coefficients: np.ndarray) -> tuple[list[tuple[int, complex]], float]:
+    """Numbers and coefficients of the harmonics that count, and the largest other one relative to the strongest."""
     size = np.abs(coefficients)
-    return [(n + 1, complex(c)) for n, c in enumerate(coefficients) if size[n] > SMALLEST * size.max(initial=0.0)]
+    largest = float(size.max(initial=0.0))
+    counts = (size > SMALLEST * largest) & (np.arange(len(size)) < HIGHEST)
+    rest = float(size[~counts].max(initial=0.0))
+    # Rounding is no harmonic.
+    share = rest / largest if rest > 1e-9 * largest else 0.0
+    return [(int(n) + 1, complex(coefficients[n])) for n in np.flatnonzero(counts)], share
+
+
+def harmonics_of_cycle(values: np.ndarray) -> np.ndarray:
+    """Coefficients (h, c) of values (p, c), evenly spaced over a cycle."""
+    count = (len(values) - 1) // 2
+    return np.asarray(2.0 * np.fft.fft(values, axis=0)[1 : count + 1] / len(values))
+
+
+def that_matter(values: np.ndarray) -> tuple[list[int], float, float]:
+    """Which harmonics of values (p, c) over a cycle are needed for their peak to peak.
+
+    Returns:
+        Their numbers, rising; the largest of the others relative to the strongest; and the largest change of a peak to peak
+        without the others, relative to the largest peak to peak.
+    """
+    spectrum = np.fft.rfft(values, axis=0)
+    spectrum[0] = 0.0
+    size = np.abs(spectrum).max(axis=1)
+    largest = float(size.max(initial=0.0))
+    if not largest:
+        return [], 0.0, 0.0
+    order = np.argsort(-size, kind="stable")
+    least = int(np.count_nonzero(size > _WEAK * largest))
+    whole = np.ptp(values, axis=0)
+
+    def change(count: int) -> float:
+        kept = np.zeros_like(spectrum)
+        kept[order[:count]] = spectrum[order[:count]]
+        parts = np.fft.irfft(kept, len(values), axis=0)
+        return float(np.abs(np.ptp(parts, axis=0) - whole).max() / whole.max())
+
+    count = least
+    while count < len(order) - 1 and change(count) > _PEAK_TO_PEAK:
+        count += max(1, count // 16)
+    # Rounding is no harmonic, and the highest of an even number of values has no phase.
+    numbers = sorted(int(n) for n in order[:count] if size[n] > 1e-12 * largest and 2 * n < len(values))
+    rest = np.delete(size, numbers)
+    weak = float(rest.max(initial=0.0)) / largest
+    return (numbers, weak, change(count)) if weak > 1e-9 else (numbers, 0.0, 0.0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from rotorgear.analysis.modal.refine import all_finer
@@ -24,7 +26,7 @@ def mesh_error(
     speeds: np.ndarray,
     readings: list[Readings],
     damping: tuple[float, float],
-    mean: np.ndarray,
+    setup: Setup,
 ) -> float:
     """Relative change of the forces on a mesh that is two orders richer, at the peaks of the strongest orders."""
     system = plant.system
@@ -37,7 +39,7 @@ def mesh_error(
     forces = np.array([item.stacked for item in readings])  # (s, o, ...)
     size = np.abs(forces).max(axis=2, initial=0.0)
     worst = 0.0
-    wanted = {order.name: order for order in orders_of(finer, lines, mean)}
+    wanted = {order.name: order for order in orders_of(replace(setup, system=finer, lines=lines))[0]}
     for o in np.argsort(-size.max(axis=0))[:_CHECKED_ON_FINER]:
         s = int(np.argmax(size[:, o]))
         order = [wanted[orders[o].name]]

@@ -5,7 +5,8 @@ Re(f e^{i w t}) with w = |W_i| that is f_x = U W_i^2 e^{i s a}, f_y = -i s U W_i
 
 A transmission error e(t) and a stiffness k (1 + a(t)) turn the force of a contact under the mean force F_0 into
 F = k (v.q - e) + c (v.q' - e') + F_0 a to first order; a may follow from a model of the teeth, and an impact adds to the last
-term. Mesh phases: model/layout/mean_load.py.
+term. Of loaded teeth the last term is f of their joint state, F_i - k_i delta_i, which holds all of their ripple
+(analysis/static/cycle.py). Mesh phases: model/layout/mean_load.py.
 """
 
 from __future__ import annotations
@@ -13,15 +14,27 @@ from __future__ import annotations
 import cmath
 from collections.abc import Iterable
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
-from rotorgear.analysis.response.cycle_harmonics import harmonics_of_pieces, harmonics_of_pulse, strong
+from rotorgear.analysis.response.cycle_harmonics import (
+    harmonics_of_cycle,
+    harmonics_of_pieces,
+    harmonics_of_pulse,
+    strong,
+    that_matter,
+)
+from rotorgear.analysis.static.cycle import Cycle
+from rotorgear.analysis.static.mean_state import Setup
 from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.system.contacts import ContactLines
 from rotorgear.system.local import cycle_pieces
 from rotorgear.system.system import System
+
+# What has one frequency: "shaft" or "mesh", the multiple of its frequency, and the ratio to the reference speed.
+_Key = tuple[str, int | Fraction, float]
 
 
 @dataclass(frozen=True)
@@ -50,28 +63,32 @@ class Order:
         )
 
 
-def orders_of(system: System, lines: ContactLines, mean_force: np.ndarray) -> list[Order]:
-    """Return all orders of a system, lowest ratio first; what has one frequency is one order, with its phases.
+def orders_of(setup: Setup) -> tuple[list[Order], tuple[str, ...]]:
+    """Return all orders of a system about its mean state, lowest ratio first, and sentences on harmonics that are left out.
 
-    `mean_force` (c,) in N is that of the contacts. Phases follow from the teeth.
+    What has one frequency is one order, with its phases, which follow from the teeth.
     """
-    found: dict[tuple[str, int, float], tuple[list[str], Order]] = {}
+    found: dict[_Key, tuple[list[str], Order]] = {}
+    left: list[str] = []
+    system = setup.system
+    count = len(setup.lines.states)
     for shaft, ratio, load in _unbalances(system):
-        key = ("shaft", 1, round(ratio, 9))
-        _add(found, key, shaft, ratio, load, np.zeros((2, len(lines.stiffness)), complex))
-    for mesh, harmonic, ratio, terms in _meshes(system, lines, mean_force):
-        key = ("mesh", harmonic, round(ratio, 9))
-        _add(found, key, mesh, ratio, np.zeros(system.n, complex), terms)
+        _add(found, ("shaft", 1, round(ratio, 9)), shaft, ratio, load, np.zeros((2, count), complex))
+    for mesh, harmonic, ratio, terms in _meshes(setup, left):
+        _add(found, ("mesh", harmonic, round(ratio, 9)), mesh, ratio, np.zeros(system.n, complex), terms)
+    for kind, name, harmonic, ratio, force in _loaded_teeth(setup, left):
+        terms = np.stack([np.zeros(count, complex), force])
+        _add(found, (kind, harmonic, round(ratio, 9)), name, ratio, np.zeros(system.n, complex), terms)
     orders = [
         Order(f"{kind} {', '.join(names)} {harmonic}x", o.ratio, o.unbalance, o.error, o.force)
         for (kind, harmonic, _), (names, o) in found.items()
     ]
-    return sorted(orders, key=lambda order: order.ratio)
+    return sorted(orders, key=lambda order: order.ratio), tuple(dict.fromkeys(left))
 
 
 def _add(
-    found: dict[tuple[str, int, float], tuple[list[str], Order]],
-    key: tuple[str, int, float],
+    found: dict[_Key, tuple[list[str], Order]],
+    key: _Key,
     name: str,
     ratio: float,
     load: np.ndarray,
@@ -102,35 +119,85 @@ def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:
         yield item.shaft, abs(ratio), system.dofs.transform.T @ f
 
 
-def _meshes(
-    system: System, lines: ContactLines, mean_force: np.ndarray
-) -> Iterable[tuple[str, int, float, np.ndarray]]:
+def _meshes(setup: Setup, left: list[str]) -> Iterable[tuple[str, int, float, np.ndarray]]:
     """(mesh, harmonic, ratio, [errors; forces] of all contacts) of every harmonic that a mesh is given."""
+    system = setup.system
     load = system.load.about_nominal_flanks
-    for k, state in enumerate(lines.states):
+    for k, state in enumerate(setup.lines.states):
         mesh = system.layout.mesh(state.contact.mesh)
         phase = load.phase(state.contact)
         teeth = mesh.pinion.part.teeth
         ratio = abs(system.train.ratio(mesh.pinion.shaft)) * (teeth or 0)
         if phase is None or ratio == 0.0:
             continue
-        for row, harmonic, amplitude in _harmonics(system, mesh.part, state, float(mean_force[k])):
-            terms = np.zeros((2, len(lines.states)), complex)
+        for row, harmonic, amplitude in _harmonics(setup, k, mesh.part, left):
+            terms = np.zeros((2, len(setup.lines.states)), complex)
             terms[row, k] = amplitude * cmath.exp(1j * harmonic * phase)
             yield mesh.name, harmonic, harmonic * ratio, terms
 
 
-def _harmonics(system: System, mesh: Mesh, state: MeshForce, mean_force: float) -> Iterable[tuple[int, int, complex]]:
-    """(0: error in m, 1: force in N; harmonic; amplitude) of everything that varies in a contact over the mesh cycle."""
+def _harmonics(setup: Setup, contact: int, mesh: Mesh, left: list[str]) -> Iterable[tuple[int, int, complex]]:
+    """(0: error in m, 1: force in N; harmonic; amplitude) of everything that the file lets vary in a contact over the mesh cycle."""
+    state = setup.lines.states[contact]
+    mean_force = float(setup.mean_force[contact])
     # What opens the nominal flanks closes the others.
-    opens = 1.0 if system.load.is_nominal(state) else -1.0
+    opens = 1.0 if setup.system.load.is_nominal(state) else -1.0
     for item in mesh.transmission_error:
         yield 0, item.harmonic, opens * item.amplitude * cmath.exp(1j * item.phase)
     for share in mesh.stiffness_variation:
         yield 1, share.harmonic, mean_force * share.amplitude * cmath.exp(1j * share.phase)
-    pieces = cycle_pieces(system, state) if mean_force else ()
+    loaded_teeth = setup.joint is not None and setup.joint.own[contact] >= 0
+    pieces = cycle_pieces(setup.system, state) if mean_force and not loaded_teeth else ()
     if pieces:
-        yield from ((1, n, mean_force * c) for n, c in strong(harmonics_of_pieces(pieces)))
+        kept, rest = strong(harmonics_of_pieces(pieces))
+        yield from ((1, n, mean_force * c) for n, c in kept)
+        left += [f"meshes.{state.contact.mesh}: {sentence}" for sentence in _weak("stiffness", rest)]
     if mesh.corner_impact is not None:
         pulse = mesh.corner_impact
-        yield from ((1, n, opens * pulse.force * c) for n, c in strong(harmonics_of_pulse(pulse.duration, pulse.at)))
+        kept, rest = strong(harmonics_of_pulse(pulse.duration, pulse.at))
+        yield from ((1, n, opens * pulse.force * c) for n, c in kept)
+        left += [f"meshes.{state.contact.mesh}: {sentence}" for sentence in _weak("corner impact", rest)]
+
+
+def _weak(what: str, rest: float) -> list[str]:
+    """A sentence on the largest of the harmonics that are left out, relative to the strongest of all."""
+    return [f"harmonics of its {what} of up to {100.0 * rest:.2g} % of the strongest"] if rest > 0.0 else []
+
+
+def _loaded_teeth(setup: Setup, left: list[str]) -> Iterable[tuple[str, str, int | Fraction, float, np.ndarray]]:
+    """(kind, name, harmonic, ratio, force (c,) in N) of the joint state of loaded teeth, by the orders that matter."""
+    joint = setup.joint
+    for cycle in () if joint is None else joint.cycles:
+        assert joint is not None
+        if not cycle.ratio:
+            continue
+        f = joint.excitation(cycle)
+        # Contacts are weighed by the deflection that their force stands for.
+        k = np.where(joint.stiffness > 0.0, joint.stiffness, np.inf)
+        numbers, weak, change = that_matter(f / k)
+        if weak > 0.0:
+            left.append(
+                f"meshes {', '.join(cycle.meshes)}: orders of their loaded teeth of up to {100.0 * weak:.2g} % of the strongest; "
+                f"they would change its peak to peak at a crawl by {100.0 * change:.2g} %"
+            )
+        coefficients = harmonics_of_cycle(f)
+        for n in numbers:
+            for kind, name, harmonic in _named(setup.system, cycle, Fraction(n, cycle.periods)):
+                yield kind, name, harmonic, n / cycle.periods * cycle.ratio, coefficients[n - 1]
+                coefficients[n - 1] = 0.0  # further names of one order add nothing to it
+
+
+def _named(system: System, cycle: Cycle, multiple: Fraction) -> Iterable[tuple[str, str, int | Fraction]]:
+    """(kind, name, harmonic) of a multiple of the mesh frequency: of the meshes, or of a shaft whose teeth are not alike."""
+    if multiple.denominator == 1:
+        yield from (("mesh", mesh, multiple.numerator) for mesh in cycle.meshes)
+        return
+    shafts: dict[str, int] = {}
+    for name in cycle.meshes:
+        for gear in system.layout.mesh(name).gears:
+            turns = multiple * (gear.part.teeth or 0)
+            if turns.denominator == 1:
+                shafts.setdefault(gear.shaft, turns.numerator)
+    if not shafts:
+        yield from (("mesh", mesh, multiple) for mesh in cycle.meshes)
+    yield from (("shaft", shaft, harmonic) for shaft, harmonic in shafts.items())

@@ -21,12 +21,13 @@ class Readings:
     """Amplitudes at one speed.
 
     Attributes:
-        mesh_force, transmission_error: (o, c); bearing_force: (o, b, 3); acceleration: of the named points, (o, k).
+        mesh_force, transmission_error, approach: (o, c); bearing_force: (o, b, 3); acceleration: of the named points, (o, k).
         displacement: x y z tx ty tz at gears, disks and bearings, (o, d, 6).
     """
 
     mesh_force: np.ndarray
     transmission_error: np.ndarray
+    approach: np.ndarray
     bearing_force: np.ndarray
     acceleration: np.ndarray
     displacement: np.ndarray
@@ -98,12 +99,14 @@ class Plant:
         error = np.array([order.error for order in orders])
         varied = np.array([order.force for order in orders])
         impedance = lines.stiffness + 1j * w[:, None] * lines.damping
-        force = impedance * ((lines.vectors.T @ q).T - error) + varied
+        approach = (lines.vectors.T @ q).T
+        force = impedance * (approach - error) + varied
         K, C = self._bearings(speed)
         held = -((K @ q) + (C @ q) * (1j * w)).T.reshape(len(w), -1, 3)
         moved = (np.reshape(self._points, (len(self._points), len(q))) @ q).T
         there = (self._place_rows @ q).T.reshape(len(w), len(self.places), 6)
-        return Readings(force, (lines.rotation.T @ q).T, held, -(w**2)[:, None] * moved, there)
+        transverse = approach / np.cos([state.contact.base_helix_angle for state in lines.states])
+        return Readings(force, (lines.rotation.T @ q).T, transverse, held, -(w**2)[:, None] * moved, there)
 
     def _bearings(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Rows that give the force on each bearing's node along x y z from displacements and velocities, (3 b, n) each."""

@@ -83,7 +83,8 @@ def response(
     first = mean_state(
         System(model, load=model.mean_load(direction_of(chosen[-1])).of_kind("static")), float(chosen[-1])
     )
-    orders, left = _within(orders_of(first.system, first.lines, first.mean_force), chosen, fmax)
+    orders, weak = orders_of(first)
+    orders, left = _within(orders, chosen, fmax)
     top = max(order.ratio for order in orders) * float(np.max(np.abs(chosen)))
     progress(0.02, "discretisation")
     plan = plan_up_to(at_speed(linear, float(chosen[-1])), MARGIN * top / (2.0 * np.pi), elements, accuracy)
@@ -98,12 +99,12 @@ def response(
         else modal_sweep(plant, orders, chosen, (modes, w), progress)
     )
     progress(0.96, "error estimate")
-    estimate = mesh_error(plant, orders, chosen, run.readings, (zeta, DAMPED * top), setup.mean_force)
+    estimate = mesh_error(plant, orders, chosen, run.readings, (zeta, DAMPED * top), setup)
     at = _shape_speed(model, shape_speed, chosen, run.readings)
     shape_w, shape_loads = plant.loads(orders, at)
     deflections = solve_orders(plant, plant.dynamics(at), shape_w, shape_loads)
     nodes, shapes = shapes_at_stations(system, system.dofs.expand(deflections))
-    quantities = ("mesh_force", "transmission_error", "bearing_force", "acceleration", "displacement")
+    quantities = ("mesh_force", "transmission_error", "approach", "bearing_force", "acceleration", "displacement")
     stacked = {name: np.stack([getattr(reading, name) for reading in run.readings], axis=1) for name in quantities}
     progress(1.0, "done")
     return ResponseResult(
@@ -116,6 +117,7 @@ def response(
         mean_force=setup.mean_force,
         mesh_force=stacked["mesh_force"],
         transmission_error=stacked["transmission_error"],
+        approach=stacked["approach"],
         bearings=tuple(model.bearings),
         bearing_force=stacked["bearing_force"],
         points=tuple(model.points),
@@ -132,7 +134,7 @@ def response(
         dofs=system.n,
         discretisation=pieces(system),
         seconds={"total": time.perf_counter() - clock},
-        left_out=(*left, *setup.notes, *notes, *rolling_notes(model, rolls=False)),
+        left_out=(*left, *weak, *setup.notes, *notes, *rolling_notes(model, rolls=False)),
         warnings=(
             *speed_warnings(plant, orders, chosen, (modes, w, zeta)),
             *parting(setup, stacked["mesh_force"], chosen),
@@ -152,7 +154,7 @@ def _discretised(first: Setup, linear: Model, plan: Plan, orders: list[Order]) -
     system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
     setup = replace(first, system=system, lines=contact_lines(system))
     names = {order.name for order in orders}
-    return setup, [o for o in orders_of(system, setup.lines, setup.mean_force) if o.name in names]
+    return setup, [order for order in orders_of(setup)[0] if order.name in names]
 
 
 def _within(orders: list[Order], speeds: np.ndarray, fmax: float | None) -> tuple[list[Order], list[str]]:
@@ -166,7 +168,13 @@ def _within(orders: list[Order], speeds: np.ndarray, fmax: float | None) -> tupl
     if not kept:
         lowest = orders[0].ratio * float(np.max(np.abs(speeds))) / (2.0 * np.pi)
         raise AnalysisError(f"fmax: no order is as low as {fmax:g} Hz, the lowest comes to {lowest:.6g} Hz")
-    return kept, [f"{order.name}: above {fmax:g} Hz at the highest speed" for order in orders if order.ratio > limit]
+    above: dict[str, list[str]] = {}
+    for order in orders:
+        if order.ratio > limit:
+            part, _, multiple = order.name.rpartition(" ")
+            above.setdefault(part, []).append(multiple)
+    runs = {part: m[0] if len(m) == 1 else f"{m[0]} to {m[-1]}, {len(m)} orders" for part, m in above.items()}
+    return kept, [f"{part} {multiples}: above {fmax:g} Hz at the highest speed" for part, multiples in runs.items()]
 
 
 def _speeds(

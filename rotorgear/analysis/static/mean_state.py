@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.analysis.static.cycle import JointState, over_cycle
 from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.errors import AnalysisError
 from rotorgear.system.contacts import ContactLines, contact_lines
@@ -14,12 +15,16 @@ from rotorgear.system.system import System
 
 @dataclass(frozen=True)
 class Setup:
-    """A system about its mean state, with its contacts, and their mean forces."""
+    """A system about its mean state, with its contacts, and their mean forces.
+
+    `joint` is the state of the loaded teeth over their cycles, None without such teeth; `notes` are sentences on what is left out.
+    """
 
     system: System
     lines: ContactLines
     mean_force: np.ndarray
     notes: tuple[str, ...]
+    joint: JointState | None = None
 
 
 def mean_state(system: System, speed: float) -> Setup:
@@ -41,7 +46,7 @@ def mean_state(system: System, speed: float) -> Setup:
             else ()
         )
         return Setup(system, lines, np.zeros(len(lines.states)), notes)
-    equilibrium = equilibrate(system, speed)
+    equilibrium, joint = over_cycle(equilibrate(system, speed), speed)
     if not equilibrium.closed.all():
         name = equilibrium.lines.names[int(np.flatnonzero(~equilibrium.closed)[0])]
         raise AnalysisError(
@@ -49,4 +54,15 @@ def mean_state(system: System, speed: float) -> Setup:
             "a smaller index error"
         )
     settled = equilibrium.system.with_load(equilibrium.system.load.with_forces(equilibrium.force))
-    return Setup(settled, contact_lines(settled), equilibrium.force, ())
+    return Setup(settled, contact_lines(settled), equilibrium.force, _apart(joint), joint)
+
+
+def _apart(joint: JointState | None) -> tuple[str, ...]:
+    """A sentence where the cycles of several mesh frequencies are taken one at a time."""
+    if joint is None or len(joint.cycles) < 2:
+        return ()
+    names = "; ".join(", ".join(cycle.meshes) for cycle in joint.cycles)
+    return (
+        f"what the cycles of meshes {names} do to each other: each is taken for itself, with the loaded teeth of the others on "
+        "the mean of their curves",
+    )

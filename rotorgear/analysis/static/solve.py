@@ -63,13 +63,18 @@ class Equilibrated:
     laws: tuple[LawState, ...] = ()
 
 
-def equilibrate(system: System, speed: float) -> Equilibrated:
+def equilibrate(system: System, speed: float, closed: np.ndarray | None = None) -> Equilibrated:
     """Return the equilibrium under torques, weight and index errors.
+
+    Args:
+        system: about a mean load.
+        speed: of the reference shaft in rad/s.
+        closed: (c,) contacts that are taken to carry first; None: all.
 
     Raises:
         AnalysisError: no loads, a motion that nothing holds and the loads push, or flanks that can't be settled.
     """
-    closed = np.ones(len(system.load.forces), bool)
+    closed = np.ones(len(system.load.forces), bool) if closed is None else closed
     tried: set[tuple[object, ...]] = set()
     while True:
         state = (tuple(force.torque_sense for force in system.load.forces), tuple(closed))

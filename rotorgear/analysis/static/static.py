@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import direction_of, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.along_faces import AlongFaces, equilibrate_along_faces, misalignments
+from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.forces import bearing_forces, forces_on_gears, imbalance, support_forces
 from rotorgear.analysis.static.sensitivity import Sensitivity, sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
@@ -68,8 +70,10 @@ def static(
     system = System(model, plan=plan, load=model.mean_load(direction_of(given)).of_kind("static"))
     _check_loaded(system)
     progress(0.1, f"solving {system.n} dofs")
-    found = equilibrate_along_faces(system, given or 0.0, part_of(progress, 0.1, 0.5))
-    equilibrium = found.equilibrium
+    found = equilibrate_along_faces(system, given or 0.0, part_of(progress, 0.1, 0.4))
+    progress(0.4, "loaded teeth over the mesh cycle")
+    equilibrium, _ = over_cycle(found.equilibrium, given or 0.0)
+    found = replace(found, equilibrium=equilibrium)
     progress(0.5, "sensitivities")
     change = sensitivities(equilibrium)
     progress(0.8, "error estimate")

@@ -71,6 +71,8 @@ class MeshForce:
         pinion_drives: whether the power flows from pinion to gear.
         assumed: True where no load flows and the sense was taken from the walk over the train.
         face: how the contact resists a tilt along its face; None for one that does not.
+        start: N, of loaded teeth that are linear about their mean state over the mesh cycle, where the flanks have not
+            approached: F = start + k (v . q - gap); None of a contact whose force is proportional to its deflection.
     """
 
     contact: Contact
@@ -79,11 +81,12 @@ class MeshForce:
     pinion_drives: bool
     assumed: bool
     face: FaceState | None = None
+    start: float | None = None
 
     @property
     def on_other_flank(self) -> MeshForce:
         """The same contact where the flanks on the other side of the teeth work."""
-        return replace(self, torque_sense=-self.torque_sense, pinion_drives=not self.pinion_drives)
+        return replace(self, torque_sense=-self.torque_sense, pinion_drives=not self.pinion_drives, start=None)
 
 
 @dataclass(frozen=True)
@@ -108,6 +111,7 @@ class MeanLoad:
         curves: mesh -> stiffness of each helix at the load, where the file names a stiffness model.
         kind: which stiffness `forces` have where it depends on the load: "dynamic", the tangent for small motions about it, or
             "static", the secant for the deflection under it.
+        flow: the state of the torque flow where this one was settled over the mesh cycle (`about_cycle`), else None.
     """
 
     layout: Layout
@@ -116,10 +120,27 @@ class MeanLoad:
     forces: tuple[MeshForce, ...]
     curves: Curves = field(default_factory=dict)
     kind: Kind = "dynamic"
+    flow: MeanLoad | None = None
 
     def of_kind(self, kind: Kind) -> MeanLoad:
-        """The same state with the other stiffness of the contacts."""
+        """The same state with the other stiffness of the contacts; those about their mesh cycle have one for both."""
         return replace(self, kind=kind, forces=_with_stiffness(self.layout, self.forces, self.curves, kind))
+
+    def about_cycle(
+        self, forces: Iterable[float], stiffness: Iterable[float], start: Iterable[float | None]
+    ) -> MeanLoad:
+        """The mean state over the mesh cycle of loaded teeth, with their contacts linear about it: F = start + k (v . q - gap).
+
+        Args:
+            forces: mean of each contact (N).
+            stiffness: of each contact along the flank normal, of loaded teeth the mean tangent k (N/m).
+            start: of loaded teeth (N), else None.
+        """
+        states = [
+            replace(state, normal_force=float(F), start=F_0, contact=replace(state.contact, stiffness=float(k)))
+            for state, F, k, F_0 in zip(self.forces, forces, stiffness, start, strict=True)
+        ]
+        return replace(self, forces=tuple(states), flow=self.flow or self)
 
     def with_forces(self, forces: Iterable[float]) -> MeanLoad:
         """The same flanks under other forces: N along the flank normal, one for each contact."""
@@ -189,10 +210,11 @@ class MeanLoad:
     def contact_map(self, force: MeshForce) -> ContactMap | None:
         """Map F(delta, u) of one helix from its loaded teeth, along the path of contact; None where the file gives none.
 
-        Its working load is the mean one of the mesh, so that equal helices share one map. In time u runs with the mesh phase phi
-        (`phase`): u = phi / 2 pi where the pinion drives, and the other way, u = -phi / 2 pi, where the gear does.
+        Its working load is the mean one of the mesh in the torque flow, so that equal helices share one map, and so do all
+        analyses. In time u runs with the mesh phase phi (`phase`): u = phi / 2 pi where the pinion drives, and the other way,
+        u = -phi / 2 pi, where the gear does.
         """
-        helices = self.of_mesh(force.contact.mesh)
+        helices = (self.flow or self).of_mesh(force.contact.mesh)
         mean = sum(state.normal_force for state in helices) / len(helices)
         mesh = self.layout.mesh(force.contact.mesh)
         return mesh.contact_map(force.contact.helix, mean, force.torque_sense)
@@ -244,7 +266,7 @@ def _with_stiffness(layout: Layout, states: Sequence[MeshForce], curves: Curves,
     found = []
     for state in states:
         contact = state.contact
-        if contact.mesh in curves:
+        if contact.mesh in curves and state.start is None:
             curve = curves[contact.mesh][contact.helix]
             normal = curve.dynamic_normal if kind == "dynamic" else curve.static_normal
             state = replace(state, contact=replace(contact, stiffness=normal))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +15,14 @@ if TYPE_CHECKING:
     from rotorgear.results.response import ResponseResult
 
 
+# Rows of a run of orders before the rest of it shares one.
+_SHOWN = 5
+_WORDS = (
+    "transmission error: rotation at the base circles, r_b1 theta_1 + r_b2 theta_2; approach: of the flanks, transverse, with "
+    "bending and axial motion",
+)
+
+
 def response_table(result: ResponseResult) -> RenderableType:
     """Return title, tables of the largest values and notes as one rich renderable."""
     from rich.console import Group
@@ -23,10 +32,16 @@ def response_table(result: ResponseResult) -> RenderableType:
     speeds = f"{first:.6g} rpm" if len(result.speeds) == 1 else f"{first:.6g} to {last:.6g} rpm"
     title = f"{result.model.title or 'Model'}: forced response, {result.model.reference_shaft} at {speeds}"
     orders = table("no", "order", "times input", f"Hz at {abs(last):.6g} rpm", left=2)
-    for o, (order, ratio) in enumerate(zip(result.orders, result.ratio, strict=True)):
-        orders.add_row(str(o + 1), order, f"{ratio:.6g}", f"{result.frequency_hz[o, -1]:.2f}")
+    for first_one, last_one in _rows_of_orders(result.orders):
+        ends = dict.fromkeys((first_one, last_one))
+        orders.add_row(
+            " to ".join(str(o + 1) for o in ends),
+            " to ".join(result.orders[o] if o == first_one else result.orders[o].rpartition(" ")[2] for o in ends),
+            " to ".join(f"{result.ratio[o]:.6g}" for o in ends),
+            " to ".join(f"{result.frequency_hz[o, -1]:.2f}" for o in ends),
+        )
     notes = [
-        *(["DTE: dynamic transmission error, r_b1 theta_1 + r_b2 theta_2"] if result.contact_mesh else []),
+        *(_WORDS if result.contact_mesh else ()),
         "amplitudes are half of peak to peak, each order by itself; forces without their mean",
         f"{len(result.speeds)} speeds, {result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
         f"solver error {error_words(result.solver_error)} at {result.checked} points checked; "
@@ -38,6 +53,19 @@ def response_table(result: ResponseResult) -> RenderableType:
     return Group(heading(title), "", orders, "", _largest(result), "", *lines(*notes), "")
 
 
+def _rows_of_orders(orders: tuple[str, ...]) -> list[tuple[int, int]]:
+    """First and last number of each row of the table of orders: a long run of high orders of one part shares a row."""
+    rows: list[tuple[int, int]] = []
+    start = 0
+    for _, group in groupby(order.rpartition(" ")[0] for order in orders):
+        end = start + len(list(group))
+        shown = start + _SHOWN if end - start > 2 * _SHOWN else end
+        rows += [(o, o) for o in range(start, shown)]
+        rows += [(shown, end - 1)] if shown < end else []
+        start = end
+    return rows
+
+
 def _largest(result: ResponseResult) -> Any:
     """The largest amplitude of each quantity and the order, speed and frequency of it."""
     out = table("largest of", "", "order no", "rpm", "Hz", "amplitude", left=2)
@@ -45,7 +73,9 @@ def _largest(result: ResponseResult) -> Any:
         contacts = result.contacts_of(mesh)
         _row(out, result, "mesh force", mesh, np.abs(result.mesh_force[:, :, contacts]).max(axis=2), 1.0, "N")
         error = np.abs(result.transmission_error[:, :, contacts]).max(axis=2)
-        _row(out, result, "DTE", mesh, error, 1e6, "um")
+        _row(out, result, "transm. error", mesh, error, 1e6, "um")
+        approach = np.abs(result.approach[:, :, contacts]).max(axis=2)
+        _row(out, result, "approach", mesh, approach, 1e6, "um")
     for k, name in enumerate(result.bearings):
         force = np.abs(result.bearing_force[:, :, k]).max(axis=2)
         _row(out, result, "bearing force", name, force, 1.0, "N")

@@ -8,7 +8,13 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.response.cycle_harmonics import HIGHEST, harmonics_of_pieces, harmonics_of_pulse, strong
+from rotorgear.analysis.response.cycle_harmonics import (
+    HIGHEST,
+    harmonics_of_pieces,
+    harmonics_of_pulse,
+    strong,
+    that_matter,
+)
 from tests.unit.analysis.spur_pair import spur_pair
 
 MESH = 24 * 1500.0 / 60.0
@@ -27,18 +33,18 @@ def test_coefficients_of_straight_pieces_are_those_of_their_samples() -> None:
         [lambda s: 1.2 - s, lambda s: 1.4 + 0.0 * s, lambda s: 0.8 + 0.4 * (s - 0.55) / 0.45],
     )
     turn = np.exp(-1j * np.pi * np.arange(1, HIGHEST + 1) / u.size)  # the samples stand in the middle of their strips
-    assert harmonics_of_pieces(pieces) == pytest.approx(sampled(x) / x.mean() * turn, abs=1e-8)
+    assert harmonics_of_pieces(pieces)[:HIGHEST] == pytest.approx(sampled(x) / x.mean() * turn, abs=1e-8)
 
 
 def test_coefficients_of_a_pulse_are_those_of_its_samples() -> None:
     u = np.arange(200_000) / 200_000
     late = (u - 0.4) % 1.0
     x = np.where(late < 0.25, np.sin(np.pi * late / 0.25), 0.0)
-    assert harmonics_of_pulse(0.25, 0.4) == pytest.approx(sampled(x), abs=1e-8)
+    assert harmonics_of_pulse(0.25, 0.4)[:HIGHEST] == pytest.approx(sampled(x), abs=1e-8)
 
 
 def test_weak_harmonics_do_not_count() -> None:
-    assert strong(np.array([1.0, 0.001, 0.5j])) == [(1, 1.0), (3, 0.5j)]
+    assert strong(np.array([1.0, 0.001, 0.5j])) == ([(1, 1.0), (3, 0.5j)], pytest.approx(0.001))
 
 
 @pytest.mark.parametrize(
@@ -72,3 +78,27 @@ def test_the_response_is_that_of_the_transient(mesh: dict[str, Any], pinion_driv
             assert abs(lines[30 * number]) < 0.02 * np.abs(lines[30:]).max()
             continue
         assert abs(found.mesh_force[place, 0, 0]) == pytest.approx(abs(lines[30 * number]), rel=0.02)
+
+
+def test_harmonics_are_kept_until_the_peak_to_peak_is_there() -> None:
+    u = np.arange(256) / 256
+    x = np.cos(2 * np.pi * u) + 0.3 * np.cos(6 * np.pi * u - 0.4) + 1e-4 * np.cos(18 * np.pi * u)
+    numbers, weak, change = that_matter(x[:, None])
+    assert numbers == [1, 3]
+    assert weak == pytest.approx(1e-4)
+    assert change == pytest.approx(abs(np.ptp(x - 1e-4 * np.cos(18 * np.pi * u)) / np.ptp(x) - 1.0))
+
+
+def test_a_kink_needs_many_harmonics_and_what_is_left_out_is_said() -> None:
+    u = np.arange(256) / 256
+    x = np.maximum(np.abs(u - 0.5), 0.2)[:, None]
+    numbers, weak, change = that_matter(x)
+    spectrum = np.fft.rfft(x[:, 0])
+    left = np.delete(np.abs(spectrum), [0, *numbers])
+    assert len(numbers) > 8
+    assert weak == pytest.approx(left.max() / np.abs(spectrum[1:]).max())
+    assert 0.0 < change <= 0.006
+
+
+def test_a_constant_has_no_harmonics() -> None:
+    assert that_matter(np.full((64, 2), 3.0)) == ([], 0.0, 0.0)
