@@ -27,7 +27,6 @@ from rotorgear.analysis.response.cycle_harmonics import (
 )
 from rotorgear.analysis.static.cycle import Cycle
 from rotorgear.analysis.static.mean_state import Setup
-from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.system.contacts import ContactLines
 from rotorgear.system.local import cycle_pieces
@@ -76,9 +75,9 @@ def orders_of(setup: Setup) -> tuple[list[Order], tuple[str, ...]]:
         _add(found, ("shaft", 1, round(ratio, 9)), shaft, ratio, load, np.zeros((2, count), complex))
     for mesh, harmonic, ratio, terms in _meshes(setup, left):
         _add(found, ("mesh", harmonic, round(ratio, 9)), mesh, ratio, np.zeros(system.n, complex), terms)
-    for kind, name, harmonic, ratio, force in _loaded_teeth(setup, left):
+    for kind, name, multiple, ratio, force in _loaded_teeth(setup, left):
         terms = np.stack([np.zeros(count, complex), force])
-        _add(found, (kind, harmonic, round(ratio, 9)), name, ratio, np.zeros(system.n, complex), terms)
+        _add(found, (kind, multiple, round(ratio, 9)), name, ratio, np.zeros(system.n, complex), terms)
     orders = [
         Order(f"{kind} {', '.join(names)} {harmonic}x", o.ratio, o.unbalance, o.error, o.force)
         for (kind, harmonic, _), (names, o) in found.items()
@@ -137,7 +136,7 @@ def _meshes(setup: Setup, left: list[str]) -> Iterable[tuple[str, int, float, np
 
 
 def _harmonics(setup: Setup, contact: int, mesh: Mesh, left: list[str]) -> Iterable[tuple[int, int, complex]]:
-    """(0: error in m, 1: force in N; harmonic; amplitude) of everything that the file lets vary in a contact over the mesh cycle."""
+    """(0: error in m, 1: force in N; harmonic; amplitude) of what the file lets vary in a contact over its cycle."""
     state = setup.lines.states[contact]
     mean_force = float(setup.mean_force[contact])
     # What opens the nominal flanks closes the others.

@@ -253,9 +253,9 @@ class _Problem:
             force[row] = self.spring_start + self.stiffness * (approach[row] - self.gap)
             force[row, self.mapped] = found.force
             approach[row, self.mapped] = found.d
-        names = dict.fromkeys(self.equilibrium.lines.names[i] for i in running)
+        meshes = dict.fromkeys(self.equilibrium.lines.names[i] for i in running)
         again = which.ravel()
-        return Cycle(tuple(names), ratio, periods, position, approach[again], force[again])
+        return Cycle(tuple(meshes), ratio, periods, position, approach[again], force[again])
 
     def _at(self, curves: list[_Curve]) -> Settled:
         """Equilibrium of the mapped contacts on the curves of one position."""

@@ -17,7 +17,8 @@ from rotorgear.system.system import System
 class Setup:
     """A system about its mean state, with its contacts, and their mean forces.
 
-    `joint` is the state of the loaded teeth over their cycles, None without such teeth; `notes` are sentences on what is left out.
+    `joint` is the state of the loaded teeth over their cycles, None without such teeth; `notes` are sentences on what is
+    left out.
     """
 
     system: System
