@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.system.contacts import contact_lines
+from rotorgear.system.system import System
 from tests.paths import ROOT
 
 
@@ -95,3 +97,28 @@ def test_c31_the_helix_at_larger_z_is_ahead_as_a_gear_that_is_turned_on_its_shaf
     lead = turned.phases["m"] - apart.phases["m"]  # type: ignore[operator]
     assert cmath.exp(1j * (second - first)) == pytest.approx(cmath.exp(1j * lead), rel=1e-12)  # type: ignore[operator]
     assert cmath.exp(1j * lead) == pytest.approx(cmath.exp(0.4j * math.pi * direction), rel=1e-9)
+
+
+def test_c32_transmission_error_is_rotation_and_approach_has_all_motion_in_it() -> None:
+    helix = {"kind": "helical", "helix_angle": 0.4, "normal_module": 0.004, "width": 0.03, "body": {"bore": 0.0}}
+    model = rg.Model(
+        operation={"input_shaft": "in"},
+        shafts={"in": {"position": [0.0, 0.0]}, "out": {"position": [0.07, 0.09943]}},
+        gears={
+            "a": {**helix, "shaft": "in", "at": "start", "teeth": 25, "hand": "right"},
+            "b": {**helix, "shaft": "out", "at": "start", "teeth": 31, "hand": "left"},
+        },
+        meshes={"m": {"pinion": "a", "gear": "b", "stiffness": 1e8}},
+    )
+    system = System(model)
+    lines = contact_lines(system)
+    contact = lines.states[0].contact
+    sense = lines.states[0].torque_sense
+    moved = system.dofs.transform.T.toarray()
+    turned, shifted = (moved[:, 6 * system.nodes.at("in", 0.0) + dof] for dof in (5, 0))
+    error = lines.rotation[:, 0]
+    approach = lines.vectors[:, 0] / math.cos(contact.base_helix_angle)
+    assert error @ turned == pytest.approx(sense * contact.pinion_base_radius)
+    assert approach @ turned == pytest.approx(error @ turned)
+    assert error @ shifted == 0.0
+    assert abs(approach @ shifted) > 0.1

@@ -146,7 +146,7 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
     """
     load = equilibrium.system.load
     lines = equilibrium.lines
-    maps = tuple(load.contact_map(state) for state in lines.states)
+    maps = tuple(load.contact_map(state, near=True) for state in lines.states)
     if not any(maps):
         return None
     phases = [load.phase(state.contact) for state in lines.states]

@@ -16,7 +16,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from rotorgear.gears.loaded.mesh_cycle import mesh_cycle
 from rotorgear.gears.loaded.tooth_contact import contact_problem
@@ -25,6 +25,9 @@ from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 # Positions in a base pitch, and loads as multiples of the working load. Resonances with contact loss reach four to five times it.
 POSITIONS = 128
 _LOADS = (0.0, 0.01, 0.03, 0.08, 0.15, 0.25, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0)
+# Linear analyses stay near the working load, and helical teeth are smooth over the cycle and over the load.
+_NEAR_LOADS = (0.0, 0.15, 0.4, 0.7, 1.0, 1.4, 2.0)
+_NEAR_POSITIONS = 64
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,7 @@ class ContactMap:
         load: (l,) forces along the flank normal in N, rising from 0.
         approach: (p, l) approach of the flanks along their normal in m at these loads; the first column is that of first touch.
         warnings: sentences.
+        compliance: (p, l) d delta / dF in m/N at these loads but the first; None: it follows from the approaches.
     """
 
     position: np.ndarray
@@ -45,6 +49,7 @@ class ContactMap:
     load: np.ndarray
     approach: np.ndarray
     warnings: tuple[str, ...] = ()
+    compliance: np.ndarray | None = None
 
     @property
     def largest_load(self) -> float:
@@ -101,9 +106,20 @@ class ContactMap:
         return index, at - index
 
     @cached_property
-    def _deflection_of_load(self) -> PchipInterpolator:
-        """delta (p, n) of n loads: monotone, so that no tangent is negative."""
-        return PchipInterpolator(self.load, self.approach, axis=1)
+    def _deflection_of_load(self) -> PchipInterpolator | CubicHermiteSpline:
+        """delta (p, n) of n loads: monotone, so that no tangent is negative.
+
+        Slopes are held below three times the chords: Fritsch and Carlson, SIAM J. Numer. Anal. 17 (1980) 238.
+        """
+        if self.compliance is None:
+            return PchipInterpolator(self.load, self.approach, axis=1)
+        secant = np.diff(self.approach, axis=1) / np.diff(self.load)
+        slope = self.compliance.copy()
+        # Line contact gives way without bound at first touch: there the curve leaves without curvature.
+        slope[:, 0] = 1.5 * secant[:, 0] - 0.5 * slope[:, 1]
+        slope[:, 1:] = np.minimum(slope[:, 1:], 3.0 * secant)
+        slope[:, :-1] = np.minimum(slope[:, :-1], 3.0 * secant)
+        return CubicHermiteSpline(self.load, self.approach, np.maximum(slope, 0.0), axis=1)
 
     @cached_property
     def _last_slope(self) -> np.ndarray:
@@ -112,13 +128,14 @@ class ContactMap:
 
 
 @lru_cache(maxsize=32)  # the helices of a model and its analyses ask for the same maps again and again
-def contact_map(teeth: ToothPair, load: float, positions: int = POSITIONS) -> ContactMap:
+def contact_map(teeth: ToothPair, load: float, positions: int = POSITIONS, near: bool = False) -> ContactMap:
     """Solve the loaded contact over the mesh cycle for loads up to five times the working one.
 
     Args:
         teeth: one helix.
         load: working force (N) along the flank normal.
         positions: in a base pitch.
+        near: for linear analyses: of helical teeth fewer loads, up to twice the working one, and fewer positions.
 
     Raises:
         AnalysisError: teeth that can't be made, meshed or brought into contact.
@@ -129,15 +146,20 @@ def contact_map(teeth: ToothPair, load: float, positions: int = POSITIONS) -> Co
     cosine = float(np.cos(problem.line.base_helix_angle))
     wrong = (*teeth.first_flank.single_teeth, *teeth.second_flank.single_teeth)
     periods = max(wrong) + 2 if wrong else 1
+    thin = near and problem.line.base_helix_angle > 0.0
+    positions = min(positions, _NEAR_POSITIONS) if thin else positions
+    shares = _NEAR_LOADS if thin else _LOADS
     u = np.arange(positions * periods) / positions
-    cycles = [mesh_cycle(problem, share * load * cosine, u) for share in _LOADS[1:]]
+    cycles = [mesh_cycle(problem, share * load * cosine, u) for share in shares[1:]]
     # mesh_cycle is transverse: delta_n = delta cos b_b, F_n = F_bt / cos b_b.
     columns = [cycles[0].no_load, *(cycle.deflection for cycle in cycles)]
     warnings = dict.fromkeys(note for cycle in cycles for note in cycle.warnings)
     return ContactMap(
         position=u,
         periods=periods,
-        load=load * np.array(_LOADS),
+        load=load * np.array(shares),
         approach=cosine * np.stack(columns, axis=1),
         warnings=(*problem.warnings, *warnings),
+        # F_n = F_bt / cos b_b and delta_n = delta cos b_b: a compliance has cos^2 b_b.
+        compliance=cosine**2 * np.stack([np.zeros(len(u)), *(1.0 / cycle.tangent for cycle in cycles)], axis=1),
     )

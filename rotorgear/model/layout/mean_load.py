@@ -207,17 +207,17 @@ class MeanLoad:
             return None
         return self.layout.mesh(mesh).both_helices(self.curves[mesh], self.of_mesh(mesh)[0].torque_sense)
 
-    def contact_map(self, force: MeshForce) -> ContactMap | None:
+    def contact_map(self, force: MeshForce, near: bool = False) -> ContactMap | None:
         """Map F(delta, u) of one helix from its loaded teeth, along the path of contact; None where the file gives none.
 
         Its working load is the mean one of the mesh in the torque flow, so that equal helices share one map, and so do all
         analyses. In time u runs with the mesh phase phi (`phase`): u = phi / 2 pi where the pinion drives, and the other way,
-        u = -phi / 2 pi, where the gear does.
+        u = -phi / 2 pi, where the gear does. `near` gives the one for linear analyses, which takes less time.
         """
         helices = (self.flow or self).of_mesh(force.contact.mesh)
         mean = sum(state.normal_force for state in helices) / len(helices)
         mesh = self.layout.mesh(force.contact.mesh)
-        return mesh.contact_map(force.contact.helix, mean, force.torque_sense)
+        return mesh.contact_map(force.contact.helix, mean, force.torque_sense, near)
 
     def curve(self, force: MeshForce) -> MeshStiffness:
         """Stiffness of one helix over its mesh period, along the path of contact of the pinion."""

@@ -356,10 +356,11 @@ class MeshLayout:
         except AnalysisError as error:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
 
-    def contact_map(self, helix: int, normal_force: float, sense: int = 1) -> ContactMap | None:
+    def contact_map(self, helix: int, normal_force: float, sense: int = 1, near: bool = False) -> ContactMap | None:
         """F(delta, u) of one helix about a mean force (N) along the flank normal; None where its teeth are not loaded ones.
 
-        `sense` is that of the torque on the pinion about +z. Raises what `rotorgear.gears.loaded.contact_map` raises.
+        `sense` is that of the torque on the pinion about +z; `near` gives the map for linear analyses. Raises what
+        `rotorgear.gears.loaded.contact_map` raises.
         """
         if self.part.stiffness != "tooth_fe" or not normal_force:
             return None
@@ -367,7 +368,7 @@ class MeshLayout:
 
         try:
             # Rounding of the torque flow must not make another load: equal meshes are solved once.
-            return contact_map(self.helix_teeth(helix, sense), float(f"{normal_force:.12g}"))
+            return contact_map(self.helix_teeth(helix, sense), float(f"{normal_force:.12g}"), near=near)
         except AnalysisError as error:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
 

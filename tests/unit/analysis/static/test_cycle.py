@@ -21,10 +21,10 @@ MAP_LOADS = (0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 0.9, 1.0, 1.1, 1.2, 1.5, 
 Approach = Callable[[np.ndarray, np.ndarray], np.ndarray]  # delta(F, u)
 
 
-def written(approach: Approach, periods: int = 1) -> Callable[[MeshLayout, int, float, int], ContactMap | None]:
+def written(approach: Approach, periods: int = 1) -> Callable[..., ContactMap | None]:
     """Stands in for MeshLayout.contact_map: every helix has the map delta(F, u)."""
 
-    def contact_map(mesh: MeshLayout, helix: int, normal_force: float, sense: int = 1) -> ContactMap | None:
+    def contact_map(mesh: MeshLayout, helix: int, normal_force: float, *_: object) -> ContactMap | None:
         if not normal_force:
             return None
         u = np.arange(128 * periods) / 128

@@ -210,12 +210,13 @@ def test_the_result_is_plain_json() -> None:
 def test_a_response_about_the_mean_state_meets_the_tangent_stiffness() -> None:
     model = rg.loads(pair_file(mesh=NAMED))
     state = mean_state(System(model, load=model.mean_load().of_kind("static")), 100.0)
-    again = state.system.with_load(state.system.load.of_kind("dynamic"))
-    tangent, secant = (s.load.of_mesh("pair")[0].contact.stiffness for s in (again, state.system))
     found = rg.mesh(model, estimate=False)
     assert found.tangent is not None
-    assert tangent == pytest.approx(float(found.tangent.mean()), rel=1e-9)
-    assert secant == pytest.approx(1.0 / float(np.mean(1.0 / found.stiffness)), rel=1e-9)
+    # The tangent jumps where pairs come into contact, so that 64 positions know its mean to a few thousandths.
+    tangent = state.system.load.of_mesh("pair")[0].contact.stiffness
+    assert tangent == pytest.approx(float(found.tangent.mean()), rel=5e-3)
+    assert tangent > 1.02 * float(found.stiffness.mean())
+    assert state.lines.stiffness == pytest.approx([tangent])
 
 
 def test_in_a_loop_of_meshes_split_and_stiffness_agree() -> None:
