@@ -25,15 +25,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.gears.loaded.contact_map import ContactMap
 from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.solvers.sparse.newton import Settled, settle
 from rotorgear.system.system import System
+
+if TYPE_CHECKING:
+    from rotorgear.gears.loaded.contact_map import ContactMap
 
 # Positions in a base pitch at least; a map that knows more is followed.
 _POSITIONS = 128
@@ -110,8 +113,8 @@ class JointState:
 def over_cycle(equilibrium: Equilibrated, speed: float) -> tuple[Equilibrated, JointState | None]:
     """Return the equilibrium that is the mean of the joint state of the loaded teeth, and that state.
 
-    Without loaded teeth (`stiffness = "tooth_fe"`) it is the one given, and there is no such state. A mesh that feels the tilt of its
-    shafts stays linear about the load along its face.
+    Without loaded teeth (`stiffness = "tooth_fe"`) it is the one given, and there is no such state. A mesh that feels the tilt
+    of its shafts stays linear about the load along its face.
 
     Args:
         equilibrium: with the contacts as springs, on the flanks that carry.
