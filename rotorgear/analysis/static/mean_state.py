@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.analysis.static.cycle import JointState, over_cycle
+from rotorgear.analysis.static.ground import torsion_sentence
 from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.errors import AnalysisError
 from rotorgear.system.contacts import ContactLines, contact_lines
@@ -55,7 +56,13 @@ def mean_state(system: System, speed: float) -> Setup:
             "a smaller index error"
         )
     settled = equilibrium.system.with_load(equilibrium.system.load.with_forces(equilibrium.force))
-    return Setup(settled, contact_lines(settled), equilibrium.force, _apart(joint), joint)
+    return Setup(
+        settled,
+        contact_lines(settled),
+        equilibrium.force,
+        (*torsion_sentence(equilibrium.notes), *_apart(joint)),
+        joint,
+    )
 
 
 def _apart(joint: JointState | None) -> tuple[str, ...]:

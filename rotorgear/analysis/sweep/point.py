@@ -9,6 +9,7 @@ import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.static.along_faces import about_faces
+from rotorgear.analysis.static.ground import springs_about_mean
 from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
 from rotorgear.analysis.sweep.reduce import Large, Reduced, Wanted
 from rotorgear.errors import AnalysisError
@@ -127,7 +128,7 @@ class PointMaker:
         system = System(about_faces(model, [speed])[0], plan=plan_in_time(self._elements))
         if system.n == 0:
             raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
-        found = local_model(system, Rotation.constant(speed), speed)
+        found = springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)
         for part in found.parts:
             if why := part.law.unsettled():
                 raise AnalysisError(f"{part.part}: {why}")

@@ -9,6 +9,7 @@ import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.static.along_faces import about_faces
+from rotorgear.analysis.static.ground import springs_about_mean
 from rotorgear.analysis.static.tangent import about_state_of
 from rotorgear.analysis.transient.channels import Channels, channels
 from rotorgear.analysis.transient.histories import Histories, Stream, integrate
@@ -58,7 +59,7 @@ def prepare(
     given = about_state_of(given, about_faces(given.model, [largest])[0])
     if given.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
-    local = local_model(given, rotation, largest)
+    local = springs_about_mean(local_model(given, rotation, largest), largest)
     rest = equilibrium(local.local)
     force = still_forces(local.local, tuple(part.law.mean() for part in local.parts))
     return Task(local, channels(local), rest, force, mesh_frequencies(given, largest), largest)

@@ -11,6 +11,7 @@ import numpy as np
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.stations import shapes_at_stations
+from rotorgear.analysis.static.ground import mean_torsion_notes
 from rotorgear.analysis.transient.histories import Histories, Stream
 from rotorgear.analysis.transient.notes import transient_left_out, transient_warnings
 from rotorgear.analysis.transient.request import Grid, base_frequencies, grid_of, integrator_of, quantity, run_up
@@ -181,7 +182,11 @@ def _result(
         motion_time=motion_time,
         motion=shapes,
         status=found.status,
-        left_out=(*left_out(system, float(local.rotation.speeds[0]), rolls=True), *transient_left_out(task.local)),
+        left_out=(
+            *left_out(system, float(local.rotation.speeds[0]), rolls=True),
+            *transient_left_out(task.local),
+            *mean_torsion_notes(task.local.system, task.largest),
+        ),
     )
     return replace(result, warnings=transient_warnings(result, task.rest, task.local, estimated=estimated))
 
