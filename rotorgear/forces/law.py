@@ -248,6 +248,27 @@ class ForceLaw(ABC):
             values.force.mean(axis=0), values.in_displacement.mean(axis=0), values.in_velocity.mean(axis=0)
         )
 
+    # What the law says of itself to the reader of a result.
+
+    @property
+    def can_part(self) -> bool:
+        """Whether its sides can lose contact."""
+        return False
+
+    @property
+    def steady(self) -> bool:
+        """Whether nothing of the law varies as the reference turns."""
+        return not self.repeats()
+
+    @property
+    def known_up_to(self) -> float:
+        """Largest force in N for which the law was made; it goes on above as it says."""
+        return float("inf")
+
+    def left_out(self) -> tuple[str, ...]:
+        """What the law leaves out or takes in its place, as clauses behind the name of its part."""
+        return ()
+
     # What varies as the reference turns.
 
     def repeats(self) -> tuple[Repeats, ...]:

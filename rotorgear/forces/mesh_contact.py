@@ -216,6 +216,18 @@ class MeshContact(ForceLaw):
         return self.closed_stiffness() if self.expanded else np.zeros((1, 1))
 
     @property
+    def steady(self) -> bool:
+        """Neither harmonics, nor pieces that differ, nor an impact: teeth that may part repeat, but excite nothing."""
+        harmonics = any(map(any, (self.stiffness_cos, self.stiffness_sin, self.error_cos, self.error_sin)))
+        values = {value for _, *ends in self.pieces for value in ends}
+        return not (self.order and (harmonics or len(values) > 1 or self.impact))
+
+    @property
+    def can_part(self) -> bool:
+        """Unless bilateral."""
+        return self.gap != "bilateral"
+
+    @property
     def _clearance(self) -> float:
         """Backlash; without end where there is no back flank."""
         return np.inf if self.gap == "unilateral" else self.backlash

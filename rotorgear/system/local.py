@@ -48,9 +48,13 @@ from rotorgear.system.system import System
 
 if TYPE_CHECKING:
     from rotorgear.forces.mesh_contact import MeshContact
+    from rotorgear.forces.mesh_map import MeshMap
+    from rotorgear.gears.loaded.contact_map import ContactMap
 
 # Depth over which damping grows from zero, and the reference depth of penetration damping, relative to the mean deflection.
 _RAMP = 0.02
+# Loads to each step of load of a map.
+_FINER = 8
 # Mean deflection that is taken for a mesh without load.
 _UNLOADED = 1e-6
 
@@ -139,21 +143,66 @@ def _mesh_parts(system: System) -> list[LocalPart]:
         label = f"{contact.mesh} helix {contact.helix + 1}"
         if len(load.of_mesh(contact.mesh)) == 1:
             label = contact.mesh
-        law = _mesh_law(system, force, geometry, load.phase(contact) or 0.0)
+        spring = _mesh_law(system, force, geometry, load.phase(contact) or 0.0)
         part = f"meshes.{contact.mesh}"
         pinion = system.nodes.at(contact.pinion_shaft, contact.pinion_z)
         dofs = node_dofs(pinion, system.nodes.at(contact.gear_shaft, contact.gear_z))[0]
         approach = face_strains(geometry, face_of(system.layout, force))[:1]
         column = columns_at(system, mesh_dofs(system.layout, system.nodes, force)[0], approach)
+        turned = replace(geometry, torque_sense=-geometry.torque_sense)
+        coast = columns_at(system, dofs, contact_vector(turned)[None])
+        # With a state along the face the spring is the tangent about that; a map without tilt would be another contact.
+        teeth = load.contact_map(force) if force.face is None else None
+        law: MeshContact | MeshMap = spring
+        if teeth is not None:
+            law = _loaded_teeth(spring, teeth, force, spring.phase)
+            if spring.impact:
+                blow = replace(spring, stiffness=0.0, damping=0.0, gap="bilateral", expanded=False)
+                found.append(LocalPart(part, f"{label} impact", blow, column))
         found.append(LocalPart(part, label, law, column, is_mesh=True))
-        rubbing = friction_part(system, force, geometry, label, law, dofs, column)
+        rubbing = friction_part(system, force, geometry, label, spring, dofs, column)
         if rubbing is not None:
             found.append(rubbing)
-        if law.gap == "unilateral":
-            turned = replace(geometry, torque_sense=-geometry.torque_sense)
-            other = columns_at(system, dofs, contact_vector(turned)[None])
-            found.append(LocalPart(part, f"{label} back", _back(law), other, is_mesh=True))
+        back = f"{label} back"
+        if teeth is None and spring.gap == "unilateral":
+            found.append(LocalPart(part, back, _back(spring), coast, is_mesh=True))
+        mesh = system.layout.mesh(contact.mesh).part
+        if teeth is not None and mesh.backlash is not None:
+            behind = force.on_other_flank
+            teeth = load.contact_map(behind)
+            assert teeth is not None  # its working load is that of the other flank
+            phase = load.on_other_flank(contact.mesh).phase(contact) or 0.0
+            if mesh.coast_flank == "line":
+                coast = -column
+            found.append(LocalPart(part, back, _loaded_teeth(_back(spring), teeth, behind, phase), coast, is_mesh=True))
     return found
+
+
+def _loaded_teeth(spring: MeshContact, teeth: ContactMap, force: MeshForce, phase: float) -> MeshMap:
+    """The map of loaded teeth in place of a spring, with the damping and the errors of that."""
+    from rotorgear.forces.mesh_map import MeshMap
+
+    # Between its loads the curve is the map's own, which knows its tangents.
+    at = np.arange(_FINER * (len(teeth.load) - 1) + 1) / _FINER
+    load = np.interp(at, np.arange(len(teeth.load)), teeth.load)
+    return MeshMap(
+        load=load,
+        approach=teeth.approaches(load),
+        stiffness=force.contact.stiffness,
+        damping=spring.damping,
+        contact_damping=spring.contact_damping,
+        reference=spring.ramp,
+        order=spring.order,
+        phase=spring.phase,
+        path_phase=phase,
+        # Positions count along the path from approach to recess of the pinion: where the gear drives, time runs the other way.
+        forward=1 if force.pinion_drives else -1,
+        periods=teeth.periods,
+        error_mean=spring.error_mean,
+        error_cos=spring.error_cos,
+        error_sin=spring.error_sin,
+        expanded=spring.expanded,
+    )
 
 
 def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase: float) -> MeshContact:

@@ -55,7 +55,9 @@ def left_out(system: System, speed: float | None, *, rolls: bool = False) -> tup
                 if not element.is_given and element_law(element, 1.0).uses_velocity
             ]
             notes.append("damping matrix: " + (f"empty; only {', '.join(laws)} can damp" if laws else "nothing damps"))
-    return (*notes, *rolling_notes(system.model, rolls=rolls), *mesh_stiffness_left_out(system))
+    # In time the stiffness varies as it is; what a transient leaves out of it, it says itself.
+    meshes = () if rolls else mesh_stiffness_left_out(system)
+    return (*notes, *rolling_notes(system.model, rolls=rolls), *meshes)
 
 
 def mode_warnings(

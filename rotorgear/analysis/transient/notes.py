@@ -18,15 +18,32 @@ _DRIFT = 0.01
 
 
 def transient_left_out(local: LocalModel) -> tuple[str, ...]:
-    """What the model does not need."""
-    meshes = local.system.model.meshes
+    """What the model does not need, and what the laws of its meshes leave out."""
+    system = local.system
+    meshes = system.model.meshes
+    law_of = {part.part: part.law for part in reversed(local.parts) if part.is_mesh}
+    notes = [f"{part}: {text}" for part, law in law_of.items() for text in law.left_out()]
     open_ended = [name for name, mesh in meshes.items() if mesh.backlash is None]
-    notes = []
-    if open_ended:
-        notes.append(f"contact loss in {', '.join(open_ended)}: no backlash is given, so their teeth never part")
-    still = [name for name, mesh in meshes.items() if not mesh.transmission_error and not mesh.stiffness_variation]
+    never = [name for name in open_ended if not law_of[f"meshes.{name}"].can_part]
+    if never:
+        notes.append(f"contact loss in {', '.join(never)}: no backlash is given, so their teeth never part")
+    loose = [name for name in open_ended if name not in never]
+    if loose:
+        notes.append(f"coast flanks of {', '.join(loose)}: no backlash is given, so nothing stops teeth that part")
+    still = [name for name in meshes if _excites_nothing(local, name)]
     if still:
         notes.append(f"excitation by {', '.join(still)}: neither transmission error nor stiffness variation is given")
+    for name, helices in system.load.curves.items():
+        curve = helices[0]
+        if law_of[f"meshes.{name}"].known_up_to < np.inf:
+            continue
+        if not np.ptp(curve.transverse):
+            notes.append(f"meshes.{name}: ripple of the stiffness, which '{curve.model}' does not know")
+        elif curve.load:
+            notes.append(
+                f"meshes.{name}: what changes with the load; '{curve.model}' gives the stiffness over the mesh cycle at "
+                f"F_bt = {curve.load:.4g} N, and no transmission error without a load"
+            )
     tilted = [name for name, mesh in meshes.items() if mesh.face_loads]
     if tilted:
         notes.append(
@@ -34,6 +51,15 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
             "the static equilibrium, even where they part"
         )
     return tuple(notes)
+
+
+def _excites_nothing(local: LocalModel, name: str) -> bool:
+    """Whether nothing of a mesh varies: no error, no variation, and a stiffness that stays the same over its cycle."""
+    mesh = local.system.model.meshes[name]
+    if mesh.transmission_error or mesh.stiffness_variation or mesh.corner_impact:
+        return False
+    laws = [part.law for part in local.parts if part.is_mesh and part.part == f"meshes.{name}"]
+    return all(law.steady for law in laws)
 
 
 def transient_warnings(
@@ -66,7 +92,7 @@ def transient_warnings(
         notes.append(
             f"{_held(result.model)} are held at their values for the largest speed, {rpm:.6g} rpm, over the whole run-up"
         )
-    notes += [*_drifting(result), *_unsettled(result)]
+    notes += [*_beyond_maps(result, local), *_drifting(result), *_unsettled(result)]
     return tuple(notes)
 
 
@@ -77,6 +103,25 @@ def _held(model: Model) -> str:
     parts = [f"the tables of the bearings {', '.join(tables)}"] if tables else []
     parts += [f"the internal damping of {', '.join(damped)}"] if damped else []
     return " and ".join(parts)
+
+
+def _beyond_maps(result: TransientResult, local: LocalModel) -> list[str]:
+    """Where teeth part that nothing stops, and forces above those that the laws were made for."""
+    meshes = [part for part in local.parts if part.is_mesh]
+    notes = []
+    for i, part in enumerate(meshes):
+        mesh = local.system.model.meshes[part.part.removeprefix("meshes.")]
+        largest = float(result.mesh_force[:, i].max())
+        if result.contact_losses[i] and mesh.backlash is None and part.law.can_part:
+            notes.append(
+                f"{part.label}: the teeth part, but no backlash is given, so nothing stops them behind; give `backlash`"
+            )
+        if largest > part.law.known_up_to:
+            notes.append(
+                f"{part.label}: the force reaches {largest:.4g} N; its loaded teeth were solved up to "
+                f"{part.law.known_up_to:.4g} N, above which their map goes on along its tangent"
+            )
+    return notes
 
 
 def _drifting(result: TransientResult) -> list[str]:

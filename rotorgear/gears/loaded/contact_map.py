@@ -72,6 +72,10 @@ class ContactMap:
         slope = (1.0 - share) * self._last_slope[index] + share * self._last_slope[(index + 1) % len(self.position)]
         return np.asarray(inside.reshape(force.shape) + above * slope.reshape(force.shape))
 
+    def approaches(self, load: np.ndarray) -> np.ndarray:
+        """Approach (p, n) in m at all positions of the map under n loads in N, from 0 to the largest load."""
+        return np.asarray(self._deflection_of_load(load))
+
     def force(self, delta: Any, u: Any) -> np.ndarray:
         """Force in N at approaches delta in m and positions u, both of shapes that broadcast; 0 where no tooth touches."""
         return self._solved(delta, u)[0]

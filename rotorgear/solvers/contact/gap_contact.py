@@ -71,6 +71,22 @@ def gap_contact(mode, k, c, clearance, per_depth, x, rate):
 
 
 @formula
+def curve_contact(mode, elastic, stiffness, damping, growth, x, rate):
+    """One side that pushes by a curve: its elastic force at x and the tangent of that, its damping there and how that grows."""
+    viscous = damping * rate
+    total = elastic + viscous
+    side = where_positive(x, 1.0, 0.0)
+    holds = side
+    if mode != ADHESIVE:
+        holds = where_positive(total, holds, 0.0)
+    bend = holds * growth * rate
+    resisted = where_positive(holds, viscous, -elastic)
+    return Contact(
+        holds * total, holds * stiffness + bend, holds * damping, bend, side, larger(x, 0.0), side * resisted
+    )
+
+
+@formula
 def momentum(clearance, regularisation, per_depth, x):
     """What damping takes up of the momentum for c = 1 on the way to x, whatever the rate: G = int s dx."""
     side, depth = penetration(clearance, x)

@@ -192,7 +192,7 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
                 product(across, stage, d)
                 contacts(columns, now, weight_of(number, h), d, F, found, used)
                 if own:
-                    force_laws(laws, condition, d, F, blocks, space)
+                    force_laws(laws, condition, d, F, found, blocks, space)
                 if number == 0 and counting:
                     count(counted, now, d, F, found, last, sums)
                 advance(number, h, matrix, stage, ahead, 0, state, 0, total)

@@ -7,6 +7,7 @@ rad/s of the fastest excitation, which the lanes use as unit of time.
 from __future__ import annotations
 
 from rotorgear.solvers.contact.vectors import LANES, fill, get, put
+from rotorgear.solvers.lanes.kernel_parts import SIDE
 from rotorgear.solvers.time.compiled import compiled
 
 _MOST_COMPONENTS = 6
@@ -37,8 +38,9 @@ def schedule_laws(laws, time, state):
 
 
 @compiled
-def force_laws(laws, state, d, F, tangents, work):
-    """Forces of the laws to F (m, w), their tangents in displacement and velocity to tangents (2, b, w).
+def force_laws(laws, state, d, F, found, tangents, work):
+    """Forces of the laws to F (m, w), their tangents in displacement and velocity to tangents (2, b, w), and the sides
+    that touch to found (m, 4, w).
 
     work: SPACE numbers.
     """
@@ -77,6 +79,7 @@ def force_laws(laws, state, d, F, tangents, work):
             )
             for j in range(k):
                 F[a + j, w] = own_f[j] / (rate * rate)
+                found[a + j, SIDE, w] = energy[3]
             for j in range(k * k):
                 tangents[0, block_first[i] + j, w] = in_d[j] / (rate * rate)
                 tangents[1, block_first[i] + j, w] = in_v[j] / rate

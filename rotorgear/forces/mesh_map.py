@@ -1,0 +1,321 @@
+"""Tooth contact of one helix as its loaded teeth have it: F(delta, u) from a map over approach and position in the mesh cycle.
+
+    x = d - e(p) - delta_0(u),     F = F(x, u) + c k_t(x, u)/k x',     k_t = dF/dx,     F = 0 for x <= 0
+    p = order * angle + phase,     u = forward * (order * angle + path phase) / 2 pi
+
+The map comes as approaches delta(F_j; u_i) under loads F_j from 0, all flanks, modifications, pitch errors and corners inside
+(Ozguven and Houser, J. Sound Vib. 125 (1988) 71). It is turned over into forces at even steps of x, and taken linear between
+these and between positions: F rises with x everywhere, and a position has the given approach under each load. Above the largest
+load it goes on along its tangent. The contact pushes only: teeth part by themselves, and a coast flank is a law of its own.
+Damping goes with the stiffness that carries, from zero at first touch over one step of x: c is what it is at k. It never pulls
+where `contact_damping` is non-adhesive; "penetration" is c x/reference (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
+from rotorgear.forces.mesh_contact import DAMPINGS
+from rotorgear.solvers.contact.gap_contact import curve_contact
+from rotorgear.solvers.contact.kinds import PENETRATION
+from rotorgear.solvers.lanes.columns import ERROR, OWN_LAW, SLOPE, STIFFNESS, TABLE_ROWS, Column
+from rotorgear.solvers.time.compiled import force_function, schedule_function
+
+# Steps of x up to the largest load, and loads between which the map is turned over.
+STEPS = 192
+_LOADS = 1500
+# Harmonics of a base pitch that count: teeth part, and corners strike.
+_HARMONICS = 10
+_TURN = 2.0 * np.pi
+# Places of the parameters, which cosine and sine of each harmonic of e follow, and then the rows of the map.
+(
+    SPACING,
+    PER_K,
+    C,
+    MODE,
+    PER_DEPTH,
+    ORDER,
+    PHASE,
+    PATH_PHASE,
+    FORWARD,
+    PERIODS,
+    ROWS,
+    HARMONICS,
+    E_MEAN,
+    SERIES,
+) = range(14)
+# A row: delta_0, then at each step of x the force, the tangent stiffness and the energy.
+FORCE, TANGENT, ENERGY = range(3)
+NODE = 3
+# Places of the state: e + delta_0 and its rate, where the rows before and after the position begin, the share of the way from
+# one to the other, and its rate.
+E_NOW, E_RATE, BEFORE, AFTER, SHARE, SHARE_RATE = range(6)
+
+
+@schedule_function
+def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
+    """Fill e + delta_0, its rate, and the position between two rows of the map."""
+    rate = p[ORDER] * speed
+    phase = p[ORDER] * angle + p[PHASE]
+    error = p[E_MEAN]
+    slope = 0.0
+    count = int(p[HARMONICS])
+    for n in range(1, count + 1):
+        a = p[SERIES + 2 * n - 2]
+        b = p[SERIES + 2 * n - 1]
+        error += a * np.cos(n * phase) + b * np.sin(n * phase)
+        slope += n * (b * np.cos(n * phase) - a * np.sin(n * phase))
+    rows = int(p[ROWS])
+    first = SERIES + 2 * count
+    length = 1 + NODE * (STEPS + 1)
+    turns = p[FORWARD] * (p[ORDER] * angle + p[PATH_PHASE]) / _TURN / p[PERIODS]
+    at = (turns - np.floor(turns)) * rows
+    i = min(int(at), rows - 1)
+    share = at - i
+    before = first + i * length
+    after = first + ((i + 1) % rows) * length
+    share_rate = rows * p[FORWARD] * rate / _TURN / p[PERIODS]
+    s[E_NOW] = error + (1.0 - share) * p[before] + share * p[after]
+    s[E_RATE] = slope * rate + share_rate * (p[after] - p[before])
+    s[BEFORE] = before
+    s[AFTER] = after
+    s[SHARE] = share
+    s[SHARE_RATE] = share_rate
+
+
+@force_function
+def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
+    """Force along the flank normal, positive where the flanks are pressed."""
+    x = d[0] - s[E_NOW]
+    rate = v[0] - s[E_RATE]
+    depth = max(x, 0.0)
+    h = p[SPACING]
+    i = min(int(depth / h), STEPS - 1) if depth < STEPS * h else STEPS - 1
+    past = depth - i * h
+    elastic = 0.0
+    stiffness = 0.0
+    carries = 0.0
+    bend = 0.0
+    stored = 0.0
+    driven = 0.0
+    for which in range(2):
+        row = int(s[BEFORE] if which == 0 else s[AFTER])
+        weight = 1.0 - s[SHARE] if which == 0 else s[SHARE]
+        sign = -1.0 if which == 0 else 1.0
+        own = row + 1 + NODE * i
+        slope = (p[own + NODE + FORCE] - p[own + FORCE]) / h
+        turn = (p[own + NODE + TANGENT] - p[own + TANGENT]) / h if past <= h else 0.0
+        elastic += weight * (p[own + FORCE] + slope * past)
+        stiffness += weight * slope
+        carries += weight * (p[own + TANGENT] + turn * past if past <= h else p[own + NODE + TANGENT])
+        bend += weight * turn
+        work = p[own + ENERGY] + p[own + FORCE] * past + 0.5 * slope * past * past
+        stored += weight * work
+        driven += sign * s[SHARE_RATE] * work
+    damping = p[PER_K] * carries
+    growth = p[PER_K] * bend
+    if int(p[MODE]) == PENETRATION:
+        damping = p[C] * depth * p[PER_DEPTH]
+        growth = p[C] * p[PER_DEPTH]
+    now = curve_contact(int(p[MODE]), elastic, stiffness, damping, growth, x, rate)
+    F[0] = now.force
+    Kd[0] = now.stiffness
+    Kv[0] = now.damping
+    energy[0] = stored
+    energy[1] = driven - now.force * s[E_RATE]
+    energy[2] = now.resisted * rate
+    energy[3] = now.side
+
+
+@dataclass(frozen=True, eq=False)
+class MeshMap(ForceLaw):
+    """Contact of one helix by the map of its loaded teeth."""
+
+    title: ClassVar[str] = "loaded teeth"
+
+    load: np.ndarray = parameter("N", "loads F_j along the flank normal, (l,), rising from 0")  # noqa: RUF009
+    approach: np.ndarray = parameter("m", "approach (p, l) under these loads at even positions over all periods")  # noqa: RUF009
+    stiffness: float = parameter("N/m", "stiffness k at which the damping is c", above=0.0)
+    damping: float = parameter("N s/m", "damping coefficient c at the stiffness k", 0.0, least=0.0)
+    contact_damping: str = parameter(
+        "", "non-adhesive, adhesive or penetration", "non-adhesive", choices=tuple(DAMPINGS)
+    )
+    reference: float = parameter("m", "reference depth of penetration damping", 1e-6, above=0.0)
+    order: float = parameter("rad/rad", "mesh phase for each radian of the reference", 0.0)
+    phase: float = parameter("rad", "mesh phase p of the error at angle 0", 0.0)
+    path_phase: float = parameter("rad", "mesh phase of the flanks' own contact at angle 0", 0.0)
+    forward: int = parameter(
+        "", "whether contact runs along the path as the map counts it: 1, or -1", 1, least=-1, most=1
+    )
+    periods: int = parameter("", "base pitches after which the map repeats", 1, least=1)
+    error_mean: float = parameter("m", "constant part of e", 0.0)
+    error_cos: tuple[float, ...] = parameter("m", "a_n of e(p)", ())
+    error_sin: tuple[float, ...] = parameter("m", "b_n of e(p)", ())
+    expanded: bool = parameter("", "whether solvers expand about k and c: not on a flank that is mostly open", True)
+
+    def __post_init__(self) -> None:
+        """Take lists as arrays, as a model file gives them."""
+        object.__setattr__(self, "load", np.asarray(self.load, dtype=float))
+        object.__setattr__(self, "approach", np.atleast_2d(np.asarray(self.approach, dtype=float)))
+        super().__post_init__()
+
+    def check(self) -> None:
+        """Loads rise from 0, and so does the approach under them, at every position."""
+        if self.load[0] != 0.0 or np.any(np.diff(self.load) <= 0.0):
+            raise refuse(self, "load", "loads that rise from 0")
+        if self.approach.shape[1:] != self.load.shape or np.any(np.diff(self.approach, axis=1) <= 0.0):
+            raise refuse(self, "approach", "for each position an approach that rises with the load")
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all parameters are the same, arrays element by element."""
+        return type(other) is type(self) and all(
+            np.array_equal(getattr(self, name), getattr(other, name)) for name in self.declared()
+        )
+
+    def __hash__(self) -> int:
+        """Of the loads: equal laws have equal ones."""
+        return hash(self.load.tobytes())
+
+    def functions(self) -> tuple[Any, Any]:
+        """Return the compiled functions schedule and force."""
+        return schedule, force
+
+    def state_size(self) -> int:
+        """e + delta_0, its rate, both rows, the share between them and its rate."""
+        return 6
+
+    @property
+    def spacing(self) -> float:
+        """Step of x in m: the largest deflection under the largest load over STEPS."""
+        return float((self.approach[:, -1] - self.approach[:, 0]).max()) / STEPS
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        """The map turned over, (p, 1 + 3 (STEPS + 1)): delta_0, then force, tangent stiffness and energy at each step of x."""
+        # Dense where little carries: half of the loads up to a fiftieth of the largest.
+        share = np.linspace(0.0, 1.0, _LOADS)
+        loads = self.load[-1] * np.concatenate([0.02 * share[:-1], 0.02 + 0.98 * share])
+        curve = PchipInterpolator(self.load, self.approach, axis=1)
+        deflections = curve(loads) - self.approach[:, :1]
+        softness = np.maximum(curve(loads, 1), 1e-6 / self.stiffness)
+        x = self.spacing * np.arange(STEPS + 1)
+        found = np.empty((len(self.approach), 1 + NODE * (STEPS + 1)))
+        found[:, 0] = self.approach[:, 0]
+        nodes = found[:, 1:].reshape(len(found), STEPS + 1, NODE)
+        for i, (deflection, soft) in enumerate(zip(deflections, softness, strict=True)):
+            last = 1.0 / soft[-1]
+            nodes[i, :, FORCE] = np.interp(x, deflection, loads) + last * np.maximum(x - deflection[-1], 0.0)
+            nodes[i, :, TANGENT] = np.interp(x, deflection, 1.0 / soft)
+        nodes[:, 0, TANGENT] = 0.0
+        means = 0.5 * (nodes[:, 1:, FORCE] + nodes[:, :-1, FORCE])
+        nodes[:, 0, ENERGY] = 0.0
+        nodes[:, 1:, ENERGY] = self.spacing * np.cumsum(means, axis=1)
+        return found
+
+    def parameters(self) -> np.ndarray:
+        """Return the head, the series of e, and the rows of the map."""
+        count = max(len(self.error_cos), len(self.error_sin))
+        series = np.zeros((count, 2))
+        series[: len(self.error_cos), 0] = self.error_cos
+        series[: len(self.error_sin), 1] = self.error_sin
+        head = [
+            self.spacing,
+            self.damping / self.stiffness,
+            self.damping,
+            DAMPINGS[self.contact_damping],
+            1.0 / self.reference,
+            self.order,
+            self.phase,
+            self.path_phase,
+            self.forward,
+            self.periods,
+            len(self.approach),
+            count,
+            self.error_mean,
+        ]
+        return np.concatenate([head, series.ravel(), self.rows.ravel()])
+
+    def closed_stiffness(self) -> np.ndarray:
+        """k."""
+        return np.array([[self.stiffness]])
+
+    def reference_stiffness(self) -> np.ndarray:
+        """k; nothing for a flank that is mostly open."""
+        return self.closed_stiffness() if self.expanded else np.zeros((1, 1))
+
+    def reference_damping(self) -> np.ndarray:
+        """c, as with teeth that never part."""
+        return np.array([[self.damping if self.expanded and self.contact_damping != "penetration" else 0.0]])
+
+    @property
+    def can_part(self) -> bool:
+        """The flanks push only."""
+        return True
+
+    @property
+    def known_up_to(self) -> float:
+        """The largest load of the map."""
+        return float(self.load[-1])
+
+    def left_out(self) -> tuple[str, ...]:
+        """Nothing of the loaded teeth but what moves too fast for them to be at rest; the damping is no part of their map."""
+        damped = "no damping of the teeth is given"
+        if self.damping and self.contact_damping == "penetration":
+            damped = f"damping is {self.damping:.4g} N s/m times the deflection over {1e6 * self.reference:.3g} um"
+        elif self.damping:
+            damped = (
+                f"damping goes with the stiffness that carries, {self.damping:.4g} N s/m at {self.stiffness:.4g} N/m, and is "
+                "nothing where the teeth part"
+            )
+        return (
+            f"inertia of the teeth on their bodies: they follow their static contact over the mesh cycle; {damped}",
+        )
+
+    def mean(self) -> MeshMap:
+        """The same map at one position: the mean approach under each load, so that the mean force has the mean approach."""
+        return replace(self, approach=self.approach.mean(axis=0)[None], periods=1, error_cos=(), error_sin=())
+
+    def repeats(self) -> tuple[Repeats, ...]:
+        """The mesh cycle, or the several base pitches after which the map repeats."""
+        if not self.order or (len(self.approach) == 1 and not (self.error_cos or self.error_sin)):
+            return ()
+        highest = max(_HARMONICS, len(self.error_cos), len(self.error_sin))
+        return (Repeats(abs(self.order) / self.periods, highest * self.periods),)
+
+    def columns(self, speed: float = 1.0) -> tuple[Column, ...]:
+        """By the compiled functions, one system at a time; contact is counted."""
+        return (Column(OWN_LAW, stiffness=self.stiffness, damping=self.damping, counted=True),)
+
+    def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
+        """e + delta_0 and its slope over the sweep's time, which the statistics of the approach take."""
+        found = np.zeros((len(angles), 1, TABLE_ROWS))
+        found[:, 0, STIFFNESS] = 1.0
+        found[:, 0, ERROR] = states[:, E_NOW]
+        found[:, 0, SLOPE] = states[:, E_RATE] / order
+        return found
+
+    def table_key(self) -> bytes:
+        """All that shapes delta_0 and e."""
+        shape = (self.order, self.phase, self.path_phase, self.forward, self.periods, self.error_mean)
+        return repr([*shape, self.error_cos, self.error_sin]).encode() + self.approach[:, 0].tobytes()
+
+    @classmethod
+    def examples(cls) -> tuple[MeshMap, ...]:
+        """A Hertzian pair whose stiffness varies, with each damping; one over two base pitches that runs the other way."""
+        load = 1000.0 * np.array([0.0, 0.01, 0.03, 0.08, 0.15, 0.3, 0.6, 1.0, 1.6, 2.5, 5.0])
+        u = np.arange(64)[:, None] / 64
+        soft = (1.0 + 0.2 * np.cos(_TURN * u)) / 3e8
+        approach = 2e-6 * np.sin(_TURN * u) + soft * load + 1e-6 * (load / 1000.0) ** 0.7
+        ripple: dict[str, Any] = {"order": 20.0, "phase": 0.3, "path_phase": 0.7, "error_cos": (1e-6,)}
+        return (
+            cls(load, approach, 3e8, 900.0, **ripple),
+            cls(load, approach, 3e8, 900.0, contact_damping="adhesive", **ripple),
+            cls(load, approach, 3e8, 900.0, contact_damping="penetration", reference=3e-6, **ripple),
+            cls(load, approach, 3e8, order=3.0, forward=-1, periods=2, error_mean=1e-6, error_sin=(0.0, 1e-6)),
+        )

@@ -1,0 +1,117 @@
+"""The law of loaded teeth: what the map says is what it does, at rest, in time and where teeth part."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rotorgear.errors import AnalysisError
+from rotorgear.forces.mesh_map import STEPS, MeshMap
+from validation.oscillators import integrate, local_system
+
+LAW = MeshMap.examples()[0]
+ROWS = len(LAW.approach)
+
+
+def angle_at(law: MeshMap, u: float) -> float:
+    """Angle of the reference at which the path stands at u base pitches."""
+    return float((2.0 * np.pi * u * law.forward - law.path_phase) / law.order)
+
+
+def error(law: MeshMap, angle: float) -> float:
+    p = law.order * angle + law.phase
+    terms = [a * np.cos(n * p) for n, a in enumerate(law.error_cos, 1)]
+    return law.error_mean + sum(terms) + sum(b * np.sin(n * p) for n, b in enumerate(law.error_sin, 1))
+
+
+@pytest.mark.parametrize("law", MeshMap.examples())
+def test_under_each_load_of_the_map_the_flanks_have_its_approach(law: MeshMap) -> None:
+    """Where it bends most, it stays within 1 % of a step of the force, which is 1/192 of the range."""
+    for row in (0, 17, 40):
+        angle = angle_at(law, row * law.periods / ROWS)
+        for load, approach in zip(law.load[2:], law.approach[row, 2:], strict=True):
+            force = law.evaluate(approach + error(law, angle), 0.0, angle=angle).force[0]
+            assert force == pytest.approx(load, rel=2e-4, abs=1e-2 * law.load[-1] / STEPS)
+
+
+def test_the_flanks_push_only_and_never_less_for_more_approach() -> None:
+    for u in np.linspace(0.0, 1.0, 37):
+        angle = angle_at(LAW, u)
+        first = np.interp(u * ROWS, np.arange(ROWS + 1), np.append(LAW.approach[:, 0], LAW.approach[0, 0]))
+        touch = first + error(LAW, angle)
+        d = touch + np.linspace(-1e-5, 2.5e-5, 500)
+        values = LAW.evaluate_many(d[:, None], 0.0, angle=angle)
+        force = values.force[:, 0]
+        assert np.all(force[d <= touch - 1e-15] == 0.0)
+        assert np.all(np.diff(force) >= 0.0)
+        assert np.all(np.diff(force[d > touch + 1e-9]) > 0.0)
+        assert np.array_equal(values.contact, (d > touch).astype(int))
+
+
+def test_damping_is_in_proportion_to_the_stiffness_that_carries() -> None:
+    angle = angle_at(LAW, 0.25)
+    for load, approach in zip(LAW.load[4:], LAW.approach[ROWS // 4, 4:], strict=True):
+        value = LAW.evaluate(approach + error(LAW, angle), 0.0, angle=angle)
+        share = value.in_velocity[0, 0] / LAW.damping
+        assert share == pytest.approx(value.in_displacement[0, 0] / LAW.stiffness, rel=0.02), load
+
+
+def test_above_its_largest_load_the_map_goes_on_along_its_tangent() -> None:
+    approach = LAW.approach[0, -1] + error(LAW, angle_at(LAW, 0.0))
+    at, above = (LAW.evaluate(approach + past, angle=angle_at(LAW, 0.0)) for past in (0.0, 1e-5))
+    tangent = (above.force - at.force)[0] / 1e-5
+    assert tangent == pytest.approx(above.in_displacement[0, 0], rel=1e-3)
+
+
+def test_run_the_other_way_the_map_is_met_from_its_end() -> None:
+    there, back = (replace(LAW, forward=sign, path_phase=0.0, error_cos=()) for sign in (1, -1))
+    d = LAW.approach.max(axis=0)[5]
+    for angle in (0.01, 0.1, 0.2):
+        assert there.evaluate(d, angle=angle).force == pytest.approx(back.evaluate(d, angle=-angle).force, rel=1e-12)
+
+
+def test_a_map_over_several_base_pitches_repeats_after_all_of_them() -> None:
+    law = MeshMap.examples()[3]
+    (repeats,) = law.repeats()
+    assert repeats.order == pytest.approx(abs(law.order) / 2)
+    d = law.approach.mean()
+    turn = 2.0 * np.pi / law.order
+    now, half, whole = (law.evaluate(d, angle=0.2 + k * turn).force[0] for k in range(3))
+    assert whole == pytest.approx(now, rel=1e-9)
+    assert abs(half - now) > 1e-3 * now
+
+
+def test_the_mean_map_has_the_mean_approach_under_each_load() -> None:
+    bare = replace(LAW, error_cos=())
+    for load, approach in zip(bare.load[2:], bare.approach.mean(axis=0)[2:], strict=True):
+        force = bare.mean().evaluate(approach).force[0]
+        assert force == pytest.approx(load, rel=2e-4, abs=1e-2 * bare.load[-1] / STEPS)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.2, 0.4])
+def test_at_a_crawl_a_mass_follows_the_static_curve(share: float) -> None:
+    """m x'' + F(x, u) = W: slow against sqrt(k/m), x(t) is the approach under W at each position."""
+    mass = 0.4
+    weight = share * LAW.load[-1]
+    crawl = np.sqrt(LAW.stiffness / mass) / 400.0
+    law = replace(LAW, damping=0.1 * np.sqrt(LAW.stiffness * mass), error_cos=())
+    static = np.array([np.interp(weight, law.load, row) for row in law.approach])
+    u = np.arange(ROWS) / ROWS
+    period = 2.0 * np.pi / crawl
+    speed = crawl / law.order
+    start = float(np.interp(law.path_phase / (2.0 * np.pi), u, static))
+    steps = 400 * ROWS
+    local = local_system(mass, 0.0, 0.0, [weight], [(law, [1.0])], speed=speed)
+    found = integrate(local, "average acceleration", period / steps, 2 * steps, [start], [0.0], steps // ROWS)
+    turned = (np.arange(ROWS) / ROWS + law.path_phase / (2.0 * np.pi)) % 1.0
+    expected = np.interp(turned, np.append(u, 1.0), np.append(static, static[0]))
+    assert found.q[-ROWS - 1 : -1, 0] == pytest.approx(expected, abs=0.005 * np.ptp(static))
+
+
+def test_what_does_not_rise_is_refused() -> None:
+    with pytest.raises(AnalysisError, match=r"MeshMap\.load"):
+        replace(LAW, load=LAW.load[::-1])
+    with pytest.raises(AnalysisError, match=r"MeshMap\.approach"):
+        replace(LAW, approach=LAW.approach[:, ::-1])
