@@ -32,6 +32,11 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
         (("mesh", ""),),
     ),
     (
+        "mesh map",
+        "`rotorgear mesh MODEL --over torque=... --json map.json`. Lists of lists are by torque and misalignment.",
+        (("mesh_map", ""),),
+    ),
+    (
         "mesh accuracy",
         "`rotorgear accuracy MODEL --analysis mesh --json study.json`, of one helix.",
         (("mesh_convergence", ""),),

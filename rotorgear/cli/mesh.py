@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from rotorgear.cli.common import JsonOption, ModelFile, console, progress_bar, write_json
 from rotorgear.errors import AnalysisError
+
+if TYPE_CHECKING:
+    from rotorgear.results.mesh_map import MeshMap
 
 
 def mesh(
@@ -57,6 +61,18 @@ def mesh(
             "--load-factors", help="Also solve at these multiples of the load: '0.1,0.5,2'.", show_default=False
         ),
     ] = None,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--over",
+            help="Map over 'torque=500 N m:2000 N m:4' and 'misalignment=-20 um:20 um:5' (first, last, how many; or a list with "
+            "colons); may be given twice, or both with a comma.",
+            show_default=False,
+        ),
+    ] = None,
+    csv: Annotated[
+        Path | None, typer.Option("--csv", help="Write the points of --over to this table.", show_default=False)
+    ] = None,
     harmonics: Annotated[int, typer.Option("--harmonics", min=0, help="Mesh orders that are listed.")] = 5,
     plot: Annotated[
         Path | None,
@@ -77,6 +93,30 @@ def mesh(
     import rotorgear as rg
 
     checked = rg.load(model)
+    if over:
+        refuse_beside_over(stiffness=stiffness, accuracy=accuracy, periods=periods, load_factors=load_factors, vtk=vtk)
+        with progress_bar("mesh") as progress:
+            points = rg.mesh_map(
+                checked,
+                mesh,
+                over=parse_over(over),
+                torque=torque,
+                preset=preset,
+                body=body,
+                positions=positions,
+                progress=progress,
+            )
+        console().print(points.table())
+        write_json(points.to_dict(), json)
+        if csv:
+            from rotorgear.export.csv_file import write_csv
+
+            console().print(f"wrote {write_csv(map_rows(points), csv)}")
+        if plot:
+            console().print(f"drawn: {rg.plot.save(rg.plot.mesh_map(points), plot)}")
+        return
+    if csv:
+        raise AnalysisError("--csv writes the points of --over: give --over too.")
     with progress_bar("mesh") as progress:
         result = rg.mesh(
             checked,
@@ -105,6 +145,63 @@ def mesh(
             )
         for path in write_tooth_vtk(fields, vtk):
             console().print(f"wrote {path}")
+
+
+def refuse_beside_over(**given: object) -> None:
+    """AnalysisError for options that a map does not take."""
+    for name, value in given.items():
+        if value is not None:
+            raise AnalysisError(f"--{name.replace('_', '-')} does not go with --over.")
+
+
+def parse_over(texts: list[str]) -> dict[str, list[float]]:
+    """Values in SI by axis from texts such as 'torque=500 N m:2000 N m:4,misalignment=0 um:10 um:20 um'.
+
+    Raises:
+        AnalysisError: no such axis, or values that are none.
+    """
+    from rotorgear.quantity import QuantityError, parse_quantity
+
+    found: dict[str, list[float]] = {}
+    for text in ",".join(texts).split(","):
+        name, equals, values = (part.strip() for part in text.partition("="))
+        dimension = {"torque": "torque", "misalignment": "length"}.get(name)
+        if not equals or dimension is None:
+            raise AnalysisError(f"--over: got '{text}', expected torque=... or misalignment=...")
+        if name in found:
+            raise AnalysisError(f"--over: '{name}' is given twice.")
+        parts = [part.strip() for part in values.split(":")]
+        count = int(parts.pop()) if len(parts) == 3 and parts[2].isdigit() else None
+        try:
+            numbers = [parse_quantity(part, dimension) for part in parts]
+        except QuantityError as error:
+            raise AnalysisError(
+                f"--over {name}: got '{values}', expected {error}, such as '500 N m:2000 N m:4'"
+            ) from None
+        if count is None:
+            found[name] = numbers
+        elif 2 <= count <= 1000:
+            first, last = numbers
+            found[name] = [first + (last - first) * i / (count - 1) for i in range(count)]
+        else:
+            raise AnalysisError(f"--over {name}: got {count} values, expected 2 to 1000")
+    return found
+
+
+def map_rows(points: MeshMap) -> Iterator[dict[str, float]]:
+    """One row a point of a map, in the order of its table."""
+    for i, torque in enumerate(points.pinion_torque):
+        for j, misalignment in enumerate(points.misalignment):
+            orders = {f"ste_order_{n + 1}_m": float(value) for n, value in enumerate(points.ste_harmonics[i, j])}
+            yield {
+                "pinion_torque_n_m": float(torque),
+                "misalignment_m": float(misalignment),
+                "ste_peak_to_peak_m": float(points.ste_peak_to_peak[i, j]),
+                **orders,
+                "largest_pressure_pa": float(points.largest_pressure[i, j]),
+                "face_load_factor": float(points.face_load_factor[i, j]),
+                "mean_stiffness_n_per_m": float(points.mean_stiffness[i, j]),
+            }
 
 
 def parse_factors(text: str | None) -> tuple[float, ...]:

@@ -10,6 +10,7 @@ from rotorgear.plots.transient import transient as transient
 from rotorgear.plots.sweep import sweep as sweep
 from rotorgear.plots.gear_mesh import gear as gear
 from rotorgear.plots.mesh_cycle import mesh as mesh
+from rotorgear.plots.mesh_map import mesh_map as mesh_map
 from rotorgear.plots.convergence import convergence as convergence
 from rotorgear.plots.mesh_convergence import mesh_convergence as mesh_convergence
 from rotorgear.plots.mode_pictures import modal as modal
@@ -27,6 +28,10 @@ from rotorgear.plots.sweep import sections as sections
 from rotorgear.plots.sweep import sweep_map as sweep_map
 from rotorgear.plots.sweep_portraits import portraits as portraits
 from rotorgear.plots.sweep_portraits import portrait_spectra as portrait_spectra
+
+from rotorgear.plots.mesh_cycle import mesh_pressure as mesh_pressure
+from rotorgear.plots.mesh_cycle import mesh_loads as mesh_loads
+from rotorgear.plots.mesh_map import mesh_quantity as mesh_quantity
 
 # Files of them.
 from rotorgear.plots.figure import save as save

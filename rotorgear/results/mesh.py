@@ -55,10 +55,18 @@ class HelixContact(Record):
     geometric_contact_ratio: float = of(
         "total contact ratio without load", note=", of the involutes that are there: undercut shortens it"
     )
+    path_of_contact: tuple[float, float, float] = of(
+        "roll lengths of the pinion at A, C and E",
+        "m",
+        "A_C_E",
+        json="path_of_contact_m",
+        note=": start of contact, pitch point and end",
+    )
     position: np.ndarray = of("number of the position", "", "slice", json=None)
     pair: np.ndarray = of("number of the tooth pair", "", "slice", json=None)
     z: np.ndarray = of("place from the middle of the face", "m", "slice", json=None)
     length: np.ndarray = of("length of the contact line", "m", "slice", json=None)
+    corner: np.ndarray = of("whether a tip corner touches there, off the line of action", "", "slice", json=None)
     roll: np.ndarray = of("roll lengths of both gears", "m", "slice", "pinion_and_gear", json=None)
     force: np.ndarray = of("force along the flank normal", "N", "slice", json=None)
     half_width: np.ndarray = of("half-width of the contact", "m", "slice", json=None)
@@ -116,6 +124,11 @@ class LoadPoint(Record):
     peak_to_peak_stiffness_n_per_m: float = of("peak to peak of the stiffness", "N/m", note=" at that load")
     ste_peak_to_peak_m: float = of("peak to peak of the transmission error", "m", note=" at that load")
     contact_ratio: float = of("mean number of pairs that carry load")
+    ste_harmonics_m: tuple[float, ...] = of(
+        "amplitudes of mesh orders 1 to 3 of the transmission error", "m", "order", note=" at that load", default=()
+    )
+    largest_pressure_pa: float | None = of("largest contact pressure", "Pa", note=" at that load", default=None)
+    ste_m: np.ndarray | None = of("transmission error", "m", "position", note=" under that load", default=None)
 
 
 class MeshOrder(Record):
@@ -201,11 +214,11 @@ class MeshResult(Result, kind="mesh"):
 
     def harmonics(self, count: int = 8) -> np.ndarray:
         """Complex c_h (count,) in N/m: k(u) = mean + sum_h Re(c_h e^{2 pi i h u}), over whole mesh periods."""
-        return _harmonics(self.position, self.stiffness, count)
+        return harmonics(self.position, self.stiffness, count)
 
     def ste_harmonics(self, count: int = 8) -> np.ndarray | None:
         """The same of the transmission error under load, in m."""
-        return None if self.transmission_error is None else _harmonics(self.position, self.transmission_error, count)
+        return None if self.transmission_error is None else harmonics(self.position, self.transmission_error, count)
 
     def orders(self, count: int = _ORDERS) -> tuple[MeshOrder, ...]:
         """The first orders of stiffness and transmission error by amplitude and phase."""
@@ -232,7 +245,7 @@ class MeshResult(Result, kind="mesh"):
         return {**super().to_dict(), "harmonics": plain(self.orders(harmonics))}
 
 
-def _harmonics(position: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
+def harmonics(position: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
     """Amplitudes at whole orders of the mesh; positions are evenly spaced over whole periods from 0."""
     n = len(values)
     periods = round(n * float(position[1] - position[0])) if n > 1 else 1

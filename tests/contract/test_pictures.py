@@ -12,6 +12,7 @@ import pytest
 
 import rotorgear as rg
 from tests.paths import ROOT
+from tests.unit.analysis.geared import pair_file
 
 pytest.importorskip("matplotlib")
 MODELS = ROOT / "models"
@@ -23,7 +24,8 @@ PICTURES = {
     "response": ("response", "waterfall"),
     "frf": ("frf",),
     "gear": ("gear",),
-    "mesh": ("mesh",),
+    "mesh": ("mesh", "mesh_pressure", "mesh_loads"),
+    "mesh_map": ("mesh_map", "mesh_quantity"),
     "convergence": ("convergence",),
     "transient": ("transient", "mesh_forces", "transmission_error", "spectra", "orbits", "energy", "spectrogram"),
     "sweep": ("sweep", "bifurcation", "sections", "portraits", "portrait_spectra"),
@@ -47,7 +49,13 @@ def results() -> dict[str, Any]:
         ),
         "frf": rg.frf(jeffcott, inputs=["disks.disk:x"], outputs=["disks.disk:x"], fmax=100.0, points=9, elements=1),
         "gear": rg.gear(pair),
-        "mesh": rg.mesh(pair, stiffness="iso"),
+        "mesh": rg.mesh(rg.loads(pair_file()), preset="preview", positions=8, load_factors=(0.5,)),
+        "mesh_map": rg.mesh_map(
+            rg.loads(pair_file()),
+            over={"torque": [500.0, 1000.0], "misalignment": [0.0, 1e-5]},
+            preset="preview",
+            positions=8,
+        ),
         "convergence": rg.convergence_study(jeffcott, modes=4, elements=(1, 2), accuracies=(), repeat=1),
         "transient": rg.transient(
             rg.load(MODELS / "flexible_pair.toml"),

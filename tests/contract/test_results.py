@@ -50,6 +50,7 @@ def example(kind: str) -> Result:
         "check": lambda: rg.check(model("geared_pair")),
         "gear": lambda: rg.gear(model("helical_pair")),
         "mesh": lambda: rg.mesh(model("helical_pair"), stiffness="iso", positions=16),
+        "mesh_map": lambda: rg.mesh_map(rg.loads(pair_file()), over={"torque": [500.0]}, preset="preview", positions=8),
         "transient": lambda: rg.transient(model("backlash_pair"), time=2e-3, discard=1e-3, error_estimate=False),
         "sweep": lambda: rg.sweep(model("backlash_pair"), {"operation.speed": ["8000 rpm"]}, discard=2, sample=9),
         "spectral_lines": lambda: rg.spectral_lines(

@@ -20,7 +20,7 @@ from rotorgear.gears.tooth_fe.settings import PRESETS
 from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.results.mesh import HelixContact, LoadPoint, MeshErrors, MeshResult
+from rotorgear.results.mesh import HelixContact, LoadPoint, MeshErrors, MeshResult, harmonics
 
 POSITIONS = 64
 # More positions or periods than these are a slip of the keyboard.
@@ -29,7 +29,7 @@ _MOST_PERIODS = 256
 
 
 @dataclass(frozen=True)
-class _Solved:
+class SolvedHelices:
     """All helices of one request at one load and setting."""
 
     problem: ContactProblem
@@ -75,8 +75,7 @@ def mesh(
         ConvergenceError: contact that does not come to rest.
         MissingExtraError: scikit-fem is not installed.
     """
-    if not 8 <= positions <= _MOST_POSITIONS:
-        raise AnalysisError(f"--positions: got {positions}, expected 8 to {_MOST_POSITIONS} in a mesh period")
+    require_positions(positions)
     if accuracy is not None and (preset is not None or not 0.0 < accuracy < 1.0):
         raise AnalysisError("Give an accuracy between 0 and 1, or a preset, not both.")
     if any(not factor > 0.0 for factor in load_factors):
@@ -100,6 +99,12 @@ def mesh(
     return _result(model, request, teeth, u, found, errors, loads, clock)
 
 
+def require_positions(positions: int) -> None:
+    """AnalysisError unless so many positions of a mesh period can be asked for."""
+    if not 8 <= positions <= _MOST_POSITIONS:
+        raise AnalysisError(f"--positions: got {positions}, expected 8 to {_MOST_POSITIONS} in a mesh period")
+
+
 def _periods(teeth: ToothPair, wanted: int | None) -> int:
     if wanted is not None:
         if not 1 <= wanted <= _MOST_PERIODS:
@@ -109,14 +114,14 @@ def _periods(teeth: ToothPair, wanted: int | None) -> int:
     return min(max(wrong) + 2, _MOST_PERIODS) if wrong else 1
 
 
-def _solve(
+def solve_helices(
     request: MeshRequest,
     teeth: ToothPair,
     base_force: float,
     u: np.ndarray,
     stagger: float,
     progress: Progress = silent,
-) -> _Solved:
+) -> SolvedHelices:
     """All helices at one load; they share it evenly, and the mesh approaches by their mean."""
     cycles: list[MeshCycle] = []
     kinds = [teeth if ahead > 0 else mirrored(teeth) for ahead in request.senses]
@@ -131,24 +136,24 @@ def _solve(
     no_load = np.mean([cycle.no_load for cycle in cycles], axis=0)
     total = base_force * request.helices
     tangent = request.helices / np.mean([1.0 / cycle.tangent for cycle in cycles], axis=0)
-    return _Solved(problem, tuple(cycles), total / (error - no_load), tangent, error, no_load)
+    return SolvedHelices(problem, tuple(cycles), total / (error - no_load), tangent, error, no_load)
 
 
 def _with_errors(
     request: MeshRequest, teeth: ToothPair, u: np.ndarray, stagger: float, estimate: bool, progress: Progress
-) -> tuple[_Solved, MeshErrors | None]:
+) -> tuple[SolvedHelices, MeshErrors | None]:
     rough = coarser(teeth) if estimate else None
     share = 0.25 if rough is not None else 0.0
-    found = _solve(request, teeth, request.base_force, u, stagger, part_of(progress, share, 1.0))
+    found = solve_helices(request, teeth, request.base_force, u, stagger, part_of(progress, share, 1.0))
     if rough is None:
         return found, None
-    other = _solve(request, rough, request.base_force, u, stagger, part_of(progress, 0.0, share))
+    other = solve_helices(request, rough, request.base_force, u, stagger, part_of(progress, 0.0, share))
     return found, estimated(teeth, found.stiffness, found.error, other.stiffness, other.error)
 
 
 def _refined(
     request: MeshRequest, u: np.ndarray, stagger: float, accuracy: float, progress: Progress
-) -> tuple[ToothPair, _Solved, MeshErrors | None]:
+) -> tuple[ToothPair, SolvedHelices, MeshErrors | None]:
     """The cheapest preset whose estimates are within an accuracy."""
     assert request.teeth is not None
     said = []
@@ -169,10 +174,19 @@ def _refined(
 
 
 def _load_point(request: MeshRequest, teeth: ToothPair, factor: float, u: np.ndarray, stagger: float) -> LoadPoint:
-    found = _solve(request, teeth, factor * request.base_force, u, stagger)
+    found = solve_helices(request, teeth, factor * request.base_force, u, stagger)
     ratio = float(np.mean([cycle.contact_ratio for cycle in found.cycles]))
     k = found.stiffness
-    return LoadPoint(factor, float(k.mean()), float(np.ptp(k)), float(np.ptp(found.error)), ratio)
+    return LoadPoint(
+        factor=factor,
+        mean_stiffness_n_per_m=float(k.mean()),
+        peak_to_peak_stiffness_n_per_m=float(np.ptp(k)),
+        ste_peak_to_peak_m=float(np.ptp(found.error)),
+        contact_ratio=ratio,
+        ste_harmonics_m=tuple(np.abs(harmonics(u, found.error, 3)).tolist()),
+        largest_pressure_pa=max(float(cycle.pressure.max()) for cycle in found.cycles),
+        ste_m=found.error,
+    )
 
 
 def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> MeshResult:
@@ -216,7 +230,7 @@ def _result(
     request: MeshRequest,
     teeth: ToothPair,
     u: np.ndarray,
-    found: _Solved,
+    found: SolvedHelices,
     errors: MeshErrors | None,
     loads: tuple[LoadPoint, ...],
     clock: Clock,
@@ -270,10 +284,12 @@ def _helix(cycle: MeshCycle, teeth: ToothPair, problem: ContactProblem) -> Helix
         share=cycle.share_by_pair(),
         contact_ratio=cycle.contact_ratio,
         geometric_contact_ratio=problem.line.contact_ratio + teeth.pair.overlap_ratio,
+        path_of_contact=(problem.line.start, problem.line.pitch_point, problem.line.end),
         position=s.position,
         pair=s.pair,
         z=s.z @ s.weight,
         length=s.length / np.cos(teeth.pair.base_helix_angle),
+        corner=s.corner,
         roll=np.stack([roll @ s.weight for roll in s.roll], axis=-1),
         force=cycle.force,
         half_width=cycle.strip,
