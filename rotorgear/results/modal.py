@@ -119,7 +119,7 @@ class ModalResult(ModelResult, kind="modal"):
         "",
         "MOTION",
         "mode",
-        note=": bending, axial and torsional strain of the shafts; meshes, supports and couplings",
+        note=": bending, axial and torsional strain of the shafts; meshes, elastic gears, supports and couplings",
     )
     whirl_by_shaft: dict[str, np.ndarray] = of(
         "sense of whirl of each shaft",

@@ -50,7 +50,11 @@ class DofMap:
         """Say which displacement a free dof is, for messages."""
         row = int(np.argmax(np.abs(self.transform[:, [dof]].toarray()[:, 0])))
         if row >= 6 * len(nodes):
-            return f"an internal {nodes.internal[row - 6 * len(nodes)]} dof of a shaft element"
+            number = row - 6 * len(nodes)
+            for (gear, _), own in nodes.teeth.items():
+                if own == number:
+                    return f"rotation of the teeth of gear '{gear}' against its shaft"
+            return f"an internal {nodes.internal[number]} dof of a shaft element"
         node, k = divmod(row, 6)
         return f"{('x', 'y', 'z', 'tilt_x', 'tilt_y', 'torsion')[k]} of shaft '{nodes.shaft[node]}' at z = {nodes.z[node]:.6g} m"
 

@@ -15,7 +15,7 @@ from rotorgear.elements.gear_mesh import (
     gear_mesh,
 )
 from rotorgear.elements.matrices import ElementMatrices
-from rotorgear.elements.rigid_body import rigid_body
+from rotorgear.elements.rigid_body import elastic_gear, rigid_body
 from rotorgear.elements.shaft import ShaftElements, shaft_elements, strain_motions
 from rotorgear.elements.shaft_bubbles import bubble_motions
 from rotorgear.elements.spring import grounded_spring, linking_spring
@@ -79,9 +79,16 @@ def constant_groups(layout: Layout, load: MeanLoad, nodes: Nodes) -> list[Elemen
     found = [group for name in model.shafts for group in _shaft(layout, nodes, name)]
     for body in layout.bodies:
         b = body.body
-        matrices = rigid_body(b.mass, b.polar_inertia, b.diametral_inertia)
-        node = nodes.at(body.shaft, body.z)
-        found.append(ElementGroup(body.part, body.shaft, matrices, node_dofs(node), layout.train.ratio(body.shaft)))
+        name = body.part.removeprefix("gears.")
+        dofs = node_dofs(nodes.at(body.shaft, body.z))
+        if name in layout.elastic_gears:
+            torsion = layout.elastic_gears[name]
+            polar = b.polar_inertia * torsion.polar_share
+            matrices = elastic_gear(b.mass, polar, b.diametral_inertia, 1.0 / torsion.flexibility)
+            dofs = np.hstack([dofs, nodes.of_gear(name, body.shaft, body.z)[None]])
+        else:
+            matrices = rigid_body(b.mass, b.polar_inertia, b.diametral_inertia)
+        found.append(ElementGroup(body.part, body.shaft, matrices, dofs, layout.train.ratio(body.shaft)))
     for force in load.forces:
         c = force.contact
         geometry = contact_geometry(force)
@@ -259,14 +266,14 @@ def face_of(layout: Layout, force: MeshForce) -> Face:
 
 
 def mesh_dofs(layout: Layout, nodes: Nodes, force: MeshForce) -> np.ndarray:
-    """Numbers of the dofs of one contact: of both gears, and of the ends of a face that is cut on its shaft, shape (1, d)."""
+    """Numbers of the dofs of one contact: of the teeth of both gears, and of the ends of a face that is cut on its shaft, (1, d)."""
     c = force.contact
-    places = [(c.pinion_shaft, c.pinion_z), (c.gear_shaft, c.gear_z)]
+    dofs = [nodes.of_gear(c.pinion, c.pinion_shaft, c.pinion_z), nodes.of_gear(c.gear, c.gear_shaft, c.gear_z)]
     mesh = layout.mesh(c.mesh)
     ends = mesh.face(c.helix)
     if force.face is not None and ends is not None:
-        places += [(gear.shaft, z) for gear in mesh.gears if gear.part.integral for z in ends]
-    return node_dofs(*(nodes.at(*place) for place in places))
+        dofs += [node_dofs(nodes.at(gear.shaft, z))[0] for gear in mesh.gears if gear.part.integral for z in ends]
+    return np.concatenate(dofs)[None]
 
 
 def mesh_damping(layout: Layout, force: MeshForce, geometry: ContactGeometry) -> float:

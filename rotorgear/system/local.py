@@ -25,7 +25,6 @@ from rotorgear.system.groups import (
     face_of,
     mesh_damping,
     mesh_dofs,
-    node_dofs,
     resists_tilt,
     tilt_only,
 )
@@ -145,12 +144,11 @@ def _mesh_parts(system: System) -> list[LocalPart]:
             label = contact.mesh
         spring = _mesh_law(system, force, geometry, load.phase(contact) or 0.0)
         part = f"meshes.{contact.mesh}"
-        pinion = system.nodes.at(contact.pinion_shaft, contact.pinion_z)
-        dofs = node_dofs(pinion, system.nodes.at(contact.gear_shaft, contact.gear_z))[0]
+        dofs = mesh_dofs(system.layout, system.nodes, force)[0]
         approach = face_strains(geometry, face_of(system.layout, force))[:1]
-        column = columns_at(system, mesh_dofs(system.layout, system.nodes, force)[0], approach)
+        column = columns_at(system, dofs, approach)
         turned = replace(geometry, torque_sense=-geometry.torque_sense)
-        coast = columns_at(system, dofs, contact_vector(turned)[None])
+        coast = columns_at(system, dofs[:12], contact_vector(turned)[None])
         # With a state along the face the spring is the tangent about that; a map without tilt would be another contact.
         teeth = load.contact_map(force) if force.face is None else None
         law: MeshContact | MeshMap = spring
@@ -160,7 +158,7 @@ def _mesh_parts(system: System) -> list[LocalPart]:
                 blow = replace(spring, stiffness=0.0, damping=0.0, gap="bilateral", expanded=False)
                 found.append(LocalPart(part, f"{label} impact", blow, column))
         found.append(LocalPart(part, label, law, column, is_mesh=True))
-        rubbing = friction_part(system, force, geometry, label, spring, dofs, column)
+        rubbing = friction_part(system, force, geometry, label, spring, dofs[:12], column)
         if rubbing is not None:
             found.append(rubbing)
         back = f"{label} back"

@@ -51,7 +51,8 @@ class Nodes:
         z: z of each node in m.
         pedestal: name of the bearing whose pedestal a node is, else "".
         elements: shaft -> its elements from left to right.
-        internal: the motion of each internal dof of the elements, in their order.
+        internal: the motion of each internal dof: those of the elements in their order, then those of elastic gears.
+        teeth: gear and z of its node -> number of its internal dof, the rotation of teeth that turn against their shaft.
         merged: sentences about places that became one node.
     """
 
@@ -60,6 +61,7 @@ class Nodes:
     pedestal: list[str] = field(default_factory=list)
     elements: dict[str, list[Element]] = field(default_factory=dict)
     internal: list[str] = field(default_factory=list)
+    teeth: dict[tuple[str, float], int] = field(default_factory=dict)
     merged: list[str] = field(default_factory=list)
     _on_shaft: dict[str, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
 
@@ -74,6 +76,13 @@ class Nodes:
     def of_pedestal(self, bearing: str) -> int:
         """Number of the node of a bearing's pedestal."""
         return self.pedestal.index(bearing)
+
+    def of_gear(self, gear: str, shaft: str, z: float) -> np.ndarray:
+        """Numbers (6,) of the dofs of a gear's teeth: those of its node, with the teeth's own rotation where they have one."""
+        dofs = 6 * self.at(shaft, z) + np.arange(6)
+        if (gear, z) in self.teeth:
+            dofs[5] = 6 * len(self) + self.teeth[gear, z]
+        return dofs
 
     def on_shaft(self, shaft: str) -> np.ndarray:
         """Numbers of the nodes of a shaft from left to right."""
@@ -131,6 +140,10 @@ def discretise(layout: Layout, plan: Plan) -> Nodes:
             nodes.shaft.append(place.shaft)
             nodes.z.append(place.z)
             nodes.pedestal.append(name)
+    for name in layout.elastic_gears:
+        for place in layout.gear(name).places:
+            nodes.teeth[name, place.z] = len(nodes.internal)
+            nodes.internal.append("torsion")
     return nodes
 
 

@@ -60,6 +60,9 @@ def _candidates(system: System) -> np.ndarray:
         middle = shaft.start + 0.5 * shaft.length
         for k in numbers:
             block[6 * k : 6 * k + 6] = rigid_transfer(np.array([0.0, 0.0, nodes.z[k] - middle]))
+        for (gear, _), number in nodes.teeth.items():
+            if system.layout.gear(gear).shaft == name:
+                block[6 * len(nodes) + number, 5] = 1.0  # elastic gears turn with their shaft
         block[:, 3:] /= max(shaft.length, 1e-3)
         columns.append(block)
     for k, bearing in enumerate(nodes.pedestal):

@@ -13,6 +13,7 @@ from rotorgear.system.system import System
 
 _SPRING_KINDS = {
     "meshes": "mesh",
+    "gears": "gears",
     "bearings": "supports",
     "supports": "supports",
     "couplings": "couplings",

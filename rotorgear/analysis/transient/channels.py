@@ -47,7 +47,11 @@ def channels(local: LocalModel) -> Channels:
 
 
 def _row(local: LocalModel, node: int, dof: int) -> np.ndarray:
-    return np.asarray(local.system.dofs.transform[[6 * node + dof], :].toarray()[0])
+    return _row_of(local, 6 * node + dof)
+
+
+def _row_of(local: LocalModel, dof: int) -> np.ndarray:
+    return np.asarray(local.system.dofs.transform[[dof], :].toarray()[0])
 
 
 def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
@@ -115,11 +119,11 @@ def _orbits(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
 
 
 def _rotations(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
-    """Fluctuation of the speed of each gear."""
+    """Fluctuation of the speed of each gear; of one whose teeth turn against its shaft, that of the teeth."""
     model = local.system.model
     found = []
     for name in model.gears:
-        row = _row(local, local.system.nodes.at(*local.system.layout.place(f"gears.{name}")), 5)
+        row = _row_of(local, int(local.system.nodes.of_gear(name, *local.system.layout.place(f"gears.{name}"))[5]))
         if row.any():
             found.append((f"gears.{name} speed fluctuation", "rad/s", {"v": row}))
     return found

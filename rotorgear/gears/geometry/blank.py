@@ -10,7 +10,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+
+# Radius over that of the root of the core that is held where shaft and gear are one.
+_CORE = 0.1
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,17 @@ class BlankShape:
     def is_solid(self) -> bool:
         """Whether there is neither web nor hub."""
         return self.rim_radius <= self.bore_radius
+
+    def with_core(self, root_radius: float) -> BlankShape:
+        """The same; where shaft and gear are one, with a held core too small to matter."""
+        core = max(self.bore_radius, _CORE * root_radius)
+        return replace(
+            self, bore_radius=core, rim_radius=max(self.rim_radius, core), hub_radius=max(self.hub_radius, core)
+        )
+
+    def scaled(self, factor: float) -> BlankShape:
+        """All lengths times a factor."""
+        return BlankShape(**{size.name: factor * getattr(self, size.name) for size in fields(self)})
 
     def mirrored(self) -> BlankShape:
         """The blank seen from the other end of its axis."""

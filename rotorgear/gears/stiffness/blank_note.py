@@ -17,10 +17,12 @@ def wind_up_per_width(geometry: GearGeometry, body: ToothBody, width: float) -> 
     blank = body.blank
     if blank is None or blank.is_solid or blank.bore_radius <= 0.0:
         return 0.0
-    # The rotation for a unit torque is that for a Young's modulus of 1, over E.
-    root = 0.5 * geometry.root_diameter
-    turned = torsional_flexibility(blank, width, root, body.poisson_ratio) / body.youngs_modulus
-    return geometry.base_radius**2 * turned * width
+    # In normal modules for a Young's modulus of 1: a rotation for a torque grows as 1 / (E m^3).
+    m = geometry.normal_module
+    turned = torsional_flexibility(
+        blank.scaled(1.0 / m), width / m, 0.5 * geometry.root_diameter / m, body.poisson_ratio
+    )
+    return geometry.base_radius**2 * turned * width / (body.youngs_modulus * m**3)
 
 
 def web_left_out(name: str, geometry: GearGeometry, body: ToothBody, width: float, model: str) -> tuple[str, ...]:

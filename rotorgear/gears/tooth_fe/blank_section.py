@@ -60,6 +60,7 @@ class BlankSection:
         weight: (k,) shares of the circle's width of these nodes, of quadratic shape functions.
         points: (p, 2) r and z of all nodes of the section.
         radius: (p,) r of them.
+        inertia: (p, p) sparse, integral of N_a N_b r^2 over the volume of one radian.
         unknowns: degrees of freedom of the section.
     """
 
@@ -73,7 +74,7 @@ class BlankSection:
         self._circle = circle[np.argsort(points[circle, 1])]
         self._inside = np.flatnonzero(~on_circle & ~held)
         self._free = np.flatnonzero(~held)
-        self._stiffness, self._inertia = _matrices(points, cells, poisson_ratio)
+        self._stiffness, self.inertia = _matrices(points, cells, poisson_ratio)
         self.z = points[self._circle, 1]
         self.weight = _line_shares(self.z)
         self.unknowns = 3 * len(points)
@@ -120,7 +121,7 @@ class BlankSection:
 
     def polar_moment(self, first: np.ndarray, second: np.ndarray) -> float:
         """Integral of first second r^2 over the volume for two nodal fields (p,), such as rotations."""
-        return float(2.0 * np.pi * first @ (self._inertia @ second))
+        return float(2.0 * np.pi * first @ (self.inertia @ second))
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,8 @@ class BlankTorsion:
     """A gear whose teeth turn against their bore.
 
     Attributes:
-        flexibility: rotation of the root circle against the bore over the torque (rad/(N m)), of one helix.
+        flexibility: rotation of the root circle against the bore over the torque, in rad/(N m) or for a Young's modulus and a
+            normal module of 1.
         polar_share: (2, 2) polar moment of inertia about (bore, teeth), over the whole: what lies between turns with both, in the
             shape of the static twist.
     """
@@ -137,10 +139,8 @@ class BlankTorsion:
     polar_share: np.ndarray
 
 
-def blank_torsion(
-    shape: BlankShape, width: float, radii: tuple[float, float], youngs_modulus: float, poisson_ratio: float
-) -> BlankTorsion:
-    """Torsion of a blank in SI units; radii: of the root circle and of the reference circle, up to which teeth count as solid."""
+def blank_torsion(shape: BlankShape, width: float, radii: tuple[float, float], poisson_ratio: float) -> BlankTorsion:
+    """Torsion of a blank; radii: of the root circle and of the reference circle, up to which teeth count as solid."""
     root, outside = radii
     section = BlankSection(shape, width, root, poisson_ratio)
     twist = section.twist()
@@ -150,7 +150,7 @@ def blank_torsion(
     cross = section.polar_moment(bore, teeth)
     ring = 0.5 * np.pi * width * (outside**4 - root**4)
     polar = np.array([[section.polar_moment(bore, bore), cross], [cross, section.polar_moment(teeth, teeth) + ring]])
-    return BlankTorsion(flexibility / youngs_modulus, polar / polar.sum())
+    return BlankTorsion(flexibility, polar / polar.sum())
 
 
 def torsional_flexibility(shape: BlankShape, width: float, root_radius: float, poisson_ratio: float) -> float:

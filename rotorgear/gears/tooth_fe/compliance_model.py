@@ -112,11 +112,8 @@ def held_radius(key: ComplianceKey) -> float:
 
 def _in_modules(blank: BlankShape, module: float, root: float) -> BlankShape:
     """A blank in normal modules, with a held core where shaft and gear are one."""
-    scaled = BlankShape(**{field.name: _rounded(getattr(blank, field.name) / module) for field in fields(BlankShape)})
-    bore = max(scaled.bore_radius, _rounded(_LEAST_BORE * root))
-    return replace(
-        scaled, bore_radius=bore, rim_radius=max(scaled.rim_radius, bore), hub_radius=max(scaled.hub_radius, bore)
-    )
+    rounded = {size.name: _rounded(getattr(blank, size.name) / module) for size in fields(BlankShape)}
+    return BlankShape(**rounded).with_core(root)
 
 
 def _seat_radius(blank: BlankShape, root: float) -> float:

@@ -32,7 +32,8 @@ class ToothFe:
         body: "rim", "ring" or "wheel"; None: a wheel where the blank has rim and web, else a rim.
         rim_thickness: of the "rim" body in normal modules.
         arc: pitches of the "rim" body, an odd number.
-        exclude_torsion: leave the wind-up between bore and teeth out of a "ring" or "wheel", where the rotor model has it.
+        exclude_torsion: leave the wind-up between bore and teeth out of a "ring" or "wheel", where the rotor model has it;
+            None: out of a wheel, whose torsion stands between its teeth and its shaft, but not out of a ring.
         space: whether the model is three-dimensional; None: where the teeth are helical or change along the face.
         size: mesh size in place of the preset's.
         patch: largest half-width of a load patch in normal modules, in place of the preset's.
@@ -74,7 +75,7 @@ class ToothFe:
         """Whether the wind-up between bore and teeth is left out."""
         if body == "rim":
             return False  # held just below the teeth, it has none
-        return bool(self.exclude_torsion)
+        return body == "wheel" if self.exclude_torsion is None else self.exclude_torsion
 
     def body_text(self, bodies: tuple[Body, Body], held: tuple[float, float]) -> str:
         """What the teeth of pinion and gear stand on and where that is held, in a line; held: radii of these circles (m)."""

@@ -52,6 +52,23 @@ def mesh_problems(layout: Layout) -> Iterator[Problem]:
             yield from _on_shafts(address, both)
             found = [*_mates(address, pinion, gear), *_faces(address, both), *_teeth(address, mesh, pinion, gear)]
             yield from found or _axes(address, both, in_bending=layout.model.has("bending"))
+            if not found:
+                yield from _wind_up(address, both, [other for other in layout.meshes if other is not both])
+
+
+def _wind_up(address: str, mesh: MeshLayout, others: list[MeshLayout]) -> Iterator[Problem]:
+    """A gear winds up in the rotor model or in its meshes, not in both."""
+    if mesh.part.stiffness != "tooth_fe" or not mesh.has_teeth:
+        return
+    own = {gear.name for gear in mesh.elastic_gears}
+    elastic = {gear.name: other.name for other in others if other.has_teeth for gear in other.elastic_gears}
+    for gear in mesh.gears:
+        if gear.name in elastic and gear.name not in own:
+            yield Problem(
+                f"{address}.tooth_fe",
+                f"the wind-up of gear '{gear.name}' in this mesh",
+                f"body and exclude_torsion as in meshes.{elastic[gear.name]}, which leaves it to the rotor model",
+            )
 
 
 def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator[Problem]:

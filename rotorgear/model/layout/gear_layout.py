@@ -7,6 +7,7 @@ broken file allow.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -20,6 +21,7 @@ from rotorgear.model.parts.tables import Tables
 if TYPE_CHECKING:
     from rotorgear.gears.geometry.flank import FlankModification
     from rotorgear.gears.stiffness.mesh_stiffness import ToothBody
+    from rotorgear.gears.tooth_fe.blank_section import BlankTorsion
 
 
 class GearLayout:
@@ -115,6 +117,21 @@ class GearLayout:
             return helix
         steiner = helix.mass * gear.helix_offset**2
         return RigidBody(2.0 * helix.mass, 2.0 * helix.polar_inertia, 2.0 * (helix.diametral_inertia + steiner))
+
+    @cached_property
+    def torsion(self) -> BlankTorsion:
+        """How the teeth at each of its nodes turn against the bore; of a gear with teeth and width."""
+        from rotorgear.gears.tooth_fe.blank_section import blank_torsion
+
+        assert self.geometry is not None
+        assert self.part.width is not None
+        m = self.geometry.normal_module
+        radii = (0.5 * self.geometry.root_diameter / m, 0.5 * self.geometry.reference_diameter / m)
+        blank = self.blank.scaled(1.0 / m).with_core(radii[0])
+        helix = blank_torsion(blank, self.part.width / m, radii, self.material.nu)
+        # In normal modules for a Young's modulus of 1; both helices of a herringbone on one node stand side by side.
+        scale = len(self.places) / (self.helices * self.material.youngs_modulus * m**3)
+        return replace(helix, flexibility=scale * helix.flexibility)
 
     @property
     def node_bodies(self) -> tuple[NodeBody, ...]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rotorgear.errors import Problem
 from rotorgear.gears.geometry.blank import RigidBody
@@ -21,6 +21,9 @@ from rotorgear.model.layout.places import Place
 from rotorgear.model.layout.train import Train, walk
 from rotorgear.model.parts.operation import Load
 from rotorgear.model.parts.tables import Tables
+
+if TYPE_CHECKING:
+    from rotorgear.gears.tooth_fe.blank_section import BlankTorsion
 
 
 class Layout:
@@ -139,6 +142,11 @@ class Layout:
             ValueError: the sizes make no disk; the text is what was expected.
         """
         return disk_body(self.model, self.model.disks[name])
+
+    @cached_property
+    def elastic_gears(self) -> dict[str, BlankTorsion]:
+        """Gears whose teeth turn against their shaft: those whose mesh stiffness leaves their wind-up to the rotor model."""
+        return {gear.name: gear.torsion for mesh in self.meshes for gear in mesh.elastic_gears}
 
     @cached_property
     def bodies(self) -> tuple[NodeBody, ...]:

@@ -289,6 +289,20 @@ class MeshLayout:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
 
     @property
+    def elastic_gears(self) -> tuple[GearLayout, ...]:
+        """Its gears whose wind-up between bore and teeth is left to the rotor model: wheels, unless they say otherwise."""
+        if self.part.stiffness != "tooth_fe" or not self.has_teeth:
+            return ()
+        fe = self.teeth.fe
+        bodies = [(gear, fe.body_of(gear.blank)) for gear in self.gears]
+        # Teeth that are cut on their shaft have no bore to turn against.
+        return tuple(
+            gear
+            for gear, body in bodies
+            if body == "wheel" and fe.excludes_torsion(body) and not gear.part.integral
+        )
+
+    @property
     def is_modelled(self) -> bool:
         """Whether the file names a stiffness model."""
         return isinstance(self.part.stiffness, str)

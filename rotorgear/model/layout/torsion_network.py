@@ -1,7 +1,7 @@
 """Statics of the train in torsion: which force each contact carries.
 
-Shafts twist by 1/(GJ), meshes and couplings give with their own stiffness. The train's free rotation is held at one node of
-each connected group, which takes no torque where the loads balance.
+Shafts twist by 1/(GJ); meshes, couplings and the webs of elastic gears give with their own stiffness. The train's free rotation
+is held at one node of each connected group, which takes no torque where the loads balance.
 """
 
 from __future__ import annotations
@@ -44,6 +44,12 @@ class _Network:
         """Number of the node at a place that the network was built with."""
         return next(number for place, number in self._nodes[shaft] if place == z)
 
+    def branch(self, node: int, stiffness: float) -> int:
+        """Number of a new node that hangs on another one by a spring (N m/rad)."""
+        self.springs.append((node, self.size, stiffness))
+        self.size += 1
+        return self.size - 1
+
     def first_node(self, shaft: str) -> int | None:
         """Number of the first node of a shaft; None where nothing acts on it."""
         return self._nodes[shaft][0][1] if self._nodes[shaft] else None
@@ -71,12 +77,25 @@ def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequ
     places = [place for pair in (*ends, *(pair for pair, _ in couplings)) for place in pair]
     network = _Network(layout.model, [*places, *(Place(item.shaft, item.z) for item in applied)])
     network.springs += [(network.node(*first), network.node(*second), k) for (first, second), k in couplings]
+    elastic = {
+        (name, place): network.branch(network.node(*place), 1.0 / torsion.flexibility)
+        for name, torsion in layout.elastic_gears.items()
+        for place in layout.gear(name).places
+    }
+
+    def teeth_of(gear: str, place: Place) -> int:
+        return elastic[gear, place] if (gear, place) in elastic else network.node(*place)
+
+    teeth = [
+        (teeth_of(line.pinion, pinion), teeth_of(line.gear, gear))
+        for line, (pinion, gear) in zip(lines, ends, strict=True)
+    ]
 
     # Each contact is squeezed along its flank normal by r_b cos(beta_b) times the twist of its two nodes: delta = S q.
     squeeze = np.zeros((len(lines), network.size))
-    for row, line, (pinion, gear) in zip(squeeze, lines, ends, strict=True):
-        row[network.node(*pinion)] += line.pinion_base_radius * np.cos(line.base_helix_angle)
-        row[network.node(*gear)] += line.gear_base_radius * np.cos(line.base_helix_angle)
+    for row, line, (pinion, gear) in zip(squeeze, lines, teeth, strict=True):
+        row[pinion] += line.pinion_base_radius * np.cos(line.base_helix_angle)
+        row[gear] += line.gear_base_radius * np.cos(line.base_helix_angle)
     stiffness = np.array([line.stiffness for line in lines])
     # K = sum of the springs + S^T diag(k) S
     K = np.zeros((network.size, network.size))

@@ -52,6 +52,8 @@ class ToothFeTable(Part):
     )
     rim_thickness: PositiveRatio = Field(3.0, description="depth of the rim's held circle below the root over m_n")
     pitches: Whole = Field(7, description="rim: pitches of the arc, an odd number of at least 3; its end cuts are held")
-    exclude_torsion: bool = Field(
-        False, description="ring, wheel: leave the wind-up between bore and teeth to the rotor model"
+    exclude_torsion: bool | None = Field(
+        None,
+        description="ring, wheel: leave the wind-up between bore and teeth to the rotor model; default: of a wheel, whose "
+        "torsion then stands between its teeth and its shaft, but not of a ring",
     )
