@@ -60,6 +60,15 @@ def _wind_up(address: str, mesh: MeshLayout, others: list[MeshLayout]) -> Iterat
     """A gear winds up in the rotor model or in its meshes, not in both."""
     if mesh.part.stiffness != "tooth_fe" or not mesh.has_teeth:
         return
+    fe = mesh.teeth.fe
+    for gear in mesh.gears:
+        body = fe.body_of(gear.blank)
+        if gear.part.integral and body == "wheel" and fe.excludes_torsion(body):
+            yield Problem(
+                f"{address}.tooth_fe",
+                f"a wheel that winds up against its bore, of gear '{gear.name}', which is cut on its shaft",
+                "another body or exclude_torsion = false, or integral = false for the gear",
+            )
     own = {gear.name for gear in mesh.elastic_gears}
     elastic = {gear.name: other.name for other in others if other.has_teeth for gear in other.elastic_gears}
     for gear in mesh.gears:

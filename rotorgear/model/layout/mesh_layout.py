@@ -297,9 +297,7 @@ class MeshLayout:
         bodies = [(gear, fe.body_of(gear.blank)) for gear in self.gears]
         # Teeth that are cut on their shaft have no bore to turn against.
         return tuple(
-            gear
-            for gear, body in bodies
-            if body == "wheel" and fe.excludes_torsion(body) and not gear.part.integral
+            gear for gear, body in bodies if body == "wheel" and fe.excludes_torsion(body) and not gear.part.integral
         )
 
     @property
