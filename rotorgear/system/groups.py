@@ -266,7 +266,7 @@ def face_of(layout: Layout, force: MeshForce) -> Face:
 
 
 def mesh_dofs(layout: Layout, nodes: Nodes, force: MeshForce) -> np.ndarray:
-    """Numbers (1, d) of the dofs of one contact: of the teeth of both gears, and of the ends of a face that is cut on its shaft."""
+    """Numbers (1, d) of the dofs of one contact: of the teeth of both gears, and of the ends of faces cut on their shaft."""
     c = force.contact
     dofs = [nodes.of_gear(c.pinion, c.pinion_shaft, c.pinion_z), nodes.of_gear(c.gear, c.gear_shaft, c.gear_z)]
     mesh = layout.mesh(c.mesh)
