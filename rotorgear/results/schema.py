@@ -181,16 +181,16 @@ class Record:
     def __init_subclass__(cls) -> None:
         dataclass(frozen=True, eq=False, repr=False)(cls)
         # A field is found by its name in the class that declares it last; its own fields stand before those of the bases.
-        found: dict[str, Declared] = {}
+        by_name: dict[str, Declared] = {}
         for item in fields(cls):
             if "declared" in item.metadata:
-                found[item.name] = replace(item.metadata["declared"], name=item.name)
+                by_name[item.name] = replace(item.metadata["declared"], name=item.name)
         for base in reversed(cls.__mro__):
             for name, value in vars(base).items():
                 if isinstance(value, Derived):
-                    found[name] = value.declared
+                    by_name[name] = value.declared
         inherited = {name for base in cls.__mro__[1:] for name in getattr(base, "declarations", {})}
-        order = sorted(found.values(), key=lambda one: (one.name in inherited, one.place))
+        order = sorted(by_name.values(), key=lambda one: (one.name in inherited, one.place))
         cls.declarations = {one.name: one for one in order}
         Record.known[record_name(cls)] = cls
         Record.known.setdefault(cls.__name__, cls)  # files of 0.1 name a record by its class alone

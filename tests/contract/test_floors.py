@@ -6,11 +6,15 @@ An import inside a function counts like one at the top: it may save time, but it
 from __future__ import annotations
 
 import ast
+import inspect
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
+from rotorgear.results.kinds import kinds
+from rotorgear.results.result import Result
 from tests.paths import ROOT
 
 # The face (rotorgear/__init__.py) stands just below the command line, which uses it as any user does; __main__ stands above
@@ -64,6 +68,16 @@ ROOMS = {
         "contact": {"time"},
         "lanes": {"contact", "time"},
     },
+}
+# Modules that load others by a name which no walk can read in their source, and the package that the name may lead to. A table
+# knows its result, so the arrow from a result to its table is the one that leads back: no class of results imports a table.
+BY_NAME = {
+    "rotorgear.forces.registry": "rotorgear.forces",
+    "rotorgear.gears.stiffness_models": "rotorgear.gears",
+    "rotorgear.lazy": "rotorgear",  # the loader of the face, which is where its names are listed
+    "rotorgear.results.kinds": "rotorgear.results",
+    "rotorgear.results.result": "rotorgear.results.tables",
+    "rotorgear.analysis.sweep.cluster": "rotorgear",  # versions of packages, asked for on a worker
 }
 # Folders that are rooms' floors, or rooms, hold no more files than this.
 FULL = 20
@@ -251,6 +265,35 @@ def test_imports_by_name_are_arrows_like_others(house: Arrows) -> None:
     assert upward_arrows(inside) == []
     assert unplanned_arrows(inside) == []
     assert " -> ".join(module_cycle(inside)) == ""
+
+
+def loads_by_name(module: str) -> bool:
+    """Whether a module calls what imports by a name: import_module or __import__."""
+    place = ROOT / module.replace(".", "/")
+    file = place.with_suffix(".py") if place.with_suffix(".py").exists() else place / "__init__.py"
+    calls = [node.func for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
+    names = {call.id if isinstance(call, ast.Name) else getattr(call, "attr", "") for call in calls}
+    return bool(names & {"import_module", "__import__"})
+
+
+def test_what_loads_modules_by_a_name_is_declared(house: Arrows) -> None:
+    assert {module for module in house if loads_by_name(module)} == set(BY_NAME)
+    # The ground's loader and the cluster's look at versions serve the face; all others stay on their own floor.
+    for module, package in BY_NAME.items():
+        assert package == "rotorgear" or floor_of(package) == floor_of(module)
+
+
+def test_every_result_finds_its_table_in_the_room_of_tables_and_every_table_has_a_result() -> None:
+    of_kinds = set()
+    for kind, result in kinds().items():
+        module = import_module(f"{BY_NAME[Result.__module__]}.{result.__module__.rpartition('.')[2]}")
+        table = getattr(module, f"{kind}_table")
+        assert table.__module__ == module.__name__, f"the table of {kind} is made elsewhere"
+        first = next(iter(inspect.signature(table).parameters.values()))
+        assert first.annotation == result.__name__
+        of_kinds.add(Path(str(module.__file__)).stem)
+    tables = {file.stem for file in (ROOT / "rotorgear" / "results" / "tables").glob("*.py")}
+    assert tables - {"__init__", "common"} == of_kinds
 
 
 def test_no_folder_of_a_floor_with_rooms_is_too_full() -> None:

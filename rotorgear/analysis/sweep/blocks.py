@@ -41,19 +41,19 @@ def waves(shape: Sequence[int], directions: Sequence[str], starts: int) -> list[
     """Jobs by wave: all at once for runs from states of their own; along the first parameter for "up" and "down"."""
     first = shape[0]
     rest = int(np.prod(shape[1:], dtype=int))
-    found: list[list[Job]] = [[] for _ in range(first if set(directions) & {"up", "down"} else 1)]
+    jobs: list[list[Job]] = [[] for _ in range(first if set(directions) & {"up", "down"} else 1)]
     run = 0
     for direction in directions:
         for _ in range(starts):
             if direction == "each":
-                found[0] += [Job(point, run) for point in range(first * rest)]
+                jobs[0] += [Job(point, run) for point in range(first * rest)]
             else:
                 places = range(first) if direction == "up" else range(first - 1, -1, -1)
                 step = -rest if direction == "up" else rest
                 for wave, i in enumerate(places):
-                    found[wave] += [Job(i * rest + k, run, i * rest + k + step if wave else None) for k in range(rest)]
+                    jobs[wave] += [Job(i * rest + k, run, i * rest + k + step if wave else None) for k in range(rest)]
             run += 1
-    return found
+    return jobs
 
 
 def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarray) -> Iterator[list[Job]]:

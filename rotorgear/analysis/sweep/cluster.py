@@ -213,18 +213,18 @@ def _on_worker(caller: dict[str, str], function: Callable[..., Any], *arguments:
 
 def difference(here: dict[str, str], there: dict[str, str]) -> str:
     """The first thing that a worker runs another version of, in words; "" where there is none."""
-    for name, own in here.items():
+    for name, version in here.items():
         other = there.get(name, "none")
-        if other != own:
-            return f"runs {name} {other}, and this computer {own}"
+        if other != version:
+            return f"runs {name} {other}, and this computer {version}"
     return ""
 
 
 @cache
 def versions() -> dict[str, str]:
     """Versions that a result depends on, here."""
-    found: dict[str, str] = _look()()
-    return found
+    by_name: dict[str, str] = _look()()
+    return by_name
 
 
 def _look() -> Callable[[], dict[str, str]]:
@@ -236,18 +236,18 @@ def _look() -> Callable[[], dict[str, str]]:
         from importlib import import_module
         from pathlib import Path
 
-        found = {"Python": ".".join(platform.python_version_tuple()[:2])}
+        by_name = {"Python": ".".join(platform.python_version_tuple()[:2])}
         for name in ("rotorgear", "numpy", "numba"):
             try:
-                found[name] = str(import_module(name).__version__)
+                by_name[name] = str(import_module(name).__version__)
             except ImportError:
-                found[name] = "none"
-        if found["rotorgear"] != "none":
+                by_name[name] = "none"
+        if by_name["rotorgear"] != "none":
             home = Path(str(import_module("rotorgear").__file__)).parent
             mark = hashlib.sha256()
             for file in sorted(home.rglob("*.py"), key=lambda one: one.relative_to(home).as_posix()):
                 mark.update(file.relative_to(home).as_posix().encode() + file.read_bytes().replace(b"\r\n", b"\n"))
-            found["rotorgear with the source"] = mark.hexdigest()[:8]
-        return found
+            by_name["rotorgear with the source"] = mark.hexdigest()[:8]
+        return by_name
 
     return look

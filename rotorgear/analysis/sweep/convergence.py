@@ -51,7 +51,7 @@ def sweep_convergence_study(
     rungs = []
     for number, (n, count) in enumerate(plans):
         progress(number / len(plans), f"{n} steps, {count} periods")
-        found = sweep(
+        runs = sweep(
             model,
             {"operation.speed": [given]},
             initial_conditions=starts,
@@ -60,24 +60,24 @@ def sweep_convergence_study(
             discard=_SETTLE,
             sample=count,
         )
-        worst = int(np.argmax(found.peak_to_peak[0].mean(axis=0)))
-        exponents = found.lyapunov[0, :, 0]
+        worst = int(np.argmax(runs.peak_to_peak[0].mean(axis=0)))
+        exponents = runs.lyapunov[0, :, 0]
         scatter = exponents.std(ddof=1) if np.ptp(exponents) else 0.0
-        sizes = found.peak_to_peak[0, :, worst]
-        factors = found.dynamic_factor[0, :, worst]
+        sizes = runs.peak_to_peak[0, :, worst]
+        factors = runs.dynamic_factor[0, :, worst]
         rungs.append(
             SweepRung(
                 n,
                 count,
-                found.seconds["integration"] / starts,
+                runs.seconds["integration"] / starts,
                 float(exponents.mean()),
                 float(scatter),
-                float(np.median(found.lyapunov_error[0, :, 0])),
+                float(np.median(runs.lyapunov_error[0, :, 0])),
                 float(sizes.mean()),
                 float(sizes.std(ddof=1)),
                 float(factors.mean()),
                 float(factors.std(ddof=1)),
-                tuple(sorted(set(found.motion))),
+                tuple(sorted(set(runs.motion))),
             )
         )
     progress(1.0, "done")

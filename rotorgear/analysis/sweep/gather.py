@@ -72,17 +72,17 @@ def gathered(
             )
             continue
         mesh = point.system.columns.counted
-        own = orbit.section[:, mesh]
-        section[i, run] = own
-        found = _indicators(orbit.sums[mesh], int(steps[i]))
+        section_here = orbit.section[:, mesh]
+        section[i, run] = section_here
+        measures = _indicators(orbit.sums[mesh], int(steps[i]))
         for name, table in tables.items():
-            table[i, run] = found[name]
+            table[i, run] = measures[name]
         k = orbit.growth.shape[1]
         exponent[i, run, :k], error[i, run, :k] = exponents(orbit.growth, float(point.system.turns))
         largest = float(exponent[i, run, 0]) if k else None
         kind = classify(
-            own[:, :, 0],
-            np.maximum(found["amplitude"], found["peak_to_peak"]),
+            section_here[:, :, 0],
+            np.maximum(measures["amplitude"], measures["peak_to_peak"]),
             largest,
             float(error[i, run, 0]) if k else 0.0,
             request.tolerance,
@@ -155,11 +155,11 @@ def _indicators(sums: np.ndarray, steps: int) -> dict[str, np.ndarray]:
     }
 
 
-def _reduction(found: Reduction | None, request: Request) -> tuple[str, ...]:
+def _reduction(reduction: Reduction | None, request: Request) -> tuple[str, ...]:
     """What modes that were fixed by hand leave open."""
-    if found is None or found.error <= request.reduction_error:
+    if reduction is None or reduction.error <= request.reduction_error:
         return ()
     return (
-        f"the reduction is {100.0 * found.error:.2g} % off, beyond {100.0 * request.reduction_error:.2g} %: ask for more modes, "
-        "or leave their number open",
+        f"the reduction is {100.0 * reduction.error:.2g} % off, beyond {100.0 * request.reduction_error:.2g} %: ask for more "
+        "modes, or leave their number open",
     )

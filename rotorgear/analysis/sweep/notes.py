@@ -26,21 +26,27 @@ def notes(
     orbits: dict[tuple[int, int], Orbit],
 ) -> tuple[str, ...]:
     """Return the warnings as sentences."""
-    found = []
+    sentences = []
     count = sum(map(bool, failed))
     if count:
-        found.append(f"{count} of {len(points)} points failed; the first: {next(filter(None, failed))}")
+        sentences.append(f"{count} of {len(points)} points failed; the first: {next(filter(None, failed))}")
     if any(q.drift for q in points if q):
-        found.append("the torques do not balance at some points: the shafts drift off the prescribed rotation there")
+        sentences.append(
+            "the torques do not balance at some points: the shafts drift off the prescribed rotation there"
+        )
     if any(q.rolling for q in points if q):
-        found.append(
+        sentences.append(
             "bearing cages never repeat with the teeth: a response that rolling elements drive shows as quasi-periodic"
         )
     unsettled = sum(kind == "not settled" for kind in motion)
     if unsettled:
-        found.append(f"{unsettled} of {len(motion)} runs had not settled: ask for more periods (--discard, --sample)")
-    found += [f"{axis.address} has no effect on this model: all its points are the same" for axis in idle(axes, points)]
-    return (*found, *_slow(motion, settle, orbits, len(motion) // max(1, len(points))))
+        sentences.append(
+            f"{unsettled} of {len(motion)} runs had not settled: ask for more periods (--discard, --sample)"
+        )
+    sentences += [
+        f"{axis.address} has no effect on this model: all its points are the same" for axis in idle(axes, points)
+    ]
+    return (*sentences, *_slow(motion, settle, orbits, len(motion) // max(1, len(points))))
 
 
 def coarse_shafts(model: Model, elements: int | None) -> tuple[str, ...]:

@@ -128,20 +128,20 @@ class PointMaker:
         system = System(about_faces(model, [speed])[0], plan=plan_in_time(self._elements))
         if system.n == 0:
             raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
-        found = springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)
-        for part in found.parts:
+        built = springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)
+        for part in built.parts:
             if why := part.law.unsettled():
                 raise AnalysisError(f"{part.part}: {why}")
         meshes, others = (
-            [o for part in found.parts if part.is_mesh is is_mesh for o in orders_of(part.law, part.label)]
+            [o for part in built.parts if part.is_mesh is is_mesh for o in orders_of(part.law, part.label)]
             for is_mesh in (True, False)
         )
         orders = meshes + others
         refuse_long(meshes, orders)
-        contact = tuple(part.label for part in found.parts if part.is_mesh)
-        if self._wanted.modes is not None or system.n > MOST_DOFS or np.any(found.local.M.diagonal() <= 0.0):
-            return Large(found.local, orders, contact, speed, model.damping.modal_ratio)
-        return still(found.local, orders, contact, self._free_of(found.local))
+        contact = tuple(part.label for part in built.parts if part.is_mesh)
+        if self._wanted.modes is not None or system.n > MOST_DOFS or np.any(built.local.M.diagonal() <= 0.0):
+            return Large(built.local, orders, contact, speed, model.damping.modal_ratio)
+        return still(built.local, orders, contact, self._free_of(built.local))
 
     def _free_of(self, local: LocalSystem) -> np.ndarray:
         """Motions without strain; those of the point before where inertia and stiffness are the same to the last bit."""
@@ -182,9 +182,9 @@ def still(
     return Still(local, orders, contact, rest, static)
 
 
-def ready_reduced(point: Large, found: Reduced) -> Point:
+def ready_reduced(point: Large, reduced: Reduced) -> Point:
     """Make a point ready that was reduced."""
-    known = replace(still(found.local, point.orders, point.contact), shapes=found.shapes)
+    known = replace(still(reduced.local, point.orders, point.contact), shapes=reduced.shapes)
     return ready(known, point.speed, point.modal_ratio)
 
 
@@ -195,9 +195,9 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     laws = local.forces.laws
     columns = Columns.of([column for law in laws for column in law.columns(speed)])
     order = float(np.copysign(float(fastest), speed))
-    own = own_laws(local.forces, columns.kind == OWN_LAW, 1.0 / order)
+    one_at_a_time = own_laws(local.forces, columns.kind == OWN_LAW, 1.0 / order)
     system = small_system(
-        local, known.rest, columns, own, float(fastest) * abs(speed), turns, modal_ratio, known.shapes
+        local, known.rest, columns, one_at_a_time, float(fastest) * abs(speed), turns, modal_ratio, known.shapes
     )
     drift = known.rest.drift
     drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)

@@ -46,13 +46,13 @@ class Large:
     @property
     def key(self) -> bytes:
         """Bytes that points share which may share a basis."""
-        found = hashlib.blake2b(repr((self.orders, self.modal_ratio)).encode())
+        digest = hashlib.blake2b(repr((self.orders, self.modal_ratio)).encode())
         for A in (self.local.M, self.local.D, self.local.K, self.local.B, self.local.G):
             for part in () if A is None else (A.data, A.indices, A.indptr):
-                found.update(np.ascontiguousarray(part).tobytes())
+                digest.update(np.ascontiguousarray(part).tobytes())
         for B in (self.local.forces.reference_stiffness, self.local.forces.reference_damping):
-            found.update(B.tobytes())
-        return found.digest()
+            digest.update(B.tobytes())
+        return digest.digest()
 
 
 @dataclass(frozen=True)

@@ -177,7 +177,7 @@ def _run(
     progress: Progress,
 ) -> dict[tuple[int, int], Orbit]:
     """Run all jobs; blocks that were kept by an interrupted sweep are taken over."""
-    found: dict[tuple[int, int], Orbit] = {}
+    orbit_of: dict[tuple[int, int], Orbit] = {}
     plans = waves(shape, request.directions, request.starts)
     total = sum(len(jobs) for jobs in plans)
     done = 0
@@ -187,14 +187,14 @@ def _run(
             old = kept[: len(grouped)]
             kept = kept[len(grouped) :]
             for block, chunk in zip(grouped, old, strict=False):
-                found.update(zip([job.key for job in block], unpacked(chunk), strict=True))
+                orbit_of.update(zip([job.key for job in block], unpacked(chunk), strict=True))
                 done += len(block)
             rest = grouped[len(old) :]
             tasks = []
             for block in rest:
                 own = [p for p in (points[job.point] for job in block) if p is not None]
                 states = [
-                    _start(job.after, job.run, points, p, found, request) for job, p in zip(block, own, strict=True)
+                    _start(job.after, job.run, points, p, orbit_of, request) for job, p in zip(block, own, strict=True)
                 ]
                 plan = Plan(
                     int(steps[block[0].point]), request.settle, request.count, min(request.exponents, _most(own[0]))
@@ -208,12 +208,12 @@ def _run(
                 progress(_READY + (1.0 - _READY) * part, f"about {100.0 * part:.0f} %")
 
             for block, orbits in zip(rest, pool.run(tasks, heard), strict=True):
-                found.update(zip([job.key for job in block], orbits, strict=True))
+                orbit_of.update(zip([job.key for job in block], orbits, strict=True))
                 if stream:
                     stream.write(packed(orbits))
                 done += len(block)
                 progress(_READY + (1.0 - _READY) * done / total, f"{done} of {total} runs")
-    return found
+    return orbit_of
 
 
 def _most(point: Point) -> int:

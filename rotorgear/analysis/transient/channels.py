@@ -23,26 +23,26 @@ class Channels:
 
     def values(self, fields: Fields, F: np.ndarray) -> np.ndarray:
         """Values (r, p) at the recorded steps with the local forces F (r, m)."""
-        found = np.zeros((len(F), len(self.names)))
+        values = np.zeros((len(F), len(self.names)))
         for kind, (which, Y) in self.rows.items():
-            found[:, which] += F @ Y.T if kind == "F" else fields.rows(kind, Y)
-        return found
+            values[:, which] += F @ Y.T if kind == "F" else fields.rows(kind, Y)
+        return values
 
 
 def channels(local: LocalModel) -> Channels:
     """Return the channels of a model."""
-    found: list[tuple[str, str, dict[str, np.ndarray]]] = []
-    found += _bearing_forces(local)
-    found += _points(local)
-    found += _orbits(local)
-    found += _rotations(local)
-    names = tuple(item[0] for item in found)
-    units = tuple(item[1] for item in found)
+    every: list[tuple[str, str, dict[str, np.ndarray]]] = []
+    every += _bearing_forces(local)
+    every += _points(local)
+    every += _orbits(local)
+    every += _rotations(local)
+    names = tuple(item[0] for item in every)
+    units = tuple(item[1] for item in every)
     rows = {}
     for kind in "qvaF":
-        which = np.array([i for i, item in enumerate(found) if kind in item[2]], dtype=int)
+        which = np.array([i for i, item in enumerate(every) if kind in item[2]], dtype=int)
         if which.size:
-            rows[kind] = (which, np.array([found[i][2][kind] for i in which]))
+            rows[kind] = (which, np.array([every[i][2][kind] for i in which]))
     return Channels(names, units, rows)
 
 
@@ -56,7 +56,7 @@ def _row_of(local: LocalModel, dof: int) -> np.ndarray:
 
 def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
     """Force of the shaft on each bearing, by its springs and dampers or its rolling elements."""
-    found: list[tuple[str, str, dict[str, np.ndarray]]] = []
+    forces: list[tuple[str, str, dict[str, np.ndarray]]] = []
     T = local.system.dofs.transform
     beta = local.system.model.damping.rayleigh_beta
     firsts = local.local.forces.first
@@ -70,60 +70,60 @@ def _bearing_forces(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndar
             directions = local.system.model.nonlinear_elements[part.label].directions
             for k, direction in enumerate(directions):
                 unit = "N" if direction in _AXES else "N m"
-                found.append((f"{part.part} force {direction}", unit, {"F": np.eye(local.local.m)[int(first) + k]}))
+                forces.append((f"{part.part} force {direction}", unit, {"F": np.eye(local.local.m)[int(first) + k]}))
     for group in local.groups:
         if not group.part.startswith("bearings.") or group.part.endswith(".pedestal"):
             continue
-        own = T[group.dofs[0], :].toarray()
+        motions = T[group.dofs[0], :].toarray()
         matrices = group.matrices
-        none = np.zeros((own.shape[0],) * 2)
+        none = np.zeros((motions.shape[0],) * 2)
         stiffness = sum((A[0] for A in (matrices.stiffness, matrices.circulatory) if A is not None), none)
         damping = none if matrices.damping is None else matrices.damping[0]
         # C = beta K damps in every part that has a stiffness, so a bearing has its share; alpha M is of the masses.
         if beta and matrices.stiffness is not None:
             damping = damping + beta * matrices.stiffness[0]
         for k, axis in enumerate(_AXES):
-            rows = {} if group.part in rolling else {"q": stiffness[-6 + k] @ own}
+            rows = {} if group.part in rolling else {"q": stiffness[-6 + k] @ motions}
             if group.part in rolling and k < rolling[group.part][1]:
                 rows["F"] = np.eye(local.local.m)[rolling[group.part][0] + k]
             if damping.any():
-                rows["v"] = damping[-6 + k] @ own
+                rows["v"] = damping[-6 + k] @ motions
             if any(row.any() for row in rows.values()):
-                found.append((f"{group.part} force {axis}", "N", rows))
-    return found
+                forces.append((f"{group.part} force {axis}", "N", rows))
+    return forces
 
 
 def _points(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
     """Displacement, velocity and acceleration of each named point in its direction."""
-    found = []
+    histories = []
     for name, point in local.system.model.points.items():
         dof = DOF_NAMES.index(point.direction)
         row = _row(local, local.system.nodes.at(*local.system.layout.place(f"points.{name}")), dof)
         unit = "m" if dof < 3 else "rad"
         for kind, what, per in (("q", "displacement", ""), ("v", "velocity", "/s"), ("a", "acceleration", "/s^2")):
-            found.append((f"points.{name} {what}", unit + per, {kind: row}))
-    return found
+            histories.append((f"points.{name} {what}", unit + per, {kind: row}))
+    return histories
 
 
 def _orbits(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
     """x and y of the shaft in each bearing."""
     model = local.system.model
-    found = []
+    orbits = []
     for name in model.bearings:
         node = local.system.nodes.at(*local.system.layout.place(f"bearings.{name}"))
         for dof, axis in ((0, "x"), (1, "y")):
             row = _row(local, node, dof)
             if row.any():
-                found.append((f"bearings.{name} displacement {axis}", "m", {"q": row}))
-    return found
+                orbits.append((f"bearings.{name} displacement {axis}", "m", {"q": row}))
+    return orbits
 
 
 def _rotations(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
     """Fluctuation of the speed of each gear; of one whose teeth turn against its shaft, that of the teeth."""
     model = local.system.model
-    found = []
+    fluctuations = []
     for name in model.gears:
         row = _row_of(local, int(local.system.nodes.of_gear(name, *local.system.layout.place(f"gears.{name}"))[5]))
         if row.any():
-            found.append((f"gears.{name} speed fluctuation", "rad/s", {"v": row}))
-    return found
+            fluctuations.append((f"gears.{name} speed fluctuation", "rad/s", {"v": row}))
+    return fluctuations

@@ -93,7 +93,8 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     stiff = K.toarray()
     stiff = 0.5 * (stiff + stiff.T)
 
-    # A shift below all elastic modes, at which rigid ones have the largest mu.
+    # A shift below all elastic modes, at which rigid ones have the largest mu. The least k_ii / m_ii is a Rayleigh quotient,
+    # so the lowest eigenvalue lies below it: a thousandth leaves room for that.
     ratio = np.diag(stiff) / np.diag(dense)
     sigma = 1e-3 * float(ratio[ratio > 0.0].min(initial=1.0)) if np.any(ratio > 0.0) else 1.0
     try:
@@ -104,7 +105,8 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     V = V[:, ::-1]
     V = V / np.sqrt(np.maximum(np.einsum("ij,ij->j", V, dense @ V), 1e-300))
 
-    # Rigid is what strains by rounding only. One whose eigenvalue is not zero says that rounding hides soft modes.
+    # Rigid is what strains by rounding only: sums of n products err by up to n eps, and n is below a thousand here. One whose
+    # eigenvalue is not zero says that rounding hides soft modes.
     strain = np.einsum("ij,ij->j", V, stiff @ V)
     noise = np.einsum("ij,ij->j", np.abs(V), np.abs(stiff) @ np.abs(V))
     rigid = np.abs(strain) <= 1e3 * _EPS * noise
@@ -155,7 +157,7 @@ def _pairs(K: np.ndarray, D: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nda
         return np.zeros(0, complex), np.zeros((0, 0), complex), np.zeros((0, 0), complex), 1.0
     diagonal = np.diag(K)
 
-    # Modal damping: K and D are diagonal, and the roots are those of single oscillators.
+    # Modal damping: K and D are diagonal but for the rounding of V^T D V, and the roots are those of single oscillators.
     off = np.abs(K - np.diag(diagonal)).max()
     if np.abs(D - np.diag(np.diag(D))).max() <= 1e-13 * np.abs(D).max(initial=0.0) and off <= 1e-12 * np.abs(K).max():
         half = 0.5 * np.diag(D)

@@ -106,6 +106,7 @@ def lowest_modes(
         # How many there are to find: all finite ones, or those that a first Sturm count sees just above the limit.
         target = K.shape[0] - massless.size
         if below is not None:
+            # Counted a little beyond the edge, so that a mode on the limit is computed before it is judged.
             target = min(target, count_below(operator.M, operator.K, below**2 * (1.0 + 1e3 * _EDGE)))
             operator.factorisations += 1
         if count is not None:
@@ -205,6 +206,7 @@ def _gap_above(candidates: _Candidates, keep: int) -> tuple[float, int] | None:
         above = values[:1]
         under = np.zeros(1)
         first = 0
+    # Below a hundred times the rounding of K values are as good as equal: no shift between them can be trusted.
     gaps = np.where(above > 1e2 * noise[first:], (above - under) / np.maximum(above, np.finfo(float).tiny), 0.0)
     if gaps.size == 0 or gaps.max() < _GAP:
         return None

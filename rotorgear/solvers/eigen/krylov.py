@@ -156,6 +156,7 @@ def _compressed(gram: np.ndarray, shortest: float) -> tuple[np.ndarray, np.ndarr
     kept = np.flatnonzero(scale > shortest)
     scale = scale[kept]
     values, vectors = np.linalg.eigh(gram[np.ix_(kept, kept)] / scale / scale[:, None])
+    # The eigenvalues of unit columns' products err by some eps of the largest: a direction below that is rounding.
     strong = values > 1e-14 * values.max(initial=0.0)
     roots = np.sqrt(values[strong])
     vectors = vectors[:, strong]

@@ -172,6 +172,7 @@ def zero_states(quadratic: Quadratic, rigid: np.ndarray) -> np.ndarray:
     if drift.shape[1] == 0:
         return first
     follow = SupportedSolver(K, R, L).solve(-(D @ drift))
+    # Condition 1e12: what solves with it would keep four digits, and an inertia so small beside others is that of rounding.
     inertia = (L @ U[:, rank:]).T @ (M @ drift + D @ follow)
     if np.linalg.cond(inertia) > 1e12:
         raise AnalysisError("A rigid-body motion has no inertia: give the parts that it moves a mass or a support.")
@@ -237,7 +238,7 @@ def newton(quadratic: Quadratic, value: complex, vector: np.ndarray) -> tuple[co
         z = z - step
         v = u
         if abs(step) <= 1e-14 * abs(z):
-            break
+            break  # convergence is quadratic, so a smaller step is rounding
     return complex(z), v / np.linalg.norm(v) + 0j, spent
 
 
@@ -248,5 +249,6 @@ def first_guess(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array) -> float:
         stiffness = np.abs(K.diagonal())
         both = (inertia > 0.0) & (stiffness > 0.0)
         if np.any(both):
+            # A diagonal has the stiffest spring of its dof in it: the lowest frequencies lie decades below.
             return float((1e-8 * np.median(stiffness[both] / inertia[both])) ** power)
     return 1.0

@@ -28,9 +28,7 @@ from rotorgear.solvers.sparse.pencil import EPS
 _DENSE_UP_TO = 80  # dofs up to which LAPACK is as fast
 _BLOCK = 4
 _CONVERGED = 1e-12  # residual of T x = mu x relative to mu
-_EQUAL = (
-    1e-6  # relative distance below which Ritz values may be copies: one too many costs directions, one missed a mode
-)
+_EQUAL = 1e-6  # relative distance of Ritz values that may be copies: one too many costs time, one too few a mode
 _SOUND = 1e-9  # backward error, and distance of two pairs, above and below which a Krylov result is not taken
 _TOO_BLURRED = 1e-8  # rounding of the smallest mu from which the upper spectrum is taken from the companion matrix
 _LARGEST_DENSE = 6000  # states: 0.6 GB a complex matrix

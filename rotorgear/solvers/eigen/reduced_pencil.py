@@ -88,7 +88,8 @@ def eigen(pencil: Pencil, shift: float, smallest: float, count: int) -> Eigen:
         T = np.block([[-PD, -PM], [np.eye(r) - PD, -PM]])
         mu, L, X = la.eig(T, left=True, right=True, check_finite=False)
 
-    # s = sigma + sigma / mu in these units; mu = 0 is a massless coordinate. Rigid motions are too small to count.
+    # s = sigma + sigma / mu in these units; mu = 0, to the rounding of T, is a massless coordinate. Rigid
+    # motions are too small to count.
     infinite = np.abs(mu) < 1e-14 * np.abs(mu).max()
     s = shift * (1.0 + 1.0 / np.where(infinite, 1.0, mu))
     size = np.abs(s)

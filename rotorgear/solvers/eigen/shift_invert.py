@@ -175,6 +175,7 @@ def dense_modes(operator: ShiftInvert, massless: np.ndarray, wanted: int) -> np.
     finite = np.arange(mu.size) < np.count_nonzero(mu > mu.size * EPS * mu[0])
     values = sigma + 1.0 / mu[finite]
     V = V[:, finite] / np.sqrt(mu[finite])
+    # Every mu errs by eps of the largest: those above 1e-6 of it keep ten digits.
     resolved = int(np.count_nonzero(mu[finite] > 1e-6 * mu[0]))
     if wanted <= resolved:
         return V

@@ -72,6 +72,7 @@ def synchronous_speeds(family: Affine, order: float) -> list[Synchronous]:
         # Another centre and another start vector where a count says that one was missed.
         for attempt in range(4):
             s, X = _starts(family, order, attempt)
+            # Starts move when they are polished, so some beyond both ends are tried; s near 0 is a rigid motion at no speed.
             inside = (s.imag > family.low - 1e-3 * family.high) & (s.imag < 1.05 * family.high)
             inside &= np.abs(s.real) < 0.7 * np.abs(s)  # heavier damping leaves no oscillation to follow
             near = np.abs(s.imag) > 1e-6 * family.high

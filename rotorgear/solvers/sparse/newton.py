@@ -123,6 +123,7 @@ def _newton(
             trial = d + share * step
             F, tangent = laws(trial)
             r = residual(trial, F)
+            # Armijo's condition with the usual 1e-4: Nocedal and Wright, Numerical Optimization, section 3.1.
             if np.linalg.norm(r) < (1.0 - 1e-4 * share) * before or share < 1e-3:
                 break
             share *= 0.5
