@@ -86,8 +86,8 @@ def contact_lines(system: System) -> ContactLines:
         tilted[dofs, k] = _quarter_turn(v_t)
         start[k] = state.start or 0.0
         if state.face is not None:
+            gap[k] += state.face.shift
             tilt_stiffness[k] = state.face.tilt_stiffness
-            start[k] = state.face.force
             couple[k] = state.face.couple
     T = system.dofs.transform.T
     return ContactLines(

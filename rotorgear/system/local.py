@@ -222,8 +222,12 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
     damping = mesh_damping(system.layout, force, geometry) + model.damping.rayleigh_beta * contact.stiffness
     gap = "bilateral" if mesh.backlash is None else {"line": "dead zone", "own normals": "unilateral"}[mesh.coast_flank]
     error = mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0)
-    if force.face is not None:  # a face of which a part carries touches before, or after, its middle does
-        error -= force.face.force / contact.stiffness
+    if force.face is not None:
+        error += force.face.shift
+    if (
+        force.start is not None
+    ):  # about a mean state the spring is a tangent, which starts elsewhere than at first touch
+        error -= force.start / contact.stiffness
     impact = mesh.corner_impact
     blow: dict[str, Any] = {}
     if impact is not None:

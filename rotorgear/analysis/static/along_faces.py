@@ -13,7 +13,7 @@ structure to the face, linear about that answer, with another F and f.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class AlongFaces:
     """An equilibrium with the loads along its faces.
 
     Attributes:
-        equilibrium: of the structure.
+        equilibrium: of the structure; the meshes of its model are about the state found.
         faces: of each contact that feels the tilt of its shafts and carries, else None.
         passes: how often the faces were asked; 0 where none is.
     """
@@ -74,11 +74,25 @@ def equilibrate_along_faces(system: System, speed: float, progress: Progress = s
             if face is not None
         ]
         if max(changes, default=0.0) <= _AT_REST:
-            return AlongFaces(equilibrium, faces, count)
+            return AlongFaces(_settled(equilibrium, faces), faces, count)
     raise ConvergenceError(
         f"shafts and loads along the faces did not come to agree in {_PASSES} passes; the misalignment still changes by "
         f"{100.0 * max(changes):.2g} %. Look for a shaft that hardly anything holds against tilting."
     )
+
+
+def _settled(equilibrium: Equilibrated, faces: tuple[FaceLoad | None, ...]) -> Equilibrated:
+    """The equilibrium with a model whose meshes are about the loads along their faces, so that all maps are of such teeth."""
+    system = equilibrium.system
+    meshes = dict(system.model.meshes)
+    for name in dict.fromkeys(equilibrium.lines.names):
+        found = [face for face, mesh in zip(faces, equilibrium.lines.names, strict=True) if mesh == name]
+        carrying = tuple(face for face in found if face is not None)
+        if len(carrying) == len(found):  # an open helix has no state to be about
+            meshes[name] = meshes[name].about(carrying)
+    model = system.model.model_copy(update={"meshes": meshes})
+    load = replace(system.load, layout=model.layout)
+    return replace(equilibrium, system=System(model, plan=system.plan, load=load))
 
 
 def _face_load(equilibrium: Equilibrated, contact: int, stiffness: float) -> FaceLoad:
@@ -111,25 +125,23 @@ def about_faces(model: Model, speeds: Sequence[float | None]) -> tuple[Model, tu
     Raises:
         What `equilibrate_along_faces` raises.
     """
-    tilted = [name for name, mesh in model.meshes.items() if mesh.tilt and not mesh.face_loads]
+    tilted = [name for name, mesh in model.meshes.items() if mesh.tilt]
+    if any(mesh.face_loads for mesh in model.meshes.values()):
+        return model, ()  # it is about such a state already
     asked = [speed for speed in speeds if speed is not None]
     operating = (model.operation.speed if model.operation else None) or 0.0
     speed = operating if not asked or operating * min(asked, key=abs) > 0.0 else asked[0]
     load = model.mean_load(-1 if speed < 0.0 else 1).of_kind("static") if tilted else None
     if load is None or not load.applied:
         return model, ()
-    found = equilibrate_along_faces(System(model, load=load), speed)
-    meshes = dict(model.meshes)
+    settled = equilibrate_along_faces(System(model, load=load), speed).equilibrium.system.model
     notes = []
     for name in tilted:
-        faces = [face for face, mesh in zip(found.faces, found.equilibrium.lines.names, strict=True) if mesh == name]
-        carrying = tuple(face for face in faces if face is not None)
-        if len(carrying) < len(faces):
-            continue  # an open helix has no state to be about
-        meshes[name] = meshes[name].about(carrying)
-        askew = " and ".join(f"{1e6 * face.misalignment:+.3g} um" for face in carrying)
-        notes.append(
-            f"meshes.{name}: the load moves along the face; it is linear about the static equilibrium with its shafts, "
-            f"misaligned by {askew} over the face"
-        )
-    return model.model_copy(update={"meshes": meshes}), tuple(notes)
+        faces = settled.meshes[name].face_loads
+        if faces:
+            askew = " and ".join(f"{1e6 * face.misalignment:+.3g} um" for face in faces)
+            notes.append(
+                f"meshes.{name}: the load moves along the face; it is linear about the static equilibrium with its shafts, "
+                f"misaligned by {askew} over the face"
+            )
+    return settled, tuple(notes)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.analysis.static.along_faces import about_faces
 from rotorgear.analysis.static.cycle import JointState, over_cycle
 from rotorgear.analysis.static.ground import torsion_sentence
 from rotorgear.analysis.static.solve import equilibrate
@@ -35,6 +36,9 @@ def mean_state(system: System, speed: float) -> Setup:
     Raises:
         AnalysisError: some contact is open under the mean loads, so that there is no linear response about it.
     """
+    model, _ = about_faces(system.model, [speed])
+    if model is not system.model:
+        system = System(model, plan=system.plan, load=model.mean_load(system.direction).of_kind(system.load.kind))
     index = any(mesh.index_error or mesh.helix_index_error for mesh in system.model.meshes.values())
     operation = system.model.operation
     weight = bool(operation and operation.gravity and any(operation.gravity))

@@ -78,7 +78,7 @@ def static(
     change = sensitivities(equilibrium)
     progress(0.8, "error estimate")
     estimate = _estimate(equilibrium, given or 0.0)
-    result = _result(found, given, change, estimate, start)
+    result = replace(_result(found, given, change, estimate, start), model=model)
     progress(1.0, "done")
     return result
 
@@ -123,10 +123,7 @@ def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimat
     q = system.dofs.expand(equilibrium.q)
     nodes, moved = shapes_at_stations(system, q[:, None])
     shares, share_change = share_rows(equilibrium, change.force)
-    # In the middle of the face, wherever its stiffness has its centre.
-    place = np.array([0.0 if state.face is None else state.face.place for state in states])
-    tilt = equilibrium.lines.tilt.T @ equilibrium.q
-    approach = equilibrium.lines.vectors.T @ equilibrium.q - place * tilt - equilibrium.lines.gap
+    approach = equilibrium.lines.vectors.T @ equilibrium.q - equilibrium.lines.gap
     loops = system.layout.assembly.loops
     # A free motion is no mistake in statics: where the loads do not push it, forces are the same wherever it stands.
     count = equilibrium.motions.shape[1]

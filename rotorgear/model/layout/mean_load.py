@@ -46,18 +46,20 @@ Kind = Literal["dynamic", "static"]
 
 @dataclass(frozen=True)
 class FaceState:
-    """A contact along its face, linear about its mean state: F = force + k (v . q - gap), M - e F = couple + k_t (v_t . q).
+    """A contact along its face, linear about its mean state.
+
+    F = start + k (v . q - gap - shift),    M - e F = couple + k_t (v_t . q).
 
     Attributes:
         place: e, where v stands, from the middle of the face (m).
         tilt_stiffness: k_t (N m).
-        force: N where the flanks have not approached: 0 for a line that carries over its whole face.
+        shift: what the tilt of the state adds to the approach at that place (m): with it, approaches are those in the middle.
         couple: N m about e where the shafts have not tilted.
     """
 
     place: float
     tilt_stiffness: float
-    force: float
+    shift: float
     couple: float
 
 
@@ -71,8 +73,8 @@ class MeshForce:
         pinion_drives: whether the power flows from pinion to gear.
         assumed: True where no load flows and the sense was taken from the walk over the train.
         face: how the contact resists a tilt along its face; None for one that does not.
-        start: N, of loaded teeth that are linear about their mean state over the mesh cycle, where the flanks have not
-            approached: F = start + k (v . q - gap); None of a contact whose force is proportional to its deflection.
+        start: N, of a contact that is linear about its mean state over the mesh cycle or along its face, where the flanks have
+            not approached: F = start + k (v . q - gap); None of one whose force is proportional to its deflection.
     """
 
     contact: Contact
@@ -123,7 +125,9 @@ class MeanLoad:
     flow: MeanLoad | None = None
 
     def of_kind(self, kind: Kind) -> MeanLoad:
-        """The same state with the other stiffness of the contacts; those about their mesh cycle have one for both."""
+        """The same state with the other stiffness of the contacts; one about the mesh cycle has one for both."""
+        if self.flow is not None:
+            return replace(self, kind=kind)
         return replace(self, kind=kind, forces=_with_stiffness(self.layout, self.forces, self.curves, kind))
 
     def about_cycle(
@@ -134,10 +138,15 @@ class MeanLoad:
         Args:
             forces: mean of each contact (N).
             stiffness: of each contact along the flank normal, of loaded teeth the mean tangent k (N/m).
-            start: of loaded teeth (N), else None.
+            start: of loaded teeth (N); None of a contact that keeps its own.
         """
         states = [
-            replace(state, normal_force=float(F), start=F_0, contact=replace(state.contact, stiffness=float(k)))
+            replace(
+                state,
+                normal_force=float(F),
+                start=state.start if F_0 is None else F_0,
+                contact=replace(state.contact, stiffness=float(k)),
+            )
             for state, F, k, F_0 in zip(self.forces, forces, stiffness, start, strict=True)
         ]
         return replace(self, forces=tuple(states), flow=self.flow or self)
@@ -211,9 +220,12 @@ class MeanLoad:
         """Map F(delta, u) of one helix from its loaded teeth, along the path of contact; None where the file gives none.
 
         Its working load is the mean one of the mesh in the torque flow, so that equal helices share one map, and so do all
-        analyses. In time u runs with the mesh phase phi (`phase`): u = phi / 2 pi where the pinion drives, and the other way,
-        u = -phi / 2 pi, where the gear does. `near` gives the one for linear analyses, which takes less time.
+        analyses. Teeth that feel the tilt of their shafts keep that of the state they are about. In time u runs with the mesh
+        phase phi (`phase`): u = phi / 2 pi where the pinion drives, and the other way, u = -phi / 2 pi, where the gear does.
+        `near` gives the one for linear analyses, which takes less time.
         """
+        if force.face is not None and not self.layout.mesh(force.contact.mesh).part.face_loads:
+            return None  # its misalignment is not known, and without it the teeth would be others
         helices = (self.flow or self).of_mesh(force.contact.mesh)
         mean = sum(state.normal_force for state in helices) / len(helices)
         mesh = self.layout.mesh(force.contact.mesh)
@@ -266,7 +278,7 @@ def _with_stiffness(layout: Layout, states: Sequence[MeshForce], curves: Curves,
     found = []
     for state in states:
         contact = state.contact
-        if contact.mesh in curves and state.start is None:
+        if contact.mesh in curves:
             curve = curves[contact.mesh][contact.helix]
             normal = curve.dynamic_normal if kind == "dynamic" else curve.static_normal
             state = replace(state, contact=replace(contact, stiffness=normal))
@@ -286,10 +298,11 @@ def about_face(state: MeshForce, face: FaceLoad, given: float, kind: Kind) -> Me
     along = FaceState(
         place=spring.place,
         tilt_stiffness=spring.tilt_stiffness,
-        force=face.force - spring.stiffness * (face.approach + spring.place * tilt),
+        shift=spring.place * tilt,
         couple=face.moment - spring.place * face.force - spring.tilt_stiffness * tilt,
     )
-    return replace(state, contact=replace(state.contact, stiffness=spring.stiffness), face=along)
+    start = face.force - spring.stiffness * face.approach
+    return replace(state, contact=replace(state.contact, stiffness=spring.stiffness), face=along, start=start)
 
 
 def _on_whole_face(state: MeshForce, mesh: MeshLayout) -> MeshForce:

@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 import rotorgear as rg
-from rotorgear.analysis.static.along_faces import about_faces
+from rotorgear.analysis.static.along_faces import about_faces, equilibrate_along_faces
 from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.analysis.transient.task import prepare
@@ -173,25 +173,53 @@ def test_a_tilt_without_a_face_is_refused() -> None:
         lumped_pair(lumped_gear("one", 0.05), lumped_gear("two", 0.08), {"tilt": True})
 
 
-def test_teeth_of_an_overhung_pinion_rest_with_their_shafts() -> None:
-    model = rg.load(MODELS / "overhung_pinion.toml")
-    result = rg.static(model)
-    row = result.faces[0]
-    assert result.passes <= 10
-    assert result.imbalance < 1e-9
+def pinion() -> rg.Model:
+    """The model of the docs: loaded teeth of slices that don't feel each other."""
+    return rg.load(MODELS / "overhung_pinion.toml")
 
+
+def test_teeth_of_an_overhung_pinion_rest_with_their_shafts() -> None:
+    model = pinion()
+    found = equilibrate_along_faces(System(model, load=model.mean_load().of_kind("static")), 100.0)
+    face = found.faces[0]
+    assert face is not None
+    assert found.passes <= 10
+    # The structure puts the force and the moment of the teeth on the shafts.
+    assert found.equilibrium.force[0] == pytest.approx(face.force, rel=1e-9)
+    assert found.equilibrium.moment[0] == pytest.approx(face.moment - face.static.place * face.force, rel=1e-5)
     # What is found, given to the pair alone, is the same contact.
-    alone = rg.mesh(model.with_("meshes.stage.misalignment", row.misalignment_m), estimate=False)
-    assert alone.helix[0].largest_pressure_pa == pytest.approx(row.peak_pressure_pa, rel=1e-4)
-    # Teeth that feel nothing say so.
-    apart = rg.static(model.with_("meshes.stage.tilt", False))
+    alone = rg.mesh(model.with_("meshes.stage.misalignment", face.misalignment), estimate=False)
+    assert alone.helix[0].largest_pressure_pa == pytest.approx(face.peak_pressure, rel=1e-6)
+
+
+@pytest.mark.long
+def test_statics_and_response_of_an_overhung_pinion_are_about_one_state() -> None:
+    result = rg.static(pinion())
+    row = result.faces[0]
+    assert result.imbalance < 1e-9
+    alone = rg.mesh(pinion().with_("meshes.stage.misalignment", row.misalignment_m), positions=128, estimate=False)
+    assert alone.transmission_error is not None
+    assert result.mesh_deflection[0] == pytest.approx(alone.transmission_error.mean(), rel=1e-3)
+
+    # At a crawl the approach runs through the transmission error of the misaligned pair (helix angle 0: the same plane).
+    crawl = rg.response(pinion(), start="5 rpm", stop="6 rpm", points=2)
+    orders = np.abs(np.fft.rfft(alone.transmission_error)[1:6]) * 2.0 / 128
+    assert np.abs(crawl.approach[:5, 0, 0]) == pytest.approx(1e6 * orders, rel=0.01, abs=5e-3 * 1e6 * orders[0])
+    assert crawl.mean_force == pytest.approx(result.mesh_force, rel=1e-6)
+
+
+@pytest.mark.long
+def test_teeth_that_do_not_feel_their_shafts_say_so() -> None:
+    felt = rg.static(pinion()).faces[0]
+    apart = rg.static(pinion().with_("meshes.stage.tilt", False))
     assert any("its teeth do not feel" in note for note in apart.warnings)
     assert any("is not fed back to the teeth" in note for note in apart.left_out)
     assert not apart.faces[0].fed_back
-    # Its flanks stand askew as on rigid shafts under no moment: an upper bound.
-    assert abs(apart.faces[0].shaft_misalignment_m) > abs(row.shaft_misalignment_m)
+    # As on shafts that only the force in the middle of the face bends: an upper bound.
+    assert abs(apart.faces[0].shaft_misalignment_m) > abs(felt.shaft_misalignment_m)
 
 
+@pytest.mark.long
 def test_teeth_on_rigid_shafts_carry_as_the_pair_alone() -> None:
     model = rg.load(MODELS / "overhung_pinion.toml").with_("meshes.stage.misalignment", "15 um")
     rigid: dict[str, Any] = {f"bearings.{name}.stiffness.tilt": 1e12 for name in model.bearings}
