@@ -28,6 +28,8 @@ from rotorgear.system.system import System
 # method would change it by the square of that.
 _AT_REST = 1e-6
 _PASSES = 25
+# A gap that changes the forces by less than this share of the stiffness changes nothing but by rounding.
+_DECIDED = 1e-7
 
 
 @dataclass(frozen=True)
@@ -102,6 +104,22 @@ def _face_load(equilibrium: Equilibrated, contact: int, stiffness: float) -> Fac
     force = float(equilibrium.force[contact])
     f = float(misalignments(equilibrium)[contact])
     return mesh.face_load(state.contact.helix, force, f, stiffness, state.torque_sense)
+
+
+def decided_by_loads(equilibrium: Equilibrated) -> bool:
+    """Whether the mean cycle of all loaded teeth is known along their faces: no stiffness decides about a contact's force.
+
+    Then the force is the same at all positions, and the mean approach and moment are those of the `FaceLoad` of each contact.
+    """
+    lines = equilibrium.lines
+    meshes = [equilibrium.system.layout.mesh(name).part for name in lines.names]
+    if any(mesh.stiffness == "tooth_fe" and not mesh.face_loads for mesh in meshes):
+        return False
+    # What gaps would change of the forces, dF/dg = K (V^T (K + V K V^T)^-1 V K) - K, is rounding.
+    k = np.where(equilibrium.closed, lines.stiffness, 0.0)
+    pulled = lines.vectors * k
+    change = pulled.T @ equilibrium.solver.solve(pulled, carried=True) - np.diag(k)
+    return bool(np.abs(change).max() <= _DECIDED * k.max())
 
 
 def misalignments(equilibrium: Equilibrated) -> np.ndarray:

@@ -14,7 +14,7 @@ from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import direction_of, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
-from rotorgear.analysis.static.along_faces import AlongFaces, equilibrate_along_faces, misalignments
+from rotorgear.analysis.static.along_faces import AlongFaces, decided_by_loads, equilibrate_along_faces, misalignments
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.forces import bearing_forces, forces_on_gears, imbalance, support_forces
 from rotorgear.analysis.static.sensitivity import Sensitivity, sensitivities
@@ -71,9 +71,11 @@ def static(
     _check_loaded(system)
     progress(0.1, f"solving {system.n} dofs")
     found = equilibrate_along_faces(system, given or 0.0, part_of(progress, 0.1, 0.4))
-    progress(0.4, "loaded teeth over the mesh cycle")
-    equilibrium, _ = over_cycle(found.equilibrium, given or 0.0)
-    found = replace(found, equilibrium=equilibrium)
+    equilibrium = found.equilibrium
+    if not (found.passes and decided_by_loads(equilibrium)):
+        progress(0.4, "loaded teeth over the mesh cycle")
+        equilibrium, _ = over_cycle(equilibrium, given or 0.0)
+        found = replace(found, equilibrium=equilibrium)
     progress(0.5, "sensitivities")
     change = sensitivities(equilibrium)
     progress(0.8, "error estimate")
