@@ -37,6 +37,11 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
         (("mesh_map", ""),),
     ),
     (
+        "mesh optimum",
+        "`rotorgear mesh MODEL --optimise ... --json best.json`. Lists of lists are by torque and misalignment.",
+        (("mesh_optimum", ""),),
+    ),
+    (
         "mesh accuracy",
         "`rotorgear accuracy MODEL --analysis mesh --json study.json`, of one helix.",
         (("mesh_convergence", ""),),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rotorgear.cli.common import JsonOption, ModelFile, console, progress_bar, write_json
+from rotorgear.cli.common import JsonOption, ModelFile, console, progress_bar, words_of, write_json
 from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
@@ -73,6 +73,44 @@ def mesh(
     csv: Annotated[
         Path | None, typer.Option("--csv", help="Write the points of --over to this table.", show_default=False)
     ] = None,
+    optimise: Annotated[
+        str | None,
+        typer.Option(
+            "--optimise",
+            help="Find these flank modifications for the smallest mean peak to peak of the transmission error over --over: "
+            "'tip_relief,tip_relief_length,wheel.crowning'.",
+            show_default=False,
+        ),
+    ] = None,
+    bounds: Annotated[
+        list[str] | None,
+        typer.Option("--bounds", help="Bounds of one of them: 'tip_relief=0 um:60 um'.", show_default=False),
+    ] = None,
+    tolerance: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--tolerance",
+            help="Tolerance of one of them, up and down: 'tip_relief=5 um'. Default: a tenth of its bounds.",
+            show_default=False,
+        ),
+    ] = None,
+    weights: Annotated[
+        str | None, typer.Option("--weights", help="Weights of the torques of --over: '1,2,1'.", show_default=False)
+    ] = None,
+    pressure_limit: Annotated[
+        str | None,
+        typer.Option(
+            "--pressure-limit", help="Largest contact pressure of --optimise: '1200 MPa'.", show_default=False
+        ),
+    ] = None,
+    evaluations: Annotated[
+        int | None,
+        typer.Option("--evaluations", help="Flanks that --optimise tries; default 60 for each.", show_default=False),
+    ] = None,
+    samples: Annotated[
+        int | None,
+        typer.Option("--samples", help="Flanks of the tolerance band of --optimise; 0 for none.", show_default=False),
+    ] = None,
     harmonics: Annotated[int, typer.Option("--harmonics", min=0, help="Mesh orders that are listed.")] = 5,
     plot: Annotated[
         Path | None,
@@ -93,8 +131,46 @@ def mesh(
     import rotorgear as rg
 
     checked = rg.load(model)
+    if optimise is not None:
+        refuse_beside(
+            "--optimise", stiffness=stiffness, accuracy=accuracy, periods=periods, load_factors=load_factors, vtk=vtk
+        )
+        refuse_beside("--optimise", csv=csv, plot=plot)
+        with progress_bar("optimise") as progress:
+            best = rg.optimise_flanks(
+                checked,
+                mesh,
+                variables=words_of(optimise),
+                over=parse_over(over or []),
+                bounds={name: text.split(":") for name, text in pairs_of("--bounds", bounds).items()},
+                tolerances=pairs_of("--tolerance", tolerance),
+                weights=None if weights is None else parse_factors(weights, "--weights"),
+                pressure_limit=pressure_limit,
+                samples=64 if samples is None else samples,
+                evaluations=evaluations,
+                torque=torque,
+                preset=preset,
+                body=body,
+                positions=positions,
+                progress=progress,
+            )
+        console().print(best.table())
+        write_json(best.to_dict(), json)
+        return
+    for name, given in {
+        "--bounds": bounds,
+        "--tolerance": tolerance,
+        "--weights": weights,
+        "--pressure-limit": pressure_limit,
+        "--evaluations": evaluations,
+        "--samples": samples,
+    }.items():
+        if given is not None:
+            raise AnalysisError(f"{name} belongs to --optimise: give that too.")
     if over:
-        refuse_beside_over(stiffness=stiffness, accuracy=accuracy, periods=periods, load_factors=load_factors, vtk=vtk)
+        refuse_beside(
+            "--over", stiffness=stiffness, accuracy=accuracy, periods=periods, load_factors=load_factors, vtk=vtk
+        )
         with progress_bar("mesh") as progress:
             points = rg.mesh_map(
                 checked,
@@ -147,11 +223,26 @@ def mesh(
             console().print(f"wrote {path}")
 
 
-def refuse_beside_over(**given: object) -> None:
-    """AnalysisError for options that a map does not take."""
+def refuse_beside(option: str, **given: object) -> None:
+    """AnalysisError for options that an option does not go with."""
     for name, value in given.items():
         if value is not None:
-            raise AnalysisError(f"--{name.replace('_', '-')} does not go with --over.")
+            raise AnalysisError(f"--{name.replace('_', '-')} does not go with {option}.")
+
+
+def pairs_of(option: str, texts: list[str] | None) -> dict[str, str]:
+    """Texts by name from 'name=text', several of them with commas or in several options.
+
+    Raises:
+        AnalysisError: something else.
+    """
+    found = {}
+    for text in ",".join(texts).split(",") if texts else ():
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not equals or not name or not value:
+            raise AnalysisError(f"{option}: got '{text}', expected a name and its value, such as tip_relief=5 um")
+        found[name] = value
+    return found
 
 
 def parse_over(texts: list[str]) -> dict[str, list[float]]:
@@ -163,7 +254,7 @@ def parse_over(texts: list[str]) -> dict[str, list[float]]:
     from rotorgear.quantity import QuantityError, parse_quantity
 
     found: dict[str, list[float]] = {}
-    for text in ",".join(texts).split(","):
+    for text in ",".join(texts).split(",") if texts else ():
         name, equals, values = (part.strip() for part in text.partition("="))
         dimension = {"torque": "torque", "misalignment": "length"}.get(name)
         if not equals or dimension is None:
@@ -204,7 +295,7 @@ def map_rows(points: MeshMap) -> Iterator[dict[str, float]]:
             }
 
 
-def parse_factors(text: str | None) -> tuple[float, ...]:
+def parse_factors(text: str | None, option: str = "--load-factors") -> tuple[float, ...]:
     """Positive factors from a list with commas.
 
     Raises:
@@ -215,4 +306,4 @@ def parse_factors(text: str | None) -> tuple[float, ...]:
     try:
         return tuple(float(part) for part in text.split(","))
     except ValueError:
-        raise AnalysisError(f"--load-factors: got '{text}', expected factors with commas, such as 0.1,0.5,2") from None
+        raise AnalysisError(f"{option}: got '{text}', expected factors with commas, such as 0.1,0.5,2") from None

@@ -1,0 +1,355 @@
+"""The verb behind `rotorgear mesh --optimise`: flanks with the smallest transmission error over torques and misalignments.
+
+The mean of the peak to peak over the operating points, weighted, is the smallest within the bounds:
+
+    min over x of  sum_i w_i ptp TE_i(x) / sum_i w_i,    p_max,i(x) <= p_lim.
+
+It has kinks and flat valleys, so that no derivatives are taken: differential evolution (Storn and Price, Journal of Global
+Optimization 11 (1997) 341) finds the valley, Nelder and Mead's simplex its bottom. Flanks beyond the pressure limit count with
+their excess, so that the search finds back. Then modifications are strewn evenly within their tolerances, by Sobol's points,
+for the band that holds 90 % of them. Only gaps change from one flank to the next: compliances of the teeth are computed once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotorgear.analysis.common.clock import Clock
+from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.teeth.flank_variables import (
+    ALONG_FACE,
+    Variable,
+    flank_variables,
+    model_values,
+    with_values,
+)
+from rotorgear.analysis.teeth.mesh import POSITIONS, require_positions
+from rotorgear.analysis.teeth.operating_points import (
+    MeshFigures,
+    mesh_figures,
+    one_kind_of_model,
+    operating_axes,
+    operating_values,
+)
+from rotorgear.analysis.teeth.request import MeshRequest, mesh_request
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.loaded.tooth_contact import contact_problem
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, part_of, silent
+from rotorgear.quantity import QuantityError, parse_quantity
+from rotorgear.results.mesh_optimum import FlankVariable, MeshOptimum
+
+# Flanks that are tried for each variable, and the share of them that the evolution takes; the simplex has the rest.
+_TRIES = 60
+_EVOLUTION = 0.6
+_POPULATION = 6
+# A flank that exceeds the pressure limit by a share e counts as 1 + e times so many means of the model's flanks: worse than
+# any within the limit.
+_EXCESS = 100.0
+_BAND = (0.05, 0.95)
+# Default tolerance as a share of the width of the bounds.
+_TOLERANCE = 0.1
+_SHARES = (0.05, 0.8)  # of the progress: after the teeth, and after the search
+
+
+class _EnoughError(Exception):
+    """So many flanks were tried as were asked for."""
+
+
+@dataclass
+class _Search:
+    """Tries flanks, counts them and keeps the best one."""
+
+    request: MeshRequest
+    teeth: ToothPair
+    variables: tuple[Variable, ...]
+    torque: np.ndarray
+    misalignment: np.ndarray
+    weight: np.ndarray
+    limit: float | None
+    positions: int
+    most: int
+    progress: Progress
+    scale: float = 0.0
+    tried: int = 0
+    best: np.ndarray | None = None
+    least: float = np.inf
+
+    def points(self, teeth: ToothPair) -> list[MeshFigures]:
+        """Figures at all operating points, torque by torque."""
+        return [
+            mesh_figures(self.request, replace(teeth, misalignment=float(askew)), float(torque), self.positions)
+            for torque in self.torque
+            for askew in self.misalignment
+        ]
+
+    def mean(self, points: Sequence[MeshFigures]) -> float:
+        """Weighted mean of the peak to peak (m)."""
+        return float(np.dot(self.weight.ravel(), [point.ste_peak_to_peak for point in points]))
+
+    def excess(self, points: Sequence[MeshFigures]) -> float:
+        """Share by which the largest pressure is above its limit, 0 below."""
+        if self.limit is None:
+            return 0.0
+        return max(0.0, max(point.largest_pressure for point in points) / self.limit - 1.0)
+
+    def __call__(self, shares: np.ndarray) -> float:
+        """What is to become small, for variables (v,) as shares of their bounds."""
+        if self.tried >= self.most:
+            raise _EnoughError
+        shares = np.clip(shares, 0.0, 1.0)
+        points = self.points(with_values(self.teeth, self.variables, self.values(shares)))
+        excess = self.excess(points)
+        value = _EXCESS * self.scale * (1.0 + excess) if excess else self.mean(points)
+        self.tried += 1
+        if value < self.least:
+            self.least = value
+            self.best = shares.copy()
+        self.progress(min(self.tried / self.most, 1.0), f"flank {self.tried}, best {1e6 * self.least:.3f} um")
+        return value
+
+    def values(self, shares: np.ndarray) -> np.ndarray:
+        """Variables (v,) in m."""
+        low = np.array([variable.low for variable in self.variables])
+        high = np.array([variable.high for variable in self.variables])
+        return np.asarray(low + (high - low) * shares)
+
+
+@recorded
+def optimise_flanks(
+    model: Model,
+    mesh: str | None = None,
+    *,
+    variables: Sequence[str],
+    over: Mapping[str, object],
+    bounds: Mapping[str, Sequence[object]] | None = None,
+    weights: Sequence[float] | None = None,
+    pressure_limit: float | str | None = None,
+    tolerances: Mapping[str, object] | None = None,
+    samples: int = 64,
+    evaluations: int | None = None,
+    torque: float | str | None = None,
+    preset: str | None = None,
+    body: str | None = None,
+    positions: int = POSITIONS,
+    progress: Progress = silent,
+) -> MeshOptimum:
+    """Find flank modifications with the smallest weighted peak to peak of the transmission error.
+
+    Ctrl-C ends the search and gives the best flanks found so far.
+
+    Args:
+        model: a checked model.
+        mesh: name of the mesh; None where there is only one.
+        variables: what may change: "tip_relief", "tip_relief_length", ... of both gears alike, or of one: "wheel.bias".
+        over: "torque" and "misalignment", as for `mesh_map`.
+        bounds: (lowest, highest) in m or as texts by variable; without them those of usual modifications.
+        weights: one for each torque, in the order of `over`; all alike by default.
+        pressure_limit: largest contact pressure at all points, in Pa or as a text; None for no limit.
+        tolerances: up and down, in m or as texts by variable; a tenth of the bounds' width by default.
+        samples: flanks of the tolerance band; 0 for none.
+        evaluations: flanks that the search tries at most; by default 60 for each variable.
+        torque, preset, body, positions: as for `mesh`.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: a mesh, variable, bound or load that can't be; no flank within the pressure limit.
+        ConvergenceError: contact that does not come to rest.
+        MissingExtraError: scikit-fem is not installed.
+    """
+    from scipy.optimize import differential_evolution, minimize
+
+    require_positions(positions)
+    if not variables:
+        raise AnalysisError("optimise: name at least one modification, such as tip_relief,tip_relief_length.")
+    if not 0 <= samples <= 4096:
+        raise AnalysisError(f"samples: got {samples}, expected 0 to 4096")
+    clock = Clock()
+    torques = operating_values(over, "torque")
+    asked = float(torques[0]) if torque is None and torques is not None and len(torques) else torque
+    request = mesh_request(model, mesh, "tooth_fe", asked, {"preset": preset, "body": body})
+    assert request.teeth is not None
+    chosen = flank_variables(request.mesh, variables, bounds or {})
+    tolerance = _tolerances(chosen, tolerances or {})
+    load, misalignment = operating_axes(over, request)
+    teeth = one_kind_of_model(request.teeth, misalignment)
+    if any(variable.field in ALONG_FACE for variable in chosen) and teeth.fe.preset != "preview":
+        teeth = replace(teeth, fe=replace(teeth.fe, space=True))
+    contact_problem(teeth, part_of(progress, 0.0, _SHARES[0]))
+    most = _TRIES * len(chosen) if evaluations is None else evaluations
+    if most < 10 * len(chosen):
+        raise AnalysisError(f"evaluations: got {most}, expected at least 10 for each of {len(chosen)} variables")
+    search = _Search(
+        request=request,
+        teeth=teeth,
+        variables=chosen,
+        torque=load,
+        misalignment=misalignment,
+        weight=_weights(weights, torques, load, len(misalignment)),
+        limit=_pressure(pressure_limit),
+        positions=positions,
+        most=most,
+        progress=part_of(progress, *_SHARES),
+    )
+    before = search.points(teeth)
+    search.scale = search.mean(before)
+    clock.lap("teeth")
+    status = "success"
+    try:
+        generations = max(1, int(_EVOLUTION * most / (_POPULATION * len(chosen))) - 1)
+        differential_evolution(
+            search,
+            [(0.0, 1.0)] * len(chosen),
+            maxiter=generations,
+            popsize=_POPULATION,
+            init="sobol" if len(chosen) > 1 else "latinhypercube",
+            tol=1e-3,
+            polish=False,
+            rng=np.random.default_rng(12),  # the same question has the same answer
+        )
+        assert search.best is not None
+        # A simplex as wide as what the evolution leaves open, and pointing inwards.
+        start = search.best.copy()
+        corners = start + np.vstack([np.zeros(len(chosen)), np.diag(np.where(start > 0.5, -0.08, 0.08))])
+        minimize(
+            search,
+            start,
+            method="Nelder-Mead",
+            bounds=[(0.0, 1.0)] * len(chosen),
+            options={"initial_simplex": corners, "xatol": 1e-3, "fatol": 1e-4 * search.scale, "maxfev": 10 * most},
+        )
+    except _EnoughError:
+        pass
+    except KeyboardInterrupt:
+        if search.best is None:
+            raise
+        status = f"interrupted: the best of {search.tried} flanks so far"
+    assert search.best is not None
+    values = search.values(search.best)
+    found = search.points(with_values(teeth, chosen, values))
+    if search.excess(found) > 0.0:
+        worst = max(point.largest_pressure for point in found)
+        raise AnalysisError(
+            f"No flank within the bounds keeps the pressure limit of {1e-6 * (search.limit or 0.0):.4g} MPa at all points; "
+            f"the best reaches {1e-6 * worst:.4g} MPa: raise the limit, or leave out the highest torque."
+        )
+    clock.lap("search")
+    band = None
+    if samples and status == "success":
+        band = _band(search, values, tolerance, samples, part_of(progress, _SHARES[1], 1.0))
+        clock.lap("tolerance band")
+    shape = (len(load), len(misalignment))
+    notes = dict.fromkeys(note for point in found for note in point.warnings)
+    at_bounds = [
+        variable.text for variable, share in zip(chosen, search.best, strict=True) if share < 1e-3 or share > 1.0 - 1e-3
+    ]
+    if at_bounds:
+        notes[f"the best value lies at the bound of {', '.join(at_bounds)}: wider bounds may give better ones"] = None
+    return MeshOptimum(
+        title=model.title,
+        mesh=request.name,
+        pinion=request.mesh.pinion.name,
+        gear=request.mesh.gear.name,
+        preset=teeth.fe.preset,
+        positions=positions,
+        variables=tuple(
+            FlankVariable(
+                name=variable.text,
+                low_m=variable.low,
+                high_m=variable.high,
+                best_m=float(value),
+                tolerance_m=float(within),
+            )
+            for variable, value, within in zip(chosen, values, tolerance, strict=True)
+        ),
+        pinion_torque=load,
+        misalignment=misalignment,
+        weight=search.weight,
+        pressure_limit=search.limit,
+        mean_before=search.scale,
+        mean=search.mean(found),
+        mean_band=None if band is None else (float(band[0][0]), float(band[1][0])),
+        before=np.reshape([point.ste_peak_to_peak for point in before], shape),
+        ste=np.reshape([point.ste_peak_to_peak for point in found], shape),
+        ste_low=None if band is None else band[0][1:].reshape(shape),
+        ste_high=None if band is None else band[1][1:].reshape(shape),
+        largest_pressure=np.reshape([point.largest_pressure for point in found], shape),
+        evaluations=search.tried,
+        samples=0 if band is None else samples,
+        changes=model_values(request.mesh, chosen, values),
+        seconds=clock.total(),
+        status=status,
+        left_out=("the pressure limit in the tolerance band: flanks beyond it count there",)
+        if search.limit and band
+        else (),
+        warnings=tuple(notes),
+    )
+
+
+def _weights(given: Sequence[float] | None, asked: np.ndarray | None, torque: np.ndarray, columns: int) -> np.ndarray:
+    """Weights (t, m) that add up to 1, in the order of rising torques."""
+    if given is None:
+        return np.full((len(torque), columns), 1.0 / (len(torque) * columns))
+    values = np.array(given, float)
+    count = len(torque) if asked is None else len(asked)
+    if len(values) != count or not (values >= 0.0).all() or not 0.0 < values.sum() < np.inf:
+        raise AnalysisError(f"weights: got {list(given)}, expected {count} numbers, one for each torque, none negative")
+    if asked is not None:
+        values = np.array([values[asked == one].sum() for one in torque])
+    return np.repeat(values[:, None], columns, axis=1) / (values.sum() * columns)
+
+
+def _pressure(given: float | str | None) -> float | None:
+    if given is None:
+        return None
+    try:
+        limit = parse_quantity(given, "modulus")
+    except QuantityError:
+        raise AnalysisError(f"pressure limit: got {given!r}, expected a pressure such as '1200 MPa'") from None
+    if limit <= 0.0:
+        raise AnalysisError(f"pressure limit: got {given!r}, expected a positive pressure")
+    return limit
+
+
+def _tolerances(variables: Sequence[Variable], given: Mapping[str, object]) -> np.ndarray:
+    """Tolerances (v,) in m, up and down."""
+    if strange := set(given) - {variable.text for variable in variables}:
+        raise AnalysisError(f"tolerances: '{min(strange)}' is not among what is optimised.")
+    found = []
+    for variable in variables:
+        if variable.text not in given:
+            found.append(_TOLERANCE * (variable.high - variable.low))
+            continue
+        try:
+            value = parse_quantity(given[variable.text], "length")
+        except QuantityError as error:
+            raise AnalysisError(f"tolerances {variable.text}: got {given[variable.text]!r}, expected {error}") from None
+        if value < 0.0:
+            raise AnalysisError(
+                f"tolerances {variable.text}: got {given[variable.text]!r}, expected one that is not negative"
+            )
+        found.append(value)
+    return np.array(found)
+
+
+def _band(
+    search: _Search, values: np.ndarray, tolerance: np.ndarray, samples: int, progress: Progress
+) -> tuple[np.ndarray, np.ndarray]:
+    """5 and 95 % quantiles (1 + points,) of the weighted mean and of the peak to peak at each operating point (m)."""
+    from scipy.stats import qmc
+
+    # Sobol's points are balanced for powers of two: the next one, of which the first ones are taken.
+    strewn = qmc.Sobol(len(values), rng=np.random.default_rng(12)).random_base2(max(1, int(np.ceil(np.log2(samples)))))
+    least = np.array([0.0 if variable.low >= 0.0 else -np.inf for variable in search.variables])
+    found = []
+    for number, shares in enumerate(strewn[:samples]):
+        changed = np.maximum(values + tolerance * (2.0 * shares - 1.0), least)
+        points = search.points(with_values(search.teeth, search.variables, changed))
+        found.append([search.mean(points), *(point.ste_peak_to_peak for point in points)])
+        progress((number + 1) / samples, f"tolerances {number + 1} of {samples}")
+    low, high = np.quantile(np.array(found), _BAND, axis=0)
+    return low, high
