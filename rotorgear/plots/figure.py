@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError, MissingExtraError
-from rotorgear.export.files import replacing
+from rotorgear.export.files import filling, publish, replacing
 
 FORMATS = (".png", ".svg", ".pdf")
 
@@ -73,3 +74,16 @@ def save(picture: Any, path: str | Path) -> Path:
     with replacing(target) as scratch:
         figure.savefig(scratch, dpi=130, format=kind[1:], metadata=metadata)
     return target
+
+
+def save_all(pictures: Mapping[str, Callable[[], Any]], directory: str | Path) -> list[Path]:
+    """Draw and write pictures by their file names into a folder, all of them or none; returns the paths.
+
+    Raises:
+        WriteError: the folder can't be written.
+    """
+    target = Path(directory)
+    with filling(target) as scratch:
+        for name, draw in pictures.items():
+            save(draw(), scratch / name)
+        return publish(scratch, target, list(pictures))

@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 
 from rotorgear.errors import AnalysisError
-from rotorgear.export.files import filling, publish
 from rotorgear.plots.colours import COLOURS
-from rotorgear.plots.figure import figure_for, save
+from rotorgear.plots.figure import figure_for, save_all
 from rotorgear.plots.sweep_portraits import portrait_spectra, portraits
 from rotorgear.results.sweep import SweepResult
 
@@ -37,11 +36,7 @@ def write_pictures(result: SweepResult, directory: str | Path) -> list[Path]:
     for c in contacts if result.portraits else ():
         plans[f"portraits_{c + 1}.png"] = partial(portraits, result, contact=c)
         plans[f"spectra_{c + 1}.png"] = partial(portrait_spectra, result, contact=c)
-    target = Path(directory)
-    with filling(target) as scratch:
-        for name, draw in plans.items():
-            save(draw(), scratch / name)
-        return publish(scratch, target, list(plans))
+    return save_all(plans, directory)
 
 
 def sweep(result: SweepResult, fig: Any = None, *, contact: int = 0) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,7 @@ import numpy as np
 
 from rotorgear.analysis.transient.spectra import spectrum
 from rotorgear.errors import AnalysisError
-from rotorgear.export.files import filling, publish
-from rotorgear.plots.figure import axes_for, figure_for, save
+from rotorgear.plots.figure import axes_for, figure_for, save_all
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.transient import TransientResult
 
@@ -35,13 +35,7 @@ def write_pictures(result: TransientResult, directory: str | Path) -> list[Path]
         plans.append(orbits)
     if np.ptp(result.speed) > 0.0:
         plans.append(spectrogram)
-    target = Path(directory)
-    names = []
-    with filling(target) as scratch:
-        for draw in plans:
-            names.append(f"{draw.__name__}.png")
-            save(draw(result), scratch / names[-1])
-        return publish(scratch, target, names)
+    return save_all({f"{draw.__name__}.png": partial(draw, result) for draw in plans}, directory)
 
 
 def transient(result: TransientResult, fig: Any = None) -> np.ndarray:

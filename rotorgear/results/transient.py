@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -92,10 +90,6 @@ class Quantity(Record):
     error: float = of("estimated error", note=", absolute; `null` where none was asked for")
 
 
-def _first_and_last(result: Any, speed: np.ndarray) -> list[float]:
-    return [float(speed[0] * RPM_PER_RAD_S), float(speed[-1] * RPM_PER_RAD_S)]
-
-
 class TransientResult(ModelResult, kind="transient"):
     """r recorded instants of c contacts and p channels.
 
@@ -108,7 +102,13 @@ class TransientResult(ModelResult, kind="transient"):
         "speed of the input shaft",
         "rad/s",
         "record",
-        json=Written("speed_rpm", _first_and_last, "rpm", ("end",), note=" at the start and at the end"),
+        json=Written(
+            "speed_rpm",
+            lambda result, speed: [float(speed[k] * RPM_PER_RAD_S) for k in (0, -1)],
+            "rpm",
+            ("end",),
+            note=" at the start and at the end",
+        ),
     )
     angle: np.ndarray = of("angle of the input shaft", "rad", "record", json=None)
     time: np.ndarray = of(

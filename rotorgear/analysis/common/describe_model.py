@@ -49,7 +49,15 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
         gears=tuple(_gear(system, gear) for gear in system.layout.gears),
         places=tuple(_places(system)),
         meshes=tuple(_mesh(system, name, speed) for name in model.meshes),
-        torques=_torques(system, speed),
+        torques=tuple(
+            TorqueRow(
+                item.name,
+                item.shaft,
+                item.torque,
+                None if speed is None else item.torque * system.train.ratio(item.shaft) * speed,
+            )
+            for item in system.load.applied
+        ),
         total_mass_kg=sum(sum(_mass(system, name)[:2]) for name in model.shafts),
         counts={table: len(getattr(model, table)) for table in _COUNTED if getattr(model, table)},
         nodes=len(system.nodes),
@@ -147,11 +155,3 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
         stiffness_n_per_m=sum(force.contact.stiffness for force in forces),
         damping_n_s_per_m=sum(damping),
     )
-
-
-def _torques(system: System, speed: float | None) -> tuple[TorqueRow, ...]:
-    rows = []
-    for item in system.load.applied:
-        power = None if speed is None else item.torque * system.train.ratio(item.shaft) * speed
-        rows.append(TorqueRow(item.name, item.shaft, item.torque, power))
-    return tuple(rows)

@@ -84,11 +84,9 @@ def run_jobs(
         if point.shape not in tables:
             tables[point.shape] = table_of(point, plan.steps)
     wide = [tables[point.shape] for point in points]
-    return run_block([p.system for p in points], starts, wide[:1] if len(tables) == 1 else wide, plan, go_on or _always)
-
-
-def _always() -> bool:
-    return True
+    return run_block(
+        [p.system for p in points], starts, wide[:1] if len(tables) == 1 else wide, plan, go_on or (lambda: True)
+    )
 
 
 class Pool(Protocol):

@@ -84,7 +84,10 @@ class Reducer:
         first = max(points, key=lambda point: abs(point.speed))
         local = first.local
         scale = scale_of(first.local)
-        among = candidates(local, _loads(points), _acting(local), _CANDIDATES)
+        # Shapes are for what the motion makes: prescribed forces are loads of their own.
+        kinds = [column.kind for law in local.forces.laws for column in law.columns()]
+        acting = np.flatnonzero(np.array(kinds) != PRESCRIBED)
+        among = candidates(local, _loads(points), acting, _CANDIDATES)
         top = float(rates(local.forces.laws, first.speed).max())
         probes = probes_for(local.forces.laws, [point.speed for point in points], among.w, first.modal_ratio)
         full = full_receptances(local, probes)
@@ -96,7 +99,12 @@ class Reducer:
         )
         complete = choice.basis.shape[1] == local.n  # what is left then is rounding
         if self._wanted.modes is None and not (complete or choice.error <= self._wanted.error):
-            raise AnalysisError(_refusal(local.n, choice, self._wanted.error, top))
+            raise AnalysisError(
+                f"{local.n} dofs can't be reduced: with {choice.basis.shape[1]} coordinates (at most {MOST_COORDINATES}) the "
+                f"receptances at the contacts are {100.0 * choice.error:.2g} % off up to {top / 2.0 / np.pi:.6g} Hz, expected "
+                f"{100.0 * self._wanted.error:.2g} %; lower the speed, lump the shafts (rigid gears on springs), or allow more "
+                "(reduction_error, --reduction-error)"
+            )
         own, V = reduced(local, among, choice.basis)
         shapes = Shapes.of(V, local.M, top)
         self._modes = choice.modes
@@ -159,12 +167,6 @@ def scale_of(local: LocalSystem) -> Scale:
     return Scale(forces.reference_stiffness, forces.reference_damping, root)
 
 
-def _acting(local: LocalSystem) -> np.ndarray:
-    """Columns (a,) whose forces depend on the motion."""
-    kinds = [column.kind for law in local.forces.laws for column in law.columns()]
-    return np.flatnonzero(np.array(kinds) != PRESCRIBED)
-
-
 def _loads(points: Sequence[Large]) -> np.ndarray:
     """Independent directions (n, l) of the loads of points."""
     loads = np.unique(np.array([point.local.load for point in points]), axis=0).T
@@ -173,12 +175,3 @@ def _loads(points: Sequence[Large]) -> np.ndarray:
         return loads
     U, sizes, _ = np.linalg.svd(loads, full_matrices=False)
     return np.asarray(U[:, sizes > 1e-10 * sizes[0]])
-
-
-def _refusal(n: int, choice: Choice, wanted: float, top: float) -> str:
-    return (
-        f"{n} dofs can't be reduced: with {choice.basis.shape[1]} coordinates (at most {MOST_COORDINATES}) the receptances at "
-        f"the contacts are {100.0 * choice.error:.2g} % off up to {top / 2.0 / np.pi:.6g} Hz, expected "
-        f"{100.0 * wanted:.2g} %; lower the speed, lump the shafts (rigid gears on springs), or allow more (reduction_error, "
-        "--reduction-error)"
-    )

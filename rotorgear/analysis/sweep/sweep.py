@@ -196,9 +196,9 @@ def _run(
                 states = [
                     _start(job.after, job.run, points, p, orbit_of, request) for job, p in zip(block, own, strict=True)
                 ]
-                plan = Plan(
-                    int(steps[block[0].point]), request.settle, request.count, min(request.exponents, _most(own[0]))
-                )
+                # A system has no more exponents than states beside its rigid-body motions.
+                most = 2 * (own[0].system.n - len(own[0].system.rigid))
+                plan = Plan(int(steps[block[0].point]), request.settle, request.count, min(request.exponents, most))
                 tasks.append(([p.bare for p in own], states, plan))
             begun = done
             runs = sum(map(len, rest))
@@ -214,11 +214,6 @@ def _run(
                 done += len(block)
                 progress(_READY + (1.0 - _READY) * done / total, f"{done} of {total} runs")
     return orbit_of
-
-
-def _most(point: Point) -> int:
-    """All exponents that a system has beside its rigid-body motions."""
-    return 2 * (point.system.n - len(point.system.rigid))
 
 
 def _start(

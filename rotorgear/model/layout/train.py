@@ -141,7 +141,15 @@ def _walk_group(train: Train, at_shaft: dict[str, list[Link]], start: str, ratio
                 train.reached_by[other] = link.part
                 queue.append(other)
             elif not _same(speed, train.ratios[other]):
-                problems.append(_loop_problem(train, link, other, speed))
+                problems.append(
+                    Problem(
+                        link.part,
+                        f"ratio {_ratio_text(speed)} of shaft '{other}' on this path of a closed loop",
+                        f"{_ratio_text(train.ratios[other])}, as on the path through "
+                        f"{train.reached_by[other] or 'the input shaft'}",
+                        "change the numbers of teeth so that both paths give one ratio",
+                    )
+                )
     return problems
 
 
@@ -149,15 +157,6 @@ def _same(first: Fraction | float, second: Fraction | float) -> bool:
     if isinstance(first, Fraction) and isinstance(second, Fraction):
         return first == second
     return math.isclose(first, second, rel_tol=LOOP_TOLERANCE, abs_tol=0.0)
-
-
-def _loop_problem(train: Train, link: Link, shaft: str, speed: Fraction | float) -> Problem:
-    return Problem(
-        link.part,
-        f"ratio {_ratio_text(speed)} of shaft '{shaft}' on this path of a closed loop",
-        f"{_ratio_text(train.ratios[shaft])}, as on the path through {train.reached_by[shaft] or 'the input shaft'}",
-        "change the numbers of teeth so that both paths give one ratio",
-    )
 
 
 def _ratio_text(ratio: Fraction | float) -> str:
