@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NODE_COUNT, NodeTable, Piece
 from rotorgear.results.result import ModelResult
-from rotorgear.results.schema import Written, derived, of
+from rotorgear.results.schema import Record, Written, derived, of
 
 
 def _amplitudes_by_mesh(key: str) -> Written:
@@ -32,6 +32,25 @@ def _amplitudes_by_axis(key: str, names: str, name: str) -> Written:
         }
 
     return Written(key, value, axes=(name, "AXIS", "order", "speed"))
+
+
+class Peak(Record):
+    """The largest amplitude of a quantity over orders and speeds, and what the linear analysis leaves out there."""
+
+    quantity: str = of(
+        "quantity", note=": mesh force, transmission error, approach, bearing force, acceleration or displacement"
+    )
+    part: str = of("mesh, bearing, point or place")
+    unit: str = of("unit of the amplitudes")
+    order: int = of("number of the order", note=", from 0")
+    speed_rpm: float = of("speed of the input shaft", "rpm")
+    frequency_hz: float = of("frequency", "Hz")
+    amplitude: float = of("amplitude", note=" in that unit")
+    left_out: float | None = of(
+        "size of what the linear analysis of loaded teeth leaves out",
+        note=" of this quantity at this order and speed; `null` where no loaded teeth shake, or where they part",
+    )
+    teeth_part: bool = of("whether the linear solution would part loaded teeth there")
 
 
 class ResponseResult(ModelResult, kind="response"):
@@ -143,6 +162,10 @@ class ResponseResult(ModelResult, kind="response"):
         "estimated relative discretisation error", note=": change of the largest forces on a finer mesh", form=".0e"
     )
     discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece, json=None)
+
+    largest: tuple[Peak, ...] = of(
+        "largest amplitudes", "", "peak", note=" of each quantity", record=Peak, default=(), kw_only=True
+    )
 
     def contacts_of(self, mesh: str) -> list[int]:
         """Numbers of the contacts of a mesh."""

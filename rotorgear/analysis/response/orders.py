@@ -6,7 +6,7 @@ Re(f e^{i w t}) with w = |W_i| that is f_x = U W_i^2 e^{i s a}, f_y = -i s U W_i
 A transmission error e(t) and a stiffness k (1 + a(t)) turn the force of a contact under the mean force F_0 into
 F = k (v.q - e) + c (v.q' - e') + F_0 a to first order; a may follow from a model of the teeth, and an impact adds to the last
 term. Of loaded teeth the last term is f of their joint state, F_i - k_i delta_i, which holds all of their ripple
-(analysis/static/cycle.py). Mesh phases: model/layout/mean_load.py.
+(analysis/static/cycle.py), and e what the approach is at first touch. Mesh phases: model/layout/mean_load.py.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ from rotorgear.system.system import System
 
 # What has one frequency: "shaft" or "mesh", the multiple of its frequency, and the ratio to the reference speed.
 _Key = tuple[str, int | Fraction, float]
+
+_FIRST_ORDER = "the product of its varying stiffness and the vibration; it acts to first order, as a force"
 
 
 @dataclass(frozen=True)
@@ -75,8 +77,7 @@ def orders_of(setup: Setup) -> tuple[list[Order], tuple[str, ...]]:
         _add(found, ("shaft", 1, round(ratio, 9)), shaft, ratio, load, np.zeros((2, count), complex))
     for mesh, harmonic, ratio, terms in _meshes(setup, left):
         _add(found, ("mesh", harmonic, round(ratio, 9)), mesh, ratio, np.zeros(system.n, complex), terms)
-    for kind, name, multiple, ratio, force in _loaded_teeth(setup, left):
-        terms = np.stack([np.zeros(count, complex), force])
+    for kind, name, multiple, ratio, terms in _loaded_teeth(setup, left):
         _add(found, (kind, multiple, round(ratio, 9)), name, ratio, np.zeros(system.n, complex), terms)
     orders = [
         Order(f"{kind} {', '.join(names)} {harmonic}x", o.ratio, o.unbalance, o.error, o.force)
@@ -145,11 +146,14 @@ def _harmonics(setup: Setup, contact: int, mesh: Mesh, left: list[str]) -> Itera
         yield 0, item.harmonic, opens * item.amplitude * cmath.exp(1j * item.phase)
     for share in mesh.stiffness_variation:
         yield 1, share.harmonic, mean_force * share.amplitude * cmath.exp(1j * share.phase)
+    if mesh.stiffness_variation and mean_force:
+        left.append(f"meshes.{state.contact.mesh}: {_FIRST_ORDER}")
     loaded_teeth = setup.joint is not None and setup.joint.own[contact] >= 0
     pieces = cycle_pieces(setup.system, state) if mean_force and not loaded_teeth else ()
     if pieces:
         kept, rest = strong(harmonics_of_pieces(pieces))
         yield from ((1, n, mean_force * c) for n, c in kept)
+        left.append(f"meshes.{state.contact.mesh}: {_FIRST_ORDER}")
         left += [f"meshes.{state.contact.mesh}: {sentence}" for sentence in _weak("stiffness", rest)]
     if mesh.corner_impact is not None:
         pulse = mesh.corner_impact
@@ -164,7 +168,11 @@ def _weak(what: str, rest: float) -> list[str]:
 
 
 def _loaded_teeth(setup: Setup, left: list[str]) -> Iterable[tuple[str, str, int | Fraction, float, np.ndarray]]:
-    """(kind, name, harmonic, ratio, force (c,) in N) of the joint state of loaded teeth, by the orders that matter."""
+    """(kind, name, harmonic, ratio, [errors; forces] of all contacts) of the joint state of loaded teeth, by orders that matter.
+
+    The damping of a contact is that of its deflection: what the approach is at first touch acts as a transmission error e, and
+    the force f + k e makes up for it in k (v.q - e).
+    """
     joint = setup.joint
     for cycle in () if joint is None else joint.cycles:
         assert joint is not None
@@ -179,11 +187,12 @@ def _loaded_teeth(setup: Setup, left: list[str]) -> Iterable[tuple[str, str, int
                 f"meshes {', '.join(cycle.meshes)}: orders of their loaded teeth of up to {100.0 * weak:.2g} % of the strongest; "
                 f"they would change its peak to peak at a crawl by {100.0 * change:.2g} %"
             )
-        coefficients = harmonics_of_cycle(f)
+        error = joint.no_load(cycle)
+        terms = np.stack([harmonics_of_cycle(error), harmonics_of_cycle(f + joint.stiffness * error)], axis=1)
         for n in numbers:
             for kind, name, harmonic in _named(setup.system, cycle, Fraction(n, cycle.periods)):
-                yield kind, name, harmonic, n / cycle.periods * cycle.ratio, coefficients[n - 1]
-                coefficients[n - 1] = 0.0  # further names of one order add nothing to it
+                yield kind, name, harmonic, n / cycle.periods * cycle.ratio, terms[n - 1]
+                terms[n - 1] = 0.0  # further names of one order add nothing to it
 
 
 def _named(system: System, cycle: Cycle, multiple: Fraction) -> Iterable[tuple[str, str, int | Fraction]]:

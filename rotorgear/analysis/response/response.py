@@ -18,6 +18,7 @@ from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_mo
 from rotorgear.analysis.response.orders import Order, orders_of
 from rotorgear.analysis.response.plant import Plant, Readings
 from rotorgear.analysis.response.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
+from rotorgear.analysis.response.second_order import peaks_of
 from rotorgear.analysis.static.mean_state import Setup, mean_state
 from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.errors import AnalysisError
@@ -106,6 +107,7 @@ def response(
     nodes, shapes = shapes_at_stations(system, system.dofs.expand(deflections))
     quantities = ("mesh_force", "transmission_error", "approach", "bearing_force", "acceleration", "displacement")
     stacked = {name: np.stack([getattr(reading, name) for reading in run.readings], axis=1) for name in quantities}
+    largest = peaks_of(setup, plant, orders, chosen, run.readings)
     progress(1.0, "done")
     return ResponseResult(
         model=model,
@@ -133,6 +135,7 @@ def response(
         error_estimate=estimate,
         dofs=system.n,
         discretisation=pieces(system),
+        largest=largest,
         seconds={"total": time.perf_counter() - clock},
         left_out=(*left, *weak, *setup.notes, *notes, *rolling_notes(model, rolls=False)),
         warnings=(

@@ -81,6 +81,8 @@ class JointState:
         stiffness: (c,) mean tangent over its own cycle in N/m; of a contact without map its own.
         gap: (c,) index error of each contact in m.
         maps: (c,) contact maps, None without one.
+        compliance: (c, c) approach of the contacts in m under a constant force of each mapped one in N, all being springs of
+            these stiffnesses.
         pitch: (c,) base pitches past the pitch point of each contact at time 0; sense: (c,) +1 where it then runs up its map.
     """
 
@@ -91,6 +93,7 @@ class JointState:
     stiffness: np.ndarray
     gap: np.ndarray
     maps: tuple[ContactMap | None, ...]
+    compliance: np.ndarray
     pitch: np.ndarray
     sense: np.ndarray
 
@@ -104,6 +107,14 @@ class JointState:
         """f_i = F_i - k_i delta_i over a cycle, (p, c) in N, without its mean; 0 for contacts without a map."""
         f = cycle.force - self.stiffness * cycle.approach
         return np.where(self.own >= 0, f - f.mean(axis=0), 0.0)
+
+    def no_load(self, cycle: Cycle) -> np.ndarray:
+        """Approach (p, c) at first touch of the contacts that run through a cycle, in m without its mean; 0 for the others."""
+        found = np.zeros_like(cycle.approach)
+        for i, contact_map in enumerate(self.maps):
+            if contact_map is not None and self.cycles[self.own[i]] is cycle:
+                found[:, i] = contact_map.no_load(self.on_map(i, cycle.position))
+        return np.asarray(found - found.mean(axis=0))
 
     def on_map(self, contact: int, position: np.ndarray) -> np.ndarray:
         """Place u on its map of a contact at positions of its cycle."""
@@ -175,6 +186,11 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
             cycle = cycles[own[i]]
             u = problem.sense[i] * (problem.pitch[i] + cycle.position)
             stiffness[i] = contact_map.stiffness(cycle.approach[:, i] - problem.gap[i], u).mean()
+    # A about other stiffnesses of the mapped contacts: A (1 + dk A_m)^-1.
+    m = problem.mapped
+    change = (stiffness - problem.stiffness)[m]
+    compliance = np.zeros((len(maps), len(maps)))
+    compliance[:, m] = problem.compliance @ np.linalg.inv(np.eye(len(m)) + change[:, None] * problem.compliance[m])
     return JointState(
         cycles=cycles,
         own=own,
@@ -183,6 +199,7 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
         stiffness=stiffness,
         gap=problem.gap,
         maps=maps,
+        compliance=compliance,
         pitch=problem.pitch,
         sense=problem.sense,
     )

@@ -5,8 +5,6 @@ from __future__ import annotations
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rotorgear.results.tables.common import error_words, heading, lines, table
 
 if TYPE_CHECKING:
@@ -17,6 +15,7 @@ if TYPE_CHECKING:
 
 # Rows of a run of orders before the rest of it shares one.
 _SHOWN = 5
+_SHORT = {"transmission error": "transm. error"}
 _WORDS = (
     "transmission error: rotation at the base circles, r_b1 theta_1 + r_b2 theta_2; approach: of the flanks, transverse, with "
     "bending and axial motion",
@@ -67,38 +66,20 @@ def _rows_of_orders(orders: tuple[str, ...]) -> list[tuple[int, int]]:
 
 
 def _largest(result: ResponseResult) -> Any:
-    """The largest amplitude of each quantity and the order, speed and frequency of it."""
-    out = table("largest of", "", "order no", "rpm", "Hz", "amplitude", left=2)
-    for mesh in dict.fromkeys(result.contact_mesh):
-        contacts = result.contacts_of(mesh)
-        _row(out, result, "mesh force", mesh, np.abs(result.mesh_force[:, :, contacts]).max(axis=2), 1.0, "N")
-        error = np.abs(result.transmission_error[:, :, contacts]).max(axis=2)
-        _row(out, result, "transm. error", mesh, error, 1e6, "um")
-        approach = np.abs(result.approach[:, :, contacts]).max(axis=2)
-        _row(out, result, "approach", mesh, approach, 1e6, "um")
-    for k, name in enumerate(result.bearings):
-        force = np.abs(result.bearing_force[:, :, k]).max(axis=2)
-        _row(out, result, "bearing force", name, force, 1.0, "N")
-    for k, name in enumerate(result.points):
-        turns = result.model.points[name].direction in ("tilt_x", "tilt_y", "torsion")
-        size = np.abs(result.acceleration[:, :, k])
-        _row(out, result, "acceleration", name, size, 1.0, "rad/s2" if turns else "m/s2")
-    if not result.bearings and not result.contact_mesh:
-        for k, place in enumerate(result.places):
-            size = np.abs(result.displacement[:, :, k, :2]).max(axis=2)
-            _row(out, result, "displacement", place, size, 1e6, "um")
+    """The largest amplitude of each quantity, the order, speed and frequency of it, and what is left out of it."""
+    loaded = any(peak.left_out is not None or peak.teeth_part for peak in result.largest)
+    columns = ("largest of", "", "order no", "rpm", "Hz", "amplitude", *(("left out",) if loaded else ()))
+    out = table(*columns, left=2)
+    for peak in result.largest:
+        factor, unit = (1e6, "um") if peak.unit == "m" else (1.0, peak.unit.replace("^", ""))
+        left = "-" if peak.left_out is None else f"{factor * peak.left_out:.2g} {unit}"
+        out.add_row(
+            _SHORT.get(peak.quantity, peak.quantity),
+            peak.part,
+            str(peak.order + 1),
+            f"{peak.speed_rpm:.1f}",
+            f"{peak.frequency_hz:.1f}",
+            f"{factor * peak.amplitude:.4g} {unit}",
+            *((("teeth part" if peak.teeth_part else left),) if loaded else ()),
+        )
     return out
-
-
-def _row(out: Any, result: ResponseResult, what: str, name: str, size: np.ndarray, factor: float, unit: str) -> None:
-    o, s = np.unravel_index(int(np.argmax(size)), size.shape)
-    if size[o, s] == 0.0:
-        return
-    out.add_row(
-        what,
-        name,
-        str(o + 1),
-        f"{result.speed_rpm[s]:.1f}",
-        f"{result.frequency_hz[o, s]:.1f}",
-        f"{factor * size[o, s]:.4g} {unit}",
-    )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,31 +11,11 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.static.cycle import JointState, over_cycle
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
-from rotorgear.gears.loaded.contact_map import ContactMap
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.system.system import System
+from tests.unit.analysis.written_maps import ripple, written
 
 K = 4e8
-MAP_LOADS = (0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 0.9, 1.0, 1.1, 1.2, 1.5, 2.0, 3.0)
-Approach = Callable[[np.ndarray, np.ndarray], np.ndarray]  # delta(F, u)
-
-
-def written(approach: Approach, periods: int = 1) -> Callable[..., ContactMap | None]:
-    """Stands in for MeshLayout.contact_map: every helix has the map delta(F, u)."""
-
-    def contact_map(mesh: MeshLayout, helix: int, normal_force: float, *_: object) -> ContactMap | None:
-        if not normal_force:
-            return None
-        u = np.arange(128 * periods) / 128
-        F = normal_force * np.array(MAP_LOADS)
-        return ContactMap(u, periods, F, approach(F[None, :], u[:, None]))
-
-    return contact_map
-
-
-def ripple(a: float) -> Approach:
-    """F = k (1 + a cos 2 pi u) delta."""
-    return lambda F, u: F / (K * (1.0 + a * np.cos(2.0 * np.pi * u)))
 
 
 def hertz(F: np.ndarray, u: np.ndarray) -> np.ndarray:
@@ -97,7 +76,7 @@ def rotation(model: rg.Model, joint: JointState) -> np.ndarray:
 
 
 def test_staggered_helices_on_stiff_shafts_leave_no_second_harmonic(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(MeshLayout, "contact_map", written(ripple(0.05)))
+    monkeypatch.setattr(MeshLayout, "contact_map", written(ripple(K, 0.05)))
     model = herringbone(axial=1e15)
     _, joint = joint_of(model)
     (cycle,) = joint.cycles
@@ -115,7 +94,7 @@ def test_staggered_helices_of_a_floating_pinion_have_the_second_harmonic_of_thei
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     a = 0.05
-    monkeypatch.setattr(MeshLayout, "contact_map", written(ripple(a)))
+    monkeypatch.setattr(MeshLayout, "contact_map", written(ripple(K, a)))
     model = herringbone(axial=1.0)
     _, joint = joint_of(model)
     (cycle,) = joint.cycles

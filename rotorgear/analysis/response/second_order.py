@@ -1,0 +1,184 @@
+"""What a response leaves out of its loaded teeth, by its size at each peak.
+
+The linear force of a contact is F_m + k (delta - delta_m) + f(u). Its map gives F(delta, u) on the linear solution; the rest,
+
+    r = F(delta(t), u) - F_m - k (delta - delta_m) - f(u),
+
+holds the product of varying stiffness and vibration, (k_t(u) - k)(delta - delta_0), and what the map bends beyond. At a crawl
+it is zero. Put through the receptance of the linear plant it moves the contacts; r there, put through it once more, is the size
+of what is left out. (One step would miss that the product of two harmonics comes back to the first of them.) That holds
+as long as no teeth part; where the map says that they do, no size is given.
+
+The orders of one mesh cycle shake together; what orders of other frequencies add to r is not in it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.analysis.response.orders import Order
+from rotorgear.analysis.response.plant import Plant, Readings
+from rotorgear.analysis.response.run_up import solve_orders
+from rotorgear.analysis.static.cycle import Cycle, JointState
+from rotorgear.analysis.static.mean_state import Setup
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.response import Peak
+
+_SAME_FREQUENCY = 1e-9
+# Harmonics of r that move the contacts: so many of the strongest, down to this share of the largest.
+_STRONG = 12
+_WEAK = 0.02
+_MOTIONS_THAT_TURN = ("tilt_x", "tilt_y", "torsion")
+
+
+@dataclass(frozen=True)
+class _Run:
+    """A run-up that has been solved: readings by speed, each of all orders."""
+
+    setup: Setup
+    plant: Plant
+    orders: Sequence[Order]
+    speeds: np.ndarray
+    readings: Sequence[Readings]
+
+
+def peaks_of(
+    setup: Setup, plant: Plant, orders: Sequence[Order], speeds: np.ndarray, readings: Sequence[Readings]
+) -> tuple[Peak, ...]:
+    """The largest amplitude of each quantity of meshes, bearings and points, with the size of what is left out beside it."""
+    run = _Run(setup, plant, orders, speeds, readings)
+    known: dict[tuple[int, int], tuple[Readings | None, bool]] = {}
+    found = []
+    for quantity, part, unit, values in _quantities(run):
+        size = np.abs(values)  # (s, o, ...)
+        s, o, *rest = (int(i) for i in np.unravel_index(int(np.argmax(size)), size.shape))
+        amplitude = float(size[(s, o, *rest)])
+        if not amplitude:
+            continue
+        if (s, o) not in known:
+            known[s, o] = _left_out(run, s, o)
+        reading, parts = known[s, o]
+        left = None
+        if reading is not None and not parts:
+            there = next(v for q, p, _, v in _quantities(_at(run, reading)) if (q, p) == (quantity, part))
+            left = float(np.abs(there[(0, 0, *rest)]))
+        found.append(
+            Peak(
+                quantity=quantity,
+                part=part,
+                unit=unit,
+                order=o,
+                speed_rpm=float(abs(speeds[s]) * RPM_PER_RAD_S * np.sign(speeds[s])),
+                frequency_hz=orders[o].ratio * abs(float(speeds[s])) / (2.0 * math.pi),
+                amplitude=amplitude,
+                left_out=left,
+                teeth_part=parts,
+            )
+        )
+    return tuple(found)
+
+
+def _at(run: _Run, reading: Readings) -> _Run:
+    return _Run(run.setup, run.plant, run.orders[:1], run.speeds[:1], [reading])
+
+
+def _quantities(run: _Run) -> Iterable[tuple[str, str, str, np.ndarray]]:
+    """(quantity, part, unit, values (s, o, ...)) of all rows of the table of the largest amplitudes."""
+    names = run.setup.lines.names
+    model = run.setup.system.model
+
+    def stacked(field: str) -> np.ndarray:
+        return np.stack([getattr(reading, field) for reading in run.readings])
+
+    for mesh in dict.fromkeys(names):
+        contacts = [k for k, name in enumerate(names) if name == mesh]
+        for field, unit in (("mesh_force", "N"), ("transmission_error", "m"), ("approach", "m")):
+            yield field.replace("_", " "), mesh, unit, stacked(field)[:, :, contacts]
+    for k, name in enumerate(model.bearings):
+        yield "bearing force", name, "N", stacked("bearing_force")[:, :, k]
+    for k, (name, point) in enumerate(model.points.items()):
+        unit = "rad/s^2" if point.direction in _MOTIONS_THAT_TURN else "m/s^2"
+        yield "acceleration", name, unit, stacked("acceleration")[:, :, k]
+    if not model.bearings and not names:
+        for k, place in enumerate(run.plant.places):
+            yield "displacement", place, "m", stacked("displacement")[:, :, k, :2]
+
+
+def _left_out(run: _Run, s: int, o: int) -> tuple[Readings | None, bool]:
+    """What the rest r adds to the readings of an order at a speed, None where no loaded teeth run at it; whether teeth part."""
+    joint = run.setup.joint
+    if joint is None:
+        return None, False
+    for number, cycle in enumerate(joint.cycles):
+        multiple = _multiple(cycle, run.orders[o])
+        if not multiple:
+            continue
+        delta = _linear(run, s, joint, number)
+        rest, parts = _rest(joint, number, delta)
+        moved = _moved(run, s, joint, cycle, np.fft.rfft(rest, axis=0) / len(rest))
+        again, part_again = _rest(joint, number, delta + moved)
+        coefficient = 2.0 * np.fft.rfft(again, axis=0)[multiple] / len(again)
+        return _answer(run, s, run.orders[o].ratio, coefficient), parts or part_again
+    return None, False
+
+
+def _multiple(cycle: Cycle, order: Order) -> int:
+    """Which harmonic of a whole cycle an order is; 0 for none."""
+    n = order.ratio * cycle.periods / cycle.ratio if cycle.ratio else 0.0
+    return round(n) if n and abs(n - round(n)) <= _SAME_FREQUENCY * n else 0
+
+
+def _linear(run: _Run, s: int, joint: JointState, number: int) -> np.ndarray:
+    """Approach (p, c) of the linear solution at a speed along the flank normals over a cycle, in m."""
+    cycle = joint.cycles[number]
+    count = len(cycle.position)
+    cosine = np.cos([state.contact.base_helix_angle for state in run.setup.lines.states])
+    spectrum = np.fft.rfft(cycle.approach, axis=0) / count
+    for o, order in enumerate(run.orders):
+        n = _multiple(cycle, order)
+        if 0 < n < len(spectrum):  # weak orders, which were not solved, follow as at a crawl
+            spectrum[n] = 0.5 * cosine * run.readings[s].approach[o]
+    return np.asarray(np.fft.irfft(spectrum * count, count, axis=0))
+
+
+def _rest(joint: JointState, number: int, delta: np.ndarray) -> tuple[np.ndarray, bool]:
+    """r (p, c) in N at approaches (p, c) over a cycle, and whether a contact opens there."""
+    cycle = joint.cycles[number]
+    rest = np.zeros_like(delta)
+    parts = False
+    f = joint.excitation(cycle)
+    for i in np.flatnonzero(joint.own == number):
+        contact_map = joint.maps[i]
+        assert contact_map is not None
+        force = contact_map.force(delta[:, i] - joint.gap[i], joint.on_map(int(i), cycle.position))
+        linear = joint.force[i] + joint.stiffness[i] * (delta[:, i] - joint.approach[i]) + f[:, i]
+        rest[:, i] = force - linear
+        parts = parts or bool(np.any(force <= 0.0))
+    return rest, parts
+
+
+def _moved(run: _Run, s: int, joint: JointState, cycle: Cycle, rest: np.ndarray) -> np.ndarray:
+    """Approach (p, c) in m that the spectrum (h, c) of r adds by the linear plant at a speed, by its strong harmonics."""
+    cosine = np.cos([state.contact.base_helix_angle for state in run.setup.lines.states])
+    size = np.abs(rest).max(axis=1)
+    found = np.zeros_like(rest)
+    found[0] = -joint.compliance @ rest[0].real
+    strongest = 1 + np.argsort(-size[1:])[:_STRONG]
+    for n in strongest[size[strongest] > _WEAK * size.max()]:
+        reading = _answer(run, s, n / cycle.periods * cycle.ratio, 2.0 * rest[n])
+        found[n] = 0.5 * cosine * reading.approach[0]
+    return np.asarray(np.fft.irfft(found * len(cycle.position), len(cycle.position), axis=0))
+
+
+def _answer(run: _Run, s: int, ratio: float, force: np.ndarray) -> Readings:
+    """Readings of the linear plant at a speed under forces of the contacts (c,) in N at a multiple of the reference speed."""
+    nothing = np.zeros(run.plant.system.n)
+    order = [Order("", ratio, nothing, 0.0 * force, force)]
+    speed = float(run.speeds[s])
+    w, f = run.plant.loads(order, speed)
+    q = solve_orders(run.plant, run.plant.dynamics(speed), w, f)
+    return run.plant.read(order, speed, w, q)
