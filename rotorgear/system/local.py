@@ -149,11 +149,12 @@ def _mesh_parts(system: System) -> list[LocalPart]:
         column = columns_at(system, dofs, approach)
         turned = replace(geometry, torque_sense=-geometry.torque_sense)
         coast = columns_at(system, dofs[:12], contact_vector(turned)[None])
-        # With a state along the face the spring is the tangent about that; a map without tilt would be another contact.
-        teeth = load.contact_map(force) if force.face is None else None
+        teeth = load.contact_map(force)
         law: MeshContact | MeshMap = spring
+        # A map begins where its flanks touch, a spring about a mean state does not.
+        touching = replace(spring, error_mean=_gap(system, force))
         if teeth is not None:
-            law = _loaded_teeth(spring, teeth, force, spring.phase)
+            law = _loaded_teeth(touching, teeth, force, spring.phase)
             if spring.impact:
                 blow = replace(spring, stiffness=0.0, damping=0.0, gap="bilateral", expanded=False)
                 found.append(LocalPart(part, f"{label} impact", blow, column))
@@ -172,7 +173,9 @@ def _mesh_parts(system: System) -> list[LocalPart]:
             phase = load.on_other_flank(contact.mesh).phase(contact) or 0.0
             if mesh.coast_flank == "line":
                 coast = -column
-            found.append(LocalPart(part, back, _loaded_teeth(_back(spring), teeth, behind, phase), coast, is_mesh=True))
+            found.append(
+                LocalPart(part, back, _loaded_teeth(_back(touching), teeth, behind, phase), coast, is_mesh=True)
+            )
     return found
 
 
@@ -221,12 +224,8 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         ramp = deflection * (1.0 if mesh.contact_damping == "penetration" else _RAMP)
     damping = mesh_damping(system.layout, force, geometry) + model.damping.rayleigh_beta * contact.stiffness
     gap = "bilateral" if mesh.backlash is None else {"line": "dead zone", "own normals": "unilateral"}[mesh.coast_flank]
-    error = mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0)
-    if force.face is not None:
-        error += force.face.shift
-    if (
-        force.start is not None
-    ):  # about a mean state the spring is a tangent, which starts elsewhere than at first touch
+    error = _gap(system, force)
+    if force.start is not None:  # a tangent about a mean state carries nothing elsewhere than the contact does
         error -= force.start / contact.stiffness
     impact = mesh.corner_impact
     blow: dict[str, Any] = {}
@@ -249,6 +248,13 @@ def _mesh_law(system: System, force: MeshForce, geometry: ContactGeometry, phase
         pieces=cycle_pieces(system, force),
         **blow,
     )
+
+
+def _gap(system: System, force: MeshForce) -> float:
+    """What must close before a contact carries (m): index errors, and what the tilt of its state adds at its place."""
+    mesh = system.layout.mesh(force.contact.mesh).part
+    gap = mesh.index_error + (mesh.helix_index_error if force.contact.helix else 0.0)
+    return gap if force.face is None else gap + force.face.shift
 
 
 def _back(law: MeshContact) -> MeshContact:

@@ -47,9 +47,12 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
     tilted = [name for name, mesh in meshes.items() if mesh.face_loads]
     if tilted:
         notes.append(
-            f"how the load moves along the face of {', '.join(tilted)} in time: the flanks resist a tilt by the tangent about "
-            "the static equilibrium, even where they part"
+            f"how the load moves along the face of {', '.join(tilted)} in time: the teeth stand askew as in the static "
+            "equilibrium, and resist a tilt by the tangent about it, even where they part"
         )
+    behind = [name for name in tilted if meshes[name].backlash is not None]
+    if behind:
+        notes.append(f"the tilt of the coast flanks of {', '.join(behind)}: they stand askew as the working ones do")
     return tuple(notes)
 
 

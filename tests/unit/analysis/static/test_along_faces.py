@@ -165,7 +165,7 @@ def test_a_transient_starts_from_the_equilibrium_and_says_how_it_takes_the_tilt(
     moved = task.local.system.dofs.expand(task.rest.q)
     node = 6 * task.local.system.nodes.at("one", 0.02 + ARM)
     assert moved[node : node + 5] == pytest.approx(rg.static(model).place_displacement["gears.pinion"][:5], rel=1e-6)
-    assert any("resist a tilt by the tangent" in note for note in transient_left_out(task.local))
+    assert any("resist a tilt by the tangent about it" in note for note in transient_left_out(task.local))
 
 
 def test_a_tilt_without_a_face_is_refused() -> None:
@@ -229,3 +229,20 @@ def test_teeth_on_rigid_shafts_carry_as_the_pair_alone() -> None:
     assert row.shaft_misalignment_m == pytest.approx(0.0, abs=1e-9)
     alone = rg.mesh(model, estimate=False)
     assert row.peak_pressure_pa == pytest.approx(alone.helix[0].largest_pressure_pa, rel=1e-4)
+
+
+@pytest.mark.long
+def test_a_transient_of_loaded_teeth_rests_on_their_map_at_the_misalignment_of_the_equilibrium() -> None:
+    task = prepare(pinion(), None, None)
+    system = task.local.system
+    force = system.load.forces[0]
+    assert force.face is not None
+    taken = system.load.contact_map(force)
+    assert taken is not None
+    u = (system.load.phase(force.contact) or 0.0) / (2.0 * np.pi)
+    moved = system.dofs.expand(task.rest.q)
+    approach = float(task.local.parts[0].columns[:, 0] @ moved) - force.face.shift
+    assert approach == pytest.approx(float(taken.approach_at(force.normal_force, u)), rel=1e-3)
+    at_rest = rg.static(pinion()).place_displacement["gears.pinion"]
+    node = 6 * system.nodes.at("input", 0.0)
+    assert moved[node : node + 5] == pytest.approx(at_rest[:5], rel=1e-4, abs=1e-12)
