@@ -246,3 +246,26 @@ def test_a_transient_of_loaded_teeth_rests_on_their_map_at_the_misalignment_of_t
     at_rest = rg.static(pinion()).place_displacement["gears.pinion"]
     node = 6 * system.nodes.at("input", 0.0)
     assert moved[node : node + 5] == pytest.approx(at_rest[:5], rel=1e-4, abs=1e-12)
+
+
+@pytest.mark.long
+def test_helical_teeth_of_the_other_hand_turned_backwards_carry_alike() -> None:
+    model = rg.load(MODELS / "helical_pair.toml").with_(
+        {
+            "meshes.stage.tilt": True,
+            "meshes.stage.stiffness": "tooth_fe",
+            "meshes.stage.tooth_fe.preset": "preview",
+            "bearings.input_right.at": "-100 mm",
+        }
+    )
+    mirror = model.with_({"gears.pinion.hand": "left", "gears.wheel.hand": "right"})
+    found = []
+    for one, direction in ((model, 1), (mirror, -1)):
+        system = System(one, load=one.mean_load(direction).of_kind("static"))
+        face = equilibrate_along_faces(system, direction * 311.0).faces[0]
+        assert face is not None
+        # The overhang bends away from the mesh: the end of the face towards the bearings carries more, whatever the hand.
+        assert face.misalignment > 0.0
+        assert face.load_place < 0.0
+        found.append((face.misalignment, face.load_place, face.load_factor, face.approach))
+    assert found[0] == pytest.approx(found[1], rel=1e-6)
