@@ -42,6 +42,11 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
         (("mesh_optimum", ""),),
     ),
     (
+        "root stress",
+        "`rotorgear mesh MODEL --root-stress --json roots.json`.",
+        (("root_stress", ""),),
+    ),
+    (
         "mesh accuracy",
         "`rotorgear accuracy MODEL --analysis mesh --json study.json`, of one helix.",
         (("mesh_convergence", ""),),

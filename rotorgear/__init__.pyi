@@ -46,6 +46,7 @@ from rotorgear.analysis.sweep.cluster import cluster as cluster
 from rotorgear.analysis.teeth.gear_sheet import gear as gear
 from rotorgear.analysis.teeth.mesh import mesh as mesh
 from rotorgear.analysis.teeth.mesh_map import mesh_map as mesh_map
+from rotorgear.analysis.teeth.root_stress import root_stress as root_stress
 from rotorgear.analysis.teeth.optimise import optimise_flanks as optimise_flanks
 from rotorgear.plots.view import view as view
 from rotorgear import plot as plot
@@ -95,6 +96,7 @@ from rotorgear.results.portrait import Portraits as Portraits
 from rotorgear.results.gear_sheet import GearSheet as GearSheet
 from rotorgear.results.mesh import MeshResult as MeshResult
 from rotorgear.results.mesh_map import MeshMap as MeshMap
+from rotorgear.results.root_stress import RootStress as RootStress
 from rotorgear.results.mesh_optimum import MeshOptimum as MeshOptimum
 from rotorgear.results.convergence import ConvergenceStudy as ConvergenceStudy
 from rotorgear.results.comparison import Comparison as Comparison

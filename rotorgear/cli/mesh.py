@@ -48,7 +48,12 @@ def mesh(
     body: Annotated[
         str | None, typer.Option("--body", help="Body under the teeth: rim, ring or wheel.", show_default=False)
     ] = None,
-    positions: Annotated[int, typer.Option("--positions", help="Positions in one mesh period.")] = 64,
+    positions: Annotated[
+        int | None,
+        typer.Option(
+            "--positions", help="Positions in one mesh period; default 64, 24 for --root-stress.", show_default=False
+        ),
+    ] = None,
     periods: Annotated[
         int | None,
         typer.Option(
@@ -111,6 +116,10 @@ def mesh(
         int | None,
         typer.Option("--samples", help="Flanks of the tolerance band of --optimise; 0 for none.", show_default=False),
     ] = None,
+    root_stress: Annotated[
+        bool,
+        typer.Option("--root-stress", help="Follow the stress in the tooth roots of both gears over the mesh cycle."),
+    ] = False,
     harmonics: Annotated[int, typer.Option("--harmonics", min=0, help="Mesh orders that are listed.")] = 5,
     plot: Annotated[
         Path | None,
@@ -131,6 +140,26 @@ def mesh(
     import rotorgear as rg
 
     checked = rg.load(model)
+    if root_stress:
+        refuse_beside(
+            "--root-stress", stiffness=stiffness, accuracy=accuracy, periods=periods, load_factors=load_factors
+        )
+        refuse_beside("--root-stress", vtk=vtk, over=over, optimise=optimise, csv=csv)
+        with progress_bar("root stress") as progress:
+            roots = rg.root_stress(
+                checked,
+                mesh,
+                torque=torque,
+                preset=preset,
+                body=body,
+                positions=24 if positions is None else positions,
+                progress=progress,
+            )
+        console().print(roots.table())
+        write_json(roots.to_dict(), json)
+        if plot:
+            console().print(f"drawn: {rg.plot.save(rg.plot.root_stress(roots), plot)}")
+        return
     if optimise is not None:
         refuse_beside(
             "--optimise", stiffness=stiffness, accuracy=accuracy, periods=periods, load_factors=load_factors, vtk=vtk
@@ -151,7 +180,7 @@ def mesh(
                 torque=torque,
                 preset=preset,
                 body=body,
-                positions=positions,
+                positions=64 if positions is None else positions,
                 progress=progress,
             )
         console().print(best.table())
@@ -179,7 +208,7 @@ def mesh(
                 torque=torque,
                 preset=preset,
                 body=body,
-                positions=positions,
+                positions=64 if positions is None else positions,
                 progress=progress,
             )
         console().print(points.table())
@@ -202,7 +231,7 @@ def mesh(
             preset=preset,
             body=body,
             accuracy=accuracy,
-            positions=positions,
+            positions=64 if positions is None else positions,
             periods=periods,
             load_factors=parse_factors(load_factors),
             progress=progress,

@@ -11,6 +11,7 @@ from rotorgear.plots.sweep import sweep as sweep
 from rotorgear.plots.gear_mesh import gear as gear
 from rotorgear.plots.mesh_cycle import mesh as mesh
 from rotorgear.plots.mesh_map import mesh_map as mesh_map
+from rotorgear.plots.root_stress import root_stress as root_stress
 from rotorgear.plots.convergence import convergence as convergence
 from rotorgear.plots.mesh_convergence import mesh_convergence as mesh_convergence
 from rotorgear.plots.mode_pictures import modal as modal

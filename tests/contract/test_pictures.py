@@ -26,6 +26,7 @@ PICTURES = {
     "gear": ("gear",),
     "mesh": ("mesh", "mesh_pressure", "mesh_loads"),
     "mesh_map": ("mesh_map", "mesh_quantity"),
+    "root_stress": ("root_stress",),
     "convergence": ("convergence",),
     "transient": ("transient", "mesh_forces", "transmission_error", "spectra", "orbits", "energy", "spectrogram"),
     "sweep": ("sweep", "bifurcation", "sections", "portraits", "portrait_spectra"),
@@ -50,6 +51,7 @@ def results() -> dict[str, Any]:
         "frf": rg.frf(jeffcott, inputs=["disks.disk:x"], outputs=["disks.disk:x"], fmax=100.0, points=9, elements=1),
         "gear": rg.gear(pair),
         "mesh": rg.mesh(rg.loads(pair_file()), preset="preview", positions=8, load_factors=(0.5,)),
+        "root_stress": rg.root_stress(rg.loads(pair_file()), preset="preview", positions=4),
         "mesh_map": rg.mesh_map(
             rg.loads(pair_file()),
             over={"torque": [500.0, 1000.0], "misalignment": [0.0, 1e-5]},

@@ -59,6 +59,7 @@ def example(kind: str) -> Result:
             evaluations=10,
             samples=4,
         ),
+        "root_stress": lambda: rg.root_stress(rg.loads(pair_file()), preset="preview", positions=4),
         "mesh_map": lambda: rg.mesh_map(rg.loads(pair_file()), over={"torque": [500.0]}, preset="preview", positions=8),
         "transient": lambda: rg.transient(model("backlash_pair"), time=2e-3, discard=1e-3, error_estimate=False),
         "sweep": lambda: rg.sweep(model("backlash_pair"), {"operation.speed": ["8000 rpm"]}, discard=2, sample=9),
