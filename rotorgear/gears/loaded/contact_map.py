@@ -5,29 +5,25 @@ is delta(F_j; u), from the first touch (F = 0) on. All flanks, reliefs, pitch er
 
     F = 0 for delta <= delta_0(u),     F rises monotonically with delta above.
 
+Between loads delta(F) is a cubic with the exact tangents of the contact at both ends, as far as it stays monotone (Fritsch and
+Carlson); between positions it is linear. Above the largest load it goes on along its tangent.
+
 Statics, modes and responses linearise about it; transients and sweeps take it as the law of the mesh.
-Reference: H. N. Ozguven and D. R. Houser, Journal of Sound and Vibration 125 (1988) 71.
+References: H. N. Ozguven and D. R. Houser, Journal of Sound and Vibration 125 (1988) 71;
+F. N. Fritsch and R. E. Carlson, SIAM Journal on Numerical Analysis 17 (1980) 238.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+from scipy.interpolate import PchipInterpolator
 
-from rotorgear.gears.loaded.mesh_cycle import mesh_cycle
-from rotorgear.gears.loaded.tooth_contact import contact_problem
-from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-
-# Positions in a base pitch, and loads as multiples of the working load. Resonances with contact loss reach four to five times it.
-POSITIONS = 128
-_LOADS = (0.0, 0.01, 0.03, 0.08, 0.15, 0.25, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0)
-# Linear analyses stay near the working load, and helical teeth are smooth over the cycle and over the load.
-_NEAR_LOADS = (0.0, 0.15, 0.4, 0.7, 1.0, 1.4, 2.0)
-_NEAR_POSITIONS = 64
+# Points that are solved together: their loads and slopes take memory.
+_TOGETHER = 8192
 
 
 @dataclass(frozen=True)
@@ -37,11 +33,11 @@ class ContactMap:
     Attributes:
         position: (p,) u in base pitches from contact at the pitch point, evenly spaced from 0 over `periods`; along the path
             of contact from approach to recess of the pinion.
-        periods: base pitches after which the map repeats: 1, or more where pitch errors make teeth differ.
+        periods: base pitches after which the map repeats: 1, or the turns of the gears whose teeth have pitch errors.
         load: (l,) forces along the flank normal in N, rising from 0.
         approach: (p, l) approach of the flanks along their normal in m at these loads; the first column is that of first touch.
         warnings: sentences.
-        compliance: (p, l) d delta / dF in m/N at these loads but the first; None: it follows from the approaches.
+        compliance: (p, l) d delta / dF in m/N at these loads; None: that of a monotone interpolation (PCHIP).
     """
 
     position: np.ndarray
@@ -56,21 +52,29 @@ class ContactMap:
         """Force in N up to which the contact was solved; above it the map goes on along its tangent."""
         return float(self.load[-1])
 
+    def beyond(self, force: Any) -> str | None:
+        """A sentence where the largest of some forces (N) lies above the loads of the map; None where none does."""
+        most = float(np.max(force))
+        if most <= self.largest_load:
+            return None
+        return (
+            f"the mesh force reaches {most:.3g} N, and the loaded teeth were solved up to {self.largest_load:.3g} N; above it "
+            "they count as stiff as there"
+        )
+
     def no_load(self, u: Any) -> np.ndarray:
         """Approach delta_0 in m at which the first teeth touch, of the shape of u."""
-        return np.asarray(np.interp(u, self.position, self.approach[:, 0], period=self.periods))
+        u = np.asarray(u, float)
+        return np.asarray(self._knots(u.ravel())[0][:, 0].reshape(u.shape))
 
     def approach_at(self, force: Any, u: Any) -> np.ndarray:
         """Approach in m under a force in N at positions u, both of shapes that broadcast."""
         force, u = np.broadcast_arrays(np.asarray(force, float), np.asarray(u, float))
-        last = self.load[-1]
-        above = np.maximum(force - last, 0.0)
-        at_loads = self._deflection_of_load(np.clip(force, 0.0, last).ravel())
-        index, share = self._between(u.ravel())
-        each = np.arange(len(share))
-        inside = (1.0 - share) * at_loads[index, each] + share * at_loads[(index + 1) % len(self.position), each]
-        slope = (1.0 - share) * self._last_slope[index] + share * self._last_slope[(index + 1) % len(self.position)]
-        return np.asarray(inside.reshape(force.shape) + above * slope.reshape(force.shape))
+        F = force.ravel()
+        knots, slopes = self._knots(u.ravel())
+        piece = np.clip(np.searchsorted(self.load, F, side="right") - 1, 0, len(self.load) - 2)
+        inside = self._cubic(knots, slopes, piece, np.clip(F, 0.0, self.largest_load))[0]
+        return np.asarray((inside + np.maximum(F - self.largest_load, 0.0) * slopes[:, -1]).reshape(force.shape))
 
     def approaches(self, load: np.ndarray) -> np.ndarray:
         """Approach (p, n) in m at all positions of the map under n loads in N, from 0 to the largest load."""
@@ -85,85 +89,74 @@ class ContactMap:
         return self._solved(delta, u)[1]
 
     def _solved(self, delta: Any, u: Any) -> tuple[np.ndarray, np.ndarray]:
-        """Force and tangent: delta(F; u) is monotone in F, so that bisection on it always ends."""
         delta, u = np.broadcast_arrays(np.asarray(delta, float), np.asarray(u, float))
-        low = np.zeros(delta.shape)
-        high = np.full(delta.shape, self.load[-1])
-        while np.any(short := self.approach_at(high, u) < delta):
-            high = np.where(short, 2.0 * high, high)
-        for _ in range(60):
-            middle = 0.5 * (low + high)
-            below = self.approach_at(middle, u) < delta
-            low = np.where(below, middle, low)
-            high = np.where(below, high, middle)
-        force = 0.5 * (low + high)
-        touches = delta > self.no_load(u)
-        step = 1e-4 * np.maximum(force, 1e-3 * self.load[-1])
-        rise = self.approach_at(force + step, u) - self.approach_at(np.maximum(force - step, 0.0), u)
-        width = step + np.minimum(step, force)
-        return np.where(touches, force, 0.0), np.where(touches, width / rise, 0.0)
+        d = delta.ravel()
+        at = u.ravel()
+        found = np.empty((2, len(d)))
+        for first in range(0, len(d), _TOGETHER):
+            some = slice(first, first + _TOGETHER)
+            found[:, some] = self._solved_together(d[some], at[some])
+        return found[0].reshape(delta.shape), found[1].reshape(delta.shape)
 
-    def _between(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Position before each u, and the share of the way to the next one."""
+    def _solved_together(self, d: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Force and tangent: the piece between two loads in which delta lies, then its cubic by Newton's method in brackets."""
+        knots, slopes = self._knots(u)
+        piece = np.clip(np.sum(knots <= d[:, None], axis=1) - 1, 0, len(self.load) - 2)
+        low = self.load[piece]
+        high = self.load[piece + 1]
+        F = 0.5 * (low + high)
+        for _ in range(60):
+            value, slope = self._cubic(knots, slopes, piece, F)
+            short = value < d
+            low = np.where(short, F, low)
+            high = np.where(short, high, F)
+            # A flat place of the cubic must not divide by zero: the bracket takes over.
+            step = F + (d - value) / np.maximum(slope, 1e-300)
+            F_next = np.where((step > low) & (step < high), step, 0.5 * (low + high))
+            if np.all(np.abs(F_next - F) <= 1e-15 * self.largest_load):
+                break
+            F = F_next
+        slope = self._cubic(knots, slopes, piece, F)[1]
+        above = d > knots[:, -1]
+        F = np.where(above, self.largest_load + (d - knots[:, -1]) / slopes[:, -1], F)
+        slope = np.where(above, slopes[:, -1], slope)
+        touches = d > knots[:, 0]
+        return np.where(touches, F, 0.0), np.where(touches, 1.0 / slope, 0.0)
+
+    def _knots(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Approaches and slopes (n, l) at the loads, at positions u (n,)."""
         at = np.mod(u / self.periods, 1.0) * len(self.position)
         index = np.minimum(at.astype(int), len(self.position) - 1)
-        return index, at - index
+        share = (at - index)[:, None]
+        following = (index + 1) % len(self.position)
+        slope = self._monotone
+        return (
+            (1.0 - share) * self.approach[index] + share * self.approach[following],
+            (1.0 - share) * slope[index] + share * slope[following],
+        )
+
+    def _cubic(
+        self, knots: np.ndarray, slopes: np.ndarray, piece: np.ndarray, force: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Hermite's cubic and its derivative at forces (n,) between loads `piece` and the next."""
+        each = np.arange(len(piece))
+        width = self.load[piece + 1] - self.load[piece]
+        t = (force - self.load[piece]) / width
+        first = knots[each, piece]
+        rise = knots[each, piece + 1] - first
+        start = width * slopes[each, piece]
+        end = width * slopes[each, piece + 1]
+        value = first + t * (start + t * (3.0 * rise - 2.0 * start - end + t * (start + end - 2.0 * rise)))
+        derivative = start + t * (2.0 * (3.0 * rise - 2.0 * start - end) + 3.0 * t * (start + end - 2.0 * rise))
+        return value, derivative / width
 
     @cached_property
-    def _deflection_of_load(self) -> PchipInterpolator | CubicHermiteSpline:
-        """delta (p, n) of n loads: monotone, so that no tangent is negative.
-
-        Slopes are held below three times the chords: Fritsch and Carlson, SIAM J. Numer. Anal. 17 (1980) 238.
-        """
+    def _monotone(self) -> np.ndarray:
+        """Slopes (p, l) with which every cubic rises: within three times the chords beside them (Fritsch and Carlson)."""
         if self.compliance is None:
-            return PchipInterpolator(self.load, self.approach, axis=1)
-        secant = np.diff(self.approach, axis=1) / np.diff(self.load)
-        slope = self.compliance.copy()
-        # Line contact gives way without bound at first touch: there the curve leaves without curvature.
-        slope[:, 0] = 1.5 * secant[:, 0] - 0.5 * slope[:, 1]
-        slope[:, 1:] = np.minimum(slope[:, 1:], 3.0 * secant)
-        slope[:, :-1] = np.minimum(slope[:, :-1], 3.0 * secant)
-        return CubicHermiteSpline(self.load, self.approach, np.maximum(slope, 0.0), axis=1)
-
-    @cached_property
-    def _last_slope(self) -> np.ndarray:
-        """d delta / dF (p,) at the largest load."""
-        return np.asarray(self._deflection_of_load(self.load[-1], 1))
-
-
-@lru_cache(maxsize=32)  # the helices of a model and its analyses ask for the same maps again and again
-def contact_map(teeth: ToothPair, load: float, positions: int = POSITIONS, near: bool = False) -> ContactMap:
-    """Solve the loaded contact over the mesh cycle for loads up to five times the working one.
-
-    Args:
-        teeth: one helix.
-        load: working force (N) along the flank normal.
-        positions: in a base pitch.
-        near: for linear analyses: of helical teeth fewer loads, up to twice the working one, and fewer positions.
-
-    Raises:
-        AnalysisError: teeth that can't be made, meshed or brought into contact.
-        ConvergenceError: a position has no solution to the tolerance.
-        MissingExtraError: scikit-fem is needed and not installed.
-    """
-    problem = contact_problem(teeth)
-    cosine = float(np.cos(problem.line.base_helix_angle))
-    wrong = (*teeth.first_flank.single_teeth, *teeth.second_flank.single_teeth)
-    periods = max(wrong) + 2 if wrong else 1
-    thin = near and problem.line.base_helix_angle > 0.0
-    positions = min(positions, _NEAR_POSITIONS) if thin else positions
-    shares = _NEAR_LOADS if thin else _LOADS
-    u = np.arange(positions * periods) / positions
-    cycles = [mesh_cycle(problem, share * load * cosine, u) for share in shares[1:]]
-    # mesh_cycle is transverse: delta_n = delta cos b_b, F_n = F_bt / cos b_b.
-    columns = [cycles[0].no_load, *(cycle.deflection for cycle in cycles)]
-    warnings = dict.fromkeys(note for cycle in cycles for note in cycle.warnings)
-    return ContactMap(
-        position=u,
-        periods=periods,
-        load=load * np.array(shares),
-        approach=cosine * np.stack(columns, axis=1),
-        warnings=(*problem.warnings, *warnings),
-        # F_n = F_bt / cos b_b and delta_n = delta cos b_b: a compliance has cos^2 b_b.
-        compliance=cosine**2 * np.stack([np.zeros(len(u)), *(1.0 / cycle.tangent for cycle in cycles)], axis=1),
-    )
+            return np.asarray(PchipInterpolator(self.load, self.approach, axis=1)(self.load, 1))
+        chord = np.diff(self.approach, axis=1) / np.diff(self.load)
+        most = 3.0 * np.minimum(
+            np.concatenate([chord[:, :1], chord], axis=1), np.concatenate([chord, chord[:, -1:]], axis=1)
+        )
+        return np.minimum(self.compliance, most)

@@ -21,8 +21,9 @@ _ACROSS = 24
 _ALONG = 3
 # Pieces of a contact line shorter than this share of a slice are dropped: they carry nothing and spoil the conditioning.
 _SLIVER = 0.03
-# A corner contact beyond either end of a contact line is cut into so many slices, whatever its length.
-_CORNER_SLICES = 2
+# A corner contact beyond either end of a contact line is cut into so many slices, whatever its length: with two, stiffness and
+# transmission error depend on how far corners are followed (1 % and more at light loads), with six they do not (0.03 %).
+_CORNER_SLICES = 6
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,8 @@ References: K. L. Johnson, Contact Mechanics, sections 4.2 and 5.6; Nocedal and 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy.linalg as la
@@ -179,29 +180,92 @@ def moment_and_tangents(contact: PositionContact, state: ContactState, z: np.nda
     return float(state.force @ z), _stiffness(contact, state.force, shapes) * np.array([1.0, -1.0])
 
 
+def tangent_compliance(contact: PositionContact, force: np.ndarray) -> np.ndarray:
+    """C + dg/dF (n, n) in m/N of all slices, under forces (n,)."""
+    return np.asarray(contact.compliance + np.diag(_local(contact, force, float(force.sum()))[1]))
+
+
 def _stiffness(contact: PositionContact, force: np.ndarray, shapes: np.ndarray) -> np.ndarray:
     """S' (C + dg/dF)^-1 S over the slices in contact, for shapes S (n, m) of approach: (m, m)."""
     loaded = np.flatnonzero(force > 0.0)
-    tangent = _local(contact, force, float(force.sum()))[1]
-    C = contact.compliance[np.ix_(loaded, loaded)] + np.diag(tangent[loaded])
+    C = tangent_compliance(contact, force)[np.ix_(loaded, loaded)]
     S = shapes[loaded]
     return np.asarray(S.T @ la.solve(C, S, assume_a="pos", check_finite=False))
 
 
-def _local(contact: PositionContact, force: np.ndarray, total: float) -> tuple[np.ndarray, np.ndarray]:
-    """g (n,) in m and dg/dF (n,) in m/N of slices under forces (n,) of the sum `total`."""
+def _local(contact: PositionContact, force: np.ndarray, total: Any) -> tuple[np.ndarray, np.ndarray]:
+    """g (n,) in m and dg/dF (n,) in m/N of slices under forces (n,) of the sum `total`; axes before the slices are free."""
     load = force / contact.length
-    trace = _TRACE * total / len(force) / contact.length
+    trace = _TRACE * total / force.shape[-1] / contact.length
     above_trace = np.maximum(load, trace)
     a = hertz_half_width(above_trace, contact.radius, contact.modulus)
-    share = contact.log_width - np.log(a)[:, None]  # ln(c/a) of both bodies
+    share = contact.log_width - np.log(a)[..., None]  # ln(c/a) of both bodies
 
     # Beyond the load at which the tangent has fallen to its least value, g goes on along that tangent.
     least = 0.25 + contact.least_tangent
-    held = above_trace[:, None] * np.exp(2.0 * np.minimum(share - least, 0.0))
-    secant = held * (0.25 + np.maximum(share, least)) + contact.least_tangent * (above_trace[:, None] - held)
-    tangent = np.maximum(share - 0.25, contact.least_tangent)
+    held = above_trace[..., None] * np.exp(2.0 * np.minimum(share - least, 0.0))
+    secant = held * (0.25 + np.maximum(share, least)) + contact.least_tangent * (above_trace[..., None] - held)
+    g = secant @ contact.local
+    slope = np.maximum(share - 0.25, contact.least_tangent) @ contact.local
     below = load < trace
-    tangent[below] = secant[below] / trace[below, None]
-    secant[below] *= (load / trace)[below, None]
-    return np.asarray(secant @ contact.local), np.asarray(tangent @ contact.local) / contact.length
+    proportional = g / trace
+    return np.where(below, proportional * load, g), np.where(below, proportional, slope) / contact.length
+
+
+def solve_many(contact: PositionContact, total: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Approaches (b,) in m and tangent stiffnesses (b,) in N/m of many contacts of few slices at once.
+
+    The active set and Newton's step are taken together (primal-dual active set): few slices settle in some rounds. Those that do
+    not are solved one by one.
+
+    Args:
+        contact: b of them, all arrays with a first axis for them.
+        total: (b,) normal forces (N).
+    """
+    b, n = contact.gap.shape
+    F = np.broadcast_to(total[:, None] / n, (b, n)).copy()
+    active = np.ones((b, n), bool)
+    approach = np.zeros(b)
+    tangent = np.zeros(b)
+    running = np.arange(b)
+    for _ in range(_ROUNDS):
+        here = _chosen(contact, running)
+        force = F[running]
+        touches = active[running]
+        added, slope = _local(here, force, total[running, None])
+        # Slices out of contact keep a row of their own: F = 0.
+        A = here.compliance + slope[:, :, None] * np.eye(n)
+        A = np.where(touches[:, :, None] & touches[:, None, :], A, np.eye(n))
+        right = np.stack([touches, np.where(touches, here.gap + added - slope * force, 0.0)], axis=-1)
+        solved = np.linalg.solve(A, right.astype(float))
+        stiffness = solved[..., 0].sum(axis=1)
+        delta = (total[running] + solved[..., 1].sum(axis=1)) / stiffness
+        target = delta[:, None] * solved[..., 0] - solved[..., 1]
+        opening = np.einsum("bij,bj->bi", here.compliance, target) + here.gap - delta[:, None]
+        wanted = np.where(touches, target > 0.0, opening < 0.0)
+        settled = (wanted == touches).all(axis=1)
+        settled &= np.abs(target - force).max(axis=1) <= _FORCE_TOLERANCE * total[running]
+        approach[running] = delta
+        tangent[running] = stiffness
+        F[running] = np.maximum(target, 0.0)
+        active[running] = np.where(wanted.any(axis=1)[:, None], wanted, touches)
+        running = running[~settled]
+        if not len(running):
+            break
+    for i in running:
+        state = solve_contact(_chosen(contact, i), float(total[i]))
+        approach[i] = state.approach
+        tangent[i] = state.tangent
+    return approach, tangent
+
+
+def _chosen(contact: PositionContact, which: Any) -> PositionContact:
+    """Some, or one, of many contacts."""
+    return replace(
+        contact,
+        compliance=contact.compliance[which],
+        gap=contact.gap[which],
+        length=contact.length[which],
+        log_width=contact.log_width[which],
+        radius=contact.radius[which],
+    )

@@ -6,13 +6,19 @@ without load; the tangent stiffness is its derivative dF_bt / d delta at the loa
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.contact_points import Slices, contact_slices
-from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, moment_and_tangents, solve_contact
+from rotorgear.gears.loaded.loaded_contact import (
+    ContactState,
+    PositionContact,
+    moment_and_tangents,
+    solve_contact,
+    tangent_compliance,
+)
 from rotorgear.gears.loaded.slice_compliance import slice_compliances
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
 from rotorgear.progress import Progress, silent
@@ -21,7 +27,7 @@ from rotorgear.progress import Progress, silent
 _STRIP_MARGIN = 1.3
 _LEAST_PATCH = 0.08
 # A patch that has to grow becomes so much wider than its strip asks for.
-_WIDENING = 1.02
+_WIDENING = 1.05
 # In the plane a slice is a tooth pair's whole line. Its own compliance is seven times K / l and more, so that C + dg/dF stays
 # positive definite for strips up to six times as wide as their patches.
 _LEAST_TANGENT_IN_PLANE = -2.0
@@ -40,6 +46,10 @@ _MOST_PRESSURE = 4e9
 # First guesses: the load is spread over two thirds of the face, and the teeth give way as one pair of 8 N/(mm um) would.
 _FIRST_PEAK = 1.5
 _FIRST_STIFFNESS = 8e9
+
+
+class WideContactError(AnalysisError):
+    """A load under which the contact is no line any more."""
 
 
 @dataclass(frozen=True)
@@ -90,8 +100,11 @@ class MeshCycle:
 
     @property
     def least_eigenvalue(self) -> float:
-        """Smallest eigenvalue of all compliance matrices (m/N)."""
-        return min(float(np.linalg.eigvalsh(contact.compliance)[0]) for contact in self.contacts)
+        """Smallest eigenvalue of all tangent compliances (m/N): positive where the energy of the contact is convex."""
+        return min(
+            float(np.linalg.eigvalsh(tangent_compliance(contact, self.force[self.slices.at(i)]))[0])
+            for i, contact in enumerate(self.contacts)
+        )
 
     def share_by_pair(self) -> dict[int, np.ndarray]:
         """Share (p,) of each tooth pair in the load."""
@@ -112,22 +125,27 @@ def mesh_cycle(problem: ContactProblem, load: float, positions: np.ndarray, prog
     """Solve the contact at all positions for F_bt = load (N) on this helix.
 
     Raises:
-        AnalysisError: a load under which the contact is no line any more.
+        WideContactError: a load under which the contact is no line any more.
         ConvergenceError: a position has no solution to the tolerance.
     """
     # Corners as for a typical stiffness: a guess that spares passes. A few positions correct it before all are solved.
     beyond = _beyond(problem, _FIRST_PEAK * load / (_FIRST_STIFFNESS * problem.width) + problem.largest_gap)
     if len(positions) >= 2 * _STRIDE:
-        beyond = _followed(problem, load, positions[::_STRIDE], beyond, silent).beyond
+        beyond = _followed(problem, load, positions[::_STRIDE], beyond, silent, passes=1).beyond
     return _followed(problem, load, positions, beyond, progress)
 
 
 def _followed(
-    problem: ContactProblem, load: float, positions: np.ndarray, beyond: tuple[float, float], progress: Progress
+    problem: ContactProblem,
+    load: float,
+    positions: np.ndarray,
+    beyond: tuple[float, float],
+    progress: Progress,
+    passes: int = _PASSES,
 ) -> MeshCycle:
     """The cycle with corners followed as far as they touch, but not much farther: slices that never touch cost time."""
     for _ in range(_PASSES):
-        cycle = _swept(problem, load, positions, beyond, progress)
+        cycle = _swept(problem, load, positions, beyond, progress, passes)
         approach = float((cycle.deflection - cycle.no_load).max())
         wanted = _beyond(problem, approach + problem.largest_gap)
         near = all(have <= _MORE_BEYOND**2 * want for have, want in zip(beyond, wanted, strict=True))
@@ -149,13 +167,18 @@ def _beyond(problem: ContactProblem, approach: float) -> tuple[float, float]:
 
 
 def _swept(
-    problem: ContactProblem, load: float, positions: np.ndarray, beyond: tuple[float, float], progress: Progress
+    problem: ContactProblem,
+    load: float,
+    positions: np.ndarray,
+    beyond: tuple[float, float],
+    progress: Progress,
+    passes: int,
 ) -> MeshCycle:
-    """One sweep over all positions."""
+    """One sweep over all positions; passes: for the widths of patches at most."""
     cosine = float(np.cos(problem.line.base_helix_angle))
     slices = contact_slices(problem.line, positions, problem.width, problem.slices, beyond, stations=problem.uncoupled)
     gap = problem.gap(slices)
-    contacts, states, patch = _settled(problem, slices, gap, load / cosine, len(positions), progress)
+    contacts, states, patch = settled(problem, slices, gap, load / cosine, progress, passes=passes)
     force = np.concatenate([state.force for state in states])
     strip = np.concatenate([state.strip for state in states])
     place = slices.z @ slices.weight
@@ -188,22 +211,41 @@ def _swept(
     )
 
 
-def _settled(
-    problem: ContactProblem, slices: Slices, gap: np.ndarray, total: float, count: int, progress: Progress
+def settled(
+    problem: ContactProblem,
+    slices: Slices,
+    gap: np.ndarray,
+    total: float,
+    progress: Progress = silent,
+    known: tuple[list[PositionContact], np.ndarray] | None = None,
+    passes: int = _PASSES,
 ) -> tuple[list[PositionContact], list[ContactState], np.ndarray]:
-    """Contacts and states at all positions, with patches wider than the strips under them; and their least widths (n,)."""
+    """Contacts and states at all positions, with patches wider than the strips under them; and their least widths (n,).
+
+    Args:
+        problem: the helix.
+        slices: of all positions.
+        gap: (n,) along the flank normal (m).
+        total: normal force (N).
+        progress: told how far it is.
+        known: contacts and least widths of the same slices with other gaps.
+        passes: for the widths at most.
+    """
     cosine = float(np.cos(problem.line.base_helix_angle))
     # In the plane of action: length of the contact line dz / cos b_b, and R = rho_1 rho_2 / (rho_1 + rho_2) with
     # rho = xi / cos b_b.
     length = slices.length / cosine
     R = np.sum(slices.roll[0] * slices.roll[1] / slices.roll.sum(axis=0) * slices.weight, axis=1) / cosine
+    count = int(slices.position[-1]) + 1
     numbers = [slices.at(i) for i in range(count)]
-    patch = np.full(len(slices), _LEAST_PATCH)
-    contacts: dict[int, PositionContact] = {}
+    patch = np.full(len(slices), _LEAST_PATCH) if known is None else known[1].copy()
+    contacts = {} if known is None else {i: replace(one, gap=gap[numbers[i]]) for i, one in enumerate(known[0])}
     states: dict[int, ContactState] = {}
     unsettled = list(range(count))
-    for _ in range(_PASSES):
-        for i, compliance in zip(unsettled, slice_compliances(problem, slices, unsettled, patch), strict=True):
+    stale = set(unsettled) - contacts.keys()
+    for _ in range(passes):
+        without = [i for i in unsettled if i in stale]
+        for i, compliance in zip(without, slice_compliances(problem, slices, without, patch), strict=True):
             here = numbers[i]
             contacts[i] = PositionContact(
                 compliance=compliance.matrix,
@@ -215,6 +257,7 @@ def _settled(
                 modulus=problem.modulus,
                 least_tangent=_LEAST_TANGENT_IN_PLANE if problem.plane else 0.01,
             )
+        for i in unsettled:
             states[i] = solve_contact(contacts[i], total, states[i].force if i in states else None)
             _refuse_wide(float(states[i].strip.max()) / problem.module)
             progress((i + 1) / count, f"contact {i + 1} of {count}")
@@ -228,13 +271,14 @@ def _settled(
         for i in unsettled:
             short = wanted[i] > patch[numbers[i]]
             patch[numbers[i][short]] = _WIDENING * wanted[i][short]
+        stale = set(unsettled)
     return [contacts[i] for i in range(count)], [states[i] for i in range(count)], patch
 
 
 def _refuse_wide(strip: float) -> None:
     """Refuse a contact whose half-width in normal modules makes it no line contact."""
     if strip > _WIDEST_STRIP:
-        raise AnalysisError(
+        raise WideContactError(
             f"At this load the contact strip would be {2.0 * strip:.2g} modules wide, which is no line contact any more: "
             "reduce the torque."
         )

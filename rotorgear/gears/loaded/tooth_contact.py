@@ -80,16 +80,17 @@ class ContactProblem:
         """Upper bound of all gaps from deviations (m)."""
         return sum(flank.largest for flank in self.flanks) + abs(self.misalignment)
 
-    def gap(self, slices: Slices) -> np.ndarray:
-        """Gap (n,) of each slice along the flank normal before loading (m)."""
+    def gap(self, slices: Slices, period: int = 0) -> np.ndarray:
+        """Gap (n,) of each slice along the flank normal before loading (m), so many base pitches after position 0."""
         gap = slices.gap + self.misalignment * slices.z / self.width
         for i, flank in enumerate(self.flanks):
             form = self.line.form[i]
             tip = self.line.tip[i]
             gap = gap + flank.depth(slices.roll[i], slices.z, form, tip, self.width)
             # Pair -n comes into mesh n periods after pair 0.
-            gap = gap + flank.measured_depth(slices.roll[i], slices.z, -slices.pair, self.teeth[i])
-            gap = gap + flank.pitch_depth(-slices.pair, self.teeth[i])[:, None]
+            tooth = period - slices.pair
+            gap = gap + flank.measured_depth(slices.roll[i], slices.z, tooth, self.teeth[i])
+            gap = gap + flank.pitch_depth(tooth, self.teeth[i])[:, None]
         return np.asarray(np.sum(gap * slices.weight, axis=1))
 
 

@@ -376,7 +376,7 @@ class MeshLayout:
         """
         if self.part.stiffness != "tooth_fe" or not normal_force:
             return None
-        from rotorgear.gears.loaded.contact_map import contact_map
+        from rotorgear.gears.loaded.solved_map import contact_map
 
         try:
             # Rounding of the torque flow must not make another load: equal meshes are solved once.

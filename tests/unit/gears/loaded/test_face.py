@@ -22,7 +22,8 @@ PAIRS = {"helical": helical(misalignment=60e-6), "spur": pair(fe=ToothFe(preset=
 def test_static_springs_are_the_slopes_of_mean_deflection_and_moment(name: str, near: float) -> None:
     teeth = PAIRS[name]
     face = loaded_face(teeth, LOAD, POSITIONS)
-    h = 1e-3
+    # Corners are cut anew at each load: a wide step keeps that out of the difference.
+    h = 2e-2
     more, less = (loaded_face(teeth, LOAD * (1.0 + s), POSITIONS) for s in (h, -h))
     dF = 2.0 * h * LOAD
     assert (more.approach - less.approach) / dF == pytest.approx(1.0 / face.static.stiffness, rel=1e-3)

@@ -1,0 +1,157 @@
+"""Maps of tooth pairs against the loaded contact at single loads, with pitch errors, and kept on disk."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rotorgear.errors import AnalysisError
+from rotorgear.gears.geometry.flank import FlankGrid, FlankModification
+from rotorgear.gears.loaded.contact_map import ContactMap
+from rotorgear.gears.loaded.loaded_contact import PositionContact, solve_contact, solve_many
+from rotorgear.gears.loaded.map_store import kept_map
+from rotorgear.gears.loaded.solved_map import contact_map
+from rotorgear.gears.loaded.stiffness import loaded_cycle
+from rotorgear.gears.loaded.tooth_contact import contact_problem
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.tooth_fe.settings import ToothFe
+from tests.unit.gears.tooth_pairs import LOAD, cycle, helical, pair, spur
+
+POSITIONS = 8
+
+
+def normal(teeth: ToothPair, map_: ContactMap, factor: float) -> np.ndarray:
+    """Approach (p,) along the flank normal of the loaded contact itself, at a multiple of the working load."""
+    cosine = np.cos(teeth.pair.base_helix_angle)
+    return np.asarray(cycle(teeth, factor * LOAD * cosine, len(map_.position)).deflection * cosine)
+
+
+@pytest.mark.parametrize("factor", [0.13, 1.0, 3.21])
+def test_the_map_of_a_spur_pair_is_its_loaded_contact(factor: float) -> None:
+    found = contact_map(spur(), LOAD, POSITIONS)
+    exact = normal(spur(), found, factor)
+    assert found.approach_at(factor * LOAD, found.position) == pytest.approx(exact, rel=2e-3)
+    assert found.force(exact, found.position) == pytest.approx(np.full(POSITIONS, factor * LOAD), rel=3e-3)
+
+
+def test_the_map_of_a_helical_pair_is_its_loaded_contact() -> None:
+    found = contact_map(helical(), LOAD, POSITIONS)
+    # At the working load it is solved in the same way; at others, patches and reach of corners are those of the next bound.
+    for factor, tolerance in ((1.0, 1e-9), (0.3, 3e-3), (1.5, 3e-3), (5.0, 1e-9)):
+        exact = normal(helical(), found, factor)
+        assert found.approach_at(factor * LOAD, found.position) == pytest.approx(exact, rel=tolerance)
+
+
+@pytest.mark.parametrize("teeth", [spur(), helical()], ids=["spur", "helical"])
+def test_force_rises_with_approach_and_its_tangent_is_the_slope(teeth: ToothPair) -> None:
+    found = contact_map(teeth, LOAD, POSITIONS)
+    delta = np.linspace(0.0, 1.3 * found.approach.max(), 400)
+    for u in (0.0, 0.3, 0.62):
+        force = found.force(delta, u)
+        assert np.all(np.diff(force[delta > found.no_load(u)]) > 0.0)
+        step = 1e-6 * delta[1:]
+        slope = (found.force(delta[1:] + step, u) - found.force(delta[1:] - step, u)) / (2.0 * step)
+        inside = delta[1:] > found.no_load(u) + 1e-7
+        assert found.stiffness(delta[1:], u)[inside] == pytest.approx(slope[inside], rel=1e-3)
+
+
+def test_above_its_loads_a_map_says_so() -> None:
+    found = contact_map(spur(), LOAD, POSITIONS)
+    assert found.beyond([0.0, found.largest_load]) is None
+    assert "solved up to" in str(found.beyond(1.01 * found.largest_load))
+
+
+def test_many_contacts_at_once_are_each_of_them_alone() -> None:
+    rng = np.random.default_rng(3)
+    b, n = 40, 3
+    root = rng.normal(size=(b, n, n))
+    many = PositionContact(
+        compliance=1e-10 * (root @ root.transpose(0, 2, 1) + 4.0 * np.eye(n)),
+        gap=8e-6 * rng.random((b, n)),
+        length=np.full((b, n), 54e-3),
+        local=np.full(2, 2.8e-12),
+        log_width=np.full((b, n, 2), np.log(1e-3)),
+        radius=np.full((b, n), 0.02),
+        modulus=1.13e11,
+        least_tangent=-2.0,
+    )
+    load = np.geomspace(10.0, 1e5, b)
+    approach, tangent = solve_many(many, load)
+    for i in range(b):
+        one = replace(
+            many,
+            compliance=many.compliance[i],
+            gap=many.gap[i],
+            length=many.length[i],
+            log_width=many.log_width[i],
+            radius=many.radius[i],
+        )
+        state = solve_contact(one, load[i])
+        assert approach[i] == pytest.approx(state.approach, rel=1e-10)
+        assert tangent[i] == pytest.approx(state.tangent, rel=1e-8)
+
+
+def test_a_wrong_tooth_is_felt_once_a_turn() -> None:
+    teeth = spur(first_flank=FlankModification(pitch_error=((5, 20e-6),)))
+    found = contact_map(teeth, LOAD, POSITIONS)
+    assert found.periods == 34
+    exact = loaded_cycle(teeth, LOAD, found.position)[1].deflection
+    assert found.approach_at(LOAD, found.position) == pytest.approx(exact, rel=1e-9)
+    exact_teeth = contact_map(spur(), LOAD, POSITIONS).approach_at(LOAD, found.position)
+    assert np.abs(found.approach_at(LOAD, found.position) - exact_teeth).max() > 3e-6
+    assert np.sum(np.abs(found.approach_at(LOAD, found.position) - exact_teeth) > 1e-9) <= 3 * POSITIONS
+
+
+def test_topography_of_one_tooth_is_felt_once_a_turn() -> None:
+    line = contact_problem(spur()).line
+    deep = FlankGrid((line.form[0], line.tip[0]), (-0.1, 0.1), ((4e-6, 4e-6), (4e-6, 4e-6)))
+    measured = contact_map(spur(first_flank=FlankModification(tooth_topography=((5, deep),))), LOAD, POSITIONS)
+    set_back = contact_map(spur(first_flank=FlankModification(pitch_error=((5, 4e-6),))), LOAD, POSITIONS)
+    assert measured.periods == 34
+    assert measured.approach == pytest.approx(set_back.approach, rel=1e-6)
+
+
+def test_alike_errors_of_all_teeth_only_shift_the_map() -> None:
+    teeth = spur(first_flank=FlankModification(pitch_error=tuple((i, 7e-6) for i in range(34))))
+    moved = contact_map(teeth, LOAD, POSITIONS)
+    exact = contact_map(spur(), LOAD, POSITIONS)
+    assert moved.periods == 1
+    assert moved.approach == pytest.approx(exact.approach + 7e-6, rel=1e-9)
+
+
+def test_too_many_differing_periods_are_refused() -> None:
+    rng = np.random.default_rng(1)
+    flanks = [FlankModification(pitch_error=tuple(enumerate(1e-6 * rng.random(z)))) for z in (34, 80)]
+    with pytest.raises(AnalysisError, match="of 1360 base pitches differ"):
+        contact_map(spur(first_flank=flanks[0], second_flank=flanks[1]), LOAD, POSITIONS)
+
+
+def test_a_kept_map_is_read_again_and_another_key_is_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROTORGEAR_CACHE", str(tmp_path))
+    monkeypatch.setattr("rotorgear.gears.loaded.map_store._WORTH", 0.0)
+    u = np.arange(4) / 4
+    long = np.zeros(5000)
+    made = ContactMap(u, 1, np.array([0.0, 1.0]), np.ones((4, 2)), ("a note",), np.ones((4, 2)))
+    calls = []
+
+    def solve() -> ContactMap:
+        calls.append(1)
+        return made
+
+    first = kept_map((pair(), 1.0, long), solve)
+    again = kept_map((pair(), 1.0, long), solve)
+    assert len(calls) == 1
+    assert np.array_equal(again.approach, first.approach)
+    assert again.warnings == ("a note",)
+    # The middle of a long array counts as well.
+    long[2500] = 1.0
+    kept_map((pair(), 1.0, long), solve)
+    kept_map((pair(fe=ToothFe("fine")), 1.0, long), solve)
+    assert len(calls) == 3
+    for file in tmp_path.iterdir():
+        file.write_bytes(b"broken")
+    kept_map((pair(), 1.0, long), solve)
+    assert len(calls) == 4
