@@ -20,7 +20,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 # Points that are solved together: their loads and slopes take memory.
 _TOGETHER = 8192
@@ -78,7 +78,7 @@ class ContactMap:
 
     def approaches(self, load: np.ndarray) -> np.ndarray:
         """Approach (p, n) in m at all positions of the map under n loads in N, from 0 to the largest load."""
-        return np.asarray(self._deflection_of_load(load))
+        return np.asarray(CubicHermiteSpline(self.load, self.approach, self._monotone, axis=1)(load))
 
     def force(self, delta: Any, u: Any) -> np.ndarray:
         """Force in N at approaches delta in m and positions u, both of shapes that broadcast; 0 where no tooth touches."""

@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 from rotorgear.gears.loaded.face import load_per_width, loaded_face
+from rotorgear.gears.loaded.loaded_contact import solve_contact
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle
+from rotorgear.gears.loaded.stiffness import loaded_cycle
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.model.layout.mesh_layout import mirrored
 from tests.unit.gears.tooth_pairs import LOAD, WIDTH, cycle, helical, pair
@@ -17,17 +20,26 @@ POSITIONS = 16
 PAIRS = {"helical": helical(misalignment=60e-6), "spur": pair(fe=ToothFe(preset="preview"), misalignment=20e-6)}
 
 
+def _pressed(found: MeshCycle, force: float) -> tuple[float, float]:
+    """Mean approach and moment of the contacts of a cycle under another force along the normal."""
+    place = found.slices.z @ found.slices.weight
+    states = [solve_contact(contact, force) for contact in found.contacts]
+    moments = [state.force @ place[found.slices.at(i)] for i, state in enumerate(states)]
+    return float(np.mean([state.approach for state in states])), float(np.mean(moments))
+
+
 # The coarse slices of the helical pair come off one at a time, and corners are cut anew where the misalignment changes.
 @pytest.mark.parametrize(("name", "near"), [("helical", 0.05), ("spur", 5e-3)])
 def test_static_springs_are_the_slopes_of_mean_deflection_and_moment(name: str, near: float) -> None:
     teeth = PAIRS[name]
     face = loaded_face(teeth, LOAD, POSITIONS)
-    # Corners are cut anew at each load: a wide step keeps that out of the difference.
-    h = 2e-2
-    more, less = (loaded_face(teeth, LOAD * (1.0 + s), POSITIONS) for s in (h, -h))
+    # The same slices and patches under a little more and less: at each load of their own they would be cut anew.
+    contacts = loaded_cycle(teeth, LOAD * np.cos(teeth.pair.base_helix_angle), np.arange(POSITIONS) / POSITIONS)[1]
+    h = 1e-3
+    more, less = (_pressed(contacts, LOAD * (1.0 + s)) for s in (h, -h))
     dF = 2.0 * h * LOAD
-    assert (more.approach - less.approach) / dF == pytest.approx(1.0 / face.static.stiffness, rel=1e-3)
-    assert (more.moment - less.moment) / dF == pytest.approx(face.static.place, rel=5e-3)
+    assert (more[0] - less[0]) / dF == pytest.approx(1.0 / face.static.stiffness, rel=1e-3)
+    assert (more[1] - less[1]) / dF == pytest.approx(face.static.place, rel=5e-3)
 
     step = 1e-6
     wider, closer = (
