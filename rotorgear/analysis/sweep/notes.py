@@ -56,6 +56,17 @@ def coarse_shafts(model: Model, elements: int | None) -> tuple[str, ...]:
     return ("each shaft segment has one element of second order: compare with --elements 8, say",)
 
 
+def tilts_held(model: Model) -> tuple[str, ...]:
+    """What a sweep leaves out of meshes that feel the tilt of their shafts."""
+    tilted = [name for name, mesh in model.meshes.items() if mesh.tilt]
+    if not tilted:
+        return ()
+    return (
+        f"how the load moves along the face of {', '.join(tilted)} in time is left out: the flanks resist a tilt by the tangent "
+        "about the static equilibrium, even where they part",
+    )
+
+
 def idle(axes: Sequence[Axis], points: Sequence[Point | None]) -> list[Axis]:
     """Axes along which all systems are the same to the last bit."""
     seen: dict[bytes, int] = {}

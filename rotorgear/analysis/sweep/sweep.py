@@ -14,7 +14,7 @@ from rotorgear.analysis.sweep.axes import Axis, Family, axis_of, points_of
 from rotorgear.analysis.sweep.blocks import Pool, Workers, blocks, packed, unpacked, waves
 from rotorgear.analysis.sweep.classify import CHAOS, TOLERANCE
 from rotorgear.analysis.sweep.gather import gathered
-from rotorgear.analysis.sweep.notes import coarse_shafts
+from rotorgear.analysis.sweep.notes import coarse_shafts, tilts_held
 from rotorgear.analysis.sweep.point import Point, PointMaker
 from rotorgear.analysis.sweep.portrait import Wanted, portraits_of, wanted_points
 from rotorgear.analysis.sweep.reduce import Large
@@ -125,7 +125,13 @@ def sweep(
     laps["integration"] = clock.perf_counter() - begun - laps["points"]
     result = gathered(model, axes, values, points, failure, chosen, request, orbits, laps, reduction)
     result = replace(
-        result, warnings=(*result.warnings, *coarse_shafts(model, elements), *rolling_notes(model, rolls=True))
+        result,
+        warnings=(
+            *result.warnings,
+            *coarse_shafts(model, elements),
+            *tilts_held(model),
+            *rolling_notes(model, rolls=True),
+        ),
     )
     if wanted:
         result = replace(result, portraits=portraits_of(result, wanted, points, request, orbits, progress))
