@@ -4,9 +4,9 @@
     p = order * angle + phase,     u = forward * (order * angle + path phase) / 2 pi
 
 The map comes as approaches delta(F_j; u_i) under loads F_j from 0, all flanks, modifications, pitch errors and corners inside
-(Ozguven and Houser, J. Sound Vib. 125 (1988) 71). It is turned over into forces at even steps of x, and taken linear between
-these and between positions: F rises with x everywhere, and a position has the given approach under each load. Above the largest
-load it goes on along its tangent. The contact pushes only: teeth part by themselves, and a coast flank is a law of its own.
+(Ozguven and Houser, J. Sound Vib. 125 (1988) 71). It is turned over into forces at even steps of x, linear between these, and
+smooth between positions: F rises with x, and a position has the given approach under each load. Above the largest load it goes
+on along its tangent. The contact pushes only: teeth part by themselves, and a coast flank is a law of its own.
 Damping goes with the stiffness that carries, from zero at first touch over one step of x: c is what it is at k. It never pulls
 where `contact_damping` is non-adhesive; "penetration" is c x/reference (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440).
 """
@@ -53,9 +53,12 @@ _TURN = 2.0 * np.pi
 # A row: delta_0, then at each step of x the force, the tangent stiffness and the energy.
 FORCE, TANGENT, ENERGY = range(3)
 NODE = 3
-# Places of the state: e + delta_0 and its rate, where the rows before and after the position begin, the share of the way from
-# one to the other, and its rate.
-E_NOW, E_RATE, BEFORE, AFTER, SHARE, SHARE_RATE = range(6)
+# Places of the state: e + delta_0 and its rate, then for each of the four rows about the position where it begins, its weight,
+# and the rate of that.
+E_NOW, E_RATE, ABOUT = range(3)
+BEGIN, WEIGHT, RATE = range(3)
+ROW = 3
+NEAREST = 4
 
 
 @schedule_function
@@ -77,16 +80,33 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     turns = p[FORWARD] * (p[ORDER] * angle + p[PATH_PHASE]) / _TURN / p[PERIODS]
     at = (turns - np.floor(turns)) * rows
     i = min(int(at), rows - 1)
-    share = at - i
-    before = first + i * length
-    after = first + ((i + 1) % rows) * length
-    share_rate = rows * p[FORWARD] * rate / _TURN / p[PERIODS]
-    s[E_NOW] = error + (1.0 - share) * p[before] + share * p[after]
-    s[E_RATE] = slope * rate + share_rate * (p[after] - p[before])
-    s[BEFORE] = before
-    s[AFTER] = after
-    s[SHARE] = share
-    s[SHARE_RATE] = share_rate
+    x = at - i
+    # Cubic with the slopes of central differences (Catmull and Rom): rates without jumps, for work is done by them.
+    weights = (
+        0.5 * x * (2.0 * x - x * x - 1.0),
+        0.5 * (2.0 + x * x * (3.0 * x - 5.0)),
+        0.5 * x * (1.0 + 4.0 * x - 3.0 * x * x),
+        0.5 * x * x * (x - 1.0),
+    )
+    slopes = (
+        0.5 * (4.0 * x - 3.0 * x * x - 1.0),
+        0.5 * x * (9.0 * x - 10.0),
+        0.5 * (1.0 + 8.0 * x - 9.0 * x * x),
+        0.5 * x * (3.0 * x - 2.0),
+    )
+    passing = rows * p[FORWARD] * rate / _TURN / p[PERIODS]
+    touch = 0.0
+    touch_rate = 0.0
+    for k in range(NEAREST):
+        begin = first + ((i + k - 1) % rows) * length
+        own = ABOUT + ROW * k
+        s[own + BEGIN] = begin
+        s[own + WEIGHT] = weights[k]
+        s[own + RATE] = slopes[k] * passing
+        touch += weights[k] * p[begin]
+        touch_rate += slopes[k] * passing * p[begin]
+    s[E_NOW] = error + touch
+    s[E_RATE] = slope * rate + touch_rate
 
 
 @force_function
@@ -104,11 +124,10 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     bend = 0.0
     stored = 0.0
     driven = 0.0
-    for which in range(2):
-        row = int(s[BEFORE] if which == 0 else s[AFTER])
-        weight = 1.0 - s[SHARE] if which == 0 else s[SHARE]
-        sign = -1.0 if which == 0 else 1.0
-        own = row + 1 + NODE * i
+    for k in range(NEAREST):
+        about = ABOUT + ROW * k
+        weight = s[about + WEIGHT]
+        own = int(s[about + BEGIN]) + 1 + NODE * i
         slope = (p[own + NODE + FORCE] - p[own + FORCE]) / h
         turn = (p[own + NODE + TANGENT] - p[own + TANGENT]) / h if past <= h else 0.0
         elastic += weight * (p[own + FORCE] + slope * past)
@@ -117,7 +136,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         bend += weight * turn
         work = p[own + ENERGY] + p[own + FORCE] * past + 0.5 * slope * past * past
         stored += weight * work
-        driven += sign * s[SHARE_RATE] * work
+        driven += s[about + RATE] * work
     damping = p[PER_K] * carries
     growth = p[PER_K] * bend
     if int(p[MODE]) == PENETRATION:
@@ -187,8 +206,8 @@ class MeshMap(ForceLaw):
         return schedule, force
 
     def state_size(self) -> int:
-        """e + delta_0, its rate, both rows, the share between them and its rate."""
-        return 6
+        """e + delta_0, its rate, and four rows with their weights and rates."""
+        return ABOUT + ROW * NEAREST
 
     @property
     def spacing(self) -> float:
