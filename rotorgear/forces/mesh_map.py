@@ -6,7 +6,7 @@
 The map comes as approaches delta(F_j; u_i) under loads F_j from 0, all flanks, modifications, pitch errors and corners inside
 (Ozguven and Houser, J. Sound Vib. 125 (1988) 71). It is turned over into forces at even steps of x, linear between these, and
 smooth between positions: F rises with x, and a position has the given approach under each load. Above the largest load it goes
-on along its tangent. The contact pushes only: teeth part by themselves, and a coast flank is a law of its own.
+on along its tangent. The contact pushes only: teeth part by themselves. Coast flanks on the same line are a map F_coast(-d).
 Damping goes with the stiffness that carries, from zero at first touch over one step of x: c is what it is at k. It never pulls
 where `contact_damping` is non-adhesive; "penetration" is c x/reference (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440).
 """
@@ -25,7 +25,7 @@ from rotorgear.forces.mesh_contact import DAMPINGS
 from rotorgear.solvers.contact.gap_contact import curve_contact
 from rotorgear.solvers.contact.kinds import PENETRATION
 from rotorgear.solvers.lanes.columns import ERROR, OWN_LAW, SLOPE, STIFFNESS, TABLE_ROWS, Column
-from rotorgear.solvers.time.compiled import force_function, schedule_function
+from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
 
 # Steps of x up to the largest load, and loads between which the map is turned over.
 STEPS = 192
@@ -33,7 +33,8 @@ _LOADS = 1500
 # Harmonics of a base pitch that count: teeth part, and corners strike.
 _HARMONICS = 10
 _TURN = 2.0 * np.pi
-# Places of the parameters, which cosine and sine of each harmonic of e follow, and then the rows of the map.
+# Places of the parameters, which cosine and sine of each harmonic of e follow, and then the rows of the map; COAST is where the
+# parameters of the coast flanks begin, or 0.
 (
     SPACING,
     PER_K,
@@ -48,8 +49,9 @@ _TURN = 2.0 * np.pi
     ROWS,
     HARMONICS,
     E_MEAN,
+    COAST,
     SERIES,
-) = range(14)
+) = range(15)
 # A row: delta_0, then at each step of x the force, the tangent stiffness and the energy.
 FORCE, TANGENT, ENERGY = range(3)
 NODE = 3
@@ -59,11 +61,12 @@ E_NOW, E_RATE, ABOUT = range(3)
 BEGIN, WEIGHT, RATE = range(3)
 ROW = 3
 NEAREST = 4
+FLANK_STATE = ABOUT + ROW * NEAREST
 
 
-@schedule_function
-def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
-    """Fill e + delta_0, its rate, and the position between two rows of the map."""
+@compiled
+def place_flank(angle, speed, p, s):  # type: ignore[no-untyped-def]
+    """Fill e + delta_0, its rate, and the rows of the map about the position."""
     rate = p[ORDER] * speed
     phase = p[ORDER] * angle + p[PHASE]
     error = p[E_MEAN]
@@ -109,11 +112,20 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     s[E_RATE] = slope * rate + touch_rate
 
 
-@force_function
-def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
-    """Force along the flank normal, positive where the flanks are pressed."""
-    x = d[0] - s[E_NOW]
-    rate = v[0] - s[E_RATE]
+@schedule_function
+def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
+    """Fill the state of the working flanks, and that of the coast flanks behind it."""
+    place_flank(angle, speed, p, s)
+    coast = int(p[COAST])
+    if coast > 0:
+        place_flank(angle, speed, p[coast:], s[FLANK_STATE:])
+
+
+@compiled
+def press_flank(p, s, d, v):  # type: ignore[no-untyped-def]
+    """Contact of one side of the teeth at its approach, its energy, and the power that the passing of the map puts in."""
+    x = d - s[E_NOW]
+    rate = v - s[E_RATE]
     depth = max(x, 0.0)
     h = p[SPACING]
     i = min(int(depth / h), STEPS - 1) if depth < STEPS * h else STEPS - 1
@@ -143,13 +155,31 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         damping = p[C] * depth * p[PER_DEPTH]
         growth = p[C] * p[PER_DEPTH]
     now = curve_contact(int(p[MODE]), elastic, stiffness, damping, growth, x, rate)
+    return now, stored, driven
+
+
+@force_function
+def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
+    """Force along the flank normal, positive where the working flanks are pressed; the coast flanks push the other way."""
+    now, stored, driven = press_flank(p, s, d[0], v[0])
     F[0] = now.force
     Kd[0] = now.stiffness
     Kv[0] = now.damping
     energy[0] = stored
     energy[1] = driven - now.force * s[E_RATE]
-    energy[2] = now.resisted * rate
+    energy[2] = now.resisted * (v[0] - s[E_RATE])
     energy[3] = now.side
+    coast = int(p[COAST])
+    if coast > 0:
+        behind = s[FLANK_STATE:]
+        back, stored, driven = press_flank(p[coast:], behind, -d[0], -v[0])
+        F[0] -= back.force
+        Kd[0] += back.stiffness
+        Kv[0] += back.damping
+        energy[0] += stored
+        energy[1] += driven - back.force * behind[E_RATE]
+        energy[2] += back.resisted * (-v[0] - behind[E_RATE])
+        energy[3] -= back.side
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,6 +206,7 @@ class MeshMap(ForceLaw):
     error_mean: float = parameter("m", "constant part of e", 0.0)
     error_cos: tuple[float, ...] = parameter("m", "a_n of e(p)", ())
     error_sin: tuple[float, ...] = parameter("m", "b_n of e(p)", ())
+    coast: MeshMap | None = parameter("", "the map of the coast flanks, which d < 0 presses", None)  # noqa: RUF009
     expanded: bool = parameter("", "whether solvers expand about k and c: not on a flank that is mostly open", True)
 
     def __post_init__(self) -> None:
@@ -206,8 +237,8 @@ class MeshMap(ForceLaw):
         return schedule, force
 
     def state_size(self) -> int:
-        """e + delta_0, its rate, and four rows with their weights and rates."""
-        return ABOUT + ROW * NEAREST
+        """Of each side of the teeth: e + delta_0, its rate, and four rows with their weights and rates."""
+        return FLANK_STATE * (1 if self.coast is None else 2)
 
     @property
     def spacing(self) -> float:
@@ -257,8 +288,10 @@ class MeshMap(ForceLaw):
             len(self.approach),
             count,
             self.error_mean,
+            0 if self.coast is None else SERIES + series.size + self.rows.size,
         ]
-        return np.concatenate([head, series.ravel(), self.rows.ravel()])
+        behind = np.zeros(0) if self.coast is None else self.coast.parameters()
+        return np.concatenate([head, series.ravel(), self.rows.ravel(), behind])
 
     def closed_stiffness(self) -> np.ndarray:
         """k."""
@@ -298,7 +331,9 @@ class MeshMap(ForceLaw):
 
     def mean(self) -> MeshMap:
         """The same map at one position: the mean approach under each load, so that the mean force has the mean approach."""
-        return replace(self, approach=self.approach.mean(axis=0)[None], periods=1, error_cos=(), error_sin=())
+        behind = self.coast and self.coast.mean()
+        still = self.approach.mean(axis=0)[None]
+        return replace(self, approach=still, periods=1, error_cos=(), error_sin=(), coast=behind)
 
     def repeats(self) -> tuple[Repeats, ...]:
         """The mesh cycle, or the several base pitches after which the map repeats."""
@@ -309,7 +344,8 @@ class MeshMap(ForceLaw):
 
     def columns(self, speed: float = 1.0) -> tuple[Column, ...]:
         """By the compiled functions, one system at a time; contact is counted."""
-        return (Column(OWN_LAW, stiffness=self.stiffness, damping=self.damping, counted=True),)
+        gap = 0.0 if self.coast is None else self.coast.error_mean + float(self.coast.approach[:, 0].mean())
+        return (Column(OWN_LAW, stiffness=self.stiffness, damping=self.damping, clearance=max(gap, 0.0), counted=True),)
 
     def table(self, angles: np.ndarray, states: np.ndarray, order: float) -> np.ndarray:
         """e + delta_0 and its slope over the sweep's time, which the statistics of the approach take."""
@@ -336,5 +372,9 @@ class MeshMap(ForceLaw):
             cls(load, approach, 3e8, 900.0, **ripple),
             cls(load, approach, 3e8, 900.0, contact_damping="adhesive", **ripple),
             cls(load, approach, 3e8, 900.0, contact_damping="penetration", reference=3e-6, **ripple),
+            replace(
+                cls(load, approach, 3e8, 900.0, **ripple),
+                coast=cls(load, approach, 3e8, 900.0, order=20.0, path_phase=0.2, error_mean=2e-5, error_cos=(-1e-6,)),
+            ),
             cls(load, approach, 3e8, order=3.0, forward=-1, periods=2, error_mean=1e-6, error_sin=(0.0, 1e-6)),
         )

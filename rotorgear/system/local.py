@@ -151,31 +151,30 @@ def _mesh_parts(system: System) -> list[LocalPart]:
         coast = columns_at(system, dofs[:12], contact_vector(turned)[None])
         teeth = load.contact_map(force)
         law: MeshContact | MeshMap = spring
+        coast_law: MeshContact | MeshMap = _back(spring)
         # A map begins where its flanks touch, a spring about a mean state does not.
         touching = replace(spring, error_mean=_gap(system, force))
         if teeth is not None:
-            law = _loaded_teeth(touching, teeth, force, spring.phase)
+            loaded = _loaded_teeth(touching, teeth, force, spring.phase)
+            law = loaded
             if spring.impact:
                 blow = replace(spring, stiffness=0.0, damping=0.0, gap="bilateral", expanded=False)
                 found.append(LocalPart(part, f"{label} impact", blow, column))
+            if spring.gap != "bilateral":
+                behind = force.on_other_flank
+                other_teeth = load.contact_map(behind)
+                assert other_teeth is not None  # its working load is that of the other flank
+                phase = load.on_other_flank(contact.mesh).phase(contact) or 0.0
+                coast_loaded = _loaded_teeth(_back(touching), other_teeth, behind, phase)
+                coast_law = coast_loaded
+                if spring.gap == "dead zone":
+                    law = replace(loaded, coast=coast_loaded)
         found.append(LocalPart(part, label, law, column, is_mesh=True))
         rubbing = friction_part(system, force, geometry, label, spring, dofs[:12], column)
         if rubbing is not None:
             found.append(rubbing)
-        back = f"{label} back"
-        if teeth is None and spring.gap == "unilateral":
-            found.append(LocalPart(part, back, _back(spring), coast, is_mesh=True))
-        mesh = system.layout.mesh(contact.mesh).part
-        if teeth is not None and mesh.backlash is not None:
-            behind = force.on_other_flank
-            teeth = load.contact_map(behind)
-            assert teeth is not None  # its working load is that of the other flank
-            phase = load.on_other_flank(contact.mesh).phase(contact) or 0.0
-            if mesh.coast_flank == "line":
-                coast = -column
-            found.append(
-                LocalPart(part, back, _loaded_teeth(_back(touching), teeth, behind, phase), coast, is_mesh=True)
-            )
+        if spring.gap == "unilateral":
+            found.append(LocalPart(part, f"{label} back", coast_law, coast, is_mesh=True))
     return found
 
 

@@ -44,6 +44,11 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
                 f"meshes.{name}: what changes with the load; '{curve.model}' gives the stiffness over the mesh cycle at "
                 f"F_bt = {curve.load:.4g} N, and no transmission error without a load"
             )
+    for name, mesh in meshes.items():
+        if mesh.stiffness == "tooth_fe" and not mesh.tilt:
+            notes.append(
+                f"meshes.{name}: the tilt of its gears along the face, which its teeth do not feel without tilt = true"
+            )
     tilted = [name for name, mesh in meshes.items() if mesh.face_loads]
     if tilted:
         notes.append(

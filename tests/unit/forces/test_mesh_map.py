@@ -73,7 +73,7 @@ def test_run_the_other_way_the_map_is_met_from_its_end() -> None:
 
 
 def test_a_map_over_several_base_pitches_repeats_after_all_of_them() -> None:
-    law = MeshMap.examples()[3]
+    law = MeshMap.examples()[4]
     (repeats,) = law.repeats()
     assert repeats.order == pytest.approx(abs(law.order) / 2)
     d = law.approach.mean()
@@ -88,6 +88,19 @@ def test_the_mean_map_has_the_mean_approach_under_each_load() -> None:
     for load, approach in zip(bare.load[2:], bare.approach.mean(axis=0)[2:], strict=True):
         force = bare.mean().evaluate(approach).force[0]
         assert force == pytest.approx(load, rel=2e-4, abs=1e-2 * bare.load[-1] / STEPS)
+
+
+def test_the_coast_flanks_push_back_behind_the_backlash() -> None:
+    law = MeshMap.examples()[3]
+    assert law.coast is not None
+    gap = law.coast.error_mean + law.coast.approach.min()
+    free = law.evaluate(-0.5 * gap, angle=0.1)
+    assert free.force[0] == 0.0 == free.contact
+    deep = law.evaluate(-2.0 * gap, -0.01, angle=0.1)
+    alone = law.coast.evaluate(2.0 * gap, 0.01, angle=0.1)
+    assert deep.force[0] == pytest.approx(-alone.force[0], rel=1e-12)
+    assert deep.in_displacement == pytest.approx(alone.in_displacement, rel=1e-12)
+    assert deep.contact == -1
 
 
 @pytest.mark.parametrize("share", [0.1, 0.2, 0.4])
