@@ -72,6 +72,7 @@ def test_the_band_holds_ninety_percent_of_what_the_tolerances_allow(best: rg.Mes
     assert fixed.mean_band == pytest.approx((fixed.mean, fixed.mean), rel=1e-12)
 
 
+@pytest.mark.long
 def test_weights_choose_the_torque_that_counts() -> None:
     low = found(variables=["profile_crowning"], weights=[1, 0])
     high = found(variables=["profile_crowning"], weights=[0, 1])
@@ -80,7 +81,8 @@ def test_weights_choose_the_torque_that_counts() -> None:
     assert low.mean == pytest.approx(low.ste[0, 0], rel=1e-12)
 
 
-def test_a_pressure_limit_holds_or_is_refused() -> None:
+@pytest.mark.long
+def test_a_pressure_limit_holds() -> None:
     free = found(variables=["profile_crowning"], evaluations=28)
     worst = float(free.largest_pressure.max())
     bare = rg.mesh_map(rg.loads(TEXT), over=OVER, positions=8).largest_pressure.max()
@@ -88,6 +90,9 @@ def test_a_pressure_limit_holds_or_is_refused() -> None:
     held = found(variables=["profile_crowning"], pressure_limit=float(limit), evaluations=28)
     assert held.largest_pressure.max() <= limit
     assert held.mean >= free.mean
+
+
+def test_a_pressure_limit_that_no_flank_keeps_is_refused() -> None:
     with pytest.raises(rg.AnalysisError, match="keeps the pressure limit"):
         found(variables=["profile_crowning"], pressure_limit="100 MPa", evaluations=10)
 
