@@ -10,7 +10,7 @@ in normal modules. Reference: E. L. Wilson, AIAA Journal 3 (1965) 2269, structur
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -25,7 +25,8 @@ from rotorgear.gears.tooth_fe.elasticity import assembled, component_dofs, lame
 # Largest side of an element over the thickness of its part, and in normal modules along the radius and along the axis. Along the
 # axis it is no coarser than the layers of the teeth above: what they do between two nodes of the blank would meet no resistance.
 _ACROSS_PART = 1.0 / 6.0
-_LARGEST_SIDE = (3.0, 0.8)
+_RADIAL_SIDE = 3.0
+AXIAL_SIDE = 0.8
 # Harmonics up to here are worked out one by one; beyond, K(n) is so smooth that a spline through some of them serves.
 _EVERY = 12
 _STEP = 1.25
@@ -54,6 +55,7 @@ class BlankSection:
         width: of the rim.
         outer_radius: of the circle.
         poisson_ratio: of the material.
+        axial_side: largest side of an element along the axis.
 
     Attributes:
         z: (k,) places along the axis of the nodes on the circle, rising.
@@ -64,8 +66,10 @@ class BlankSection:
         unknowns: degrees of freedom of the section.
     """
 
-    def __init__(self, shape: BlankShape, width: float, outer_radius: float, poisson_ratio: float) -> None:
-        points, cells = _section_mesh(parts_of(shape, width, outer_radius))
+    def __init__(
+        self, shape: BlankShape, width: float, outer_radius: float, poisson_ratio: float, axial_side: float = AXIAL_SIDE
+    ) -> None:
+        points, cells = _section_mesh(parts_of(shape, width, outer_radius), axial_side)
         self.points = points
         self.radius = points[:, 0]
         on_circle = self.radius > outer_radius * (1.0 - 1e-9)
@@ -94,15 +98,13 @@ class BlankSection:
         condensed = K[circle][:, circle].toarray() - couple.T @ factor.solve(couple)
         return np.asarray(0.5 * (condensed + condensed.T))
 
-    def stiffnesses(self, harmonics: int) -> np.ndarray:
-        """K (harmonics + 1, 3 k, 3 k) for harmonics from 0, those beyond the twelfth by a spline through some of them."""
+    def stiffnesses(self, harmonics: int) -> Callable[[int], np.ndarray]:
+        """K (3 k, 3 k) by harmonic, 0 to `harmonics`; those beyond the twelfth by a spline through some of them."""
         chosen = list(range(min(_EVERY, harmonics) + 1))
         while chosen[-1] < harmonics:
             chosen.append(min(harmonics, max(chosen[-1] + 1, round(_STEP * chosen[-1]))))
-        known = np.array([self.stiffness(n) for n in chosen])
-        if len(chosen) == harmonics + 1:
-            return known
-        return np.asarray(CubicSpline(chosen, known)(np.arange(harmonics + 1)))
+        # A spline passes through what it was made of.
+        return CubicSpline(chosen, np.array([self.stiffness(n) for n in chosen]))
 
     def twist(self) -> np.ndarray:
         """Rotation V/r (p,) of all nodes where a unit torque acts on the circle, spread evenly over its width."""
@@ -163,10 +165,10 @@ def _dofs(nodes: np.ndarray) -> np.ndarray:
     return np.asarray((3 * nodes[:, None] + np.arange(3)).ravel())
 
 
-def _section_mesh(parts: Sequence[Rectangle]) -> tuple[np.ndarray, np.ndarray]:
+def _section_mesh(parts: Sequence[Rectangle], axial_side: float) -> tuple[np.ndarray, np.ndarray]:
     """Nodes (p, 2) and cells (9, e) of quadratic rectangles over the parts of a section, on lines that all parts share."""
-    r = _lines([part[:2] for part in parts], _LARGEST_SIDE[0])
-    z = _lines([part[2:] for part in parts], _LARGEST_SIDE[1])
+    r = _lines([part[:2] for part in parts], _RADIAL_SIDE)
+    z = _lines([part[2:] for part in parts], axial_side)
     rows, columns = np.meshgrid(np.arange(len(r) - 1), np.arange(len(z) - 1), indexing="ij")
     x = 0.5 * (r[rows] + r[rows + 1])
     y = 0.5 * (z[columns] + z[columns + 1])

@@ -13,7 +13,7 @@ import numpy as np
 from rotorgear.gears.geometry.blank import BlankShape, solid_blank
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.outline import ToothOutline, tooth_outline
-from rotorgear.gears.tooth_fe.blank_section import BlankSection, torsional_flexibility
+from rotorgear.gears.tooth_fe.blank_section import AXIAL_SIDE, BlankSection, torsional_flexibility
 from rotorgear.gears.tooth_fe.compliance_cache import cached
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance, chained
 from rotorgear.gears.tooth_fe.mesh import LEAST_INNER, PitchMesh, pitch_mesh
@@ -28,6 +28,8 @@ from rotorgear.progress import Progress, part_of, silent
 REACH = 4
 # Largest depth below the root circle, in normal modules, of the part of a rim that is meshed with the teeth.
 SEAT_DEPTH = 3.0
+# Elements of the blank along a face that is loaded evenly.
+_POLYNOMIAL_CELLS = 12
 # Radius over that of the root of the core that is held where shaft and gear are one: too small to matter.
 _LEAST_BORE = 0.1
 
@@ -153,7 +155,9 @@ def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
     reach = min(REACH, (teeth - 1) // 2)
     if key.blank is not None:
         wheel = wheel_sector(key, mesh, part_of(progress, 0.0, 0.6))
-        blank = BlankSection(key.blank, key.face, key.inner_radius, key.poisson_ratio)
+        # Polynomials along the face are smooth: on a wide one a dozen elements follow them.
+        side = AXIAL_SIDE if key.width else max(AXIAL_SIDE, key.face / _POLYNOMIAL_CELLS)
+        blank = BlankSection(key.blank, key.face, key.inner_radius, key.poisson_ratio, side)
         G, asymmetry = wheel_flexibility(wheel, blank, teeth, reach, part_of(progress, 0.6, 1.0))
         if not key.width:
             # Means along the face for forces of the whole face: a plane model has those of a unit width.

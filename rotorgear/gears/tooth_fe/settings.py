@@ -97,7 +97,9 @@ class ToothFe:
     def even_size(self) -> MeshSize:
         """Elements of a wheel that is loaded evenly along its face: polynomials up to `face` stand for layers."""
         size = self.size or _EVEN[self.preset]
-        return size if size.face else replace(size, face=_LEAST_ORDER)
+        if size.face:
+            return size
+        return replace(size, face=next(order for rows, order in _ORDERS if size.involute <= rows))
 
     def mesh_size(self, width: float, *, space: bool) -> MeshSize:
         """Elements for a face of `width` normal modules."""
@@ -113,7 +115,7 @@ class ToothFe:
 _EVEN = {
     "preview": MeshSize(7, 2, 4, 2, 3, 6),
     "default": MeshSize(8, 3, 6, 3, 4, 8),
-    "fine": MeshSize(10, 3, 6, 3, 4, 10),
+    "fine": MeshSize(16, 4, 12, 4, 8, 10),
 }
 # Rows and columns as measured against finer meshes; see docs/mesh.md for error against run time.
 _PLANE = {
@@ -127,8 +129,8 @@ _SPACE = {
     "default": (MeshSize(8, 3, 6, 3, 4), 1.08),
     "fine": (MeshSize(10, 3, 6, 3, 4), 0.77),
 }
-# Highest polynomial along the face where a mesh size gives none.
-_LEAST_ORDER = 6
+# Highest polynomial along the face for a mesh size that gives none: (most rows on the involute, polynomial).
+_ORDERS = ((4, 4), (6, 6), (10, 8), (10_000, 10))
 # A narrow face has so many layers at least.
 _LEAST_LAYERS = 4
 

@@ -140,7 +140,7 @@ class _Circle:
             P = np.zeros((len(self._z), 3, len(self._used)), complex)
             P[:, component, np.arange(len(self._used))] = value
             flat = P.reshape(-1, len(self._used))
-            K = self._K[abs(m)]
+            K = self._K(abs(m))
             if m < 0:  # cos and sin of -m p: the tangential amplitude changes its sign
                 sign = np.tile([1.0, -1.0, 1.0], len(self._z))
                 K = sign[:, None] * K * sign

@@ -80,6 +80,6 @@ def test_a_thinner_web_winds_up_more_and_wherever_it_stands_alike() -> None:
 def test_harmonics_between_those_worked_out_follow_a_spline() -> None:
     section = BlankSection(WEBBED, 8.0, 14.0, NU)
     whole = section.stiffnesses(60)
-    for harmonic in (3, 17, 44):
+    for harmonic, error in ((3, 1e-12), (17, 1e-4), (44, 1e-4)):
         exact = section.stiffness(harmonic)
-        assert np.abs(whole[harmonic] - exact).max() <= 1e-4 * np.abs(exact).max()
+        assert np.abs(whole(harmonic) - exact).max() <= error * np.abs(exact).max()
