@@ -15,7 +15,9 @@ SEEN = 100
 # Harmonics of loaded teeth are left out while they are below the first share of the strongest, and while all of them together
 # change no peak to peak by more than the second share.
 _WEAK = 0.004
-_PEAK_TO_PEAK = 0.006
+_PEAK_TO_PEAK = 0.005
+# Teeth that differ have orders without end; no more than so many are taken.
+_MOST = 160
 _NODES = 256
 
 
@@ -75,7 +77,7 @@ def that_matter(values: np.ndarray) -> tuple[list[int], float, float]:
     if not largest:
         return [], 0.0, 0.0
     order = np.argsort(-size, kind="stable")
-    least = int(np.count_nonzero(size > _WEAK * largest))
+    least = min(int(np.count_nonzero(size > _WEAK * largest)), _MOST)
     whole = np.ptp(values, axis=0)
 
     def change(count: int) -> float:
@@ -85,7 +87,7 @@ def that_matter(values: np.ndarray) -> tuple[list[int], float, float]:
         return float(np.abs(np.ptp(parts, axis=0) - whole).max() / whole.max())
 
     count = least
-    while count < len(order) - 1 and change(count) > _PEAK_TO_PEAK:
+    while count < min(len(order) - 1, _MOST) and change(count) > _PEAK_TO_PEAK:
         count += max(1, count // 16)
     # Rounding is no harmonic, and the highest of an even number of values has no phase.
     numbers = sorted(int(n) for n in order[:count] if size[n] > 1e-12 * largest and 2 * n < len(values))
