@@ -73,8 +73,8 @@ def contact_map(teeth: ToothPair, load: float, positions: int | None = None, nea
         progress = listener()
         problem = contact_problem(teeth, part_of(progress, 0.0, 0.5))
         told = part_of(progress, 0.5, 1.0)
-        if problem.plane:
-            # Its patches follow no load, so that one group has all.
+        if problem.plane and not problem.uncoupled:
+            # One slice for a tooth pair: cheap, with patches that follow no load, so that one group has all loads.
             return solved_map(problem, load, positions or POSITIONS[0], _IN_PLANE, told)
         if near:
             return solved_map(problem, load, positions or _NEAR_POSITIONS, _NEAR_IN_SPACE, told)

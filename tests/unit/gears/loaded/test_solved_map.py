@@ -58,6 +58,13 @@ def test_force_rises_with_approach_and_its_tangent_is_the_slope(teeth: ToothPair
         assert found.stiffness(delta[1:], u)[inside] == pytest.approx(slope[inside], rel=1e-3)
 
 
+def test_slices_that_do_not_feel_each_other_take_the_loads_of_space() -> None:
+    teeth = pair(20.86, ToothFe("preview"))
+    found = contact_map(teeth, LOAD, POSITIONS, near=True)
+    assert len(found.load) == 8
+    assert found.approach_at(LOAD, found.position) == pytest.approx(normal(teeth, found, 1.0), rel=1e-9)
+
+
 def test_above_its_loads_a_map_says_so() -> None:
     found = contact_map(spur(), LOAD, POSITIONS)
     assert found.beyond([0.0, found.largest_load]) is None
