@@ -1,0 +1,71 @@
+"""A transient of loaded teeth at a crawl is their static contact: harmonics and peak to peak of the approach."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+
+CHANGES: dict[str, dict[str, Any]] = {
+    "bare": {},
+    "relieved": {"tip_relief": 30e-6, "tip_relief_diameter": 0.1775},
+    "crowned": {"flank": {"crowning": 10e-6}},
+    "pitch error": {"flank": {"pitch_errors": {"1": 20e-6}}},
+}
+MESH_HZ = 2.0
+RECORDS = 512
+
+
+def pair(change: dict[str, Any], torque: float) -> rg.Model:
+    """The spur pair of docs/mesh.md with a change of its pinion."""
+    gear = {"at": "100 mm", "kind": "spur", "normal_module": "5 mm", "width": "54 mm"}
+    held = {"stiffness": {"radial": 5e8, "axial": 1e8}}
+    return rg.Model(
+        operation={"input_shaft": "in", "output_shaft": "out", "torque": torque, "speed": MESH_HZ / 34 * 2.0 * np.pi},
+        shafts={
+            "in": {"position": [0.0, 0.0], "sections": [{"length": 0.2, "outer_diameter": 0.08}]},
+            "out": {"position": [0.285, 0.0], "sections": [{"length": 0.2, "outer_diameter": 0.12}]},
+        },
+        gears={"a": {**gear, "shaft": "in", "teeth": 34, **change}, "b": {**gear, "shaft": "out", "teeth": 80}},
+        meshes={"m": {"pinion": "a", "gear": "b", "stiffness": "tooth_fe", "damping_ratio": 0.05}},
+        bearings={
+            f"{shaft}_{end}": {"shaft": shaft, "at": end, **held} for shaft in ("in", "out") for end in ("start", "end")
+        },
+        damping={"modal_ratio": 0.1},
+    )
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("torque", [1000.0, 2000.0, 4000.0])
+@pytest.mark.parametrize("change", CHANGES)
+def test_at_a_crawl_the_approach_is_that_of_the_static_contact(change: str, torque: float) -> None:
+    """The force of a single mesh follows from the torque alone: at each position the map is solved for it by itself."""
+    model = pair(CHANGES[change], torque)
+    load = model.mean_load(1)
+    (force,) = load.forces
+    teeth = load.contact_map(force)
+    assert teeth is not None
+    cycle = teeth.periods / MESH_HZ
+    count = RECORDS * teeth.periods
+    found = rg.transient(
+        model,
+        time=2.0 * cycle,
+        discard=cycle,
+        records=RECORDS,
+        steps=RECORDS,
+        method="exponential",
+        error_estimate=False,
+    )
+    approach = found.deflection[found.counted, 0][-count:]
+    phase = 34 * found.angle[found.counted][-count:] + (load.phase(force.contact) or 0.0)
+    static = teeth.approach_at(np.full(count, force.normal_force), phase / (2.0 * np.pi))
+    assert found.mesh_force[found.counted, 0][-count:].mean() == pytest.approx(force.normal_force, rel=1e-3)
+    assert np.ptp(approach) == pytest.approx(np.ptp(static), rel=0.01)
+    lines, expected = (
+        2.0 * np.abs(np.fft.rfft(x))[teeth.periods : 5 * teeth.periods + 1] / count for x in (approach, static)
+    )
+    assert lines == pytest.approx(expected, rel=0.01, abs=0.005 * expected.max())
+    assert not any("ripple" in note for note in found.left_out)
