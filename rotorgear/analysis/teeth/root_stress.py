@@ -18,7 +18,7 @@ from rotorgear.gears.loaded.contact_points import patch_loads
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
 from rotorgear.gears.loaded.stiffness import loaded_cycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, gear_key, in_space
-from rotorgear.gears.loaded.tooth_solution import solve_teeth
+from rotorgear.gears.loaded.tooth_solution import solve_teeth, tooth_inside
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
@@ -104,6 +104,9 @@ def _gear(
     # A plane model carries the force of a unit width; compliances are those of lengths in normal modules.
     strength = 1.0 / ((problem.module if key.width else teeth.width) * problem.module)
 
+    inside = tooth_inside(key, part_of(progress, 0.0, 0.3))
+    progress = part_of(progress, 0.3, 1.0)
+
     phase: list[float] = []
     at_tangent: list[float] = []
     largest: list[float] = []
@@ -117,7 +120,7 @@ def _gear(
             )
             for pair in np.unique(slices.pair[here])
         }
-        solution = solve_teeth(key, loads)
+        solution = solve_teeth(key, loads, inside=inside)
         pitch = solution.pitch
         # Fillet nodes plane by plane; their angles about the axis from the middle of the tooth are those of the middle plane.
         fillet = pitch.fillet.reshape(len(pitch.turn), -1)
