@@ -20,7 +20,7 @@ from rotorgear.forces.law import ForceLaw
 # name -> class, in the module of that name: compiled code is loaded with the module, so not before it is needed
 _SHIPPED = {
     "mesh_contact": "MeshContact",
-    "mesh_map": "MeshMap",
+    "loaded_teeth": "LoadedTeeth",
     "mesh_friction": "MeshFriction",
     "journal_bearing": "JournalBearing",
     "ball_bearing": "BallBearing",

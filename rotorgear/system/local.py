@@ -47,7 +47,7 @@ from rotorgear.system.system import System
 
 if TYPE_CHECKING:
     from rotorgear.forces.mesh_contact import MeshContact
-    from rotorgear.forces.mesh_map import MeshMap
+    from rotorgear.forces.loaded_teeth import LoadedTeeth
     from rotorgear.gears.loaded.contact_map import ContactMap
 
 # Depth over which damping grows from zero, and the reference depth of penetration damping, relative to the mean deflection.
@@ -150,8 +150,8 @@ def _mesh_parts(system: System) -> list[LocalPart]:
         turned = replace(geometry, torque_sense=-geometry.torque_sense)
         coast = columns_at(system, dofs[:12], contact_vector(turned)[None])
         teeth = load.contact_map(force)
-        law: MeshContact | MeshMap = spring
-        coast_law: MeshContact | MeshMap = _back(spring)
+        law: MeshContact | LoadedTeeth = spring
+        coast_law: MeshContact | LoadedTeeth = _back(spring)
         # A map begins where its flanks touch, a spring about a mean state does not.
         touching = replace(spring, error_mean=_gap(system, force))
         if teeth is not None:
@@ -178,14 +178,14 @@ def _mesh_parts(system: System) -> list[LocalPart]:
     return found
 
 
-def _loaded_teeth(spring: MeshContact, teeth: ContactMap, force: MeshForce, phase: float) -> MeshMap:
+def _loaded_teeth(spring: MeshContact, teeth: ContactMap, force: MeshForce, phase: float) -> LoadedTeeth:
     """The map of loaded teeth in place of a spring, with the damping and the errors of that."""
-    from rotorgear.forces.mesh_map import MeshMap
+    from rotorgear.forces.loaded_teeth import LoadedTeeth
 
     # Between its loads the curve is the map's own, which knows its tangents.
     at = np.arange(_FINER * (len(teeth.load) - 1) + 1) / _FINER
     load = np.interp(at, np.arange(len(teeth.load)), teeth.load)
-    return MeshMap(
+    return LoadedTeeth(
         load=load,
         approach=teeth.approaches(load),
         stiffness=force.contact.stiffness,

@@ -155,7 +155,7 @@ def about_faces(model: Model, speeds: Sequence[float | None]) -> tuple[Model, tu
     settled = equilibrate_along_faces(System(model, load=load), speed).equilibrium.system.model
     notes = []
     for name in tilted:
-        faces = settled.meshes[name].face_loads
+        faces = settled.layout.mesh(name).part.face_loads
         if faces:
             askew = " and ".join(f"{1e6 * face.misalignment:+.3g} um" for face in faces)
             notes.append(

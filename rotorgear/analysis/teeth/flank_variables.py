@@ -89,9 +89,8 @@ def flank_variables(
         # Amount and length come together: one that is not looked for must stand in the file.
         partner = LENGTHS.get(field) or next((length for length, amount in LENGTHS.items() if amount == field), None)
         if partner is not None and (partner, number) not in taken and not _given(flanks[number], field, partner):
-            raise AnalysisError(
-                f"optimise {field}: name {partner} too, or give both for '{mesh.gears[number].name}' in the model."
-            )
+            gear = (mesh.pinion, mesh.gear)[number]
+            raise AnalysisError(f"optimise {field}: name {partner} too, or give both for '{gear.name}' in the model.")
     return tuple(found)
 
 
@@ -149,7 +148,7 @@ def model_values(mesh: MeshLayout, variables: Sequence[Variable], values: np.nda
     found: dict[str, str] = {}
     for variable, value in zip(variables, values, strict=True):
         for gear in variable.gears:
-            layout = mesh.gears[gear]
+            layout = (mesh.pinion, mesh.gear)[gear]
             key = variable.field
             text = f"{1e6 * value:.2f} um"
             if key == "end_relief_length":

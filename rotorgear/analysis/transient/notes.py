@@ -63,7 +63,7 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
 
 def _excites_nothing(local: LocalModel, name: str) -> bool:
     """Whether nothing of a mesh varies: no error, no variation, and a stiffness that stays the same over its cycle."""
-    mesh = local.system.model.meshes[name]
+    mesh = local.system.layout.mesh(name).part
     if mesh.transmission_error or mesh.stiffness_variation or mesh.corner_impact:
         return False
     laws = [part.law for part in local.parts if part.is_mesh and part.part == f"meshes.{name}"]
@@ -118,7 +118,7 @@ def _beyond_maps(result: TransientResult, local: LocalModel) -> list[str]:
     meshes = [part for part in local.parts if part.is_mesh]
     notes = []
     for i, part in enumerate(meshes):
-        mesh = local.system.model.meshes[part.part.removeprefix("meshes.")]
+        mesh = local.system.layout.mesh(part.part.removeprefix("meshes.")).part
         largest = float(result.mesh_force[:, i].max())
         if result.contact_losses[i] and mesh.backlash is None and part.law.can_part:
             notes.append(

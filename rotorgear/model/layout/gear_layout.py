@@ -153,7 +153,7 @@ class GearLayout:
         measured = self.part.flank.topography
         return measured is not None and any(grid.flank is not None for grid in measured.grids)
 
-    def flank_of(self, side: Literal["left", "right"]) -> FlankModification:
+    def flank_of(self, side: Literal["right", "left"]) -> FlankModification:
         """Modifications of the flanks of one side along roll length and face; none for a lumped gear.
 
         Sides are those of a tooth that points up, seen from the end of larger z. What is given beside a topography is that of

@@ -20,7 +20,8 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 from rotorgear.model.parts.fields import Length, Part, refuse
 from rotorgear.quantity import QuantityError, nearest, parse_quantity
 
-Side = Literal["left", "right"]
+# In the order of a gear's hand: typing keeps one object for both, and the texts of errors take its order.
+Side = Literal["right", "left"]
 _LENGTHS = ("roll_length", "diameter", "z", "deviation")
 _COLUMNS = (*_LENGTHS, "tooth", "flank")
 # Units of a header, as the quantities know them: both letters for micro are in use.

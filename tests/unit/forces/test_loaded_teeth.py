@@ -8,26 +8,26 @@ import numpy as np
 import pytest
 
 from rotorgear.errors import AnalysisError
-from rotorgear.forces.mesh_map import STEPS, MeshMap
+from rotorgear.forces.loaded_teeth import STEPS, LoadedTeeth
 from validation.oscillators import integrate, local_system
 
-LAW = MeshMap.examples()[0]
+LAW = LoadedTeeth.examples()[0]
 ROWS = len(LAW.approach)
 
 
-def angle_at(law: MeshMap, u: float) -> float:
+def angle_at(law: LoadedTeeth, u: float) -> float:
     """Angle of the reference at which the path stands at u base pitches."""
     return float((2.0 * np.pi * u * law.forward - law.path_phase) / law.order)
 
 
-def error(law: MeshMap, angle: float) -> float:
+def error(law: LoadedTeeth, angle: float) -> float:
     p = law.order * angle + law.phase
     terms = [a * np.cos(n * p) for n, a in enumerate(law.error_cos, 1)]
     return law.error_mean + sum(terms) + sum(b * np.sin(n * p) for n, b in enumerate(law.error_sin, 1))
 
 
-@pytest.mark.parametrize("law", MeshMap.examples())
-def test_under_each_load_of_the_map_the_flanks_have_its_approach(law: MeshMap) -> None:
+@pytest.mark.parametrize("law", LoadedTeeth.examples())
+def test_under_each_load_of_the_map_the_flanks_have_its_approach(law: LoadedTeeth) -> None:
     """Where it bends most, it stays within 1 % of a step of the force, which is 1/192 of the range."""
     for row in (0, 17, 40):
         angle = angle_at(law, row * law.periods / ROWS)
@@ -73,7 +73,7 @@ def test_run_the_other_way_the_map_is_met_from_its_end() -> None:
 
 
 def test_a_map_over_several_base_pitches_repeats_after_all_of_them() -> None:
-    law = MeshMap.examples()[4]
+    law = LoadedTeeth.examples()[4]
     (repeats,) = law.repeats()
     assert repeats.order == pytest.approx(abs(law.order) / 2)
     d = law.approach.mean()
@@ -91,7 +91,7 @@ def test_the_mean_map_has_the_mean_approach_under_each_load() -> None:
 
 
 def test_the_coast_flanks_push_back_behind_the_backlash() -> None:
-    law = MeshMap.examples()[3]
+    law = LoadedTeeth.examples()[3]
     assert law.coast is not None
     gap = law.coast.error_mean + law.coast.approach.min()
     free = law.evaluate(-0.5 * gap, angle=0.1)
@@ -124,7 +124,7 @@ def test_at_a_crawl_a_mass_follows_the_static_curve(share: float) -> None:
 
 
 def test_what_does_not_rise_is_refused() -> None:
-    with pytest.raises(AnalysisError, match=r"MeshMap\.load"):
+    with pytest.raises(AnalysisError, match=r"LoadedTeeth\.load"):
         replace(LAW, load=LAW.load[::-1])
-    with pytest.raises(AnalysisError, match=r"MeshMap\.approach"):
+    with pytest.raises(AnalysisError, match=r"LoadedTeeth\.approach"):
         replace(LAW, approach=LAW.approach[:, ::-1])

@@ -183,7 +183,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
 
 
 @dataclass(frozen=True, eq=False)
-class MeshMap(ForceLaw):
+class LoadedTeeth(ForceLaw):
     """Contact of one helix by the map of its loaded teeth."""
 
     title: ClassVar[str] = "loaded teeth"
@@ -206,7 +206,7 @@ class MeshMap(ForceLaw):
     error_mean: float = parameter("m", "constant part of e", 0.0)
     error_cos: tuple[float, ...] = parameter("m", "a_n of e(p)", ())
     error_sin: tuple[float, ...] = parameter("m", "b_n of e(p)", ())
-    coast: MeshMap | None = parameter("", "the map of the coast flanks, which d < 0 presses", None)  # noqa: RUF009
+    coast: LoadedTeeth | None = parameter("", "the map of the coast flanks, which d < 0 presses", None)  # noqa: RUF009
     expanded: bool = parameter("", "whether solvers expand about k and c: not on a flank that is mostly open", True)
 
     def __post_init__(self) -> None:
@@ -329,7 +329,7 @@ class MeshMap(ForceLaw):
             f"inertia of the teeth on their bodies: they follow their static contact over the mesh cycle; {damped}",
         )
 
-    def mean(self) -> MeshMap:
+    def mean(self) -> LoadedTeeth:
         """The same map at one position: the mean approach under each load, so that the mean force has the mean approach."""
         behind = self.coast and self.coast.mean()
         still = self.approach.mean(axis=0)[None]
@@ -361,7 +361,7 @@ class MeshMap(ForceLaw):
         return repr([*shape, self.error_cos, self.error_sin]).encode() + self.approach[:, 0].tobytes()
 
     @classmethod
-    def examples(cls) -> tuple[MeshMap, ...]:
+    def examples(cls) -> tuple[LoadedTeeth, ...]:
         """A Hertzian pair whose stiffness varies, with each damping; one over two base pitches that runs the other way."""
         load = 1000.0 * np.array([0.0, 0.01, 0.03, 0.08, 0.15, 0.3, 0.6, 1.0, 1.6, 2.5, 5.0])
         u = np.arange(64)[:, None] / 64
