@@ -172,7 +172,7 @@ def mesh(
                 variables=words_of(optimise),
                 over=parse_over(over or []),
                 bounds={name: text.split(":") for name, text in pairs_of("--bounds", bounds).items()},
-                tolerances=pairs_of("--tolerance", tolerance),
+                tolerance=pairs_of("--tolerance", tolerance),
                 weights=None if weights is None else parse_factors(weights, "--weights"),
                 pressure_limit=pressure_limit,
                 samples=64 if samples is None else samples,

@@ -46,8 +46,8 @@ from rotorgear.system.local_parts import (
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
-    from rotorgear.forces.mesh_contact import MeshContact
     from rotorgear.forces.loaded_teeth import LoadedTeeth
+    from rotorgear.forces.mesh_contact import MeshContact
     from rotorgear.gears.loaded.contact_map import ContactMap
 
 # Depth over which damping grows from zero, and the reference depth of penetration damping, relative to the mean deflection.

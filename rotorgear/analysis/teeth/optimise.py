@@ -129,7 +129,7 @@ def optimise_flanks(
     bounds: Mapping[str, Sequence[object]] | None = None,
     weights: Sequence[float] | None = None,
     pressure_limit: float | str | None = None,
-    tolerances: Mapping[str, object] | None = None,
+    tolerance: Mapping[str, object] | None = None,
     samples: int = 64,
     evaluations: int | None = None,
     torque: float | str | None = None,
@@ -150,7 +150,7 @@ def optimise_flanks(
         bounds: (lowest, highest) in m or as texts by variable; without them those of usual modifications.
         weights: one for each torque, in the order of `over`; all alike by default.
         pressure_limit: largest contact pressure at all points, in Pa or as a text; None for no limit.
-        tolerances: up and down, in m or as texts by variable; a tenth of the bounds' width by default.
+        tolerance: up and down, in m or as texts by variable; a tenth of the bounds' width by default.
         samples: flanks of the tolerance band; 0 for none.
         evaluations: flanks that the search tries at most; by default 60 for each variable.
         torque, preset, body, positions: as for `mesh`.
@@ -174,7 +174,7 @@ def optimise_flanks(
     request = mesh_request(model, mesh, "tooth_fe", asked, {"preset": preset, "body": body})
     assert request.teeth is not None
     chosen = flank_variables(request.mesh, variables, bounds or {})
-    tolerance = _tolerances(chosen, tolerances or {})
+    spread = _tolerances(chosen, tolerance or {})
     load, misalignment = operating_axes(over, request)
     teeth = one_kind_of_model(request.teeth, misalignment)
     if any(variable.field in ALONG_FACE for variable in chosen) and teeth.fe.preset != "preview":
@@ -240,7 +240,7 @@ def optimise_flanks(
     clock.lap("search")
     band = None
     if samples and status == "success":
-        band = _band(search, values, tolerance, samples, part_of(progress, _SHARES[1], 1.0))
+        band = _band(search, values, spread, samples, part_of(progress, _SHARES[1], 1.0))
         clock.lap("tolerance band")
     shape = (len(load), len(misalignment))
     notes = dict.fromkeys(note for point in found for note in point.warnings)
@@ -264,7 +264,7 @@ def optimise_flanks(
                 best_m=float(value),
                 tolerance_m=float(within),
             )
-            for variable, value, within in zip(chosen, values, tolerance, strict=True)
+            for variable, value, within in zip(chosen, values, spread, strict=True)
         ),
         pinion_torque=load,
         misalignment=misalignment,
@@ -318,7 +318,7 @@ def _pressure(given: float | str | None) -> float | None:
 def _tolerances(variables: Sequence[Variable], given: Mapping[str, object]) -> np.ndarray:
     """Tolerances (v,) in m, up and down."""
     if strange := set(given) - {variable.text for variable in variables}:
-        raise AnalysisError(f"tolerances: '{min(strange)}' is not among what is optimised.")
+        raise AnalysisError(f"tolerance: '{min(strange)}' is not among what is optimised.")
     found = []
     for variable in variables:
         if variable.text not in given:
@@ -327,10 +327,10 @@ def _tolerances(variables: Sequence[Variable], given: Mapping[str, object]) -> n
         try:
             value = parse_quantity(given[variable.text], "length")
         except QuantityError as error:
-            raise AnalysisError(f"tolerances {variable.text}: got {given[variable.text]!r}, expected {error}") from None
+            raise AnalysisError(f"tolerance {variable.text}: got {given[variable.text]!r}, expected {error}") from None
         if value < 0.0:
             raise AnalysisError(
-                f"tolerances {variable.text}: got {given[variable.text]!r}, expected one that is not negative"
+                f"tolerance {variable.text}: got {given[variable.text]!r}, expected one that is not negative"
             )
         found.append(value)
     return np.array(found)

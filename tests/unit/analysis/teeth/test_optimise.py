@@ -32,7 +32,7 @@ def best() -> rg.MeshOptimum:
         bounds={"tip_relief_length": ["7.99 mm", "8 mm"]},
         evaluations=40,
         samples=8,
-        tolerances={"tip_relief": "4 um", "tip_relief_length": 0.0},
+        tolerance={"tip_relief": "4 um", "tip_relief_length": 0.0},
     )
 
 
@@ -64,7 +64,7 @@ def test_the_band_holds_ninety_percent_of_what_the_tolerances_allow(best: rg.Mes
     none = {"tip_relief": 0.0, "tip_relief_length": 0.0}
     fixed = found(
         variables=["tip_relief", "tip_relief_length"],
-        tolerances=none,
+        tolerance=none,
         samples=4,
         evaluations=20,
         over={"torque": 500.0},
