@@ -89,8 +89,8 @@ def flank_variables(
         # Amount and length come together: one that is not looked for must stand in the file.
         partner = LENGTHS.get(field) or next((length for length, amount in LENGTHS.items() if amount == field), None)
         if partner is not None and (partner, number) not in taken and not _given(flanks[number], field, partner):
-            gear = (mesh.pinion, mesh.gear)[number]
-            raise AnalysisError(f"optimise {field}: name {partner} too, or give both for '{gear.name}' in the model.")
+            other = (mesh.pinion, mesh.gear)[number]
+            raise AnalysisError(f"optimise {field}: name {partner} too, or give both for '{other.name}' in the model.")
     return tuple(found)
 
 

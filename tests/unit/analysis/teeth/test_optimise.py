@@ -117,7 +117,7 @@ def test_an_interrupt_gives_the_best_so_far() -> None:
         ({"variables": ["crowning", "pinion.crowning"]}, "named twice"),
         ({"variables": ["crowning"], "bounds": {"crowning": ["5 um", "1 um"]}}, "the lower one first"),
         ({"variables": ["crowning"], "bounds": {"bias": ["0 um", "1 um"]}}, "'bias' is not among"),
-        ({"variables": ["crowning"], "tolerances": {"crowning": "-1 um"}}, "not negative"),
+        ({"variables": ["crowning"], "tolerance": {"crowning": "-1 um"}}, "not negative"),
         ({"variables": ["crowning"], "weights": [1.0]}, "expected 2 numbers"),
         ({"variables": ["crowning"], "pressure_limit": "hot"}, "a pressure such as"),
         ({"variables": ["crowning"], "evaluations": 3}, "at least 10"),
