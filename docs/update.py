@@ -1,5 +1,6 @@
 """Bring the docs up to date:  python docs/update.py
 
+With names of pages or generators, only those:  python docs/update.py mesh json
 With --check it changes nothing, and fails where something but seconds would change.
 
 Every number on a page is printed by a command beside it. This runs the marked blocks of all pages (the marks stand in
@@ -15,7 +16,7 @@ import importlib.util
 import os
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from types import ModuleType
 
@@ -79,13 +80,15 @@ def write(page: Path, text: str) -> None:
     os.replace(unfinished, page)
 
 
-def update(check: bool, long: bool) -> tuple[int, int]:
-    """Update, or check, all pages; return how many pages changed (or would), and how many could not be done."""
+def update(check: bool, long: bool, names: Collection[str] = ()) -> tuple[int, int]:
+    """Update, or check, all pages or those of some names; return how many changed (or would), and how many could not be done."""
     changed = failed = 0
     jobs: list[tuple[Callable[[Path], Iterator[tuple[Path, str, str]]], Path]]
     jobs = [(generated_changes, file) for file in generators() if long or not is_long(file)]
     jobs += [(snippet_changes, page) for page in pages()]
     for changes, source in jobs:
+        if names and source.stem.removeprefix("generate_") not in names:
+            continue
         try:
             for page, old, new in changes(source):
                 changed += 1
@@ -109,8 +112,9 @@ def main() -> int:
         "--check", action="store_true", help="change nothing; fail where something but seconds would change"
     )
     parser.add_argument("--long", action="store_true", help="run the generators that take minutes, too")
+    parser.add_argument("names", nargs="*", help="pages or generators, such as mesh or json; default: all")
     options = parser.parse_args()
-    changed, failed = update(options.check, options.long)
+    changed, failed = update(options.check, options.long, options.names)
     return 1 if failed or (changed and options.check) else 0
 
 
