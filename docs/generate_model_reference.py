@@ -32,6 +32,7 @@ from rotorgear.model.parts.supports import (
     Support,
     TableRow,
 )
+from rotorgear.model.parts.topography import MeasuredGrid, Topography
 from rotorgear.quantity import DIMENSIONS
 
 SECTIONS: list[tuple[str, type[BaseModel]]] = [
@@ -43,6 +44,8 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("[gears.NAME]", Gear),
     ("body = { ... } of a gear", GearBody),
     ("flank = { ... } of a gear", Flank),
+    ("topography = { ... } of a flank", Topography),
+    ("grids = [{ ... }] of a topography", MeasuredGrid),
     ("[meshes.NAME]", Mesh),
     ("tooth_fe = { ... } of a mesh", ToothFeTable),
     ("transmission_error = [{ ... }] of a mesh", ErrorHarmonic),

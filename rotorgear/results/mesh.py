@@ -58,7 +58,7 @@ class HelixContact(Record):
     path_of_contact: tuple[float, float, float] = of(
         "roll lengths of the pinion at A, C and E",
         "m",
-        "A_C_E",
+        "points_a_c_e",
         json="path_of_contact_m",
         note=": start of contact, pitch point and end",
     )
