@@ -70,6 +70,7 @@ def test_with_all_motions_one_rotation_is_free() -> None:
     assert rigid_motions(system, system.groups).shape[1] == 1
 
 
+@pytest.mark.long
 def test_the_torsional_mode_of_wheel_and_shaft_is_that_of_the_whole_blank() -> None:
     """A hub on a shaft's spring with a rotor's inertia: two rotations against finite elements of the whole section."""
     width = 40.0

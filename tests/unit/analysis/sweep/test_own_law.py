@@ -32,6 +32,7 @@ def file_of_a_user(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleTyp
     return module
 
 
+@pytest.mark.long
 def test_the_law_of_the_tutorial_runs_in_a_transient_and_a_sweep_alike(file_of_a_user: ModuleType) -> None:
     assert registry.law_of("stop") is file_of_a_user.Stop
     stop = {
