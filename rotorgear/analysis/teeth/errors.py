@@ -1,7 +1,8 @@
 """Error estimates of a mesh analysis: the same on a coarser mesh of the same kind.
 
 The two differ by the error of the coarser one less that of the finer one. What remains of it on the finer mesh was measured
-on spur and helical pairs; the shares below are on the safe side, and docs/mesh.md shows estimates beside errors.
+on spur and helical pairs, and docs/mesh.md shows estimates beside errors. What lies between the positions of the cycle is not
+in them: both meshes are sampled alike.
 """
 
 from __future__ import annotations
