@@ -15,6 +15,7 @@ from pydantic import BaseModel
 
 from rotorgear.model.model import SCHEMA_VERSION, Model
 from rotorgear.model.parts.bodies import Disk, PointMass
+from rotorgear.model.parts.casing import Casing, Join, Mount, Seat
 from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, Unbalance
 from rotorgear.model.parts.flank import Flank, ToothFeTable
 from rotorgear.model.parts.gear import Gear, GearBody
@@ -57,6 +58,10 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("pedestal = { ... } of a bearing", Pedestal),
     ("stiffness = { ... } of a bearing, support or coupling", StiffnessMatrix),
     ("damping = { ... } of a bearing, support or coupling", DampingMatrix),
+    ("[casings.NAME]", Casing),
+    ("seats = { NAME = { ... } } of a casing", Seat),
+    ("mounts = { SET = { ... } } of a casing", Mount),
+    ("joins = [{ ... }] of a casing", Join),
     ("[supports.NAME]", Support),
     ("[couplings.NAME]", Coupling),
     ("[nonlinear_elements.NAME]", NonlinearElement),
@@ -77,6 +82,13 @@ RULES: dict[type[BaseModel], str] = {
         `[operation]` the first shaft is the input.""",
     Material: """
         Give `poisson_ratio` or `shear_modulus`; without either, Poisson's ratio is 0.3.""",
+    Casing: """
+        A bearing with `casing = "NAME"` stands on the seat of its name. Give `material`, or E, nu and density.
+        [Casings](casings.md) tells how meshes are read, reduced and checked.""",
+    Seat: """
+        A text is the name of a set. Else all of `axis`, `center`, `from`, `to` and `radius` say where the bore is.""",
+    Join: """
+        Both faces may stand in one mesh or in two; a set of one mesh of several is written `lower.flange`.""",
     Shaft: """
         One rigid point is enough for a torsional model.""",
     Section: """
@@ -226,6 +238,8 @@ def _value(kind: dict[str, Any]) -> str:
         if not kind["x-unit"]:
             return "number"
         return ", ".join(f'`"{text}"`' for text in [example, *kind.get("words", [])])
+    if {option.get("type") for option in kind.get("anyOf", [])} == {"string", "object"}:
+        return "text or table"
     if "enum" in kind or "const" in kind:
         choices = kind.get("enum", [kind.get("const")])
         return " ".join(f'`"{choice}"`' if isinstance(choice, str) else f"`{choice}`" for choice in choices)
@@ -242,6 +256,8 @@ def _list(kind: dict[str, Any]) -> str:
     items = kind.get("items", {})
     if "enum" in items:
         return "list of " + " ".join(f'`"{choice}"`' for choice in items["enum"])
+    if items.get("type") == "string" or any(item.get("type") == "string" for item in kind.get("prefixItems", [])):
+        return "list of texts"
     if "prefixItems" in kind:
         return (
             "`["

@@ -78,6 +78,7 @@ COMMON_UNITS: dict[str, dict[str, float]] = {
         "kN/m": 1000.0,
         "lbf/in": 175.12683524647645,
     },
+    "stiffness_per_area": {"N/m^3": 1.0, "N/m3": 1.0},
     "rotational_stiffness": {
         "N m/rad": 1.0,
         "N*m/rad": 1.0,

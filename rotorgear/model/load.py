@@ -63,6 +63,7 @@ def loads(text: str, source: str = "model", folder: str | Path = ".") -> Model:
     except ValueError as error:  # a TOMLDecodeError, or a number of thousands of digits
         raise ModelError([_syntax_problem(source, str(error), text)], source) from None
     _find_topographies(data, Path(folder))
+    _find_meshes(data, Path(folder))
     try:
         return Model(**data)
     except ModelError as error:
@@ -76,6 +77,19 @@ def _find_topographies(data: dict[str, Any], folder: Path) -> None:
         flank = gear.get("flank") if isinstance(gear, dict) else None
         if isinstance(flank, dict) and isinstance(flank.get("topography"), str):
             flank["topography"] = str(folder / flank["topography"])
+
+
+def _find_meshes(data: dict[str, Any], folder: Path) -> None:
+    """Let files of casings be looked for beside the model file likewise."""
+    casings = data.get("casings")
+    for casing in casings.values() if isinstance(casings, dict) else ():
+        if not isinstance(casing, dict):
+            continue
+        if isinstance(casing.get("mesh"), str):
+            casing["mesh"] = str(folder / casing["mesh"])
+        elif isinstance(casing.get("mesh"), dict):
+            files = casing["mesh"].items()
+            casing["mesh"] = {part: str(folder / file) if isinstance(file, str) else file for part, file in files}
 
 
 def _refused(path: Path, text: str, hint: str = "") -> ModelError:

@@ -25,6 +25,7 @@ ROOF = 11
 FLOORS = {
     "solvers": 1,
     "gears": 2,
+    "casings": 2,
     "forces": 2,
     "elements": 3,
     "model": 4,

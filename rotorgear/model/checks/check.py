@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from rotorgear.errors import Problem
+from rotorgear.model.checks.casings import casings
 from rotorgear.model.checks.gears import gear_problems, inertia_problems
 from rotorgear.model.checks.meshes import massless_gears, mesh_problems, mesh_settings
 from rotorgear.model.checks.names import duplicate_names, points, unknown_materials, unknown_names
@@ -60,6 +61,7 @@ def _by_themselves(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
     yield from sections(rest)
     yield from gear_problems(rest)
     yield from matrices(rest)
+    yield from casings(rest, broken)
     yield from nonlinear_elements(rest)
     yield from mesh_settings(rest)
     yield from points(rest)

@@ -88,7 +88,7 @@ def unknown_materials(model: Tables, broken: Broken) -> Iterator[Problem]:
     ]
     named += [
         (f"{table}.{name}.material", part.material)
-        for table in ("gears", "disks")
+        for table in ("gears", "disks", "casings")
         for name, part in getattr(model, table).items()
         if part.material is not None
     ]

@@ -18,6 +18,7 @@ TABLES = (
     "gears",
     "meshes",
     "bearings",
+    "casings",
     "supports",
     "couplings",
     "nonlinear_elements",
@@ -53,6 +54,9 @@ def references(model: Tables) -> Iterator[Reference]:
     for name, coupling in model.couplings.items():
         yield Reference(("couplings", name), "from_shaft", ("shafts", coupling.from_shaft))
         yield Reference(("couplings", name), "to_shaft", ("shafts", coupling.to_shaft))
+    for name, bearing in model.bearings.items():
+        if bearing.casing is not None:
+            yield Reference(("bearings", name), "casing", ("casings", bearing.casing))
     for name, element in model.nonlinear_elements.items():
         if element.to_shaft is not None:
             yield Reference(("nonlinear_elements", name), "to_shaft", ("shafts", element.to_shaft))
@@ -109,7 +113,7 @@ def without(model: Tables, dropped: Iterable[PartName]) -> Tables:
             else part.model_copy(update={"material": None})
             for name, part in getattr(rest, table).items()
         }
-        for table in ("gears", "disks")
+        for table in ("gears", "disks", "casings")
     }
     return rest.model_copy(update={"shafts": shafts, **bodies})
 

@@ -69,7 +69,7 @@ def matrices(model: Tables) -> Iterator[Problem]:
     for name, bearing in model.bearings.items():
         yield from _bearing(f"bearings.{name}", bearing)
     for name, support in model.supports.items():
-        yield from _six_by_six(f"supports.{name}", support.stiffness, support.damping)
+        yield from six_by_six(f"supports.{name}", support.stiffness, support.damping)
         if not (support.stiffness or support.damping or support.fixed):
             yield Problem(f"supports.{name}", "neither stiffness, damping nor fixed", "at least one of them")
     for name, element in model.nonlinear_elements.items():
@@ -79,10 +79,10 @@ def matrices(model: Tables) -> Iterator[Problem]:
         if element.damping is not None and element.stiffness is None:
             wanted = "a stiffness beside it, or neither: then the law's own tangents serve"
             yield Problem(f"{address}.damping", "damping without stiffness", wanted)
-        yield from _six_by_six(address, element.stiffness, element.damping)
+        yield from six_by_six(address, element.stiffness, element.damping)
         yield from _table(address, element.table)
     for name, coupling in model.couplings.items():
-        yield from _six_by_six(f"couplings.{name}", coupling.stiffness, coupling.damping)
+        yield from six_by_six(f"couplings.{name}", coupling.stiffness, coupling.damping)
 
 
 def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
@@ -93,7 +93,7 @@ def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
         yield Problem(address, "stiffness and table", "one of the two")
     if bearing.table and bearing.damping is not None:
         yield Problem(f"{address}.damping", "damping beside a table", "damping in the rows of the table")
-    yield from _six_by_six(address, bearing.stiffness, bearing.damping)
+    yield from six_by_six(address, bearing.stiffness, bearing.damping)
     yield from _table(address, bearing.table)
     if bearing.rolling:
         yield from _rolling(address, bearing, bearing.rolling)
@@ -108,7 +108,7 @@ def _table(address: str, table: tuple[TableRow, ...]) -> Iterator[Problem]:
         wanted = "at least two rows with speeds that rise from 0 or more"
         yield Problem(f"{address}.table", f"speeds of {rpm} rpm", wanted)
     for number, row in enumerate(table):
-        yield from _six_by_six(f"{address}.table[{number}]", row.stiffness, row.damping)
+        yield from six_by_six(f"{address}.table[{number}]", row.stiffness, row.damping)
 
 
 def _rolling(address: str, bearing: Bearing, rolling: RollingElements) -> Iterator[Problem]:
@@ -142,7 +142,7 @@ def _rolling(address: str, bearing: Bearing, rolling: RollingElements) -> Iterat
 
 
 def _pedestal(address: str, pedestal: Pedestal) -> Iterator[Problem]:
-    yield from _six_by_six(address, pedestal.stiffness, pedestal.damping)
+    yield from six_by_six(address, pedestal.stiffness, pedestal.damping)
     if not pedestal.stiffness.given:
         return
     for key, matrix in (("stiffness", pedestal.stiffness), ("damping", pedestal.damping)):
@@ -155,7 +155,8 @@ def _pedestal(address: str, pedestal: Pedestal) -> Iterator[Problem]:
         yield Problem(f"{address}.stiffness", "none along x, y or z", "a stiffness in one of them", hint)
 
 
-def _six_by_six(address: str, stiffness: StiffnessMatrix | None, damping: DampingMatrix | None) -> Iterator[Problem]:
+def six_by_six(address: str, stiffness: StiffnessMatrix | None, damping: DampingMatrix | None) -> Iterator[Problem]:
+    """A stiffness and a damping have entries, each given once, that are no springs of negative stiffness."""
     for key, matrix in (("stiffness", stiffness), ("damping", damping)):
         if matrix is None:
             continue

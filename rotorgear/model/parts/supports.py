@@ -136,6 +136,9 @@ class Bearing(Part):
         None, description="rolling elements, which take the place of the stiffness in a transient"
     )
     pedestal: Pedestal | None = Field(None, description="flexible pedestal; default: rigid ground")
+    casing: str | None = Field(
+        None, description="name of the casing that the bearing stands on: its seat has the bearing's name"
+    )
 
 
 class Support(Part):

@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from rotorgear.model.parts.bodies import Disk, PointMass
+from rotorgear.model.parts.casing import Casing
 from rotorgear.model.parts.excitation import Unbalance
 from rotorgear.model.parts.fields import Name, Part
 from rotorgear.model.parts.gear import Gear
@@ -39,6 +40,7 @@ class Tables(Part):
     gears: dict[Name, Gear] = Field(default_factory=dict, description="gears")
     meshes: dict[Name, Mesh] = Field(default_factory=dict, description="meshes between gears")
     bearings: dict[Name, Bearing] = Field(default_factory=dict, description="bearings")
+    casings: dict[Name, Casing] = Field(default_factory=dict, description="elastic casings that bearings stand on")
     supports: dict[Name, Support] = Field(default_factory=dict, description="supports to ground")
     couplings: dict[Name, Coupling] = Field(default_factory=dict, description="couplings between shafts")
     nonlinear_elements: dict[Name, NonlinearElement] = Field(

@@ -1,0 +1,127 @@
+"""A reduced elastic body: small matrices in the motions of its seats, and the motion of its surface that belongs to them.
+
+    u = Φ q,   q = [motions of the seats; internal coordinates],   M = Φᵀ M_fe Φ,   K = Φᵀ K_fe Φ
+
+The motions of a seat are x y z rx ry rz of its point, in model coordinates: displacement, and rotation about the axes of the
+model. The internal coordinates leave all seats at rest: fixed-interface modes and residual shapes (Craig and Bampton, Coupling
+of substructures for dynamic analyses, AIAA J. 6, 1968). What holds the body to the ground (held faces, mounts) is in K already.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.linalg as la
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The outer faces of a body in triangles, and how they move.
+
+    Attributes:
+        points: (p, 3) in m, in model coordinates.
+        triangles: (t, 3) numbers of points, counter-clockwise seen from outside.
+        basis: (p, 3, n) displacement of the points for unit values of the body's coordinates.
+    """
+
+    points: np.ndarray
+    triangles: np.ndarray
+    basis: np.ndarray
+
+    def normals_and_areas(self) -> tuple[np.ndarray, np.ndarray]:
+        """Outward unit normals (t, 3) and areas (t,) in m^2 of the triangles."""
+        a, b, c = (self.points[self.triangles[:, corner]] for corner in range(3))
+        double = np.cross(b - a, c - a)
+        length = np.linalg.norm(double, axis=1)
+        return double / length[:, None], 0.5 * length
+
+
+@dataclass(frozen=True)
+class ReducedBody:
+    """Mass, stiffness and damping of an elastic body in n coordinates, the 6 s motions of its s seats first.
+
+    Attributes:
+        name: of the casing in the model file.
+        seats: names of the seats, in the order of their motions.
+        seat_points: (s, 3) point of each seat about which its rotations are, in m, in model coordinates.
+        mass: (n, n) in kg, kg m, kg m^2; symmetric.
+        stiffness: (n, n); symmetric, with the springs of mounts in it.
+        damping: (n, n); symmetric, of the material and of the mounts.
+        rigid: (n, 6) coordinates of the six rigid motions: unit displacements, and rotations about the origin of the model.
+        body_mass: mass in kg.
+        centre: (3,) centre of mass in m.
+        inertia: (3, 3) inertia tensor about the centre of mass in kg m^2.
+        fixed_frequency: (k,) frequencies in Hz of the fixed-interface modes that are kept.
+        left_frequency: Hz, the least fixed-interface frequency that is not kept; inf where it is not known.
+        error: (n, n) symmetric: λ² qᵀ error q is what a mode's λ = ω² is too large by reduction, for qᵀ M q = 1 over the whole
+            structure; see `eigenvalue_error`. None where it is not known.
+        surface: None for a body without a mesh.
+        held: whether held faces or mounts carry it; else it floats, and K has the six rigid motions.
+        notes: sentences on what was done with the mesh, such as an order that was raised.
+        seconds: wall time by step.
+    """
+
+    name: str
+    seats: tuple[str, ...]
+    seat_points: np.ndarray
+    mass: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    rigid: np.ndarray
+    body_mass: float
+    centre: np.ndarray
+    inertia: np.ndarray
+    fixed_frequency: np.ndarray
+    left_frequency: float = float("inf")
+    error: np.ndarray | None = None
+    surface: Surface | None = None
+    held: bool = False
+    notes: tuple[str, ...] = ()
+    seconds: dict[str, float] = field(default_factory=dict, compare=False)
+
+    @property
+    def size(self) -> int:
+        """Number n of coordinates."""
+        return len(self.mass)
+
+    @property
+    def interface(self) -> int:
+        """Number 6 s of motions of the seats, which stand first."""
+        return 6 * len(self.seats)
+
+    def seat(self, name: str) -> slice:
+        """Where the six motions x y z rx ry rz of a seat stand among the coordinates."""
+        first = 6 * self.seats.index(name)
+        return slice(first, first + 6)
+
+    def eigenvalue_error(self, eigenvalue: float, shape: np.ndarray) -> float | None:
+        """How much too large a mode's λ = ω² is, relative to λ, because the body is reduced.
+
+        The residual r = (K_fe - λ M_fe) Φ q of a mode in the inside of the body, met by the flexibility A of the body with its
+        seats at rest: δλ = rᵀ A r = λ² qᵀ E q with the `error` E. As fixed-interface modes up to `left_frequency` are kept,
+        what is left out answers at λ more than statically, by no more than 1 / (1 - λ / λ_left). Frequencies err by half of it.
+
+        Args:
+            eigenvalue: λ in (rad/s)^2.
+            shape: (n,) coordinates of this body in the mode, real or complex, for a modal mass of 1 of the whole structure.
+        """
+        if self.error is None:
+            return None
+        static = eigenvalue * float(np.real(np.conj(shape) @ self.error @ shape))
+        left_out = eigenvalue / (2.0 * np.pi * self.left_frequency) ** 2
+        return static / (1.0 - left_out) if left_out < 1.0 else float("inf")
+
+    def modes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Frequencies (n,) in Hz and shapes (n, n), of modal mass 1, with the seats free; held as the body is."""
+        eigenvalues, shapes = la.eigh(self.stiffness, self.mass)
+        return np.sqrt(np.maximum(eigenvalues, 0.0)) / (2.0 * np.pi), shapes
+
+
+def modal_damping(mass: np.ndarray, stiffness: np.ndarray, ratio: float) -> np.ndarray:
+    """Damping matrix C (n, n) that gives every mode of (K, M) the same damping ratio ζ: C = M V diag(2 ζ ω) Vᵀ M."""
+    eigenvalues, shapes = la.eigh(stiffness, mass)
+    weighted = mass @ shapes
+    # Rigid motions have eigenvalues of rounding, of either sign; no damping holds them to the ground.
+    elastic = np.where(eigenvalues > 1e-9 * eigenvalues[-1], eigenvalues, 0.0)
+    return np.asarray((weighted * (2.0 * ratio * np.sqrt(elastic))) @ weighted.T)

@@ -1,0 +1,133 @@
+"""Elastic casings that bearings stand on, from finite-element meshes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, WithJsonSchema, create_model, model_validator
+
+from rotorgear.model.parts.fields import (
+    Density,
+    Frequency,
+    Length,
+    Modulus,
+    Name,
+    Part,
+    PositiveLength,
+    PositiveMass,
+    PositiveRatio,
+    Ratio,
+    StiffnessPerArea,
+    refuse,
+)
+from rotorgear.model.parts.supports import DampingMatrix, StiffnessMatrix
+
+# Lengths of the units that meshes are drawn in, in m.
+UNIT_LENGTHS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
+# The name of the only mesh of a casing that has no more.
+ONLY_MESH = "mesh"
+
+
+def _parse_center(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise refuse("the two coordinates across the axis, in the order x y z, such as ['-55 mm', '130 mm']")
+    return value
+
+
+class _Seat(Part):
+    """A bearing seat: a face or node set of the mesh, or the cylinder that a bearing sits in."""
+
+    set: str | None = Field(None, description="name of a face or node set; a text in place of the table says it alone")
+    axis: Literal["x", "y", "z"] | None = Field(None, description="without a set: direction of the axis of the bore")
+    center: Annotated[tuple[Length, Length], BeforeValidator(_parse_center)] | None = Field(
+        None, description="where the axis is: the coordinates across it, in the order x y z"
+    )
+    radius: PositiveLength | None = Field(None, description="radius of the bore")
+    to: Length | None = Field(None, description="where the seat ends along the axis")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _a_text_is_a_set(cls, data: Any) -> Any:
+        return {"set": data} if isinstance(data, str) else data
+
+    @property
+    def begin(self) -> float | None:
+        """Where the seat begins along the axis: its key `from` is a word of Python."""
+        begin: float | None = getattr(self, "from")
+        return begin
+
+
+if TYPE_CHECKING:
+    Seat = _Seat
+else:
+    Seat = create_model(
+        "Seat",
+        __base__=_Seat,
+        __doc__=_Seat.__doc__,
+        __module__=__name__,
+        **{"from": (Length | None, Field(None, description="where the seat begins along the axis"))},
+    )
+
+
+def _text_or_table() -> dict[str, Any]:
+    table = {key: value for key, value in Seat.model_json_schema().items() if key != "$defs"}
+    return {"anyOf": [{"type": "string"}, table]}
+
+
+def _one_or_several(value: Any) -> Any:
+    return {ONLY_MESH: value} if isinstance(value, str) else value
+
+
+Files = Annotated[
+    dict[Name, str],
+    BeforeValidator(_one_or_several),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "object", "additionalProperties": {"type": "string"}}]}),
+]
+
+
+class Mount(StiffnessMatrix):
+    """Springs, and dampers, between the mean motion of a face and the ground."""
+
+    damping: DampingMatrix | None = Field(None, description="damping to the ground; default: none")
+
+
+class Join(Part):
+    """Two faces that touch, such as the flanges of bolted halves."""
+
+    faces: tuple[str, str] = Field(description="names of the two face sets")
+    stiffness: StiffnessPerArea | None = Field(
+        None, description="stiffness of the joint per area, the same along and across it; default: tied"
+    )
+
+
+class Casing(Part):
+    """An elastic body from a finite-element mesh, reduced to the motions of its bearing seats and a few modes of its own."""
+
+    mesh: Files = Field(
+        default_factory=dict,
+        description="file of the mesh, beside the model file; or several by name: `{ lower = ..., upper = ... }`",
+    )
+    unit: Literal["m", "dm", "cm", "mm", "um", "in", "ft"] | None = Field(
+        None, description="unit of length of the mesh: such files carry none"
+    )
+    material: str | None = Field(None, description="name of a material; or E, nu and density below")
+    youngs_modulus: Modulus | None = Field(None, description="Young's modulus E, in place of a material")
+    poisson_ratio: Ratio | None = Field(None, description="Poisson's ratio nu, in place of a material")
+    density: Density | None = Field(None, description="density, in place of a material")
+    held: tuple[str, ...] = Field((), description="face or node sets that are held fixed")
+    mounts: dict[str, Mount] = Field(default_factory=dict, description="face or node sets on springs to the ground")
+    seats: dict[Name, Annotated[Seat, WithJsonSchema(_text_or_table())]] = Field(
+        default_factory=dict,
+        description="where bearings sit, by the name of the bearing: a face or node set, or a place",
+    )
+    connection: Literal["mean", "rigid"] = Field(
+        "mean",
+        description="how a seat takes the motion of its bearing: as its mean, free to deform (RBE3), or as a rigid body (RBE2)",
+    )
+    joins: tuple[Join, ...] = Field((), description="faces that hold parts of the mesh together")
+    modes_to: Frequency | None = Field(
+        None, description="highest frequency of the fixed-interface modes; default: twice that of the analysis"
+    )
+    damping_ratio: Ratio = Field(0.0, description="damping ratio of every elastic mode of the casing by itself")
+    mass: PositiveMass | None = Field(None, description="mass, if it is known: the mesh is checked against it")
+    mass_tolerance: PositiveRatio = Field(0.05, description="how far the mesh's mass may be off that mass")
