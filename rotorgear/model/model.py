@@ -86,6 +86,14 @@ class Model(Tables):
         """The mean loads that were asked for, by direction."""
         return {}
 
+    @cached_property
+    def linear_models(self) -> dict[tuple[float | None, ...], tuple[Model, tuple[str, ...]]]:
+        """Linear models about the equilibrium of this one, by speeds, each with sentences on what was linearised.
+
+        Analyses make them (`analysis/static/tangent.py`): several about one state find it once.
+        """
+        return {}
+
     def mean_load(self, direction: int | None = None) -> MeanLoad:
         """Forces, working flanks and mesh stiffnesses of the torque flow, made once for each sense of rotation.
 

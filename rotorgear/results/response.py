@@ -12,6 +12,15 @@ from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
 
 
+def _by_contact(key: str) -> Written:
+    """Values of the contacts by mesh."""
+
+    def value(result: Any, values: np.ndarray) -> dict[str, Any]:
+        return {mesh: values[result.contacts_of(mesh)] for mesh in dict.fromkeys(result.contact_mesh)}
+
+    return Written(key, value, axes=("MESH", "helix"))
+
+
 def _amplitudes_by_mesh(key: str) -> Written:
     """Amplitudes by mesh, contact, order and speed."""
 
@@ -77,13 +86,14 @@ class ResponseResult(ModelResult, kind="response"):
         "N",
         "contact",
         note=": the static force of each contact, about which the response is linear",
-        json=Written(
-            "mean_mesh_force_n",
-            lambda result, force: {
-                mesh: force[result.contacts_of(mesh)] for mesh in dict.fromkeys(result.contact_mesh)
-            },
-            axes=("MESH", "helix"),
-        ),
+        json=_by_contact("mean_mesh_force_n"),
+    )
+    mesh_stiffness: np.ndarray = of(
+        "stiffness along the flank normal",
+        "N/m",
+        "contact",
+        note=" about which the response is linear; of loaded teeth the mean tangent over the mesh cycle",
+        json=_by_contact("mesh_stiffness_n_per_m"),
     )
     mesh_force: np.ndarray = of(
         "force along the flank normal",

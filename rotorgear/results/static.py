@@ -142,6 +142,13 @@ class StaticResult(ModelResult, kind="static"):
         json=by_mesh("mesh_force_on_gear_n", "xyz"),
         form=".0f",
     )
+    mesh_stiffness: np.ndarray = of(
+        "stiffness along the flank normal",
+        "N/m",
+        "contact",
+        json=by_mesh("mesh_stiffness_n_per_m"),
+        note="; of loaded teeth the mean tangent over the mesh cycle",
+    )
     mesh_deflection: np.ndarray = of("approach of the flanks", "m", "contact", json=by_mesh("mesh_deflection_m"))
     carries: np.ndarray = of("whether the contact is closed", "", "contact", json=by_mesh("mesh_carries"))
     driver: tuple[str, ...] = of(

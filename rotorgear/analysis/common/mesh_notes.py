@@ -23,9 +23,20 @@ def mesh_stiffness_left_out(system: System) -> Iterator[str]:
             yield f"meshes.{name}: {ripple}; its mean {mean:.4g} N/m is taken"
         elif curve := system.load.whole_curve(name):
             taken = sum(force.contact.stiffness for force in system.load.of_mesh(name))
-            yield f"meshes.{name}: {_of_model(curve.about_load, taken)}"
+            joint = curve.model == "tooth_fe" and all(force.start is not None for force in system.load.of_mesh(name))
+            yield f"meshes.{name}: {_over_cycle(curve.about_load, taken) if joint else _of_model(curve.about_load, taken)}"
         if mesh.stiffness == "tooth_fe" and not mesh.tilt:
             yield f"meshes.{name}: the tilt of its gears along the face, which its teeth do not feel without tilt = true"
+
+
+def _over_cycle(curve: MeshStiffness, taken: float) -> str:
+    """Of loaded teeth about the joint state of all contacts over the mesh cycle."""
+    share = float(np.ptp(curve.transverse)) / curve.mean
+    helices = "" if curve.helices == 1 else " of both helices"
+    return (
+        f"ripple of {100.0 * share:.3g} % peak to peak; the mean tangent of its loaded teeth over the mesh cycle, "
+        f"{taken:.4g} N/m along the flank normal{helices}, all contacts in equilibrium together, is taken"
+    )
 
 
 def _of_model(curve: MeshStiffness, taken: float) -> str:

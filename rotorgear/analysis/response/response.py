@@ -117,6 +117,7 @@ def response(
         contact_mesh=setup.lines.names,
         contact_helix=np.array([state.contact.helix for state in setup.lines.states], dtype=int),
         mean_force=setup.mean_force,
+        mesh_stiffness=setup.lines.stiffness,
         mesh_force=stacked["mesh_force"],
         transmission_error=stacked["transmission_error"],
         approach=stacked["approach"],

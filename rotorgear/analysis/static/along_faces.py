@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rotorgear.analysis.static.about_cycle import state_speed
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import ConvergenceError
 from rotorgear.gears.stiffness.face_load import FaceLoad
@@ -137,8 +138,7 @@ def about_faces(model: Model, speeds: Sequence[float | None]) -> tuple[Model, tu
 
     Args:
         model: a checked model.
-        speeds: of the reference shaft in rad/s, of one sense; the equilibrium is that of the operating speed if it has the same
-            sense, else that of the first one. None stands for standstill.
+        speeds: of the reference shaft in rad/s, of one sense, as for `state_speed`.
 
     Raises:
         What `equilibrate_along_faces` raises.
@@ -146,9 +146,7 @@ def about_faces(model: Model, speeds: Sequence[float | None]) -> tuple[Model, tu
     tilted = [name for name, mesh in model.meshes.items() if mesh.tilt]
     if any(mesh.face_loads for mesh in model.meshes.values()):
         return model, ()  # it is about such a state already
-    asked = [speed for speed in speeds if speed is not None]
-    operating = (model.operation.speed if model.operation else None) or 0.0
-    speed = operating if not asked or operating * min(asked, key=abs) > 0.0 else asked[0]
+    speed = state_speed(model, speeds)
     load = model.mean_load(-1 if speed < 0.0 else 1).of_kind("static") if tilted else None
     if load is None or not load.applied:
         return model, ()

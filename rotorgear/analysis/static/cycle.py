@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 _POSITIONS = 128
 # A curve F(delta) at one position is straight between so many points to each step of load of its map.
 _FINER = 8
+# Positions whose curves are made together.
+_TOGETHER = 512
 # Cycles of several pitches whose rows of the map agree to this share are solved once.
 _ALIKE = 1e-10
 # Mean state and tangents of nonlinear bearings agree when no mean force changes by more than this share of the largest.
@@ -262,7 +264,9 @@ class _Problem:
         approach = np.zeros((len(first), len(self.maps)))
         force = np.zeros((len(first), len(self.maps)))
         for row, p in enumerate(first):
-            found = self._at([table.curve(int(p)) for table in tables])
+            if row % _TOGETHER == 0:
+                curves = [table.curves(first[row : row + _TOGETHER]) for table in tables]
+            found = self._at([one[row % _TOGETHER] for one in curves])
             if not found.converged:
                 names = ", ".join(dict.fromkeys(self.equilibrium.lines.names))
                 raise AnalysisError(
@@ -319,16 +323,21 @@ class _Table:
     approach: np.ndarray
     gap: float
 
-    def curve(self, p: int) -> _Curve:
-        """F(delta) at a position."""
+    def curves(self, positions: np.ndarray) -> list[_Curve]:
+        """F(delta) at some positions (r,), given by their numbers."""
         steps = np.arange(_FINER) / _FINER
         load = self.contact_map.load
-        fine = np.append((load[:-1, None] + np.diff(load)[:, None] * steps).ravel(), [load[-1], 10.0 * load[-1]])
+        fine = np.append((load[:-1, None] + np.diff(load)[:, None] * steps).ravel(), load[-1])
+        far = 10.0 * load[-1]
         if self.place is None:
-            approach = self.contact_map.approach_at(fine, self.contact_map.position[:, None]).mean(axis=0)
-        else:
-            approach = self.contact_map.approach_at(fine, self.place[p])
-        return _Curve(self.gap + approach, fine)
+            everywhere = self.contact_map.position
+            approach = self.contact_map.curves(fine, everywhere).mean(axis=0)
+            beyond = self.contact_map.approach_at(far, everywhere).mean()
+            return [_Curve(self.gap + np.append(approach, beyond), np.append(fine, far))] * len(positions)
+        u = self.place[positions]
+        beyond = self.contact_map.approach_at(far, u)
+        approach = np.column_stack([self.contact_map.curves(fine, u), beyond])
+        return [_Curve(self.gap + row, np.append(fine, far)) for row in approach]
 
 
 @dataclass(frozen=True)

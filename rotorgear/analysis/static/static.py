@@ -141,6 +141,7 @@ def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimat
         carries=equilibrium.closed,
         mesh_force=equilibrium.force,
         mesh_force_on_gear=forces_on_gears(equilibrium),
+        mesh_stiffness=equilibrium.lines.stiffness,
         mesh_deflection=np.where(equilibrium.closed, approach, 0.0),
         bearing_force=bearing_forces(equilibrium),
         support_force=support_forces(equilibrium),

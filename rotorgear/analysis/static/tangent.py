@@ -3,8 +3,9 @@
 A nonlinear element, or a bearing given by its rolling elements alone, has the stiffness dF/dd and the damping dF/dv of its law
 at the static equilibrium under the loads, at rest but for the rotation. What does not depend on speed becomes one stiffness; what
 does, such as the film of a journal bearing, a table over speed, as a file may give it. Meshes have the stiffness of their mean
-load, as always: the tangent at that load where a stiffness model knows it; those that feel the tilt of their shafts are about
-the load along their faces in the equilibrium.
+load: the tangent at that load where a stiffness model knows it; loaded teeth their mean tangent over the mesh cycle, all
+contacts of the gearbox in equilibrium together (`about_cycle.py`); those that feel the tilt of their shafts are about the load
+along their faces.
 """
 
 from __future__ import annotations
@@ -40,6 +41,13 @@ def about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Mod
     Raises:
         AnalysisError: there is no equilibrium at one of the speeds.
     """
+    key = tuple(speeds)
+    if key not in model.linear_models:
+        model.linear_models[key] = _about_equilibrium(model, speeds)
+    return model.linear_models[key]
+
+
+def _about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Model, tuple[str, ...]]:
     notes = [
         f"the law of nonlinear_elements.{name}: the stiffness given beside it is taken"
         for name, element in model.nonlinear_elements.items()
@@ -57,6 +65,11 @@ def about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Mod
 
         model, along = about_faces(model, speeds)
         notes += along
+    if any(mesh.stiffness == "tooth_fe" for mesh in model.meshes.values()):
+        from rotorgear.analysis.static.about_cycle import about_cycle
+
+        model, without = about_cycle(model, speeds)
+        notes += without
     if not wanted:
         return model, tuple(notes)
     from rotorgear.analysis.static.solve import equilibrate

@@ -80,6 +80,10 @@ class ContactMap:
         """Approach (p, n) in m at all positions of the map under n loads in N, from 0 to the largest load."""
         return np.asarray(CubicHermiteSpline(self.load, self.approach, self._monotone, axis=1)(load))
 
+    def curves(self, load: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """Approach (r, n) in m at r positions u under n loads in N, from 0 to the largest load of the map."""
+        return np.asarray(CubicHermiteSpline(self.load, *self._knots(u), axis=1)(load))
+
     def force(self, delta: Any, u: Any) -> np.ndarray:
         """Force in N at approaches delta in m and positions u, both of shapes that broadcast; 0 where no tooth touches."""
         return self._solved(delta, u)[0]

@@ -27,6 +27,7 @@ from rotorgear.model.layout.applied_torques import AppliedTorque, applied_torque
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import Contact, MeshLayout
 from rotorgear.model.layout.torsion_network import contact_forces
+from rotorgear.model.parts.helix_state import FaceState, HelixState
 
 if TYPE_CHECKING:
     from rotorgear.gears.loaded.contact_map import ContactMap
@@ -42,25 +43,6 @@ _AGREED = 1e-9
 _PASSES = 60
 
 Kind = Literal["dynamic", "static"]
-
-
-@dataclass(frozen=True)
-class FaceState:
-    """A contact along its face, linear about its mean state.
-
-    F = start + k (v . q - gap - shift),    M - e F = couple + k_t (v_t . q).
-
-    Attributes:
-        place: e, where v stands, from the middle of the face (m).
-        tilt_stiffness: k_t (N m).
-        shift: what the tilt of the state adds to the approach at that place (m): with it, approaches are those in the middle.
-        couple: N m about e where the shafts have not tilted.
-    """
-
-    place: float
-    tilt_stiffness: float
-    shift: float
-    couple: float
 
 
 @dataclass(frozen=True)
@@ -283,12 +265,27 @@ def _with_stiffness(layout: Layout, states: Sequence[MeshForce], curves: Curves,
             normal = curve.dynamic_normal if kind == "dynamic" else curve.static_normal
             state = replace(state, contact=replace(contact, stiffness=normal))
         mesh = layout.mesh(contact.mesh)
-        if mesh.part.face_loads:
+        if mesh.part.helix_states:
+            state = _about_helix_state(state, mesh.part.helix_states[contact.helix])
+        elif mesh.part.face_loads:
             state = about_face(state, mesh.part.face_loads[contact.helix], mesh.part.misalignment, kind)
         elif mesh.part.tilt:
             state = _on_whole_face(state, mesh)
         found.append(state)
     return tuple(found)
+
+
+def _about_helix_state(state: MeshForce, found: HelixState) -> MeshForce:
+    """A contact about the mean state of its helix over the mesh cycle, which has one stiffness for small and for mean loads."""
+    return replace(
+        state,
+        contact=replace(state.contact, stiffness=found.stiffness),
+        normal_force=found.force,
+        torque_sense=found.torque_sense,
+        pinion_drives=found.pinion_drives,
+        face=found.face,
+        start=found.start,
+    )
 
 
 def about_face(state: MeshForce, face: FaceLoad, given: float, kind: Kind) -> MeshForce:

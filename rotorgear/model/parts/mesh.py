@@ -24,6 +24,7 @@ from rotorgear.model.parts.stiffness_field import StiffnessValue
 
 if TYPE_CHECKING:
     from rotorgear.gears.stiffness.face_load import FaceLoad
+    from rotorgear.model.parts.helix_state import HelixState
 
 
 class Mesh(Part):
@@ -129,4 +130,18 @@ class Mesh(Part):
         """The same mesh about a state of its helices along their faces."""
         settled = self.model_copy()
         settled._face_loads = face_loads
+        return settled
+
+    # The mean state of each helix over the mesh cycle, from all loaded teeth together; a linear analysis is about it.
+    _helix_states: tuple[HelixState, ...] = PrivateAttr(())
+
+    @property
+    def helix_states(self) -> tuple[HelixState, ...]:
+        """Mean state of each helix over the mesh cycle that the mesh is about; empty where none was looked for."""
+        return self._helix_states
+
+    def about_cycle(self, states: tuple[HelixState, ...]) -> Mesh:
+        """The same mesh about the mean state of its helices over the mesh cycle."""
+        settled = self.model_copy()
+        settled._helix_states = states
         return settled
