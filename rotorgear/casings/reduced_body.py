@@ -48,7 +48,10 @@ class ReducedBody:
         mass: (n, n) in kg, kg m, kg m^2; symmetric.
         stiffness: (n, n); symmetric, with the springs of mounts in it.
         damping: (n, n); symmetric, of the material and of the mounts.
-        rigid: (n, 6) coordinates of the six rigid motions: unit displacements, and rotations about the origin of the model.
+        rigid: (n, 6) coordinates of the six rigid motions: unit displacements, and rotations about the origin of the model;
+            None for a body that is held or mounted.
+        inertia_force: (n, 6) Φᵀ M R: forces on the coordinates for unit accelerations along x y z and about the axes through the
+            origin, so that gravity g acts by inertia_force[:, :3] @ g.
         body_mass: mass in kg.
         centre: (3,) centre of mass in m.
         inertia: (3, 3) inertia tensor about the centre of mass in kg m^2.
@@ -68,7 +71,8 @@ class ReducedBody:
     mass: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
-    rigid: np.ndarray
+    rigid: np.ndarray | None
+    inertia_force: np.ndarray
     body_mass: float
     centre: np.ndarray
     inertia: np.ndarray

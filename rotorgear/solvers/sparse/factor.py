@@ -84,13 +84,22 @@ def factor_symmetric(A: sp.csc_array) -> SymmetricFactor:
     Raises:
         ConvergenceError: the matrix is singular, holds NaN, or needs row exchanges.
     """
+    return SymmetricFactor(symmetric_superlu(A, "MMD_AT_PLUS_A"))
+
+
+def symmetric_superlu(A: sp.csc_array, order: Literal["MMD_AT_PLUS_A", "NATURAL"]) -> SuperLU:
+    """SuperLU's factors of a symmetric matrix with all pivots on the diagonal, in minimum degree or in the order it comes in.
+
+    Raises:
+        ConvergenceError: the matrix is singular, holds NaN, or needs row exchanges.
+    """
     # Threshold 0 keeps every pivot on the diagonal: L U with U = D L^T, whose signs are the inertia.
-    lu = _superlu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    lu = _superlu(A, permc_spec=order, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     if not np.array_equal(lu.perm_r, lu.perm_c):
         raise ConvergenceError(
             f"The symmetric {A.shape[0]} x {A.shape[0]} matrix met a zero pivot; shift it away from its eigenvalues."
         )
-    return SymmetricFactor(lu)
+    return lu
 
 
 def factor_general(A: sp.csc_array) -> Factor:

@@ -1,0 +1,141 @@
+"""Reads the mesh of an Abaqus or CalculiX deck (.inp): nodes, solid elements, node sets and element sets.
+
+meshio ends the process at elements that it does not know (a mesher writes CPS6 on every named face), reads one block of nodes
+only, and takes no sets from headings. Here any number of blocks is read; elements that are no solids give sets of faces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from rotorgear.casings.file_mesh import FileMesh, NamedSet, gathered, set_of
+
+# Elements by how their names begin: kind and number of nodes; the longest beginning counts.
+_ELEMENTS = {
+    "C3D4": ("tetra", 4),
+    "C3D10": ("tetra10", 10),
+    "C3D8": ("hexahedron", 8),
+    "C3D20": ("hexahedron20", 20),
+    "C3D27": ("hexahedron27", 27),
+    "C3D6": ("wedge", 6),
+    "C3D15": ("wedge15", 15),
+    "C3D5": ("pyramid", 5),
+    **dict.fromkeys(("CPS3", "CPE3", "CAX3", "S3", "STRI3", "M3D3", "R3D3", "SFM3D3", "DC2D3"), ("triangle", 3)),
+    **dict.fromkeys(("CPS6", "CPE6", "CAX6", "S6", "STRI65", "M3D6", "SFM3D6", "DC2D6"), ("triangle6", 6)),
+    **dict.fromkeys(("CPS4", "CPE4", "CAX4", "S4", "M3D4", "R3D4", "SFM3D4"), ("quad", 4)),
+    **dict.fromkeys(("CPS8", "CPE8", "CAX8", "S8", "M3D8", "SFM3D8"), ("quad8", 8)),
+    **dict.fromkeys(("T2D2", "T3D2", "B21", "B31"), ("line", 2)),
+    **dict.fromkeys(("T2D3", "T3D3", "B22", "B32"), ("line3", 3)),
+}
+
+
+def read_abaqus(path: Path) -> FileMesh:
+    """Read a deck; ValueError says what in it can't be read."""
+    coordinates: dict[int, list[float]] = {}
+    blocks: list[tuple[str, list[list[int]], list[int]]] = []
+    node_sets: dict[str, list[int]] = {}
+    cell_sets: dict[str, list[int]] = {}
+    instances = 0
+    for keyword, options, lines in _keywords(path):
+        if keyword == "NODE":
+            for line in lines:
+                number, *xyz = line.rstrip(",").split(",")
+                coordinates[int(number)] = [float(x) for x in xyz[:3]]
+            if "NSET" in options:
+                node_sets.setdefault(options["NSET"], []).extend(int(line.split(",")[0]) for line in lines)
+        elif keyword == "ELEMENT":
+            kind, count = _element(options.get("TYPE", "").upper())
+            numbers = [int(item) for line in lines for item in line.split(",") if item.strip()]
+            if len(numbers) % (count + 1):
+                raise ValueError(f"elements {options.get('TYPE')} with another number of nodes than {count}")
+            rows = [numbers[i : i + count + 1] for i in range(0, len(numbers), count + 1)]
+            blocks.append((kind, [row[1:] for row in rows], [row[0] for row in rows]))
+            if "ELSET" in options:
+                cell_sets.setdefault(options["ELSET"], []).extend(row[0] for row in rows)
+        elif keyword in ("NSET", "ELSET"):
+            sets = node_sets if keyword == "NSET" else cell_sets
+            sets.setdefault(options.get(keyword, ""), []).extend(_members(options, lines, sets))
+        elif keyword == "INCLUDE":
+            raise ValueError(f"it includes another file, {options.get('INPUT', '')}: put both into one")
+        elif keyword == "INSTANCE":
+            instances += 1
+            if instances > 1 or any(line.strip() for line in lines):
+                raise ValueError("it has several instances or a moved one: export a flat deck without parts")
+    if not coordinates:
+        raise ValueError("it has no *NODE")
+    order = {number: place for place, number in enumerate(coordinates)}
+    try:
+        cells = [(kind, np.array([[order[node] for node in row] for row in rows])) for kind, rows, _ in blocks]
+        named = {
+            name: NamedSet(np.unique([order[node] for node in nodes])) for name, nodes in node_sets.items() if nodes
+        }
+    except KeyError as error:
+        raise ValueError(f"node {error.args[0]} is named but not given") from None
+    for name, numbers in cell_sets.items():
+        wanted = np.array(numbers)
+        chosen = [
+            (kind, rows[np.isin(ids, wanted)])
+            for (kind, rows), (_, _, ids) in zip(cells, blocks, strict=True)
+            if len(rows)
+        ]
+        found = set_of(chosen)
+        # A deck often has one name for the nodes and for the faces of a place; then the faces say more.
+        if name not in named or (found.faces and np.array_equal(found.nodes, named[name].nodes)):
+            named[name] = found
+    return FileMesh(np.array(list(coordinates.values())), gathered(cells), named)
+
+
+def _keywords(path: Path) -> Iterator[tuple[str, dict[str, str], list[str]]]:
+    """Yield keyword, options (names in capitals) and lines of data of every block."""
+    keyword = ""
+    options: dict[str, str] = {}
+    lines: list[str] = []
+    pending = ""
+    with path.open(encoding="utf-8", errors="replace") as file:
+        for raw in file:
+            line = raw.strip()
+            if not line or line.startswith("**"):
+                continue
+            if not line.startswith("*") and not pending:
+                lines.append(line)
+                continue
+            pending += line
+            if pending.endswith(","):  # a keyword goes on in the next line
+                continue
+            if keyword:
+                yield keyword, options, lines
+            head, *items = pending.lstrip("*").split(",")
+            keyword = head.strip().upper()
+            options = {
+                key.strip().upper(): value.strip().strip('"') for key, _, value in (i.partition("=") for i in items)
+            }
+            lines = []
+            pending = ""
+    if keyword:
+        yield keyword, options, lines
+
+
+def _element(name: str) -> tuple[str, int]:
+    known = [start for start in _ELEMENTS if name.startswith(start)]
+    # C3D10M and C3D20R are C3D10 and C3D20; C3D100 would be neither.
+    known = [start for start in known if not name[len(start) : len(start) + 1].isdigit()]
+    if not known:
+        raise ValueError(f"elements of the type {name or 'without a name'}")
+    return _ELEMENTS[max(known, key=len)]
+
+
+def _members(options: dict[str, str], lines: list[str], sets: dict[str, list[int]]) -> Iterator[int]:
+    for line in lines:
+        items = [item.strip() for item in line.split(",") if item.strip()]
+        if "GENERATE" in options:
+            first, last = int(items[0]), int(items[1])
+            yield from range(first, last + 1, int(items[2]) if len(items) > 2 else 1)
+            continue
+        for item in items:
+            if item.isdigit():
+                yield int(item)
+            else:
+                yield from sets.get(item.strip('"'), [])

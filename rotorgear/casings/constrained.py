@@ -1,0 +1,95 @@
+"""Static answers of an elastic body whose mean motions are prescribed or sprung, by one factorisation of its own stiffness.
+
+    K u + W λ = f,    Wᵀ u - C λ = g
+
+W: weights of mean motions (prescribed where the flexibility C is 0, on springs of flexibility C else), λ: their forces. The
+dense block W Wᵀ never meets the sparse K: with A = K⁻¹, u = A (f - W λ) and (Wᵀ A W + C) λ = Wᵀ A f - g.
+
+A body that floats has rigid motions R; then A is the inverse with six of its dofs pinned, which answers exactly to forces in
+balance, and u = A (f - W λ) + R α with Rᵀ (f - W λ) = 0: the flexibility method of structures that float (Farhat and Roux,
+Int. J. Numer. Meth. Eng. 32, 1991).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from rotorgear.progress import Progress, silent
+from rotorgear.solvers.sparse.large import LargeFactor, factor_positive
+
+
+class ElasticBody:
+    """A factored stiffness; `rigid` (n, 6) are the motions that it does not resist, pinned for the factorisation; or none."""
+
+    def __init__(self, K: Any, rigid: np.ndarray, what: str, progress: Progress = silent) -> None:
+        self.rigid = rigid
+        self.factor: LargeFactor
+        self._pins = np.zeros(0, dtype=int)
+        if rigid.shape[1]:
+            # Six dofs that hold the body best: the pivots of its rigid motions.
+            self._pins = la.qr((rigid / np.linalg.norm(rigid, axis=0)).T, mode="r", pivoting=True)[1][: rigid.shape[1]]
+            K = _pinned(K, self._pins)
+        self.factor = factor_positive(K, 3, what, progress)
+
+    def flexibility(self, forces: np.ndarray) -> np.ndarray:
+        """A f for f (n, k): exact for forces in balance, if the body floats."""
+        if len(self._pins):
+            forces = forces.copy()
+            forces[self._pins] = 0.0
+        return self.factor.solve(forces)
+
+
+def _pinned(K: Any, pins: np.ndarray) -> Any:
+    """K with some dofs held: their rows and columns are those of the unit matrix, scaled like K."""
+    K = sp.csr_array(K, copy=True)
+    keep = np.ones(K.shape[0])
+    keep[pins] = 0.0
+    rows = np.repeat(np.arange(K.shape[0]), np.diff(K.indptr))
+    K.data *= keep[rows] * keep[K.indices]
+    diagonal = K.diagonal()
+    diagonal[pins] = diagonal.max()
+    K.setdiag(diagonal)
+    return K
+
+
+class Constrained:
+    """The static answer of a body under mean motions W with flexibilities C."""
+
+    def __init__(self, body: ElasticBody, weights: np.ndarray, flexibility: np.ndarray | None = None) -> None:
+        """Take a body, W (n, c), and C (c,), zero where motions are prescribed (default: all)."""
+        self.body = body
+        self.weights = weights
+        count = weights.shape[1]
+        self.moved = body.flexibility(weights) if count else weights  # A W
+        held = np.zeros(count) if flexibility is None else flexibility
+        F = weights.T @ self.moved + np.diag(held)
+        G = weights.T @ body.rigid
+        rigid = body.rigid.shape[1]
+        self._small = np.block([[0.5 * (F + F.T), -G], [-G.T, np.zeros((rigid, rigid))]])
+        # Displacements, rotations and motions of the body have sizes far apart: rows and columns are scaled.
+        scale = np.sqrt(np.maximum(np.abs(np.diag(self._small)), 0.0))
+        if count:
+            scale[count:] = np.linalg.norm(G / scale[:count, None], axis=0)
+        scale[scale == 0.0] = 1.0
+        self._scale = scale
+        self._lu = la.lu_factor(self._small / np.outer(scale, scale)) if len(scale) else None
+
+    def solve(self, forces: np.ndarray | None = None, motions: np.ndarray | None = None) -> np.ndarray:
+        """u (n, k) for forces f (n, k) and motions g (c, k); one of them may be left out."""
+        count = self.weights.shape[1]
+        free = 0.0 if forces is None else self.body.flexibility(forces)
+        columns = (forces if forces is not None else motions).shape[1]  # type: ignore[union-attr]
+        if self._lu is None:
+            return np.asarray(free)
+        right = np.zeros((len(self._scale), columns))
+        if forces is not None:
+            right[:count] = self.weights.T @ free
+            right[count:] = -self.body.rigid.T @ forces
+        if motions is not None:
+            right[:count] -= motions
+        found = la.lu_solve(self._lu, right / self._scale[:, None]) / self._scale[:, None]
+        return np.asarray(free - self.moved @ found[:count] + self.body.rigid @ found[count:])

@@ -1,0 +1,142 @@
+"""The elements of casings: quadratic tetrahedra and hexahedra, by scikit-fem's shape functions in the order of the file.
+
+Files number the nodes of an element in VTK's order, scikit-fem in its own. Both stand on the same places of the reference
+element, so that they are matched by these.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from rotorgear.errors import MissingExtraError
+
+_TET_CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
+_HEX_CORNERS = np.array(
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], dtype=float
+)
+_TET_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
+_HEX_EDGES = (
+    *((0, 1), (1, 2), (2, 3), (3, 0)),
+    *((4, 5), (5, 6), (6, 7), (7, 4)),
+    *((0, 4), (1, 5), (2, 6), (3, 7)),
+)
+# Corners of the faces, counter-clockwise seen from outside.
+_TET_FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
+_HEX_FACES = ((0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7))
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Shape functions on a reference cell.
+
+    Attributes:
+        nodes: (k, d) reference places of the nodes, corners first, in VTK's order.
+        skfem: scikit-fem's element.
+        order: for each node the number of scikit-fem's function.
+    """
+
+    nodes: np.ndarray
+    skfem: Any
+    order: np.ndarray
+
+    def shapes(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Shape functions (k, q) and their gradients (k, d, q) at reference places (d, q)."""
+        values = [self.skfem.lbasis(places, int(i)) for i in self.order]
+        return (
+            np.array([np.broadcast_to(value, places.shape[1]) for value, _ in values]),
+            np.array([np.broadcast_to(gradient, places.shape) for _, gradient in values]),
+        )
+
+    def quadrature(self, degree: int) -> tuple[np.ndarray, np.ndarray]:
+        """Places (d, q) and weights (q,) that integrate polynomials of a degree on the reference cell."""
+        from skfem.quadrature import get_quadrature
+
+        places, weights = get_quadrature(self.skfem.refdom, degree)
+        return np.asarray(places), np.asarray(weights)
+
+
+@dataclass(frozen=True)
+class Element(Reference):
+    """A kind of solid.
+
+    Attributes:
+        kind: meshio's word.
+        corners: number of corners.
+        edges: corners of each edge, in the order of the nodes on them.
+        faces: corners of each face, counter-clockwise from outside.
+        face_nodes: all nodes of each face: corners, those on its edges in the order of the corners, its middle if it has a node.
+        face: shape functions on a face.
+    """
+
+    kind: str
+    corners: int
+    edges: tuple[tuple[int, int], ...]
+    faces: tuple[tuple[int, ...], ...]
+    face_nodes: np.ndarray
+    face: Reference
+
+
+def _matched(nodes: np.ndarray, finite: Any) -> np.ndarray:
+    """For each node the function of scikit-fem that stands on its place."""
+    distance = np.linalg.norm(nodes[:, None, :] - np.asarray(finite.doflocs)[None, :, :], axis=2)
+    return np.asarray(np.argmin(distance, axis=1))
+
+
+def _face(corners: np.ndarray, middle: bool, finite: Any) -> Reference:
+    edges = [0.5 * (corners[i] + corners[(i + 1) % len(corners)]) for i in range(len(corners))]
+    nodes = np.array([*corners, *edges, *([corners.mean(axis=0)] if middle else [])])
+    return Reference(nodes, finite, _matched(nodes, finite))
+
+
+@cache
+def element(kind: str) -> Element:
+    """The element of a kind: tetra10, hexahedron20 or hexahedron27.
+
+    Raises:
+        MissingExtraError: scikit-fem is not installed.
+    """
+    try:
+        import skfem
+    except ImportError:
+        raise MissingExtraError("A casing from a mesh file", "scikit-fem", "casing") from None
+    tet = kind == "tetra10"
+    corners = _TET_CORNERS if tet else _HEX_CORNERS
+    edges = _TET_EDGES if tet else _HEX_EDGES
+    faces = _TET_FACES if tet else _HEX_FACES
+    nodes = [*corners, *(corners[list(edge)].mean(axis=0) for edge in edges)]
+    if kind == "hexahedron27":
+        nodes += [corners[list(face)].mean(axis=0) for face in faces]
+        nodes.append(corners.mean(axis=0))
+    places = np.array(nodes)
+    on_edge = {frozenset(edge): len(corners) + number for number, edge in enumerate(edges)}
+    face_nodes = []
+    for number, face in enumerate(faces):
+        rim = [on_edge[frozenset((face[i], face[(i + 1) % len(face)]))] for i in range(len(face))]
+        middle = [len(corners) + len(edges) + number] if kind == "hexahedron27" else []
+        face_nodes.append([*face, *rim, *middle])
+    finite = {"tetra10": skfem.ElementTetP2, "hexahedron20": skfem.ElementHexS2, "hexahedron27": skfem.ElementHex2}[
+        kind
+    ]()
+    on_face = {"tetra10": skfem.ElementTriP2, "hexahedron20": skfem.ElementQuadS2, "hexahedron27": skfem.ElementQuad2}[
+        kind
+    ]()
+    rim_corners = np.array([[0, 0], [1, 0], [0, 1]] if tet else [[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+    return Element(
+        nodes=places,
+        skfem=finite,
+        order=_matched(places, finite),
+        kind=kind,
+        corners=len(corners),
+        edges=edges,
+        faces=faces,
+        face_nodes=np.array(face_nodes),
+        face=_face(rim_corners, kind == "hexahedron27", on_face),
+    )
+
+
+QUADRATIC = {"tetra": "tetra10", "tetra10": "tetra10", "hexahedron": "hexahedron20", "hexahedron20": "hexahedron20"}
+QUADRATIC["hexahedron27"] = "hexahedron27"

@@ -1,0 +1,302 @@
+"""The finite-element model of a casing, ready to be solved: checked mesh, matrices, seats, mounts and what is held."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+
+from rotorgear.casings.assembly import Assembled, assemble, rigid_motions
+from rotorgear.casings.joins import Joined, join
+from rotorgear.casings.mesh_file import read_mesh
+from rotorgear.casings.patches import Patch, by_cylinder, by_set
+from rotorgear.casings.settings import CasingSettings
+from rotorgear.casings.solid_mesh import SolidMesh, merged, solid_mesh
+from rotorgear.errors import AnalysisError
+from rotorgear.progress import Progress, silent
+from rotorgear.quantity import millimetres
+
+# Sizes of a casing that are believed; beyond, the unit is likely wrong.
+_LEAST_SIZE = 5e-3
+_LARGEST_SIZE = 50.0
+_MOTIONS = ("displacement along x", "along y", "along z", "rotation about x", "about y", "about z")
+
+
+@dataclass(frozen=True)
+class FreeSpace:
+    """Displacements of all nodes from f free dofs, and from the motions of seats that are rigid.
+
+    Attributes:
+        dofs: (f,) numbers of the free dofs among those of all nodes.
+        shapes: (3p, f).
+        seats: (3p, 6 s); no columns where no seat is rigid.
+    """
+
+    dofs: np.ndarray
+    shapes: sp.csr_array
+    seats: sp.csr_array
+
+    def forces(self, columns: np.ndarray) -> np.ndarray:
+        """Forces (f, k) on the free dofs of forces (3p, k) on all nodes."""
+        return np.asarray(self.shapes.T @ columns)
+
+
+@dataclass(frozen=True)
+class FiniteElementBody:
+    """A casing's mesh with its matrices, and its places.
+
+    Attributes:
+        settings: of the model file.
+        mesh: in m.
+        matrices: of all nodes, tied ones as if they were free.
+        joined: what joins add.
+        seats: patches in the order of the settings.
+        mounts: patches in the order of the settings.
+        held: nodes that are fixed.
+    """
+
+    settings: CasingSettings
+    mesh: SolidMesh
+    matrices: Assembled
+    joined: Joined
+    seats: tuple[Patch, ...]
+    mounts: tuple[Patch, ...]
+    held: np.ndarray
+
+    @property
+    def dofs(self) -> int:
+        """Three of each node."""
+        return 3 * len(self.mesh.points)
+
+    @cached_property
+    def mass_properties(self) -> tuple[float, np.ndarray, np.ndarray]:
+        """Mass in kg, centre (3,) in m, and inertia tensor (3, 3) about it in kg m^2, of the mesh."""
+        return mass_properties(self.rigid_mass(rigid_motions(self.mesh.points)))
+
+    def rigid_mass(self, motions: np.ndarray) -> np.ndarray:
+        """Mass matrix (6, 6) of rigid motions (3p, 6)."""
+        return np.asarray(motions.T @ self.matrices.times_mass(motions))
+
+    def stiffness_times(self, columns: np.ndarray) -> np.ndarray:
+        """K U with the joints, without mounts, for U (3p, k)."""
+        product = np.asarray(self.matrices.stiffness @ columns)
+        if self.joined.stiffness is not None:
+            nodes = len(self.mesh.points)
+            product += (self.joined.stiffness @ columns.reshape(nodes, -1)).reshape(columns.shape)
+        return product
+
+    def free_space(self, *, held: bool, rigid_seats: bool) -> FreeSpace:
+        """The displacements that a body has, by its free nodes and the motions of rigid seats.
+
+        Args:
+            held: whether the held nodes are fixed; else they are free.
+            rigid_seats: whether the nodes of seats follow their seat.
+        """
+        nodes = len(self.mesh.points)
+        free = np.ones(nodes, dtype=bool)
+        free[self.joined.tied] = False
+        if held:
+            free[self.held] = False
+        seat_columns = sp.csr_array((3 * nodes, 0))
+        if rigid_seats:
+            blocks = []
+            for patch in self.seats:
+                free[patch.nodes] = False
+                motions = rigid_motions(self.mesh.points[patch.nodes], patch.point)
+                dofs = (3 * patch.nodes[:, None] + np.arange(3)).ravel()
+                rows = np.repeat(dofs, 6)
+                columns = np.tile(np.arange(6), len(dofs))
+                blocks.append(sp.coo_array((motions.ravel(), (rows, columns)), shape=(3 * nodes, 6)))
+            seat_columns = sp.csr_array(sp.hstack(blocks))
+        chosen = np.flatnonzero(free)
+        select = sp.csr_array((np.ones(len(chosen)), (chosen, np.arange(len(chosen)))), shape=(nodes, len(chosen)))
+        space = sp.csr_array(sp.kron(select, sp.eye_array(3)))
+        if self.joined.interpolation is not None:
+            follow = sp.csr_array(sp.kron(self.joined.interpolation, sp.eye_array(3)))
+            space = sp.csr_array(follow @ space)
+            seat_columns = sp.csr_array(follow @ seat_columns)
+        return FreeSpace((3 * chosen[:, None] + np.arange(3)).ravel(), space, seat_columns)
+
+    def stiffness_in(self, space: sp.csr_array) -> sp.csr_array:
+        """Pᵀ K P of a space P of displacements, with the joints."""
+        K = sp.csr_array(self.matrices.stiffness)
+        if self.joined.stiffness is not None:
+            K = sp.csr_array(K + sp.kron(self.joined.stiffness, sp.eye_array(3), format="csr"))
+        if space.nnz == space.shape[1]:  # a plain choice of dofs
+            chosen = np.flatnonzero(np.diff(space.indptr))
+            return K if len(chosen) == K.shape[0] else sp.csr_array(K[chosen][:, chosen])
+        return sp.csr_array(space.T @ K @ space)
+
+    def mean_weights(self, patches: tuple[Patch, ...]) -> np.ndarray:
+        """W (3p, 6 n): mean motions of patches from displacements of all nodes."""
+        W = np.zeros((self.dofs, 6 * len(patches)))
+        for number, patch in enumerate(patches):
+            dofs = (3 * patch.nodes[:, None] + np.arange(3)).ravel()
+            W[dofs, 6 * number : 6 * number + 6] = patch.weights(self.mesh.points)
+        return W
+
+    def springs(self) -> tuple[np.ndarray, np.ndarray]:
+        """Directions (3p, m) of the springs of all mounts, W V, and their flexibilities (m,): D = V diag(1/C) Vᵀ."""
+        W = self.mean_weights(self.mounts)
+        columns = []
+        flexibility: list[float] = []
+        for number, mount in enumerate(self.settings.mounts):
+            values, directions = np.linalg.eigh(np.array(mount.stiffness))
+            strong = values > 1e-12 * max(values.max(), 1e-300)
+            columns.append(W[:, 6 * number : 6 * number + 6] @ directions[:, strong])
+            flexibility += (1.0 / values[strong]).tolist()
+        return (np.hstack(columns) if columns else np.zeros((self.dofs, 0))), np.array(flexibility)
+
+
+def mass_properties(rigid_mass: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """Mass, centre and inertia about the centre from the mass matrix (6, 6) of rigid motions about the origin."""
+    mass = float(rigid_mass[0, 0])
+    # Rotation about x moves the centre along y by -z_c, and so on: the coupling block is mass times the cross product with it.
+    coupling = rigid_mass[:3, 3:] / mass
+    centre = np.array([coupling[1, 2], coupling[2, 0], coupling[0, 1]])
+    offset = mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+    return mass, centre, rigid_mass[3:, 3:] - offset
+
+
+def finite_element_body(settings: CasingSettings, progress: Progress = silent) -> FiniteElementBody:
+    """Read, check and assemble the mesh of a casing.
+
+    Raises:
+        AnalysisError: whatever is wrong with the mesh or with what the model file says of it: one sentence with the remedy.
+        MissingExtraError: meshio or scikit-fem is not installed.
+    """
+    address = settings.address
+    progress(0.0, f"{address}: reading the mesh")
+    meshes = {}
+    for part, path in settings.files:
+        where = f"{address}.mesh" if len(settings.files) == 1 else f"{address}.mesh.{part}"
+        meshes[part] = solid_mesh(read_mesh(path, where), settings.unit, where)
+    joined = join(merged(meshes, f"{address}.mesh"), settings.joins, address)
+    mesh = joined.mesh
+    _believable_size(mesh, address)
+    _one_body(joined, settings)
+    seats = tuple(
+        by_set(mesh, place, f"{address}.seats.{name}")
+        if isinstance(place, str)
+        else by_cylinder(mesh, place, f"{address}.seats.{name}")
+        for name, place in settings.seats
+    )
+    mounts = tuple(by_set(mesh, mount.set, f"{address}.mounts.{mount.set}") for mount in settings.mounts)
+    held_patches = [by_set(mesh, name, f"{address}.held[{number}]") for number, name in enumerate(settings.held)]
+    held = (
+        np.unique(np.concatenate([patch.nodes for patch in held_patches])) if held_patches else np.zeros(0, dtype=int)
+    )
+    _apart(settings, seats, held, joined.tied)
+    progress(0.3, f"{address}: assembling {3 * len(mesh.points)} unknowns")
+    body = FiniteElementBody(settings, mesh, assemble(mesh, settings.material), joined, seats, mounts, held)
+    for patch in (*seats, *mounts):
+        patch.weights(mesh.points)
+    _believable_mass(body)
+    _no_mechanism(body)
+    progress(1.0, f"{address}: assembled")
+    return body
+
+
+def _believable_size(mesh: SolidMesh, address: str) -> None:
+    size = np.ptp(mesh.points, axis=0)
+    if not _LEAST_SIZE <= size.max() <= _LARGEST_SIZE:
+        box = " x ".join(millimetres(side) for side in size)
+        raise AnalysisError(
+            f"{address}.unit: the mesh measures {box} in this unit. Files of meshes carry no unit: say the one it was "
+            f"drawn in, such as unit = '{'mm' if size.max() > _LARGEST_SIZE else 'm'}'."
+        )
+
+
+def _one_body(joined: Joined, settings: CasingSettings) -> None:
+    """All elements hang together, through nodes or joins."""
+    mesh = joined.mesh
+    labels = mesh.parts()
+    if labels.max() == 0:
+        return
+    links = joined.links()
+    n = int(labels.max()) + 1
+    joint = sp.coo_array((np.ones(links.nnz), (labels[links.row], labels[links.col])), shape=(n, n))
+    count, groups = connected_components(joint)
+    if count == 1:
+        return
+    body_of = groups[labels]
+    elements = np.bincount(body_of[mesh.cells[:, 0]], minlength=count)
+    order = np.argsort(-elements)
+    described = []
+    for number in order[:4]:
+        centre = mesh.points[body_of == number].mean(axis=0)
+        place = ", ".join(millimetres(x) for x in centre)
+        described.append(f"{elements[number]} elements about ({place})")
+    more = f" and {count - 4} more" if count > 4 else ""
+    small = elements.min() < 0.01 * elements.max()
+    remedy = "take free floating parts out of the mesh" if small else "join them: joins = [{ faces = ['A', 'B'] }]"
+    raise AnalysisError(
+        f"{settings.address}.mesh: the mesh has {count} bodies that do not hang together: {'; '.join(described)}{more}. If they "
+        f"touch, merge their nodes in the mesher; else {remedy}."
+    )
+
+
+def _apart(settings: CasingSettings, seats: tuple[Patch, ...], held: np.ndarray, tied: np.ndarray) -> None:
+    """No node is in two seats, or in a seat and held."""
+    for number, (name, _) in enumerate(settings.seats):
+        nodes = seats[number].nodes
+        address = f"{settings.address}.seats.{name}"
+        if np.isin(nodes, held).any():
+            raise AnalysisError(
+                f"{address}: nodes of this seat are held ({', '.join(settings.held)}): a seat is free to move."
+            )
+        if settings.connection == "rigid" and np.isin(nodes, tied).any():
+            raise AnalysisError(
+                f"{address}: nodes of this seat are tied by a join, and the seat is rigid: turn the join round."
+            )
+        for other, (other_name, _) in enumerate(settings.seats[:number]):
+            if np.isin(nodes, seats[other].nodes).any():
+                raise AnalysisError(
+                    f"{address}: the seat shares nodes with the seat {other_name}: give each its own face."
+                )
+
+
+def _believable_mass(body: FiniteElementBody) -> None:
+    settings = body.settings
+    mass = body.mass_properties[0]
+    if settings.mass is None or abs(mass / settings.mass - 1.0) <= settings.mass_tolerance:
+        return
+    ratio = mass / settings.mass
+    units = {1e9: "the mesh is in mm", 1e-9: "the mesh is in m", 1e6: "the mesh is in cm", 1e3: "the mesh is in dm"}
+    units[0.0254**-3] = "the mesh is in inches"
+    hint = next((f": {text}?" for factor, text in units.items() if 0.7 < ratio / factor < 1.4), "")
+    raise AnalysisError(
+        f"{settings.address}.mass: the mesh has {mass:.6g} kg, and {settings.mass:.6g} kg are stated{hint or '.'} Check unit and "
+        "density, or give mass_tolerance."
+    )
+
+
+def _no_mechanism(body: FiniteElementBody) -> None:
+    """What holds the body leaves it no rigid motion; nothing at all may hold it."""
+    settings = body.settings
+    if not settings.held and not settings.mounts:
+        return
+    mesh = body.mesh
+    centre = mesh.points.mean(axis=0)
+    size = np.linalg.norm(np.ptp(mesh.points, axis=0))
+    R = rigid_motions(mesh.points, centre)
+    R[:, 3:] /= size
+    rows = [R.reshape(-1, 3, 6)[body.held].reshape(-1, 6)]
+    springs, flexibility = body.springs()
+    if len(flexibility):
+        # Only which motions are held counts, not how stiffly.
+        held = springs.T @ R
+        rows.append(held / np.linalg.norm(held, axis=1)[:, None].clip(min=1e-300))
+    _, singular, motions = np.linalg.svd(np.vstack(rows), full_matrices=True)
+    free = [motions[i] for i in range(6) if i >= len(singular) or singular[i] < 1e-6 * singular[0]]
+    if free:
+        named = "; ".join(_MOTIONS[int(np.argmax(np.abs(motion)))] for motion in free)
+        what = ", ".join([*settings.held, *(mount.set for mount in settings.mounts)])
+        key = "held" if settings.held else "mounts"
+        raise AnalysisError(
+            f"{settings.address}.{key}: what is held ({what}) leaves the casing a mechanism: {named}. Hold a face, or add "
+            "springs; or hold nothing, for a body that floats on its bearings."
+        )

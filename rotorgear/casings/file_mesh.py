@@ -1,0 +1,62 @@
+"""A mesh as its file has it: points, solid cells by kind, and named sets of nodes and faces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+# Kinds of cells, in the words of meshio, by what rotorgear does with them.
+SOLIDS = ("tetra", "tetra10", "hexahedron", "hexahedron20", "hexahedron27")
+OTHER_SOLIDS = (
+    "wedge",
+    "wedge15",
+    "wedge18",
+    "pyramid",
+    "pyramid13",
+    "pyramid14",
+    "hexahedron24",
+    "VTK_LAGRANGE_TETRAHEDRON",
+)
+FACES = {"triangle": 3, "triangle6": 3, "triangle7": 3, "quad": 4, "quad8": 4, "quad9": 4}
+
+
+@dataclass
+class NamedSet:
+    """Nodes of a set, and its faces by their corners where the file has cells for them."""
+
+    nodes: np.ndarray
+    faces: list[np.ndarray] = field(default_factory=list)
+
+
+@dataclass
+class FileMesh:
+    """What a reader found.
+
+    Attributes:
+        points: (p, 3) in the unit of the file.
+        cells: nodes (e, k) of the cells of every kind, solids and others, in the order of VTK.
+        sets: by name.
+        notes: sentences on what was left out or made of something else.
+    """
+
+    points: np.ndarray
+    cells: dict[str, np.ndarray]
+    sets: dict[str, NamedSet] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+
+def gathered(blocks: list[tuple[str, np.ndarray]]) -> dict[str, np.ndarray]:
+    """Blocks of cells as one array a kind."""
+    found: dict[str, list[np.ndarray]] = {}
+    for kind, nodes in blocks:
+        if len(nodes):
+            found.setdefault(kind, []).append(np.asarray(nodes, dtype=np.int64))
+    return {kind: np.vstack(parts) for kind, parts in found.items()}
+
+
+def set_of(blocks: list[tuple[str, np.ndarray]]) -> NamedSet:
+    """The set of the nodes of cells; faces among them are its faces."""
+    nodes = [np.unique(cells) for _, cells in blocks if len(cells)]
+    faces = [cells[:, : FACES[kind]] for kind, cells in blocks if kind in FACES and len(cells)]
+    return NamedSet(np.unique(np.concatenate(nodes)) if nodes else np.zeros(0, dtype=np.int64), faces)

@@ -1,0 +1,124 @@
+"""Reads a mesh file, by meshio or by the readers beside this one, and turns every way of failing into a sentence.
+
+meshio ends the process on a file that it can't read, loses the sets of some formats and stumbles over usual Abaqus and Nastran
+decks: nothing else in rotorgear calls it, and decks have their own readers (`abaqus`, `nastran`).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rotorgear.casings.abaqus import read_abaqus
+from rotorgear.casings.file_mesh import FileMesh, NamedSet, gathered, set_of
+from rotorgear.casings.nastran import read_nastran
+from rotorgear.errors import AnalysisError, MissingExtraError
+
+_DECKS = {".inp": read_abaqus, ".bdf": read_nastran, ".nas": read_nastran, ".fem": read_nastran, ".dat": read_nastran}
+
+
+def read_mesh(path: Path, address: str) -> FileMesh:
+    """Read a mesh file.
+
+    Args:
+        path: of the file; its ending names the format.
+        address: in the model file, for errors.
+
+    Raises:
+        AnalysisError: no such file, or one that can't be read.
+        MissingExtraError: meshio is not installed.
+    """
+    if not path.is_file():
+        there = sorted(item.name for item in path.parent.iterdir() if item.is_file()) if path.parent.is_dir() else []
+        from rotorgear.quantity import nearest
+
+        guess = nearest(path.name, there)
+        hint = f" Did you mean '{guess}'?" if guess else " The path is taken from the folder of the model file."
+        raise AnalysisError(f"{address}: there is no file '{path}'.{hint}")
+    reader = _DECKS.get(path.suffix.lower())
+    try:
+        mesh = reader(path) if reader else _by_meshio(path)
+    except (MissingExtraError, AnalysisError):
+        raise
+    except Exception as error:
+        words = " ".join(str(error).split())[:200]
+        raise AnalysisError(
+            f"{address}: '{path.name}' can't be read as a mesh ({type(error).__name__}: {words}). Export it as Gmsh .msh 4.1, "
+            "Abaqus .inp or .vtu, with its solids and its named sets."
+        ) from None
+    if mesh.points.ndim != 2 or mesh.points.shape[1] != 3 or not np.all(np.isfinite(mesh.points)):
+        raise AnalysisError(f"{address}: the points of '{path.name}' are not three finite coordinates each.")
+    return mesh
+
+
+def _by_meshio(path: Path) -> FileMesh:
+    """A file by meshio: what it prints and how it ends is caught."""
+    try:
+        import meshio
+    except ImportError:
+        raise MissingExtraError("A casing from a mesh file", "meshio", "casing") from None
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            found = meshio.read(path)
+    except SystemExit:
+        words = " ".join(said.getvalue().split())[-200:]
+        raise RuntimeError(f"meshio gave up: {words}") from None
+    blocks = [(block.type, np.asarray(block.data, dtype=np.int64)) for block in found.cells]
+    points = np.asarray(found.points, dtype=float)
+    if points.ndim == 2 and points.shape[1] == 2:
+        raise RuntimeError("the mesh is plane")
+    return FileMesh(points, gathered(blocks), _sets(found, blocks))
+
+
+def _sets(found: Any, blocks: list[tuple[str, np.ndarray]]) -> dict[str, NamedSet]:
+    """Named sets of a file, wherever its format keeps them."""
+    sets: dict[str, NamedSet] = {}
+    for name, nodes in found.point_sets.items():
+        sets[name] = NamedSet(np.unique(np.asarray(nodes, dtype=np.int64)))
+    for name, numbers in found.cell_sets.items():
+        if not name.startswith("gmsh:"):
+            chosen = [
+                (kind, cells[np.asarray(those, dtype=np.int64)])
+                for (kind, cells), those in zip(blocks, numbers, strict=True)
+                if those is not None and len(those)
+            ]
+            sets[name] = set_of(chosen)
+    # Gmsh 2.2: the name of a physical group stands in the header, its number with every cell.
+    tags = found.cell_data.get("gmsh:physical")
+    if tags is not None:
+        dimensions = {"line": 1, "line3": 1, "vertex": 0}
+        for name, (number, dimension) in found.field_data.items():
+            chosen = [
+                (kind, cells[np.asarray(tag) == number])
+                for (kind, cells), tag in zip(blocks, tags, strict=True)
+                if dimensions.get(kind, 2 if kind.startswith(("tri", "quad")) else 3) == dimension
+            ]
+            if name not in sets:
+                sets[name] = set_of(chosen)
+    # MED: families of points and cells, each with the names of the groups that it belongs to.
+    for families, per_block in (
+        (getattr(found, "point_tags", {}), [(None, found.point_data.get("point_tags"))]),
+        (getattr(found, "cell_tags", {}), list(zip(blocks, found.cell_data.get("cell_tags", []), strict=False))),
+    ):
+        members: dict[str, list[NamedSet]] = {}
+        for number, names in families.items():
+            for block, tag in per_block:
+                if tag is None:
+                    continue
+                chosen_here = np.asarray(tag) == number
+                part = (
+                    NamedSet(np.flatnonzero(chosen_here))
+                    if block is None
+                    else set_of([(block[0], block[1][chosen_here])])
+                )
+                for name in names:
+                    members.setdefault(name.strip("\0 "), []).append(part)
+        for name, parts in members.items():
+            nodes = np.unique(np.concatenate([part.nodes for part in parts]))
+            sets.setdefault(name, NamedSet(nodes, [face for part in parts for face in part.faces]))
+    return {name: one for name, one in sets.items() if name}

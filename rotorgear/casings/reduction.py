@@ -1,0 +1,213 @@
+"""Reduction of a finite-element body to its seats: Craig and Bampton's modes with residual shapes, and their error.
+
+The basis Φ = [Ψ φ v] (Craig and Bampton, AIAA J. 6, 1968):
+
+    Ψ  static answers to unit motions of the seats: mean motions of a patch (RBE3), or the patch as a rigid body (RBE2),
+    φ  modes with the seats at rest, up to a frequency,
+    v  = A M Ψ without its part in φ: what the modes that are left out add statically to the inertia forces of Ψ.
+
+A is the flexibility with the seats at rest. The residual shapes v make the answer exact to the second power of λ over the first
+eigenvalue left out; they are coordinates like the modes, and the internal coordinates are made those of the inside's own pencil.
+
+The error of a mode (λ, q) of whatever structure the body is part of: its residual r in the inside, met by A, raises λ by
+
+    δλ = rᵀ A r = λ² qᵀ E q,   E = Xᵀ K X,   X = A M Φ - Φ_i K_ii⁻¹ Φ_iᵀ M Φ
+
+where Φ_i are the internal shapes: X is what the basis can't follow. E is kept with the body, so that every analysis can state
+the error of its own modes.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import scipy.linalg as la
+
+from rotorgear.casings.assembly import rigid_motions
+from rotorgear.casings.constrained import Constrained, ElasticBody
+from rotorgear.casings.fe_body import FiniteElementBody, FreeSpace
+from rotorgear.casings.modes import modes_up_to
+from rotorgear.casings.reduced_body import ReducedBody, Surface, modal_damping
+from rotorgear.progress import Progress, silent
+
+# Fixed-interface modes where neither the file nor the analysis says a frequency.
+USUAL = 20
+# Residual shapes whose mass is less than this share of the largest follow from the others.
+_DEPENDENT = 1e-10
+
+
+def reduce(
+    fe: FiniteElementBody, modes_to: float | None, progress: Progress = silent
+) -> tuple[ReducedBody, ElasticBody]:
+    """Reduce a body.
+
+    Args:
+        fe: the body.
+        modes_to: Hz, fixed-interface modes are kept up to here; None: the lowest `USUAL`.
+        progress: of the steps.
+
+    Returns:
+        The reduced body, and the factored stiffness that it was found with.
+
+    Raises:
+        AnalysisError: more memory than there is. ConvergenceError: a factorisation or an iteration that failed.
+    """
+    name = fe.settings.address
+    seconds: dict[str, float] = {}
+    started = time.perf_counter()
+    mean = fe.settings.connection == "mean"
+    seats = 6 * len(fe.seats)
+    space = fe.free_space(held=True, rigid_seats=not mean)
+    R = rigid_motions(fe.mesh.points)
+    floating = not len(fe.held) and not space.seats.shape[1]
+    body = ElasticBody(
+        fe.stiffness_in(space.shapes), R[space.dofs] if floating else R[space.dofs][:, :0], name, progress
+    )
+    seconds["factorisation"] = time.perf_counter() - started
+
+    progress(0.3, f"{name}: static shapes of {len(fe.seats)} seats")
+    started = time.perf_counter()
+    springs, flexibility = fe.springs()
+    seat_weights = fe.mean_weights(fe.seats) if mean else np.zeros((fe.dofs, 0))
+    held = np.concatenate([np.zeros(seat_weights.shape[1]), flexibility])
+    system = Constrained(body, space.forces(np.hstack([seat_weights, springs])), held)
+    static = _static_shapes(fe, space, system, springs)
+    seconds["static shapes"] = time.perf_counter() - started
+
+    progress(0.4, f"{name}: fixed-interface modes")
+    started = time.perf_counter()
+
+    def times_mass(columns: np.ndarray) -> np.ndarray:
+        return space.forces(fe.matrices.times_mass(space.shapes @ columns))
+
+    _, fixed, left = modes_up_to(system.solve, times_mass, len(space.dofs), modes_to, USUAL)
+    seconds["fixed-interface modes"] = time.perf_counter() - started
+
+    progress(0.7, f"{name}: residual shapes and error")
+    started = time.perf_counter()
+    fixed = space.shapes @ fixed
+    kept = fixed.shape[1]
+    mass_fixed = fe.matrices.times_mass(fixed)
+    mass_static = fe.matrices.times_mass(static)
+    residual = space.shapes @ system.solve(space.forces(mass_static))
+    residual -= fixed @ (mass_fixed.T @ residual)
+    residual -= fixed @ (mass_fixed.T @ residual)
+    residual = _independent(residual, fe.matrices.times_mass(residual))
+    internal = np.hstack([fixed, residual])
+
+    # Internal coordinates of the inside's own pencil: its stiffness and mass become diagonal.
+    K_internal = internal.T @ fe.stiffness_times(internal) + _spring_part(internal, internal, springs, flexibility)
+    M_internal = internal.T @ fe.matrices.times_mass(internal)
+    squares, turn = la.eigh(_symmetric(K_internal), _symmetric(M_internal))
+    internal = internal @ turn
+    basis = np.hstack([static, internal])
+    del fixed, residual, mass_fixed
+
+    mass_basis = fe.matrices.times_mass(basis)
+    stiffness = basis.T @ fe.stiffness_times(basis) + _spring_part(basis, basis, springs, flexibility)
+    mass = basis.T @ mass_basis
+    K = _clean(stiffness, seats, squares)
+    M = _symmetric(mass)
+    M[seats:, seats:] = np.eye(len(squares))
+    # E: answers to M Φ that the internal shapes can't follow; Xᵀ K X = (M Φ)ᵀ X, because X is such an answer.
+    forces = space.forces(mass_basis)
+    answers = system.solve(forces) - (internal[space.dofs] / squares) @ (internal.T @ mass_basis)
+    error = _symmetric(forces.T @ answers)
+    seconds["residual shapes"] = time.perf_counter() - started
+
+    body_mass, centre, inertia = fe.mass_properties
+    damping = modal_damping(M, K, fe.settings.damping_ratio) if fe.settings.damping_ratio else np.zeros_like(M)
+    damping = damping + _mount_damping(fe, basis)
+    progress(1.0, f"{name}: reduced to {len(M)} coordinates")
+    return ReducedBody(
+        name=fe.settings.name,
+        seats=tuple(seat for seat, _ in fe.settings.seats),
+        seat_points=np.array([patch.point for patch in fe.seats]).reshape(-1, 3),
+        mass=M,
+        stiffness=K,
+        damping=damping,
+        rigid=None if len(fe.held) or len(flexibility) else _rigid_coordinates(fe, len(M)),
+        inertia_force=basis.T @ fe.matrices.times_mass(R),
+        body_mass=body_mass,
+        centre=centre,
+        inertia=inertia,
+        fixed_frequency=np.sqrt(squares[:kept]) / (2.0 * np.pi),
+        left_frequency=left,
+        error=error,
+        surface=_surface(fe, basis),
+        held=bool(len(fe.held) or len(flexibility)),
+        notes=fe.mesh.notes,
+        seconds=seconds,
+    ), body
+
+
+def _static_shapes(fe: FiniteElementBody, space: FreeSpace, system: Constrained, springs: np.ndarray) -> np.ndarray:
+    """Ψ (3p, 6 s): displacements for unit motions of the seats, without inertia."""
+    seats = 6 * len(fe.seats)
+    if not space.seats.shape[1]:
+        motions = np.zeros((system.weights.shape[1], seats))
+        motions[:seats] = np.eye(seats)
+        return np.asarray(space.shapes @ system.solve(motions=motions))
+    moved = space.seats.toarray()
+    forces = -space.forces(fe.stiffness_times(moved))
+    # A seat that moves stretches the springs of mounts that it is part of: Wᵀ (u + u_seat) - C λ = 0.
+    return np.asarray(space.shapes @ system.solve(forces, -(springs.T @ moved)) + moved)
+
+
+def _rigid_coordinates(fe: FiniteElementBody, size: int) -> np.ndarray:
+    """Coordinates (n, 6) of rigid motions: those of the seats; the inside follows statically."""
+    coordinates = np.zeros((size, 6))
+    for number, patch in enumerate(fe.seats):
+        coordinates[6 * number : 6 * number + 3] = rigid_motions(patch.point[None, :])
+        coordinates[6 * number + 3 : 6 * number + 6, 3:] = np.eye(3)
+    return coordinates
+
+
+def _spring_part(left: np.ndarray, right: np.ndarray, springs: np.ndarray, flexibility: np.ndarray) -> np.ndarray:
+    """Stiffness of the mounts between shapes."""
+    return np.asarray((left.T @ springs) @ ((springs.T @ right) / flexibility[:, None]))
+
+
+def _independent(shapes: np.ndarray, mass_shapes: np.ndarray) -> np.ndarray:
+    """Combinations of shapes that are M-orthonormal, without those that follow from the others."""
+    gram = _symmetric(shapes.T @ mass_shapes)
+    scale = np.sqrt(np.diag(gram).clip(min=1e-300))
+    values, vectors = la.eigh(gram / np.outer(scale, scale))
+    strong = values > _DEPENDENT * values[-1] if len(values) else np.zeros(0, dtype=bool)
+    return np.asarray(shapes @ (vectors[:, strong] / np.sqrt(values[strong]) / scale[:, None]))
+
+
+def _symmetric(matrix: np.ndarray) -> np.ndarray:
+    return np.asarray(0.5 * (matrix + matrix.T))
+
+
+def _clean(stiffness: np.ndarray, seats: int, squares: np.ndarray) -> np.ndarray:
+    """K as theory has it: static shapes and internal shapes share no strain energy, and the inside is diagonal."""
+    K = np.zeros_like(stiffness)
+    K[:seats, :seats] = _symmetric(stiffness[:seats, :seats])
+    K[seats:, seats:] = np.diag(squares)
+    return K
+
+
+def _mount_damping(fe: FiniteElementBody, basis: np.ndarray) -> np.ndarray:
+    """Dampers of the mounts in the coordinates of the basis."""
+    motions = fe.mean_weights(fe.mounts).T @ basis
+    C = np.zeros((basis.shape[1], basis.shape[1]))
+    for number, mount in enumerate(fe.settings.mounts):
+        part = motions[6 * number : 6 * number + 6]
+        C += part.T @ np.array(mount.damping) @ part
+    return C
+
+
+def _surface(fe: FiniteElementBody, basis: np.ndarray) -> Surface:
+    """The outer faces in flat triangles on all their nodes, so that curved shapes of quadratic elements are seen."""
+    faces = fe.mesh.boundary
+    if len(fe.mesh.element.faces[0]) == 3:
+        split = [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]
+    else:
+        split = [(0, 4, 7), (4, 1, 5), (5, 2, 6), (7, 6, 3), (4, 5, 7), (5, 6, 7)]
+    triangles = faces[:, np.array(split)].reshape(-1, 3)
+    nodes, local = np.unique(triangles, return_inverse=True)
+    moved = basis.reshape(len(fe.mesh.points), 3, -1)[nodes]
+    return Surface(fe.mesh.points[nodes], local.reshape(-1, 3), moved)

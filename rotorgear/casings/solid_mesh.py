@@ -1,0 +1,348 @@
+"""A mesh of quadratic solids that integrates: linear elements raised, numbering put right, folded elements straightened.
+
+Linear tetrahedra are far too stiff in bending (frequencies of thin walls 17 to 94 % too high), so that straight elements get
+nodes in the middle of their edges. A mesher may curve an element so far that its Jacobian is negative somewhere; finite-element
+codes that integrate |det J| then go on with wrong numbers. Here such elements are found, named and made straight.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+
+from rotorgear.casings.elements import QUADRATIC, Element, element
+from rotorgear.casings.file_mesh import OTHER_SOLIDS, SOLIDS, FileMesh, NamedSet
+from rotorgear.errors import AnalysisError
+
+# Degrees of the polynomials that the rules for stiffness and mass integrate: exact for straight tetrahedra and bricks, with
+# some to spare for curved ones, and with positive weights (the rule of degree 4 has a negative one).
+STIFFNESS_DEGREE = 5
+MASS_DEGREE = 6
+_NAMED = 5  # so many elements a sentence names
+
+
+@dataclass(frozen=True)
+class SolidMesh:
+    """Quadratic solids of one kind.
+
+    Attributes:
+        points: (p, 3) in m; every one belongs to an element.
+        cells: (e, k) nodes in VTK's order.
+        kind: meshio's word: tetra10, hexahedron20, hexahedron27.
+        sets: by name.
+        notes: sentences on what was done.
+        jacobian_low: least det J over that of the straight element, over all Gauss points as the file has them.
+        straightened: numbers of elements, from 0 in the order of the file, whose mid-nodes were moved.
+        raised: whether the file has linear elements.
+    """
+
+    points: np.ndarray
+    cells: np.ndarray
+    kind: str
+    sets: dict[str, NamedSet]
+    notes: tuple[str, ...] = ()
+    jacobian_low: float = 1.0
+    straightened: tuple[int, ...] = ()
+    raised: bool = False
+    _faces: list[np.ndarray] = field(default_factory=list, repr=False, compare=False)
+
+    @property
+    def element(self) -> Element:
+        """The kind of its elements."""
+        return element(self.kind)
+
+    @property
+    def boundary(self) -> np.ndarray:
+        """Nodes (f, m) of the outer faces, counter-clockwise seen from outside: corners first."""
+        if not self._faces:
+            self._faces.append(_boundary(self.cells, self.element))
+        return self._faces[0]
+
+    def parts(self) -> np.ndarray:
+        """Number (p,) of the connected part that each node belongs to."""
+        rows = np.repeat(self.cells[:, 0], self.cells.shape[1] - 1)
+        columns = self.cells[:, 1:].ravel()
+        n = len(self.points)
+        labels: np.ndarray = connected_components(sp.coo_array((np.ones(len(rows)), (rows, columns)), shape=(n, n)))[1]
+        return labels
+
+
+def solid_mesh(found: FileMesh, unit: float, address: str) -> SolidMesh:
+    """The solids of a file in m, checked.
+
+    Args:
+        found: as it was read.
+        unit: of its lengths in m.
+        address: of the mesh in the model file, for errors.
+
+    Raises:
+        AnalysisError: no solids, kinds that are not computed, shells with nodes of their own, elements inside out.
+    """
+    kind = _only_kind(found, address)
+    notes = list(found.notes)
+    cells = found.cells[kind]
+    _no_shells_of_their_own(found, cells, address)
+    used = np.unique(cells)
+    place = np.full(len(found.points), -1, dtype=np.int64)
+    place[used] = np.arange(len(used))
+    points = unit * found.points[used]
+    cells = place[cells]
+    sets = {name: _renumbered(one, place) for name, one in found.sets.items()}
+    raised = QUADRATIC[kind] != kind
+    shape = element(QUADRATIC[kind])
+    if raised:
+        points, cells, sets = _raised(points, cells, sets, shape)
+        word = "tetrahedra" if kind == "tetra" else "hexahedra"
+        notes.append(
+            f"{len(cells)} linear {word} were raised to quadratic ones with straight edges: linear ones are far too stiff. "
+            "Curved walls stay as faceted as the file has them."
+        )
+    else:
+        order = _order_by_position(points, cells, shape)
+        if order is not None:
+            cells = cells[:, order]
+            notes.append(
+                "The nodes on the edges were numbered in another order than the format's; they were put right."
+            )
+    mesh = SolidMesh(
+        points, _right_handed(points, cells, shape, address), shape.kind, sets, tuple(notes), raised=raised
+    )
+    return _unfolded(mesh, address)
+
+
+def _only_kind(found: FileMesh, address: str) -> str:
+    """The one kind of solids in a file."""
+    kinds = [kind for kind in SOLIDS if kind in found.cells]
+    others = [kind for kind in found.cells if kind in OTHER_SOLIDS or (kind not in SOLIDS and kind.startswith("VTK"))]
+    counts = ", ".join(f"{len(cells)} {kind}" for kind, cells in found.cells.items()) or "none"
+    if others:
+        raise AnalysisError(
+            f"{address}: the mesh has {others[0]} cells, which are not computed (cells: {counts}). Mesh the body with "
+            "tetrahedra, or with hexahedra alone."
+        )
+    if not kinds:
+        raise AnalysisError(
+            f"{address}: the mesh has no solid cells (cells: {counts}). A casing is a mesh of tetrahedra or hexahedra: "
+            "mesh its volume and save all elements."
+        )
+    if len(kinds) > 1:
+        raise AnalysisError(
+            f"{address}: the mesh mixes {' and '.join(kinds)} (cells: {counts}), which do not fit together. Use one kind, "
+            "or one mesh for each kind with joins between them."
+        )
+    return kinds[0]
+
+
+def _no_shells_of_their_own(found: FileMesh, solids: np.ndarray, address: str) -> None:
+    """Cells that are no solids may only mark faces of the solids: a wall of shells would be lost."""
+    inside = np.zeros(len(found.points), dtype=bool)
+    inside[solids] = True
+    for kind, cells in found.cells.items():
+        if kind not in SOLIDS and kind != "vertex":
+            loose = int(np.count_nonzero(~inside[cells].all(axis=1)))
+            if loose:
+                raise AnalysisError(
+                    f"{address}: {loose} of {len(cells)} {kind} cells are not on the solids: shells and beams are not computed. "
+                    "Mesh these walls as solids, or leave them out of the file."
+                )
+
+
+def _renumbered(one: NamedSet, place: np.ndarray) -> NamedSet:
+    nodes = place[one.nodes]
+    faces = [place[face] for face in one.faces]
+    return NamedSet(nodes[nodes >= 0], [face[(face >= 0).all(axis=1)] for face in faces])
+
+
+def _raised(
+    points: np.ndarray, cells: np.ndarray, sets: dict[str, NamedSet], shape: Element
+) -> tuple[np.ndarray, np.ndarray, dict[str, NamedSet]]:
+    """Linear elements with a new node in the middle of every edge; a set of nodes gets those between two of its nodes."""
+    edges = np.sort(cells[:, np.array(shape.edges)], axis=2)
+    keys, inverse = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
+    middle = points[keys].mean(axis=1)
+    quadratic = np.hstack([cells, len(points) + inverse.reshape(len(cells), -1)])
+    new_sets = {}
+    for name, one in sets.items():
+        member = np.zeros(len(points), dtype=bool)
+        member[one.nodes] = True
+        new = len(points) + np.flatnonzero(member[keys].all(axis=1))
+        new_sets[name] = NamedSet(np.concatenate([one.nodes, new]), one.faces)
+    return np.vstack([points, middle]), quadratic, new_sets
+
+
+def _straight(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray:
+    """Places (e, k, 3) of the nodes if the edges were straight: those of the linear element on the corners."""
+    linear = element_corner_weights(shape)
+    return np.einsum("kc,eci->eki", linear, points[cells[:, : shape.corners]])
+
+
+def element_corner_weights(shape: Element) -> np.ndarray:
+    """Weights (k, c) of the corners in the place of each node of a straight element."""
+    x, y, z = shape.nodes.T
+    if shape.corners == 4:
+        return np.stack([1.0 - x - y - z, x, y, z], axis=1)
+    corners = shape.nodes[:8]
+    factors = [
+        np.where(corners[:, i] == 1.0, shape.nodes[:, i : i + 1], 1.0 - shape.nodes[:, i : i + 1]) for i in range(3)
+    ]
+    return np.asarray(factors[0] * factors[1] * factors[2])
+
+
+def _order_by_position(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray | None:
+    """The order of an element's nodes as their places tell, where it is not VTK's in most elements; else None."""
+    straight = _straight(points, cells, shape)[:, shape.corners :]
+    given = points[cells[:, shape.corners :]]
+    if len(cells) > 200:  # the order is one for the whole file
+        chosen = np.linspace(0, len(cells) - 1, 200).astype(int)
+        straight = straight[chosen]
+        given = given[chosen]
+    nearest = np.argmin(np.linalg.norm(given[:, None, :, :] - straight[:, :, None, :], axis=3), axis=2)
+    orders, counts = np.unique(nearest, axis=0, return_counts=True)
+    order = orders[np.argmax(counts)]
+    usual = np.arange(len(order))
+    if np.array_equal(order, usual) or len(np.unique(order)) < len(order) or counts.max() < 0.9 * len(nearest):
+        return None
+    return np.concatenate([np.arange(shape.corners), shape.corners + order])
+
+
+def _corner_volumes(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray:
+    """det J (e,) of the straight elements in their middle."""
+    corners = points[cells[:, : shape.corners]]
+    if shape.corners == 4:
+        edges = corners[:, 1:] - corners[:, :1]
+    else:
+        edges = 0.25 * np.stack(
+            [
+                corners[:, [1, 2, 5, 6]].sum(axis=1) - corners[:, [0, 3, 4, 7]].sum(axis=1),
+                corners[:, [2, 3, 6, 7]].sum(axis=1) - corners[:, [0, 1, 4, 5]].sum(axis=1),
+                corners[:, 4:].sum(axis=1) - corners[:, :4].sum(axis=1),
+            ],
+            axis=1,
+        )
+    return np.linalg.det(edges)
+
+
+def _right_handed(points: np.ndarray, cells: np.ndarray, shape: Element, address: str) -> np.ndarray:
+    """Elements whose corners are numbered the other way round are mirrored; flat ones are refused."""
+    volume = _corner_volumes(points, cells, shape)
+    size = np.linalg.norm(np.ptp(points[cells], axis=1), axis=1) ** 3
+    flat = np.flatnonzero(np.abs(volume) <= 1e-10 * size)
+    if len(flat):
+        raise AnalysisError(
+            f"{address}: {_elements(flat)} {'has' if len(flat) == 1 else 'have'} no volume. Mesh the body anew, or repair the "
+            "geometry: slivers come from faces that nearly touch."
+        )
+    if not np.any(volume < 0.0):
+        return cells
+    mirrored = shape.nodes[:, [1, 0, 2]]
+    swap = np.argmin(np.linalg.norm(mirrored[:, None, :] - shape.nodes[None, :, :], axis=2), axis=1)
+    return np.where((volume < 0.0)[:, None], cells[:, swap], cells)
+
+
+def jacobians(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray:
+    """det J (e, q) at the Gauss points of stiffness and mass."""
+    places = np.hstack([shape.quadrature(degree)[0] for degree in (STIFFNESS_DEGREE, MASS_DEGREE)])
+    gradients = shape.shapes(places)[1]
+    found = [
+        np.linalg.det(np.einsum("eki,kjq->eqij", points[some], gradients))
+        for some in np.array_split(cells, max(1, len(cells) // 4000))
+    ]
+    return np.vstack(found)
+
+
+def _unfolded(mesh: SolidMesh, address: str) -> SolidMesh:
+    """The mesh with all Jacobians positive: mid-nodes of folded elements are put on straight edges, as often as it takes."""
+    shape = mesh.element
+    points = mesh.points
+    reference = _corner_volumes(points, mesh.cells, shape)
+    ratio = jacobians(points, mesh.cells, shape) / reference[:, None]
+    lowest = float(ratio.min())
+    moved: set[int] = set()
+    while True:
+        folded = np.flatnonzero(ratio.min(axis=1) <= 0.0)
+        if not len(folded):
+            break
+        if moved.issuperset(folded.tolist()):
+            raise AnalysisError(
+                f"{address}: {_elements(folded)} {'is' if len(folded) == 1 else 'are'} inside out, with straight edges too. "
+                "Mesh the body anew."
+            )
+        moved.update(folded.tolist())
+        points = points.copy()
+        points[mesh.cells[folded]] = _straight(points, mesh.cells[folded], shape)
+        ratio = jacobians(points, mesh.cells, shape) / reference[:, None]
+    if not moved:
+        return replace(mesh, jacobian_low=lowest)
+    names = np.array(sorted(moved))
+    note = (
+        f"{_elements(names)} {'was' if len(names) == 1 else 'were'} curved so far that {'its' if len(names) == 1 else 'their'} "
+        f"Jacobian is negative at Gauss points (down to {lowest:.2g} of the straight element's): the nodes in the middle of "
+        f"{'its' if len(names) == 1 else 'their'} edges were moved onto straight edges."
+    )
+    return replace(
+        mesh,
+        points=points,
+        jacobian_low=lowest,
+        straightened=tuple(names.tolist()),
+        notes=(*mesh.notes, note),
+        _faces=[],
+    )
+
+
+def _elements(numbers: np.ndarray) -> str:
+    """Elements by their numbers, from 1 in the order of the file."""
+    listed = ", ".join(str(number + 1) for number in numbers[:_NAMED])
+    more = f" and {len(numbers) - _NAMED} more" if len(numbers) > _NAMED else ""
+    return f"element {listed}" if len(numbers) == 1 else f"elements {listed}{more}"
+
+
+def _boundary(cells: np.ndarray, shape: Element) -> np.ndarray:
+    """Faces that belong to one element only."""
+    faces = cells[:, shape.face_nodes].reshape(-1, shape.face_nodes.shape[1])
+    corners = np.sort(faces[:, : len(shape.faces[0])], axis=1)
+    _, first, counts = np.unique(corners, axis=0, return_index=True, return_counts=True)
+    return np.asarray(faces[np.sort(first[counts == 1])])
+
+
+def merged(meshes: dict[str, SolidMesh], address: str) -> SolidMesh:
+    """Several meshes as one, not yet joined; set S of mesh A is `A.S`, and `S` too where no other mesh has it.
+
+    Raises:
+        AnalysisError: meshes of different kinds of elements.
+    """
+    if len(meshes) == 1:
+        return next(iter(meshes.values()))
+    kinds = {name: mesh.kind for name, mesh in meshes.items()}
+    if len(set(kinds.values())) > 1:
+        listed = ", ".join(f"{name}: {kind}" for name, kind in kinds.items())
+        raise AnalysisError(f"{address}: the meshes have elements of different kinds ({listed}). Use one kind for all.")
+    sets: dict[str, NamedSet] = {}
+    names = [name for mesh in meshes.values() for name in mesh.sets]
+    notes: list[str] = []
+    straightened: list[int] = []
+    first_point = 0
+    first_cell = 0
+    for part, mesh in meshes.items():
+        for name, one in mesh.sets.items():
+            shifted = NamedSet(one.nodes + first_point, [face + first_point for face in one.faces])
+            sets[f"{part}.{name}"] = shifted
+            if names.count(name) == 1:
+                sets[name] = shifted
+        notes += [f"{part}: {note}" for note in mesh.notes]
+        straightened += [number + first_cell for number in mesh.straightened]
+        first_point += len(mesh.points)
+        first_cell += len(mesh.cells)
+    starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes.values())])[:-1]
+    return SolidMesh(
+        np.vstack([mesh.points for mesh in meshes.values()]),
+        np.vstack([mesh.cells + start for mesh, start in zip(meshes.values(), starts, strict=True)]),
+        next(iter(kinds.values())),
+        sets,
+        tuple(notes),
+        min(mesh.jacobian_low for mesh in meshes.values()),
+        tuple(straightened),
+        any(mesh.raised for mesh in meshes.values()),
+    )
