@@ -94,6 +94,17 @@ class ReducedBody:
         """Number 6 s of motions of the seats, which stand first."""
         return 6 * len(self.seats)
 
+    @property
+    def seat_motions(self) -> np.ndarray:
+        """Coordinates (n, 6) in which all seats move as one rigid body, and the inside follows: `rigid` of a body that floats."""
+        if self.rigid is not None:
+            return self.rigid
+        motions = np.zeros((self.size, 6))
+        for first, (x, y, z) in zip(range(0, self.interface, 6), self.seat_points, strict=True):
+            motions[first : first + 6] = np.eye(6)
+            motions[first : first + 3, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+        return motions
+
     def seat(self, name: str) -> slice:
         """Where the six motions x y z rx ry rz of a seat stand among the coordinates."""
         first = 6 * self.seats.index(name)

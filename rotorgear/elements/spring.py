@@ -1,4 +1,4 @@
-"""6x6 springs and dampers: between a node and the ground (bearing, support), or between two nodes (coupling, pedestal).
+"""6x6 springs and dampers: between a node and the ground (bearing, support), or two nodes (coupling, pedestal, casing's seat).
 
 Between two nodes the strain is the displacement of the second relative to the first, both carried rigidly to the middle of
 the gap, so all rigid motions of the pair are free of strain: d = T(m - p2) q2 - T(m - p1) q1, with T(r) q = (u + theta x r,
@@ -24,6 +24,13 @@ def linking_spring(
     middle = 0.5 * (np.asarray(first, float) + np.asarray(second, float))
     relative = np.hstack([-rigid_transfer(middle - first), rigid_transfer(middle - second)])
     return _spring(relative, np.asarray(stiffness, float), np.asarray(damping, float))
+
+
+def seated_spring(stiffness: np.ndarray, damping: np.ndarray, arm: np.ndarray) -> ElementMatrices:
+    """Return a 6x6 stiffness and damping between a seat, carried rigidly by `arm` (3,) to its bearing, and a node there."""
+    return _spring(
+        np.hstack([-rigid_transfer(arm), np.eye(6)]), np.asarray(stiffness, float), np.asarray(damping, float)
+    )
 
 
 def rigid_transfer(arm: np.ndarray) -> np.ndarray:

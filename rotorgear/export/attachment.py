@@ -18,6 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from rotorgear.elements.shaft import cowper
 from rotorgear.model.model import Model
@@ -103,8 +104,13 @@ class Skeleton:
         self._shear = {name: self._shear_numbers(name) for name in model.shafts}
 
     def positions(self) -> np.ndarray:
-        """Where the nodes are shown, (p, 3) in m."""
-        return np.array([[*self.axes[s], z] for s, z in zip(self.nodes.shaft, self.nodes.position[:, 2], strict=True)])
+        """Where the nodes are shown, (p, 3) in m; casings, which have no axis, where they are."""
+        return np.array(
+            [
+                [*self.axes[shaft], place[2]] if shaft else place
+                for shaft, place in zip(self.nodes.shaft, self.nodes.position, strict=True)
+            ]
+        )
 
     def along(self, shaft: str, points: np.ndarray) -> Attachment:
         """Each point rides on the cross-section at its own z; beyond the ends on that of the end."""
@@ -118,6 +124,14 @@ class Skeleton:
         """All points move with the node of a bearing's pedestal."""
         node = self.nodes.pedestal.index(bearing)
         return self._fixed_to(np.full(len(points), node), points - self.positions()[node])
+
+    def on_casing(self, casing: str, points: np.ndarray) -> Attachment:
+        """Each point moves with the nearest one of a casing's surface; all stand still where that is not known."""
+        numbers = self.nodes.of_casing(casing)
+        if not len(numbers):
+            return self.on_ground(points)
+        nearest = cKDTree(self.nodes.position[numbers]).query(points)[1]
+        return self._fixed_to(numbers[nearest], np.zeros_like(points))
 
     def on_ground(self, points: np.ndarray) -> Attachment:
         """All points stand still."""

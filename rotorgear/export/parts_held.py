@@ -9,9 +9,9 @@ import numpy as np
 from rotorgear.export.attachment import Attachment, Skeleton
 from rotorgear.export.parts import Detail, Piece
 from rotorgear.export.sizes import shaft_diameter
-from rotorgear.export.surface import beam, hollow_cylinder, join, wedge
+from rotorgear.export.surface import Surface, beam, hollow_cylinder, join, make_surface, wedge
 from rotorgear.model.model import Model
-from rotorgear.model.parts.supports import Coupling
+from rotorgear.model.parts.supports import Bearing, Coupling
 
 # Sizes relative to the shaft's radius there: outer radius and half width of a bearing's ring, height and half width of its foot.
 _RING = 1.55
@@ -38,6 +38,11 @@ def bearing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator
         axis = (*skeleton.axes[bearing.shaft], 0.0)
         ring = hollow_cylinder(housing, radius, z - half, z + half, detail.segments).moved(axis)
         foot = wedge(-housing, -housing - _FOOT_HEIGHT * radius, _FOOT_HALF * radius, z - half, z + half).moved(axis)
+        if bearing.casing is not None:
+            yield Piece(
+                f"bearings.{name}", "bearing", bearing.shaft, ring, _seated(skeleton, bearing, z, ring, housing)
+            )
+            continue
         on_shaft = np.hypot(*(ring.points - np.array(axis))[:, :2].T) < 0.5 * (radius + housing)
         on_ground = np.array([False, True, True] * 2)
         surface = join([ring, foot])
@@ -47,6 +52,24 @@ def bearing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator
         carried = skeleton.rigid(bearing.shaft, z, surface.points)
         attachment = _select([held, carried, ground], np.concatenate([on_shaft.astype(int), 2 * on_ground]))
         yield Piece(f"bearings.{name}", "bearing", bearing.shaft, surface, attachment)
+
+
+def _seated(skeleton: Skeleton, bearing: Bearing, z: float, ring: Surface, housing: float) -> Attachment:
+    """What carries the ring of a bearing in a casing: inside the shaft, outside the casing, which is nearest there."""
+    assert bearing.casing is not None
+    axis = np.array([*skeleton.axes[bearing.shaft], 0.0])
+    inside = np.hypot(*(ring.points - axis)[:, :2].T) < (1.0 - 1e-9) * housing
+    carried = skeleton.rigid(bearing.shaft, z, ring.points)
+    return _select([skeleton.on_casing(bearing.casing, ring.points), carried], inside.astype(int))
+
+
+def casing_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:
+    """Yield the surface of each casing that has one; it belongs to no shaft."""
+    for name in model.casings:
+        surface = model.layout.casing(name).surface
+        if surface is not None:
+            placed = make_surface(surface.points, [], [surface.triangles])
+            yield Piece(f"casings.{name}", "casing", "", placed, skeleton.on_casing(name, placed.points))
 
 
 def support_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Piece]:

@@ -18,12 +18,12 @@ from rotorgear.export.parts import (
     point_mass_pieces,
     shaft_pieces,
 )
-from rotorgear.export.parts_held import bearing_pieces, coupling_pieces, support_pieces
+from rotorgear.export.parts_held import bearing_pieces, casing_pieces, coupling_pieces, support_pieces
 from rotorgear.export.surface import join
 from rotorgear.model.model import Model
 from rotorgear.results.modal import NodeTable
 
-KINDS = ("shaft", "stripe", "gear", "disk", "point mass", "bearing", "support", "coupling")
+KINDS = ("shaft", "stripe", "gear", "disk", "point mass", "bearing", "support", "coupling", "casing")
 # Largest displacement shown, as a share of the size of the model, and largest rotation in rad.
 DEFAULT_AMPLITUDE = 0.05
 LARGEST_TURN = 0.3
@@ -39,7 +39,7 @@ class Solids:
         triangles: (T, 3) likewise.
         part: (C,) number of each cell's part among the names.
         kind: (C,) likewise of its kind.
-        shaft: (C,) likewise of its shaft.
+        shaft: (C,) likewise of its shaft; -1 for a casing.
         part_names: addresses such as "gears.pinion".
         kind_names: names of the kinds.
         shaft_names: names of the shafts.
@@ -101,6 +101,7 @@ def build_solids(model: Model, nodes: NodeTable, detail: Detail = LIGHT) -> Soli
         bearing_pieces,
         support_pieces,
         coupling_pieces,
+        casing_pieces,
     )
     pieces = [piece for maker in makers for piece in maker(model, skeleton, detail)]
     surface = join([piece.surface for piece in pieces])
@@ -112,7 +113,7 @@ def build_solids(model: Model, nodes: NodeTable, detail: Detail = LIGHT) -> Soli
         triangles=surface.triangles,
         part=_by_cell(pieces, [part_names.index(piece.part) for piece in pieces]),
         kind=_by_cell(pieces, [KINDS.index(piece.kind) for piece in pieces]),
-        shaft=_by_cell(pieces, [shaft_names.index(piece.shaft) for piece in pieces]),
+        shaft=_by_cell(pieces, [shaft_names.index(piece.shaft) if piece.shaft else -1 for piece in pieces]),
         part_names=part_names,
         kind_names=KINDS,
         shaft_names=shaft_names,

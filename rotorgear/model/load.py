@@ -85,9 +85,10 @@ def _find_meshes(data: dict[str, Any], folder: Path) -> None:
     for casing in casings.values() if isinstance(casings, dict) else ():
         if not isinstance(casing, dict):
             continue
-        if isinstance(casing.get("mesh"), str):
-            casing["mesh"] = str(folder / casing["mesh"])
-        elif isinstance(casing.get("mesh"), dict):
+        for key in ("mesh", "matrices"):
+            if isinstance(casing.get(key), str):
+                casing[key] = str(folder / casing[key])
+        if isinstance(casing.get("mesh"), dict):
             files = casing["mesh"].items()
             casing["mesh"] = {part: str(folder / file) if isinstance(file, str) else file for part, file in files}
 

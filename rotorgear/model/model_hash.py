@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -13,10 +14,25 @@ if TYPE_CHECKING:
 def model_hash(model: Model) -> str:
     """Return the SHA-256 of the canonical JSON of a model's fields, in SI units: 64 hexadecimal digits.
 
+    Of a casing what its files hold counts, not where they lie.
+
     Canonical: keys in alphabetical order and no blanks, so that it does not matter how the file was written or in which order
     its tables stand; Python writes the shortest digits that give a float back.
     """
-    text = json.dumps(
-        model.model_dump(mode="json", exclude_none=True), sort_keys=True, separators=(",", ":"), ensure_ascii=False
-    )
+    fields = model.model_dump(mode="json", exclude_none=True)
+    for casing in fields["casings"].values():
+        files = {**casing["mesh"], **({"matrices": casing["matrices"]} if "matrices" in casing else {})}
+        casing |= {"files": {name: _digest(Path(path)) for name, path in files.items()}, "mesh": [], "matrices": ""}
+    if not fields["casings"]:
+        del fields["casings"]  # a model without them keeps the name that it had before there were any
+    text = json.dumps(fields, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
+
+
+def _digest(path: Path) -> str:
+    """SHA-256 of what a file holds; of one that is not there, which no analysis gets past, its name."""
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return str(path)

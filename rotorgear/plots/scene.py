@@ -18,6 +18,8 @@ _SLATE, _PLAIN = "#6f7a86", "#b9c4cf"
 _STYLE = {"smooth_shading": True, "ambient": 0.28, "specular": 0.2, "specular_power": 25.0}
 # Lights by the camera: a key light over its left shoulder, a weak one from the right, one from the front.
 _LIGHTS = (((-0.4, 0.8, 1.0), 0.70), ((1.0, 0.2, 0.6), 0.25), ((0.0, 0.0, 1.0), 0.35))
+# A casing lets its shafts be seen.
+_GLASS = 0.4
 # Edges sharper than this stay sharp.
 _EDGE_DEGREES = 25.0
 # Kinds that move; the others hold them and are shown in grey.
@@ -68,21 +70,27 @@ class Scene:
         self.moving = _layer(pv, solids, _MOVING)
         self.stripes = _layer(pv, solids, ("stripe",))
         self.holding = _layer(pv, solids, ("bearing", "support"))
-        if self.moving.mesh.n_points:
-            self.moving.mesh.point_data["amplitude"] = np.zeros(self.moving.mesh.n_points)
+        self.casing = _layer(pv, solids, ("casing",))
+        for layer in self.coloured:
+            layer.mesh.point_data["amplitude"] = np.zeros(layer.mesh.n_points)
 
     @property
     def layers(self) -> list[Layer]:
         """The layers that are not empty."""
-        return [layer for layer in (self.moving, self.stripes, self.holding) if layer.mesh.n_points]
+        return [layer for layer in (self.moving, self.stripes, self.holding, self.casing) if layer.mesh.n_points]
+
+    @property
+    def coloured(self) -> list[Layer]:
+        """The layers whose colour says how far they move."""
+        return [layer for layer in (self.moving, self.casing) if layer.mesh.n_points]
 
     def shape(self, mode: int, amplitude: float | None) -> np.ndarray:
         """Scaled complex displacements (P, 3) of all points in a mode; what moves is coloured by their relative size."""
         assert self.result is not None
         scaled, _ = self.solids.scaled(self.result.shapes[:, :, mode], amplitude)
-        if self.moving.mesh.n_points:
-            size = np.sqrt(np.sum(np.abs(scaled) ** 2, axis=1))
-            self.moving.mesh.point_data["amplitude"] = (size / (np.max(size) or 1.0))[self.moving.numbers]
+        size = np.sqrt(np.sum(np.abs(scaled) ** 2, axis=1))
+        for layer in self.coloured:
+            layer.mesh.point_data["amplitude"] = (size / (np.max(size) or 1.0))[layer.numbers]
         return scaled
 
     def add_to(self, pv: ModuleType, plotter: Any) -> None:
@@ -96,6 +104,11 @@ class Scene:
         for layer, colour in ((self.stripes, INK), (self.holding, _SLATE)):
             if layer.mesh.n_points:
                 plotter.add_mesh(layer.mesh, color=colour, **_STYLE)
+        if self.casing.mesh.n_points:
+            shown: dict[str, Any] = {"color": _PLAIN}
+            if self.result:
+                shown = {**self._colours(1.0), "show_scalar_bar": not self.moving.mesh.n_points}
+            plotter.add_mesh(self.casing.mesh, opacity=_GLASS, **shown, **_STYLE)
         width, height = plotter.window_size
         plotter.add_axes(color=INK, line_width=2, viewport=(0.0, 0.0, 0.12, 0.12 * width / height))
 

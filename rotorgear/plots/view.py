@@ -129,11 +129,19 @@ def _require_display() -> None:
 
 
 def _nodes(model: Model) -> NodeTable:
-    """As many nodes as it takes to show a model at rest: the ends of its shafts, and its pedestals."""
+    """As many nodes as it takes to show a model at rest: the ends of its shafts, its pedestals, the surfaces of its casings."""
     rows = [(name, z, "") for name, shaft in model.shafts.items() for z in dict.fromkeys((shaft.start, shaft.end))]
     for name, bearing in model.bearings.items():
         if bearing.pedestal is not None:
             rows.append((*model.layout.place(f"bearings.{name}"), name))
     shafts, z, pedestals = zip(*rows, strict=True)
     position = np.column_stack([np.zeros((len(rows), 2)), z])
-    return NodeTable(tuple(shafts), position, tuple(pedestals))
+    surfaces = {name: surface for name in model.casings if (surface := model.layout.casing(name).surface) is not None}
+    casings = [name for name, surface in surfaces.items() for _ in surface.points]
+    nothing = ("",) * len(casings)
+    return NodeTable(
+        (*shafts, *nothing),
+        np.vstack([position, *(surface.points for surface in surfaces.values())]),
+        (*pedestals, *nothing),
+        (*(("",) * len(rows) if casings else ()), *casings),
+    )

@@ -11,12 +11,20 @@ from rotorgear.results.schema import Record, Written, derived, of
 class NodeTable(Record):
     """Where the p nodes are.
 
-    The nodes of the model come first, then stations inside elements of higher order, where the shape is known as well.
+    The nodes of the model come first, then stations inside elements of higher order, where the shape is known as well, then the
+    points on the surfaces of casings, which only displace.
     """
 
     shaft: tuple[str, ...] = of("shaft", "", "node")
     position: np.ndarray = of("position", "m", "node", "xyz")
     pedestal: tuple[str, ...] = of("bearing whose pedestal the node is", "", "node", note=', else `""`')
+    casing: tuple[str, ...] = of(
+        "casing whose surface the node is on", "", "node", note=', else `""`; empty without casings', default=()
+    )
+
+    def of_casing(self, casing: str) -> np.ndarray:
+        """Numbers of the points of a casing's surface, in its order."""
+        return np.array([k for k, name in enumerate(self.casing) if name == casing], dtype=int)
 
     def on_shaft(self, shaft: str) -> np.ndarray:
         """Numbers of a shaft's nodes from left to right, without pedestals."""
@@ -112,14 +120,18 @@ class ModalResult(ModelResult, kind="modal"):
         "share in the strain energy", "", "PART", "mode", note=", the same; 0 for rigid-body modes"
     )
     kinetic_by_motion: dict[str, np.ndarray] = of(
-        "share of a motion in the kinetic energy", "", "MOTION", "mode", note=": bending, axial motion, torsion"
+        "share of a motion in the kinetic energy",
+        "",
+        "MOTION",
+        "mode",
+        note=": bending, axial motion, torsion, and casings as `casing`",
     )
     strain_by_motion: dict[str, np.ndarray] = of(
         "share of a motion in the strain energy",
         "",
         "MOTION",
         "mode",
-        note=": bending, axial and torsional strain of the shafts; meshes, elastic gears, supports and couplings",
+        note=": bending, axial and torsional strain of the shafts; meshes, elastic gears, casings, supports and couplings",
     )
     whirl_by_shaft: dict[str, np.ndarray] = of(
         "sense of whirl of each shaft",

@@ -15,7 +15,7 @@ import scipy.sparse as sp
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.tables import Tables
-from rotorgear.system.nodes import Nodes
+from rotorgear.system.nodes import CASING, Nodes
 
 MOTION_DOFS = {"bending": (0, 1, 3, 4), "axial": (2,), "torsion": (5,)}
 _FIXED = {"x": (0,), "y": (1,), "z": (2,), "tilt_x": (3,), "tilt_y": (4,), "torsion": (5,), "all": (0, 1, 2, 3, 4, 5)}
@@ -54,6 +54,9 @@ class DofMap:
             for (gear, _), own in nodes.teeth.items():
                 if own == number:
                     return f"rotation of the teeth of gear '{gear}' against its shaft"
+            for name, (first, count) in nodes.casings.items():
+                if first <= number < first + count:
+                    return f"dof {number - first + 1} of casing '{name}'"
             return f"an internal {nodes.internal[number]} dof of a shaft element"
         node, k = divmod(row, 6)
         return f"{('x', 'y', 'z', 'tilt_x', 'tilt_y', 'torsion')[k]} of shaft '{nodes.shaft[node]}' at z = {nodes.z[node]:.6g} m"
@@ -78,7 +81,7 @@ def map_dofs(layout: Layout, nodes: Nodes) -> DofMap:
             soft = [k for k in range(3) if any(rows[k]) or any(row[k] for row in rows)]
             held[nodes.of_pedestal(name), [k for k in range(6) if k not in soft]] = True
     by_support = int(held.sum()) - by_motion
-    inside = np.array([motion not in model.motions for motion in nodes.internal], dtype=bool)
+    inside = np.array([motion not in (*model.motions, CASING) for motion in nodes.internal], dtype=bool)
     by_motion += int(inside.sum())
     groups = rigid_groups(model, nodes)
     counts = {"motions": by_motion, "supports": by_support, "rigid sections": sum(6 * (len(g) - 1) for g in groups)}

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rotorgear.elements.elastic_body import elastic_body
 from rotorgear.elements.gear_mesh import (
     ContactGeometry,
     Face,
@@ -18,7 +19,7 @@ from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.elements.rigid_body import elastic_gear, rigid_body
 from rotorgear.elements.shaft import ShaftElements, shaft_elements, strain_motions
 from rotorgear.elements.shaft_bubbles import bubble_motions
-from rotorgear.elements.spring import grounded_spring, linking_spring
+from rotorgear.elements.spring import grounded_spring, linking_spring, seated_spring
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mean_load import MeanLoad, MeshForce
@@ -26,7 +27,7 @@ from rotorgear.model.parts.nonlinear_element import NonlinearElement
 from rotorgear.model.parts.supports import Bearing, DampingMatrix, StiffnessMatrix
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.system.nodes import Element, Nodes
+from rotorgear.system.nodes import CASING, Element, Nodes
 
 # Motion of the six dofs of a node.
 _NODE_MOTIONS = ("bending", "bending", "axial", "bending", "bending", "torsion")
@@ -64,6 +65,8 @@ class ElementGroup:
     def dof_motions(self) -> tuple[str, ...]:
         """The motion of each of the d dofs."""
         d = self.dofs.shape[1]
+        if self.part.startswith("casings."):
+            return (CASING,) * d
         internal = self.strain_motions[6:] if d > 12 else ()
         return _NODE_MOTIONS * ((d - len(internal)) // 6) + internal
 
@@ -95,6 +98,7 @@ def constant_groups(layout: Layout, load: MeanLoad, nodes: Nodes) -> list[Elemen
         face = face_of(layout, force) if force.face else None
         matrices = gear_mesh(geometry, c.stiffness, mesh_damping(layout, force, geometry), face)
         found.append(ElementGroup(f"meshes.{c.mesh}", "", matrices, mesh_dofs(layout, nodes, force)))
+    found += [_casing(layout, nodes, name) for name in model.casings]
     for name, bearing in model.bearings.items():
         pedestal = bearing.pedestal
         if pedestal is not None:
@@ -141,6 +145,15 @@ def table_groups(layout: Layout, nodes: Nodes, speed: float) -> list[ElementGrou
             values = table_values(f"nonlinear_elements.{name}", element, shaft_speed)
             found.append(_element(layout, nodes, name, element, *values))
     return found
+
+
+def _casing(layout: Layout, nodes: Nodes, name: str) -> ElementGroup:
+    body = layout.casing(name)
+    try:
+        matrices = elastic_body(body.stiffness, body.mass, body.damping, body.seat_motions)
+    except ValueError as error:
+        raise AnalysisError(f"casings.{name}: {error}") from None
+    return ElementGroup(f"casings.{name}", "", matrices, nodes.of_casing(name)[None])
 
 
 def _rows(matrix: StiffnessMatrix | DampingMatrix | None) -> np.ndarray:
@@ -323,6 +336,10 @@ def _bearing(
 ) -> ElementGroup:
     node = nodes.at(*layout.place(f"bearings.{name}"))
     part = f"bearings.{name}"
+    seat = layout.seat(part)
+    if seat is not None:
+        dofs = np.hstack([nodes.of_seat(seat.casing, seat.number)[None], node_dofs(node)])
+        return ElementGroup(part, bearing.shaft, seated_spring(stiffness, damping, seat.arm), dofs)
     if bearing.pedestal is None:
         return ElementGroup(part, bearing.shaft, grounded_spring(stiffness, damping), node_dofs(node))
     origin = np.zeros(3)
@@ -336,6 +353,10 @@ def _element(
     """What linear analyses take of a nonlinear element: springs and dampers from its shaft to the ground or another shaft."""
     part = f"nonlinear_elements.{name}"
     node, *other = (nodes.at(*place) for place in layout.places(part))
+    seat = layout.seat(part)
+    if seat is not None:
+        dofs = np.hstack([nodes.of_seat(seat.casing, seat.number)[None], node_dofs(node)])
+        return ElementGroup(part, element.shaft, seated_spring(stiffness, damping, seat.arm), dofs)
     if not other:
         return ElementGroup(part, element.shaft, grounded_spring(stiffness, damping), node_dofs(node))
     origin = np.zeros(3)  # the law knows relative displacements of two nodes, whatever lies between them

@@ -22,7 +22,11 @@ def weight_loads(system: System, gravity: tuple[float, float, float]) -> np.ndar
     count = 6 * len(system.nodes)
     for axis in range(3):
         moved[axis:count:6] = gravity[axis]
+    for name in system.model.casings:
+        forces = system.layout.casing(name).inertia_force[:, :3] @ np.array(gravity)
+        # A body that was reduced elsewhere may come without its weight; results say so.
+        f[system.nodes.of_casing(name)] += np.nan_to_num(forces)
     for group in system.groups:
-        if group.matrices.mass is not None:
+        if group.matrices.mass is not None and not group.part.startswith("casings."):
             np.add.at(f, group.dofs, np.einsum("eij,ej->ei", group.matrices.mass, moved[group.dofs]))
     return f

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rotorgear.elements.gear_mesh import ContactGeometry, sliding_vectors
+from rotorgear.elements.spring import rigid_transfer
 from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.nonlinear_element import element_law
@@ -50,6 +51,10 @@ def element_parts(system: System) -> Iterator[LocalPart]:
         columns = columns_at(system, node_dofs(node)[0], rows)
         for second in other:
             columns -= columns_at(system, node_dofs(second)[0], rows)
+        seat = system.layout.seat(part)
+        if seat is not None:
+            at_seat = rows @ rigid_transfer(seat.arm)
+            columns -= columns_at(system, system.nodes.of_seat(seat.casing, seat.number), at_seat)
         yield LocalPart(part, name, element_law(element, float(system.train.ratio(element.shaft))), columns)
 
 
@@ -100,6 +105,10 @@ def bearing_parts(system: System) -> Iterator[LocalPart]:
         law = _bearing_law(bearing, float(system.train.ratio(bearing.shaft)))
         rows = np.eye(6)[: law.components]
         dofs = node_dofs(system.nodes.at(*system.layout.place(f"bearings.{name}")))[0]
+        seat = system.layout.seat(f"bearings.{name}")
+        if seat is not None:
+            dofs = np.concatenate([dofs, system.nodes.of_seat(seat.casing, seat.number)])
+            rows = np.hstack([rows, -rows @ rigid_transfer(seat.arm)])
         if bearing.pedestal is not None:
             dofs = np.concatenate([dofs, node_dofs(system.nodes.of_pedestal(name))[0]])
             rows = np.hstack([rows, -rows])

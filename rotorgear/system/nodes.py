@@ -18,6 +18,8 @@ from rotorgear.system.plan import Plan
 
 MERGE_DISTANCE = 1e-9
 MOST_ELEMENTS = 200_000
+# What the dofs of a casing are called where those of shafts are called by their motion.
+CASING = "casing"
 
 
 @dataclass(frozen=True)
@@ -51,8 +53,10 @@ class Nodes:
         z: z of each node in m.
         pedestal: name of the bearing whose pedestal a node is, else "".
         elements: shaft -> its elements from left to right.
-        internal: the motion of each internal dof: those of the elements in their order, then those of elastic gears.
+        internal: the motion of each internal dof: those of the elements in their order, then those of elastic gears, then
+            those of casings, whose motion is "casing".
         teeth: gear and z of its node -> number of its internal dof, the rotation of teeth that turn against their shaft.
+        casings: casing -> number of the first of its internal dofs, and how many they are.
         merged: sentences about places that became one node.
     """
 
@@ -62,6 +66,7 @@ class Nodes:
     elements: dict[str, list[Element]] = field(default_factory=dict)
     internal: list[str] = field(default_factory=list)
     teeth: dict[tuple[str, float], int] = field(default_factory=dict)
+    casings: dict[str, tuple[int, int]] = field(default_factory=dict)
     merged: list[str] = field(default_factory=list)
     _on_shaft: dict[str, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
 
@@ -83,6 +88,15 @@ class Nodes:
         if (gear, z) in self.teeth:
             dofs[5] = 6 * len(self) + self.teeth[gear, z]
         return dofs
+
+    def of_casing(self, casing: str) -> np.ndarray:
+        """Numbers (n,) of the dofs of a casing: six a seat, then its other ones."""
+        first, count = self.casings[casing]
+        return 6 * len(self) + first + np.arange(count)
+
+    def of_seat(self, casing: str, seat: int) -> np.ndarray:
+        """Numbers (6,) of the dofs of a seat, counted from 0."""
+        return self.of_casing(casing)[6 * seat : 6 * seat + 6]
 
     def on_shaft(self, shaft: str) -> np.ndarray:
         """Numbers of the nodes of a shaft from left to right."""
@@ -144,6 +158,10 @@ def discretise(layout: Layout, plan: Plan) -> Nodes:
         for place in layout.gear(name).places:
             nodes.teeth[name, place.z] = len(nodes.internal)
             nodes.internal.append("torsion")
+    for name in model.casings:
+        size = layout.casing(name).size
+        nodes.casings[name] = (len(nodes.internal), size)
+        nodes.internal += [CASING] * size
     return nodes
 
 

@@ -51,7 +51,7 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
 
 
 def _candidates(system: System) -> np.ndarray:
-    """Six motions of each shaft about its middle, rotations scaled to the length of the shaft, and three of each pedestal."""
+    """Six motions of each shaft about its middle, rotations scaled to its length, three of each pedestal, six of each casing."""
     nodes = system.nodes
     columns = []
     for name, shaft in system.model.shafts.items():
@@ -70,4 +70,8 @@ def _candidates(system: System) -> np.ndarray:
             block = np.zeros((system.dofs.transform.shape[0], 3))
             block[[6 * k, 6 * k + 1, 6 * k + 2], [0, 1, 2]] = 1.0
             columns.append(block)
+    for name in system.model.casings:
+        block = np.zeros((system.dofs.transform.shape[0], 6))
+        block[nodes.of_casing(name)] = system.layout.casing(name).seat_motions
+        columns.append(block)
     return np.hstack(columns)

@@ -17,6 +17,7 @@ from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.snapshot_basis import Request, SpeedModes
 from rotorgear.analysis.campbell.speed_family import merged
 from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, operating_speed
+from rotorgear.analysis.common.casings import reduction_errors
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.notes import left_out
@@ -181,7 +182,7 @@ def _error_estimate(
     for snapshot in found.snapshots[:2]:
         k = int(np.argmin(np.abs(grid - snapshot.speed)))
         parts = errors_of(system, snapshot.speed, snapshot.s, snapshot.vectors, np.zeros(len(snapshot.s), bool))
-        error = total_error(parts, len(snapshot.s))
+        error = total_error(parts, len(snapshot.s)) + reduction_errors(system, snapshot.s, snapshot.vectors)
         for b, chain in enumerate(chains):
             if np.isfinite(chain.s[k]):
                 distance = np.abs(snapshot.s - chain.s[k])

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from rotorgear.analysis.common.casings import casing_notes
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out, mesh_stiffness_warnings
 from rotorgear.model.model import Model
 from rotorgear.model.parts.nonlinear_element import element_law
@@ -57,7 +58,7 @@ def left_out(system: System, speed: float | None, *, rolls: bool = False) -> tup
             notes.append("damping matrix: " + (f"empty; only {', '.join(laws)} can damp" if laws else "nothing damps"))
     # In time the stiffness varies as it is; what a transient leaves out of it, it says itself.
     meshes = () if rolls else mesh_stiffness_left_out(system)
-    return (*notes, *rolling_notes(system.model, rolls=rolls), *meshes)
+    return (*notes, *casing_notes(system), *rolling_notes(system.model, rolls=rolls), *meshes)
 
 
 def mode_warnings(

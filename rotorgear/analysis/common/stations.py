@@ -1,4 +1,4 @@
-"""Where a result knows its shapes: the nodes, and stations inside shaft elements that have polynomials of their own."""
+"""Where a result knows its shapes: nodes, stations inside shaft elements with polynomials of their own, surfaces of casings."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rotorgear.system.system import System
 
 
 def shapes_at_stations(system: System, q: np.ndarray) -> tuple[NodeTable, np.ndarray]:
-    """Return the nodes followed by inner stations, and the displacements (p, 6, m) there, from all dofs q (a, m).
+    """Return nodes, then inner stations, then points on casings, and the displacements (p, 6, m) there, from all dofs q (a, m).
 
     Between the nodes of a basic element the exact static shape is all there is, so it gets no stations.
     """
@@ -36,4 +36,15 @@ def shapes_at_stations(system: System, q: np.ndarray) -> tuple[NodeTable, np.nda
             shapes.append(inner)
             shafts += [name] * len(z)
             pedestals += [""] * len(z)
-    return NodeTable(tuple(shafts), np.vstack(positions), tuple(pedestals)), np.vstack(shapes)
+    casings: list[str] = []
+    for name in system.model.casings:
+        surface = system.layout.casing(name).surface
+        if surface is None:
+            continue
+        casings += [""] * (len(shafts) - len(casings)) + [name] * len(surface.points)
+        shafts += [""] * len(surface.points)
+        pedestals += [""] * len(surface.points)
+        positions.append(surface.points)
+        displaced = surface.basis @ q[system.nodes.of_casing(name)]
+        shapes.append(np.concatenate([displaced, np.zeros_like(displaced)], axis=1))
+    return NodeTable(tuple(shafts), np.vstack(positions), tuple(pedestals), tuple(casings)), np.vstack(shapes)

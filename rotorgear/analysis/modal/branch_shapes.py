@@ -69,7 +69,7 @@ class BasisShapes:
             one = coordinates[:, [k]]
             seen = self._portraits(one, speeds[[k]])
             nothing = np.zeros(1, bool)
-            lines += describe(self.system, self._at_nodes(one), seen.energies, nothing, nothing)
+            lines += describe(self.system, self.everything @ one, seen.energies, nothing, nothing)
         return tuple(lines)
 
     def _at_nodes(self, coordinates: np.ndarray) -> np.ndarray:

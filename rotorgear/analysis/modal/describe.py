@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.analysis.modal.casing_words import casing_words
 from rotorgear.analysis.modal.energies import Energies
 from rotorgear.system.dofs import MOTION_DOFS
 from rotorgear.system.system import System
@@ -17,18 +18,18 @@ _DOMINANT = 0.5
 
 
 def describe(
-    system: System, shapes: np.ndarray, energies: Energies, rigid: np.ndarray, real_root: np.ndarray
+    system: System, q: np.ndarray, energies: Energies, rigid: np.ndarray, real_root: np.ndarray
 ) -> tuple[str, ...]:
-    """Return a line for each of m modes from the shapes (p, 6, m) and their energies.
+    """Return a line for each of m modes from the displacements q (a, m) of all dofs and their energies.
 
     `rigid` (m,) marks rigid-body modes; `real_root` (m,) those that do not oscillate.
     """
     lines = []
-    for mode in range(shapes.shape[2]):
+    for mode in range(q.shape[1]):
         shares = [(float(share[mode]), key) for key, share in energies.kinetic_by_shaft.items()]
         # Rounded, so that equal shares of equal shafts keep the order of the file.
         ranked = sorted(shares, key=lambda item: -round(item[0], 6))
-        text = _line(system, shapes[:, :, mode], [item for item in ranked if item[0] > 0.0])
+        text = _line(system, q[:, mode], [item for item in ranked if item[0] > 0.0])
         if rigid[mode]:
             text = f"rigid body: {text}"
         elif real_root[mode]:
@@ -37,13 +38,14 @@ def describe(
     return tuple(lines)
 
 
-def _line(system: System, shape: np.ndarray, ranked: list[tuple[float, tuple[str, str]]]) -> str:
-    """Words for a shape (p, 6) from the shares (share, (shaft, motion)) of its kinetic energy, largest first."""
+def _line(system: System, q: np.ndarray, ranked: list[tuple[float, tuple[str, str]]]) -> str:
+    """Words for displacements q (a,) from the shares (share, (shaft, motion)) of their kinetic energy, largest first."""
     if not ranked:
         return "no inertia takes part"
     share, (shaft, motion) = ranked[0]
     mates = [item for item in ranked[1:] if item[1][1] == motion and item[0] >= _COMPANION * share]
-    text = f"{_name(shaft)}{motion}"
+    shape = q[: 6 * len(system.nodes)].reshape(-1, 6)
+    text = _words(system, q, shaft, motion)
     total = share + sum(item[0] for item in mates)
     together: list[str] = []
     against: list[str] = []
@@ -59,12 +61,16 @@ def _line(system: System, shape: np.ndarray, ranked: list[tuple[float, tuple[str
     if total < _DOMINANT:
         rest = [item for item in ranked[1:] if item not in mates]
         if rest:
-            text += f"; {_name(rest[0][1][0])}{rest[0][1][1]}, {100.0 * rest[0][0]:.0f} %"
+            text += f"; {_words(system, q, *rest[0][1])}, {100.0 * rest[0][0]:.0f} %"
     return text
 
 
-def _name(shaft: str) -> str:
-    return f"{shaft} " if shaft else ""
+def _words(system: System, q: np.ndarray, shaft: str, motion: str) -> str:
+    """A motion of a shaft, or of a casing by its address."""
+    table, _, name = motion.partition(".")
+    if table == "casings":
+        return f"casing {name}: {casing_words(system.layout.casing(name), q[system.nodes.of_casing(name)])}"
+    return f"{shaft} {motion}" if shaft else motion
 
 
 def _and(names: list[str]) -> str:

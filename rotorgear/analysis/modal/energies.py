@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 
 from rotorgear.system.groups import ElementGroup
+from rotorgear.system.nodes import CASING
 from rotorgear.system.system import System
 
 _SPRING_KINDS = {
     "meshes": "mesh",
     "gears": "gears",
+    "casings": CASING,
     "bearings": "supports",
     "supports": "supports",
     "couplings": "couplings",
@@ -23,7 +25,7 @@ _SPRING_KINDS = {
 
 @dataclass(frozen=True)
 class Energies:
-    """Shares of m modes: part -> (m,), motion -> (m,), and kinetic energy by (shaft, motion)."""
+    """Shares of m modes: part -> (m,), motion -> (m,), and kinetic energy by (shaft, motion), or ("", casing)."""
 
     kinetic: dict[str, np.ndarray]
     strain: dict[str, np.ndarray]
@@ -40,21 +42,24 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
     modes = q.shape[1]
     kinetic: dict[str, np.ndarray] = {}
     strain: dict[str, np.ndarray] = {}
-    kinetic_by_motion: dict[str, np.ndarray] = {motion: np.zeros(modes) for motion in system.model.motions}
+    motions_of_all = (*system.model.motions, *((CASING,) if system.model.casings else ()))
+    kinetic_by_motion: dict[str, np.ndarray] = {motion: np.zeros(modes) for motion in motions_of_all}
     strain_by_motion: dict[str, np.ndarray] = {}
     kinetic_by_shaft: dict[tuple[str, str], np.ndarray] = {}
     for group in system.groups_at(speed):
         local = q[group.dofs]  # (e, d, m)
         M = group.matrices.mass
         motions = np.array(group.dof_motions)
-        for motion in system.model.motions:
+        for motion in motions_of_all:
             if M is None:
                 break
             dofs = motions == motion
+            if not dofs.any():
+                continue
             part = local[:, dofs]
             energy = np.real(np.einsum("edm,edm->m", part.conj(), M[:, dofs][:, :, dofs] @ part))
             _add(kinetic, group.part, energy)
-            _add(kinetic_by_shaft, (group.shaft, motion), energy)
+            _add(kinetic_by_shaft, ("", group.part) if motion == CASING else (group.shaft, motion), energy)
             kinetic_by_motion[motion] += energy
         for label, energy in _strain_energies(group, local):
             elastic = np.where(rigid, 0.0, energy)

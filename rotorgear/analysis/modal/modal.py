@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.common.casings import casing_warnings, reduction_errors
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.notes import gathering
 from rotorgear.analysis.common.recorded import recorded
@@ -121,12 +122,16 @@ def modal(
         raise ConvergenceError(
             f"the accuracy of {target:g} was not reached within {_ROUNDS} refinements; ask for less, or for fewer modes"
         )
+    reduction = reduction_errors(system, found.eigenvalues, found.vectors)
     kept = reach.inside(np.abs(found.eigenvalues))
     progress(0.9, "energies")
-    result = modal_result(system, speed, (modes, fmax), found.first(kept), q[:, :kept], estimate[:kept], clock)
+    result = modal_result(
+        system, speed, (modes, fmax), found.first(kept), q[:, :kept], (estimate + reduction)[:kept], clock
+    )
+    warnings = (*result.warnings, *casing_warnings(reduction[:kept], found.eigenvalues))
     progress(1.0, "done")
     given = model.model if isinstance(model, System) else model
-    return replace(result, model=given, left_out=(*result.left_out, *notes))
+    return replace(result, model=given, left_out=(*result.left_out, *notes), warnings=warnings)
 
 
 def _solved(system: System, wanted: Wanted) -> Modes:

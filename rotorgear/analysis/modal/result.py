@@ -36,7 +36,7 @@ def modal_result(
     whirl = whirl_by_shaft(system, shapes, speed or 0.0)
     words = whirl_words(system, shapes, whirl, energies) if speed else tuple("" for _ in found.eigenvalues)
     real_root = (found.eigenvalues.imag == 0.0) & ~found.rigid
-    lines = describe(system, shapes, energies, found.rigid, real_root)
+    lines = describe(system, q, energies, found.rigid, real_root)
     clock.lap("energies")
     return ModalResult(
         model=system.model,

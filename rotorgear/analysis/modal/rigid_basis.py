@@ -10,9 +10,18 @@ from rotorgear.system.system import System
 
 def sorted_rigid(system: System, R: np.ndarray) -> np.ndarray:
     """Turn a basis of the rigid-body motions so that motions and shafts which do not move each other stand apart."""
-    q = system.dofs.expand(R)[: 6 * len(system.nodes)].reshape(len(system.nodes), 6, -1)
+    everything = system.dofs.expand(R)
+    # A rigid casing is known by its seats, which count as nodes of shafts behind the last one.
+    seats = [
+        everything[system.nodes.of_seat(name, k)]
+        for name in system.model.casings
+        for k in range(len(system.layout.casing(name).seats))
+    ]
+    q = np.concatenate(
+        [everything[: 6 * len(system.nodes)].reshape(len(system.nodes), 6, R.shape[1]), *([seats] if seats else [])]
+    )
     shafts = {name: k for k, name in enumerate(system.model.shafts)}
-    weight = np.array([1.0 + shafts[name] for name in system.nodes.shaft])
+    weight = np.array([1.0 + shafts[name] for name in system.nodes.shaft] + [1.0 + len(shafts)] * len(seats))
     kinds = np.array([1.0, 1.0, 2.0, 1.0, 1.0, 3.0]) * np.sqrt(2.0)
     scaled = q * np.sqrt(np.outer(weight, kinds))[:, :, None]
     flat = scaled.reshape(-1, q.shape[2])

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rotorgear.analysis.common.casings import casing_notes
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
@@ -114,7 +115,13 @@ def frf(
         dofs=system.n,
         discretisation=pieces(system),
         seconds={"total": time.perf_counter() - clock},
-        left_out=(*first.notes, *notes, *rolling_notes(model, rolls=False), *mesh_stiffness_left_out(system)),
+        left_out=(
+            *first.notes,
+            *notes,
+            *casing_notes(system),
+            *rolling_notes(model, rolls=False),
+            *mesh_stiffness_left_out(system),
+        ),
         warnings=()
         if zeta or system.damping(turns).nnz
         else ("nothing damps the model: heights near a resonance are those of the nearest frequency; give a damping",),

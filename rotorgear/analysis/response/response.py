@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.common.casings import casing_notes
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
@@ -138,7 +139,7 @@ def response(
         discretisation=pieces(system),
         largest=largest,
         seconds={"total": time.perf_counter() - clock},
-        left_out=(*left, *weak, *setup.notes, *notes, *rolling_notes(model, rolls=False)),
+        left_out=(*left, *weak, *setup.notes, *notes, *casing_notes(system), *rolling_notes(model, rolls=False)),
         warnings=(
             *speed_warnings(plant, orders, chosen, (modes, w, zeta)),
             *parting(setup, stacked["mesh_force"], chosen),

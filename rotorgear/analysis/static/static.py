@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.common.casings import casing_notes
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.places import displacement_places
 from rotorgear.analysis.common.points import point_amplitudes
@@ -243,7 +244,13 @@ def _left_out(equilibrium: Equilibrated) -> tuple[str, ...]:
     gravity = model.operation.gravity if model.operation else None
     if not (gravity and any(gravity)):
         notes.append("weight: no gravity given under [operation]")
-    return (*notes, *rolling_notes(model, rolls=False))
+    else:
+        notes += [
+            f"casings.{name}: its weight, which its file does not give"
+            for name in model.casings
+            if np.any(np.isnan(equilibrium.system.layout.casing(name).inertia_force[:, :3]))
+        ]
+    return (*notes, *casing_notes(equilibrium.system), *rolling_notes(model, rolls=False))
 
 
 def _warnings(equilibrium: Equilibrated) -> list[str]:

@@ -9,18 +9,32 @@ from rotorgear.model.checks.names import unknown
 from rotorgear.model.checks.references import PartName
 from rotorgear.model.checks.sizes import six_by_six
 from rotorgear.model.parts.casing import Casing, Seat
+from rotorgear.model.parts.fields import MOTIONS
 from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.tables import Tables
 
+# Keys that say something of a body which was reduced elsewhere; all others are of meshes.
+_OF_MATRICES = ("matrices", "interface", "seats", "damping_ratio")
 _OWN = ("youngs_modulus", "poisson_ratio", "density")
 _PLACE = ("axis", "center", "from", "to", "radius")
 
 
 def casings(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
     """Casings have mesh, unit and material; their seats are those of bearings."""
-    bearings = [*model.bearings, *(name for table, name in broken if table == "bearings")]
+    tables = ("bearings", "nonlinear_elements")
+    seated = [*model.bearings, *model.nonlinear_elements, *(name for table, name in broken if table in tables)]
+    absent = [motion for motion in MOTIONS if not model.has(motion)]
+    if model.casings and absent:
+        hint = "seats move in all directions"
+        yield Problem("motions", f"without {' and '.join(absent)}", "all three beside a casing", hint)
     for name, casing in model.casings.items():
         address = f"casings.{name}"
+        if casing.matrices is not None:
+            yield from _matrices(address, casing)
+            continue
+        if casing.interface:
+            hint = "the seats of a mesh stand under seats"
+            yield Problem(f"{address}.interface", "without matrices", "matrices beside it", hint)
         yield from _source(address, casing)
         yield from _material(address, casing)
         for set_name, mount in casing.mounts.items():
@@ -31,10 +45,10 @@ def casings(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
                 f"{address}.seats", "", "missing", "where bearings sit: seats = { left = 'name of a face set' }"
             )
         for bearing, seat in casing.seats.items():
-            if bearing not in bearings and ("bearings", "") not in broken:
-                yield unknown(f"{address}.seats.{bearing}", bearing, bearings, "a bearing")
+            if bearing not in seated and not {(table, "") for table in tables} & broken:
+                yield unknown(f"{address}.seats.{bearing}", bearing, seated, "a bearing")
             yield from _seat(f"{address}.seats.{bearing}", seat)
-    yield from _bearings(model)
+    yield from _seated(model)
 
 
 def _source(address: str, casing: Casing) -> Iterator[Problem]:
@@ -71,15 +85,34 @@ def _seat(address: str, seat: Seat) -> Iterator[Problem]:
             yield Problem(f"{address}.to", shown(seat.to), f"more than from, {seat.begin:.6g} m")
 
 
-def _bearings(model: Tables) -> Iterator[Problem]:
-    """A bearing on a casing has a seat there, and no pedestal: the casing is what it stands on."""
+def _matrices(address: str, casing: Casing) -> Iterator[Problem]:
+    """A body that was reduced elsewhere has its material, supports and modes already."""
+    fields = type(casing).model_fields
+    given = [
+        key for key, field in fields.items() if getattr(casing, key) != field.get_default(call_default_factory=True)
+    ]
+    for key in given:
+        if key not in _OF_MATRICES:
+            yield Problem(
+                f"{address}.{key}", "beside matrices", f"{key} beside a mesh only", "the matrices have it already"
+            )
+    for bearing, seat in casing.seats.items():
+        if seat.set is None:
+            yield Problem(f"{address}.seats.{bearing}", "a place", "the name of a seat in the file of matrices")
+
+
+def _seated(model: Tables) -> Iterator[Problem]:
+    """What stands in a casing has a seat there, and stands on nothing else."""
+    for table in ("bearings", "nonlinear_elements"):
+        for name, part in getattr(model, table).items():
+            casing = model.casings.get(part.casing or "")
+            if casing is not None and casing.matrices is None and name not in casing.seats:
+                hint = f"add it: casings.{part.casing}.seats.{name} = 'name of a face set'"
+                yield Problem(f"{table}.{name}.casing", shown(part.casing), "a casing with a seat of this name", hint)
     for name, bearing in model.bearings.items():
-        casing = model.casings.get(bearing.casing or "")
-        if casing is None:
-            continue
-        if name not in casing.seats:
-            hint = f"add it: casings.{bearing.casing}.seats.{name} = 'name of a face set'"
-            yield Problem(f"bearings.{name}.casing", shown(bearing.casing), "a casing with a seat of this name", hint)
-        if bearing.pedestal is not None:
+        if bearing.casing is not None and bearing.pedestal is not None:
             hint = "leave the pedestal out: the casing brings the flexibility of the seat"
             yield Problem(f"bearings.{name}", "casing and pedestal", "one of the two", hint)
+    for name, element in model.nonlinear_elements.items():
+        if element.casing is not None and element.to_shaft is not None:
+            yield Problem(f"nonlinear_elements.{name}", "casing and to_shaft", "one of the two")

@@ -54,9 +54,10 @@ def references(model: Tables) -> Iterator[Reference]:
     for name, coupling in model.couplings.items():
         yield Reference(("couplings", name), "from_shaft", ("shafts", coupling.from_shaft))
         yield Reference(("couplings", name), "to_shaft", ("shafts", coupling.to_shaft))
-    for name, bearing in model.bearings.items():
-        if bearing.casing is not None:
-            yield Reference(("bearings", name), "casing", ("casings", bearing.casing))
+    for table in ("bearings", "nonlinear_elements"):
+        for name, part in getattr(model, table).items():
+            if part.casing is not None:
+                yield Reference((table, name), "casing", ("casings", part.casing))
     for name, element in model.nonlinear_elements.items():
         if element.to_shaft is not None:
             yield Reference(("nonlinear_elements", name), "to_shaft", ("shafts", element.to_shaft))

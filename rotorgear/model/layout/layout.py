@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from rotorgear.casings.reduced_body import ReducedBody
 from rotorgear.errors import Problem
 from rotorgear.gears.geometry.blank import RigidBody
 from rotorgear.model.layout.assembly import Assembly, put_together
@@ -18,6 +19,7 @@ from rotorgear.model.layout.bodies import NodeBody, disk_body
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.layout.places import Place
+from rotorgear.model.layout.seats import Seat, find_seat, reduced
 from rotorgear.model.layout.train import Train, walk
 from rotorgear.model.parts.operation import Load
 from rotorgear.model.parts.tables import Tables
@@ -39,6 +41,7 @@ class Layout:
         self.model = model
         self._gears: dict[str, GearLayout] = {}
         self._meshes: dict[str, MeshLayout] = {}
+        self._casings: dict[str, ReducedBody] = {}
 
     # Derived values are cheaper to derive again than to carry to another process.
     def __reduce__(self) -> tuple[Callable[[Tables], Layout], tuple[Tables]]:
@@ -58,6 +61,24 @@ class Layout:
                 name, part, self.gear(part.pinion), self.gear(part.gear), lambda: self.train
             )
         return self._meshes[name]
+
+    def casing(self, name: str) -> ReducedBody:
+        """The reduced body of a casing.
+
+        Raises:
+            AnalysisError: its file can't be read, or holds no such body.
+        """
+        if name not in self._casings:
+            self._casings[name] = reduced(name, self.model.casings[name])
+        return self._casings[name]
+
+    def seat(self, address: str) -> Seat | None:
+        """The seat that a bearing or nonlinear element stands in; None where it stands on the ground.
+
+        Raises:
+            AnalysisError: the casing has no such seat, or the shaft does not run through it.
+        """
+        return find_seat(self.model, address, self.place(address), self.casing)
 
     @property
     def gears(self) -> Iterator[GearLayout]:

@@ -34,6 +34,12 @@ def _parse_center(value: Any) -> Any:
     return value
 
 
+def _parse_point(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        raise refuse("the point x y z of the seat such as ['-55 mm', '130 mm', '20 mm']")
+    return value
+
+
 class _Seat(Part):
     """A bearing seat: a face or node set of the mesh, or the cylinder that a bearing sits in."""
 
@@ -106,6 +112,13 @@ class Casing(Part):
     mesh: Files = Field(
         default_factory=dict,
         description="file of the mesh, beside the model file; or several by name: `{ lower = ..., upper = ... }`",
+    )
+    matrices: str | None = Field(
+        None, description="file of a body that was reduced elsewhere (.npz with stiffness and mass), in place of a mesh"
+    )
+    interface: dict[Name, Annotated[tuple[Length, Length, Length], BeforeValidator(_parse_point)]] = Field(
+        default_factory=dict,
+        description="seats in `matrices` with their points x y z, in the order of their motions; default: as the file says",
     )
     unit: Literal["m", "dm", "cm", "mm", "um", "in", "ft"] | None = Field(
         None, description="unit of length of the mesh: such files carry none"

@@ -25,6 +25,7 @@ class NonlinearElement(Part):
     at: Station = Field(description="z of the element, or 'start' or 'end'")
     to_shaft: str | None = Field(None, description="name of a second shaft; default: the ground")
     to_at: Station | None = Field(None, description="z on the second shaft; default: that on the first")
+    casing: str | None = Field(None, description="name of a casing that it stands in, in place of the ground")
     directions: tuple[ElementDof, ...] = Field(
         ("x", "y"), min_length=1, description="displacements of the shaft that the law acts on, in its order"
     )

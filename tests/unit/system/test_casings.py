@@ -1,0 +1,213 @@
+"""Shafts in a casing: a bar whose matrices are those of the package's own beam, against the same bar as a shaft at rest."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model_hash import model_hash
+from rotorgear.system.system import System
+from tests.bar_casing import STEEL, write_bar
+
+PLACES = np.linspace(0.0, 0.6, 9)
+DIAMETER = 0.03
+SPRINGS = {"radial": 2e7, "axial": 1e7, "tilt": 300.0}
+CROSS = {**SPRINGS, "xy": 1e5, "yx": -2e5}
+FLEXIBLE = {"sections": [{"length": 0.6, "outer_diameter": 0.02, "elements": 3}]}
+
+
+def rotor(**parts: dict[str, Any]) -> rg.Model:
+    """A shaft of 20 mm with a disk, turning at 300 rad/s."""
+    E, _, nu, rho = STEEL
+    tables: dict[str, Any] = {
+        "materials": {"bar_steel": {"youngs_modulus": E, "poisson_ratio": nu, "density": rho}},
+        "shafts": {"rotor": {"position": [0.0, 0.0], "start": 0.0, "material": "bar_steel", **FLEXIBLE}},
+        "disks": {"disk": {"shaft": "rotor", "at": 0.2, "mass": 2.0, "polar_inertia": 3e-3, "diametral_inertia": 2e-3}},
+        "operation": {"input_shaft": "rotor", "speed": 300.0},
+    }
+    return rg.Model(**{key: {**tables.get(key, {}), **parts.get(key, {})} for key in {*tables, *parts}})
+
+
+def in_casing(path: Path, springs: dict[str, float] = SPRINGS, **more: dict[str, Any]) -> rg.Model:
+    """The rotor on two bearings in the bar of a file."""
+    return rotor(
+        casings={
+            "bar": {"matrices": str(path), "seats": {"left": "seat_0", "right": "seat_8"}, **more.pop("casing", {})}
+        },
+        bearings={
+            name: {"shaft": "rotor", "at": at, "casing": "bar", "stiffness": springs, "damping": {"radial": 50.0}}
+            for name, at in (("left", "start"), ("right", "end"))
+        },
+        **more,
+    )
+
+
+def beside_a_shaft(held: bool, springs: dict[str, float] = SPRINGS, **more: dict[str, Any]) -> rg.Model:
+    """The same rotor, coupled to a shaft that does not turn, one basic element between two places of the bar."""
+    sections = [{"length": float(length), "outer_diameter": DIAMETER, "elements": 1} for length in np.diff(PLACES)]
+    bar = {"position": [0.0, 0.0], "start": 0.0, "material": "bar_steel", "sections": sections, "speed_ratio": 0.0}
+    parts: dict[str, dict[str, Any]] = {
+        "shafts": {"bar": bar},
+        "couplings": {
+            at: {"from_shaft": "bar", "from_at": at, "to_shaft": "rotor", "to_at": at, "stiffness": springs}
+            | {"damping": {"radial": 50.0}}
+            for at in ("start", "end")
+        },
+    }
+    if held:
+        parts["supports"] = {"ground": {"shaft": "bar", "at": 0.3, "fixed": ["all"]}}
+    return rotor(**parts, **more)
+
+
+@pytest.mark.parametrize("springs", [SPRINGS, CROSS], ids=["springs", "cross terms"])
+@pytest.mark.parametrize("speed", [None, 300.0], ids=["standstill", "turning"])
+@pytest.mark.parametrize("held", [True, False], ids=["held", "free"])
+def test_a_bar_as_casing_has_the_modes_of_the_bar_as_a_shaft(
+    tmp_path: Path, held: bool, speed: float | None, springs: dict[str, float]
+) -> None:
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4] if held else [])
+    casing = rg.modal(System(in_casing(path, springs)), speed=speed, modes=20, error_estimate=False)
+    shaft = rg.modal(System(beside_a_shaft(held, springs)), speed=speed, modes=20, error_estimate=False)
+    assert casing.rigid.sum() == shaft.rigid.sum() == (1 if held else 7)
+    elastic = ~casing.rigid
+    assert casing.natural_frequency_hz[elastic] == pytest.approx(shaft.natural_frequency_hz[elastic], rel=1e-9)
+    # Equal pairs may stand in either order.
+    decay = np.sort(casing.eigenvalues.real[elastic])
+    assert decay == pytest.approx(np.sort(shaft.eigenvalues.real[elastic]), abs=1e-7 * abs(casing.eigenvalues[-1]))
+
+
+def test_energies_of_a_casing_are_those_of_the_bar_as_a_shaft(tmp_path: Path) -> None:
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4])
+    casing = rg.modal(System(in_casing(path)), modes=9, error_estimate=False)
+    shaft = rg.modal(System(beside_a_shaft(True)), modes=9, error_estimate=False)
+    assert casing.kinetic_energy["casings.bar"] == pytest.approx(shaft.kinetic_energy["shafts.bar"], abs=1e-9)
+    assert casing.strain_energy["casings.bar"] == pytest.approx(shaft.strain_energy["shafts.bar"], abs=1e-9)
+    assert sum(casing.kinetic_by_motion.values()) == pytest.approx(np.ones(9))
+    assert any(line.startswith("casing bar: ") for line in casing.description)
+
+
+def test_a_rigid_casing_is_the_ground(tmp_path: Path) -> None:
+    # E x 1e6, held at every second node: what is left of its flexibility is below 1e-6 of the bearings'.
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=0.2, seats=[0, 8], held=[1, 4, 7], stiffer=1e6)
+    inside = rg.modal(System(in_casing(path)), speed=300.0, modes=12, error_estimate=False)
+    bearings = {
+        name: {"shaft": "rotor", "at": at, "stiffness": SPRINGS, "damping": {"radial": 50.0}}
+        for name, at in (("left", "start"), ("right", "end"))
+    }
+    ground = rg.modal(System(rotor(bearings=bearings)), speed=300.0, modes=12, error_estimate=False)
+    assert inside.natural_frequency_hz == pytest.approx(ground.natural_frequency_hz, rel=1e-5, abs=1e-9)
+
+
+@pytest.mark.parametrize("held", [True, False], ids=["held", "free"])
+def test_its_damping_ratio_is_that_of_its_modes(tmp_path: Path, held: bool) -> None:
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4] if held else [])
+    soft = {"radial": 1e-3, "axial": 1e-3, "tilt": 1e-6}
+    model = in_casing(path, soft, casing={"damping_ratio": 0.03}).with_(
+        {f"bearings.{n}.damping": None for n in ("left", "right")}
+    )
+    modes = rg.modal(System(model), speed=0.0, fmax=3000.0, error_estimate=False)
+    of_casing = (modes.kinetic_energy["casings.bar"] > 0.99) & (modes.natural_frequency_hz > 1.0)
+    assert of_casing.sum() >= 6
+    assert modes.damping_ratio[of_casing] == pytest.approx(0.03, rel=1e-6)
+
+
+def test_its_weight_bends_it_as_a_shaft(tmp_path: Path) -> None:
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4])
+    gravity = {"operation": {"gravity": [0.0, -9.81, 0.0]}}
+    casing = rg.static(in_casing(path, **gravity), elements=3)
+    shaft = rg.static(beside_a_shaft(True, **gravity), elements=3)
+    moved = casing.place_displacement["disks.disk"]
+    assert moved == pytest.approx(shaft.place_displacement["disks.disk"], rel=1e-8, abs=1e-14)
+    assert moved[1] < -8e-5
+    for name, at in (("left", 0.0), ("right", 0.6)):
+        node = casing.nodes.nearest("rotor", at)
+        other = shaft.nodes.nearest("rotor", at)
+        assert casing.displacement[node] == pytest.approx(shaft.displacement[other], rel=1e-8, abs=1e-13), name
+
+
+def test_a_response_is_that_of_the_bar_as_a_shaft(tmp_path: Path) -> None:
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4])
+    more = {
+        "unbalances": {"u": {"shaft": "rotor", "at": 0.2, "magnitude": 1e-5}},
+        "points": {"disk": {"on": "disks.disk", "direction": "y"}},
+    }
+    speeds = ["3000 rpm", "9000 rpm", "14000 rpm"]
+    casing = rg.response(in_casing(path, **more), speeds=speeds, elements=3)
+    shaft = rg.response(beside_a_shaft(True, **more), speeds=speeds, elements=3)
+    assert casing.acceleration == pytest.approx(shaft.acceleration, rel=1e-7)
+
+
+def test_laws_stand_in_seats_as_springs_do(tmp_path: Path) -> None:
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4])
+    linear = in_casing(path)
+    law = {
+        "law": "plain_spring",
+        "shaft": "rotor",
+        "at": "start",
+        "casing": "bar",
+        "parameters": {"stiffness": "2e7 N/m"},
+    }
+    given = linear.model_dump(exclude_none=True, exclude_defaults=True)
+    given["casings"]["bar"]["seats"] |= {f"law_{along}": {"set": "seat_0"} for along in "xy"}
+    given["bearings"]["left"]["stiffness"] = {"axial": 1e7, "tilt": 300.0}
+    given["nonlinear_elements"] = {f"law_{along}": {**law, "directions": [along]} for along in "xy"}
+    one = rg.modal(System(linear), modes=10, error_estimate=False)
+    other = rg.modal(System(rg.Model(**given)), modes=10, error_estimate=False)
+    assert other.natural_frequency_hz == pytest.approx(one.natural_frequency_hz, rel=1e-9, abs=1e-9)
+
+
+def test_a_bearing_beside_the_point_of_its_seat_is_carried_rigidly(tmp_path: Path) -> None:
+    # The same rigid body seen from another point: nothing moves but the point.
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4])
+    arrays = dict(np.load(path))
+    shift = np.eye(len(arrays["mass"]))
+    # Motion of the point at z = 0 from that of a point 10 mm further along z: u_x - theta_y a, u_y + theta_x a.
+    shift[0, 4] = -0.01
+    shift[1, 3] = 0.01
+    for name in ("mass", "stiffness"):
+        arrays[name] = shift.T @ arrays[name] @ shift
+    arrays["weight"] = shift.T @ arrays["weight"]
+    arrays["positions"][0, 2] += 0.01
+    np.savez(tmp_path / "moved.npz", **arrays)
+    one = rg.modal(System(in_casing(path)), modes=10, error_estimate=False)
+    other = rg.modal(System(in_casing(tmp_path / "moved.npz")), modes=10, error_estimate=False)
+    assert other.natural_frequency_hz == pytest.approx(one.natural_frequency_hz, rel=1e-9, abs=1e-9)
+    assert any("carries it rigidly" in note for note in other.left_out)
+    assert not any("carries it rigidly" in note for note in one.left_out)
+
+
+def test_a_shaft_beside_its_seat_is_refused(tmp_path: Path) -> None:
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4])
+    aside = in_casing(path).with_("shafts.rotor.position", [0.0, 0.002])
+    with pytest.raises(
+        AnalysisError, match=r"bearings.left.casing: the axis of shaft 'rotor' misses seat 'seat_0'.* 2 mm"
+    ):
+        rg.modal(aside)
+
+
+def test_a_seat_that_is_not_there_is_named(tmp_path: Path) -> None:
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4])
+    wrong = in_casing(path).with_("casings.bar.seats.left", "seat_1")
+    with pytest.raises(AnalysisError, match=r"casing 'bar' has no seat 'seat_1': did you mean 'seat_8'\?"):
+        rg.modal(wrong)
+
+
+def test_what_was_left_out_of_a_casing_is_said(tmp_path: Path) -> None:
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4])
+    found = rg.modal(System(in_casing(path)), modes=4, error_estimate=False).left_out
+    assert any(note.startswith("casings.bar: all but the motions of its 2 seats and 36 modes to ") for note in found)
+
+
+def test_the_hash_of_a_model_follows_what_its_file_holds(tmp_path: Path) -> None:
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4])
+    copy = tmp_path / "elsewhere.npz"
+    copy.write_bytes(path.read_bytes())
+    assert model_hash(in_casing(copy)) == model_hash(in_casing(path))
+    before = model_hash(in_casing(path))
+    write_bar(path, z=PLACES, diameter=1.1 * DIAMETER, seats=[0, 8], held=[4])
+    assert model_hash(in_casing(path)) != before
