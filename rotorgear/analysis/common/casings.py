@@ -10,7 +10,7 @@ from rotorgear.quantity import millimetres
 from rotorgear.system.system import System
 
 # A bearing nearer to the point of its seat than this stands there.
-_APART = 1e-6
+_APART = 1e-4
 # A relative error of a frequency above this is worth a warning.
 _NOTICED = 1e-3
 

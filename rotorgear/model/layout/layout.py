@@ -23,10 +23,8 @@ from rotorgear.model.layout.seats import Seat, find_seat, reduced
 from rotorgear.model.layout.train import Train, walk
 from rotorgear.model.parts.operation import Load
 from rotorgear.model.parts.tables import Tables
-from rotorgear.progress import listener
 
 if TYPE_CHECKING:
-    from rotorgear.casings.reduced_body import ReducedBody
     from rotorgear.gears.tooth_fe.blank_section import BlankTorsion
 
 
@@ -63,13 +61,14 @@ class Layout:
         return self._meshes[name]
 
     def casing(self, name: str) -> ReducedBody:
-        """The reduced body of a casing.
+        """The reduced body of a casing, made once and kept; whoever is `listening` hears of its progress.
 
         Raises:
-            AnalysisError: its file can't be read, or holds no such body.
+            AnalysisError: what is wrong with its mesh or its matrices.
+            MissingExtraError: meshio or scikit-fem is not installed.
         """
         if name not in self._casings:
-            self._casings[name] = reduced(name, self.model.casings[name])
+            self._casings[name] = reduced(self.model, name)
         return self._casings[name]
 
     def seat(self, address: str) -> Seat | None:
@@ -165,19 +164,6 @@ class Layout:
             ValueError: the sizes make no disk; the text is what was expected.
         """
         return disk_body(self.model, self.model.disks[name])
-
-    def casing(self, name: str, fmax: float | None = None) -> ReducedBody:
-        """The reduced body of a casing, made once and kept; `fmax` is the highest frequency in Hz that is asked for.
-
-        Whoever is `listening` hears of its progress.
-
-        Raises:
-            AnalysisError: what is wrong with its mesh. MissingExtraError: meshio or scikit-fem is not installed.
-        """
-        from rotorgear.casings.casing import reduced_casing
-        from rotorgear.model.layout.casings import casing_settings
-
-        return reduced_casing(casing_settings(self.model, name), fmax, listener())
 
     @cached_property
     def elastic_gears(self) -> dict[str, BlankTorsion]:

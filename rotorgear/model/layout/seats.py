@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from rotorgear.casings.matrices_file import read_matrices
 from rotorgear.casings.reduced_body import ReducedBody
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.places import Place
 from rotorgear.model.parts.casing import Casing
 from rotorgear.model.parts.tables import Tables
+from rotorgear.progress import listener
 from rotorgear.quantity import millimetres, nearest
 
 # A shaft whose axis misses the reference point of a seat by more than this stands in another one.
@@ -35,15 +35,20 @@ class Seat:
     arm: np.ndarray
 
 
-def reduced(name: str, casing: Casing) -> ReducedBody:
+def reduced(model: Tables, name: str) -> ReducedBody:
     """The reduced body of a casing of the file.
 
     Raises:
         AnalysisError: its file can't be read, or does not fit.
+        MissingExtraError: meshio or scikit-fem is not installed.
     """
-    if casing.matrices is None:
-        raise AnalysisError(f"casings.{name}: meshes are not reduced yet; give matrices")
-    return read_matrices(Path(casing.matrices), casing.interface, casing.damping_ratio, name)
+    casing = model.casings[name]
+    if casing.matrices is not None:
+        return read_matrices(Path(casing.matrices), casing.interface, casing.damping_ratio, name)
+    from rotorgear.casings.casing import reduced_casing
+    from rotorgear.model.layout.casings import casing_settings
+
+    return reduced_casing(casing_settings(model, name), progress=listener())
 
 
 def find_seat(model: Tables, address: str, place: Place, body_of: Callable[[str], ReducedBody]) -> Seat | None:

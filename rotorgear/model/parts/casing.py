@@ -139,7 +139,7 @@ class Casing(Part):
     )
     joins: tuple[Join, ...] = Field((), description="faces that hold parts of the mesh together")
     modes_to: Frequency | None = Field(
-        None, description="highest frequency of the fixed-interface modes; default: twice that of the analysis"
+        None, description="highest frequency of the fixed-interface modes that are kept; default: the lowest 20"
     )
     damping_ratio: Ratio = Field(0.0, description="damping ratio of every elastic mode of the casing by itself")
     mass: PositiveMass | None = Field(None, description="mass, if it is known: the mesh is checked against it")
