@@ -44,6 +44,8 @@ def reduced(model: Tables, name: str) -> ReducedBody:
     """
     casing = model.casings[name]
     if casing.matrices is not None:
+        from rotorgear.casings.matrices_file import read_matrices
+
         return read_matrices(Path(casing.matrices), casing.interface, casing.damping_ratio, name)
     from rotorgear.casings.casing import reduced_casing
     from rotorgear.model.layout.casings import casing_settings
