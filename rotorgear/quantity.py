@@ -16,6 +16,7 @@ from functools import lru_cache
 from typing import Any, SupportsFloat
 
 from rotorgear.common_units import COMMON_UNITS
+from rotorgear.errors import RotorgearError
 
 
 @dataclass(frozen=True)
@@ -121,10 +122,10 @@ def parse_in_unit(value: Any, unit: str) -> float:
     if not isinstance(value, str):
         return _sensible(value, wanted)
     match = _NUMBER_AND_UNIT.match(value)
+    needed = _base_units(key)[1]
     try:
         assert match is not None
         factor, given = _base_units(_expression(" ".join(match[2].split())))
-        needed = _base_units(key)[1]
     except Exception as error:  # pint raises many kinds, as in _factor
         raise QuantityError(_expected(wanted)) from error
     if given != needed:
@@ -167,9 +168,9 @@ def _factor(unit: str, dimension: str) -> float:
 
 def _factor_by_pint(unit: str, wanted: Dimension) -> float:
     """Return the factor from any unit that pint knows to the SI unit of a dimension."""
+    _, needed = _base_units(wanted.unit)  # outside: if this fails, it is not what the user wrote
     try:
         factor, given = _base_units(_expression(unit))
-        _, needed = _base_units(wanted.unit)
     except Exception as error:  # pint raises many kinds: undefined unit, offset unit, bad syntax, too deep
         raise QuantityError(_expected(wanted)) from error
     # "N m" for a rotational stiffness or damping is customary: its radian may be left out.
@@ -207,7 +208,12 @@ def _cycle_factor(unit: str, wanted: Dimension) -> float:
 def _registry() -> Any:
     import pint
 
-    registry: Any = pint.UnitRegistry(on_redefinition="ignore")
+    try:
+        registry: Any = pint.UnitRegistry(on_redefinition="ignore")
+    except Exception as error:  # versions of pint and of what it builds on that do not fit together
+        raise RotorgearError(
+            f"pint {pint.__version__} can't read its own list of units ({error}): install pint 0.24.4 or newer"
+        ) from error
     registry.define("newton_meter = newton * meter = Nm")  # written without a blank by every engineer
     registry.define("newton_millimeter = newton * millimeter = Nmm")
     return registry

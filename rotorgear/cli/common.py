@@ -24,7 +24,21 @@ JsonOption = Annotated[
     Path | None, typer.Option("--json", help="Write the result as JSON to this file.", show_default=False)
 ]
 SaveOption = Annotated[Path | None, typer.Option("--save", help="Save the result (HDF5).", show_default=False)]
-PlotOption = Annotated[Path | None, typer.Option("--plot", help="Draw it to this PNG, SVG or PDF.", show_default=False)]
+
+
+def picture_name(path: Path | None) -> Path | None:
+    """A name that no picture can be written to is refused before anything is computed."""
+    if path is not None:
+        from rotorgear.plots.figure import require_picture_name
+
+        require_picture_name(path)
+    return path
+
+
+PlotOption = Annotated[
+    Path | None,
+    typer.Option("--plot", help="Draw it to this PNG, SVG or PDF.", show_default=False, callback=picture_name),
+]
 ElementsOption = Annotated[
     int | None,
     typer.Option(

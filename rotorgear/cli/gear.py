@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli.common import JsonOption, ModelFile, console, write_json
+from rotorgear.cli.common import JsonOption, ModelFile, console, picture_name, write_json
 
 
 def gear(
@@ -21,16 +21,14 @@ def gear(
             "--plot",
             help="Draw the teeth of --mesh, or of the first mesh, to this PNG, SVG or PDF.",
             show_default=False,
+            callback=picture_name,
         ),
     ] = None,
     json: JsonOption = None,
 ) -> None:
     """Print the gear sheet: geometry, measures, contact ratios, backlash and stiffness of all teeth."""
     import rotorgear as rg
-    from rotorgear.plots.figure import require_picture_name
 
-    if plot is not None:
-        require_picture_name(plot)
     sheet = rg.gear(rg.load(model), mesh=mesh)
     out = console()
     out.print(sheet.table())

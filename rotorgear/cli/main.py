@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import warnings
 from typing import Annotated, Any
@@ -93,14 +94,23 @@ def _show_old_names_as_sentences() -> None:
 def main() -> None:
     """Run the command line."""
     _show_old_names_as_sentences()
+    if sys.stdout is None:  # started with a closed output
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     try:
-        app()
+        try:
+            app()
+        finally:
+            sys.stdout.flush()  # while a failure can still be told
     except RotorgearError as error:
         sys.stderr.write(f"{error}\n")
         raise SystemExit(2) from None
     except BrokenPipeError:  # the reader of our output went away: nothing to report to
         sys.stderr.close()
         raise SystemExit(1) from None
-    except KeyboardInterrupt:
-        sys.stderr.write("interrupted; nothing half-written is left behind\n")
-        raise SystemExit(130) from None
+    except OSError as error:  # a full disk, most likely
+        from rotorgear.export.files import reason_of
+
+        what = f"{error.filename}" if error.filename else "the output can't be written"
+        sys.stderr.write(f"{what}: {reason_of(error)}\n")
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what waits to be written would fail again at the end
+        raise SystemExit(2) from None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rotorgear.cli.common import JsonOption, ModelFile, console, progress_bar, words_of, write_json
+from rotorgear.cli.common import JsonOption, ModelFile, console, picture_name, progress_bar, words_of, write_json
 from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
@@ -123,7 +123,12 @@ def mesh(
     harmonics: Annotated[int, typer.Option("--harmonics", min=0, help="Mesh orders that are listed.")] = 5,
     plot: Annotated[
         Path | None,
-        typer.Option("--plot", help="Draw the curves and the contact to this PNG or SVG.", show_default=False),
+        typer.Option(
+            "--plot",
+            help="Draw the curves and the contact to this PNG or SVG.",
+            show_default=False,
+            callback=picture_name,
+        ),
     ] = None,
     vtk: Annotated[
         Path | None,

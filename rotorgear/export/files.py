@@ -6,7 +6,7 @@ import os
 import shutil
 import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from rotorgear.errors import RotorgearError
@@ -29,12 +29,19 @@ def replacing(path: str | Path) -> Iterator[Path]:
         WriteError: there is no such folder, a folder stands in the way, no permission, no space.
     """
     target = Path(path)
+    try:
+        device = target.exists() and not target.is_file()
+        target = target if device else target.resolve()
+    except (OSError, RuntimeError) as error:  # too long a name, a loop of symbolic links
+        raise WriteError(target, reason_of(error)) from None
     if target.is_dir():
         raise WriteError(target, "it is a folder; give the name of a file")
-    if target.exists() and not target.is_file():
-        yield target
+    if device:
+        try:
+            yield target
+        except OSError as error:
+            raise WriteError(target, reason_of(error)) from None
         return
-    target = target.resolve()
     if not target.parent.is_dir():
         raise WriteError(target, f"there is no folder {target.parent}; make it first, or choose another")
     # In the same folder, so that the move is one of names within a file system: it happens whole or not at all.
@@ -45,7 +52,8 @@ def replacing(path: str | Path) -> Iterator[Path]:
     except OSError as error:
         raise WriteError(target, reason_of(error)) from None
     finally:
-        scratch.unlink(missing_ok=True)
+        with suppress(OSError):  # the name itself may be what the system refuses
+            scratch.unlink()
 
 
 @contextmanager
@@ -81,7 +89,8 @@ def publish(scratch: Path, directory: Path, names: list[str]) -> list[Path]:
     return published
 
 
-def reason_of(error: OSError) -> str:
-    """What the system says, in lower case and without numbers."""
-    text = error.strerror or str(error)
+def reason_of(error: Exception) -> str:
+    """What the system says, in lower case and without numbers; libraries below add their own innards, which help nobody."""
+    number = getattr(error, "errno", None)
+    text = os.strerror(number) if number else str(error).splitlines()[0]
     return text[:1].lower() + text[1:]

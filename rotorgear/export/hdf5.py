@@ -5,12 +5,14 @@ Layout: the root's attributes say what it is; every field of the result is a dat
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.errors import MissingExtraError, ModelError, RotorgearError
 from rotorgear.export.files import replacing
-from rotorgear.export.hdf5_values import get_value, put_value, stored_fields
+from rotorgear.export.hdf5_values import digest_of, get_value, put_value, stored_fields
 from rotorgear.results.kinds import kinds
 from rotorgear.results.result import Result
 from rotorgear.version import VERSION
@@ -42,14 +44,31 @@ def save(result: Result, path: str | Path) -> Path:
     Raises:
         WriteError: the file can't be written; what was there before stays.
     """
-    h5 = _import_h5py()
-    with replacing(path) as scratch, h5.File(scratch, "w") as file:
+    with new_hdf5(path) as (h5, file):
         file.attrs.update(
             {"format": FORMAT, "format_version": FORMAT_VERSION, "kind": result.kind, "rotorgear_version": VERSION}
         )
         for item in stored_fields(type(result)):
             put_value(h5, file, item, getattr(result, item))
+        file.attrs["sha256"] = digest_of(file)
     return Path(path)
+
+
+@contextmanager
+def new_hdf5(path: str | Path) -> Iterator[tuple[ModuleType, Any]]:
+    """Give h5py and a new file of it, which takes its place when all went well.
+
+    The file is made in memory and then written as bytes: on a full disk h5py leaves objects behind that it can't close, which
+    print their innards and end Python with a crash.
+
+    Raises:
+        WriteError: the file can't be written.
+    """
+    h5 = _import_h5py()
+    with replacing(path) as scratch, h5.File(scratch, "w", driver="core", backing_store=False) as file:
+        yield h5, file
+        file.flush()
+        scratch.write_bytes(file.id.get_file_image())
 
 
 def read(path: str | Path) -> Any:
@@ -62,7 +81,7 @@ def read(path: str | Path) -> Any:
         The result, equal to the one that was saved.
 
     Raises:
-        ReadError: no such file, no HDF5, not written by rotorgear, written by a newer one, or damaged.
+        ReadError: no such file, no HDF5, not written by rotorgear, written by a newer one, or changed or damaged.
     """
     path = Path(path)
     if not path.is_file():
@@ -78,13 +97,20 @@ def read(path: str | Path) -> Any:
     with file:
         cls = _kind(path, file)
         try:
+            digest = digest_of(file)
             # A field that came later has its default in an older file; the version stands in every file.
             old = {"rotorgear_version": str(file.attrs["rotorgear_version"])}
-            return cls(**old | {name: get_value(file[name]) for name in stored_fields(cls) if name in file})
+            result = cls(**old | {name: get_value(file[name]) for name in stored_fields(cls) if name in file})
         except ModelError as error:
             raise ReadError(path, f"its model does not pass the checks of rotorgear {VERSION}\n{error}") from None
         except (KeyError, ValueError, TypeError, AttributeError, OSError, RuntimeError) as error:
             raise ReadError(path, f"it is damaged ({error})") from None
+        # Files of 0.1 have no digest.
+        if file.attrs.get("sha256", digest) != digest:
+            raise ReadError(
+                path, "it is damaged: its values are not those that rotorgear wrote; run the analysis again"
+            )
+        return result
 
 
 def _import_h5py() -> ModuleType:

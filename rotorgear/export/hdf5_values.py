@@ -8,6 +8,7 @@ kind, which says how to read it.
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -39,6 +40,35 @@ def put_value(h5: ModuleType, parent: Any, name: str, value: Any) -> None:
 def get_value(item: Any) -> Any:
     """Read what `put_value` wrote; KeyError, TypeError or ValueError for anything else."""
     return _BY_NAME[item.attrs["type"]].read(item)
+
+
+def digest_of(file: Any) -> str:
+    """SHA-256 over all that a file holds: names, kinds, shapes and values. A file that was changed since has another one.
+
+    Raises:
+        ValueError: a data set says that it has more values than the whole file has bytes.
+    """
+    digest = hashlib.sha256()
+    size = file.id.get_filesize()
+
+    def add(name: str, item: Any) -> None:
+        digest.update(f"{name} {sorted(item.attrs.items())}".encode())
+        if not hasattr(item, "shape"):  # a group
+            return
+        if item.shape is not None and item.nbytes > size:
+            raise ValueError(f"{name} says that it has {item.size:.3g} values, more than the file has bytes")
+        value = item[()] if item.shape is not None else None
+        plain = isinstance(value, np.ndarray) and value.dtype != object
+        digest.update(f"{item.dtype} {item.shape}".encode())
+        digest.update(np.ascontiguousarray(value).tobytes() if plain else repr(_listed(value)).encode())
+
+    file.visititems(add)
+    return digest.hexdigest()
+
+
+def _listed(value: Any) -> Any:
+    """Texts of an array in full; numpy shortens long ones."""
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
 @dataclass(frozen=True)

@@ -64,5 +64,11 @@ def save_mesh(mesh: Any, path: Path) -> None:
     writer.EncodeAppendedDataOff()
     writer.SetCompressorTypeToZLib()
     writer.SetCompressionLevel(2)
-    if not writer.Write() or writer.GetErrorCode():
+    shown = writer.GetGlobalWarningDisplay()
+    writer.GlobalWarningDisplayOff()  # what goes wrong is said once, in a sentence
+    try:
+        written = writer.Write() and not writer.GetErrorCode()
+    finally:
+        writer.SetGlobalWarningDisplay(shown)
+    if not written:
         raise OSError(f"VTK could not write {path.name}; is the disk full?")

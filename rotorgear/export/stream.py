@@ -16,6 +16,8 @@ import numpy as np
 from rotorgear.analysis.sweep.cluster import versions
 from rotorgear.errors import RotorgearError
 from rotorgear.export.files import WriteError, reason_of, replacing
+from rotorgear.export.hdf5 import new_hdf5
+from rotorgear.export.hdf5_values import digest_of
 
 
 class ChunkStream:
@@ -41,16 +43,16 @@ class ChunkStream:
         run = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in settings.items()}
         mark = {"program": versions(), "run": run}
         note = self.folder / "settings.json"
-        if self._resume and note.is_file():
-            there = json.loads(note.read_text(encoding="utf-8"))
+        if self._resume and (note.exists() or any(self.folder.glob("chunk_*.h5"))):
+            there = _settings(note)
             for name, own in versions().items():
-                other = there.get("program", {}).get(name, "unknown")
+                other = there["program"].get(name, "unknown")
                 if other != own:
                     raise RotorgearError(
                         f"{self.folder} was computed with {name} {other}, and here is {own}: go on with that one, or start "
                         "without resume"
                     )
-            if there.get("run") != run:
+            if there["run"] != run:
                 raise RotorgearError(
                     f"{self.folder} holds a run with another model or other settings; repeat those, or start without resume"
                 )
@@ -70,17 +72,23 @@ class ChunkStream:
         Raises:
             WriteError: no space, no permission.
         """
-        import h5py
-
-        with replacing(self.folder / f"chunk_{self._count + 1:06d}.h5") as scratch, h5py.File(scratch, "w") as file:
+        with new_hdf5(self.folder / _chunk_name(self._count + 1)) as (_, file):
             for name, value in chunk.items():
                 file[name] = value
+            file.attrs["sha256"] = digest_of(file)
         self._count += 1
 
     def _read(self) -> list[dict[str, np.ndarray]]:
-        chunks = [read_chunk(path) for path in sorted(self.folder.glob("chunk_*.h5"))]
-        self._count = len(chunks)
-        return chunks
+        """The chunks from the first to the last; RotorgearError where one in between is missing: time would jump."""
+        names = sorted(path.name for path in self.folder.glob("chunk_*.h5"))
+        for number, name in enumerate(names, start=1):
+            if name != _chunk_name(number):
+                raise RotorgearError(
+                    f"{self.folder} has no {_chunk_name(number)}, but later ones: remove those to go on from there, or start "
+                    "without resume"
+                )
+        self._count = len(names)
+        return [read_chunk(self.folder / name) for name in names]
 
     def close(self) -> None:
         """Take the folder away: the result is saved elsewhere."""
@@ -88,11 +96,37 @@ class ChunkStream:
 
 
 def read_chunk(path: Path) -> dict[str, np.ndarray]:
-    """Read one chunk."""
+    """Read one chunk.
+
+    Raises:
+        RotorgearError: it is cut off, or its values are not those that were written.
+    """
     import h5py
 
-    with h5py.File(path, "r") as file:
-        return {name: file[name][()] for name in file}
+    try:
+        with h5py.File(path, "r") as file:
+            whole = file.attrs["sha256"] == digest_of(file)
+            chunk = {name: file[name][()] for name in file} if whole else {}
+    except (OSError, KeyError, ValueError, TypeError, RuntimeError):
+        whole = False
+    if not whole:
+        raise RotorgearError(
+            f"{path} is damaged: remove it and all chunks after it to go on from there, or start without resume"
+        )
+    return chunk
+
+
+def _chunk_name(number: int) -> str:
+    return f"chunk_{number:06d}.h5"
+
+
+def _settings(note: Path) -> dict[str, dict[str, str]]:
+    """What the chunks in a folder were computed with; RotorgearError where that can't be told."""
+    try:
+        there = json.loads(note.read_text(encoding="utf-8"))
+        return {"program": dict(there["program"]), "run": dict(there["run"])}
+    except (OSError, ValueError, KeyError, TypeError):
+        raise RotorgearError(f"{note} is damaged: start without resume") from None
 
 
 def stream(path: str | Path, *, resume: bool = False) -> ChunkStream:

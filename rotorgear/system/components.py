@@ -11,6 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
+from rotorgear.errors import AnalysisError
 from rotorgear.system.system import System
 
 
@@ -28,6 +29,44 @@ def independent_groups(matrices: Iterable[sp.csc_array]) -> list[np.ndarray]:
     order = np.argsort(label, kind="stable")
     groups = np.split(order, np.cumsum(np.bincount(label, minlength=count))[:-1])
     return sorted(groups, key=lambda group: (-len(group), int(group[0])))
+
+
+def groups_with_inertia(
+    system: System, groups: list[np.ndarray], velocity: sp.csc_array | None
+) -> tuple[list[np.ndarray], tuple[str, ...]]:
+    """Return the groups that have modes, and a sentence where others are left out.
+
+    Springs hold what has no inertia at all, such as the end of a motor that nobody weighed: it only follows, and has no modes.
+    A group that springs do not hold stays, for the eigensolver to refuse.
+
+    Args:
+        system: with its mass and stiffness.
+        groups: of dofs that do not act on each other.
+        velocity: terms of damping and gyroscopic moments, sparse (n, n), if there are any.
+
+    Raises:
+        AnalysisError: dampers act on a group without inertia; its motion would decay without any modal mass.
+    """
+    moving = []
+    still: list[str] = []
+    mass = system.mass.diagonal()
+    for group in groups:
+        if np.any(mass[group] > 0.0):
+            moving.append(group)
+            continue
+        stiffness = system.stiffness()[group][:, group].toarray()
+        held = np.linalg.eigvalsh(stiffness)
+        if held[0] <= 1e-13 * held[-1]:
+            moving.append(group)
+            continue
+        names = "; ".join(system.dofs.describe(dof, system.nodes) for dof in group[:4])
+        names += f" and {len(group) - 4} more" if len(group) > 4 else ""
+        if velocity is not None and velocity[group].nnz:
+            raise AnalysisError(
+                f"dampers but no inertia: {names}; give the body there its inertia, or leave its dampers out"
+            )
+        still.append(names)
+    return moving, (f"modes of what has stiffness but no inertia: {'; '.join(still)}",) if still else ()
 
 
 def dof_motions(system: System) -> np.ndarray:

@@ -52,7 +52,7 @@ def points(inertias: Sequence[float], stiffnesses: Sequence[float], **tables: An
         f"c{k}": rg.Coupling(from_shaft=f"p{k}", to_shaft=f"p{k + 1}", stiffness=rg.StiffnessMatrix(torsion=value))
         for k, value in enumerate(stiffnesses)
     }
-    return rg.Model(shafts=shafts, disks=disks, couplings=couplings, motions=("torsion",), **tables)
+    return rg.Model(shafts=shafts, disks=disks, couplings=couplings, **{"motions": ("torsion",), **tables})
 
 
 def elastic(result: rg.ModalResult) -> np.ndarray:

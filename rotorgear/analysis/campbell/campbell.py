@@ -23,6 +23,7 @@ from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, exci
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.request import check_request, check_whole
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits, whirl_numbers
 from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.analysis.static.tangent import about_equilibrium_of
@@ -103,12 +104,8 @@ def campbell(
 
 
 def _check(modes: int | None, fmax: float | None, sidebands: int) -> None:
-    if modes is not None and modes < 1:
-        raise AnalysisError(f"the number of modes must be at least 1, got {modes}")
-    if fmax is not None and not (np.isfinite(fmax) and fmax > 0.0):
-        raise AnalysisError(f"the highest frequency must be positive, got {fmax} Hz")
-    if sidebands < 0:
-        raise AnalysisError(f"the number of sidebands can't be negative, got {sidebands}")
+    check_request(None, modes, fmax, None, None)
+    check_whole("the number of sidebands", sidebands, 0)
 
 
 def _grid(found: SpeedModes, asked: np.ndarray, operating: float | None) -> np.ndarray:

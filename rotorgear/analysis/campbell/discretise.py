@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from rotorgear.analysis.common.request import check_whole
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -35,8 +36,7 @@ def system_for_speeds(
     turning = [speed for speed in speeds if speed]
     direction = -1 if turning and turning[0] < 0.0 else 1
     if elements is not None:
-        if elements < 1:
-            raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
+        check_whole("the number of elements", elements)
         return System(model, plan=Plan(elements), load=model.mean_load(direction))
     cuts: list[dict[PieceKey, tuple[int, int]]] = []
     for k, speed in enumerate(dict.fromkeys(speeds)):

@@ -138,7 +138,7 @@ class SpeedModes:
     def damped(self, s: np.ndarray) -> np.ndarray:
         """Eigenvalues with the modal damping ratio of the model added, and without rounding where nothing else damps."""
         if self._conservative:
-            s = 1j * s.imag
+            s = np.where(np.isnan(s), s, 1j * s.imag)  # a branch that is not there stays so
         zeta = self.system.model.damping.modal_ratio
         return with_modal_damping(s, zeta) if zeta else s
 

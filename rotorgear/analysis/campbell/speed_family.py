@@ -16,7 +16,7 @@ from rotorgear.model.parts.nonlinear_element import NonlinearElement
 from rotorgear.model.parts.supports import Bearing
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
 from rotorgear.system.assembly import assemble
-from rotorgear.system.components import independent_groups
+from rotorgear.system.components import groups_with_inertia, independent_groups
 from rotorgear.system.groups import ElementGroup, table_groups
 from rotorgear.system.strain_forms import StrainForms, strain_forms
 from rotorgear.system.system import System
@@ -86,12 +86,13 @@ class SpeedFamily:
 
     @property
     def groups(self) -> list[np.ndarray]:
-        """Dofs that act on each other at no speed, largest group first."""
+        """Dofs that act on each other at no speed and have inertia, largest group first."""
         forms = self._constant
         sizes = [abs(A) for A in (forms.modulus, forms.viscosity, forms.circulation, self._per_speed)]
         B = abs(forms.strain)
         strained = [sp.csc_array(B.T @ A @ B) for A in sizes if A.nnz]
-        return independent_groups([self.mass, self.gyroscopic, *strained, *(A for pair in self._tables for A in pair)])
+        found = independent_groups([self.mass, self.gyroscopic, *strained, *(A for pair in self._tables for A in pair)])
+        return groups_with_inertia(self.system, found, self.system.damping())[0]
 
     def reduced(self, V: np.ndarray) -> ReducedFamily:
         """Matrices in the coordinates of a basis V (n, r), real."""

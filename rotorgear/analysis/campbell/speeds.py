@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rotorgear.analysis.common.request import speed_in_si
+from rotorgear.analysis.common.request import check_whole, speed_in_si
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 
@@ -37,8 +37,7 @@ def highest_speed(model: Model, given: float | str | None = None) -> float:
 
 def speed_range(start: float, stop: float, points: int = DEFAULT_SPEEDS) -> np.ndarray:
     """Evenly spaced speeds (k,) in rad/s."""
-    if points < 2:
-        raise AnalysisError(f"a range of speeds needs at least 2 points, got {points}")
+    check_whole("the number of points", points, 2)
     return np.linspace(start, stop, points)
 
 

@@ -41,14 +41,16 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
     """
     system = System(model, elements)
     speed = model.operation.speed if model.operation else None
+    masses = _masses(system)
+    dampings = _mesh_dampings(system)
     return ModelDescription(
         title=model.title,
         reference_shaft=model.reference_shaft,
         speed_rpm=None if speed is None else speed * RPM_PER_RAD_S,
-        shafts=tuple(_shaft(system, name, speed) for name in model.shafts),
+        shafts=tuple(_shaft(system, name, masses[name], speed) for name in model.shafts),
         gears=tuple(_gear(system, gear) for gear in system.layout.gears),
         places=tuple(_places(system)),
-        meshes=tuple(_mesh(system, name, speed) for name in model.meshes),
+        meshes=tuple(_mesh(system, name, dampings.get(name, 0.0), speed) for name in model.meshes),
         torques=tuple(
             TorqueRow(
                 item.name,
@@ -58,7 +60,7 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
             )
             for item in system.load.applied
         ),
-        total_mass_kg=sum(sum(_mass(system, name)[:2]) for name in model.shafts),
+        total_mass_kg=sum(bare + bodies for bare, bodies, _ in masses.values()),
         counts={table: len(getattr(model, table)) for table in _COUNTED if getattr(model, table)},
         nodes=len(system.nodes),
         dofs=system.n,
@@ -68,31 +70,25 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
     )
 
 
-def _mass(system: System, shaft: str) -> tuple[float, float, float]:
-    """Mass of a shaft, mass of the bodies on it (kg), and the polar inertia of both (kg m^2)."""
-    bare = 0.0
-    bodies = 0.0
-    polar = 0.0
+def _masses(system: System) -> dict[str, tuple[float, float, float]]:
+    """Of each shaft: its mass, mass of the bodies on it (kg), and the polar inertia of both (kg m^2)."""
+    found = {name: [0.0, 0.0, 0.0] for name in system.model.shafts}
     for group in system.groups:
         M = group.matrices.mass
-        if M is None or group.shaft != shaft:
+        if M is None or group.shaft not in found:
             continue
         x = np.arange(0, M.shape[1], 6)
         tz = np.arange(5, M.shape[1], 6)
-        mass = float(M[:, x][:, :, x].sum())
-        polar += float(M[:, tz][:, :, tz].sum())
-        if group.part == f"shafts.{shaft}":
-            bare += mass
-        else:
-            bodies += mass
-    return bare, bodies, polar
+        own = found[group.shaft]
+        own[0 if group.part == f"shafts.{group.shaft}" else 1] += float(M[:, x][:, :, x].sum())
+        own[2] += float(M[:, tz][:, :, tz].sum())
+    return {name: (bare, bodies, polar) for name, (bare, bodies, polar) in found.items()}
 
 
-def _shaft(system: System, name: str, speed: float | None) -> ShaftRow:
+def _shaft(system: System, name: str, masses: tuple[float, float, float], speed: float | None) -> ShaftRow:
     ratio = system.train.ratio(name)
-    bare, bodies, polar = _mass(system, name)
     rpm = None if speed is None else ratio * speed * RPM_PER_RAD_S
-    return ShaftRow(name, ratio, rpm, system.model.shafts[name].length, bare, bodies, polar)
+    return ShaftRow(name, ratio, rpm, system.model.shafts[name].length, *masses)
 
 
 def _gear(system: System, gear: GearLayout) -> GearRow:
@@ -116,11 +112,21 @@ def _places(system: System) -> Iterator[PlaceRow]:
         for name in getattr(system.model, table):
             places = system.layout.places(f"{table}.{name}")
             found += [PlaceRow(f"{table}.{name}", place.shaft, place.z) for place in places]
-    for shaft in system.model.shafts:
-        yield from sorted((row for row in found if row.shaft == shaft), key=lambda row: row.z_m)
+    order = {shaft: number for number, shaft in enumerate(system.model.shafts)}
+    yield from sorted(found, key=lambda row: (order[row.shaft], row.z_m))
 
 
-def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
+def _mesh_dampings(system: System) -> dict[str, float]:
+    """Damping of each mesh that has any, over its helices, in N s/m."""
+    found: dict[str, float] = {}
+    for group in system.groups:
+        table, _, name = group.part.partition(".")
+        if table == "meshes" and group.matrices.viscosity is not None:
+            found[name] = found.get(name, 0.0) + float(group.matrices.viscosity[0, 0, 0])
+    return found
+
+
+def _mesh(system: System, name: str, damping: float, speed: float | None) -> MeshRow:
     mesh = system.layout.mesh(name)
     pinion = mesh.pinion.part
     gear = mesh.gear.part
@@ -129,11 +135,6 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
     phases = [system.load.phase(force.contact) for force in forces]
     line = mesh.centre_line
     pair = mesh.pair
-    damping = [
-        float(group.matrices.viscosity[0, 0, 0])
-        for group in system.groups
-        if group.part == f"meshes.{name}" and group.matrices.viscosity is not None
-    ]
     return MeshRow(
         name=name,
         pinion=mesh.pinion.name,
@@ -153,5 +154,5 @@ def _mesh(system: System, name: str, speed: float | None) -> MeshRow:
         driver=(mesh.pinion if forces[0].pinion_drives else mesh.gear).name,
         flank_assumed=any(force.assumed for force in forces),
         stiffness_n_per_m=sum(force.contact.stiffness for force in forces),
-        damping_n_s_per_m=sum(damping),
+        damping_n_s_per_m=damping,
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rotorgear.errors import AnalysisError
+from rotorgear.analysis.common.request import check_whole
 from rotorgear.system.plan import Plan
 
 
@@ -15,6 +15,6 @@ def plan_in_time(elements: int | None = None) -> Plan:
     Raises:
         AnalysisError: fewer than one element.
     """
-    if elements is not None and elements < 1:
-        raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
+    if elements is not None:
+        check_whole("the number of elements", elements)
     return Plan(elements) if elements else Plan(elements=1, order=2)

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_warnings
 from rotorgear.gears.geometry.geometry import check_gear
 from rotorgear.model.checks.pairs import mesh_findings
+from rotorgear.quantity import millimetres
 from rotorgear.system.system import System
+
+# Share of a face that neighbours may have in common, and that may stand beyond its shaft, by rounding of the drawing.
+_TOUCH = 1e-3
 
 
 def model_warnings(system: System) -> Iterator[str]:
@@ -15,6 +20,7 @@ def model_warnings(system: System) -> Iterator[str]:
     for name, gear in system.model.gears.items():
         for sentence in check_gear(gear.geometry) if gear.geometry else ():
             yield f"gears.{name}: {sentence}"
+    yield from _faces(system)
     yield from _meshes(system)
     yield from mesh_stiffness_warnings(system)
     yield from _train(system)
@@ -25,6 +31,26 @@ def model_warnings(system: System) -> Iterator[str]:
         if length and abs(second - first) > 0.25 * length:
             gap = 1e3 * abs(second - first)
             yield f"couplings.{name}: its two points are {gap:.6g} mm apart along z; check the shafts' start"
+
+
+def _faces(system: System) -> Iterator[str]:
+    """Gears that stand in one another, and gears that hang over the end of their shaft."""
+    faces: dict[str, list[tuple[float, float, str]]] = {}
+    for gear in system.layout.gears:
+        half = 0.5 * gear.part.total_width
+        faces.setdefault(gear.shaft, []).append((gear.z - half, gear.z + half, gear.name))
+    for shaft, found in faces.items():
+        part = system.model.shafts[shaft]
+        found.sort()
+        for first, second in pairwise(found):
+            shared = min(first[1], second[1]) - second[0]
+            if shared > _TOUCH * (second[1] - second[0]) or second[0] == first[0]:
+                where = f"{millimetres(second[0])}" if shared <= 0.0 else f"over {millimetres(shared)}"
+                yield f"gears.{first[2]} and gears.{second[2]} stand in one another on shaft '{shaft}' ({where}); check their at"
+        for start, end, name in found:
+            beyond = max(part.start - start, end - part.end)
+            if part.sections and beyond > _TOUCH * (end - start):
+                yield f"gears.{name}: its face hangs over the end of shaft '{shaft}' by {millimetres(beyond)}; check its at"
 
 
 def _meshes(system: System) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 from typing import overload
 
 import numpy as np
@@ -32,13 +33,28 @@ def direction_of(speed: float | None) -> int | None:
     return None if not speed else int(np.sign(speed))
 
 
+def check_whole(name: str, value: object, least: int = 1) -> None:
+    """Refuse a count that is no whole number of at least `least`.
+
+    Raises:
+        AnalysisError: with the name of what is counted, such as "the number of modes".
+    """
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral):
+        raise AnalysisError(f"{name} must be a whole number, got {value!r}")
+    if value < least:
+        raise AnalysisError(f"{name} must be at least {least}, got {value}")
+
+
 def check_request(
     speed: float | None, modes: int | None, fmax: float | None, elements: int | None, accuracy: float | None
 ) -> None:
     """Refuse a request that can't be meant."""
     for name, value in (("the number of modes", modes), ("the number of elements", elements)):
-        if value is not None and value < 1:
-            raise AnalysisError(f"{name} must be at least 1, got {value}")
+        if value is not None:
+            check_whole(name, value)
+    for name, size in (("the accuracy", accuracy), ("the highest frequency", fmax)):
+        if size is not None and (isinstance(size, bool) or not isinstance(size, numbers.Real)):
+            raise AnalysisError(f"{name} must be a number, got {size!r}")
     if elements is not None and accuracy is not None:
         raise AnalysisError("elements and accuracy: give one of the two; elements fixes the mesh, accuracy refines it")
     if accuracy is not None and not FINEST <= accuracy < 1.0:

@@ -16,6 +16,8 @@ from rotorgear.system.groups import ElementGroup
 from rotorgear.system.system import System
 
 WARN_ABOVE = 1e12
+# No elements of machines, however fine, come near this.
+_HOPELESS = 1e26
 
 
 def conditioning_warnings(
@@ -46,6 +48,23 @@ def conditioning_warnings(
     if system.strain_factor(speed or 0.0) is None:
         verdict = f"a 6 x 6 stiffness is indefinite, so that the softest are good to {EPS * span:.0e} only"
     return (f"stiffnesses are {span:.0e} apart in omega^2: {stiff}, against {hertz:.3g} Hz{where}; {verdict}",)
+
+
+def too_far_apart(system: System, speed: float | None) -> str:
+    """Why no solver can tell the motions of a system apart: its parts are more decades apart than two doubles hold; else ""."""
+    K = system.stiffness(speed or 0.0).diagonal()
+    M = system.mass.diagonal()
+    both = np.flatnonzero((K > 0.0) & (M > 0.0))
+    ratio = K[both] / M[both]
+    if not both.size or ratio.max() < _HOPELESS * ratio.min():
+        return ""
+    stiff = stiffest_part(system, speed or 0.0, int(both[np.argmax(ratio)]))
+    soft = system.dofs.describe(int(both[np.argmin(ratio)]), system.nodes)
+    decades = np.log10(ratio.max() / ratio.min())
+    return (
+        f"the parts of the model are {decades:.0f} decades apart in omega^2 ({stiff}, against {soft}): leave out what is "
+        "negligible"
+    )
 
 
 def stiffest_part(system: System, speed: float, dof: int) -> str:

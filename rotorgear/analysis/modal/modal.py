@@ -12,6 +12,7 @@ from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.notes import gathering
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, direction_of, speed_in_si
+from rotorgear.analysis.modal.conditioning import too_far_apart
 from rotorgear.analysis.modal.enriched_error import enriched_errors
 from rotorgear.analysis.modal.modes import Modes, Wanted
 from rotorgear.analysis.modal.reach import Reach
@@ -139,6 +140,8 @@ def _solved(system: System, wanted: Wanted) -> Modes:
     try:
         return solve(system, wanted)
     except ConvergenceError as error:
+        if why := too_far_apart(system, wanted.speed):
+            raise ConvergenceError(why, error.partial) from error
         gathers = gathering(system)
         if wanted.speed is None or gathers is None:
             raise

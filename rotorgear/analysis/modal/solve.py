@@ -16,7 +16,7 @@ from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen.eigen import UndampedModes, lowest_modes
 from rotorgear.solvers.eigen.shift_invert import shifted_operator
 from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
-from rotorgear.system.components import dof_motions, independent_groups
+from rotorgear.system.components import dof_motions, groups_with_inertia, independent_groups
 from rotorgear.system.nodes import CASING
 from rotorgear.system.plan import Plan
 from rotorgear.system.strain_forms import StrainForms
@@ -81,6 +81,7 @@ def solve(system: System, wanted: Wanted) -> Modes:
     # Groups of dofs that no entry of M, D or K couples are eigenproblems of their own.
     matrices = [A for A in (whole.M, whole.D, whole.K) if A is not None]
     groups = independent_groups(matrices) if wanted.pruning else [np.arange(system.n)]
+    groups, still = groups_with_inertia(system, groups, whole.D)
     motions = dof_motions(system)
     chosen = [group for group in groups if not wanted.only or set(motions[group]) & set(wanted.only)]
     if not chosen:
@@ -97,7 +98,7 @@ def solve(system: System, wanted: Wanted) -> Modes:
             remedy = "give the body there its inertia, or hold the motion with a support"
             raise AnalysisError(f"neither inertia nor stiffness: {names}{more}; {remedy}") from None
         raise AnalysisError(str(error)) from None
-    return _merged(system, chosen, solved, wanted.modes, group_notes(motions, groups, chosen))
+    return _merged(system, chosen, solved, wanted.modes, (*group_notes(motions, groups, chosen), *still))
 
 
 def _problem(system: System, speed: float | None) -> _Problem:

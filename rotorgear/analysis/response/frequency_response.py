@@ -16,7 +16,7 @@ from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.points import named_place
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, direction_of, speed_in_si
+from rotorgear.analysis.common.request import check_request, check_whole, direction_of, speed_in_si
 from rotorgear.analysis.modal.refine import all_finer
 from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant, dof_row
@@ -131,8 +131,7 @@ def frf(
 
 def _evenly_spaced(fmin: float | None, fmax: float | None, points: int) -> np.ndarray:
     """Frequencies in Hz; without `fmin` from one step above 0, where the receptance of a rigid-body rotation is infinite."""
-    if points < 2:
-        raise AnalysisError(f"points: got {points}, expected at least 2")
+    check_whole("the number of points", points, 2)
     if fmax is None:
         raise AnalysisError(
             "a frequency response needs its frequencies, or fmax (--fmax), the highest of a range in Hz"

@@ -12,7 +12,7 @@ from rotorgear.analysis.common.casings import casing_notes
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, direction_of, speed_in_si
+from rotorgear.analysis.common.request import check_request, check_whole, direction_of, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.response.error import mesh_error, parting, speed_warnings
 from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
@@ -196,8 +196,7 @@ def _speeds(
             raise AnalysisError(
                 "no speeds: give start and stop (--from, --to), or [operation] a speed: the run-up then goes to a fifth above it"
             )
-        if points < 1:
-            raise AnalysisError(f"points: got {points}, expected at least 1")
+        check_whole("the number of points", points)
         low = LOWEST * (operating or 0.0) if start is None else speed_in_si(start)
         high = HIGHEST * (operating or 0.0) if stop is None else speed_in_si(stop)
         speeds = np.linspace(low, high, points)

@@ -58,11 +58,13 @@ def estimate_chance(
 
 
 def binomial_tail(count: int, at_least: int, probability: float) -> float:
-    """Return the probability of `at_least` or more successes in `count` independent trials."""
-    terms = (
-        math.comb(count, k) * probability**k * (1.0 - probability) ** (count - k) for k in range(at_least, count + 1)
-    )
-    return min(1.0, math.fsum(terms))
+    """Return the probability of `at_least` or more successes in `count` independent trials.
+
+    The tail is the incomplete beta function I_p(k, n - k + 1) (Abramowitz & Stegun 26.5.24), whose terms do not overflow.
+    """
+    from scipy.special import betainc
+
+    return 1.0 if at_least == 0 else float(betainc(at_least, count - at_least + 1, probability))
 
 
 def _score(lines: NDArray[np.float64], modes: NDArray[np.float64], tolerance: float) -> tuple[int, float]:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.request import check_whole
 from rotorgear.analysis.rig.chance import estimate_chance
 from rotorgear.errors import AnalysisError
 from rotorgear.results.comparison import (
@@ -195,8 +196,7 @@ def _check_settings(tolerance: float, excitation_tolerance: float, samples: int)
         raise AnalysisError(
             f"the excitation tolerance must lie between 0 and 1 (0.005 is 0.5 %), got {excitation_tolerance:g}"
         )
-    if samples < 1:
-        raise AnalysisError(f"the chance needs at least one random list, got samples = {samples}")
+    check_whole("the number of random lists (samples)", samples)
 
 
 def _band(rig_hz: NDArray[np.float64], tolerance: float, band: tuple[float, float] | None) -> tuple[float, float]:

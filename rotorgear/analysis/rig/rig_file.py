@@ -1,7 +1,8 @@
 """Read the measured lines of a test rig from a CSV file.
 
 One header row, one line a row; blank rows and rows that start with # are skipped; comma, semicolon or tab between the
-cells. Columns: `frequency` (needed), `label`, `uncertainty`, `damping`. A unit may stand in the header (`frequency_hz`,
+cells. Beside semicolons or tabs, numbers may have a decimal comma (`361,5`), as spreadsheets write them in many countries.
+Columns: `frequency` (needed), `label`, `uncertainty`, `damping`. A unit may stand in the header (`frequency_hz`,
 `frequency (kHz)`, `damping [%]`) or in the cell ("361 Hz", "2 %"), which wins; plain numbers are Hz, Hz of uncertainty,
 and a damping ratio as a fraction.
 """
@@ -32,6 +33,9 @@ _EXPECTED = {
     "damping": "a damping ratio such as 0.012 or '1.2 %'",
 }
 
+# A whole cell: a number, and perhaps its unit.
+_DECIMAL = re.compile(r"([+-]?[0-9]+)([.,])([0-9]+(?:[eE][+-]?[0-9]+)?\s*[A-Za-z/%]*)\Z")
+
 
 @dataclass(frozen=True)
 class _Column:
@@ -56,11 +60,11 @@ def read_rig_lines(path: str | Path) -> tuple[RigLine, ...]:
             lines at all.
     """
     file = Path(path)
-    rows = _rows(file)
+    delimiter, rows = _rows(file)
     if not rows:
         raise _one_problem(file, "", "a header row and at least one line, such as 'frequency_hz' and below it '361'")
     (header_line, header), *body = rows
-    table = _Table(file.name, _columns(header, f"{file.name}:{header_line}", file))
+    table = _Table(file.name, _columns(header, f"{file.name}:{header_line}", file), delimiter)
     lines = [table.read(number, cells) for number, cells in body]
     if not body:
         raise _one_problem(file, "", "at least one rig line below the header")
@@ -73,20 +77,27 @@ def _one_problem(file: Path, value: str, expected: str, hint: str = "") -> Model
     return ModelError([Problem(file.name, value, expected, hint)], str(file))
 
 
-def _rows(file: Path) -> list[tuple[int, list[str]]]:
-    """Return (line number, stripped cells) of every row that says something."""
+def _rows(file: Path) -> tuple[str, list[tuple[int, list[str]]]]:
+    """Return the delimiter, and (line number, stripped cells) of every row that says something."""
     try:
         text = file.read_text(encoding="utf-8-sig")
         # A comment becomes an empty line, so that the reader's line numbers stay those of the file.
         lines = ["" if line.lstrip().startswith("#") else line for line in text.splitlines()]
         # The header tells the delimiter: below it, commas may also stand in numbers and labels.
         delimiter = max(",;\t", key=next((line for line in lines if line.strip()), "").count)
-        reader = csv.reader(lines, delimiter=delimiter, skipinitialspace=True)
-        rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        rows = []
+        for number, line in enumerate(lines, start=1):
+            # Line by line: no cell goes on over the next one, so a quote that is not closed can't swallow the rest of the file.
+            try:
+                cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True, strict=True), [])
+            except csv.Error:
+                expected = "every quote closed in its line, and nothing behind it in its cell"
+                raise ModelError([Problem(f"{file.name}:{number}", repr(line), expected)], str(file)) from None
+            rows.append((number, [cell.strip() for cell in cells]))
+    except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise _one_problem(file, "", "a readable CSV file in UTF-8", reason) from error
-    return [(number, cells) for number, cells in rows if any(cells)]
+    return delimiter, [(number, cells) for number, cells in rows if any(cells)]
 
 
 def _columns(header: list[str], where: str, file: Path) -> list[_Column | None]:
@@ -127,8 +138,10 @@ class _Table:
 
     file: str
     columns: list[_Column | None]
+    delimiter: str
     problems: list[Problem] = field(default_factory=list)
     first_line: dict[str, int] = field(default_factory=dict)
+    decimal_sign: tuple[str, int] | None = None  # and the line that has it first
 
     def read(self, number: int, cells: list[str]) -> RigLine | None:
         """Return the rig line in line `number` of the file, or None with its problems noted."""
@@ -158,6 +171,7 @@ class _Table:
 
     def _number(self, number: int, name: str, cell: str, unit: str) -> tuple[float, bool]:
         """Return the value in SI, and whether it is a share (given in %)."""
+        cell = self._with_decimal_point(number, name, cell)
         plain = _is_plain(cell)
         is_share = unit == "%" if plain else cell.endswith("%")
         dimension = "ratio" if is_share or name == "damping" else "frequency"
@@ -166,6 +180,16 @@ class _Table:
         except QuantityError:
             self._note(number, name, repr(cell), _EXPECTED[name])
             return 0.0, is_share
+
+    def _with_decimal_point(self, number: int, name: str, cell: str) -> str:
+        """The cell with a decimal comma written as a point; a file that has both may mean a thousand by 1,234."""
+        found = _DECIMAL.match(cell)
+        if found is None or found[2] == self.delimiter:
+            return cell
+        first, line = self.decimal_sign = self.decimal_sign or (found[2], number)
+        if found[2] != first:
+            self._note(number, name, repr(cell), "one decimal sign in a file", f"line {line} has '{first}'")
+        return f"{found[1]}.{found[3]}"
 
     def _line(
         self, number: int, given: dict[str, tuple[str, str]], values: dict[str, tuple[float, bool]]

@@ -13,7 +13,7 @@ from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.places import displacement_places
 from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import direction_of, speed_in_si
+from rotorgear.analysis.common.request import check_whole, direction_of, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.along_faces import AlongFaces, decided_by_loads, equilibrate_along_faces, misalignments
 from rotorgear.analysis.static.cycle import over_cycle
@@ -63,8 +63,8 @@ def static(
     given = speed_in_si(speed)
     if given is None and model.operation:
         given = model.operation.speed
-    if elements is not None and elements < 1:
-        raise AnalysisError(f"the number of elements must be at least 1, got {elements}")
+    if elements is not None:
+        check_whole("the number of elements", elements)
     if tilt:
         model = _with_tilt(model)
     plan = Plan(elements or DEFAULT_ELEMENTS)

@@ -21,7 +21,7 @@ _PATIENCE = 12
 # Blocks that are sent for each thread of the workers: enough to keep them busy, and no more to lie in the scheduler's memory.
 _AHEAD = 3
 _MOST_LOCAL = 256
-_FORMS = "the address of a dask scheduler such as tcp://host:8786, or local:N for N processes on this machine"
+_FORMS = "the address of a dask scheduler such as tcp://host:8786 or tls://host:8786, or local:N for N processes on this machine"
 
 
 def cluster(address: Any, *, timeout: float = TIMEOUT) -> Cluster:
@@ -176,7 +176,7 @@ def _local(distributed: Any, address: str) -> Any:
     if not number.isdigit() or not 1 <= int(number) <= _MOST_LOCAL:
         raise AnalysisError(f"cluster: got '{address}', expected {_FORMS} (1 to {_MOST_LOCAL})")
     return distributed.LocalCluster(
-        n_workers=int(number), threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
+        n_workers=int(number), threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.analysis.common.request import check_whole
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.quantity import QuantityError, parse_quantity
@@ -130,9 +131,11 @@ def grid_of(
     Raises:
         AnalysisError: nothing says how long to run, or the run would have too many steps.
     """
-    for name, given in (("time", time), ("steps", steps), ("records", records)):
-        if given is not None and not given > 0:
-            raise AnalysisError(f"{name}: got {given}, expected more than 0")
+    for name, count_wanted in (("steps", steps), ("records", records)):
+        if count_wanted is not None:
+            check_whole(f"the number of {name}", count_wanted)
+    if time is not None and not 0.0 < time < np.inf:
+        raise AnalysisError(f"time: got {time}, expected more than 0")
     contact = contact_frequency(local)
     fastest = max(frequencies.values(), default=0.0)
     slowest = min(frequencies.values(), default=0.0)
@@ -179,8 +182,8 @@ def integrator_of(
     """
     if method not in METHODS:
         raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
-    if modes is not None and modes < 1:
-        raise AnalysisError(f"modes: got {modes}, expected at least 1")
+    if modes is not None:
+        check_whole("the number of modes", modes)
     modes = None if modes is not None and modes >= local.n else modes
     reason = "as asked for"
     if method == "auto":

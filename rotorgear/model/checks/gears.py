@@ -15,6 +15,8 @@ from rotorgear.model.parts.gear import Gear, GearBody
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import millimetres
 
+# Relative: inertias that are written with six digits, each rounded by up to 5e-6.
+_SIX_DIGITS = 1e-5
 # deg
 _LARGEST_PRESSURE_ANGLE = 45.0
 _LARGEST_HELIX_ANGLE = 60.0
@@ -149,7 +151,7 @@ def _body(layout: Layout, address: str, name: str, part: Gear | Disk) -> Iterato
         return
     if not model.has("bending"):
         return
-    if body.polar_inertia > 2.0 * body.diametral_inertia * (1.0 + 1e-6) and body.diametral_inertia > 0.0:
+    if body.polar_inertia > 2.0 * body.diametral_inertia * (1.0 + _SIX_DIGITS) and body.diametral_inertia > 0.0:
         limit = f"at most twice the diametral one, {2 * body.diametral_inertia:.6g} kg m^2"
         hint = "a flat disk has that, no body has more"
         yield Problem(f"{address}.polar_inertia", f"{body.polar_inertia:.6g} kg m^2", limit, hint)

@@ -22,6 +22,9 @@ _BLOCK = 4  # as many copies of an eigenvalue are found at once; more columns co
 _CONVERGED = 1e-9  # residual of T v = theta v relative to theta; its square is the error of the Rayleigh quotient
 _USEFUL = (1e-3, 10.0)  # |sigma| / first elastic eigenvalue: inside, the shift costs neither accuracy nor iterations
 _SPREAD = 1e7  # highest eigenvalue / |sigma| up to which rounding in soft modes leaves the stiff ones alone
+# Highest eigenvalue / |sigma| from which modes in the middle are rounding to both dense solvers, of 16 digits each: the whole
+# space is then handed on, and the Jacobi iteration on strains (ritz.py) tells its modes apart.
+_TOO_FAR_FOR_TWO = 1e26
 Modes = tuple[np.ndarray, np.ndarray]
 
 
@@ -154,7 +157,7 @@ def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarr
 
 
 def dense_modes(operator: ShiftInvert, massless: np.ndarray, wanted: int) -> np.ndarray:
-    """All finite modes (n, k): `eigh(M, K - sigma M)` for low modes, `eigh(K, M)` for those that it can't resolve."""
+    """A basis (n, k) of all finite modes: `eigh(M, K - sigma M)` for low ones, `eigh(K, M)` for those that it can't resolve."""
     M = operator.M.toarray()
     K = operator.K.toarray()
 
@@ -191,6 +194,8 @@ def dense_modes(operator: ShiftInvert, massless: np.ndarray, wanted: int) -> np.
     except la.LinAlgError:
         return V
 
+    if high[-1] > _TOO_FAR_FOR_TWO * -sigma:
+        return follow
     # Each solver errs by eps times its largest eigenvalue: they are equally good at the geometric mean.
     split = int(np.count_nonzero(values < np.sqrt(-sigma * high[-1])))
     return np.hstack([V[:, :split], (follow @ condensed)[:, split:]])
