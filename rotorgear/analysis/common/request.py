@@ -41,6 +41,8 @@ def check_whole(name: str, value: object, least: int = 1) -> None:
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise AnalysisError(f"{name} must be a whole number, got {value!r}")
+    if value < 0 == least:
+        raise AnalysisError(f"{name} can't be negative, got {value}")
     if value < least:
         raise AnalysisError(f"{name} must be at least {least}, got {value}")
 
