@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
 
+from rotorgear.analysis.campbell.convergence import campbell_convergence_study, critical_convergence_study
 from rotorgear.analysis.modal.convergence import convergence_study
+from rotorgear.analysis.response.convergence import frf_convergence_study, response_convergence_study
+from rotorgear.analysis.static.convergence import static_convergence_study
 from rotorgear.analysis.sweep.convergence import sweep_convergence_study
 from rotorgear.analysis.teeth.convergence import mesh_convergence_study
 from rotorgear.analysis.transient.convergence import transient_convergence_study
@@ -15,13 +20,31 @@ from rotorgear.results.convergence import ConvergenceStudy
 from rotorgear.results.mesh_convergence import MeshConvergenceStudy
 from rotorgear.results.sweep_convergence import SweepConvergenceStudy
 
-# What each analysis takes besides the model.
-OPTIONS = {
-    "modal": ("speed", "modes", "reference"),
-    "mesh": ("mesh", "torque"),
-    "transient": ("speed", "time", "modal_damping"),
-    "sweep": ("speed",),
+AnyStudy = ConvergenceStudy | MeshConvergenceStudy | SweepConvergenceStudy
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """The study of an analysis, and what it takes besides the model."""
+
+    study: Callable[..., AnyStudy]
+    options: tuple[str, ...]
+
+
+# An analysis with a study of its own gets a line here; the command and its refusals follow from it.
+STUDIES = {
+    "modal": _Entry(convergence_study, ("speed", "modes", "reference")),
+    "campbell": _Entry(campbell_convergence_study, ("stop", "modes")),
+    "critical": _Entry(critical_convergence_study, ("stop",)),
+    "static": _Entry(static_convergence_study, ("speed",)),
+    "response": _Entry(response_convergence_study, ("fmax", "modal_damping")),
+    "frf": _Entry(frf_convergence_study, ("fmax", "place", "modal_damping")),
+    "mesh": _Entry(mesh_convergence_study, ("mesh", "torque")),
+    "transient": _Entry(transient_convergence_study, ("speed", "time", "modal_damping")),
+    "sweep": _Entry(sweep_convergence_study, ("speed",)),
 }
+# Arguments that the command spells otherwise.
+_SPELLED = {"stop": "to", "place": "at"}
 
 
 def accuracy(
@@ -29,60 +52,62 @@ def accuracy(
     analysis: str = "modal",
     *,
     speed: float | str | None = None,
+    stop: float | str | None = None,
     modes: int | None = None,
+    fmax: float | None = None,
+    place: str | None = None,
     reference: Sequence[float] | None = None,
     mesh: str | None = None,
     torque: float | str | None = None,
     time: float | str | None = None,
     modal_damping: float | None = None,
     progress: Progress = silent,
-) -> ConvergenceStudy | MeshConvergenceStudy | SweepConvergenceStudy:
+) -> AnyStudy:
     """Run an analysis of a model over a series of discretisations, each with its error and run time.
 
     Args:
         model: a checked model.
-        analysis: "modal", "mesh" (teeth in contact), "transient" or "sweep".
+        analysis: "modal", "campbell", "critical", "static", "response", "frf", "mesh" (teeth in contact), "transient" or
+            "sweep".
         speed: of the input shaft, as in that analysis; not for a mesh.
-        modes: modal: how many modes are compared; 24 where not given.
+        stop: campbell, critical: the highest speed of the range.
+        modes: modal, campbell: how many modes are compared; 24 where not given.
+        fmax: response, frf: highest frequency in Hz.
+        place: frf: where force and response are; the first disk, gear or bearing where not given.
         reference: modal: natural frequencies in Hz to compare with, in place of the model's own finest.
         mesh: mesh: its name; None where there is only one.
         torque: mesh: on the pinion, in N m or as a text, in place of the model's.
         time: transient: duration; 8 periods of the slowest mesh where not given.
-        modal_damping: transient: damping ratio of every elastic mode.
+        modal_damping: response, frf, transient: damping ratio of every elastic mode.
         progress: callable that is told fraction and step.
 
     Returns:
-        Of modes and transients a `ConvergenceStudy`, of teeth a `MeshConvergenceStudy`, of a point of a sweep a
-        `SweepConvergenceStudy`. The functions behind, such as `convergence_study`, also choose the series itself.
+        Of teeth a `MeshConvergenceStudy`, of a point of a sweep a `SweepConvergenceStudy`, of all others a
+        `ConvergenceStudy`. The functions behind, such as `convergence_study`, also choose the series itself.
 
     Raises:
         AnalysisError: no such analysis, or an argument that belongs to another one.
     """
-    if analysis not in OPTIONS:
-        raise AnalysisError(
-            f"--analysis: got '{analysis}', expected {', '.join(list(OPTIONS)[:-1])} or {list(OPTIONS)[-1]}"
-        )
-    given = {
+    if analysis not in STUDIES:
+        names = list(STUDIES)
+        raise AnalysisError(f"--analysis: got '{analysis}', expected {', '.join(names[:-1])} or {names[-1]}")
+    entry = STUDIES[analysis]
+    arguments: dict[str, Any] = {
         "speed": speed,
+        "stop": stop,
         "modes": modes,
+        "fmax": fmax,
+        "place": place,
         "reference": reference,
         "mesh": mesh,
         "torque": torque,
         "time": time,
         "modal_damping": modal_damping,
     }
-    foreign = [name for name, value in given.items() if value is not None and name not in OPTIONS[analysis]]
-    if foreign:
-        homes = [name for name, own in OPTIONS.items() if foreign[0] in own]
-        raise AnalysisError(
-            f"--{foreign[0].replace('_', '-')} belongs to --analysis {' or '.join(homes)}, not to {analysis}"
-        )
-    if analysis == "mesh":
-        return mesh_convergence_study(model, mesh, torque=torque, progress=progress)
-    if analysis == "transient":
-        return transient_convergence_study(
-            model, speed=speed, time=time, modal_damping=modal_damping, progress=progress
-        )
-    if analysis == "sweep":
-        return sweep_convergence_study(model, speed=speed, progress=progress)
-    return convergence_study(model, speed=speed, modes=modes or 24, reference=reference, progress=progress)
+    given = {name: value for name, value in arguments.items() if value is not None}
+    for name in given:
+        if name not in entry.options:
+            homes = [other for other, of in STUDIES.items() if name in of.options]
+            spelled = _SPELLED.get(name, name).replace("_", "-")
+            raise AnalysisError(f"--{spelled} belongs to --analysis {' or '.join(homes)}, not to {analysis}")
+    return entry.study(model, **given, progress=progress)

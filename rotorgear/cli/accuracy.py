@@ -23,7 +23,11 @@ from rotorgear.errors import AnalysisError
 def accuracy(
     model: ModelFile,
     analysis: Annotated[
-        str, typer.Option("--analysis", help="What is run: modal, mesh (teeth in contact), transient or sweep.")
+        str,
+        typer.Option(
+            "--analysis",
+            help="What is run: modal, campbell, critical, static, response, frf, mesh (teeth in contact), transient or sweep.",
+        ),
     ] = "modal",
     mesh: Annotated[
         str | None, typer.Option("--mesh", help="With --analysis mesh: name of the mesh.", show_default=False)
@@ -33,10 +37,26 @@ def accuracy(
         typer.Option("--torque", help="With --analysis mesh: torque on the pinion.", show_default=False),
     ] = None,
     speed: SpeedOption = None,
+    stop: Annotated[
+        str | None,
+        typer.Option("--to", help="Campbell, critical: highest speed of the range.", show_default=False),
+    ] = None,
+    fmax: Annotated[
+        float | None, typer.Option("--fmax", help="Response, frf: highest frequency in Hz.", show_default=False)
+    ] = None,
+    place: Annotated[
+        str | None,
+        typer.Option(
+            "--at", help="Frf: where force and response are (default: the first disk or gear).", show_default=False
+        ),
+    ] = None,
     modes: Annotated[
         int | None,
         typer.Option(
-            "--modes", min=1, help="Modal: number of modes that are compared (default 24).", show_default=False
+            "--modes",
+            min=1,
+            help="Modal, campbell: number of modes that are compared (default 24).",
+            show_default=False,
         ),
     ] = None,
     reference: Annotated[
@@ -52,7 +72,9 @@ def accuracy(
     ] = None,
     modal_damping: Annotated[
         float | None,
-        typer.Option("--modal-damping", help="Transient: damping ratio of every elastic mode.", show_default=False),
+        typer.Option(
+            "--modal-damping", help="Response, frf, transient: damping ratio of every elastic mode.", show_default=False
+        ),
     ] = None,
     plot: PlotOption = None,
     json: JsonOption = None,
@@ -68,6 +90,9 @@ def accuracy(
             rg.load(model),
             analysis,
             speed=parse_speed(speed),
+            stop=parse_speed(stop, "--to"),
+            fmax=fmax,
+            place=place,
             modes=modes,
             reference=given,
             mesh=mesh,

@@ -51,6 +51,14 @@ AccuracyOption = Annotated[
         "--accuracy", help="Refine to this relative error of every frequency (default 1e-3).", show_default=False
     ),
 ]
+AmplitudeAccuracyOption = Annotated[
+    float | None,
+    typer.Option(
+        "--accuracy",
+        help="Refine until amplitudes are within this share of the largest (default: frequencies within 1e-3).",
+        show_default=False,
+    ),
+]
 SpeedOption = Annotated[
     str | None,
     typer.Option(

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from rotorgear.cli.common import (
-    AccuracyOption,
+    AmplitudeAccuracyOption,
     ElementsOption,
     JsonOption,
     ModalDampingOption,
@@ -41,7 +41,7 @@ def frf(
     speed: SpeedOption = None,
     modal_damping: ModalDampingOption = 0.0,
     elements: ElementsOption = None,
-    accuracy: AccuracyOption = None,
+    accuracy: AmplitudeAccuracyOption = None,
     json: JsonOption = None,
     save: SaveOption = None,
     plot: PlotOption = None,

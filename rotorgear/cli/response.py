@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from rotorgear.cli.common import (
-    AccuracyOption,
+    AmplitudeAccuracyOption,
     DeflectionOption,
     ElementsOption,
     JsonOption,
@@ -40,7 +40,7 @@ def response(
     modal_damping: ModalDampingOption = 0.0,
     method: Annotated[str, typer.Option("--method", help="modal, direct or auto.")] = "auto",
     elements: ElementsOption = None,
-    accuracy: AccuracyOption = None,
+    accuracy: AmplitudeAccuracyOption = None,
     shape_speed: Annotated[
         str | None,
         typer.Option(

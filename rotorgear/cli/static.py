@@ -31,6 +31,10 @@ def static(
         ),
     ] = None,
     elements: ElementsOption = None,
+    accuracy: Annotated[
+        float | None,
+        typer.Option("--accuracy", help="Halve elements until the forces are within this error.", show_default=False),
+    ] = None,
     sensitivity: Annotated[
         bool, typer.Option("--sensitivity", help="Also list the sensitivities of the load shares of the branches.")
     ] = False,
@@ -47,7 +51,14 @@ def static(
     import rotorgear as rg
 
     with progress_bar("static") as progress:
-        result = rg.static(rg.load(model), speed=parse_speed(speed), elements=elements, tilt=tilt, progress=progress)
+        result = rg.static(
+            rg.load(model),
+            speed=parse_speed(speed),
+            elements=elements,
+            accuracy=accuracy,
+            tilt=tilt,
+            progress=progress,
+        )
     out = console()
     out.print(result.table(sensitivity=sensitivity))
     write_json(result.to_dict(), json)

@@ -1,22 +1,30 @@
-"""Draws a convergence study: error against seconds and against degrees of freedom."""
+"""Draws a convergence study: error against CPU seconds and against degrees of freedom."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from rotorgear.plots.figure import figure_for
-from rotorgear.results.convergence import ConvergenceStudy
+from rotorgear.results.convergence import ConvergenceStudy, Rung
 
 _STYLE = {"elements": ("s", "#777777", "basic elements"), "accuracy": ("o", "#1f5fa8", "refined to an accuracy")}
+# An error of exactly zero has no place on a logarithmic axis.
+_NONE = 1e-16
+# Points nearer than this, in decades of both axes, share a label.
+_NEAR = 0.03
 
 
 def convergence(result: ConvergenceStudy, fig: Any = None) -> np.ndarray:
-    """Draw a convergence study: error against seconds and, of modes, against degrees of freedom.
+    """Draw a convergence study: error against CPU seconds and, where meshes differ, against degrees of freedom.
+
+    Every point is labelled with what was asked for: elements, an accuracy, or steps; its bar is the spread of the times.
 
     Args:
-        result: a convergence study of modes or of a transient.
+        result: a convergence study of any analysis but teeth.
         fig: figure to draw on; a new one for None.
 
     Returns:
@@ -25,36 +33,65 @@ def convergence(result: ConvergenceStudy, fig: Any = None) -> np.ndarray:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    figure = figure_for(fig, (9.0, 4.0), result.title)
-    if result.analysis == "transient":
-        axes = np.array([figure.subplots()])
-        _curve(axes[0], result, "seconds", "seconds, integration")
-        axes[0].set_ylabel(f"rms error of {result.modes} contact forces over their change")
-    else:
-        axes = figure.subplots(1, 2, sharey=True)
-        _curve(axes[0], result, "seconds", "seconds, whole analysis")
-        _curve(axes[1], result, "dofs", "degrees of freedom")
-        axes[0].set_ylabel(f"largest relative error of {result.modes} frequencies")
-    axes[0].legend(frameon=False)
+    figure = figure_for(fig, (10.0, 4.4), result.title)
+    reached = [rung for rung in result.rungs if math.isfinite(rung.error) and math.isfinite(rung.seconds)]
+    # Where only steps or lengths differ, all rungs stand over the same number of dofs.
+    panels = [("seconds", "CPU seconds, whole analysis")]
+    if len({rung.dofs for rung in reached}) > 1:
+        panels.append(("dofs", "degrees of freedom"))
+    axes = np.atleast_1d(figure.subplots(1, len(panels), sharey=True))
+    for axis, (key, label) in zip(axes, panels, strict=True):
+        _curves(axis, reached, key)
+        axis.set_xlabel(label)
+    axes[0].set_ylabel(f"{result.analysis}: largest relative error\nof {result.modes} {result.quantity}")
+    axes[0].legend(frameon=False, fontsize=8)
     return axes
 
 
-def _curve(axis: Any, study: ConvergenceStudy, key: str, label: str) -> None:
-    families = dict.fromkeys(rung.family for rung in study.rungs)
-    others = {family: ("osd^v<>"[i % 7], f"C{i}", family) for i, family in enumerate(families)}
-    for family, (marker, colour, name) in {**others, **{key: _STYLE[key] for key in _STYLE if key in families}}.items():
-        rungs = [rung for rung in study.rungs if rung.family == family and rung.error < float("inf")]
-        if rungs:
-            # An error of exactly zero has no place on a logarithmic axis.
-            x = [getattr(rung, key) for rung in rungs]
-            y = [max(rung.error, 1e-16) for rung in rungs]
-            axis.loglog(x, y, marker=marker, color=colour, lw=1.2, ms=5, label=name)
-            axis.loglog(x, [max(rung.estimate, 1e-16) for rung in rungs], "x", color=colour, ms=5, alpha=0.6)
-    axis.loglog([], [], "x", color="#444444", alpha=0.6, label="its own estimate")
-    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
-
-    axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.xaxis.set_major_formatter(FormatStrFormatter("%g"))
-    axis.xaxis.set_minor_formatter(NullFormatter())
-    axis.set_xlabel(label)
+def _curves(axis: Any, reached: Sequence[Rung], key: str) -> None:
+    families = dict.fromkeys(rung.family for rung in reached)
+    for number, family in enumerate(families):
+        marker, colour, name = _STYLE.get(family, ("osd^v<>"[number % 7], f"C{number}", family))
+        rungs = [rung for rung in reached if rung.family == family]
+        x = np.array([float(getattr(rung, key)) for rung in rungs])
+        y = np.array([max(rung.error, _NONE) for rung in rungs])
+        bar = [0.5 * rung.spread * rung.seconds for rung in rungs] if key == "seconds" else None
+        axis.errorbar(x, y, xerr=bar, marker=marker, color=colour, lw=1.2, ms=5, elinewidth=0.8, label=name)
+        axis.plot(x, [max(rung.estimate, _NONE) for rung in rungs], "x", color=colour, ms=6, alpha=0.7)
+        for place, text in _labels(x, y, [rung.setting for rung in rungs]):
+            axis.annotate(text, place, xytext=(4, 4), textcoords="offset points", fontsize=7, color=colour)
+    axis.plot([], [], "x", color="#444444", alpha=0.7, label="its own estimate")
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    if reached:
+        _ticks(axis, [float(getattr(rung, key)) for rung in reached])
     axis.grid(True, which="major", alpha=0.25)
+
+
+def _labels(x: np.ndarray, y: np.ndarray, settings: Sequence[float]) -> list[tuple[tuple[float, float], str]]:
+    """Places and words of the points; those that fall together share a label."""
+    groups: list[tuple[int, list[str]]] = []
+    for k, setting in enumerate(settings):
+        word = f"{setting:g}" if setting >= 1.0 else f"{setting:.0e}".replace("e-0", "e-")
+        near = [
+            words
+            for first, words in groups
+            if math.hypot(math.log10(x[k] / x[first]), math.log10(y[k] / y[first])) < _NEAR
+        ]
+        if near:
+            near[0].append(word)
+        else:
+            groups.append((k, [word]))
+    return [((float(x[k]), float(y[k])), ", ".join(words)) for k, words in groups]
+
+
+def _ticks(axis: Any, values: Sequence[float]) -> None:
+    """As many ticks as stand beside each other without touching."""
+    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter, NullLocator
+
+    decades = math.log10(max(values) / min(values)) if min(values) > 0.0 else 0.0
+    subs = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0) if decades < 0.7 else ((1.0, 2.0, 5.0) if decades < 2.0 else (1.0,))
+    axis.xaxis.set_major_locator(LogLocator(subs=subs, numticks=12))
+    axis.xaxis.set_major_formatter(FormatStrFormatter("%g"))
+    axis.xaxis.set_minor_locator(NullLocator())
+    axis.xaxis.set_minor_formatter(NullFormatter())

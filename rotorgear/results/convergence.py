@@ -11,21 +11,59 @@ class Rung(Record):
 
     method: str = of("what was asked for", note=", in words")
     family: str = of(
-        "family of rungs that form a curve", note=': `"elements"` or `"accuracy"`; the method of a transient'
+        "family of rungs that form a curve",
+        note=': `"elements"` or `"accuracy"`; the method of a transient; `"steps"` or `"periods"` of a sweep',
     )
     setting: float = of("the number that was asked for")
     dofs: int = of("degrees of freedom", note=" of the last solution")
-    seconds: float = of("wall time", "s", note=" of the whole analysis, the median")
+    seconds: float = of("CPU time", "s", note=" of the whole analysis on one thread, the median of `runs`")
     error: float = of(
-        "largest relative error of a frequency",
-        note=" against the reference; `null` where there are too few modes",
+        "largest relative error of the quantities compared",
+        note=" against the reference; `null` where the discretisation can't tell one of them",
         form=".1e",
     )
-    estimate: float = of("largest error that the analysis itself estimated", form=".1e")
+    estimate: float = of("largest error of the same quantities that the analysis itself estimated", form=".1e")
     order: float | None = of(
-        "measured order of the error in the element length",
+        "measured order of the error in the length of elements or steps",
         note=" against the rung before; `null` where it makes no sense",
         form=".2f",
+    )
+    spread: float = of(
+        "spread of the times", note=": difference of their quartiles over the median", default=0.0, kw_only=True
+    )
+    runs: int = of("number of runs timed", default=0, kw_only=True)
+    memory: int = of(
+        "largest memory of arrays and objects",
+        "byte",
+        json="memory_bytes",
+        note=", without the factors of sparse matrices",
+        default=0,
+        kw_only=True,
+    )
+    effectivity: float | None = of(
+        "effectivity",
+        note=": estimate over error; `null` where the reference does not resolve the error",
+        form=".2f",
+        default=None,
+        kw_only=True,
+    )
+    effectivity_smallest: float | None = of(
+        "smallest effectivity of a single quantity",
+        note="; `null` where they have no estimates of their own",
+        form=".2f",
+        default=None,
+        kw_only=True,
+    )
+    effectivity_largest: float | None = of(
+        "largest effectivity of a single quantity", form=".2f", default=None, kw_only=True
+    )
+    notes: tuple[str, ...] = of(
+        "what to know of this row",
+        "",
+        "note",
+        note=": a missed accuracy, a time that is noise",
+        default=(),
+        kw_only=True,
     )
 
 
@@ -35,5 +73,9 @@ class ConvergenceStudy(Result, kind="convergence", analysis="accuracy"):
     title: str = of("title of the model")
     analysis: str = of("analysis that is measured", json="of")
     reference: str = of("what the errors are measured against")
-    modes: int = of("how many frequencies, or contact forces, are compared")
+    modes: int = of("how many quantities are compared", note=": frequencies, speeds, forces or statistics")
     rungs: tuple[Rung, ...] = of("discretisations", "", "rung", record=Rung)
+    quantity: str = of("what is compared", default="frequencies", kw_only=True)
+    resolution: float = of(
+        "relative error below which the reference or rounding decides", form=".0e", default=0.0, kw_only=True
+    )

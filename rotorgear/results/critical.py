@@ -28,6 +28,12 @@ class CriticalSpeed(Record):
         "solved for again at that speed",
         form=".0e",
     )
+    error_estimate: float = of(
+        "estimated relative discretisation error",
+        note=" of the speed; infinite (`null`) where the mesh can't follow the shape",
+        form=".0e",
+        default=0.0,
+    )
 
 
 def _columns_of_speeds() -> tuple[Written, ...]:

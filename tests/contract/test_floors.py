@@ -50,7 +50,7 @@ ROOMS = {
         "sweep": {"common", "static", "transient"},
         "teeth": {"common"},
         "rig": {"common", "modal"},
-        "": {"modal", "sweep", "teeth", "transient"},
+        "": {"campbell", "modal", "response", "static", "sweep", "teeth", "transient"},
     },
     "gears": {
         "geometry": set(),

@@ -23,7 +23,7 @@ from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, exci
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, check_whole
+from rotorgear.analysis.common.request import check_request, check_whole, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits, whirl_numbers
 from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.analysis.static.tangent import about_equilibrium_of
@@ -100,7 +100,17 @@ def campbell(
     clock.lap("error estimate")
     lines = excitation_orders(system.model, shaft_orders, mesh_orders, sidebands)
     result = _result(system, found, (asked, grid, operating), chains, tracks, estimate, lines, clock, progress)
-    return replace(result, model=given, left_out=(*result.left_out, *notes))
+    worst = float(np.max(estimate, initial=0.0, where=np.isfinite(estimate)))
+    short = missed(
+        accuracy, worst, "branches that rise into the range between its ends are not refined for; ask for more modes"
+    )
+    return replace(
+        result,
+        model=given,
+        left_out=(*result.left_out, *notes),
+        warnings=(*result.warnings, *([short] if short else [])),
+        status=short or "success",
+    )
 
 
 def _check(modes: int | None, fmax: float | None, sidebands: int) -> None:

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import scipy.sparse as sp
 
+from rotorgear.analysis.campbell.critical_error import speed_error
 from rotorgear.analysis.campbell.crossings import EXCITED, participation
 from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.speed_family import SpeedFamily
@@ -18,6 +19,7 @@ from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.request import FINEST, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes
 from rotorgear.analysis.static.tangent import about_equilibrium_of
 from rotorgear.errors import AnalysisError
@@ -32,6 +34,10 @@ from rotorgear.system.system import System
 SHAFT_ORDERS = (1.0,)
 # Speeds at which nonlinear parts are linearised.
 _TANGENTS = 41
+_ROUNDS = 4
+# Share of its own terms below which a strain energy may be rounding, and of that energy below which strains say that it is.
+_LOST = 1e-9
+_UNSTRAINED = 1e-3
 
 
 @renamed_arguments(top_speed="stop")
@@ -56,7 +62,7 @@ def critical(
         shaft_orders, mesh_orders: multiples of the speed of every shaft, and of the frequency of every mesh.
         damped: with all damping and circulatory terms, where the damped frequency has to meet the line; or without.
         fmax: only those with a frequency up to this many Hz.
-        elements, accuracy: as in `modal`; an accuracy is met at the highest speed.
+        elements, accuracy: as in `modal`; an accuracy is that of the critical speeds.
         progress: callable that is told fraction and step.
 
     Raises:
@@ -76,26 +82,50 @@ def critical(
     # Where a line meets a mode is not known before: tangents over the whole range.
     model, given, notes = about_equilibrium_of(model, list(np.linspace(0.0, top, _TANGENTS)))
     highest = max(line.frequency_hz(top) for line in lines)
-    system = system_for_speeds(
-        model,
-        [top],
-        modes=None,
-        fmax=min(highest, fmax or np.inf),
-        elements=elements,
-        accuracy=accuracy,
-        progress=progress,
+    aim = accuracy
+    for _ in range(_ROUNDS):
+        system = system_for_speeds(
+            model,
+            [top],
+            modes=None,
+            fmax=min(highest, fmax or np.inf),
+            elements=elements,
+            accuracy=aim,
+            progress=progress,
+        )
+        clock.lap("mesh")
+        family = SpeedFamily(system, *sorted((0.0, top)))
+        found: list[tuple[ExcitationOrder, Synchronous]] = []
+        for k, line in enumerate(lines):
+            progress(0.3 + 0.6 * k / len(lines), line.name)
+            limit = abs(top) if fmax is None else min(abs(top), 2.0 * np.pi * fmax / line.order)
+            found += [(line, root) for root in roots_of(system, family, line.order, np.copysign(limit, top), damped)]
+        clock.lap("critical speeds")
+        errors = _errors(system, family, found, top, damped)
+        clock.lap("error estimate")
+        worst = max(errors, default=0.0)
+        if accuracy is None or aim is None or worst <= accuracy or isinstance(model, System):
+            break
+        # A line that runs along a mode magnifies the error of its frequency.
+        aim = max(FINEST, 0.5 * aim * accuracy / worst)
+    ranked = sorted(zip(found, errors, strict=True), key=lambda item: item[0][1].speed)
+    result = _result(system, ranked, lines, top, damped, clock)
+    short = missed(accuracy, worst, "ask for less, or for a lower --to")
+    return replace(
+        result,
+        model=given,
+        left_out=(*result.left_out, *notes),
+        warnings=(*result.warnings, *([short] if short else [])),
+        status=short or "success",
     )
-    clock.lap("mesh")
-    family = SpeedFamily(system, *sorted((0.0, top)))
-    found: list[tuple[ExcitationOrder, Synchronous]] = []
-    for k, line in enumerate(lines):
-        progress(0.3 + 0.6 * k / len(lines), line.name)
-        limit = abs(top) if fmax is None else min(abs(top), 2.0 * np.pi * fmax / line.order)
-        found += [(line, root) for root in roots_of(system, family, line.order, np.copysign(limit, top), damped)]
-    clock.lap("critical speeds")
-    found.sort(key=lambda item: item[1].speed)
-    result = _result(system, found, lines, top, damped, clock)
-    return replace(result, model=given, left_out=(*result.left_out, *notes))
+
+
+def _errors(
+    system: System, family: SpeedFamily, found: list[tuple[ExcitationOrder, Synchronous]], top: float, damped: bool
+) -> list[float]:
+    """Estimated relative discretisation error of each critical speed."""
+    ranges = list(affine_pieces(system, family, top, damped))
+    return [speed_error(system, ranges, root, line.order, float(np.sign(top))) for line, root in found]
 
 
 def roots_of(system: System, family: SpeedFamily, order: float, top: float, damped: bool) -> list[Synchronous]:
@@ -107,8 +137,23 @@ def roots_of(system: System, family: SpeedFamily, order: float, top: float, damp
             for root in synchronous_speeds(whole.cut(dofs), order):
                 vector = np.zeros(system.n, complex)
                 vector[dofs] = root.vector
-                found.append(Synchronous(root.speed, root.eigenvalue, vector, root.residual))
+                if not _is_rounding(system, np.copysign(root.speed, top), vector):
+                    found.append(Synchronous(root.speed, root.eigenvalue, vector, root.residual))
     return found
+
+
+def _is_rounding(system: System, speed: float, x: np.ndarray) -> bool:
+    """Whether rounding alone holds a motion: a free rotation of a fine mesh meets any line near speed 0.
+
+    Its energy x^H K x is lost among its terms, and the strains S x, which lose nothing, have next to none of it.
+    """
+    K = system.stiffness(speed)
+    energy = abs(np.vdot(x, K @ x))
+    terms = np.abs(x) @ (abs(K) @ np.abs(x))
+    if energy > _LOST * terms:
+        return False
+    S = system.strain_factor(speed)
+    return S is not None and np.linalg.norm(S @ x) ** 2 < _UNSTRAINED * energy
 
 
 def affine_pieces(system: System, family: SpeedFamily, top: float, damped: bool) -> Iterator[Affine]:
@@ -148,23 +193,23 @@ def _matrices(system: System, speed: float, damped: bool) -> tuple[sp.csc_array,
 
 def _result(
     system: System,
-    found: list[tuple[ExcitationOrder, Synchronous]],
+    found: list[tuple[tuple[ExcitationOrder, Synchronous], float]],
     lines: tuple[ExcitationOrder, ...],
     top: float,
     damped: bool,
     clock: Clock,
 ) -> CriticalResult:
     count = len(found)
-    X = np.column_stack([root.vector for _, root in found]) if found else np.zeros((system.n, 0), complex)
+    X = np.column_stack([root.vector for (_, root), _ in found]) if found else np.zeros((system.n, 0), complex)
     shapes = BasisShapes(system, [np.hstack([X.real, X.imag])])
     coordinates = shapes.coordinates(0, np.vstack([np.eye(count), 1j * np.eye(count)]))
-    speeds = np.copysign(np.array([root.speed for _, root in found]), top)
+    speeds = np.copysign(np.array([root.speed for (_, root), _ in found]), top)
     seen = shapes.portraits(coordinates, speeds)
     words = shapes.descriptions(coordinates, speeds)
     zeta = system.model.damping.modal_ratio if damped else 0.0
     damps = damped and not SpeedFamily(system, *sorted((0.0, top))).is_conservative
     table = []
-    for k, (line, root) in enumerate(found):
+    for k, ((line, root), error) in enumerate(found):
         share = participation(line, seen, k)
         value = root.eigenvalue
         table.append(
@@ -178,6 +223,7 @@ def _result(
                 share >= EXCITED,
                 words[k],
                 root.residual,
+                error,
             )
         )
     clock.lap("energies")

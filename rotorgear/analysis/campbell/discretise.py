@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+import numpy as np
+
 from rotorgear.analysis.common.request import check_whole
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.errors import AnalysisError
@@ -25,7 +27,7 @@ def system_for_speeds(
     only: tuple[str, ...] = (),
     progress: Progress = silent,
 ) -> System:
-    """Return a system whose lowest modes are estimated to be within the accuracy at each of some speeds in rad/s.
+    """Return a system whose lowest modes that oscillate are estimated to be within the accuracy at each of some speeds in rad/s.
 
     A system is taken as it is, and `elements` fixes the mesh. Errors are those of `modal`.
     """
@@ -42,6 +44,11 @@ def system_for_speeds(
     for k, speed in enumerate(dict.fromkeys(speeds)):
         progress(0.1 * k, "refining the mesh")
         found = modal(model, speed=speed, modes=modes, fmax=fmax, accuracy=accuracy, only=only)
+        if modes is not None:
+            # Rigid and overdamped modes are no branches: as many more are needed.
+            still = len(found) - int(np.count_nonzero(~found.rigid & (np.abs(found.eigenvalues.imag) > 0.0)))
+            if still:
+                found = modal(model, speed=speed, modes=modes + still, accuracy=accuracy, only=only)
         cuts.append(cut_of(found.discretisation))
     finest = {key: max(cut[key] for cut in cuts) for key in cuts[0]}
     return System(model, plan=Plan(cut=finest), load=model.mean_load(direction))

@@ -63,3 +63,17 @@ def check_request(
         raise AnalysisError(f"the accuracy must lie between {FINEST:g} and 1 (1e-3 is 0.1 %), got {accuracy:g}")
     if fmax is not None and not (np.isfinite(fmax) and fmax > 0.0):
         raise AnalysisError(f"the highest frequency must be positive, got {fmax} Hz")
+
+
+def missed(wanted: float | None, estimate: float, remedy: str) -> str:
+    """A sentence where an accuracy was asked for and is not reached; "" else.
+
+    Args:
+        wanted: the accuracy; None where none was asked for.
+        estimate: what the result is estimated to be off by.
+        remedy: what to do.
+    """
+    if wanted is None or estimate <= wanted:
+        return ""
+    said = f"the error is estimated at {estimate:.2g}" if np.isfinite(estimate) else "there is no estimate of the error"
+    return f"accuracy {wanted:g} not reached: {said}; {remedy}"

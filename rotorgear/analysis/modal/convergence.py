@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.study import ACCURACIES, ELEMENTS, REPEAT, Judged, Study, mesh_settings
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.convergence import ConvergenceStudy, Rung
+from rotorgear.results.convergence import ConvergenceStudy
 from rotorgear.results.modal import ModalResult
 from rotorgear.system.system import System
 
-ELEMENTS = (1, 2, 4, 8, 16)
-ACCURACIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-7, 1e-9)
 REFERENCE = 1e-10
-# Errors below this are rounding and say nothing of an order.
-_ROUNDING = 1e-11
+# Ten times the accuracy of the reference: below, the ratio of estimate and error is that of the reference.
+RESOLUTION = 1e-9
 
 
 @recorded
@@ -33,10 +30,12 @@ def convergence_study(
     elements: Sequence[int] = ELEMENTS,
     accuracies: Sequence[float] = ACCURACIES,
     reference: Sequence[float] | None = None,
-    repeat: int = 3,
+    repeat: int = REPEAT,
     progress: Progress = silent,
 ) -> ConvergenceStudy:
     """Run the modal analysis of a model over a series of discretisations.
+
+    The errors of the estimates are those of single frequencies: a mode counts with its own estimate.
 
     Args:
         model: the model.
@@ -44,57 +43,42 @@ def convergence_study(
         modes: how many modes are compared (rigid ones count, but have no error).
         elements: numbers of basic elements in each shaft segment.
         accuracies: relative accuracies to refine to.
-        reference: natural frequencies in Hz of the modes that are not rigid; None for the model's own finest (accuracy 1e-10).
-        repeat: runs of each rung; the median time counts.
+        reference: natural frequencies in Hz of the modes that are not rigid; None for the model's own finest (accuracy 1e-10,
+            by elements of high order, and with consistent mass where the model's is lumped).
+        repeat: runs of each rung that are timed at least; the median time counts.
         progress: callable that is told fraction and step.
 
     Raises:
         AnalysisError: the reference has fewer frequencies than asked for, or the model has no elastic mode.
     """
     truth, words = _reference(model, speed, modes, reference)
-    settings: list[tuple[str, float, dict[str, Any]]] = [("elements", n, {"elements": n}) for n in elements]
-    settings += [("accuracy", a, {"accuracy": a}) for a in accuracies]
-    rungs: list[Rung] = []
-    for number, (family, setting, options) in enumerate(settings):
-        progress(number / len(settings), f"{family} {setting:g}")
-        if family == "elements" and not System(model, int(setting)).n:
-            continue  # so coarse that the supports hold everything
-        seconds = []
-        for _ in range(max(repeat, 1)):
-            start = time.perf_counter()
-            result = modal(model, speed=speed, modes=modes, **options)
-            seconds.append(time.perf_counter() - start)
-        frequencies = _elastic(result)
-        # A discretisation with too few modes has no answer for the last ones.
-        error = np.inf
-        if len(frequencies) >= len(truth):
-            error = float(np.max(np.abs(frequencies[: len(truth)] / truth - 1.0)))
-        coarser = rungs[-1] if rungs and rungs[-1].family == family == "elements" else None
-        order = None
-        if coarser is not None and np.isfinite(coarser.error) and min(error, coarser.error) >= _ROUNDING:
-            # error ~ h^p with the element length h = L / n: p = log(e_1 / e_2) / log(n_2 / n_1)
-            order = float(np.log(coarser.error / error) / np.log(setting / coarser.setting))
-        words_of = {
-            "elements": f"{setting:g} basic element{'s'[: setting != 1]} per segment",
-            "accuracy": f"accuracy {setting:g}",
-        }
-        rungs.append(
-            Rung(
-                words_of[family],
-                family,
-                float(setting),
-                result.dofs,
-                float(np.median(seconds)),
-                error,
-                float(np.max(result.error_estimate)),
-                order,
-            )
-        )
-    progress(1.0, "done")
-    return ConvergenceStudy(model.title or "model", "modal", words, len(truth), tuple(rungs))
+
+    def judge(result: ModalResult) -> Judged:
+        elastic = ~result.rigid & (np.abs(result.eigenvalues) > 0.0)
+        frequencies = result.natural_frequency_hz[elastic][: len(truth)]
+        error = np.full(len(truth), np.inf)  # a discretisation with too few modes has no answer for the last ones
+        error[: len(frequencies)] = np.abs(frequencies / truth[: len(frequencies)] - 1.0)
+        estimate = np.full(len(truth), np.inf)
+        estimate[: len(frequencies)] = result.error_estimate[elastic][: len(truth)]
+        return Judged(result.dofs, error, estimate)
+
+    # A mesh so coarse that the supports hold everything has nothing to solve.
+    able = [n for n in elements if System(model, n).n]
+    resolution = RESOLUTION if reference is None else 0.0
+    study = Study(lambda options: modal(model, speed=speed, modes=modes, **options), judge, resolution, repeat=repeat)
+    rungs = study.rungs(mesh_settings(able, accuracies), progress)
+    return ConvergenceStudy(
+        model.title or "model", "modal", words, len(truth), rungs, quantity="frequencies", resolution=resolution
+    )
 
 
-def _elastic(result: ModalResult) -> np.ndarray:
+def as_continuum(model: Model) -> Model:
+    """The model with consistent mass on all shafts, whose frequencies at vanishing element length are the same."""
+    lumped = [name for name, shaft in model.shafts.items() if shaft.mass_matrix == "lumped"]
+    return model.with_({f"shafts.{name}.mass_matrix": "consistent" for name in lumped}) if lumped else model
+
+
+def elastic_frequencies(result: ModalResult) -> np.ndarray:
     """Natural frequencies in Hz of the modes that are not rigid, nor roots at zero."""
     return result.natural_frequency_hz[~result.rigid & (np.abs(result.eigenvalues) > 0.0)]
 
@@ -103,12 +87,13 @@ def _reference(
     model: Model, speed: float | str | None, modes: int, given: Sequence[float] | None
 ) -> tuple[np.ndarray, str]:
     """Frequencies in Hz that stand for the truth, (m,), and where they come from."""
-    finest = modal(model, speed=speed, modes=modes, accuracy=REFERENCE)
-    computed = _elastic(finest)
+    finest = modal(as_continuum(model), speed=speed, modes=modes, accuracy=REFERENCE)
+    computed = elastic_frequencies(finest)
     if computed.size == 0:
         raise AnalysisError("the model has no elastic mode among those asked for, so there is no error to measure")
     if given is None:
-        return computed, f"the model itself at accuracy {REFERENCE:g}, {finest.dofs} dofs"
+        order = max((piece.order for piece in finest.discretisation), default=1)
+        return computed, f"elements of order up to {order}, refined to {REFERENCE:g}, {finest.dofs} dofs"
     truth = np.sort(np.asarray(given, float))
     if truth.size == 0 or not np.all(np.isfinite(truth) & (truth > 0.0)):
         raise AnalysisError("the reference needs positive frequencies in Hz")

@@ -16,9 +16,9 @@ from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.points import named_place
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, check_whole, direction_of, speed_in_si
+from rotorgear.analysis.common.request import check_request, check_whole, direction_of, missed, speed_in_si
 from rotorgear.analysis.modal.refine import all_finer
-from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.mesh import DAMPED, MARGIN, aims, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant, dof_row
 from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.static.tangent import about_equilibrium
@@ -33,6 +33,7 @@ from rotorgear.system.system import System
 
 POINTS = 1000
 _CHECKED_ON_FINER = 8
+_UNDAMPED = "nothing damps the model: heights near a resonance are those of the nearest frequency; give a damping"
 
 
 @renamed_arguments(damping_ratio="modal_damping")
@@ -63,7 +64,8 @@ def frf(
         speed: of the input shaft in rad/s or with its unit; None: standstill.
         modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
         elements: basic elements in each shaft segment. None: refined as for modes up to the highest frequency.
-        accuracy: relative error of the frequencies of these modes; 1e-3 where neither this nor `elements` is given.
+        accuracy: refine until each response is estimated to be within this share of its largest. Where neither this nor
+            `elements` is given, these modes are refined to 1e-3, whatever that makes of the responses.
         progress: callable that is told fraction and step.
 
     Raises:
@@ -82,9 +84,6 @@ def frf(
     linear, notes = about_equilibrium(model, [turns or None])
     first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
     limit = 2.0 * np.pi * DAMPED * float(hz[-1])
-    progress(0.02, "discretisation")
-    plan = plan_up_to(at_speed(linear, turns), MARGIN * float(hz[-1]), elements, accuracy)
-    system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
 
     def solve(system: System, hz: np.ndarray, progress: Progress) -> tuple[np.ndarray, float]:
         modes = (*damped_modes(system, limit, turns), zeta) if zeta else None
@@ -92,15 +91,20 @@ def frf(
         rows = {text: _row(system, text, place) for text, place in places.items()}
         return _solved(plant, turns, hz, [rows[t] for t in inputs], [rows[t] for t in outputs], progress)
 
-    receptance, residual = solve(system, hz, progress)
-    progress(0.96, "error estimate")
-    estimate = 0.0
-    if any(system.nodes.elements.values()):
-        at = _strongest(receptance)
-        finer = system.with_plan(all_finer(system))
-        there, _ = solve(finer, hz[at], silent)
-        largest = np.abs(there).max(axis=0)
-        estimate = float(np.max(np.abs(there - receptance[at]) / np.where(largest > 0.0, largest, 1.0)))
+    for aim in aims(accuracy):
+        progress(0.02, "discretisation")
+        plan = plan_up_to(at_speed(linear, turns), MARGIN * float(hz[-1]), elements, aim)
+        system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
+        receptance, residual = solve(system, hz, progress)
+        progress(0.96, "error estimate")
+        estimate = 0.0
+        if any(system.nodes.elements.values()):
+            at = _telling(receptance)
+            there, _ = solve(system.with_plan(all_finer(system)), hz[at], silent)
+            estimate = relative_change(there, receptance[at])
+        if accuracy is None or estimate <= accuracy:
+            break
+    short = missed(accuracy, estimate, "ask for less, or give more damping to resonances in the range")
     progress(1.0, "done")
     return FrequencyResponse(
         model=model,
@@ -122,9 +126,11 @@ def frf(
             *rolling_notes(model, rolls=False),
             *mesh_stiffness_left_out(system),
         ),
-        warnings=()
-        if zeta or system.damping(turns).nnz
-        else ("nothing damps the model: heights near a resonance are those of the nearest frequency; give a damping",),
+        warnings=(
+            *([] if zeta or system.damping(turns).nnz else [_UNDAMPED]),
+            *([short] if short else []),
+        ),
+        status=short or "success",
         method="direct sparse LU at every frequency",
     )
 
@@ -178,8 +184,19 @@ def _solved(
     return np.array(rows), worst
 
 
-def _strongest(receptance: np.ndarray) -> np.ndarray:
-    """Numbers of the frequencies where single responses are largest."""
+def relative_change(exact: np.ndarray, receptance: np.ndarray) -> float:
+    """Largest difference of receptances (f, o, i), each relative to the largest size of its response."""
+    largest = np.abs(exact).max(axis=0)
+    return float(np.max(np.abs(exact - receptance) / np.where(largest > 0.0, largest, 1.0)))
+
+
+def _telling(receptance: np.ndarray) -> np.ndarray:
+    """Numbers of the frequencies where a finer mesh is looked at: the highest local maxima of each response.
+
+    Not the highest one alone: the lower peak of a higher mode may have the larger error.
+    """
     flat = np.abs(receptance).reshape(len(receptance), -1)
-    order = np.argsort(-(flat / np.where(flat.max(axis=0) > 0.0, flat.max(axis=0), 1.0)).max(axis=1))
-    return np.unique(np.concatenate([flat.argmax(axis=0), order[:_CHECKED_ON_FINER]]))
+    padded = np.pad(flat, ((1, 1), (0, 0)), constant_values=-1.0)
+    peaks = (flat >= padded[:-2]) & (flat > padded[2:])
+    ranked = np.argsort(-np.where(peaks, flat, -1.0), axis=0, kind="stable")[:_CHECKED_ON_FINER]
+    return np.unique(np.concatenate([flat.argmax(axis=0), ranked.ravel()]))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
+from rotorgear.analysis.common.request import FINEST
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.modal.modes import Wanted
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START
@@ -20,6 +22,8 @@ from rotorgear.system.system import System
 # Up to this much above the highest excited frequency the mesh is refined, and modes get their damping ratio.
 MARGIN = 1.25
 DAMPED = 1.5
+# Each further round for an accuracy of amplitudes refines the frequencies by this much more.
+_TIGHTER = 0.03
 
 
 def plan_up_to(model: Model, fmax: float, elements: int | None, accuracy: float | None) -> Plan:
@@ -30,6 +34,20 @@ def plan_up_to(model: Model, fmax: float, elements: int | None, accuracy: float 
         return Plan()
     found = modal(model, fmax=fmax, accuracy=accuracy or DEFAULT_ACCURACY)
     return plan_of(found)
+
+
+def aims(accuracy: float | None) -> Iterator[float | None]:
+    """Accuracies of the frequencies to try, one after the other, for an accuracy of amplitudes.
+
+    A light resonance turns a small error of its frequency into a large one of its height, by 1 / (2 zeta): how large is known
+    from the amplitudes only.
+    """
+    yield accuracy
+    if accuracy is not None:
+        aim = accuracy * _TIGHTER
+        while aim > FINEST:
+            yield aim
+            aim = aim * _TIGHTER
 
 
 def plan_of(result: ModalResult) -> Plan:

@@ -12,10 +12,10 @@ from rotorgear.analysis.common.casings import casing_notes
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, check_whole, direction_of, speed_in_si
+from rotorgear.analysis.common.request import check_request, check_whole, direction_of, missed, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.response.error import mesh_error, parting, speed_warnings
-from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.mesh import DAMPED, MARGIN, aims, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.orders import Order, orders_of
 from rotorgear.analysis.response.plant import Plant, Readings
 from rotorgear.analysis.response.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
@@ -69,7 +69,8 @@ def response(
         modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
         method: "modal", "direct" or "auto".
         elements: basic elements in each shaft segment. None: refined as for modes up to the highest frequency.
-        accuracy: relative error of the frequencies of these modes; 1e-3 where neither this nor `elements` is given.
+        accuracy: refine until the forces are estimated to be within this relative error of the largest. Where neither this nor
+            `elements` is given, these modes are refined to 1e-3, whatever that makes of the forces.
         shape_speed: where the deflection shapes are kept; None: the operating speed, else the speed of the largest force.
         progress: callable that is told fraction and step.
 
@@ -88,20 +89,25 @@ def response(
     orders, weak = orders_of(first)
     orders, left = _within(orders, chosen, fmax)
     top = max(order.ratio for order in orders) * float(np.max(np.abs(chosen)))
-    progress(0.02, "discretisation")
-    plan = plan_up_to(at_speed(linear, float(chosen[-1])), MARGIN * top / (2.0 * np.pi), elements, accuracy)
-    setup, orders = _discretised(first, linear, plan, orders)
-    system = setup.system
-    modes, w = damped_modes(system, DAMPED * top, float(chosen[-1]))
-    plant = Plant(system, setup.lines, (modes, w, zeta))
-    how, why = choose_method(method, len(chosen) * len(orders), system.n)
-    run = (
-        direct_sweep(plant, orders, chosen, progress)
-        if how == "direct"
-        else modal_sweep(plant, orders, chosen, (modes, w), progress)
-    )
-    progress(0.96, "error estimate")
-    estimate = mesh_error(plant, orders, chosen, run.readings, (zeta, DAMPED * top), setup)
+    speed = float(chosen[-1])
+    for aim in aims(accuracy):
+        progress(0.02, "discretisation")
+        plan = plan_up_to(at_speed(linear, speed), MARGIN * top / (2.0 * np.pi), elements, aim)
+        setup, orders = _discretised(first, linear, plan, orders)
+        system = setup.system
+        modes, w = damped_modes(system, DAMPED * top, speed)
+        plant = Plant(system, setup.lines, (modes, w, zeta))
+        how, why = choose_method(method, len(chosen) * len(orders), system.n)
+        run = (
+            direct_sweep(plant, orders, chosen, progress)
+            if how == "direct"
+            else modal_sweep(plant, orders, chosen, (modes, w), progress)
+        )
+        progress(0.96, "error estimate")
+        estimate = mesh_error(plant, orders, chosen, run.readings, (zeta, DAMPED * top), setup)
+        if accuracy is None or estimate <= accuracy:
+            break
+    short = missed(accuracy, estimate, "ask for less, or give more damping to resonances in the range")
     at = _shape_speed(model, shape_speed, chosen, run.readings)
     shape_w, shape_loads = plant.loads(orders, at)
     deflections = solve_orders(plant, plant.dynamics(at), shape_w, shape_loads)
@@ -143,7 +149,9 @@ def response(
         warnings=(
             *speed_warnings(plant, orders, chosen, (modes, w, zeta)),
             *parting(setup, stacked["mesh_force"], chosen),
+            *([short] if short else []),
         ),
+        status=short or "success",
         method=f"{run.method} ({how}: {why})",
     )
 

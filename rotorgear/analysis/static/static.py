@@ -13,7 +13,7 @@ from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.places import displacement_places
 from rotorgear.analysis.common.points import point_amplitudes
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_whole, direction_of, speed_in_si
+from rotorgear.analysis.common.request import check_request, direction_of, missed, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.along_faces import AlongFaces, decided_by_loads, equilibrate_along_faces, misalignments
 from rotorgear.analysis.static.cycle import over_cycle
@@ -34,6 +34,7 @@ from rotorgear.system.system import System
 DEFAULT_ELEMENTS = 4
 # Teeth that don't feel their shafts: a face load factor above this, by a line of springs, is worth a warning.
 _NOTICED = 1.1
+_HALVINGS = 4
 
 
 @recorded
@@ -42,6 +43,7 @@ def static(
     *,
     speed: float | str | None = None,
     elements: int | None = None,
+    accuracy: float | None = None,
     tilt: bool = False,
     progress: Progress = silent,
 ) -> StaticResult:
@@ -52,6 +54,7 @@ def static(
         speed: of the input shaft in rad/s or with its unit; it chooses the working flanks and the values of bearings with
             tables. None: the operating speed.
         elements: basic elements in each shaft segment; 4 where it is not given. They are exact in statics.
+        accuracy: halve them until the forces are estimated to be within this relative error of the largest.
         tilt: all meshes between gears with a width feel the tilt of their shafts, whatever the model says.
         progress: callable that is told fraction and step.
 
@@ -63,27 +66,46 @@ def static(
     given = speed_in_si(speed)
     if given is None and model.operation:
         given = model.operation.speed
-    if elements is not None:
-        check_whole("the number of elements", elements)
+    check_request(given, None, None, elements, accuracy)
     if tilt:
         model = _with_tilt(model)
-    plan = Plan(elements or DEFAULT_ELEMENTS)
-    system = System(model, plan=plan, load=model.mean_load(direction_of(given)).of_kind("static"))
-    _check_loaded(system)
-    progress(0.1, f"solving {system.n} dofs")
-    found = equilibrate_along_faces(system, given or 0.0, part_of(progress, 0.1, 0.4))
-    equilibrium = found.equilibrium
-    if not (found.passes and decided_by_loads(equilibrium)):
-        progress(0.4, "loaded teeth over the mesh cycle")
-        equilibrium, _ = over_cycle(equilibrium, given or 0.0)
-        found = replace(found, equilibrium=equilibrium)
-    progress(0.5, "sensitivities")
-    change = sensitivities(equilibrium)
-    progress(0.8, "error estimate")
-    estimate = _estimate(equilibrium, given or 0.0)
+    count = elements or DEFAULT_ELEMENTS
+    for _ in range(_HALVINGS):
+        found = solved(model, Plan(count), given, progress)
+        progress(0.5, "error estimate")
+        estimate = _estimate(found.equilibrium, given or 0.0)
+        if accuracy is None or estimate <= accuracy:
+            break
+        count = 2 * count
+    short = missed(
+        accuracy, estimate, "the forces no longer change with the elements, what is left is rounding; ask for less"
+    )
+    progress(0.8, "sensitivities")
+    change = sensitivities(found.equilibrium)
     result = replace(_result(found, given, change, estimate, start), model=model)
+    if short:
+        result = replace(result, status=short, warnings=(*result.warnings, short))
     progress(1.0, "done")
     return result
+
+
+def solved(model: Model, plan: Plan, speed: float | None, progress: Progress) -> AlongFaces:
+    """The equilibrium on a mesh, with loaded teeth over the mesh cycle where they need it; errors are those of `static`."""
+    system = System(model, plan=plan, load=model.mean_load(direction_of(speed)).of_kind("static"))
+    _check_loaded(system)
+    progress(0.1, f"solving {system.n} dofs")
+    found = equilibrate_along_faces(system, speed or 0.0, part_of(progress, 0.1, 0.4))
+    if found.passes and decided_by_loads(found.equilibrium):
+        return found
+    progress(0.4, "loaded teeth over the mesh cycle")
+    equilibrium, _ = over_cycle(found.equilibrium, speed or 0.0)
+    return replace(found, equilibrium=equilibrium)
+
+
+def forces_of(equilibrium: Equilibrated) -> np.ndarray:
+    """Forces of contacts, bearings and supports in one row, (f,)."""
+    held = (*bearing_forces(equilibrium).values(), *support_forces(equilibrium).values())
+    return np.concatenate([equilibrium.force, *held])
 
 
 def _with_tilt(model: Model) -> Model:
@@ -110,10 +132,8 @@ def _estimate(equilibrium: Equilibrated, speed: float) -> float:
     """Relative change of all forces when every element is halved."""
     finer = equilibrium.system.with_plan(Plan(2 * equilibrium.system.plan.elements))
     other = equilibrate(finer, speed)
-    here = np.concatenate(
-        [equilibrium.force, *bearing_forces(equilibrium).values(), *support_forces(equilibrium).values()]
-    )
-    there = np.concatenate([other.force, *bearing_forces(other).values(), *support_forces(other).values()])
+    here = forces_of(equilibrium)
+    there = forces_of(other)
     size = float(np.max(np.abs(there), initial=0.0))
     return float(np.max(np.abs(here - there), initial=0.0) / size) if size else 0.0
 

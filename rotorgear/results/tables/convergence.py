@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from rotorgear.results.tables.common import heading, lines, table
@@ -16,13 +17,27 @@ def convergence_table(study: ConvergenceStudy) -> RenderableType:
     """Return the study as one rich renderable."""
     from rich.console import Group
 
-    rows = table("discretisation", "dofs", "seconds", "error", "estimate", "order")
+    rows = table("discretisation", "dofs", "CPU s", "+-", "MB", "error", "estimate", "ratio", "order")
+    marks: dict[str, str] = {}
     for rung in study.rungs:
-        order = "" if rung.order is None else f"{rung.order:.2f}"
+        signs = "".join(marks.setdefault(note, "*+'\"^~"[len(marks) % 6]) for note in rung.notes)
+        finite = math.isfinite(rung.seconds)
         rows.add_row(
-            rung.method, str(rung.dofs), f"{rung.seconds:.3f} s", f"{rung.error:.1e}", f"{rung.estimate:.1e}", order
+            rung.method + signs,
+            str(rung.dofs) if rung.dofs else "",
+            f"{rung.seconds:.3f}" if finite else "",
+            f"{100.0 * rung.spread:.0f}%" if finite and rung.runs > 1 else "",
+            f"{rung.memory / 1e6:.1f}" if rung.memory else "",
+            f"{rung.error:.1e}",
+            f"{rung.estimate:.1e}",
+            "" if rung.effectivity is None else f"{rung.effectivity:.2f}",
+            "" if rung.order is None else f"{rung.order:.2f}",
         )
-    what = f"largest relative error of {study.modes} frequencies"
-    if study.analysis == "transient":
-        what = f"rms error of {study.modes} contact forces over their change"
-    return Group(heading(study.title, f": {what}"), *lines(f"against {study.reference}"), "", rows, "")
+    title = heading(study.title, f": {study.analysis}, {study.modes} {study.quantity}")
+    legend = lines(
+        f"error: the largest relative one, against {study.reference}",
+        "ratio: estimate over error",
+        *(f"{sign} {note}" for note, sign in marks.items()),
+        *(f"Warning: {note}" for note in study.warnings),
+    )
+    return Group(title, *legend, "", rows, "")

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.tables.common import heading, lines, plain_table
+from rotorgear.results.tables.common import error_words, heading, lines, plain_table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -36,6 +36,7 @@ def critical_table(result: CriticalResult) -> RenderableType:
         speeds.add_column("zeta %", justify="right")
     speeds.add_column("whirl")
     speeds.add_column("part %", justify="right")
+    speeds.add_column("error", justify="right")
     speeds.add_column("what moves", overflow="fold")
     for item in result.speeds:
         # A damping ratio that rounds to nothing is 0, not -0.
@@ -47,6 +48,7 @@ def critical_table(result: CriticalResult) -> RenderableType:
             *zeta,
             item.whirl,
             f"{100.0 * item.participation:.2f}" if item.excited else "none",
+            error_words(item.error_estimate),
             item.description,
         )
     return Group(heading(title), speeds, "", *lines(*notes))

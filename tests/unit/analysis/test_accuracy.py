@@ -1,0 +1,171 @@
+"""Convergence studies of every analysis: what they compare, what they refuse, and accuracies that can't be reached."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import rotorgear as rg
+from rotorgear.analysis.accuracy import STUDIES
+from rotorgear.analysis.common.study import Judged, Setting, Study, measured
+from rotorgear.cli.main import app
+from rotorgear.errors import AnalysisError, ConvergenceError
+
+ROOT = Path(__file__).parents[3]
+SHORT: dict[str, Any] = {"elements": (2, 4), "accuracies": (1e-3,), "repeat": 0}
+
+
+def overhung(**shaft: Any) -> rg.Model:
+    """A shaft on two bearings with a wide disk beyond them: its gyroscopic moments move critical speeds strongly."""
+    return rg.Model(
+        shafts={"s": {"sections": [{"length": 0.6, "outer_diameter": 0.04}], **shaft}},
+        disks={"d": {"shaft": "s", "at": 0.6, "outer_diameter": 0.35, "bore": 0.04, "width": 0.03}},
+        bearings={
+            "a": {"shaft": "s", "at": 0.0, "stiffness": {"radial": 1e8, "axial": 1e8}, "damping": {"radial": 500.0}},
+            "b": {"shaft": "s", "at": 0.35, "stiffness": {"radial": 1e8}, "damping": {"radial": 500.0}},
+        },
+        operation={"input_shaft": "s", "speed": 800.0, "gravity": [0.0, -9.81, 0.0]},
+        unbalances={"u": {"shaft": "s", "at": 0.6, "magnitude": 1e-4}},
+    )
+
+
+def within(study: rg.ConvergenceStudy, low: float, high: float) -> None:
+    """All rows that the reference resolves have an estimate between `low` and `high` of their error, and there is one."""
+    told = [rung.effectivity for rung in study.rungs if rung.effectivity is not None]
+    assert told, study.text()
+    assert min(told) > low, study.text()
+    assert max(told) < high, study.text()
+
+
+def falls_with_order(study: rg.ConvergenceStudy, order: float) -> None:
+    measured_order = [rung.order for rung in study.rungs if rung.order is not None]
+    assert measured_order, study.text()
+    assert min(measured_order) > order, study.text()
+
+
+def test_an_analysis_is_measured_by_its_own_estimate_and_by_the_reference() -> None:
+    exact = np.array([1.0, 2.0])
+
+    def judge(h: float) -> Judged:
+        found = exact * (1.0 + np.array([0.5, 1.0]) * h**2)
+        return Judged(3, np.abs(found / exact - 1.0), np.array([0.6, 1.1]) * h**2)
+
+    study = Study(lambda options: options["h"], judge, 1e-9, repeat=1)
+    settings = [Setting(f"h 1/{n}", "elements", float(n), {"h": 1.0 / n}) for n in (2, 4)]
+    coarse, fine = study.rungs(settings, lambda fraction, step: None)
+    assert fine.order == pytest.approx(2.0)
+    assert (coarse.error, coarse.estimate) == pytest.approx((0.25, 0.275))
+    assert coarse.effectivity == pytest.approx(1.1)
+    assert (coarse.effectivity_smallest, coarse.effectivity_largest) == pytest.approx((1.1, 1.2))
+
+
+def test_a_rung_that_does_not_converge_stands_as_such() -> None:
+    def run(options: dict[str, Any]) -> float:
+        raise ConvergenceError("no root")
+
+    study = Study(run, lambda result: Judged(1, np.zeros(1), np.zeros(1)), 1e-9)
+    (rung,) = study.rungs([Setting("accuracy 1e-9", "accuracy", 1e-9)], lambda fraction, step: None)
+    assert rung.error == float("inf")
+    assert rung.notes == ("not reached: no root",)
+
+
+def test_memory_of_a_run_is_that_of_its_arrays() -> None:
+    _, cost = measured(lambda: np.ones(2_000_000).sum(), repeat=1)
+    assert 16e6 <= cost.memory < 17e6
+
+
+def test_critical_speeds_carry_the_error_of_the_speed_and_not_of_the_frequency() -> None:
+    # Gyroscopic moments: the error of the crossing is that of the frequency at a held speed over 1 - d(frequency)/d(speed).
+    study = STUDIES["critical"].study(overhung(), elements=(2, 4), accuracies=(), repeat=0)
+    within(study, 0.8, 1.25)
+    falls_with_order(study, 1.5)
+    last = rg.critical(overhung(), elements=2).speeds[-1]
+
+    def mode(speed: float) -> tuple[float, float]:
+        found = rg.modal(overhung(), speed=speed, elements=2, modes=12)
+        k = int(np.argmin(np.abs(found.eigenvalues.imag / (2.0 * np.pi) - last.frequency_hz)))
+        return float(found.eigenvalues[k].imag), float(found.error_estimate[k])
+
+    w, held = mode(last.speed)
+    slope = (mode(1.001 * last.speed)[0] - mode(0.999 * last.speed)[0]) / (0.002 * last.speed)
+    assert w == pytest.approx(last.speed)
+    assert abs(slope) > 0.2
+    assert last.error_estimate == pytest.approx(held / (1.0 - slope), rel=1e-3)
+
+
+def test_a_free_rotation_of_a_fine_mesh_is_no_critical_speed() -> None:
+    model = rg.load(ROOT / "models" / "geared_pair.toml")
+    coarse = rg.critical(model, elements=4, stop=5.0)
+    fine = rg.critical(model, elements=32, stop=5.0)
+    assert len(coarse) == len(fine) > 0
+    assert fine.speeds[0].speed > 1.0
+
+
+@pytest.mark.long
+def test_branches_of_a_campbell_diagram_are_held_to_modes_at_each_speed() -> None:
+    study = STUDIES["campbell"].study(overhung(), modes=6, **SHORT)
+    within(study, 0.5, 3.0)
+    falls_with_order(study, 1.5)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("analysis", ["response", "frf"])
+def test_amplitudes_are_held_to_those_of_a_mesh_of_high_order(analysis: str) -> None:
+    study = STUDIES[analysis].study(overhung(), modal_damping=0.01, **SHORT)
+    within(study, 0.5, 3.0)
+    falls_with_order(study, 1.5)
+    assert study.rungs[-1].error <= 1e-3
+
+
+def test_statics_of_the_basic_element_are_exact() -> None:
+    study = STUDIES["static"].study(overhung(), **SHORT)
+    assert max(rung.error for rung in study.rungs) < 1e-11
+    assert all("below what the reference resolves" in rung.notes for rung in study.rungs)
+
+
+def test_lumped_mass_is_measured_against_consistent_mass() -> None:
+    study = rg.convergence_study(
+        overhung(mass_matrix="lumped"), modes=6, elements=(8, 16), accuracies=(), repeat=0, speed=800.0
+    )
+    within(study, 0.5, 3.0)
+    falls_with_order(study, 1.8)
+
+
+def test_an_accuracy_of_amplitudes_is_reached_or_said_to_be_missed() -> None:
+    points = {"inputs": ["disks.d:y"], "outputs": ["disks.d:y"], "fmax": 300.0, "points": 60}
+    reached = rg.frf(overhung(), **points, modal_damping=0.001, accuracy=1e-5)
+    assert reached.error_estimate <= 1e-5
+    assert reached.status == "success"
+    missed = rg.static(overhung(), accuracy=1e-11)
+    assert missed.status == "success"
+
+
+def test_a_missed_accuracy_is_a_warning_and_a_status(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rotorgear.analysis.static.static._estimate", lambda *given: 0.5)
+    result = rg.static(overhung(), accuracy=1e-3)
+    assert result.status.startswith("accuracy 0.001 not reached: the error is estimated at 0.5")
+    assert result.status in result.warnings
+
+
+def test_the_command_writes_every_column_and_refuses_what_belongs_elsewhere(tmp_path: Path) -> None:
+    file = str(ROOT / "models" / "backlash_pair.toml")
+    target = tmp_path / "study.json"
+    picture = tmp_path / "study.png"
+    done = CliRunner().invoke(
+        app, ["accuracy", file, "--analysis", "static", "--json", str(target), "--plot", str(picture)]
+    )
+    assert done.exit_code == 0, done.output
+    rung = json.loads(target.read_text(encoding="utf-8"))["rungs"][0]
+    assert {"seconds", "spread", "runs", "memory_bytes", "error", "estimate", "effectivity", "order", "notes"} <= set(
+        rung
+    )
+    assert picture.stat().st_size > 10_000
+    with pytest.raises(AnalysisError, match="--to belongs to --analysis campbell or critical, not to static"):
+        rg.accuracy(overhung(), "static", stop=100.0)
+    with pytest.raises(AnalysisError, match="expected modal, campbell"):
+        rg.accuracy(overhung(), "dance")
