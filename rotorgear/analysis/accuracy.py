@@ -38,13 +38,13 @@ STUDIES = {
     "critical": _Entry(critical_convergence_study, ("stop",)),
     "static": _Entry(static_convergence_study, ("speed",)),
     "response": _Entry(response_convergence_study, ("fmax", "modal_damping")),
-    "frf": _Entry(frf_convergence_study, ("fmax", "place", "modal_damping")),
+    "frf": _Entry(frf_convergence_study, ("fmax", "at", "modal_damping")),
     "mesh": _Entry(mesh_convergence_study, ("mesh", "torque")),
     "transient": _Entry(transient_convergence_study, ("speed", "time", "modal_damping")),
     "sweep": _Entry(sweep_convergence_study, ("speed",)),
 }
 # Arguments that the command spells otherwise.
-_SPELLED = {"stop": "to", "place": "at"}
+_SPELLED = {"stop": "to"}
 
 
 def accuracy(
@@ -55,7 +55,7 @@ def accuracy(
     stop: float | str | None = None,
     modes: int | None = None,
     fmax: float | None = None,
-    place: str | None = None,
+    at: str | None = None,
     reference: Sequence[float] | None = None,
     mesh: str | None = None,
     torque: float | str | None = None,
@@ -73,7 +73,7 @@ def accuracy(
         stop: campbell, critical: the highest speed of the range.
         modes: modal, campbell: how many modes are compared; 24 where not given.
         fmax: response, frf: highest frequency in Hz.
-        place: frf: where force and response are; the first disk, gear or bearing where not given.
+        at: frf: where force and response are; the first disk, gear or bearing where not given.
         reference: modal: natural frequencies in Hz to compare with, in place of the model's own finest.
         mesh: mesh: its name; None where there is only one.
         torque: mesh: on the pinion, in N m or as a text, in place of the model's.
@@ -97,7 +97,7 @@ def accuracy(
         "stop": stop,
         "modes": modes,
         "fmax": fmax,
-        "place": place,
+        "at": at,
         "reference": reference,
         "mesh": mesh,
         "torque": torque,

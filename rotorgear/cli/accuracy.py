@@ -44,7 +44,7 @@ def accuracy(
     fmax: Annotated[
         float | None, typer.Option("--fmax", help="Response, frf: highest frequency in Hz.", show_default=False)
     ] = None,
-    place: Annotated[
+    at: Annotated[
         str | None,
         typer.Option(
             "--at", help="Frf: where force and response are (default: the first disk or gear).", show_default=False
@@ -92,7 +92,7 @@ def accuracy(
             speed=parse_speed(speed),
             stop=parse_speed(stop, "--to"),
             fmax=fmax,
-            place=place,
+            at=at,
             modes=modes,
             reference=given,
             mesh=mesh,

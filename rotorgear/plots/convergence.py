@@ -43,7 +43,7 @@ def convergence(result: ConvergenceStudy, fig: Any = None) -> np.ndarray:
     for axis, (key, label) in zip(axes, panels, strict=True):
         _curves(axis, reached, key)
         axis.set_xlabel(label)
-    axes[0].set_ylabel(f"{result.analysis}: largest relative error\nof {result.modes} {result.quantity}")
+    axes[0].set_ylabel(f"{result.analysis}: largest relative error\nof {result.modes} {result.compared}")
     axes[0].legend(frameon=False, fontsize=8)
     return axes
 

@@ -16,7 +16,7 @@ class Rung(Record):
     )
     setting: float = of("the number that was asked for")
     dofs: int = of("degrees of freedom", note=" of the last solution")
-    seconds: float = of("CPU time", "s", note=" of the whole analysis on one thread, the median of `runs`")
+    seconds: float = of("CPU time", "s", note=" of the whole analysis on one thread, the median of `timed` runs")
     error: float = of(
         "largest relative error of the quantities compared",
         note=" against the reference; `null` where the discretisation can't tell one of them",
@@ -31,7 +31,7 @@ class Rung(Record):
     spread: float = of(
         "spread of the times", note=": difference of their quartiles over the median", default=0.0, kw_only=True
     )
-    runs: int = of("number of runs timed", default=0, kw_only=True)
+    timed: int = of("number of runs timed", default=0, kw_only=True)
     memory: int = of(
         "largest memory of arrays and objects",
         "byte",
@@ -75,7 +75,7 @@ class ConvergenceStudy(Result, kind="convergence", analysis="accuracy"):
     reference: str = of("what the errors are measured against")
     modes: int = of("how many quantities are compared", note=": frequencies, speeds, forces or statistics")
     rungs: tuple[Rung, ...] = of("discretisations", "", "rung", record=Rung)
-    quantity: str = of("what is compared", default="frequencies", kw_only=True)
+    compared: str = of("what is compared", default="frequencies", kw_only=True)
     resolution: float = of(
         "relative error below which the reference or rounding decides", form=".0e", default=0.0, kw_only=True
     )

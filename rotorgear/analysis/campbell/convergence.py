@@ -76,7 +76,7 @@ def campbell_convergence_study(
     rungs = study.rungs(mesh_settings(elements, accuracies), part_of(progress, 0.4, 1.0))
     words = f"modes solved for themselves at each of {POINTS} speeds, meshes refined to {REFERENCE:g}"
     return ConvergenceStudy(
-        model.title or "model", "campbell", words, count, rungs, quantity="branches", resolution=RESOLUTION
+        model.title or "model", "campbell", words, count, rungs, compared="branches", resolution=RESOLUTION
     )
 
 
@@ -129,7 +129,7 @@ def critical_convergence_study(
         f"lines to {confirmed:.0e}"
     )
     return ConvergenceStudy(
-        model.title or "model", "critical", words, count, rungs, quantity="critical speeds", resolution=RESOLUTION
+        model.title or "model", "critical", words, count, rungs, compared="critical speeds", resolution=RESOLUTION
     )
 
 

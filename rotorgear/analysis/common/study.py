@@ -133,7 +133,7 @@ class Study(Generic[R]):
             estimate=estimate,
             order=order,
             spread=cost.spread,
-            runs=len(cost.seconds),
+            timed=len(cost.seconds),
             memory=cost.memory,
             effectivity=effectivity(error, estimate, self.resolution),
             effectivity_smallest=smallest,

@@ -68,7 +68,7 @@ def convergence_study(
     study = Study(lambda options: modal(model, speed=speed, modes=modes, **options), judge, resolution, repeat=repeat)
     rungs = study.rungs(mesh_settings(able, accuracies), progress)
     return ConvergenceStudy(
-        model.title or "model", "modal", words, len(truth), rungs, quantity="frequencies", resolution=resolution
+        model.title or "model", "modal", words, len(truth), rungs, compared="frequencies", resolution=resolution
     )
 
 

@@ -83,7 +83,7 @@ def response_convergence_study(
         words,
         len(strongest),
         rungs,
-        quantity="orders, each by its largest force over speed",
+        compared="orders, each by its largest force over speed",
         resolution=RESOLUTION,
     )
 
@@ -94,7 +94,7 @@ def frf_convergence_study(
     *,
     fmax: float | None = None,
     modal_damping: float = 0.0,
-    place: str | None = None,
+    at: str | None = None,
     elements: Sequence[int] = ELEMENTS,
     accuracies: Sequence[float] = ACCURACIES,
     repeat: int = REPEAT,
@@ -107,14 +107,14 @@ def frf_convergence_study(
     Args:
         model, modal_damping: as for `frf`.
         fmax: highest frequency in Hz; above the sixth elastic mode where not given.
-        place: where force and response are, as for `frf`; y of the first disk, gear or bearing where not given.
+        at: where force and response are, as for `frf`; y of the first disk, gear or bearing where not given.
         elements, accuracies, repeat: as for `convergence_study`.
         progress: callable that is told fraction and step.
 
     Raises:
         AnalysisError: no place to take, or no elastic mode that says how far to go.
     """
-    at = place or _place(model)
+    place = at or _place(model)
     if fmax is None:
         found = elastic_frequencies(modal(model, modes=_MODES + 12))
         if not found.size:
@@ -124,8 +124,8 @@ def frf_convergence_study(
     def run(options: dict[str, float], of: Model = model) -> FrequencyResponse:
         return frf(
             of,
-            inputs=[at],
-            outputs=[at],
+            inputs=[place],
+            outputs=[place],
             fmax=fmax,
             points=FREQUENCIES,
             modal_damping=modal_damping,
@@ -143,10 +143,10 @@ def frf_convergence_study(
     rungs = study.rungs(mesh_settings(elements, accuracies), part_of(progress, 0.1, 1.0))
     words = (
         f"elements of high order, {finest.dofs} dofs, its own error estimated at {finest.error_estimate:.0e}; force and "
-        f"response at {at}, {FREQUENCIES} frequencies to {fmax:.5g} Hz"
+        f"response at {place}, {FREQUENCIES} frequencies to {fmax:.5g} Hz"
     )
     return ConvergenceStudy(
-        model.title or "model", "frf", words, 1, rungs, quantity="receptance", resolution=RESOLUTION
+        model.title or "model", "frf", words, 1, rungs, compared="receptance", resolution=RESOLUTION
     )
 
 

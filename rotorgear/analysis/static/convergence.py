@@ -60,5 +60,5 @@ def static_convergence_study(
     rungs = study.rungs(mesh_settings(elements, accuracies), progress)
     words = f"elements with internal polynomials up to order {_ORDER}, {finest.system.n} dofs"
     return ConvergenceStudy(
-        model.title or "model", "static", words, len(truth), rungs, quantity="forces", resolution=RESOLUTION
+        model.title or "model", "static", words, len(truth), rungs, compared="forces", resolution=RESOLUTION
     )

@@ -26,14 +26,14 @@ def convergence_table(study: ConvergenceStudy) -> RenderableType:
             rung.method + signs,
             str(rung.dofs) if rung.dofs else "",
             f"{rung.seconds:.3f}" if finite else "",
-            f"{100.0 * rung.spread:.0f}%" if finite and rung.runs > 1 else "",
+            f"{100.0 * rung.spread:.0f}%" if finite and rung.timed > 1 else "",
             f"{rung.memory / 1e6:.1f}" if rung.memory else "",
             f"{rung.error:.1e}",
             f"{rung.estimate:.1e}",
             "" if rung.effectivity is None else f"{rung.effectivity:.2f}",
             "" if rung.order is None else f"{rung.order:.2f}",
         )
-    title = heading(study.title, f": {study.analysis}, {study.modes} {study.quantity}")
+    title = heading(study.title, f": {study.analysis}, {study.modes} {study.compared}")
     legend = lines(
         f"error: the largest relative one, against {study.reference}",
         "ratio: estimate over error",

@@ -22,9 +22,11 @@ def critical_table(result: CriticalResult) -> RenderableType:
     title = f"{result.model.title or 'Critical speeds'}: {kind} critical speeds to {result.top_speed * RPM_PER_RAD_S:.6g} rpm"
     # The residuals' power of ten; below 1e-12 they are rounding.
     bound = 10.0 ** math.ceil(math.log10(max(result.worst_residual, 1e-12)))
+    worst = max((item.error_estimate for item in result.speeds), default=0.0)
     notes = (
         f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
         f"substituted back: |w - p W| / (p W) at most {bound:.0e}",
+        f"estimated relative discretisation error of the speeds at most {error_words(worst)}",
         *(f"left out: {note}" for note in result.left_out),
         *(f"Warning: {note}" for note in result.warnings),
     )
@@ -36,7 +38,6 @@ def critical_table(result: CriticalResult) -> RenderableType:
         speeds.add_column("zeta %", justify="right")
     speeds.add_column("whirl")
     speeds.add_column("part %", justify="right")
-    speeds.add_column("error", justify="right")
     speeds.add_column("what moves", overflow="fold")
     for item in result.speeds:
         # A damping ratio that rounds to nothing is 0, not -0.
@@ -48,7 +49,6 @@ def critical_table(result: CriticalResult) -> RenderableType:
             *zeta,
             item.whirl,
             f"{100.0 * item.participation:.2f}" if item.excited else "none",
-            error_words(item.error_estimate),
             item.description,
         )
     return Group(heading(title), speeds, "", *lines(*notes))

@@ -161,7 +161,7 @@ def test_the_command_writes_every_column_and_refuses_what_belongs_elsewhere(tmp_
     )
     assert done.exit_code == 0, done.output
     rung = json.loads(target.read_text(encoding="utf-8"))["rungs"][0]
-    assert {"seconds", "spread", "runs", "memory_bytes", "error", "estimate", "effectivity", "order", "notes"} <= set(
+    assert {"seconds", "spread", "timed", "memory_bytes", "error", "estimate", "effectivity", "order", "notes"} <= set(
         rung
     )
     assert picture.stat().st_size > 10_000
