@@ -16,8 +16,14 @@ from validation.cases import Case, names, read_case, read_cases
 from validation.runner import main, run
 from validation.table import printed
 
+# Most of the time of all cases. Unit tests hold the same physics on smaller problems.
+# `python -m validation` runs them all.
+LONG_CASES = frozenset({"D2", "D4", "E4"})
 
-@pytest.mark.parametrize("name", names())
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.long if name in LONG_CASES else ()) for name in names()]
+)
 def test_a_case_is_within_its_tolerances(name: str) -> None:
     failed = [
         f"{row.what}: expected {row.expected}, got {row.got}: {row.reason}"
