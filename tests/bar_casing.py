@@ -56,3 +56,10 @@ def write_bar(path: Path, **arguments: object) -> Path:
     """Write the arrays of a bar as a NumPy archive."""
     np.savez(path, **bar_matrices(**arguments))  # type: ignore[arg-type]
     return path
+
+
+def cube(side: float) -> tuple[np.ndarray, np.ndarray]:
+    """Points (8, 3) and triangles (12, 3) of a cube about the origin, counter-clockwise from outside."""
+    points = side * (np.array([[k & 1, k >> 1 & 1, k >> 2] for k in range(8)]) - 0.5)
+    sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    return points, np.array([corners for a, b, c, d in sides for corners in ((a, b, c), (a, c, d))])

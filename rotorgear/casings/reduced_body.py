@@ -36,6 +36,13 @@ class Surface:
         length = np.linalg.norm(double, axis=1)
         return double / length[:, None], 0.5 * length
 
+    def normal_motion(self) -> np.ndarray:
+        """W (n, n) with q^H W q = sum of |n.u|^2 A over the triangles, u that of their middles, for coordinates q (n,)."""
+        normals, areas = self.normals_and_areas()
+        middle = self.basis[self.triangles].mean(axis=1)
+        across = np.sqrt(areas)[:, None] * np.einsum("tx,txn->tn", normals, middle)
+        return np.asarray(across.T @ across)
+
 
 @dataclass(frozen=True)
 class ReducedBody:

@@ -31,7 +31,7 @@ def best_direction(pv: ModuleType, model: Model, nodes: NodeTable) -> tuple[floa
     """The direction with the largest sum over the shafts of sqrt(pixels seen): the root counts the hidden ones most."""
     mesh = solids_mesh(pv, build_solids(model, nodes, LIGHT))
     # A casing would hide what it is looked at for.
-    mesh = mesh.extract_cells(mesh.cell_data["shaft_id"] >= 0).extract_surface() if model.casings else mesh
+    mesh = mesh.remove_cells(np.flatnonzero(mesh.cell_data["shaft_id"] < 0)) if model.casings else mesh
     number = mesh.cell_data["shaft_id"].astype(int) + 1
     mesh.cell_data["paint"] = np.column_stack([number % 256, number // 256, np.zeros_like(number)]).astype(np.uint8)
     plotter = pv.Plotter(off_screen=True, window_size=list(_SMALL), lighting="none")

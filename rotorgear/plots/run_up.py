@@ -69,6 +69,10 @@ def _quantities(result: ResponseResult) -> list[tuple[str, list[str], np.ndarray
             for points, unit in ((linear, "m/s$^2$"), (angular, "rad/s$^2$"))
         ),
     ]
+    casings = list(result.casings)
+    if casings:  # the power of orders adds up, as the squares of amplitudes do
+        power = np.sqrt(result.radiated_power)
+        quantities.append(("Root of the equivalent radiated power", casings, power, "W$^{1/2}$"))
     if not meshes and not result.bearings:
         orbit = 1e6 * np.abs(result.displacement[:, :, :, :2]).max(axis=3)
         quantities.append(("Displacement", list(result.places), orbit, "um"))

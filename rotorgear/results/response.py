@@ -47,7 +47,8 @@ class Peak(Record):
     """The largest amplitude of a quantity over orders and speeds, and what the linear analysis leaves out there."""
 
     quantity: str = of(
-        "quantity", note=": mesh force, transmission error, approach, bearing force, acceleration or displacement"
+        "quantity",
+        note=": mesh force, transmission error, approach, bearing force, acceleration, displacement or normal velocity",
     )
     part: str = of("mesh, bearing, point or place")
     unit: str = of("unit of the amplitudes")
@@ -60,6 +61,18 @@ class Peak(Record):
         note=" of this quantity at this order and speed; `null` where no loaded teeth shake, or where they part",
     )
     teeth_part: bool = of("whether the linear solution would part loaded teeth there")
+
+
+# rho c of air at 20 degrees and 1 atm, in kg/(m^2 s).
+AIR_IMPEDANCE = 1.204 * 343.2
+
+
+def _by_casing(key: str) -> Written:
+    return Written(
+        key,
+        lambda result, values: {name: values[:, :, k] for k, name in enumerate(result.casings)},
+        axes=("CASING", "order", "speed"),
+    )
 
 
 class ResponseResult(ModelResult, kind="response"):
@@ -157,6 +170,47 @@ class ResponseResult(ModelResult, kind="response"):
         json=_amplitudes_by_axis("displacement_m", "places", "PLACE"),
         note=" of each gear, disk and bearing; x, y and z are written",
     )
+    casings: tuple[str, ...] = of(
+        "names of the casings with a surface", "", "casing", json=None, default=(), kw_only=True
+    )
+    normal_velocity: np.ndarray = of(
+        "normal velocity of a casing",
+        "m/s",
+        "order",
+        "speed",
+        "casing",
+        json=_by_casing("normal_velocity_m_per_s"),
+        note=": root of the mean over its surface of the square of the amplitude",
+        default_factory=lambda: np.zeros((0, 0, 0)),
+        kw_only=True,
+    )
+    surface_area: np.ndarray = of(
+        "surface of a casing",
+        "m^2",
+        "casing",
+        note=", inside and out",
+        json=Written(
+            "casing_surface_m2",
+            lambda result, values: dict(zip(result.casings, values.tolist(), strict=True)),
+            axes=("CASING",),
+        ),
+        default_factory=lambda: np.zeros(0),
+        kw_only=True,
+    )
+
+    @derived(
+        "equivalent radiated power",
+        "W",
+        "order",
+        "speed",
+        "casing",
+        json=_by_casing("radiated_power_w"),
+        note=" of a casing, 1/2 ρ c ∑ v_n² A with ρ c = 413 kg/m²s of air, as if all of its surface radiated like a large plate",
+    )
+    def radiated_power(self) -> np.ndarray:
+        """1/2 rho c sum of v_n^2 A in W, (o, s, k); those of the orders add up."""
+        return 0.5 * AIR_IMPEDANCE * self.normal_velocity**2 * self.surface_area
+
     shape_speed: float = of("speed of the deflection shapes", "rad/s", json="shape_speed_rpm")
     shapes: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", "order", json=None)
     nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)

@@ -38,8 +38,11 @@ def casing_notes(system: System) -> Iterator[str]:
         modes = len(body.fixed_frequency)
         top = f"{modes} mode{'s'[: modes != 1]} to {body.fixed_frequency[-1]:.4g} Hz" if modes else "no modes"
         yield f"casings.{name}: all but the motions of its {len(body.seats)} seats and {top} between fixed seats"
-        if body.error is None:
+        if model.casings[name].matrices is None:
+            yield f"casings.{name}: the error of its mesh, which 'rotorgear casing' estimates"
+        elif body.error is None:
             yield f"casings.{name}: the error of its reduction; its file says nothing of what was left out"
+        yield from (f"casings.{name}: {note}" for note in body.notes)
     for table in ("bearings", "nonlinear_elements"):
         for part in getattr(model, table):
             seat = system.layout.seat(f"{table}.{part}")

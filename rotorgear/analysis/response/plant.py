@@ -23,6 +23,7 @@ class Readings:
     Attributes:
         mesh_force, transmission_error, approach: (o, c); bearing_force: (o, b, 3); acceleration: of the named points, (o, k).
         displacement: x y z tx ty tz at gears, disks and bearings, (o, d, 6).
+        normal_velocity: of the casings with a surface, root of the mean of |v_n|^2 over it, (o, k).
     """
 
     mesh_force: np.ndarray
@@ -31,6 +32,7 @@ class Readings:
     bearing_force: np.ndarray
     acceleration: np.ndarray
     displacement: np.ndarray
+    normal_velocity: np.ndarray
 
     @property
     def stacked(self) -> np.ndarray:
@@ -70,6 +72,15 @@ class Plant:
         self._place_rows = sp.csr_array(system.dofs.transform)[rows, :]
         points = system.model.points.items()
         self._points = [dof_row(system, *system.layout.place(f"points.{name}"), p.direction) for name, p in points]
+        self.surfaces = {
+            name: surface
+            for name in system.model.casings
+            if (surface := system.layout.casing(name).surface) is not None
+        }
+        self._normal_motion = {
+            name: surface.normal_motion() / surface.normals_and_areas()[1].sum()
+            for name, surface in self.surfaces.items()
+        }
         self._parts: tuple[sp.csc_array, ...] | None = None
         self._read: tuple[np.ndarray, np.ndarray] | None = None
 
@@ -106,7 +117,17 @@ class Plant:
         moved = (np.reshape(self._points, (len(self._points), len(q))) @ q).T
         there = (self._place_rows @ q).T.reshape(len(w), len(self.places), 6)
         transverse = approach / np.cos([state.contact.base_helix_angle for state in lines.states])
-        return Readings(force, (lines.rotation.T @ q).T, transverse, held, -(w**2)[:, None] * moved, there)
+        normal = w[:, None] * self._normal(q)
+        return Readings(force, (lines.rotation.T @ q).T, transverse, held, -(w**2)[:, None] * moved, there, normal)
+
+    def _normal(self, q: np.ndarray) -> np.ndarray:
+        """Root of the mean square of the normal displacement over each casing's surface, (o, k), from q (n, o)."""
+        T = self.system.dofs.transform
+        found = np.zeros((q.shape[1], len(self.surfaces)))
+        for k, (name, W) in enumerate(self._normal_motion.items()):
+            own = T[self.system.nodes.of_casing(name), :] @ q
+            found[:, k] = np.sqrt(np.maximum(np.real(np.einsum("no,no->o", own.conj(), W @ own)), 0.0))
+        return found
 
     def _bearings(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Rows that give the force on each bearing's node along x y z from displacements and velocities, (3 b, n) each."""

@@ -112,7 +112,15 @@ def response(
     shape_w, shape_loads = plant.loads(orders, at)
     deflections = solve_orders(plant, plant.dynamics(at), shape_w, shape_loads)
     nodes, shapes = shapes_at_stations(system, system.dofs.expand(deflections))
-    quantities = ("mesh_force", "transmission_error", "approach", "bearing_force", "acceleration", "displacement")
+    quantities = (
+        "mesh_force",
+        "transmission_error",
+        "approach",
+        "bearing_force",
+        "acceleration",
+        "displacement",
+        "normal_velocity",
+    )
     stacked = {name: np.stack([getattr(reading, name) for reading in run.readings], axis=1) for name in quantities}
     largest = peaks_of(setup, plant, orders, chosen, run.readings)
     progress(1.0, "done")
@@ -134,6 +142,9 @@ def response(
         acceleration=stacked["acceleration"],
         places=tuple(plant.places),
         displacement=stacked["displacement"],
+        casings=tuple(plant.surfaces),
+        normal_velocity=stacked["normal_velocity"],
+        surface_area=np.array([surface.normals_and_areas()[1].sum() for surface in plant.surfaces.values()]),
         shape_speed=at,
         shapes=shapes,
         nodes=nodes,

@@ -103,6 +103,8 @@ def _quantities(run: _Run) -> Iterable[tuple[str, str, str, np.ndarray]]:
     for k, (name, point) in enumerate(model.points.items()):
         unit = "rad/s^2" if point.direction in _MOTIONS_THAT_TURN else "m/s^2"
         yield "acceleration", name, unit, stacked("acceleration")[:, :, k]
+    for k, name in enumerate(run.plant.surfaces):
+        yield "normal velocity", name, "m/s", stacked("normal_velocity")[:, :, k]
     if not model.bearings and not names:
         for k, place in enumerate(run.plant.places):
             yield "displacement", place, "m", stacked("displacement")[:, :, k, :2]

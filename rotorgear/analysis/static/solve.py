@@ -232,7 +232,7 @@ def without_torsion_to_ground(system: System, groups: list[ElementGroup]) -> tup
         if table not in ("bearings", "supports") or not turns or B is None or D is None:
             kept.append(group)
             continue
-        twist = np.any(B[0][:, 5::6] != 0.0, axis=1)
+        twist = B[0][:, -1] != 0.0  # the torsion of the shaft's own node, which comes last
         if not np.any(D[0][twist]):
             kept.append(group)
             continue

@@ -18,7 +18,7 @@ from rotorgear.progress import listener
 from rotorgear.quantity import millimetres, nearest
 
 # A shaft whose axis misses the reference point of a seat by more than this stands in another one.
-_OFF_AXIS = 1e-3
+_OFF_AXIS = 5e-3
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from rotorgear.results.tables.common import error_words, heading, lines, table
 
@@ -46,10 +49,23 @@ def response_table(result: ResponseResult) -> RenderableType:
         f"solver error {error_words(result.solver_error)} at {result.checked} points checked; "
         f"on a finer mesh the peaks change by {error_words(result.error_estimate)}",
         f"damping ratio added to every elastic mode: {result.damping_ratio:g}",
+        *_radiated(result),
         *(f"left out: {note}" for note in result.left_out),
         *(f"Warning: {note}" for note in result.warnings),
     ]
     return Group(heading(title), "", orders, "", _largest(result), "", *lines(*notes), "")
+
+
+def _radiated(result: ResponseResult) -> Iterator[str]:
+    """The largest equivalent radiated power of each casing, all orders together."""
+    for k, name in enumerate(result.casings):
+        power = result.radiated_power[:, :, k].sum(axis=0)
+        s = int(np.argmax(power))
+        if power[s] > 0.0:
+            yield (
+                f"casing {name}: equivalent radiated power of all orders {power[s]:.3g} W at most, "
+                f"{10.0 * np.log10(power[s] / 1e-12):.1f} dB, at {result.speed_rpm[s]:.1f} rpm"
+            )
 
 
 def _rows_of_orders(orders: tuple[str, ...]) -> list[tuple[int, int]]:
