@@ -110,6 +110,11 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
         (("gear", ""),),
     ),
     (
+        "casing",
+        "`rotorgear casing MODEL --json casing.json`. The [page on casings](casings.md) says how the numbers are found.",
+        (("casing", ""),),
+    ),
+    (
         "accuracy",
         "`rotorgear accuracy MODEL --json accuracy.json`. What is infinite or makes no sense is `null`.",
         (("convergence", ""),),

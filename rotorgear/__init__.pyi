@@ -44,6 +44,7 @@ from rotorgear.analysis.transient.transient import transient as transient
 from rotorgear.analysis.sweep.sweep import sweep as sweep
 from rotorgear.analysis.sweep.cluster import cluster as cluster
 from rotorgear.analysis.teeth.gear_sheet import gear as gear
+from rotorgear.analysis.casing.casing import casing as casing
 from rotorgear.analysis.teeth.mesh import mesh as mesh
 from rotorgear.analysis.teeth.mesh_map import mesh_map as mesh_map
 from rotorgear.analysis.teeth.root_stress import root_stress as root_stress
@@ -77,6 +78,7 @@ from rotorgear.export.hdf5 import save as save
 from rotorgear.export.hdf5 import read as read
 from rotorgear.export.stream import stream as stream
 from rotorgear.export.uff import write_uff as write_uff
+from rotorgear.export.casing_vtk import write_casing_vtk as write_casing_vtk
 from rotorgear.export.vtk import write_vtk as write_vtk
 from rotorgear.export.vtk_motion import write_motion as write_motion
 from rotorgear.export.vtk_deflection import write_deflections as write_deflections
@@ -94,6 +96,7 @@ from rotorgear.results.sweep import SweepResult as SweepResult
 from rotorgear.results.sweep_convergence import SweepConvergenceStudy as SweepConvergenceStudy
 from rotorgear.results.portrait import Portraits as Portraits
 from rotorgear.results.gear_sheet import GearSheet as GearSheet
+from rotorgear.results.casing import CasingSurvey as CasingSurvey
 from rotorgear.results.mesh import MeshResult as MeshResult
 from rotorgear.results.mesh_map import MeshMap as MeshMap
 from rotorgear.results.root_stress import RootStress as RootStress

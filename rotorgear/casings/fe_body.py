@@ -22,7 +22,7 @@ from rotorgear.quantity import millimetres
 # Sizes of a casing that are believed; beyond, the unit is likely wrong.
 _LEAST_SIZE = 5e-3
 _LARGEST_SIZE = 50.0
-_MOTIONS = ("displacement along x", "along y", "along z", "rotation about x", "about y", "about z")
+_MOTIONS = tuple(f"{motion} {axis}" for motion in ("displacement along", "rotation about") for axis in "xyz")
 
 
 @dataclass(frozen=True)
@@ -250,10 +250,12 @@ def _apart(settings: CasingSettings, seats: tuple[Patch, ...], held: np.ndarray,
             )
         if settings.connection == "rigid" and np.isin(nodes, tied).any():
             raise AnalysisError(
-                f"{address}: nodes of this seat are tied by a join, and the seat is rigid: turn the join round."
+                f"{address}: nodes of this seat are tied by a join, and the seat is rigid: leave a gap between them."
             )
         for other, (other_name, _) in enumerate(settings.seats[:number]):
-            if np.isin(nodes, seats[other].nodes).any():
+            common = int(np.count_nonzero(np.isin(nodes, seats[other].nodes)))
+            # Bearings side by side in one bore share the nodes between them, which mean motions may do.
+            if common and (settings.connection == "rigid" or common == min(len(nodes), len(seats[other].nodes))):
                 raise AnalysisError(
                     f"{address}: the seat shares nodes with the seat {other_name}: give each its own face."
                 )

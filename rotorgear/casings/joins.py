@@ -1,8 +1,8 @@
 """Faces that touch without common nodes, such as the flanges of bolted halves: tied, or held together by a stiffness per area.
 
-Tied: each node of the first face moves as the point of the second face that it lies on, u_s = Σ N_m u_m. Else the energy
-½ ∫ k |u_s - u_m|² dA over the first face joins them. Nodes of the first face are moved onto the second one before, so that a
-rigid motion of both strains neither; where the faces don't overlap, they stay free.
+The finer of two faces follows the coarser one. Tied: each of its nodes moves as the point of the other face that it lies on,
+u_s = Σ N_m u_m. Else the energy ½ ∫ k |u_s - u_m|² dA over the finer face joins them. Its nodes are moved onto the other face
+before, so that a rigid motion of both strains neither; where the faces don't overlap, they stay free.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Joined:
     """What joins make of a mesh.
 
     Attributes:
-        mesh: with the nodes of first faces moved.
+        mesh: with the nodes of finer faces moved.
         interpolation: (p, p) motions of all nodes from those of the nodes that are not tied; None where nothing is tied.
         tied: nodes that follow others.
         stiffness: (p, p) of the joints, for each of the three directions, in N/m; None where there is none.
@@ -64,11 +64,14 @@ def join(mesh: SolidMesh, joins: tuple[JoinSettings, ...], address: str) -> Join
         here = f"{address}.joins[{number}]"
         first = _faces(mesh, one.first, here)
         second = _faces(mesh, one.second, here)
+        # The finer face follows the coarser one, whose shape functions are smooth over each of its elements.
+        if _size(mesh, first) > _size(mesh, second):
+            first, second = second, first
         nodes = np.unique(first)
         if np.isin(nodes, second).any():
             raise AnalysisError(f"{here}: '{one.first}' and '{one.second}' have nodes in common: they are one already.")
         where = _projected(mesh, second, mesh.points[nodes])
-        size = np.sqrt(face_areas(mesh, first)[1].sum(axis=1).mean())
+        size = _size(mesh, first)
         near = where.distance <= _GAP * size
         if not near.any():
             raise AnalysisError(
@@ -86,7 +89,7 @@ def join(mesh: SolidMesh, joins: tuple[JoinSettings, ...], address: str) -> Join
             rows.append(np.repeat(nodes[near], second.shape[1]))
             columns.append(where.nodes[near].ravel())
             values.append(where.weights[near].ravel())
-            notes.append(f"{np.count_nonzero(near)} nodes of '{one.first}' are tied to '{one.second}'{left}.")
+            notes.append(f"'{one.first}' and '{one.second}' are tied at {np.count_nonzero(near)} nodes{left}.")
         else:
             springs = springs + one.stiffness * _spring(mesh, first, second, _GAP * size)
             notes.append(f"'{one.first}' stands on '{one.second}' with {one.stiffness:.4g} N/m^3{left}.")
@@ -111,6 +114,11 @@ def _faces(mesh: SolidMesh, set_name: str, address: str) -> np.ndarray:
     member = np.zeros(len(mesh.points), dtype=bool)
     member[patch.nodes] = True
     return mesh.boundary[member[mesh.boundary].all(axis=1)]
+
+
+def _size(mesh: SolidMesh, faces: np.ndarray) -> float:
+    """Mean size of the elements of a face in m."""
+    return float(np.sqrt(face_areas(mesh, faces)[1].sum(axis=1).mean()))
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ import typer
 from rotorgear.cli import (
     accuracy,
     campbell,
+    casing,
     check,
     compare,
     critical,
@@ -53,6 +54,7 @@ for command in (
     check.check,
     gear.gear,
     mesh.mesh,
+    casing.casing,
     accuracy.accuracy,
     view.view,
     schema.schema,

@@ -50,6 +50,7 @@ ROOMS = {
         "sweep": {"common", "static", "transient"},
         "teeth": {"common"},
         "rig": {"common", "modal"},
+        "casing": set(),
         "": {"campbell", "modal", "response", "static", "sweep", "teeth", "transient"},
     },
     "gears": {

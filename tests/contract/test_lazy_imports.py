@@ -15,8 +15,9 @@ import pytest
 
 from tests.paths import ROOT
 
-HEAVY = {"numpy", "scipy", "numba", "h5py", "pyvista", "skfem", "matplotlib", "distributed", "dask"}
-GRAPHICS = {"pyvista", "vtk", "vtkmodules", "matplotlib", "numba", "skfem", "distributed"}
+HEAVY = {"numpy", "scipy", "numba", "h5py", "pyvista", "skfem", "meshio", "matplotlib", "distributed", "dask"}
+# What a modal run of shafts has no need of: graphics, a compiler, finite elements of solids, a cluster.
+GRAPHICS = {"pyvista", "vtk", "vtkmodules", "matplotlib", "numba", "skfem", "meshio", "pymetis", "distributed"}
 
 # Runs the program text argv[1] with the arguments argv[3:], then writes which modules are loaded to the file argv[2].
 WATCH = """

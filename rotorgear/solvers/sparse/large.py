@@ -1,6 +1,6 @@
 """Factorisation of large symmetric positive definite matrices of solids, by the best order and solver that is installed.
 
-What fills a factor of a three-dimensional mesh is the order of elimination. Nested dissection of the graph of nodes (METIS, by
+What fills a factor of a solid body is the order of elimination. Nested dissection of the graph of nodes (METIS, by
 pymetis; Karypis and Kumar, SIAM J. Sci. Comput. 20, 1998) takes a tenth of the time of SuperLU's own minimum degree, and half of
 its memory; Pardiso (by pypardiso) orders likewise and is faster again.
 """
@@ -34,7 +34,7 @@ _LONG = 20.0
 
 @dataclass(frozen=True)
 class Forecast:
-    """What a factorisation will take, about: the machine and the shape of the mesh make a factor of two either way."""
+    """What a factorisation will take, about: the machine and the shape of the body make a factor of two either way."""
 
     solver: Solver
     seconds: float
@@ -129,7 +129,10 @@ def nested_dissection(A: Any, blocks: int) -> np.ndarray:
     )
     pattern.setdiag(0)
     pattern.eliminate_zeros()
-    permutation, _ = pymetis.nested_dissection(xadj=pattern.indptr, adjncy=pattern.indices)
+    if hasattr(pymetis, "CSRAdjacency"):
+        permutation, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(pattern.indptr, pattern.indices))
+    else:  # before 2025
+        permutation, _ = pymetis.nested_dissection(xadj=pattern.indptr, adjncy=pattern.indices)
     return (np.asarray(permutation)[:, None] * blocks + np.arange(blocks)).ravel()
 
 
@@ -142,5 +145,5 @@ def _enough_memory(cost: Forecast, unknowns: int, what: str) -> None:
         better = ", or install pymetis: pip install 'rotorgear[casing]'" if cost.solver == "mmd" else ""
         raise AnalysisError(
             f"{what}: a factorisation of {unknowns} unknowns takes {cost}, and this machine has {there / 1e9:.1f} GB. Use a "
-            f"coarser mesh{better}."
+            f"coarser model{better}."
         )

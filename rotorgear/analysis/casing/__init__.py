@@ -1,0 +1,1 @@
+"""Casings by themselves."""

@@ -1,0 +1,181 @@
+"""The verb `casing`: what the casings of a model are by themselves, from mesh to reduced body, with errors and cost."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from rotorgear.casings.casing import BEYOND
+from rotorgear.casings.constrained import ElasticBody
+from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
+from rotorgear.casings.mesh_error import eigenvalue_errors
+from rotorgear.casings.reduced_body import ReducedBody
+from rotorgear.casings.reduction import reduce
+from rotorgear.casings.survey import MeshModes, free_modes, held_modes, rigid_residual
+from rotorgear.errors import AnalysisError
+from rotorgear.model.layout.casings import casing_settings
+from rotorgear.model.model import Model
+from rotorgear.model.model_hash import model_hash
+from rotorgear.progress import Progress, part_of, silent
+from rotorgear.quantity import QuantityError, nearest, parse_quantity
+from rotorgear.results.casing import CasingRow, CasingSeat, CasingSurvey
+
+_MOST_MODES = 200
+
+
+def casing(
+    model: Model,
+    name: str | None = None,
+    *,
+    modes: int = 10,
+    fmax: float | str | None = None,
+    progress: Progress | None = None,
+) -> CasingSurvey:
+    """Read, check and reduce the casings of a model, and find the modes of their whole meshes.
+
+    Args:
+        model: with casings from meshes.
+        name: of one casing; None: all.
+        modes: elastic modes that are found, free and held.
+        fmax: highest frequency that the reduced body is to serve, in Hz or with a unit; used where the file has no `modes_to`.
+        progress: of the work.
+
+    Returns:
+        Mass, modes, seats, errors and cost of each casing.
+
+    Raises:
+        AnalysisError: no casing of that name, or what is wrong with its mesh. MissingExtraError: meshio or scikit-fem is missing.
+    """
+    tell = progress or silent
+    started = time.perf_counter()
+    if not 1 <= modes <= _MOST_MODES:
+        raise AnalysisError(f"modes: got {modes}, expected a number from 1 to {_MOST_MODES}")
+    try:
+        highest = None if fmax is None else parse_quantity(fmax, "frequency")
+    except QuantityError as error:
+        raise AnalysisError(f"fmax: got '{fmax}', expected {error}") from None
+    names = [name] if name is not None else [one for one, part in model.casings.items() if part.mesh]
+    if not model.casings or (name is not None and name not in model.casings):
+        guess = nearest(name or "", list(model.casings))
+        hint = f"did you mean '{guess}'?" if guess else "the model has: " + (", ".join(model.casings) or "none")
+        raise AnalysisError(f"casing: the model has no casing{f' {name!r}' if name else ''}; {hint}")
+    if not names or not model.casings[names[0]].mesh:
+        raise AnalysisError("casing: this casing has no mesh; its matrices come from elsewhere")
+    rows = {
+        one: _row(model, one, modes, highest, part_of(tell, number / len(names), (number + 1) / len(names)))
+        for number, one in enumerate(names)
+    }
+    return CasingSurvey(
+        title=model.title,
+        casings=rows,
+        seconds={"total": time.perf_counter() - started},
+        method="Craig-Bampton with residual shapes; modes by Lanczos on the factored stiffness",
+        model_hash=model_hash(model),
+        settings={"name": name, "modes": modes, "fmax": highest},
+    )
+
+
+def _row(model: Model, name: str, count: int, fmax: float | None, tell: Progress) -> CasingRow:
+    seconds: dict[str, float] = {}
+
+    def clocked(step: str, since: float) -> None:
+        seconds[step] = time.perf_counter() - since
+
+    settings = casing_settings(model, name)
+    since = time.perf_counter()
+    fe = finite_element_body(settings, part_of(tell, 0.0, 0.15))
+    clocked("reading and assembly", since)
+    since = time.perf_counter()
+    body, factor = reduce(fe, settings.modes_to or (BEYOND * fmax if fmax else None), part_of(tell, 0.15, 0.55))
+    clocked("reduction", since)
+    since = time.perf_counter()
+    count = min(count, len(fe.mesh.points))
+    # The factor of the reduction serves again where it is that of the body without rigid seats.
+    mean = settings.connection == "mean" or not fe.seats
+    empty = MeshModes(np.zeros(0), np.zeros((fe.dofs, 0)))
+    held = held_modes(fe, count, factor if mean else None, part_of(tell, 0.55, 0.7)) if body.held else empty
+    reusable: ElasticBody | None = factor if mean and not len(fe.held) else None
+    del factor
+    free = free_modes(fe, count, reusable, part_of(tell, 0.7, 0.9))
+    clocked("modes of the mesh", since)
+    since = time.perf_counter()
+    tell(0.9, f"{settings.address}: error of the mesh")
+    free_error = _mesh_error(fe, free)
+    held_error = _mesh_error(fe, held)
+    clocked("error of the mesh", since)
+    residual, rigid_frequency = rigid_residual(fe)
+    frequency, shapes = body.modes()
+    first = 0 if body.held else 6
+    chosen = range(first, min(first + count, body.size))
+    mass, centre, inertia = fe.mass_properties
+    nodes, surface_nodes = len(fe.mesh.points), np.unique(fe.mesh.boundary)
+    assert body.surface is not None, "a body of a mesh has a surface"
+    tell(1.0, f"{settings.address}: done")
+    return CasingRow(
+        files=tuple(Path(path).name for _, path in settings.files),
+        element=fe.mesh.kind,
+        elements=len(fe.mesh.cells),
+        nodes=nodes,
+        dofs=fe.dofs,
+        size_m=np.ptp(fe.mesh.points, axis=0),
+        mass_kg=mass,
+        centre_m=centre,
+        inertia_kg_m2=inertia,
+        connection=settings.connection,
+        jacobian_least=fe.mesh.jacobian_low,
+        straightened=tuple(number + 1 for number in fe.mesh.straightened),
+        rigid_residual=residual,
+        rigid_frequency_hz=rigid_frequency,
+        free_frequency_hz=free.frequency,
+        free_mesh_error=free_error,
+        held_frequency_hz=held.frequency,
+        held_mesh_error=held_error,
+        fixed_frequency_hz=body.fixed_frequency,
+        coordinates=body.size,
+        reduced_frequency_hz=frequency[list(chosen)],
+        reduction_error=np.array(
+            [0.5 * (body.eigenvalue_error((2.0 * np.pi * frequency[i]) ** 2, shapes[:, i]) or 0.0) for i in chosen]
+        ),
+        seats=_seats(fe, body),
+        notes=fe.mesh.notes,
+        memory_bytes=_largest_memory(),
+        seconds=seconds,
+        points=body.surface.points,
+        triangles=body.surface.triangles,
+        free_shapes=free.shapes.reshape(nodes, 3, -1)[surface_nodes],
+        held_shapes=held.shapes.reshape(nodes, 3, -1)[surface_nodes],
+    )
+
+
+def _mesh_error(fe: FiniteElementBody, modes: MeshModes) -> np.ndarray:
+    """Relative error (k,) of the frequencies of modes of the mesh: half of that of λ."""
+    if not len(modes.eigenvalues):
+        return np.zeros(0)
+    return np.asarray(0.5 * eigenvalue_errors(fe, modes.eigenvalues, modes.shapes) / modes.eigenvalues)
+
+
+def _seats(fe: FiniteElementBody, body: ReducedBody) -> tuple[CasingSeat, ...]:
+    """Stiffness of each seat: of a body that is held with the other seats free, else with them held."""
+    K = body.stiffness[: body.interface, : body.interface]
+    flexibility = np.linalg.inv(K) if body.held else None
+    found = []
+    for number, seat in enumerate(body.seats):
+        own = slice(6 * number, 6 * number + 6)
+        stiffness = K[own, own] if flexibility is None else np.linalg.inv(flexibility[own, own])
+        patch = fe.seats[number]
+        others = "held" if flexibility is None else "free"
+        found.append(CasingSeat(seat, patch.point, patch.area, len(patch.nodes), stiffness, others))
+    return tuple(found)
+
+
+def _largest_memory() -> float | None:
+    """The most memory that this process has held, in bytes; None where the system does not tell."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return None
+    unit = 1 if sys.platform == "darwin" else 1024
+    return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit)

@@ -1,0 +1,181 @@
+"""What a user meets: keys, mistakes in sentences with exit code 2, the command, and bodies that are kept."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.casings.casing import forget
+from rotorgear.casings.file_mesh import FileMesh, NamedSet
+from tests.paths import ROOT
+from tests.unit.casings.blocks import block, write_inp
+
+pytest.importorskip("meshio")
+MODEL = """
+[casings.box]
+mesh = "box.inp"
+unit = "m"
+material = "steel"
+held = ["low"]
+seats = { left = "high" }
+damping_ratio = 0.01
+
+[shafts.rotor]
+position = ["50 mm", "30 mm"]
+start = "200 mm"
+sections = [{ length = "100 mm", outer_diameter = "20 mm" }]
+
+[bearings.left]
+shaft = "rotor"
+at = "start"
+stiffness = { radial = "1e8 N/m", axial = "1e8 N/m" }
+casing = "box"
+"""
+
+
+@pytest.fixture(autouse=True)
+def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROTORGEAR_CACHE", str(tmp_path / "cache"))
+    forget()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    write_inp(tmp_path / "box.inp", block((0.1, 0.06, 0.2), (2, 1, 2)))
+    return tmp_path
+
+
+def problem(folder: Path, old: str, new: str) -> str:
+    assert old in MODEL
+    with pytest.raises(rg.RotorgearError) as error:
+        rg.casing(rg.loads(MODEL.replace(old, new), folder=folder), modes=2)
+    return str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('unit = "m"\n', "", "casings.box.unit: missing"),
+        ('material = "steel"\n', "", "casings.box.material: missing"),
+        ('material = "steel"', 'material = "stel"', "did you mean 'steel'?"),
+        ('material = "steel"', "density = 7850", "casings.box.youngs_modulus: missing"),
+        ('unit = "m"', 'unit = "mm"', "casings.box.unit: the mesh measures 0.1 mm x 0.06 mm x 0.2 mm"),
+        ('unit = "m"', 'unit = "m"\nmass = "3 kg"', "casings.box.mass: the mesh has 9.42 kg, and 3 kg are stated"),
+        ('unit = "m"', 'unit = "cm"\nmass = "9.4 kg"\nmounts = {}', "unit"),
+        ('"box.inp"', '"bx.inp"', "Did you mean 'box.inp'"),
+        ('held = ["low"]', 'held = ["lw"]', "casings.box.held[0]: the mesh has no set 'lw' (did you mean 'low'?)"),
+        ('held = ["low"]', 'held = ["high"]', "casings.box.seats.left: nodes of this seat are held"),
+        (
+            'held = ["low"]',
+            'mounts = { low = { x = "1e8 N/m" } }',
+            "a mechanism: displacement along y; displacement along z",
+        ),
+        ('{ left = "high" }', '{ left = "hig" }', "casings.box.seats.left: the mesh has no set 'hig'"),
+        ('{ left = "high" }', '{ lft = "high" }', "did you mean 'left'?"),
+        ('{ left = "high" }', "{ left = { radius = 1 } }", "casings.box.seats.left.axis: missing"),
+        (
+            '{ left = "high" }',
+            "{ left = { axis = 'z', center = [0, 0], from = 0, to = 1, radius = 0.03 } }",
+            "no face of the mesh lies on this cylinder (radius 30 mm)",
+        ),
+        ('casing = "box"', 'casing = "bx"', "did you mean 'box'?"),
+        ('casing = "box"', 'casing = "box"\npedestal = { stiffness = { x = 1e8 } }', "casing and pedestal"),
+    ],
+)
+def test_a_mistake_is_one_sentence_with_its_address(folder: Path, old: str, new: str, words: str) -> None:
+    assert words in problem(folder, old, new)
+
+
+def test_bodies_that_do_not_hang_together_and_sets_that_hold_too_little_are_named(folder: Path) -> None:
+    one = block((0.1, 0.06, 0.2), (1, 1, 2))
+    n = len(one.points)
+    sets = {**one.sets, "edge": NamedSet(one.sets["low"].nodes[one.points[one.sets["low"].nodes, 0] < 1e-9])}
+    sets["nowhere"] = NamedSet(np.array([2 * n]))
+    cells = {"tetra10": np.vstack([one.cells["tetra10"], one.cells["tetra10"] + n])}
+    points = np.vstack([one.points, one.points + np.array([0.5, 0.0, 0.0]), [[9.0, 9.0, 9.0]]])
+    write_inp(folder / "box.inp", FileMesh(points, cells, sets))
+    said = problem(folder, "damping_ratio", "damping_ratio")
+    assert (
+        "2 bodies that do not hang together: 12 elements about (50 mm, 30 mm, 100 mm); 12 elements about (550 mm"
+        in said
+    )
+
+    write_inp(
+        folder / "box.inp",
+        FileMesh(points[[*range(n), 2 * n]], one.cells, {**sets, "nowhere": NamedSet(np.array([n]))}),
+    )
+    assert "a mechanism: rotation about y" in problem(folder, '["low"]', '["edge"]')
+    assert "the set 'nowhere' touches no node" in problem(folder, '{ left = "high" }', '{ left = "nowhere" }')
+
+
+def test_the_command_writes_the_names_of_the_design_and_ends_with_2_where_the_mesh_is_wrong(folder: Path) -> None:
+    (folder / "model.toml").write_text(MODEL)
+    command = [sys.executable, "-m", "rotorgear", "casing", "model.toml", "--modes", "3", "--json", "out.json"]
+    environment = {
+        "PYTHONPATH": str(ROOT),
+        "PATH": "",
+        "ROTORGEAR_CACHE": str(folder / "cache"),
+        "OMP_NUM_THREADS": "1",
+    }
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    box = json.loads((folder / "out.json").read_text())["casings"]["box"]
+    assert box["mass_kg"] == pytest.approx(7850 * 0.1 * 0.06 * 0.2)
+    assert box["centre_m"] == pytest.approx([0.05, 0.03, 0.1])
+    assert np.shape(box["inertia_kg_m2"]) == (3, 3)
+    assert len(box["free_frequency_hz"]) == len(box["held_frequency_hz"]) == len(box["held_mesh_error"]) == 3
+    assert min(box["free_frequency_hz"]) > 1000.0
+    assert np.shape(box["seats"][0]["stiffness"]) == (6, 6)
+    assert "held" in done.stdout
+
+    (folder / "model.toml").write_text(MODEL.replace('"low"', '"feet"'))
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.strip().count("\n") == 0
+    assert "no set 'feet'" in done.stderr
+
+
+def test_a_body_is_kept_by_its_mesh_and_keys_and_a_damaged_file_is_made_anew(folder: Path) -> None:
+    model = rg.loads(MODEL, folder=folder)
+    first = model.layout.casing("box")
+    forget()
+    again = model.layout.casing("box")
+    assert again is not first
+    assert again.seconds == {}, "it came from the disk"
+    np.testing.assert_array_equal(first.stiffness, again.stiffness)
+    np.testing.assert_array_equal(first.surface.basis, again.surface.basis)  # type: ignore[union-attr]
+    assert again.seats == first.seats == ("left",)
+
+    kept = next((folder / "cache").glob("casing-*.h5"))
+    with h5py.File(kept, "r+") as file:
+        file["mass"][0, 0] = 1.0
+    forget()
+    assert model.layout.casing("box").mass[0, 0] == first.mass[0, 0]
+    model.with_("casings.box.connection", "rigid").layout.casing("box")
+    write_inp(folder / "box.inp", block((0.1, 0.06, 0.2), (1, 1, 2)))
+    model.layout.casing("box")
+    assert len(list((folder / "cache").glob("casing-*.h5"))) == 3
+
+
+def test_a_seat_may_be_a_bore_of_its_place(folder: Path) -> None:
+    """Four bricks round a square hole, whose corners lie on a circle about its axis."""
+    angles = np.arange(8) * np.pi / 4.0
+    ring = np.array([[np.cos(a), np.sin(a)] for a in angles])
+    points = np.array([[*(r * xy), z] for z in (0.0, 0.05, 0.1) for r in (0.04, 0.08) for xy in ring])
+    cells = []
+    for layer in range(2):
+        for i in range(8):
+            j = (i + 1) % 8
+            low = [16 * layer + i, 16 * layer + 8 + i, 16 * layer + 8 + j, 16 * layer + j]
+            cells.append([*low, *(node + 16 for node in low)])
+    write_inp(folder / "box.inp", FileMesh(points, {"hexahedron": np.array(cells)}, {"low": NamedSet(np.arange(16))}))
+    place = "{ left = { axis = 'z', center = [0, 0], from = '50 mm', to = '100 mm', radius = '40 mm' } }"
+    body = rg.loads(MODEL.replace('{ left = "high" }', place), folder=folder).layout.casing("box")
+    np.testing.assert_allclose(body.seat_points, [[0.0, 0.0, 0.075]])
