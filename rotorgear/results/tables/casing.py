@@ -11,6 +11,11 @@ from rotorgear.results.tables.common import heading, lines, plain_table, table
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+# Products of inertia below this share of the largest are shown as 0.
+_ROUNDING = 1e-9
+# |K R| / (|K| |R|) of rigid-body motions that strain nothing.
+_STRAINED = 1e-10
+
 
 def casing_table(survey: CasingSurvey) -> RenderableType:
     """What `rotorgear casing` prints."""
@@ -31,11 +36,15 @@ def _casing(name: str, row: CasingRow) -> list[Any]:
     facts.add_row("size", " x ".join(millimetres(float(side)) for side in row.size_m))
     facts.add_row("mass", f"{row.mass_kg:.6g} kg")
     facts.add_row("centre", ", ".join(millimetres(float(x)) for x in row.centre_m))
-    inertia = row.inertia_kg_m2
+    # Products of inertia of a symmetric body are rounding.
+    inertia = row.inertia_kg_m2 * (abs(row.inertia_kg_m2) > _ROUNDING * abs(row.inertia_kg_m2).max())
     facts.add_row("inertia xx yy zz", " ".join(f"{inertia[i, i]:.5g}" for i in range(3)) + " kg m^2")
     facts.add_row("inertia xy yz zx", " ".join(f"{inertia[i, (i + 1) % 3]:.5g}" for i in range(3)) + " kg m^2")
     facts.add_row("least Jacobian", f"{row.jacobian_least:.3g} of the straight element's")
-    facts.add_row("rigid motions", f"|K R|/|K||R| {row.rigid_residual:.1e}, up to {row.rigid_frequency_hz:.2g} Hz")
+    free_of_strain = row.rigid_residual < _STRAINED and row.rigid_frequency_hz < 1e-3 * row.free_frequency_hz[0]
+    words = "strain nothing" if free_of_strain else f"are strained: {row.rigid_frequency_hz:.2g} Hz"
+    compared = f"below {_STRAINED:.0e}" if free_of_strain else f"= {row.rigid_residual:.1e}"
+    facts.add_row("rigid-body motions", f"{words}: |K R|/|K||R| {compared}")
     fixed = row.fixed_frequency_hz
     reach = f", to {fixed[-1]:.0f} Hz" if len(fixed) else ""
     facts.add_row("reduced to", f"{row.coordinates} coordinates: {len(fixed)} fixed-interface modes{reach}")
