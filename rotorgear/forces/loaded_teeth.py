@@ -34,7 +34,7 @@ _LOADS = 1500
 _HARMONICS = 10
 _TURN = 2.0 * np.pi
 # Places of the parameters, which cosine and sine of each harmonic of e follow, and then the rows of the map; COAST is where the
-# parameters of the coast flanks begin, or 0.
+# parameters of the coast flanks begin, or 0; LENGTH the numbers in a row.
 (
     SPACING,
     PER_K,
@@ -50,8 +50,9 @@ _TURN = 2.0 * np.pi
     HARMONICS,
     E_MEAN,
     COAST,
+    LENGTH,
     SERIES,
-) = range(15)
+) = range(16)
 # A row: delta_0, then at each step of x the force, the tangent stiffness and the energy.
 FORCE, TANGENT, ENERGY = range(3)
 NODE = 3
@@ -79,7 +80,7 @@ def place_flank(angle, speed, p, s):  # type: ignore[no-untyped-def]
         slope += n * (b * np.cos(n * phase) - a * np.sin(n * phase))
     rows = int(p[ROWS])
     first = SERIES + 2 * count
-    length = 1 + NODE * (STEPS + 1)
+    length = int(p[LENGTH])
     turns = p[FORWARD] * (p[ORDER] * angle + p[PATH_PHASE]) / _TURN / p[PERIODS]
     at = (turns - np.floor(turns)) * rows
     i = min(int(at), rows - 1)
@@ -289,6 +290,7 @@ class LoadedTeeth(ForceLaw):
             count,
             self.error_mean,
             0 if self.coast is None else SERIES + series.size + self.rows.size,
+            self.rows.shape[1],
         ]
         behind = np.zeros(0) if self.coast is None else self.coast.parameters()
         return np.concatenate([head, series.ravel(), self.rows.ravel(), behind])

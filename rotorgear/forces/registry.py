@@ -21,6 +21,7 @@ from rotorgear.forces.law import ForceLaw
 _SHIPPED = {
     "mesh_contact": "MeshContact",
     "loaded_teeth": "LoadedTeeth",
+    "loaded_face": "LoadedFace",
     "mesh_friction": "MeshFriction",
     "journal_bearing": "JournalBearing",
     "ball_bearing": "BallBearing",

@@ -331,6 +331,12 @@ def tilt_only(group: ElementGroup) -> ElementGroup:
     )
 
 
+def tilt_damper(group: ElementGroup) -> ElementGroup:
+    """The damper alone of a mesh that resists a tilt, whose force and moment are a law of their own."""
+    only = tilt_only(group)
+    return replace(only, matrices=replace(only.matrices, modulus=None))
+
+
 def _bearing(
     layout: Layout, nodes: Nodes, name: str, bearing: Bearing, stiffness: np.ndarray, damping: np.ndarray
 ) -> ElementGroup:

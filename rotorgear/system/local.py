@@ -26,9 +26,11 @@ from rotorgear.system.groups import (
     mesh_damping,
     mesh_dofs,
     resists_tilt,
+    tilt_damper,
     tilt_only,
 )
 from rotorgear.system.loads import weight_loads
+from rotorgear.system.local_faces import face_law
 from rotorgear.system.local_parts import (
     LocalPart,
     bearing_parts,
@@ -49,6 +51,7 @@ if TYPE_CHECKING:
     from rotorgear.forces.loaded_teeth import LoadedTeeth
     from rotorgear.forces.mesh_contact import MeshContact
     from rotorgear.gears.loaded.contact_map import ContactMap
+    from rotorgear.gears.loaded.face_map import FaceMap
 
 # Depth over which damping grows from zero, and the reference depth of penetration damping, relative to the mean deflection.
 _RAMP = 0.02
@@ -68,13 +71,15 @@ class LocalModel:
     groups: tuple[ElementGroup, ...]
 
 
-def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
+def local_model(system: System, rotation: Rotation, speed: float, *, along_faces: bool = False) -> LocalModel:
     """Return the structure with its contacts as laws.
 
     Args:
         system: nodes, dofs and groups.
         rotation: speed of the reference over time.
         speed: at which bearings with tables and internal damping are taken, in rad/s.
+        along_faces: loaded teeth that feel the tilt of their shafts follow it in time, by maps at several tilts; otherwise they
+            stand askew as in the static state, and resist a tilt by the tangent about it.
     """
     from rotorgear.solvers.time.local_forces import gather
 
@@ -83,13 +88,20 @@ def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
         for group in system.groups_at(speed)
         if not group.part.startswith(("meshes.", "nonlinear_elements."))
     )
-    groups = (*groups, *(tilt_only(group) for group in system.groups if resists_tilt(group)))
+    mapped = _faces(system) if along_faces else {}
+    contacts = [group for group in system.groups if group.part.startswith("meshes.")]
+    resisting = [
+        tilt_damper(group) if k in mapped else tilt_only(group)
+        for k, group in enumerate(contacts)
+        if resists_tilt(group)
+    ]
+    groups = (*groups, *resisting)
     K = assemble(groups, system.dofs, lambda g: g.matrices.stiffness)
     C = assemble(groups, system.dofs, lambda g: g.matrices.damping)
     damping = system.model.damping
     C = sp.csc_array(C + damping.rayleigh_alpha * system.mass + damping.rayleigh_beta * K)
     parts = (
-        *_mesh_parts(system),
+        *_mesh_parts(system, mapped),
         *bearing_parts(system),
         *element_parts(system),
         *unbalance_parts(system),
@@ -102,7 +114,8 @@ def local_model(system: System, rotation: Rotation, speed: float) -> LocalModel:
     if operation and operation.gravity:
         steady = steady + weight_loads(system, operation.gravity)
     lines = contact_lines(system)
-    load = T.T @ steady - lines.tilt @ lines.couple
+    couple = np.where(np.isin(np.arange(len(lines.states)), list(mapped)), 0.0, lines.couple)
+    load = T.T @ steady - lines.tilt @ couple
     forces = gather(tuple(part.law for part in parts))
     alone = {part.part for part in without_linear_part(system)}
     about = forces.reference_stiffness.copy()
@@ -133,10 +146,17 @@ def torque_load(system: System) -> np.ndarray:
     return f
 
 
-def _mesh_parts(system: System) -> list[LocalPart]:
+def _faces(system: System) -> dict[int, FaceMap]:
+    """Maps over the tilt of the flanks by number of the contact, where loaded teeth have one."""
+    load = system.load.about_nominal_flanks
+    found = {k: load.face_map(force) for k, force in enumerate(load.forces)}
+    return {k: teeth for k, teeth in found.items() if teeth is not None}
+
+
+def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> list[LocalPart]:
     load = system.load.about_nominal_flanks
     found = []
-    for force in load.forces:
+    for number, force in enumerate(load.forces):
         contact = force.contact
         geometry = contact_geometry(force)
         label = f"{contact.mesh} helix {contact.helix + 1}"
@@ -149,9 +169,12 @@ def _mesh_parts(system: System) -> list[LocalPart]:
         column = columns_at(system, dofs, approach)
         turned = replace(geometry, torque_sense=-geometry.torque_sense)
         coast = columns_at(system, dofs[:12], contact_vector(turned)[None])
-        teeth = load.contact_map(force)
         law: MeshContact | LoadedTeeth = spring
         coast_law: MeshContact | LoadedTeeth = _back(spring)
+        if number in faces:
+            found += _along_face(system, force, spring, faces[number], label)
+            continue
+        teeth = load.contact_map(force)
         # A map begins where its flanks touch, a spring about a mean state does not.
         touching = replace(spring, error_mean=_gap(system, force))
         if teeth is not None:
@@ -162,7 +185,7 @@ def _mesh_parts(system: System) -> list[LocalPart]:
                 found.append(LocalPart(part, f"{label} impact", blow, column))
             if spring.gap != "bilateral":
                 behind = force.on_other_flank
-                other_teeth = load.contact_map(behind)
+                other_teeth = load.coast_map(force)
                 assert other_teeth is not None  # its working load is that of the other flank
                 phase = load.on_other_flank(contact.mesh).phase(contact) or 0.0
                 coast_loaded = _loaded_teeth(_back(touching), other_teeth, behind, phase)
@@ -175,6 +198,56 @@ def _mesh_parts(system: System) -> list[LocalPart]:
             found.append(rubbing)
         if spring.gap == "unilateral":
             found.append(LocalPart(part, f"{label} back", coast_law, coast, is_mesh=True))
+    return found
+
+
+def _along_face(system: System, force: MeshForce, spring: MeshContact, teeth: FaceMap, label: str) -> list[LocalPart]:
+    """A helix of loaded teeth that follows the tilt of its shafts; its coast flanks stand askew as in the mean state."""
+    load = system.load.about_nominal_flanks
+    contact = force.contact
+    part = f"meshes.{contact.mesh}"
+    geometry = contact_geometry(force)
+    dofs = mesh_dofs(system.layout, system.nodes, force)[0]
+    in_middle = replace(face_of(system.layout, force), place=0.0)
+    columns = columns_at(system, dofs, face_strains(geometry, in_middle))
+    assert force.face is not None
+    mesh = system.layout.mesh(contact.mesh).part
+    gap = mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0)
+    touching = replace(spring, error_mean=gap)
+    law = face_law(
+        teeth,
+        contact.stiffness,
+        gap,
+        place=force.face.place,
+        tilt_stiffness=force.face.tilt_stiffness,
+        damping=spring.damping,
+        contact_damping=spring.contact_damping,
+        reference=spring.ramp,
+        order=spring.order,
+        phase=spring.phase,
+        path_phase=spring.phase,
+        forward=1 if force.pinion_drives else -1,
+        error_cos=spring.error_cos,
+        error_sin=spring.error_sin,
+    )
+    found = [LocalPart(part, label, law, columns, is_mesh=True)]
+    approach = columns[:, :1]
+    if spring.impact:
+        blow = replace(spring, stiffness=0.0, damping=0.0, gap="bilateral", expanded=False)
+        found.append(LocalPart(part, f"{label} impact", blow, approach))
+    rubbing = friction_part(system, force, geometry, label, spring, dofs[:12], approach)
+    if rubbing is not None:
+        found.append(rubbing)
+    if spring.gap != "bilateral":
+        behind = force.on_other_flank
+        other_teeth = load.coast_map(force)
+        assert other_teeth is not None  # its working load is that of the other flank
+        phase = load.on_other_flank(contact.mesh).phase(contact) or 0.0
+        turned = replace(geometry, torque_sense=-geometry.torque_sense)
+        own_normal = columns_at(system, dofs[:12], contact_vector(turned)[None])
+        column = own_normal if spring.gap == "unilateral" else -approach
+        coast_law = _loaded_teeth(_back(touching), other_teeth, behind, phase)
+        found.append(LocalPart(part, f"{label} back", coast_law, column, is_mesh=True))
     return found
 
 

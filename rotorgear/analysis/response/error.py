@@ -19,6 +19,10 @@ _CHECKED_ON_FINER = 4
 _PEAKS = 3
 # A resonance shows its height to this share when its half-power width spans so many speeds.
 _SPEEDS_A_PEAK = 2.0
+# An order pushes a mode that takes more than this share of what the most pushed one takes: the rest is rounding.
+_PUSHED = 1e-9
+# A width of a resonance below this share of the speed is rounding: nothing damps it.
+_UNDAMPED = 1e-12
 
 
 def mesh_error(
@@ -97,13 +101,20 @@ def speed_warnings(
     top = float(np.max(np.abs(speeds)))
     width = np.inf
     for order in orders:
+        # A mode that the order does not push, as an axial one of spur gears, has no resonance with it.
+        pushed = np.abs(shapes[:, elastic].T @ plant.loads([order], float(speeds[-1]))[1][:, 0])
         met = (w[elastic] >= order.ratio * float(np.min(np.abs(speeds)))) & (w[elastic] <= order.ratio * top)
+        met &= pushed > _PUSHED * pushed.max(initial=0.0)
         if met.any():
             width = min(width, float(np.min(2.0 * ratios[met] * w[elastic][met])) / order.ratio)
     if width >= _SPEEDS_A_PEAK * step:
         return []
     apart = step * RPM_PER_RAD_S
     wide = width * RPM_PER_RAD_S
+    if width <= _UNDAMPED * top:
+        return [
+            "nothing damps a resonance that is met: its peak is as high as the nearest speed happens to be; give a damping"
+        ]
     return [
         f"speeds are {apart:.4g} rpm apart, but the sharpest resonance met is {wide:.2g} rpm wide at half power: "
         "its peak may be higher than shown; more points or a narrower range show it"

@@ -47,6 +47,7 @@ class Order:
         ratio: frequency in rad/s over the size of the reference speed.
         unbalance: force per square of the reference speed at the free dofs, (n,).
         error: transmission error of each contact, (c,) m; force: F_0 times the stiffness variation, and impacts, (c,) N.
+        couple: of loaded teeth that feel the tilt of their shafts, about the place of each contact along its face, (c,) N m.
     """
 
     name: str
@@ -54,6 +55,7 @@ class Order:
     unbalance: np.ndarray
     error: np.ndarray
     force: np.ndarray
+    couple: np.ndarray
 
     def load(self, lines: ContactLines, speed: float) -> np.ndarray:
         """Force on the free dofs at a reference speed in rad/s, (n,)."""
@@ -61,6 +63,7 @@ class Order:
         return np.asarray(
             speed**2 * self.unbalance
             + lines.vectors @ ((lines.stiffness + 1j * w * lines.damping) * self.error - self.force)
+            - lines.tilt @ self.couple
         )
 
 
@@ -74,13 +77,13 @@ def orders_of(setup: Setup) -> tuple[list[Order], tuple[str, ...]]:
     system = setup.system
     count = len(setup.lines.states)
     for shaft, ratio, load in _unbalances(system):
-        _add(found, ("shaft", 1, round(ratio, 9)), shaft, ratio, load, np.zeros((2, count), complex))
+        _add(found, ("shaft", 1, round(ratio, 9)), shaft, ratio, load, np.zeros((3, count), complex))
     for mesh, harmonic, ratio, terms in _meshes(setup, left):
         _add(found, ("mesh", harmonic, round(ratio, 9)), mesh, ratio, np.zeros(system.n, complex), terms)
     for kind, name, multiple, ratio, terms in _loaded_teeth(setup, left):
         _add(found, (kind, multiple, round(ratio, 9)), name, ratio, np.zeros(system.n, complex), terms)
     orders = [
-        Order(f"{kind} {', '.join(names)} {harmonic}x", o.ratio, o.unbalance, o.error, o.force)
+        Order(f"{kind} {', '.join(names)} {harmonic}x", o.ratio, o.unbalance, o.error, o.force, o.couple)
         for (kind, harmonic, _), (names, o) in found.items()
     ]
     return sorted(orders, key=lambda order: order.ratio), tuple(dict.fromkeys(left))
@@ -94,12 +97,11 @@ def _add(
     load: np.ndarray,
     terms: np.ndarray,
 ) -> None:
-    names, old = found.get(
-        key, ([], Order("", ratio, np.zeros_like(load), np.zeros_like(terms[0]), np.zeros_like(terms[1])))
-    )
+    names, old = found.get(key, ([], Order("", ratio, np.zeros_like(load), *np.zeros_like(terms))))
     if name not in names:
         names.append(name)
-    found[key] = names, Order("", old.ratio, old.unbalance + load, old.error + terms[0], old.force + terms[1])
+    whole = np.array([old.error, old.force, old.couple]) + terms
+    found[key] = names, Order("", old.ratio, old.unbalance + load, *whole)
 
 
 def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:
@@ -120,7 +122,7 @@ def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:
 
 
 def _meshes(setup: Setup, left: list[str]) -> Iterable[tuple[str, int, float, np.ndarray]]:
-    """(mesh, harmonic, ratio, [errors; forces] of all contacts) of every harmonic that a mesh is given."""
+    """(mesh, harmonic, ratio, [errors; forces; couples] of all contacts) of every harmonic that a mesh is given."""
     system = setup.system
     load = system.load.about_nominal_flanks
     for k, state in enumerate(setup.lines.states):
@@ -131,7 +133,7 @@ def _meshes(setup: Setup, left: list[str]) -> Iterable[tuple[str, int, float, np
         if phase is None or ratio == 0.0:
             continue
         for row, harmonic, amplitude in _harmonics(setup, k, mesh.part, left):
-            terms = np.zeros((2, len(setup.lines.states)), complex)
+            terms = np.zeros((3, len(setup.lines.states)), complex)
             terms[row, k] = amplitude * cmath.exp(1j * harmonic * phase)
             yield mesh.name, harmonic, harmonic * ratio, terms
 
@@ -168,7 +170,7 @@ def _weak(what: str, rest: float) -> list[str]:
 
 
 def _loaded_teeth(setup: Setup, left: list[str]) -> Iterable[tuple[str, str, int | Fraction, float, np.ndarray]]:
-    """(kind, name, harmonic, ratio, [errors; forces] of all contacts) of the joint state of loaded teeth, by orders that matter.
+    """(kind, name, harmonic, ratio, [errors; forces; couples] of all contacts) of the joint state of loaded teeth.
 
     The damping of a contact is that of its deflection: what the approach is at first touch acts as a transmission error e, and
     the force f + k e makes up for it in k (v.q - e).
@@ -188,7 +190,8 @@ def _loaded_teeth(setup: Setup, left: list[str]) -> Iterable[tuple[str, str, int
                 f"they would change its peak to peak at a crawl by {100.0 * change:.2g} %"
             )
         error = joint.no_load(cycle)
-        terms = np.stack([harmonics_of_cycle(error), harmonics_of_cycle(f + joint.stiffness * error)], axis=1)
+        varied = (error, f + joint.stiffness * error, joint.couple(cycle))
+        terms = np.stack([harmonics_of_cycle(values) for values in varied], axis=1)
         for n in numbers:
             for kind, name, harmonic in _named(setup.system, cycle, Fraction(n, cycle.periods)):
                 yield kind, name, harmonic, n / cycle.periods * cycle.ratio, terms[n - 1]

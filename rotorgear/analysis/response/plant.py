@@ -21,7 +21,9 @@ class Readings:
     """Amplitudes at one speed.
 
     Attributes:
-        mesh_force, transmission_error, approach: (o, c); bearing_force: (o, b, 3); acceleration: of the named points, (o, k).
+        mesh_force, transmission_error, approach: (o, c), the approach in the middle of the face, transverse.
+        pressed: (o, c) approach along the flank normal at the place of the face where the contact's stiffness stands.
+        bearing_force: (o, b, 3); acceleration: of the named points, (o, k).
         displacement: x y z tx ty tz at gears, disks and bearings, (o, d, 6).
         normal_velocity: of the casings with a surface, root of the mean of |v_n|^2 over it, (o, k).
     """
@@ -29,6 +31,7 @@ class Readings:
     mesh_force: np.ndarray
     transmission_error: np.ndarray
     approach: np.ndarray
+    pressed: np.ndarray
     bearing_force: np.ndarray
     acceleration: np.ndarray
     displacement: np.ndarray
@@ -94,10 +97,13 @@ class Plant:
         if self._parts is None:
             still = system.circulatory(0.0)
             turning = sp.csc_array(system.circulatory(1.0) - still)
-            self._parts = sp.csc_array(system.stiffness(0.0) + still), turning, system.damping(0.0)
-        K0, turning, C = self._parts
+            damping = _on_one_pattern(system.damping(0.0), system.gyroscopic)
+            self._parts = sp.csc_array(system.stiffness(0.0) + still), turning, *damping
+        K0, turning, C, G = self._parts
         K = sp.csc_array(K0 + speed * turning) if turning.nnz else K0
-        return Dynamics(system.mass, sp.csc_array(C + speed * system.gyroscopic), K, self.low_rank)
+        # A sum of sparse matrices of unlike patterns costs more than all else at a speed.
+        D = sp.csc_array((C.data + speed * G.data, C.indices, C.indptr), shape=C.shape)
+        return Dynamics(system.mass, D, K, self.low_rank)
 
     def loads(self, orders: list[Order], speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Frequencies (o,) in rad/s and loads (n, o) of all orders at a reference speed."""
@@ -116,9 +122,12 @@ class Plant:
         held = -((K @ q) + (C @ q) * (1j * w)).T.reshape(len(w), -1, 3)
         moved = (np.reshape(self._points, (len(self._points), len(q))) @ q).T
         there = (self._place_rows @ q).T.reshape(len(w), len(self.places), 6)
-        transverse = approach / np.cos([state.contact.base_helix_angle for state in lines.states])
+        place = np.array([state.face.place if state.face else 0.0 for state in lines.states])
+        middle = approach - place * (lines.tilt.T @ q).T
+        transverse = middle / np.cos([state.contact.base_helix_angle for state in lines.states])
+        rotation = (lines.rotation.T @ q).T
         normal = w[:, None] * self._normal(q)
-        return Readings(force, (lines.rotation.T @ q).T, transverse, held, -(w**2)[:, None] * moved, there, normal)
+        return Readings(force, rotation, transverse, approach, held, -(w**2)[:, None] * moved, there, normal)
 
     def _normal(self, q: np.ndarray) -> np.ndarray:
         """Root of the mean square of the normal displacement over each casing's surface, (o, k), from q (n, o)."""
@@ -151,6 +160,21 @@ class Plant:
         T = system.dofs.transform
         self._read = np.asarray((T.T @ K.T).T), np.asarray((T.T @ C.T).T)
         return self._read
+
+
+def _on_one_pattern(first: sp.csc_array, second: sp.csc_array) -> tuple[sp.csc_array, sp.csc_array]:
+    """Both matrices with the places of each other's entries, so that a sum of them is one of their data."""
+    places = sp.coo_array(abs(first) + abs(second))
+    n = first.shape[0]
+    order = np.lexsort((places.row, places.col))
+    rows = places.row[order]
+    columns = places.col[order]
+    ends = np.searchsorted(columns, np.arange(n + 1))
+    whole = []
+    for part in (first, second):
+        data = np.asarray(sp.csr_array(part)[rows, columns]).ravel() if rows.size else np.zeros(0)
+        whole.append(sp.csc_array((data, rows, ends), shape=first.shape))
+    return whole[0], whole[1]
 
 
 def dof_row(system: System, shaft: str, z: float, direction: str) -> np.ndarray:

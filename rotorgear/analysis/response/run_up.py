@@ -101,7 +101,9 @@ class ModalSweep:
         """Frequencies (o,), displacements (n, o) and relative residuals (o,) at a speed."""
         w, f = self.plant.loads(self.orders, speed)
         dynamics = self.plant.dynamics(speed)
-        q = self.basis @ self.reduced(dynamics, speed).solve(w, self.basis.T @ f)
+        # Real and complex would be multiplied as two complex ones, four times the work of a wide basis.
+        y = self.reduced(dynamics, speed).solve(w, self.basis.T @ f.real + 1j * (self.basis.T @ f.imag))
+        q = self.basis @ y.real + 1j * (self.basis @ y.imag)
         rest = (f - dynamics.apply(w, q)) / self.scale[:, None]
         size = np.linalg.norm(f / self.scale[:, None], axis=0)
         return w, q, np.linalg.norm(rest, axis=0) / np.where(size > 0.0, size, 1.0)

@@ -135,15 +135,14 @@ def _multiple(cycle: Cycle, order: Order) -> int:
 
 
 def _linear(run: _Run, s: int, joint: JointState, number: int) -> np.ndarray:
-    """Approach (p, c) of the linear solution at a speed along the flank normals over a cycle, in m."""
+    """Approach (p, c) of the linear solution at a speed over a cycle, along the flank normals at the places of contact, in m."""
     cycle = joint.cycles[number]
     count = len(cycle.position)
-    cosine = np.cos([state.contact.base_helix_angle for state in run.setup.lines.states])
-    spectrum = np.fft.rfft(cycle.approach, axis=0) / count
+    spectrum = np.fft.rfft(joint.pressed(cycle), axis=0) / count
     for o, order in enumerate(run.orders):
         n = _multiple(cycle, order)
         if 0 < n < len(spectrum):  # weak orders, which were not solved, follow as at a crawl
-            spectrum[n] = 0.5 * cosine * run.readings[s].approach[o]
+            spectrum[n] = 0.5 * run.readings[s].pressed[o]
     return np.asarray(np.fft.irfft(spectrum * count, count, axis=0))
 
 
@@ -154,10 +153,8 @@ def _rest(joint: JointState, number: int, delta: np.ndarray) -> tuple[np.ndarray
     parts = False
     f = joint.excitation(cycle)
     for i in np.flatnonzero(joint.own == number):
-        contact_map = joint.maps[i]
-        assert contact_map is not None
-        force = contact_map.force(delta[:, i] - joint.gap[i], joint.on_map(int(i), cycle.position))
-        linear = joint.force[i] + joint.stiffness[i] * (delta[:, i] - joint.approach[i]) + f[:, i]
+        force = joint.pressed_force(int(i), cycle, delta[:, i])
+        linear = joint.force[i] + joint.stiffness[i] * (delta[:, i] - joint.pressed(cycle)[:, i].mean()) + f[:, i]
         rest[:, i] = force - linear
         parts = parts or bool(np.any(force <= 0.0))
     return rest, parts
@@ -165,21 +162,20 @@ def _rest(joint: JointState, number: int, delta: np.ndarray) -> tuple[np.ndarray
 
 def _moved(run: _Run, s: int, joint: JointState, cycle: Cycle, rest: np.ndarray) -> np.ndarray:
     """Approach (p, c) in m that the spectrum (h, c) of r adds by the linear plant at a speed, by its strong harmonics."""
-    cosine = np.cos([state.contact.base_helix_angle for state in run.setup.lines.states])
     size = np.abs(rest).max(axis=1)
     found = np.zeros_like(rest)
     found[0] = -joint.compliance @ rest[0].real
     strongest = 1 + np.argsort(-size[1:])[:_STRONG]
     for n in strongest[size[strongest] > _WEAK * size.max()]:
         reading = _answer(run, s, n / cycle.periods * cycle.ratio, 2.0 * rest[n])
-        found[n] = 0.5 * cosine * reading.approach[0]
+        found[n] = 0.5 * reading.pressed[0]
     return np.asarray(np.fft.irfft(found * len(cycle.position), len(cycle.position), axis=0))
 
 
 def _answer(run: _Run, s: int, ratio: float, force: np.ndarray) -> Readings:
     """Readings of the linear plant at a speed under forces of the contacts (c,) in N at a multiple of the reference speed."""
     nothing = np.zeros(run.plant.system.n)
-    order = [Order("", ratio, nothing, 0.0 * force, force)]
+    order = [Order("", ratio, nothing, 0.0 * force, force, 0.0 * force)]
     speed = float(run.speeds[s])
     w, f = run.plant.loads(order, speed)
     q = solve_orders(run.plant, run.plant.dynamics(speed), w, f)

@@ -8,22 +8,27 @@ Helices and branches share the load, so they are solved together. Reduced to the
 
     delta = delta_0 - A (F(delta, u) - k delta),   A = V^T (K + V k V^T)^-1 V,
 
-for any k; whatever else of the structure is nonlinear has its tangents at the equilibrium. Contacts of one mesh frequency run
-through one cycle. Of several frequencies there is no short common period: each cycle is taken for itself, with the other
-contacts on the mean of their curves, delta_mean(F) over u.
+for any k; whatever else of the structure is nonlinear has its tangents at the equilibrium. A contact whose teeth feel the tilt
+of their shafts has two such displacements, the approach in the middle of its face and the tilt, and two forces, F and the
+moment M about the middle, from its face map. Contacts of one mesh frequency run through one cycle. Of several frequencies
+there is no short common period: each cycle is taken for itself, with the other contacts on the mean of their curves,
+delta_mean(F) over u.
 
 Linear analyses are about the mean of this state. With k_i the mean tangent of contact i, what shakes it is
 
     f_i(u) = F_i(u) - k_i delta_i(u),
 
-because k_i v_i . q + f_i then gives F_i(u) wherever the rest follows without inertia: exactly this state at a crawl.
+because k_i v_i . q + f_i then gives F_i(u) wherever the rest follows without inertia: exactly this state at a crawl. Along a
+face, with the mean tangent k at the place e and k_t against a tilt about it, delta_i is the approach at that place, and the
+couple m_i(u) = M_i - e F_i - k_t tilt_i shakes it too.
 H. N. Ozguven and D. R. Houser, Journal of Sound and Vibration 125 (1988) 71, for one mesh.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -32,11 +37,15 @@ import numpy as np
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.layout.mean_load import MeshForce
+from rotorgear.model.parts.helix_state import FaceState
 from rotorgear.solvers.sparse.newton import Settled, settle
+from rotorgear.system.local_faces import face_law
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
+    from rotorgear.forces.law import ForceLaw
     from rotorgear.gears.loaded.contact_map import ContactMap
+    from rotorgear.gears.loaded.face_map import FaceMap
 
 # Positions in a base pitch at least; a map that knows more is followed.
 _POSITIONS = 128
@@ -60,8 +69,9 @@ class Cycle:
         ratio: mesh frequency in rad/s over the size of the reference speed.
         periods: base pitches after which it repeats.
         position: (p,) in base pitches from the time 0 on, evenly spaced over `periods`.
-        approach: (p, c) delta of all contacts along the flank normal in m.
+        approach: (p, c) delta of all contacts along the flank normal in m; in the middle of a face that feels its tilt.
         force: (p, c) along the flank normal in N.
+        tilt: (p, c) of the flanks in m/m, 0 of contacts without a face map; moment: (p, c) about the middle of the face in N m.
     """
 
     meshes: tuple[str, ...]
@@ -70,6 +80,8 @@ class Cycle:
     position: np.ndarray
     approach: np.ndarray
     force: np.ndarray
+    tilt: np.ndarray
+    moment: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -82,7 +94,8 @@ class JointState:
         force, approach: (c,) means over its own cycle, N and m along the flank normal; of a contact without map over the first.
         stiffness: (c,) mean tangent over its own cycle in N/m; of a contact without map its own.
         gap: (c,) index error of each contact in m.
-        maps: (c,) contact maps, None without one.
+        maps: (c,) contact maps, None without one; face_maps: (c,) of teeth that feel the tilt of their shafts, in place of those.
+        faces: (c,) how it carries along its face about its mean, None without a face map.
         compliance: (c, c) approach of the contacts in m under a constant force of each mapped one in N, all being springs of
             these stiffnesses.
         pitch: (c,) base pitches past the pitch point of each contact at time 0; sense: (c,) +1 where it then runs up its map.
@@ -95,6 +108,8 @@ class JointState:
     stiffness: np.ndarray
     gap: np.ndarray
     maps: tuple[ContactMap | None, ...]
+    face_maps: tuple[FaceMap | None, ...]
+    faces: tuple[FaceState | None, ...]
     compliance: np.ndarray
     pitch: np.ndarray
     sense: np.ndarray
@@ -107,15 +122,49 @@ class JointState:
 
     def excitation(self, cycle: Cycle) -> np.ndarray:
         """f_i = F_i - k_i delta_i over a cycle, (p, c) in N, without its mean; 0 for contacts without a map."""
-        f = cycle.force - self.stiffness * cycle.approach
+        f = cycle.force - self.stiffness * self.pressed(cycle)
         return np.where(self.own >= 0, f - f.mean(axis=0), 0.0)
+
+    def couple(self, cycle: Cycle) -> np.ndarray:
+        """m_i = M_i - e F_i - k_t tilt_i over a cycle, (p, c) in N m, without its mean; 0 for contacts without a face map."""
+        against = np.array([face.tilt_stiffness if face else 0.0 for face in self.faces])
+        m = cycle.moment - self._places * cycle.force - against * cycle.tilt
+        return np.asarray(m - m.mean(axis=0))
+
+    def pressed(self, cycle: Cycle) -> np.ndarray:
+        """Approach (p, c) over a cycle at the places of contact, in m; of contacts without a face map that of the cycle."""
+        return np.asarray(cycle.approach + self._places * cycle.tilt)
+
+    def pressed_force(self, contact: int, cycle: Cycle, delta: np.ndarray) -> np.ndarray:
+        """Force (p,) in N at approaches (p,) at the place of a contact over its cycle, the tilt being that of the cycle."""
+        u = self.on_map(contact, cycle.position)
+        contact_map = self.maps[contact]
+        face_map = self.face_maps[contact]
+        if contact_map is not None:
+            return contact_map.force(delta - self.gap[contact], u)
+        assert face_map is not None
+        law = face_law(face_map, float(self.stiffness[contact]), float(self.gap[contact]))
+        tilt = cycle.tilt[:, contact]
+        d = np.stack([delta - self._places[contact] * tilt, tilt], axis=1)
+        return law.evaluate_many(d, 0.0 * d, angle=2.0 * math.pi * u).force[:, 0]
+
+    @property
+    def _places(self) -> np.ndarray:
+        """e (c,) in m; 0 without a face map."""
+        return np.array([face.place if face else 0.0 for face in self.faces])
 
     def no_load(self, cycle: Cycle) -> np.ndarray:
         """Approach (p, c) at first touch of the contacts that run through a cycle, in m without its mean; 0 for the others."""
         found = np.zeros_like(cycle.approach)
         for i, contact_map in enumerate(self.maps):
-            if contact_map is not None and self.cycles[self.own[i]] is cycle:
-                found[:, i] = contact_map.no_load(self.on_map(i, cycle.position))
+            face_map = self.face_maps[i]
+            if self.own[i] < 0 or self.cycles[self.own[i]] is not cycle:
+                continue
+            u = self.on_map(i, cycle.position)
+            if contact_map is not None:
+                found[:, i] = contact_map.no_load(u)
+            elif face_map is not None:
+                found[:, i] = face_map.no_load(float(cycle.tilt[:, i].mean()), u)
         return np.asarray(found - found.mean(axis=0))
 
     def on_map(self, contact: int, position: np.ndarray) -> np.ndarray:
@@ -127,7 +176,7 @@ def over_cycle(equilibrium: Equilibrated, speed: float) -> tuple[Equilibrated, J
     """Return the equilibrium that is the mean of the joint state of the loaded teeth, and that state.
 
     Without loaded teeth (`stiffness = "tooth_fe"`) it is the one given, and there is no such state. A mesh that feels the tilt
-    of its shafts stays linear about the load along its face.
+    of its shafts takes part with its approach and its tilt where it is about a load along its face (`along_faces.py`).
 
     Args:
         equilibrium: with the contacts as springs, on the flanks that carry.
@@ -141,7 +190,7 @@ def over_cycle(equilibrium: Equilibrated, speed: float) -> tuple[Equilibrated, J
         joint = joint_state(equilibrium)
         if joint is None:
             return equilibrium, None
-        load = equilibrium.system.load.about_cycle(joint.force, joint.stiffness, joint.start)
+        load = equilibrium.system.load.about_cycle(joint.force, joint.stiffness, joint.start, joint.faces)
         closed = np.where(joint.own >= 0, joint.force > 0.0, equilibrium.closed)
         settled = equilibrate(equilibrium.system.with_load(load), speed, closed)
         change = float(np.abs(settled.force - equilibrium.force).max())
@@ -162,12 +211,18 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
     """
     load = equilibrium.system.load
     lines = equilibrium.lines
-    maps = tuple(load.contact_map(state, near=True) for state in lines.states)
-    if not any(maps):
+    face_maps = tuple(load.face_map(state, near=True) for state in lines.states)
+    maps = tuple(
+        load.contact_map(state, near=True) if along is None else None
+        for state, along in zip(lines.states, face_maps, strict=True)
+    )
+    have = [one is not None or along is not None for one, along in zip(maps, face_maps, strict=True)]
+    if not any(have):
         return None
     phases = [load.phase(state.contact) for state in lines.states]
     ratios = [
-        _mesh_ratio(equilibrium.system, state) if map_ else -1.0 for state, map_ in zip(lines.states, maps, strict=True)
+        _mesh_ratio(equilibrium.system, state) if mapped else -1.0
+        for state, mapped in zip(lines.states, have, strict=True)
     ]
     frequencies = {round(ratio, 9): ratio for ratio in ratios if ratio >= 0.0}
     number = {key: g for g, key in enumerate(frequencies)}
@@ -175,7 +230,8 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
     problem = _Problem(
         equilibrium=equilibrium,
         maps=maps,
-        gap=lines.gap,
+        face_maps=face_maps,
+        gap=lines.gap - np.array([state.face.shift if state.face else 0.0 for state in lines.states]),
         pitch=np.array([(phase or 0.0) / (2.0 * math.pi) for phase in phases]),
         sense=np.array([1.0 if state.pinion_drives else -1.0 for state in lines.states]),
     )
@@ -183,16 +239,10 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
     at = np.maximum(own, 0)
     contacts = range(len(maps))
     stiffness = lines.stiffness.copy()
-    for i, contact_map in enumerate(maps):
-        if contact_map is not None:
-            cycle = cycles[own[i]]
-            u = problem.sense[i] * (problem.pitch[i] + cycle.position)
-            stiffness[i] = contact_map.stiffness(cycle.approach[:, i] - problem.gap[i], u).mean()
-    # A about other stiffnesses of the mapped contacts: A (1 + dk A_m)^-1.
-    m = problem.mapped
-    change = (stiffness - problem.stiffness)[m]
-    compliance = np.zeros((len(maps), len(maps)))
-    compliance[:, m] = problem.compliance @ np.linalg.inv(np.eye(len(m)) + change[:, None] * problem.compliance[m])
+    faces: list[FaceState | None] = [None] * len(maps)
+    for i, mapped in enumerate(have):
+        if mapped:
+            stiffness[i], faces[i] = problem.mean_tangent(i, cycles[own[i]])
     return JointState(
         cycles=cycles,
         own=own,
@@ -201,7 +251,9 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
         stiffness=stiffness,
         gap=problem.gap,
         maps=maps,
-        compliance=compliance,
+        face_maps=face_maps,
+        faces=tuple(faces),
+        compliance=problem.compliance_about(stiffness, faces),
         pitch=problem.pitch,
         sense=problem.sense,
     )
@@ -215,10 +267,14 @@ def _mesh_ratio(system: System, state: MeshForce) -> float:
 
 @dataclass(frozen=True)
 class _Problem:
-    """The contacts of an equilibrium, ready for any position; fields as in JointState."""
+    """The contacts of an equilibrium, ready for any position; fields as in JointState.
+
+    Its displacements are the approaches of all contacts, then the tilts of those with a face map.
+    """
 
     equilibrium: Equilibrated
     maps: tuple[ContactMap | None, ...]
+    face_maps: tuple[FaceMap | None, ...]
     gap: np.ndarray
     pitch: np.ndarray
     sense: np.ndarray
@@ -226,12 +282,55 @@ class _Problem:
     @cached_property
     def mapped(self) -> np.ndarray:
         """Numbers (m,) of the contacts that have a map."""
-        return np.array([i for i, contact_map in enumerate(self.maps) if contact_map is not None])
+        both = zip(self.maps, self.face_maps, strict=True)
+        return np.array([i for i, maps in enumerate(both) if any(one is not None for one in maps)])
+
+    @cached_property
+    def tilting(self) -> np.ndarray:
+        """Numbers (t,) of the contacts that have a face map."""
+        return np.array([i for i, face_map in enumerate(self.face_maps) if face_map is not None], dtype=int)
+
+    @cached_property
+    def moving(self) -> np.ndarray:
+        """Numbers (m + t,) of the displacements of contacts that have a map."""
+        return np.append(self.mapped, len(self.maps) + np.arange(len(self.tilting)))
+
+    @cached_property
+    def vectors(self) -> np.ndarray:
+        """V (n, c + t) of the displacements: approaches, in the middle of a face that has a map, and tilts."""
+        lines = self.equilibrium.lines
+        approach = lines.vectors.copy()
+        for i in self.tilting:
+            face = lines.states[i].face
+            assert face is not None
+            approach[:, i] -= face.place * lines.tilt[:, i]
+        return np.hstack([approach, lines.tilt[:, self.tilting]])
 
     @cached_property
     def stiffness(self) -> np.ndarray:
         """k (c,) about which the structure is solved: that of the equilibrium, 0 where it is open."""
         return np.where(self.equilibrium.closed, self.equilibrium.lines.stiffness, 0.0)
+
+    @cached_property
+    def springs(self) -> np.ndarray:
+        """k (m + t, m + t) of the moving displacements."""
+        lines = self.equilibrium.lines
+        faces = [state.face for state in lines.states]
+        closed = self.equilibrium.closed
+        held = [face and replace(face, tilt_stiffness=face.tilt_stiffness * closed[i]) for i, face in enumerate(faces)]
+        return self._springs(self.stiffness, held)
+
+    def _springs(self, stiffness: np.ndarray, faces: Sequence[FaceState | None]) -> np.ndarray:
+        """Matrix (m + t, m + t) of contacts that are springs k at a place of their face and resist a tilt about it."""
+        m = self.mapped
+        K = np.diag(np.append(stiffness[m], np.zeros(len(self.tilting))))
+        for number, i in enumerate(self.tilting):
+            face = faces[i]
+            assert face is not None
+            both = np.array([int(np.flatnonzero(m == i)[0]), len(m) + number])
+            at = np.array([1.0, face.place])
+            K[np.ix_(both, both)] = stiffness[i] * np.outer(at, at) + np.diag([0.0, face.tilt_stiffness])
+        return K
 
     @cached_property
     def spring_start(self) -> np.ndarray:
@@ -240,29 +339,50 @@ class _Problem:
 
     @cached_property
     def compliance(self) -> np.ndarray:
-        """A (c, m): approach of all contacts under unit forces of the mapped ones, with all contacts as springs k."""
-        V = self.equilibrium.lines.vectors
-        return np.asarray(V.T @ self.equilibrium.solver.solve(V[:, self.mapped], carried=True))
+        """A (c + t, m + t): all displacements under unit forces on the moving ones, with all contacts as springs k."""
+        V = self.vectors
+        return np.asarray(V.T @ self.equilibrium.solver.solve(V[:, self.moving], carried=True))
+
+    def compliance_about(self, stiffness: np.ndarray, faces: Sequence[FaceState | None]) -> np.ndarray:
+        """Approach (c, c) at their places under unit forces there of mapped contacts, about other springs: A (1 + dk A_m)^-1."""
+        moving = self.moving
+        change = self._springs(stiffness, faces) - self.springs
+        A = self.compliance @ np.linalg.inv(np.eye(len(moving)) + change @ self.compliance[moving])
+        count = len(self.maps)
+        places = np.zeros((count + len(self.tilting), count))  # of approaches at the places in all displacements
+        places[:count] = np.eye(count)
+        for number, i in enumerate(self.tilting):
+            face = faces[i]
+            assert face is not None
+            places[count + number, i] = face.place
+        found = np.zeros((count, count))
+        found[:, self.mapped] = places.T @ A @ places[np.ix_(moving, self.mapped)]
+        return found
 
     @cached_property
     def start(self) -> np.ndarray:
-        """delta_0 (c,) under the loads with the mapped contacts F = k delta."""
-        found = self.equilibrium.lines.vectors.T @ self.equilibrium.q
-        k = self.stiffness[self.mapped]
-        return np.asarray(found + self.compliance @ (self.equilibrium.force[self.mapped] - k * found[self.mapped]))
+        """All displacements (c + t,) under the loads with the forces of moving ones k d."""
+        equilibrium = self.equilibrium
+        found = self.vectors.T @ equilibrium.q
+        force = np.append(equilibrium.force[self.mapped], np.zeros(len(self.tilting)))
+        for number, i in enumerate(self.tilting):
+            face = equilibrium.lines.states[i].face
+            assert face is not None
+            force[len(self.mapped) + number] = equilibrium.moment[i] + face.place * equilibrium.force[i]
+        return np.asarray(found + self.compliance @ (force - self.springs @ found[self.moving]))
 
     def cycle(self, running: np.ndarray, ratio: float) -> Cycle:
         """Solve one cycle: the contacts `running` go through it, the others stay on the mean of their curves."""
-        maps = [contact_map for i in running if (contact_map := self.maps[i]) is not None]
+        maps = [one for i in running for one in (self.maps[i], self.face_maps[i]) if one is not None]
         periods = math.lcm(*(contact_map.periods for contact_map in maps))
         count = max(_POSITIONS, *(len(contact_map.position) // contact_map.periods for contact_map in maps))
         position = np.arange(count * periods) / count if ratio else np.zeros(1)
         tables = [self._table(int(i), position, i in running) for i in self.mapped]
-        key = np.hstack([np.round(table.approach / (_ALIKE * np.ptp(table.approach))) for table in tables])
+        key = np.hstack([np.round(table.approach / (_ALIKE * (np.ptp(table.approach) or 1.0))) for table in tables])
         _, first, which = np.unique(key, axis=0, return_index=True, return_inverse=True)
-        k = self.stiffness[self.mapped]
-        approach = np.zeros((len(first), len(self.maps)))
-        force = np.zeros((len(first), len(self.maps)))
+        every = len(self.maps)
+        approach = np.zeros((len(first), every))
+        force, tilt, moment = np.zeros((3, len(first), every))
         for row, p in enumerate(first):
             if row % _TOGETHER == 0:
                 curves = [table.curves(first[row : row + _TOGETHER]) for table in tables]
@@ -273,36 +393,71 @@ class _Problem:
                     f"meshes {names}: the loaded teeth have no equilibrium {position[p]:.3f} base pitches into their cycle; "
                     "look for a helix that hardly carries"
                 )
-            approach[row] = self.start - self.compliance @ (found.force - k * found.d)
+            moved = self.start - self.compliance @ (found.force - self.springs @ found.d)
+            approach[row] = moved[:every]
             force[row] = self.spring_start + self.stiffness * (approach[row] - self.gap)
-            force[row, self.mapped] = found.force
-            approach[row, self.mapped] = found.d
+            count_mapped = len(self.mapped)
+            force[row, self.mapped] = found.force[:count_mapped]
+            approach[row, self.mapped] = found.d[:count_mapped]
+            moment[row, self.tilting] = found.force[count_mapped:]
+            tilt[row, self.tilting] = found.d[count_mapped:]
         meshes = dict.fromkeys(self.equilibrium.lines.names[i] for i in running)
         again = which.ravel()
-        return Cycle(tuple(meshes), ratio, periods, position, approach[again], force[again])
+        return Cycle(tuple(meshes), ratio, periods, position, approach[again], force[again], tilt[again], moment[again])
 
-    def _at(self, curves: list[_Curve]) -> Settled:
+    def _at(self, curves: list[_Curve | _FaceCurve]) -> Settled:
         """Equilibrium of the mapped contacts on the curves of one position."""
-        k = self.stiffness[self.mapped]
+        mapped = len(self.mapped)
+        # Places of the displacements of each curve among the moving ones.
+        tilts = {int(i): mapped + number for number, i in enumerate(self.tilting)}
+        places = [np.array([k, *([tilts[int(i)]] if int(i) in tilts else [])]) for k, i in enumerate(self.mapped)]
 
-        def laws(delta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            pairs = [curve.force(float(x)) for curve, x in zip(curves, delta, strict=True)]
-            F, tangent = np.array(pairs).T
-            return F, np.diag(tangent)
+        def laws(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            F = np.zeros(len(d))
+            tangent = np.zeros((len(d), len(d)))
+            for curve, at in zip(curves, places, strict=True):
+                F[at], tangent[np.ix_(at, at)] = curve.force(d[at])
+            return F, tangent
 
-        return settle(self.start[self.mapped], self.compliance[self.mapped], np.diag(k), laws)
+        return settle(self.start[self.moving], self.compliance[self.moving], self.springs, laws)
 
-    def _table(self, contact: int, position: np.ndarray, runs: bool) -> _Table:
+    def mean_tangent(self, contact: int, cycle: Cycle) -> tuple[float, FaceState | None]:
+        """Mean tangent (N/m) of a mapped contact over its cycle, and along its face where it has a face map."""
+        u = self.sense[contact] * (self.pitch[contact] + cycle.position)
+        contact_map = self.maps[contact]
+        if contact_map is not None:
+            return float(contact_map.stiffness(cycle.approach[:, contact] - self.gap[contact], u).mean()), None
+        law = self._law_of(contact)
+        d = np.stack([cycle.approach[:, contact], cycle.tilt[:, contact]], axis=1)
+        T = law.evaluate_many(d, 0.0 * d, angle=2.0 * math.pi * u).in_displacement.mean(axis=0)
+        place = float(T[0, 1] / T[0, 0])
+        against_tilt = float(T[1, 1] - place * T[0, 1])
+        tilt = float(cycle.tilt[:, contact].mean())
+        couple = float(cycle.moment[:, contact].mean() - place * cycle.force[:, contact].mean()) - against_tilt * tilt
+        return float(T[0, 0]), FaceState(place, against_tilt, place * tilt, couple)
+
+    def _law_of(self, contact: int) -> ForceLaw:
+        face_map = self.face_maps[contact]
+        assert face_map is not None
+        return face_law(face_map, float(self.equilibrium.lines.stiffness[contact]), float(self.gap[contact]))
+
+    def _table(self, contact: int, position: np.ndarray, runs: bool) -> _Table | _FaceTable:
         """The map of a contact at the positions of a cycle, or its mean over the map."""
+        u = self.sense[contact] * (self.pitch[contact] + position) if runs else None
+        face_map = self.face_maps[contact]
+        if face_map is not None:
+            law = self._law_of(contact)
+            if u is None:
+                return _FaceTable(law.mean(), np.zeros(len(position)), np.ones((len(position), 1)))
+            rows = np.moveaxis(face_map.approaches(u), 1, 0).reshape(len(position), -1)
+            return _FaceTable(law, u, rows)
         contact_map = self.maps[contact]
         assert contact_map is not None
         loads = np.append(contact_map.load, 10.0 * contact_map.largest_load)
-        if runs:
-            u = self.sense[contact] * (self.pitch[contact] + position)
+        if u is not None:
             rows = contact_map.approach_at(loads, u[:, None])
         else:
             mean = contact_map.approach_at(loads, contact_map.position[:, None]).mean(axis=0)
-            u = None
             rows = np.broadcast_to(mean, (len(position), len(loads)))
         return _Table(contact_map, u, rows, float(self.gap[contact]))
 
@@ -341,16 +496,43 @@ class _Table:
 
 
 @dataclass(frozen=True)
+class _FaceTable:
+    """A contact along its face over a cycle: its law, places u (p,) on it, and approaches (p, a) that tell positions apart."""
+
+    law: ForceLaw
+    place: np.ndarray
+    approach: np.ndarray
+
+    def curves(self, positions: np.ndarray) -> list[_FaceCurve]:
+        """(F, M)(delta, tilt) at some positions (r,), given by their numbers."""
+        return [_FaceCurve(self.law, float(u)) for u in self.place[positions]]
+
+
+@dataclass(frozen=True)
+class _FaceCurve:
+    """(F, M)(delta, tilt) of a contact at a place u on its map."""
+
+    law: ForceLaw
+    place: float
+
+    def force(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Force in N and moment in N m, and their tangents (2, 2), at an approach and a tilt (2,)."""
+        found = self.law.evaluate(d, angle=2.0 * math.pi * self.place)
+        return found.force, found.in_displacement
+
+
+@dataclass(frozen=True)
 class _Curve:
     """F(delta) of a contact at one position, straight between points: approach (n,) in m, rising, and load (n,) in N."""
 
     approach: np.ndarray
     load: np.ndarray
 
-    def force(self, delta: float) -> tuple[float, float]:
-        """Force in N and tangent in N/m at an approach."""
+    def force(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Force (1,) in N and tangent (1, 1) in N/m at an approach (1,)."""
+        delta = float(d[0])
         if delta <= self.approach[0]:
-            return 0.0, 0.0
+            return np.zeros(1), np.zeros((1, 1))
         i = min(int(np.searchsorted(self.approach, delta)), len(self.load) - 1)
         slope = float((self.load[i] - self.load[i - 1]) / (self.approach[i] - self.approach[i - 1]))
-        return float(self.load[i - 1]) + slope * (delta - float(self.approach[i - 1])), slope
+        return np.array([self.load[i - 1] + slope * (delta - self.approach[i - 1])]), np.array([[slope]])

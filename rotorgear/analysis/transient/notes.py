@@ -50,14 +50,25 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
                 f"meshes.{name}: the tilt of its gears along the face, which its teeth do not feel without tilt = true"
             )
     tilted = [name for name, mesh in meshes.items() if mesh.face_loads]
-    if tilted:
+    follow = [name for name in tilted if law_of[f"meshes.{name}"].components == 2]
+    stay = [name for name in tilted if name not in follow]
+    if stay:
         notes.append(
-            f"how the load moves along the face of {', '.join(tilted)} in time: the teeth stand askew as in the static "
+            f"how the load moves along the face of {', '.join(stay)} in time: the teeth stand askew as in the static "
             "equilibrium, and resist a tilt by the tangent about it, even where they part"
+        )
+    damped = [name for name in follow if meshes[name].damping or meshes[name].damping_ratio]
+    if damped:
+        notes.append(
+            f"how the damping against a tilt of {', '.join(damped)} changes with what carries: it is that of the mean state, "
+            "also where teeth part"
         )
     behind = [name for name in tilted if meshes[name].backlash is not None]
     if behind:
-        notes.append(f"the tilt of the coast flanks of {', '.join(behind)}: they stand askew as the working ones do")
+        notes.append(
+            f"how the tilt of the coast flanks of {', '.join(behind)} changes in time: they stand askew as in the static "
+            "equilibrium"
+        )
     return tuple(notes)
 
 

@@ -59,7 +59,7 @@ def prepare(
     given = about_state_of(given, about_faces(given.model, [largest])[0])
     if given.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
-    local = springs_about_mean(local_model(given, rotation, largest), largest)
+    local = springs_about_mean(local_model(given, rotation, largest, along_faces=True), largest)
     rest = equilibrium(local.local)
     force = still_forces(local.local, tuple(part.law.mean() for part in local.parts))
     return Task(local, channels(local), rest, force, mesh_frequencies(given, largest), largest)

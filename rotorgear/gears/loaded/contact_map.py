@@ -38,6 +38,7 @@ class ContactMap:
         approach: (p, l) approach of the flanks along their normal in m at these loads; the first column is that of first touch.
         warnings: sentences.
         compliance: (p, l) d delta / dF in m/N at these loads; None: that of a monotone interpolation (PCHIP).
+        moment: (p, l) M in N m of the forces about the middle of the face at these loads; None where nothing varies along it.
     """
 
     position: np.ndarray
@@ -46,6 +47,7 @@ class ContactMap:
     approach: np.ndarray
     warnings: tuple[str, ...] = ()
     compliance: np.ndarray | None = None
+    moment: np.ndarray | None = None
 
     @property
     def largest_load(self) -> float:

@@ -59,7 +59,11 @@ def _read(path: Path, text: str) -> ContactMap | None:
     """The map of a file; None where it is missing, damaged or of another key."""
     try:
         with np.load(path, allow_pickle=False) as stored:
-            values = {name: stored[name] for name in ("position", "load", "approach", "compliance")}
+            values = {
+                name: stored[name]
+                for name in ("position", "load", "approach", "compliance", "moment")
+                if name in stored
+            }
             good = str(stored["key"]) == text and str(stored["checksum"]) == _checksum(values)
             periods = int(stored["periods"])
             warnings = tuple(str(note) for note in stored["warnings"])
@@ -77,6 +81,8 @@ def _write(path: Path, text: str, found: ContactMap) -> None:
         "approach": found.approach,
         "compliance": found.compliance,
     }
+    if found.moment is not None:
+        values["moment"] = found.moment
     scratch = path.with_name(f".{path.stem}.{uuid.uuid4().hex}")
     labels = {"key": np.array(text), "checksum": np.array(_checksum(values)), "warnings": np.array(found.warnings, str)}
     store: Any = np.savez  # its stubs take names for options

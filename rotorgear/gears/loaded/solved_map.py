@@ -46,10 +46,11 @@ _MOST_PERIODS = 4096
 
 @dataclass(frozen=True)
 class _Column:
-    """Approach along the normal (p,) in m, its slope d delta / dF (p,) in m/N, at one load."""
+    """Approach along the normal (p,) in m, its slope d delta / dF (p,) in m/N, moment (p,) in N m, at one load."""
 
     approach: np.ndarray
     slope: np.ndarray
+    moment: np.ndarray
 
 
 @lru_cache(maxsize=32)  # the helices of a model and its analyses ask for the same maps again and again
@@ -119,7 +120,9 @@ def solved_map(
     loads = load * np.array([0.0, *factors])
     approach = [np.stack([touch[k], *(c.approach for c in solved[k])], axis=1) for k in range(len(kinds))]
     slope = [_with_start(np.stack([c.slope for c in solved[k]], axis=1), approach[k], loads) for k in range(len(kinds))]
+    moment = [np.stack([np.zeros(positions), *(c.moment for c in columns)], axis=1) for columns in solved]
     order = [kinds.index(errors) for errors in of_period]
+    varies = not problem.plane or problem.uncoupled
     return ContactMap(
         position=np.arange(positions * len(of_period)) / positions,
         periods=len(of_period),
@@ -127,6 +130,7 @@ def solved_map(
         approach=np.concatenate([approach[k] for k in order]),
         warnings=tuple(dict.fromkeys((*problem.warnings, *notes))),
         compliance=np.concatenate([slope[k] for k in order]),
+        moment=np.concatenate([moment[k] for k in order]) if varies else None,
     )
 
 
@@ -182,8 +186,9 @@ def _columns(
     if problem.plane and not problem.uncoupled:
         columns = _few_slices(contacts, loads)
     else:
-        rows = [_row(contact, loads) for contact in contacts]
-        columns = [_Column(*(np.array([row[j][i] for row in rows]) for i in (0, 1))) for j in range(len(loads))]
+        place = cycle.slices.z @ cycle.slices.weight
+        rows = [_row(contact, loads, place[cycle.slices.at(i)]) for i, contact in enumerate(contacts)]
+        columns = [_Column(*(np.array([row[j][i] for row in rows]) for i in range(3))) for j in range(len(loads))]
     return columns, np.array([contact.gap.min() for contact in contacts])
 
 
@@ -206,11 +211,14 @@ def _few_slices(contacts: list[PositionContact], loads: list[float]) -> list[_Co
         )
         approach, tangent = solve_many(many, np.tile(loads, len(which)))
         found[:, which] = np.stack([approach, 1.0 / tangent]).reshape(2, len(which), len(loads))
-    return [_Column(found[0, :, j], found[1, :, j]) for j in range(len(loads))]
+    return [_Column(found[0, :, j], found[1, :, j], np.zeros(len(contacts))) for j in range(len(loads))]
 
 
-def _row(contact: PositionContact, loads: list[float]) -> list[tuple[float, float]]:
-    """Approach and its slope at rising loads of one position: from the largest load down, each starting from the one above."""
+def _row(contact: PositionContact, loads: list[float], place: np.ndarray) -> list[tuple[float, float, float]]:
+    """Approach, its slope and the moment at rising loads of one position: down from the largest, each from the one above.
+
+    `place` (n,) is that of each slice from the middle of the face (m).
+    """
     state = solve_contact(contact, loads[-1])
     # A slice whose gap is wider than the approach at the largest load touches at none.
     near = np.flatnonzero((contact.gap < state.approach) | (state.force > 0.0))
@@ -223,21 +231,22 @@ def _row(contact: PositionContact, loads: list[float]) -> list[tuple[float, floa
         radius=contact.radius[near],
     )
     start = state.force[near]
-    found = [(state.approach, 1.0 / state.tangent)]
+    found = [(state.approach, 1.0 / state.tangent, float(state.force @ place))]
     for load in reversed(loads[:-1]):
         state = solve_contact(fewer, load, start)
         start = state.force
-        found.append((state.approach, 1.0 / state.tangent))
+        found.append((state.approach, 1.0 / state.tangent, float(state.force @ place[near])))
     return found[::-1]
 
 
 def _faded(columns: list[_Column], below: _Column, factors: list[float]) -> list[_Column]:
     """Columns above a bound, the first of them at it, led from the value `below` it to their own at the last load."""
     jump = columns[0].approach - below.approach
-    width = factors[-1] - factors[0]
+    turn = columns[0].moment - below.moment
+    left = [(factors[-1] - factor) / (factors[-1] - factors[0]) for factor in factors[1:]]
     return [
-        _Column(column.approach - jump * (factors[-1] - factor) / width, column.slope)
-        for column, factor in zip(columns[1:], factors[1:], strict=True)
+        _Column(column.approach - jump * share, column.slope, column.moment - turn * share)
+        for column, share in zip(columns[1:], left, strict=True)
     ]
 
 

@@ -31,6 +31,7 @@ from rotorgear.model.parts.helix_state import FaceState, HelixState
 
 if TYPE_CHECKING:
     from rotorgear.gears.loaded.contact_map import ContactMap
+    from rotorgear.gears.loaded.face_map import FaceMap
     from rotorgear.gears.stiffness.face_load import FaceLoad
     from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness
 
@@ -113,7 +114,11 @@ class MeanLoad:
         return replace(self, kind=kind, forces=_with_stiffness(self.layout, self.forces, self.curves, kind))
 
     def about_cycle(
-        self, forces: Iterable[float], stiffness: Iterable[float], start: Iterable[float | None]
+        self,
+        forces: Iterable[float],
+        stiffness: Iterable[float],
+        start: Iterable[float | None],
+        faces: Iterable[FaceState | None],
     ) -> MeanLoad:
         """The mean state over the mesh cycle of loaded teeth, with their contacts linear about it: F = start + k (v . q - gap).
 
@@ -121,6 +126,7 @@ class MeanLoad:
             forces: mean of each contact (N).
             stiffness: of each contact along the flank normal, of loaded teeth the mean tangent k (N/m).
             start: of loaded teeth (N); None of a contact that keeps its own.
+            faces: of loaded teeth that feel the tilt of their shafts; None of a contact that keeps its own, or has none.
         """
         states = [
             replace(
@@ -128,8 +134,9 @@ class MeanLoad:
                 normal_force=float(F),
                 start=state.start if F_0 is None else F_0,
                 contact=replace(state.contact, stiffness=float(k)),
+                face=face or state.face,
             )
-            for state, F, k, F_0 in zip(self.forces, forces, stiffness, start, strict=True)
+            for state, F, k, F_0, face in zip(self.forces, forces, stiffness, start, faces, strict=True)
         ]
         return replace(self, forces=tuple(states), flow=self.flow or self)
 
@@ -206,12 +213,25 @@ class MeanLoad:
         phase phi (`phase`): u = phi / 2 pi where the pinion drives, and the other way, u = -phi / 2 pi, where the gear does.
         `near` gives the one for linear analyses, which takes less time.
         """
-        if force.face is not None and not self.layout.mesh(force.contact.mesh).part.face_loads:
-            return None  # its misalignment is not known, and without it the teeth would be others
-        helices = (self.flow or self).of_mesh(force.contact.mesh)
-        mean = sum(state.normal_force for state in helices) / len(helices)
         mesh = self.layout.mesh(force.contact.mesh)
-        return mesh.contact_map(force.contact.helix, mean, force.torque_sense, near)
+        if force.face is not None and not mesh.part.face_loads:
+            return None  # its misalignment is not known, and without it the teeth would be others
+        return mesh.contact_map(force.contact.helix, self._working_load(force), force.torque_sense, near)
+
+    def coast_map(self, force: MeshForce) -> ContactMap | None:
+        """The map of the flanks behind those of a contact, about the same load."""
+        mesh = self.layout.mesh(force.contact.mesh)
+        return mesh.coast_map(force.contact.helix, self._working_load(force), force.torque_sense)
+
+    def face_map(self, force: MeshForce, near: bool = False) -> FaceMap | None:
+        """Map (F, M)(delta, tilt, u) of one helix that feels the tilt of its shafts; None of others. As `contact_map`."""
+        mesh = self.layout.mesh(force.contact.mesh)
+        return mesh.face_map(force.contact.helix, self._working_load(force), force.torque_sense, near)
+
+    def _working_load(self, force: MeshForce) -> float:
+        """Mean force (N) of the helices of a mesh in the torque flow."""
+        helices = (self.flow or self).of_mesh(force.contact.mesh)
+        return sum(state.normal_force for state in helices) / len(helices)
 
     def curve(self, force: MeshForce) -> MeshStiffness:
         """Stiffness of one helix over its mesh period, along the path of contact of the pinion."""

@@ -24,6 +24,7 @@ from rotorgear.model.parts.mesh import Mesh
 
 if TYPE_CHECKING:
     from rotorgear.gears.loaded.contact_map import ContactMap
+    from rotorgear.gears.loaded.face_map import FaceMap
     from rotorgear.gears.stiffness.face_load import FaceLoad
     from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 
@@ -367,6 +368,36 @@ class MeshLayout:
             )
         except AnalysisError as error:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
+
+    def face_map(self, helix: int, normal_force: float, sense: int = 1, near: bool = False) -> FaceMap | None:
+        """(F, M)(delta, tilt, u) of one helix about the state along its face; None where it has none, or no loaded teeth.
+
+        Arguments and errors as of `contact_map`.
+        """
+        if self.part.stiffness != "tooth_fe" or not self.part.face_loads or not normal_force:
+            return None
+        from rotorgear.gears.loaded.face_map import face_map, misalignments
+
+        face = self.part.face_loads[helix]
+        teeth = self.working_teeth(sense)
+        given = self.part.misalignment
+        asked = misalignments(face.misalignment, given, face.force / face.static.stiffness)
+        load = float(f"{normal_force:.12g}")
+        try:
+            if self.helix_senses(sense)[helix] > 0:
+                return face_map(teeth, load, asked, given, near)
+            return face_map(mirrored(teeth), load, tuple(-f for f in reversed(asked)), -given, near).mirrored
+        except AnalysisError as error:
+            raise AnalysisError(f"meshes.{self.name}: {error}") from None
+
+    def coast_map(self, helix: int, normal_force: float, sense: int) -> ContactMap | None:
+        """F(delta, u) of the flanks behind working ones that a torque of this sense about +z presses.
+
+        Flanks that the shafts close on one side of the teeth they open on the other: the misalignment changes its sign. Arguments
+        and errors as of `contact_map`.
+        """
+        behind = MeshLayout(self.name, self.part.coasting, self.pinion, self.gear, self._train_of)
+        return behind.contact_map(helix, normal_force, -sense)
 
     def contact_map(self, helix: int, normal_force: float, sense: int = 1, near: bool = False) -> ContactMap | None:
         """F(delta, u) of one helix about a mean force (N) along the flank normal; None where its teeth are not loaded ones.

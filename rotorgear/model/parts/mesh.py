@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field, PrivateAttr
@@ -125,6 +126,12 @@ class Mesh(Part):
     def face_loads(self) -> tuple[FaceLoad, ...]:
         """State of each helix along its face that the mesh is about; empty where none was looked for."""
         return self._face_loads
+
+    @property
+    def coasting(self) -> Mesh:
+        """The mesh as its coast flanks see it: askew the other way where the working ones are about a state along their faces."""
+        turned = tuple(replace(face, misalignment=-face.misalignment) for face in self._face_loads)
+        return self.about(turned)
 
     def about(self, face_loads: tuple[FaceLoad, ...]) -> Mesh:
         """The same mesh about a state of its helices along their faces."""
