@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.model.checks.references import ON_SHAFTS
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.system.system import System
 
 
@@ -37,3 +40,41 @@ def named_place(model: Model, text: str) -> tuple[str, float, str]:
         f"'{text}' is no place: expected {points}, or a part and a direction such as 'bearings.left:x' "
         f"(tables {', '.join(ON_SHAFTS)}; directions {', '.join(DOF_NAMES)})"
     )
+
+
+def casing_row(model: Model, text: str) -> tuple[str, np.ndarray]:
+    """Casing and row on its coordinates from 'casings.box.left:x', a seat, or 'casings.box(0 mm; 280 mm; 200 mm):y'.
+
+    The latter is the point of its surface that is next to the place; only its displacements along x, y and z are known.
+
+    Raises:
+        AnalysisError: no such casing, seat, direction, or a casing without a surface.
+    """
+    address, _, direction = text.rpartition(":")
+    found = re.fullmatch(r"casings\.(?P<name>[\w -]+?)(?:\.(?P<seat>[\w -]+)|\((?P<place>[^()]*)\))", address)
+    if found is None or found["name"] not in model.casings or direction not in DOF_NAMES:
+        raise AnalysisError(
+            f"'{text}' is no place of a casing: expected a seat such as 'casings.box.left:x', or a place such as "
+            f"'casings.box(0 mm; 280 mm; 200 mm):y' (casings {', '.join(model.casings) or 'none'}; "
+            f"directions {', '.join(DOF_NAMES)})"
+        )
+    name = found["name"]
+    body = model.layout.casing(name)
+    dof = DOF_NAMES.index(direction)
+    row = np.zeros(body.size)
+    if found["seat"] is not None:
+        if found["seat"] not in body.seats:
+            raise AnalysisError(f"'{text}': casing '{name}' has no such seat; there is: {', '.join(body.seats)}")
+        row[body.seat(found["seat"]).start + dof] = 1.0
+        return name, row
+    if body.surface is None or dof > 2:
+        why = "its surface is not known" if body.surface is None else "of a surface x, y and z are known"
+        raise AnalysisError(f"'{text}': {why}")
+    try:
+        place = [parse_quantity(part.strip(), "length") for part in found["place"].split(";")]
+    except QuantityError as error:
+        raise AnalysisError(f"'{text}': expected {error}, three of them with ; between") from None
+    if len(place) != 3:
+        raise AnalysisError(f"'{text}': got {len(place)} coordinates, expected x; y; z")
+    point = int(np.argmin(np.sum((body.surface.points - np.array(place)) ** 2, axis=1)))
+    return name, np.asarray(body.surface.basis[point, dof])

@@ -14,7 +14,7 @@ from rotorgear.analysis.common.casings import casing_notes
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
-from rotorgear.analysis.common.points import named_place
+from rotorgear.analysis.common.points import casing_row, named_place
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, direction_of, missed, speed_in_si
 from rotorgear.analysis.modal.refine import all_finer
@@ -58,7 +58,8 @@ def frf(
     Args:
         model: any model; contacts are closed, on the flanks that its loads choose.
         frequencies: in Hz, positive, (f,), in place of an evenly spaced range.
-        inputs, outputs: names of points, or a part and a direction such as "bearings.left:x".
+        inputs, outputs: names of points, a part and a direction such as "bearings.left:x", a seat of a casing such as
+            "casings.box.left:x", or the point of its surface next to a place, "casings.box(0 mm; 280 mm; 200 mm):y".
         fmax, fmin: highest and lowest frequency of the range in Hz; `fmin` is one step where not given.
         points: number of frequencies between them, evenly spaced.
         speed: of the input shaft in rad/s or with its unit; None: standstill.
@@ -79,7 +80,8 @@ def frf(
     hz = np.sort(np.asarray(frequencies, float).ravel())
     check_request(turns, None, None, elements, accuracy)
     _check(hz, inputs, outputs, modal_damping)
-    places = {text: named_place(model, text) for text in (*inputs, *outputs)}
+    of_casings = {text: casing_row(model, text) for text in (*inputs, *outputs) if text.startswith("casings.")}
+    places = {text: named_place(model, text) for text in (*inputs, *outputs) if text not in of_casings}
     zeta = modal_damping + model.damping.modal_ratio
     linear, notes = about_equilibrium(model, [turns or None])
     first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
@@ -89,6 +91,7 @@ def frf(
         modes = (*damped_modes(system, limit, turns), zeta) if zeta else None
         plant = Plant(system, contact_lines(system), modes)
         rows = {text: _row(system, text, place) for text, place in places.items()}
+        rows |= {text: _casing_row(system, *row) for text, row in of_casings.items()}
         return _solved(plant, turns, hz, [rows[t] for t in inputs], [rows[t] for t in outputs], progress)
 
     for aim in aims(accuracy):
@@ -162,6 +165,11 @@ def _row(system: System, text: str, place: tuple[str, float, str]) -> np.ndarray
     if not row.any():
         raise AnalysisError(f"'{text}' can't move: a support or the motions of the model hold it")
     return row
+
+
+def _casing_row(system: System, casing: str, row: np.ndarray) -> np.ndarray:
+    """A row (n_c,) on the coordinates of a casing as one on the free dofs, (n,)."""
+    return np.asarray(system.dofs.transform[system.nodes.of_casing(casing), :].T @ row)
 
 
 def _solved(

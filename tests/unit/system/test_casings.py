@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model_hash import model_hash
 from rotorgear.system.system import System
 from tests.bar_casing import STEEL, cube, write_bar
+from tests.paths import ROOT
 
 PLACES = np.linspace(0.0, 0.6, 9)
 DIAMETER = 0.03
@@ -275,3 +279,38 @@ def test_results_and_files_hold_the_surface_behind_the_nodes(tmp_path: Path) -> 
     shown = solids.point_data["mass_normalised_real"][numbers]
     expected = result.shapes[result.nodes.of_casing("bar"), :3, 2].real
     assert np.sort(shown.ravel()) == pytest.approx(np.sort(expected.ravel()), rel=1e-5, abs=1e-7)
+
+
+def test_frequency_responses_reach_seats_and_points_of_a_casing(tmp_path: Path) -> None:
+    path = with_a_cube(write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4]), 0.2)
+    seat = "casings.bar.seat_0:y"
+    corner = "casings.bar(90 mm; 110 mm; -90 mm):y"
+    disk = "disks.disk:y"
+    hz = [20.0, 90.0, 200.0]
+    there = rg.frf(in_casing(path), hz, inputs=[disk], outputs=[seat, corner], elements=3).receptance[:, :, 0]
+    back = rg.frf(in_casing(path), hz, inputs=[seat, corner], outputs=[disk], elements=3).receptance[:, 0, :]
+    assert there == pytest.approx(back, rel=1e-8)
+    # The cube rides on the seat: u_y = v + theta_z x - theta_x z at its corner (0.1, 0.1, -0.1).
+    tilts = [f"casings.bar.seat_0:{name}" for name in ("tilt_x", "torsion")]
+    turned = rg.frf(in_casing(path), hz, inputs=[disk], outputs=tilts, elements=3).receptance[:, :, 0]
+    assert there[:, 1] == pytest.approx(there[:, 0] + 0.1 * turned[:, 0] + 0.1 * turned[:, 1], rel=1e-8)
+    # The same seat as the end of the bar as a shaft at rest.
+    points = {"end": {"shaft": "bar", "at": "start", "direction": "y"}}
+    shaft = rg.frf(beside_a_shaft(True, points=points), hz, inputs=[disk], outputs=["end"], elements=3).receptance
+    assert there[:, 0] == pytest.approx(shaft[:, 0, 0], rel=1e-7)
+    for wrong in (
+        "casings.box.seat_0:y",
+        "casings.bar.seat_7:y",
+        "casings.bar(1 mm; 2 mm):y",
+        "casings.bar(0 mm; 0 mm; 0 mm):torsion",
+    ):
+        with pytest.raises(AnalysisError, match=r"^'casings\."):
+            rg.frf(in_casing(path), hz, inputs=[disk], outputs=[wrong], elements=3)
+
+
+def test_a_model_without_casings_loads_no_reader_of_meshes() -> None:
+    program = (
+        "import sys, rotorgear as rg; rg.modal(rg.load('models/jeffcott.toml'), modes=2);"
+        "assert not {'meshio', 'skfem', 'pymetis'} & set(sys.modules), 'readers of meshes'"
+    )
+    subprocess.run([sys.executable, "-c", program], cwd=ROOT, env={**os.environ, "PYTHONPATH": str(ROOT)}, check=True)
