@@ -66,8 +66,11 @@ def mesh(result: MeshResult, fig: Any = None) -> np.ndarray:
 
 def _closed(result: MeshResult, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The curve with its first point again at the end of the last period."""
-    step = result.position[1] - result.position[0]
-    return np.append(result.position, result.position[-1] + step), np.append(values, values[0])
+    return _closed_at(result.position, values, result.periods)
+
+
+def _closed_at(position: np.ndarray, values: np.ndarray, periods: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.append(position, position[0] + periods), np.append(values, values[0])
 
 
 def _plain_axis(axis: Any, label: str) -> None:
@@ -85,7 +88,7 @@ def _error(axis: Any, result: MeshResult) -> None:
     axis.plot(*_closed(result, 1e6 * result.transmission_error), color=_BLUE, lw=1.6, label="under load")
     if np.ptp(result.no_load_error) > 0.0:
         # Both curves about one mean: what is compared is how much they vary.
-        shift = float(result.transmission_error.mean() - result.no_load_error.mean())
+        shift = float(np.mean(result.transmission_error) - np.mean(result.no_load_error))
         label = f"without load, {1e6 * shift:+.3g} um"
         axis.plot(*_closed(result, 1e6 * (result.no_load_error + shift)), color=_GREY, lw=1.2, ls="--", label=label)
         axis.legend(frameon=False, fontsize=8)
@@ -206,10 +209,12 @@ def mesh_loads(result: MeshResult, ax: Any = None) -> Any:
 
 
 def _errors_at_loads(axis: Any, result: MeshResult) -> None:
-    """Transmission error over the cycle at each load, about its own mean."""
-    axis.set_title("transmission error about its mean, by load factor", fontsize=10)
+    """Transmission error over the cycle at each load, about the middle of its range."""
+    axis.set_title("transmission error about its middle, by load factor", fontsize=10)
     for point in result.loads:
-        if point.ste_m is not None:
-            axis.plot(*_closed(result, 1e6 * (point.ste_m - point.ste_m.mean())), lw=1.3, label=f"{point.factor:g}")
+        if point.ste_m is not None and point.position is not None:
+            middle = 0.5 * (point.ste_m.max() + point.ste_m.min())
+            curve = _closed_at(point.position, 1e6 * (point.ste_m - middle), result.periods)
+            axis.plot(*curve, lw=1.3, label=f"{point.factor:g}")
     axis.legend(frameon=False, fontsize=8, ncols=4)
     _plain_axis(axis, "transmission error, um")

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rotorgear.gears.loaded.cycle_curve import CycleCurve
 from rotorgear.old_names import warn_old
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, derived, of, plain
@@ -109,10 +110,15 @@ class MeshErrors(Record):
     mean_stiffness: float = of("relative error of the mean stiffness")
     peak_to_peak_stiffness: float = of("relative error of the peak to peak of the stiffness")
     ste_peak_to_peak: float = of("relative error of the peak to peak of the transmission error")
+    ste_harmonics: float | None = of(
+        "largest error of the first five mesh orders of the transmission error, over the strongest of them",
+        default=None,
+    )
+    largest_pressure: float | None = of("relative error of the largest contact pressure", default=None)
 
     @property
     def worst(self) -> float:
-        """The largest of them."""
+        """The largest of stiffness, its peak to peak and that of the transmission error."""
         return max(self.mean_stiffness, self.peak_to_peak_stiffness, self.ste_peak_to_peak)
 
 
@@ -128,6 +134,7 @@ class LoadPoint(Record):
         "amplitudes of mesh orders 1 to 3 of the transmission error", "m", "order", note=" at that load", default=()
     )
     largest_pressure_pa: float | None = of("largest contact pressure", "Pa", note=" at that load", default=None)
+    position: np.ndarray | None = of("position", "", "position", note=" in mesh periods at that load", default=None)
     ste_m: np.ndarray | None = of("transmission error", "m", "position", note=" under that load", default=None)
 
 
@@ -162,7 +169,10 @@ class MeshResult(Result, kind="mesh"):
     base_helix_angle: float = of("base helix angle", "rad", json="base_helix_angle_deg")
     stagger: float = of("lead of the second helix in mesh periods")
     load: MeshLoad | None = of("load", record=MeshLoad)
-    position: np.ndarray = of("position", "", "position", note=" in mesh periods")
+    position: np.ndarray = of(
+        "position", "", "position", note=" in mesh periods, rising, not evenly spaced for loaded teeth"
+    )
+    event: np.ndarray = of("whether a tooth pair comes or goes there", "", "position", note=": the curves have a kink")
     stiffness: np.ndarray = of("stiffness", "N/m", "position", json="stiffness_n_per_m", note=" over `position`")
     tangent: np.ndarray | None = of(
         "tangent stiffness", "N/m", "position", json="tangent_stiffness_n_per_m", note=" over `position`"
@@ -173,6 +183,11 @@ class MeshResult(Result, kind="mesh"):
     no_load_error: np.ndarray | None = of("transmission error without load", "m", "position", json="no_load_te_m")
     helix: tuple[HelixContact, ...] = of("loaded contact of each helix", "", "helix", record=HelixContact)
     errors: MeshErrors | None = of("estimated errors", record=MeshErrors, json="error_estimate")
+    element_errors: MeshErrors | None = of("what the finite elements have of them", record=MeshErrors)
+    slice_errors: MeshErrors | None = of(
+        "what the slices of the contact lines have of them", record=MeshErrors, note="; `null` for spur teeth"
+    )
+    sampling_errors: MeshErrors | None = of("what the choice of positions has of them", record=MeshErrors)
     dofs: int = of("degrees of freedom", note=" of both gears' elements")
     loads: tuple[LoadPoint, ...] = of("the same mesh at other loads", "", "load", record=LoadPoint)
 
@@ -190,7 +205,7 @@ class MeshResult(Result, kind="mesh"):
     @derived("mean stiffness", "N/m", json="mean_stiffness_n_per_m")
     def mean_stiffness(self) -> float:
         """Mean of the transverse stiffness (N/m)."""
-        return float(self.stiffness.mean())
+        return float(self._curve(self.stiffness).mean()[0])
 
     @derived("mean stiffness along the flank normal", "N/m", json="mean_normal_stiffness_n_per_m")
     def mean_normal_stiffness(self) -> float:
@@ -205,20 +220,46 @@ class MeshResult(Result, kind="mesh"):
     @derived("mean tangent stiffness", "N/m", json="mean_tangent_stiffness_n_per_m")
     def mean_tangent_stiffness(self) -> float | None:
         """Mean of the transverse tangent stiffness (N/m)."""
-        return None if self.tangent is None else float(self.tangent.mean())
+        return None if self.tangent is None else float(self._curve(self.tangent).mean()[0])
 
     @derived("peak to peak of the transmission error", "m", json="ste_peak_to_peak_m", note=" under load")
     def ste_peak_to_peak(self) -> float | None:
         """Largest less smallest transmission error under load (m)."""
         return None if self.transmission_error is None else float(np.ptp(self.transmission_error))
 
+    @derived("mean transmission error", "m", json="mean_ste_m", note=" under load")
+    def mean_transmission_error(self) -> float | None:
+        """Mean of the transmission error under load (m)."""
+        if self.transmission_error is None:
+            return None
+        return float(self._curve(self.transmission_error).mean()[0])
+
+    def at(self, position: Any) -> tuple[np.ndarray, np.ndarray | None]:
+        """Stiffness (n,) in N/m and transmission error (n,) in m at any positions (n,) in mesh periods, by the curves' cubics."""
+        u = np.atleast_1d(np.asarray(position, float))
+        e = self.transmission_error
+        return self._curve(self.stiffness).at(u)[:, 0], None if e is None else self._curve(e).at(u)[:, 0]
+
+    @property
+    def periods(self) -> int:
+        """Mesh periods that the positions span."""
+        return int(self.position[-1]) + 1
+
+    def _curve(self, values: np.ndarray) -> CycleCurve:
+        return CycleCurve(self.position, values[:, None], float(self.periods), self.event)
+
+    def _harmonics(self, values: np.ndarray, count: int) -> np.ndarray:
+        # More orders than half of the positions are not in them.
+        most = (len(self.position) // self.periods - 1) // 2
+        return np.asarray(self._curve(values).harmonics(min(count, most))[:, 0])
+
     def harmonics(self, count: int = 8) -> np.ndarray:
         """Complex c_h (count,) in N/m: k(u) = mean + sum_h Re(c_h e^{2 pi i h u}), over whole mesh periods."""
-        return harmonics(self.position, self.stiffness, count)
+        return self._harmonics(self.stiffness, count)
 
     def ste_harmonics(self, count: int = 8) -> np.ndarray | None:
         """The same of the transmission error under load, in m."""
-        return None if self.transmission_error is None else harmonics(self.position, self.transmission_error, count)
+        return None if self.transmission_error is None else self._harmonics(self.transmission_error, count)
 
     def orders(self, count: int = _ORDERS) -> tuple[MeshOrder, ...]:
         """The first orders of stiffness and transmission error by amplitude and phase."""
@@ -243,12 +284,3 @@ class MeshResult(Result, kind="mesh"):
     def to_dict(self, harmonics: int = _ORDERS) -> dict[str, Any]:
         """Plain values for JSON with so many orders; the keys are on docs/json.md."""
         return {**super().to_dict(), "harmonics": plain(self.orders(harmonics))}
-
-
-def harmonics(position: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
-    """Amplitudes at whole orders of the mesh; positions are evenly spaced over whole periods from 0."""
-    n = len(values)
-    periods = round(n * float(position[1] - position[0])) if n > 1 else 1
-    most = (n // periods - 1) // 2
-    spectrum = 2.0 * np.fft.fft(values)[periods::periods][: min(count, most)] / n
-    return np.asarray(spectrum)

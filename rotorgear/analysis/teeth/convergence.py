@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.teeth.errors import coarser, estimated
-from rotorgear.analysis.teeth.request import mesh_request
+from rotorgear.analysis.teeth.errors import error_parts
+from rotorgear.analysis.teeth.helices import Cycle, solve_helices
+from rotorgear.analysis.teeth.request import MeshRequest, mesh_request
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, mesh_cycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem, in_space
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
@@ -66,7 +67,7 @@ def mesh_convergence_study(
     rungs = []
     for number, (name, pair) in enumerate(runs):
         run = _run(pair, request.base_force, part_of(progress, (number + 4) / steps, (number + 5) / steps))
-        rungs.append(_rung(name, pair, run, truth.cycle, request.base_force))
+        rungs.append(_rung(name, pair, run, truth.cycle, request))
     progress(1.0, "done")
     size = finest.mesh_size(teeth.width / teeth.first.normal_module, space=space)
     layers = f" in {size.face} layers" if size.face else ""
@@ -86,7 +87,7 @@ def _run(teeth: ToothPair, load: float, progress: Progress) -> _Run:
     return _Run(problem, cycle, middle - start, time.process_time() - middle)
 
 
-def _rung(name: str, teeth: ToothPair, run: _Run, truth: MeshCycle, load: float) -> MeshRung:
+def _rung(name: str, teeth: ToothPair, run: _Run, truth: MeshCycle, request: MeshRequest) -> MeshRung:
     k = run.cycle.secant
     error = run.cycle.deflection
     size = teeth.fe.mesh_size(teeth.width / teeth.first.normal_module, space=in_space(teeth)[0])
@@ -101,7 +102,7 @@ def _rung(name: str, teeth: ToothPair, run: _Run, truth: MeshCycle, load: float)
         float(np.ptp(k)),
         float(np.ptp(error)),
         _errors(k, error, truth),
-        _estimate(name, teeth, k, error, load),
+        _estimate(name, teeth, request),
     )
 
 
@@ -115,10 +116,11 @@ def _errors(k: np.ndarray, error: np.ndarray, truth: MeshCycle) -> MeshErrors:
     )
 
 
-def _estimate(name: str, teeth: ToothPair, k: np.ndarray, error: np.ndarray, load: float) -> MeshErrors | None:
-    """The estimate of an analysis with this preset; its coarser mesh may come from the disk."""
-    rough = coarser(teeth) if name.startswith("preset") else None
-    if rough is None:
+def _estimate(name: str, teeth: ToothPair, request: MeshRequest) -> MeshErrors | None:
+    """The estimate of an analysis with this preset, of one helix; its compliances may come from the disk."""
+    if not name.startswith("preset"):
         return None
-    other = mesh_cycle(contact_problem(rough), load, np.arange(POSITIONS) / POSITIONS)
-    return estimated(teeth, k, error, other.secant, other.deflection)
+    one = replace(request, senses=(1,))
+    found = solve_helices(one, teeth, request.base_force, Cycle(POSITIONS), judged=True)
+    parts = error_parts(one, teeth, found)
+    return parts.total if parts else None

@@ -1,47 +1,137 @@
-"""Error estimates of a mesh analysis: the same on a coarser mesh of the same kind.
+"""Error estimates of a mesh analysis, in parts: finite elements, slices of the contact lines, positions in the cycle.
 
-The two differ by the error of the coarser one less that of the finer one. What remains of it on the finer mesh was measured
-on spur and helical pairs, and docs/mesh.md shows estimates beside errors. What lies between the positions of the cycle is not
-in them: both meshes are sampled alike.
+Elements: the same on a coarser mesh of the same kind, at some of the positions. The two differ by the error of the coarser one
+less that of the finer one; the share of it that remains on the finer mesh was measured (docs/mesh.md has both, side by side).
+In space default and fine are compared with the same coarse mesh, so that the finer one never estimates worse.
+Slices: the same elements with half as many slices again. Positions: contact solutions between those that are kept
+(`gears/loaded/cycle_positions`). What is printed is the sum.
+
+Peaks to peaks of two curves may agree by chance. Two curves that lie apart by d(u) are taken to differ in peak to peak by no less
+than the standard deviation of d over the cycle.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rotorgear.analysis.teeth.helices import SolvedHelices, curves_at
+from rotorgear.analysis.teeth.request import MeshRequest
 from rotorgear.gears.loaded.tooth_contact import in_space
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import coarser_size
+from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.mesh import MeshErrors
 
-# Shares in the plane and in space, where the default mesh and the fine one lie close together.
-_REMAINING = {"preview": (1.5, 1.5), "default": (0.35, 0.35), "fine": (0.6, 3.5)}
+# Share of the difference between two meshes that remains on the finer one, in the plane and in space.
+_REMAINING = {"preview": (1.5, 1.5), "default": (0.35, 0.35), "fine": (0.6, 0.09)}
+# The same of the largest pressure in space: it stands where contact lines end at the edge of a face, and comes to rest slowly.
+_OF_PRESSURE = {"preview": 3.0, "default": 1.5, "fine": 0.4}
+# Slices beside the usual ones.
+_MORE_SLICES = 1.5
+# Positions in a period at which other meshes are compared, beside the extremes of the curves.
+_COMPARED = 24
+# No estimate is better than what elements and contact are solved to.
+_LEAST = 1e-4
+# Orders of the transmission error whose amplitudes the estimate covers.
+ORDERS = 5
 
 
-def coarser(teeth: ToothPair) -> ToothPair | None:
-    """The same teeth on a coarser mesh; None for uncoupled slices, whose error no mesh of theirs can show."""
+@dataclass(frozen=True)
+class ErrorParts:
+    """Estimated relative errors by their cause; what is not known is None."""
+
+    elements: MeshErrors | None
+    slices: MeshErrors | None
+    sampling: MeshErrors
+    total: MeshErrors
+
+
+def error_parts(
+    request: MeshRequest, teeth: ToothPair, found: SolvedHelices, progress: Progress = silent
+) -> ErrorParts | None:
+    """Estimate the errors of solved helices; None for uncoupled slices, whose error no mesh of theirs can show."""
     space, uncoupled = in_space(teeth)
     if uncoupled:
         return None
-    size = coarser_size(teeth.fe, teeth.width / teeth.first.normal_module, space=space)
-    return replace(teeth, fe=replace(teeth.fe, size=size))
+    sampling = sampling_errors(found)
+    compared = _compared(found)
+    u = found.position[compared]
+    here = found.curve.values[compared][:, [0, 1, 3]]
+    periods = round(found.curve.period)
+
+    def curves(other: ToothPair, told: Progress) -> np.ndarray:
+        return curves_at(request, other, request.base_force, u, periods, told)
+
+    fe = teeth.fe
+    width = teeth.width / teeth.first.normal_module
+    compared_with = replace(fe, preset="default") if space and fe.preset == "fine" else fe
+    coarser = replace(teeth, fe=replace(fe, size=coarser_size(compared_with, width, space=space)))
+    share = 1.0 if fe.size is not None else _REMAINING[fe.preset][space]
+    of_pressure = _OF_PRESSURE[fe.preset] if space and fe.size is None else share
+    elements = _apart(here, curves(coarser, part_of(progress, 0.0, 0.6)), share, of_pressure)
+    slices = None
+    if space:
+        more = replace(teeth, fe=replace(fe, slices=round(_MORE_SLICES * found.problem.slices)))
+        slices = _apart(here, curves(more, part_of(progress, 0.6, 1.0)))
+    return ErrorParts(elements, slices, sampling, _sum(elements, slices, sampling))
 
 
-def estimated(
-    teeth: ToothPair, k: np.ndarray, error: np.ndarray, other_k: np.ndarray, other_error: np.ndarray
-) -> MeshErrors:
-    """Estimates from stiffness and transmission error (p,) of the teeth and of the same on the coarser mesh."""
-    share = 1.0 if teeth.fe.size is not None else _REMAINING[teeth.fe.preset][in_space(teeth)[0]]
+def _compared(found: SolvedHelices) -> np.ndarray:
+    """Numbers of the positions at which other meshes are looked at: spread evenly, with the extremes of all curves."""
+    u = found.position
+    even = np.arange(0.0, found.curve.period, 1.0 / _COMPARED)
+    spread = np.abs(u[:, None] - even).argmin(axis=0)
+    values = found.curve.values[:, [0, 1, 3]]
+    return np.unique([*spread, *values.argmax(axis=0), *values[:, :2].argmin(axis=0)])
 
-    def relative(one: float, other: float) -> float:
-        return share * abs(other - one) / max(abs(one), 1e-300)
 
-    mean = relative(float(k.mean()), float(other_k.mean()))
+def _apart(here: np.ndarray, there: np.ndarray, share: float = 1.0, of_pressure: float = 1.0) -> MeshErrors:
+    """Relative differences of transmission error, stiffness and largest pressure (m, 3) at the same positions."""
+    difference = there - here
+    spread = np.maximum(np.abs(np.ptp(there, axis=0) - np.ptp(here, axis=0)), difference.std(axis=0))
+    size = np.maximum(np.ptp(here, axis=0), 1e-300)
+    mean = float(abs(difference[:, 1].mean()) / here[:, 1].mean())
     # A ripple is not known better than the mean: its two errors may cancel between two meshes.
+    ripple = np.maximum(spread / size, mean)
+    highest = here[:, 2].max()
     return MeshErrors(
-        mean,
-        max(mean, relative(float(np.ptp(k)), float(np.ptp(other_k)))),
-        max(mean, relative(float(np.ptp(error)), float(np.ptp(other_error)))),
+        mean_stiffness=share * mean,
+        peak_to_peak_stiffness=share * float(ripple[1]),
+        ste_peak_to_peak=share * float(ripple[0]),
+        # Amplitudes change by sqrt(2) standard deviations of d if one order has it all; the strongest is near half the ripple.
+        ste_harmonics=share * float(max(difference[:, 0].std() / (0.5 * size[0]), mean)),
+        largest_pressure=of_pressure * float(abs(there[:, 2].max() - highest) / highest),
+    )
+
+
+def sampling_errors(found: SolvedHelices) -> MeshErrors:
+    """What may lie between the positions that are kept, relative to each number."""
+    sampling = found.sampling
+    kept = sampling.curve
+    ripple = sampling.peak_to_peak_error() / np.maximum(np.ptp(kept.values, axis=0), 1e-300)
+    strongest = max(float(np.abs(kept.harmonics(ORDERS)[:, 0]).max()), 1e-300)
+    return MeshErrors(
+        mean_stiffness=float(sampling.mean_error()[1] / kept.mean()[1]),
+        peak_to_peak_stiffness=float(ripple[1]),
+        ste_peak_to_peak=float(ripple[0]),
+        ste_harmonics=float(sampling.harmonics_error(ORDERS)[:, 0].max()) / strongest,
+        largest_pressure=float(sampling.largest_error()[2] / kept.values[:, 2].max()),
+    )
+
+
+def _sum(*parts: MeshErrors | None) -> MeshErrors:
+    known = [part for part in parts if part is not None]
+    return MeshErrors(
+        *(
+            max(_LEAST, sum(getattr(part, name) for part in known))
+            for name in (
+                "mean_stiffness",
+                "peak_to_peak_stiffness",
+                "ste_peak_to_peak",
+                "ste_harmonics",
+                "largest_pressure",
+            )
+        )
     )

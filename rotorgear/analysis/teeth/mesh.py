@@ -3,41 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.teeth.errors import coarser, estimated
+from rotorgear.analysis.teeth.errors import ErrorParts, error_parts
+from rotorgear.analysis.teeth.helices import Cycle, SolvedHelices, solve_helices
 from rotorgear.analysis.teeth.request import MeshRequest, mesh_request
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
-from rotorgear.gears.loaded.stiffness import loaded_cycle
-from rotorgear.gears.loaded.tooth_contact import ContactProblem
+from rotorgear.gears.loaded.tooth_contact import ContactProblem, in_space
 from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 from rotorgear.gears.tooth_fe.settings import PRESETS
-from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.results.mesh import HelixContact, LoadPoint, MeshErrors, MeshResult, harmonics
+from rotorgear.results.mesh import HelixContact, LoadPoint, MeshResult
 
 POSITIONS = 64
 # More positions or periods than these are a slip of the keyboard.
 _MOST_POSITIONS = 4096
 _MOST_PERIODS = 256
-
-
-@dataclass(frozen=True)
-class SolvedHelices:
-    """All helices of one request at one load and setting."""
-
-    problem: ContactProblem
-    cycles: tuple[MeshCycle, ...]
-    stiffness: np.ndarray
-    tangent: np.ndarray
-    error: np.ndarray
-    no_load: np.ndarray
 
 
 @recorded
@@ -65,9 +52,10 @@ def mesh(
         torque: on the pinion, in N m or as a text such as "2000 N m", in place of the torque flow's.
         preset, body: of the finite elements, in place of the file's.
         accuracy: take the cheapest preset whose estimated relative errors are within it.
-        positions: in one mesh period; periods: how many (default 1, or enough for all teeth with pitch errors).
+        positions: in one mesh period, placed where teeth come and go and where the curves need them.
+        periods: how many mesh periods (default 1, or enough for all teeth with pitch errors).
         load_factors: also solve at these multiples of the load.
-        estimate: whether a coarser mesh is solved too, for the error estimates.
+        estimate: whether other meshes and more positions are solved too, for the error estimates.
         progress: callable that is told fraction and step.
 
     Raises:
@@ -85,18 +73,17 @@ def mesh(
     if request.model != "tooth_fe":
         return _other(model, request, positions, clock)
     assert request.teeth is not None
-    u = np.arange(positions * _periods(request.teeth, periods)) / positions
-    stagger = request.mesh.lead_on_path(request.sense)
+    cycle = Cycle(positions, _periods(request.teeth, periods))
     if accuracy is None:
         teeth = request.teeth
-        found, errors = _with_errors(request, teeth, u, stagger, estimate, progress)
+        found, errors = _with_errors(request, teeth, cycle, estimate, progress)
     else:
-        teeth, found, errors = _refined(request, u, stagger, accuracy, progress)
+        teeth, found, errors = _refined(request, cycle, accuracy, progress)
     clock.lap("teeth and contact")
-    loads = tuple(_load_point(request, teeth, factor, u, stagger) for factor in load_factors)
+    loads = tuple(_load_point(request, teeth, factor, cycle) for factor in load_factors)
     if loads:
         clock.lap("other loads")
-    return _result(model, request, teeth, u, found, errors, loads, clock)
+    return _result(model, request, teeth, found, errors, loads, clock)
 
 
 def require_positions(positions: int) -> None:
@@ -114,77 +101,50 @@ def _periods(teeth: ToothPair, wanted: int | None) -> int:
     return min(max(wrong) + 2, _MOST_PERIODS) if wrong else 1
 
 
-def solve_helices(
-    request: MeshRequest,
-    teeth: ToothPair,
-    base_force: float,
-    u: np.ndarray,
-    stagger: float,
-    progress: Progress = silent,
-) -> SolvedHelices:
-    """All helices at one load; they share it evenly, and the mesh approaches by their mean."""
-    cycles: list[MeshCycle] = []
-    kinds = [teeth if ahead > 0 else mirrored(teeth) for ahead in request.senses]
-    for helix, pair in enumerate(kinds):
-        if helix and pair == kinds[0] and stagger == 0.0:
-            cycles.append(cycles[0])
-            continue
-        told = part_of(progress, helix / request.helices, (helix + 1) / request.helices)
-        problem, cycle = loaded_cycle(pair, base_force, u + helix * stagger, told)
-        cycles.append(cycle)
-    error = np.mean([cycle.deflection for cycle in cycles], axis=0)
-    no_load = np.mean([cycle.no_load for cycle in cycles], axis=0)
-    total = base_force * request.helices
-    tangent = request.helices / np.mean([1.0 / cycle.tangent for cycle in cycles], axis=0)
-    return SolvedHelices(problem, tuple(cycles), total / (error - no_load), tangent, error, no_load)
-
-
 def _with_errors(
-    request: MeshRequest, teeth: ToothPair, u: np.ndarray, stagger: float, estimate: bool, progress: Progress
-) -> tuple[SolvedHelices, MeshErrors | None]:
-    rough = coarser(teeth) if estimate else None
-    share = 0.25 if rough is not None else 0.0
-    found = solve_helices(request, teeth, request.base_force, u, stagger, part_of(progress, share, 1.0))
-    if rough is None:
+    request: MeshRequest, teeth: ToothPair, cycle: Cycle, estimate: bool, progress: Progress
+) -> tuple[SolvedHelices, ErrorParts | None]:
+    share = 0.7 if estimate else 1.0
+    told = part_of(progress, 0.0, share)
+    found = solve_helices(request, teeth, request.base_force, cycle, told, judged=estimate)
+    if not estimate:
         return found, None
-    other = solve_helices(request, rough, request.base_force, u, stagger, part_of(progress, 0.0, share))
-    return found, estimated(teeth, found.stiffness, found.error, other.stiffness, other.error)
+    return found, error_parts(request, teeth, found, part_of(progress, share, 1.0))
 
 
 def _refined(
-    request: MeshRequest, u: np.ndarray, stagger: float, accuracy: float, progress: Progress
-) -> tuple[ToothPair, SolvedHelices, MeshErrors | None]:
+    request: MeshRequest, cycle: Cycle, accuracy: float, progress: Progress
+) -> tuple[ToothPair, SolvedHelices, ErrorParts]:
     """The cheapest preset whose estimates are within an accuracy."""
     assert request.teeth is not None
     said = []
     for preset in PRESETS:
         fe = replace(request.teeth.fe, preset=preset, size=None)
         teeth = replace(request.teeth, fe=fe)
-        if coarser(teeth) is None:
+        if in_space(teeth)[1]:
             continue  # uncoupled slices can't know their error
-        found, errors = _with_errors(request, teeth, u, stagger, True, progress)
+        found, errors = _with_errors(request, teeth, cycle, True, progress)
         assert errors is not None
-        if errors.worst <= accuracy:
+        if errors.total.worst <= accuracy:
             return teeth, found, errors
-        said.append(f"{preset} {errors.worst:.1e}")
+        said.append(f"{preset} {errors.total.worst:.1e}")
     raise AnalysisError(
         f"No preset reaches a relative accuracy of {accuracy:g} of stiffness, its ripple and the transmission error's ripple: "
         f"the estimates are {', '.join(said)}. Ask for less, or take --preset fine with its estimate."
     )
 
 
-def _load_point(request: MeshRequest, teeth: ToothPair, factor: float, u: np.ndarray, stagger: float) -> LoadPoint:
-    found = solve_helices(request, teeth, factor * request.base_force, u, stagger)
-    ratio = float(np.mean([cycle.contact_ratio for cycle in found.cycles]))
-    k = found.stiffness
+def _load_point(request: MeshRequest, teeth: ToothPair, factor: float, cycle: Cycle) -> LoadPoint:
+    found = solve_helices(request, teeth, factor * request.base_force, cycle)
     return LoadPoint(
         factor=factor,
-        mean_stiffness_n_per_m=float(k.mean()),
-        peak_to_peak_stiffness_n_per_m=float(np.ptp(k)),
+        mean_stiffness_n_per_m=float(found.curve.mean()[1]),
+        peak_to_peak_stiffness_n_per_m=float(np.ptp(found.stiffness)),
         ste_peak_to_peak_m=float(np.ptp(found.error)),
-        contact_ratio=ratio,
-        ste_harmonics_m=tuple(np.abs(harmonics(u, found.error, 3)).tolist()),
-        largest_pressure_pa=max(float(cycle.pressure.max()) for cycle in found.cycles),
+        contact_ratio=found.contact_ratio,
+        ste_harmonics_m=tuple(np.abs(found.curve.harmonics(3)[:, 0]).tolist()),
+        largest_pressure_pa=float(found.curve.values[:, 3].max()),
+        position=found.position,
         ste_m=found.error,
     )
 
@@ -212,12 +172,16 @@ def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> 
         stagger=request.mesh.part.stagger,
         load=request.load,
         position=curve.position,
+        event=np.zeros(len(curve.position), bool),
         stiffness=curve.transverse,
         tangent=curve.tangent,
         transmission_error=error,
         no_load_error=None if error is None else np.zeros(len(error)),
         helix=(),
         errors=None,
+        element_errors=None,
+        slice_errors=None,
+        sampling_errors=None,
         dofs=0,
         seconds=clock.total(),
         loads=(),
@@ -229,9 +193,8 @@ def _result(
     model: Model,
     request: MeshRequest,
     teeth: ToothPair,
-    u: np.ndarray,
     found: SolvedHelices,
-    errors: MeshErrors | None,
+    errors: ErrorParts | None,
     loads: tuple[LoadPoint, ...],
     clock: Clock,
 ) -> MeshResult:
@@ -260,13 +223,17 @@ def _result(
         base_helix_angle=teeth.pair.base_helix_angle,
         stagger=request.mesh.part.stagger,
         load=request.load,
-        position=u,
+        position=found.position,
+        event=found.curve.event,
         stiffness=found.stiffness,
         tangent=found.tangent,
         transmission_error=found.error,
         no_load_error=found.no_load,
         helix=tuple(_helix(cycle, teeth, found.problem) for cycle in found.cycles),
-        errors=errors,
+        errors=errors.total if errors else None,
+        element_errors=errors.elements if errors else None,
+        slice_errors=errors.slices if errors else None,
+        sampling_errors=errors.sampling if errors else None,
         dofs=found.problem.unknowns,
         seconds=clock.total(),
         loads=loads,

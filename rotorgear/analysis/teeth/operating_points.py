@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotorgear.analysis.teeth.mesh import solve_helices
+from rotorgear.analysis.teeth.helices import Cycle, solve_helices
 from rotorgear.analysis.teeth.request import MeshRequest
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.face import load_per_width
@@ -60,22 +60,20 @@ def mesh_figures(
         progress: told how far it is.
     """
     base_force = abs(torque) / request.mesh.pinion.base_radius / request.helices
-    u = np.arange(positions) / positions
-    found = solve_helices(request, teeth, base_force, u, request.mesh.lead_on_path(request.sense), progress)
+    found = solve_helices(request, teeth, base_force, Cycle(positions), progress)
     normal_force = base_force / float(np.cos(teeth.pair.base_helix_angle))
     places = min(_PLACES, found.problem.slices)
     factors = [
         float(load_per_width(cycle, teeth.width, places)[1].max()) * teeth.width / normal_force
         for cycle in found.cycles
     ]
-    spectrum = 2.0 * np.abs(np.fft.fft(found.error))[1 : ORDERS + 1] / positions
     notes = [note for cycle in found.cycles for note in cycle.warnings]
     return MeshFigures(
         ste_peak_to_peak=float(np.ptp(found.error)),
-        ste_harmonics=spectrum,
-        largest_pressure=max(float(cycle.pressure.max()) for cycle in found.cycles),
+        ste_harmonics=np.abs(found.curve.harmonics(ORDERS)[:, 0]),
+        largest_pressure=float(found.curve.values[:, 3].max()),
         face_load_factor=max(factors),
-        mean_stiffness=float(found.stiffness.mean()),
+        mean_stiffness=float(found.curve.mean()[1]),
         dofs=found.problem.unknowns,
         warnings=tuple(dict.fromkeys((*found.problem.warnings, *notes))),
     )

@@ -82,5 +82,5 @@ def load_per_width(cycle: MeshCycle, width: float, places: int) -> tuple[np.ndar
     middle = slices.z @ slices.weight
     # A slice carries evenly along its length: what stands left of each edge, and the differences of that.
     left = np.clip((edges - middle[:, None]) / slices.length[:, None] + 0.5, 0.0, 1.0)
-    force = np.diff(cycle.force @ left) / len(cycle.position)
+    force = np.diff((cycle.force * cycle.weight[slices.position]) @ left)
     return 0.5 * (edges[1:] + edges[:-1]), np.asarray(force / np.diff(edges))

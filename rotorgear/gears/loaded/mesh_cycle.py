@@ -70,6 +70,8 @@ class MeshCycle:
         strip: (n,) half-widths of the contact (m).
         pressure: (n,) largest Hertz pressure (Pa).
         residual: largest violation of the contact conditions (m).
+        opening: (n,) of the flanks under load along their normal (m); of slices that carry less than nothing: the overlap
+            C_jj F_j that their force takes away.
         contacts: (p,) the contact at each position, its slices in the order of `slices`.
         patch: (n,) least half-widths of the patches in normal modules.
         beyond: how far corner contacts were followed before the start and after the end (m).
@@ -88,6 +90,7 @@ class MeshCycle:
     strip: np.ndarray
     pressure: np.ndarray
     residual: float
+    opening: np.ndarray
     contacts: tuple[PositionContact, ...]
     patch: np.ndarray
     beyond: tuple[float, float]
@@ -116,9 +119,40 @@ class MeshCycle:
         return {k: value / total for k, value in forces.items()}
 
     @property
+    def weight(self) -> np.ndarray:
+        """Share (p,) of the cycle that each position stands for: half of the intervals beside it."""
+        u = self.position
+        period = np.floor(u[-1] - u[0]) + 1.0
+        width = np.diff(u, append=u[0] + period)
+        return np.asarray(0.5 * (width + np.roll(width, 1)) / period)
+
+    @property
     def contact_ratio(self) -> float:
         """Mean number of tooth pairs that carry load."""
-        return float(sum(np.mean(share > 0.0) for share in self.share_by_pair().values()))
+        return float(sum(self.weight @ (share > 0.0) for share in self.share_by_pair().values()))
+
+    def chosen(self, numbers: np.ndarray) -> MeshCycle:
+        """The cycle at some of its positions alone, numbers (m,) rising."""
+        new = np.full(len(self.position), -1)
+        new[numbers] = np.arange(len(numbers))
+        here = np.flatnonzero(new[self.slices.position] >= 0)
+        slices = self.slices.take(here)
+        return replace(
+            self,
+            position=self.position[numbers],
+            deflection=self.deflection[numbers],
+            no_load=self.no_load[numbers],
+            tangent=self.tangent[numbers],
+            moment=self.moment[numbers],
+            along_face=self.along_face[numbers],
+            slices=replace(slices, position=new[slices.position]),
+            force=self.force[here],
+            strip=self.strip[here],
+            pressure=self.pressure[here],
+            opening=self.opening[here],
+            contacts=tuple(self.contacts[i] for i in numbers),
+            patch=self.patch[here],
+        )
 
 
 def mesh_cycle(problem: ContactProblem, load: float, positions: np.ndarray, progress: Progress = silent) -> MeshCycle:
@@ -133,6 +167,68 @@ def mesh_cycle(problem: ContactProblem, load: float, positions: np.ndarray, prog
     if len(positions) >= 2 * _STRIDE:
         beyond = _followed(problem, load, positions[::_STRIDE], beyond, silent, passes=1).beyond
     return _followed(problem, load, positions, beyond, progress)
+
+
+def with_more(
+    problem: ContactProblem, cycle: MeshCycle, positions: np.ndarray, progress: Progress = silent
+) -> MeshCycle:
+    """The cycle with more positions (m,), solved with slices as far beyond the line of action as those that are there."""
+    more = _swept(problem, cycle.load, positions, cycle.beyond, progress, _PASSES)
+    wanted = _beyond(problem, float((more.deflection - more.no_load).max()) + problem.largest_gap)
+    if any(np.array(wanted) > cycle.beyond):
+        # Rare, since a little more was followed than touched: all positions get the same reach.
+        farther = (max(cycle.beyond[0], _MORE_BEYOND * wanted[0]), max(cycle.beyond[1], _MORE_BEYOND * wanted[1]))
+        return _swept(
+            problem, cycle.load, np.sort(np.concatenate([cycle.position, positions])), farther, silent, _PASSES
+        )
+    return _joined(cycle, more)
+
+
+def _joined(first: MeshCycle, second: MeshCycle) -> MeshCycle:
+    """Positions of both, in their order."""
+    place = np.concatenate([first.position, second.position])
+    order = np.argsort(place, kind="stable")
+    rank = np.empty(len(order), int)
+    rank[order] = np.arange(len(order))
+    number = rank[np.concatenate([first.slices.position, len(first.position) + second.slices.position])]
+    here = np.argsort(number, kind="stable")
+
+    def positions(name: str) -> np.ndarray:
+        return np.concatenate([getattr(first, name), getattr(second, name)])[order]
+
+    def pieces(one: np.ndarray, other: np.ndarray, axis: int = 0) -> np.ndarray:
+        return np.take(np.concatenate([one, other], axis=axis), here, axis=axis)
+
+    a = first.slices
+    b = second.slices
+    contacts = first.contacts + second.contacts
+    return replace(
+        first,
+        position=place[order],
+        deflection=positions("deflection"),
+        no_load=positions("no_load"),
+        tangent=positions("tangent"),
+        moment=positions("moment"),
+        along_face=positions("along_face"),
+        slices=Slices(
+            position=number[here],
+            pair=pieces(a.pair, b.pair),
+            z=pieces(a.z, b.z),
+            length=pieces(a.length, b.length),
+            weight=a.weight,
+            roll=pieces(a.roll, b.roll, 1),
+            gap=pieces(a.gap, b.gap),
+            corner=pieces(a.corner, b.corner),
+        ),
+        force=pieces(first.force, second.force),
+        strip=pieces(first.strip, second.strip),
+        pressure=pieces(first.pressure, second.pressure),
+        residual=max(first.residual, second.residual),
+        opening=pieces(first.opening, second.opening),
+        contacts=tuple(contacts[i] for i in order),
+        patch=pieces(first.patch, second.patch),
+        warnings=tuple(dict.fromkeys(first.warnings + second.warnings)),
+    )
 
 
 def _followed(
@@ -204,11 +300,18 @@ def _swept(
         strip=strip,
         pressure=pressure,
         residual=max(state.residual for state in states),
+        opening=np.concatenate([_opening(*one) for one in zip(contacts, states, strict=True)]),
         contacts=tuple(contacts),
         patch=patch,
         beyond=beyond,
         warnings=_notes(problem, slices, force, pressure, beyond),
     )
+
+
+def _opening(contact: PositionContact, state: ContactState) -> np.ndarray:
+    """Opening (n,) of the slices at one position, and less than nothing where they carry."""
+    opening = contact.compliance @ state.force + contact.gap - state.approach
+    return np.where(state.force > 0.0, -np.diag(contact.compliance) * state.force, opening)
 
 
 def settled(

@@ -66,12 +66,12 @@ def _main(result: MeshResult) -> Any:
     row("mean stiffness", result.mean_stiffness, errors.mean_stiffness if errors else None)
     row("peak to peak", result.peak_to_peak_stiffness, errors.peak_to_peak_stiffness if errors else None)
     if result.tangent is not None:
-        row("mean tangent stiffness", float(result.tangent.mean()), None)
+        row("mean tangent stiffness", float(result.mean_tangent_stiffness or 0.0), None)
     row("mean along the normal", result.mean_normal_stiffness, None)
     if result.transmission_error is not None and result.no_load_error is not None:
         ste = result.transmission_error
         error = errors.ste_peak_to_peak if errors else None
-        out.add_row("transmission error, mean", f"{1e6 * ste.mean():.4f} um", "", "")
+        out.add_row("transmission error, mean", f"{1e6 * (result.mean_transmission_error or 0.0):.4f} um", "", "")
         out.add_row("peak to peak", f"{1e6 * np.ptp(ste):.4f} um", "", "-" if error is None else f"{100 * error:.2g} %")
         out.add_row("peak to peak, no load", f"{1e6 * np.ptp(result.no_load_error):.4f} um", "", "")
     if result.helix:
@@ -81,7 +81,9 @@ def _main(result: MeshResult) -> Any:
         share = max(float(values.max()) for item in helix for values in item.share.values())
         out.add_row("largest share of a pair", f"{100 * share:.1f} %", "", "")
         out.add_row("largest line load", f"{1e-3 * max(item.line_load.max() for item in helix):.4g} N/mm", "", "")
-        out.add_row("largest pressure", f"{1e-6 * max(item.pressure.max() for item in helix):.4g} MPa", "", "")
+        pressure = f"{1e-6 * max(item.pressure.max() for item in helix):.4g} MPa"
+        of_pressure = errors.largest_pressure if errors else None
+        out.add_row("largest pressure", pressure, "", "-" if of_pressure is None else f"{100 * of_pressure:.2g} %")
     return out
 
 

@@ -43,6 +43,14 @@ def deflection_of_rotor_model(text: str) -> float:
     return abs(float(np.mean(found)))
 
 
+def even_mean(found: rg.MeshResult) -> float:
+    """Mean approach along the normal over the 64 even positions of the rotor model: the cubics between those of a mesh are
+    within 1e-4 of the contact there."""
+    error = found.at(np.arange(64) / 64)[1]
+    assert error is not None
+    return float(error.mean()) * float(np.cos(found.base_helix_angle))
+
+
 @pytest.mark.parametrize(
     ("helix", "kind", "extra"),
     [(0.0, "spur", ""), (20.86, "helical", ""), (20.86, "herringbone", "stagger = 0.5")],
@@ -50,26 +58,22 @@ def deflection_of_rotor_model(text: str) -> float:
 )
 def test_the_rotor_model_deflects_as_the_loaded_teeth_do(helix: float, kind: str, extra: str) -> None:
     text = pair_file(helix, kind, mesh=f"{NAMED}\n{extra}")
-    found = rg.mesh(rg.loads(text), estimate=False)
-    assert found.transmission_error is not None
-    mean = float(found.transmission_error.mean()) * np.cos(found.base_helix_angle)
-    assert deflection_of_rotor_model(text) == pytest.approx(mean, rel=1e-6)
+    mean = even_mean(rg.mesh(rg.loads(text), estimate=False))
+    assert deflection_of_rotor_model(text) == pytest.approx(mean, rel=1e-4)
 
 
 def test_statics_press_the_teeth_together_as_loaded_contact_does() -> None:
     model = rg.loads(pair_file(20.86, "helical", mesh=NAMED))
-    found = rg.mesh(model, estimate=False)
-    assert found.transmission_error is not None
-    mean = float(found.transmission_error.mean()) * np.cos(found.base_helix_angle)
-    assert rg.static(model).mesh_deflection[0] == pytest.approx(mean, rel=1e-6)
+    mean = even_mean(rg.mesh(model, estimate=False))
+    assert rg.static(model).mesh_deflection[0] == pytest.approx(mean, rel=1e-4)
 
 
 def test_small_motions_meet_the_tangent_stiffness() -> None:
     model = rg.loads(pair_file(mesh=NAMED))
     found = rg.mesh(model, estimate=False)
-    assert found.tangent is not None
     force = System(model).load.of_mesh("pair")[0]
-    assert force.contact.stiffness == pytest.approx(float(found.tangent.mean()), rel=1e-9)
+    # The tangent jumps where pairs come into contact: even positions know its mean to a few thousandths.
+    assert force.contact.stiffness == pytest.approx(found.mean_tangent_stiffness, rel=5e-3)
 
 
 def test_the_load_is_that_of_the_torque_flow_unless_one_is_given() -> None:
@@ -116,16 +120,17 @@ def test_a_helix_slope_acts_the_other_way_on_the_other_flanks() -> None:
 
 
 def test_a_staggered_herringbone_has_no_odd_orders() -> None:
-    plain = mesh_of(pair_file(20.86, "herringbone", mesh=NAMED))
-    half = mesh_of(pair_file(20.86, "herringbone", mesh=f"{NAMED}\nstagger = 0.5"))
-    one = mesh_of(pair_file(20.86, "helical", mesh=NAMED), torque=500.0)
+    plain = rg.mesh(rg.loads(pair_file(20.86, "herringbone", mesh=NAMED)))
+    half = rg.mesh(rg.loads(pair_file(20.86, "herringbone", mesh=f"{NAMED}\nstagger = 0.5")))
+    one = rg.mesh(rg.loads(pair_file(20.86, "helical", mesh=NAMED)), torque=500.0)
     assert plain.stiffness == pytest.approx(2.0 * one.stiffness, rel=1e-9)
     c = half.ste_harmonics(4)
     whole = plain.ste_harmonics(4)
     assert c is not None
     assert whole is not None
     assert abs(c[::2]).max() <= 1e-9 * abs(whole).max()
-    assert abs(c[1::2]) == pytest.approx(abs(whole[1::2]), rel=1e-9)
+    # Even orders stay, as far as the positions of either know them.
+    assert abs(c[1::2]) == pytest.approx(abs(whole[1::2]), abs=5e-3 * abs(whole).max())
 
 
 def test_pitch_errors_are_followed_until_all_have_passed() -> None:
@@ -200,22 +205,23 @@ def test_a_wish_that_cannot_be_is_refused_in_one_sentence(options: dict[str, Any
 
 
 def test_the_result_is_plain_json() -> None:
-    data = mesh_of(pair_file(mesh=NAMED)).to_dict()
+    found = mesh_of(pair_file(mesh=NAMED))
+    data = found.to_dict()
     again = json.loads(json.dumps(data, allow_nan=False))
     assert again["definition"] == "secant"
     assert len(again["stiffness_n_per_m"]) == len(again["position"]) == 16
-    assert again["mean_stiffness_n_per_m"] == pytest.approx(np.mean(again["stiffness_n_per_m"]))
+    assert again["mean_stiffness_n_per_m"] == pytest.approx(found.mean_stiffness)
+    assert sum(again["event"]) >= 2
 
 
 def test_a_response_about_the_mean_state_meets_the_tangent_stiffness() -> None:
     model = rg.loads(pair_file(mesh=NAMED))
     state = mean_state(System(model, load=model.mean_load().of_kind("static")), 100.0)
     found = rg.mesh(model, estimate=False)
-    assert found.tangent is not None
     # The tangent jumps where pairs come into contact, so that 64 positions know its mean to a few thousandths.
     tangent = state.system.load.of_mesh("pair")[0].contact.stiffness
-    assert tangent == pytest.approx(float(found.tangent.mean()), rel=5e-3)
-    assert tangent > 1.02 * float(found.stiffness.mean())
+    assert tangent == pytest.approx(found.mean_tangent_stiffness, rel=5e-3)
+    assert tangent > 1.02 * found.mean_stiffness
     assert state.lines.stiffness == pytest.approx([tangent])
 
 

@@ -1,0 +1,108 @@
+"""Curves at positions that are not even: exact harmonics, kinks that are found, and errors that are not smaller than they say."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rotorgear.gears.loaded.contact_events import contact_events, known_events
+from rotorgear.gears.loaded.cycle_curve import CycleCurve
+from rotorgear.gears.loaded.cycle_positions import sampled
+from rotorgear.gears.loaded.mesh_cycle import mesh_cycle, with_more
+from rotorgear.gears.loaded.stiffness import loaded_cycle
+from tests.unit.gears.tooth_pairs import LOAD, spur
+
+KINK = 0.3137
+
+
+def kinked(u: np.ndarray) -> np.ndarray:
+    """1 at a kink, falling as parabolas to either side: known mean, extremes and harmonics."""
+    t = np.mod(u - KINK, 1.0)
+    return 1.0 - 3.0 * t + 3.0 * t**2
+
+
+class Curve:
+    """A function in the place of the contact, which gives its kink away or not."""
+
+    def __init__(self, *, tells: bool) -> None:
+        self.position = np.empty(0)
+        self.tells = tells
+
+    def add(self, positions: np.ndarray) -> np.ndarray:
+        self.position = np.sort(np.concatenate([self.position, positions]))
+        return np.stack([kinked(positions), np.sin(2.0 * np.pi * positions)], axis=1)
+
+    def events(self) -> tuple[np.ndarray, np.ndarray]:
+        if not self.tells:
+            return np.empty(0), np.empty(0)
+        near = self.position[np.abs(self.position - KINK).argmin()]
+        return np.array([KINK]), np.array([near])
+
+
+def test_harmonics_of_a_kinked_parabola_are_exact_at_uneven_positions() -> None:
+    rng = np.random.default_rng(4)
+    u = np.sort(np.concatenate([[KINK], rng.uniform(0.0, 1.0, 14)]))
+    curve = CycleCurve(u, kinked(u)[:, None], 1.0, u == KINK)
+    # 1 - 3 t + 3 t^2 = 1/2 + sum of 3 / (pi n)^2 cos(2 pi n t)
+    n = np.arange(1, 9)
+    expected = 3.0 / (np.pi * n) ** 2 * np.exp(-2j * np.pi * n * KINK)
+    assert curve.mean()[0] == pytest.approx(0.5, abs=1e-12)
+    assert curve.harmonics(8)[:, 0] == pytest.approx(expected, abs=1e-12)
+    assert curve.at(np.array([0.9, -0.2, 1.77]))[:, 0] == pytest.approx(kinked(np.array([0.9, 0.8, 0.77])), abs=1e-12)
+
+
+def test_smooth_curves_converge_with_order_three() -> None:
+    errors = []
+    for n in (20, 40):
+        u = (np.arange(n) + 0.3 * np.sin(np.arange(n))) / n
+        wave = np.sin(2.0 * np.pi * u)
+        curve = CycleCurve(u, wave[:, None], 1.0, np.zeros(n, bool))
+        at = np.linspace(0.0, 1.0, 500)
+        errors.append(np.abs(curve.at(at)[:, 0] - np.sin(2.0 * np.pi * at)).max())
+    assert errors[1] < errors[0] / 6.0
+
+
+@pytest.mark.parametrize("tells", [True, False])
+@pytest.mark.parametrize("count", [8, 16, 32, 64, 256])
+def test_no_error_is_larger_than_what_is_said_of_it(count: int, tells: bool) -> None:
+    found = sampled(Curve(tells=tells), count, 1.0, np.empty(0), np.array([2, 2]))
+    assert len(found.curve.position) == count
+    actual = np.array([0.75, 2.0]) - np.ptp(found.curve.values, axis=0)
+    assert (actual <= 1.5 * found.peak_to_peak_error() + 1e-9).all()
+    n = np.arange(1, 6)
+    exact = np.stack([3.0 / (np.pi * n) ** 2 * np.exp(-2j * np.pi * n * KINK), np.where(n == 1, -1j, 0.0)], axis=1)
+    assert (np.abs(found.curve.harmonics(5) - exact) <= 1.5 * found.harmonics_error(5) + 1e-9).all()
+
+
+def test_a_kink_that_tells_itself_is_met_exactly() -> None:
+    found = sampled(Curve(tells=True), 24, 1.0, np.empty(0), np.array([2, 2]))
+    assert np.ptp(found.curve.values[:, 0]) == pytest.approx(0.75, abs=1e-3)
+    assert found.curve.values[:, 0].max() == pytest.approx(1.0, abs=1e-9)
+
+
+def test_events_are_where_a_pair_gets_or_loses_its_load() -> None:
+    problem, cycle = loaded_cycle(spur(), LOAD, np.arange(12) / 12)
+    for _ in range(6):
+        guesses, _ = contact_events(cycle, 1.0)
+        if not len(guesses):
+            break
+        cycle = with_more(problem, cycle, np.setdiff1d(guesses, cycle.position))
+    events = np.unique(contact_events(cycle, 1.0)[1].round(9))
+    assert len(events) == 2  # contact with corners is longer than 1 and shorter than 2 base pitches
+    carrying = mesh_cycle(problem, LOAD, np.sort(np.concatenate([events - 1e-4, events + 1e-4])))
+    count = sum((share > 0.0).astype(int) for share in carrying.share_by_pair().values())
+    assert set(count[:2].tolist()) == set(count[2:].tolist()) == {1, 2}
+    # Corners touch before the line of action begins and after it ends.
+    assert np.abs(known_events(spur())[:, None] - events).min() > 1e-3
+
+
+def test_added_positions_are_those_of_one_solution() -> None:
+    problem, whole = loaded_cycle(spur(), LOAD, np.arange(24) / 24)
+    half = mesh_cycle(problem, LOAD, np.arange(12) / 12)
+    both = with_more(problem, half, np.arange(12) / 12 + 1 / 24)
+    assert both.position == pytest.approx(whole.position, abs=1e-12)
+    assert both.deflection == pytest.approx(whole.deflection, rel=1e-9)
+    assert both.contact_ratio == pytest.approx(whole.contact_ratio, abs=1e-9)
+    odd = both.chosen(np.arange(1, 24, 2))
+    for k, share in odd.share_by_pair().items():
+        assert share == pytest.approx(whole.share_by_pair()[k][1::2], abs=1e-9)

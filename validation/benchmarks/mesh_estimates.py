@@ -1,0 +1,252 @@
+"""Errors of `rotorgear mesh` beside what it estimates: python -m validation.benchmarks.mesh_estimates [positions] [presets]
+
+positions: ten pairs, spur and helical, asked for 8 to 1024 positions in a mesh period. Errors are those against four times 1024
+positions on the same elements; estimates are those of the sampling alone.
+presets: six helical pairs and an overload by the presets default and fine, with 64 positions. Errors are those against a finer
+mesh, 0.54 modules a layer; estimates are what `rotorgear mesh` prints: elements, slices and positions together. It takes a
+quarter of an hour and 2.4 GB.
+Without a word: both. Names of pairs after it take these alone.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+import rotorgear as rg
+from rotorgear.analysis.teeth.errors import error_parts
+from rotorgear.analysis.teeth.helices import Cycle, SolvedHelices, solve_helices
+from rotorgear.analysis.teeth.request import MeshRequest, mesh_request
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.tooth_fe.points import MeshSize
+from rotorgear.gears.tooth_fe.settings import ToothFe, sized
+from rotorgear.results.mesh import MeshErrors
+
+ASKED = (8, 12, 16, 24, 32, 48, 64, 128, 256, 512, 1024)
+REFERENCE_POSITIONS = 4096
+# A coarse mesh in space does for what lies between positions.
+COARSE = (MeshSize(5, 2, 4, 2, 3), 3.6)
+# The reference of the presets, and its layers in normal modules.
+FINEST = (MeshSize(12, 4, 7, 3, 4), 0.54)
+POSITIONS = 64
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Teeth, helix angle (deg), module and face (mm), torque (N m) on the pinion, and what the file says besides."""
+
+    teeth: tuple[int, int]
+    helix: float
+    module: float
+    width: float
+    torque: float
+    alpha: float = 20.0
+    shift: tuple[float, float] = (0.0, 0.0)
+    addendum: float = 1.0
+    flank: tuple[dict[str, Any], dict[str, Any]] = ({}, {})
+    misalignment: str = "0 um"
+
+    def request(self) -> MeshRequest:
+        """The mesh of a model of this pair on two points."""
+        beta = math.radians(self.helix)
+        transverse = math.atan(math.tan(math.radians(self.alpha)) / math.cos(beta))
+        total = sum(self.teeth)
+        # Without backlash: inv a_w = inv a + 2 (x1 + x2) tan a_n / (z1 + z2), by Newton's method.
+        wanted = math.tan(transverse) - transverse + 2.0 * sum(self.shift) * math.tan(math.radians(self.alpha)) / total
+        working = transverse
+        for _ in range(50):
+            working -= (math.tan(working) - working - wanted) / math.tan(working) ** 2
+        distance = 0.5e-3 * self.module * total / math.cos(beta) * math.cos(transverse) / math.cos(working)
+        gear = {
+            "at": 0.0,
+            "kind": "helical" if self.helix else "spur",
+            "normal_module": 1e-3 * self.module,
+            "normal_pressure_angle": math.radians(self.alpha),
+            "width": 1e-3 * self.width,
+            "addendum_factor": self.addendum,
+        }
+        hands: list[dict[str, Any]] = [
+            {"helix_angle": beta, "hand": hand} if self.helix else {} for hand in ("right", "left")
+        ]
+        section = [{"length": 0.2, "outer_diameter": 0.02}]
+        model = rg.Model(
+            shafts={
+                name: {"position": (x, 0.0), "start": -0.1, "sections": section}
+                for name, x in (("one", 0.0), ("two", distance))
+            },
+            gears={
+                name: {**gear, **hand, "shaft": shaft, "teeth": z, "profile_shift": x, **flank}
+                for name, shaft, z, x, hand, flank in zip(
+                    ("pinion", "wheel"), ("one", "two"), self.teeth, self.shift, hands, self.flank, strict=True
+                )
+            },
+            meshes={
+                "pair": {
+                    "pinion": "pinion",
+                    "gear": "wheel",
+                    "stiffness": "tooth_fe",
+                    "misalignment": self.misalignment,
+                }
+            },
+        )
+        return mesh_request(model, None, None, self.torque, {})
+
+
+def _relief(start: tuple[float, float], depth: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Tip reliefs of both gears from diameters (m)."""
+    first, second = ({"tip_relief": depth, "tip_relief_diameter": d} for d in start)
+    return first, second
+
+
+SAMPLED = {
+    "spur": Pair((34, 80), 0.0, 5.0, 54.0, 2000.0),
+    "light": Pair((34, 80), 0.0, 5.0, 54.0, 200.0),
+    "overload": Pair((34, 80), 0.0, 5.0, 54.0, 20000.0),
+    "relieved": Pair((34, 80), 0.0, 5.0, 54.0, 2000.0, flank=_relief((0.175, 0.405), "30 um")),
+    "undercut": Pair((12, 40), 0.0, 3.0, 30.0, 100.0),
+    "high contact ratio": Pair((41, 59), 0.0, 3.0, 36.0, 400.0, addendum=1.25),
+    "profile crowned": Pair(
+        (23, 37), 0.0, 3.0, 25.0, 150.0, shift=(0.3, -0.1), flank=({"flank": {"profile_crowning": "8 um"}}, {})
+    ),
+    "crowned, misaligned": Pair(
+        (34, 80), 0.0, 5.0, 54.0, 2000.0, flank=({"flank": {"crowning": "10 um"}}, {}), misalignment="20 um"
+    ),
+    "helical 20.86": Pair((34, 80), 20.86, 5.0, 54.0, 1000.0),
+    "helical 33.27": Pair((30, 72), 33.27, 5.0, 54.0, 1000.0),
+}
+HELICAL = {
+    "34/80 20.86": Pair((34, 80), 20.86, 5.0, 54.0, 1000.0),
+    "30/72 33.27": Pair((30, 72), 33.27, 5.0, 54.0, 1000.0),
+    "29/113 30": Pair((29, 113), 30.0, 2.75, 32.5, 278.0, alpha=25.0),
+    "23/61 12": Pair((23, 61), 12.0, 3.0, 24.0, 150.0, shift=(0.2, -0.1)),
+    "25/47 25 crowned": Pair(
+        (25, 47),
+        25.0,
+        4.0,
+        40.0,
+        600.0,
+        shift=(0.2, 0.0),
+        flank=({"flank": {"crowning": "6 um"}}, {}),
+        misalignment="12 um",
+    ),
+    "26/125 30": Pair((26, 125), 30.0, 4.25, 42.5, 502.0, alpha=25.0),
+    "34/80 20.86 x 10": Pair((34, 80), 20.86, 5.0, 54.0, 10000.0),
+}
+
+
+def _figures(found: SolvedHelices) -> np.ndarray:
+    """Mean stiffness, peaks to peaks of stiffness and transmission error, and largest pressure."""
+    curve = found.curve
+    return np.array([curve.mean()[1], np.ptp(found.stiffness), np.ptp(found.error), curve.values[:, 3].max()])
+
+
+def _estimates(errors: MeshErrors) -> np.ndarray:
+    return np.array(
+        [errors.mean_stiffness, errors.peak_to_peak_stiffness, errors.ste_peak_to_peak, errors.largest_pressure], float
+    )
+
+
+def sampled_errors(pair: Pair, asked: tuple[int, ...] = ASKED) -> list[tuple[int, np.ndarray, np.ndarray, float]]:
+    """For each number of positions: errors and estimates (5,) of the figures and the harmonics, and CPU seconds of the contact."""
+    from rotorgear.analysis.teeth.errors import ORDERS, sampling_errors
+    from rotorgear.gears.loaded.tooth_contact import in_space
+
+    request = pair.request()
+    assert request.teeth is not None
+    teeth = request.teeth
+    if in_space(teeth)[0]:
+        teeth = replace(teeth, fe=sized(teeth.fe, COARSE, teeth.width / teeth.first.normal_module))
+    many = 1 + int(REFERENCE_POSITIONS // max(asked) > 1)
+    truth = solve_helices(request, teeth, request.base_force, Cycle(many * max(asked)))
+    exact = _figures(truth)
+    waves = truth.curve.harmonics(ORDERS)[:, 0]
+    rows = []
+    for count in asked:
+        start = time.process_time()
+        found = solve_helices(request, teeth, request.base_force, Cycle(count), judged=True)
+        seconds = time.process_time() - start
+        errors = sampling_errors(found)
+        assert errors.ste_harmonics is not None
+        wave = np.abs(np.abs(found.curve.harmonics(ORDERS)[:, 0]) - np.abs(waves)).max() / np.abs(waves).max()
+        rows.append(
+            (
+                count,
+                np.append(np.abs(_figures(found) / exact - 1.0), wave),
+                np.append(_estimates(errors), errors.ste_harmonics),
+                seconds,
+            )
+        )
+    return rows
+
+
+def preset_errors(pair: Pair) -> list[tuple[str, np.ndarray, np.ndarray, float]]:
+    """For default and fine: errors against the finest mesh and estimates (4,), and CPU seconds where nothing is kept on disk."""
+    request = pair.request()
+    assert request.teeth is not None
+    width = request.teeth.width / request.teeth.first.normal_module
+
+    def solved(fe: ToothFe) -> tuple[ToothPair, SolvedHelices]:
+        assert request.teeth is not None
+        teeth = replace(request.teeth, fe=fe)
+        return teeth, solve_helices(request, teeth, request.base_force, Cycle(POSITIONS), judged=True)
+
+    exact = _figures(solved(sized(ToothFe(preset="fine"), FINEST, width))[1])
+    rows = []
+    for preset in ("default", "fine"):
+        start = time.process_time()
+        teeth, found = solved(ToothFe(preset=preset))
+        parts = error_parts(request, teeth, found)
+        seconds = time.process_time() - start
+        assert parts is not None
+        rows.append((preset, np.abs(_figures(found) / exact - 1.0), _estimates(parts.total), seconds))
+    return rows
+
+
+def main(words: list[str]) -> None:
+    """Print the tables."""
+    kinds = [word for word in words if word in ("positions", "presets")] or ["positions", "presets"]
+    names = [word for word in words if word not in ("positions", "presets")]
+    if "positions" in kinds:
+        print(
+            "errors in % / estimates of what lies between positions in %; ! where an error is more than 1.5 times its estimate"
+        )
+        print(f"{'':22}positions            k         k pp       STE pp        p_max    harmonics      CPU")
+        for name, pair in SAMPLED.items():
+            if names and name not in names:
+                continue
+            for count, errors, estimates, seconds in sampled_errors(pair):
+                _line(f"{name:20} {count:10}", errors, estimates, seconds, 1e-5)
+    if "presets" in kinds:
+        print(
+            "errors against the finest mesh in % / estimates in %; ! where an error is more than 1.5 times its estimate"
+        )
+        print(f"{'':20}preset               k         k pp       STE pp        p_max      CPU   worst estimate/error")
+        for name, pair in HELICAL.items():
+            if names and name not in names:
+                continue
+            for preset, errors, estimates, seconds in preset_errors(pair):
+                _line(
+                    f"{name:20}{preset:11}",
+                    errors,
+                    estimates,
+                    seconds,
+                    0.0,
+                    f"{max(estimates[:3]) / max(errors[:3]):8.1f}",
+                )
+
+
+def _line(start: str, errors: np.ndarray, estimates: np.ndarray, seconds: float, floor: float, end: str = "") -> None:
+    cells = [
+        f"{f'{100 * e:.2g}/{100 * s:.2g}':>12}{'!' if e > max(1.5 * s, floor) else ' '}"
+        for e, s in zip(errors, estimates, strict=True)
+    ]
+    print(start + "".join(cells) + f" {seconds:6.2f} s{end}", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
