@@ -25,7 +25,7 @@ from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.mesh import MeshErrors
 
 # Share of the difference between two meshes that remains on the finer one, in the plane and in space.
-_REMAINING = {"preview": (1.5, 1.5), "default": (0.35, 0.35), "fine": (0.6, 0.09)}
+_REMAINING = {"preview": (1.5, 1.5), "default": (0.35, 0.35), "fine": (0.6, 0.1)}
 # The same of the largest pressure in space: it stands where contact lines end at the edge of a face, and comes to rest slowly.
 _OF_PRESSURE = {"preview": 3.0, "default": 1.5, "fine": 0.4}
 # Slices beside the usual ones.
