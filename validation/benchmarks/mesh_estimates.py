@@ -1,8 +1,8 @@
 """Errors of `rotorgear mesh` beside what it estimates: python -m validation.benchmarks.mesh_estimates [positions] [presets]
 
 positions: ten pairs, spur and helical, asked for 8 to 1024 positions in a mesh period. Errors are those against 2048 positions on
-the same elements; estimates are those of the sampling alone, in space with those of the slices: wherever a contact line gets another
-number of slices the curves make a small step, which lies between positions too.
+the same elements; estimates are those of the sampling alone, in space with those of the slices: wherever a contact line gets
+another number of slices the curves make a small step, which lies between positions too.
 presets: six helical pairs and an overload by the presets default and fine, with 64 positions. Errors are those against a finer
 mesh, 0.54 modules a layer; estimates are what `rotorgear mesh` prints: elements, slices and positions together. It takes a
 quarter of an hour and 2.4 GB.
@@ -162,7 +162,7 @@ def _estimates(errors: MeshErrors) -> np.ndarray:
 
 
 def sampled_errors(pair: Pair, asked: tuple[int, ...] = ASKED) -> list[tuple[int, np.ndarray, np.ndarray, float]]:
-    """For each number of positions: errors and estimates (5,) of the figures and the harmonics, and CPU seconds of the contact."""
+    """For each number of positions: errors and estimates (5,) of figures and harmonics, and CPU seconds of the contact."""
     request = pair.request()
     assert request.teeth is not None
     teeth = request.teeth
@@ -192,7 +192,7 @@ def sampled_errors(pair: Pair, asked: tuple[int, ...] = ASKED) -> list[tuple[int
 
 
 def preset_errors(pair: Pair) -> list[tuple[str, np.ndarray, np.ndarray, float]]:
-    """For default and fine: errors against the finest mesh and estimates (4,), and CPU seconds with compliances from the disk."""
+    """For default and fine: errors against the finest mesh and estimates (4,), and CPU seconds."""
     request = pair.request()
     assert request.teeth is not None
     width = request.teeth.width / request.teeth.first.normal_module

