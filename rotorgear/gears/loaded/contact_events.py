@@ -23,6 +23,8 @@ _INSIDE = 1e-3
 _NEAR = 0.3
 # Brackets shorter than this, in base pitches, are not looked into any more.
 _FOUND = 1e-5
+# Positions to either side of a step, in base pitches.
+_BESIDE = 4e-6
 
 
 def contact_events(cycle: MeshCycle, period: float) -> tuple[np.ndarray, np.ndarray]:
@@ -99,4 +101,8 @@ def known_events(teeth: ToothPair, shift: float = 0.0) -> np.ndarray:
             begin.append(line.form[gear] + flank.root_relief_length)
         # Roll lengths of the pinion at these places.
         ends += [roll if gear == 0 else line.length - roll for roll in begin]
-    return np.unique(np.mod((np.array(ends) - line.pitch_point) / line.base_pitch - shift, 1.0))
+    u = (np.array(ends) - line.pitch_point) / line.base_pitch - shift
+    if line.interference:
+        # Where a tip reaches below the involute of its mate contact ends at once: the curves have a step between two positions.
+        u = np.concatenate([u - _BESIDE, u + _BESIDE])
+    return np.unique(np.mod(u, 1.0))
