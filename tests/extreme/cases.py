@@ -22,9 +22,26 @@ from tests.extreme.damped_errors import (
     tilting_disk,
     whirl_error,
 )
+from tests.extreme.forced_errors import (
+    chain_receptance,
+    mass_on_spring,
+    receptance,
+    sag,
+    static_estimate,
+    unbalance_response,
+)
 from tests.extreme.models import points, rotor_model
 from tests.extreme.references import DIGITS, Body, Rotor, Segment, Spring
 from tests.extreme.rotors import even, on
+from tests.extreme.speed_errors import (
+    RPM,
+    critical_of_masses,
+    critical_of_tilting,
+    masses,
+    tilting,
+    whirls_of_tilting,
+)
+from tests.extreme.tooth_errors import broken_contact, contact_ratio, iso_stiffness, pair_of, undercut
 from tests.extreme.undamped_errors import (
     bar,
     chain,
@@ -63,6 +80,15 @@ class Refused:
     name: str
     sentence: str
     act: Callable[[], object]
+
+
+@dataclass(frozen=True)
+class Flagged:
+    """A case that is computed and warned about: one of the warnings of the result of `act()` holds `sentence`."""
+
+    name: str
+    sentence: str
+    act: Callable[[], rg.Result]
 
 
 @dataclass(frozen=True)
@@ -213,6 +239,176 @@ REFUSED: list[Refused] = [
         ),
     ),
 ]
+
+
+_ROD = Segment(1.0, 0.05)
+
+
+FORCED: list[Case] = [
+    Case("static: sag on bearings of 1e8 N/m", "closed form", 1e-12, lambda: sag(_ROD, 1e8, 1e8)),
+    Case("static: sag on bearings of 1e3 and 1e13 N/m", "closed form", 1e-9, lambda: sag(_ROD, 1e3, 1e13)),
+    Case(
+        "static: the same on 1e-3 and 1e13 N/m, over its estimate", "estimate", 2.0, lambda: static_estimate(1e-3, 1e13)
+    ),
+    Case("static: 10 m of 1 mm wire on 1e13 N/m", "closed form", 1e-12, lambda: sag(Segment(10.0, 1e-3), 1e13, 1e13)),
+    Case("static: a shaft of 1 um by 10 um", "closed form", 1e-11, lambda: sag(Segment(1e-5, 1e-6), 1e2, 1e2)),
+    Case("static: a shaft of 1000 km", "closed form", 1e-11, lambda: sag(Segment(1e6, 1.0), 1e8, 1e8)),
+    Case("static: ten times as thick as long", "closed form", 1e-11, lambda: sag(Segment(0.1, 1.0), 1e10, 1e10)),
+    Case("frf: a damping ratio of 3.5e5", "closed form", 1e-14, lambda: receptance(1e6, 1e9, [1e-6, 1e-3, 1.0, 1e3])),
+    Case(
+        "frf: 1e-9 beside the resonance, undamped",
+        "closed form",
+        1e-6,
+        lambda: receptance(1e6, 0.0, [1 - 1e-9, 1 + 1e-9]),
+    ),
+    Case(
+        "frf: soft ground of 1e-3 N/m, Q of 4e7", "closed form", 1e-7, lambda: receptance(1e-3, 1e-9, [1e-6, 1.0, 1e6])
+    ),
+    Case("frf: 1e-6 kg on 1e13 N/m", "closed form", 1e-13, lambda: receptance(1e13, 1e2, [1e-6, 1.0, 1e3], 1e-6)),
+    Case("frf: a massless point", "40 digits", 1e-13, lambda: chain_receptance([0.3, 0.0, 0.2], [1e5, 1e3], 1e4, 10.0)),
+    Case(
+        "frf: ground of 1e-4 N m/rad under 1e8",
+        "40 digits",
+        1e-11,
+        lambda: chain_receptance([0.3, 0.2, 0.1], [1e8, 1e8], 1e-4, 100.0),
+    ),
+    Case("frf: an inertia ratio of 1e12", "40 digits", 1e-13, lambda: chain_receptance([1e6, 1e-6], [1e3], 1e9, 1e3)),
+    Case(
+        "response: through resonance to 1e6 rpm",
+        "closed form",
+        1e-13,
+        lambda: unbalance_response(1e6, 10.0, [1.0, 500**0.5 * 1e1, 1e6 * RPM]),
+    ),
+    Case(
+        "response: 1e-9 beside the resonance, undamped",
+        "closed form",
+        1e-6,
+        lambda: unbalance_response(1e6, 0.0, [5e5**0.5 * (1 + 1e-9)]),
+    ),
+    Case(
+        "response: a damping ratio of 3.5e5",
+        "closed form",
+        1e-14,
+        lambda: unbalance_response(1e6, 1e9, [1.0, 707.0, 1e5]),
+    ),
+    Case(
+        "response: soft ground of 1e-3 N/m",
+        "closed form",
+        1e-14,
+        lambda: unbalance_response(1e-3, 1.0, [1.0, 707.0, 1e5]),
+    ),
+    Case(
+        "campbell: a tilting disk to 1e6 rpm",
+        "closed form",
+        1e-12,
+        lambda: whirls_of_tilting(0.1, 0.08, 1e3, 1e6 * RPM),
+    ),
+    Case(
+        "campbell: the same on 1e-3 N m/rad", "closed form", 1e-9, lambda: whirls_of_tilting(0.1, 0.08, 1e-3, 1e6 * RPM)
+    ),
+    Case(
+        "campbell: the same on 1e12 N m/rad",
+        "closed form",
+        1e-13,
+        lambda: whirls_of_tilting(0.1, 0.08, 1e12, 1e6 * RPM),
+    ),
+    Case(
+        "campbell: a disk of 1e-24 kg m^2",
+        "closed form",
+        1e-12,
+        lambda: whirls_of_tilting(1e-24, 0.8e-24, 1e-12, 1e6 * RPM),
+    ),
+    Case(
+        "critical: a slender disk, both whirls", "closed form", 1e-12, lambda: critical_of_tilting(0.05, 0.08, 1e3, 1e4)
+    ),
+    Case(
+        "critical: I_p = I_d (1 - 1e-6)",
+        "closed form",
+        1e-8,
+        lambda: critical_of_tilting(0.08 * (1 - 1e-6), 0.08, 1e3, 1e6),
+    ),
+    Case(
+        "critical: a flat disk, none forward", "closed form", 1e-12, lambda: critical_of_tilting(0.16, 0.08, 1e3, 1e6)
+    ),
+    Case("critical: springs 1e-9 apart", "closed form", 1e-12, lambda: critical_of_masses([1e6, 1e6 * (1 + 1e-9)])),
+    Case("critical: springs of 1e3 and 1e12 N/m", "closed form", 1e-9, lambda: critical_of_masses([1e3, 1e12])),
+    Case("gear: a contact ratio of just 1", "closed form", 1e-13, lambda: contact_ratio((24, 36), 1.0)),
+    Case("gear: a contact ratio of just 2", "closed form", 1e-13, lambda: contact_ratio((80, 120), 2.0)),
+    Case("gear: a module of 1 um", "closed form", 1e-12, lambda: contact_ratio((24, 36), 1.5, module=1e-6)),
+    Case(
+        "gear: contact ratio 1e-6 about 1: told below, not above",
+        "closed form",
+        1e-300,
+        lambda: broken_contact((24, 36)),
+    ),
+    Case("gear: shift 1e-6 about undercut: told below, not above", "closed form", 1e-300, lambda: undercut(12)),
+    Case("mesh: ISO stiffness of a module of 1 mm and of 1 m", "similarity", 1e-9, lambda: iso_stiffness(1e3)),
+]
+CASES += FORCED
+
+
+FLAGGED: list[Flagged] = [
+    Flagged(
+        "frf: no damping at resonance",
+        "nothing damps the model",
+        lambda: rg.frf(
+            mass_on_spring(1e6, 0.0),
+            [float(np.sqrt(5e5)) / 2 / np.pi],
+            inputs=["bearings.b:x"],
+            outputs=["bearings.b:x"],
+        ),
+    ),
+    Flagged(
+        "response: no damping at resonance",
+        "nothing damps the model",
+        lambda: rg.response(mass_on_spring(1e6, 0.0, unbalance=1e-5), speeds=[float(np.sqrt(5e5))]),
+    ),
+    Flagged(
+        "critical: springs of 1e-3 and 1e12 N/m: below a millionth of the range",
+        "2 modes may be met below",
+        lambda: rg.critical(masses([1e-3, 1e12]), stop=2e6),
+    ),
+    Flagged(
+        "critical: a tilting disk at 65 rad/s, sought to 1e8",
+        "may be met below",
+        lambda: rg.critical(tilting(0.16, 0.08, 1e3), stop=1e8),
+    ),
+    Flagged(
+        "gear: a contact ratio of 0.8",
+        "below 1, the teeth lose contact",
+        lambda: rg.check(pair_of((24, 36), addendum_factor=0.45)),
+    ),
+]
+
+
+REFUSED += [
+    Refused(
+        "static: nothing loads it", "nothing loads the model", lambda: rg.static(rotor_model(Rotor(even(), on(1e8))))
+    ),
+    Refused("response: nothing excites it", "nothing excites the model", lambda: rg.response(mass_on_spring(1e6, 1.0))),
+    Refused(
+        "frf: a frequency of 0",
+        "all of them positive",
+        lambda: rg.frf(mass_on_spring(1e6, 1.0), [0.0], inputs=["bearings.b:x"], outputs=["bearings.b:x"]),
+    ),
+    Refused("campbell: no range of speed", "speed", lambda: rg.campbell(tilting(0.1, 0.08, 1e3), start=0.0, stop=0.0)),
+    Refused("critical: a speed of 0", "no line of excitation", lambda: rg.critical(tilting(0.1, 0.08, 1e3), stop=0.0)),
+    Refused("a massless group with a damper", "dampers but no inertia", lambda: rg.modal(_damped_end(), speed=1.0)),
+    Refused("mesh: faces that just do not overlap", "face", lambda: pair_of((24, 36)).with_("gears.b.at", 0.04)),
+    Refused("gear: 3 teeth, thinner than their shaft", "teeth", lambda: pair_of((3, 36))),
+    Refused("transient: 1e9 s", "would take", lambda: rg.transient(pair_of((24, 36)), time=1e9)),
+    Refused("transient: 1e-9 s", "gives only", lambda: rg.transient(pair_of((24, 36)), time=1e-9)),
+    Refused(
+        "transient: at standstill, for no time", "nothing turns", lambda: rg.transient(pair_of((24, 36)), speed=0.0)
+    ),
+    Refused("sweep: over nothing", "at least one value", lambda: rg.sweep(pair_of((24, 36)), {"operation.speed": []})),
+]
+
+
+def _damped_end() -> rg.Model:
+    hold = rg.Support(shaft="p0", at=0.0, stiffness=rg.StiffnessMatrix(axial=1e6), damping=rg.DampingMatrix(axial=10.0))
+    held = {"s": hold, "z": rg.Support(shaft="p1", at=0.0, fixed=("z",))}
+    return points([0.0, 0.3], [1e5], supports=held, motions=("torsion", "axial"))
 
 
 @cache

@@ -7,7 +7,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import RotorgearError
-from tests.extreme.cases import CASES, CONDITIONING, REFUSED, measured
+from tests.extreme.cases import CASES, CONDITIONING, FLAGGED, REFUSED, measured
 from tests.extreme.models import rotor_model
 from tests.extreme.references import DIGITS, Rotor, Segment, Spring
 from tests.extreme.undamped_errors import assembled_error
@@ -23,6 +23,18 @@ def test_an_impossible_case_is_refused_with_a_clear_sentence(case):
     with pytest.raises(RotorgearError) as caught:
         case.act()
     assert case.sentence in str(caught.value)
+
+
+@pytest.mark.parametrize("case", FLAGGED, ids=lambda case: case.name)
+def test_a_doubtful_case_is_told(case):
+    assert any(case.sentence in warning for warning in case.act().warnings)
+
+
+def test_there_are_cases_of_every_analysis():
+    names = [case.name for case in (*CASES, *REFUSED, *FLAGGED)]
+    assert len(set(names)) == len(names) >= 80
+    for analysis in ("static", "frf", "response", "campbell", "critical", "gear", "mesh", "transient", "sweep"):
+        assert any(name.startswith(f"{analysis}: ") for name in names), analysis
 
 
 @pytest.mark.parametrize("row", [row for row in CONDITIONING if row.alone], ids=lambda row: row.name)

@@ -22,13 +22,16 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import FINEST, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes
 from rotorgear.analysis.static.tangent import about_equilibrium_of
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
+from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.critical import CriticalResult, CriticalSpeed
-from rotorgear.solvers.eigen.synchronous import Affine, Synchronous, synchronous_speeds
+from rotorgear.solvers.eigen.synchronous import LEAST_SHARE, Affine, Synchronous, synchronous_speeds
+from rotorgear.solvers.sparse.pencil import count_below
+from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
 
 SHAFT_ORDERS = (1.0,)
@@ -115,7 +118,7 @@ def critical(
         result,
         model=given,
         left_out=(*result.left_out, *notes),
-        warnings=(*result.warnings, *([short] if short else [])),
+        warnings=(*result.warnings, *_too_slow(system, top, lines), *([short] if short else [])),
         status=short or "success",
     )
 
@@ -126,6 +129,23 @@ def _errors(
     """Estimated relative discretisation error of each critical speed."""
     ranges = list(affine_pieces(system, family, top, damped))
     return [speed_error(system, ranges, root, line.order, float(np.sign(top))) for line, root in found]
+
+
+def _too_slow(system: System, top: float, lines: tuple[ExcitationOrder, ...]) -> tuple[str, ...]:
+    """Say where modes are so soft that their critical speeds lie below what the range can tell from standstill."""
+    least = LEAST_SHARE * abs(top) * max(line.order for line in lines)
+    # Gyroscopic moments lower a backward whirl to 1/sqrt(3) of its standstill frequency at most (I_p <= 2 I_d).
+    try:
+        below = count_below(system.mass, system.stiffness(), 3.0 * least**2)
+    except ConvergenceError:
+        return ()
+    soft = below - rigid_motions(system, system.groups).shape[1] if below else 0
+    if soft <= 0:
+        return ()
+    return (
+        f"{soft} mode{'s'[: soft != 1]} may be met below {LEAST_SHARE * abs(top) * RPM_PER_RAD_S:.3g} rpm, a millionth of the "
+        "highest speed, where no critical speed is sought: ask again with a lower highest speed (--to)",
+    )
 
 
 def roots_of(system: System, family: SpeedFamily, order: float, top: float, damped: bool) -> list[Synchronous]:

@@ -23,6 +23,7 @@ from rotorgear.solvers.eigen.quadratic import newton, scaled
 from rotorgear.solvers.sparse.factor import factor_general, factor_symmetric, single_thread
 
 _DENSE_UP_TO = 100
+LEAST_SHARE = 1e-6  # of the highest speed, below which a root is not told from a rigid motion at no speed
 _CENTRE = 1.000731  # off the middle, where an eigenvalue may sit
 _RADIUS = 1.15  # of half the range, for roots that damping moves sideways
 _MOST = 400  # critical speeds that ARPACK is asked for; more are a question of another range
@@ -75,7 +76,7 @@ def synchronous_speeds(family: Affine, order: float) -> list[Synchronous]:
             # Starts move when they are polished, so some beyond both ends are tried; s near 0 is a rigid motion at no speed.
             inside = (s.imag > family.low - 1e-3 * family.high) & (s.imag < 1.05 * family.high)
             inside &= np.abs(s.real) < 0.7 * np.abs(s)  # heavier damping leaves no oscillation to follow
-            near = np.abs(s.imag) > 1e-6 * family.high
+            near = np.abs(s.imag) > LEAST_SHARE * family.high
             roots: list[Synchronous] = []
             for k in np.flatnonzero(inside & near):
                 root = _polished(family, order, complex(s[k]), X[:, k])
