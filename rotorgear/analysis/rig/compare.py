@@ -196,7 +196,9 @@ def _check_settings(tolerance: float, excitation_tolerance: float, samples: int)
         raise AnalysisError(
             f"the excitation tolerance must lie between 0 and 1 (0.005 is 0.5 %), got {excitation_tolerance:g}"
         )
-    check_whole("the number of random lists (samples)", samples)
+    check_whole("the number of random lists (samples)", samples, 0)
+    if samples == 0:
+        raise AnalysisError("the chance needs at least one random list, got samples = 0")
 
 
 def _band(rig_hz: NDArray[np.float64], tolerance: float, band: tuple[float, float] | None) -> tuple[float, float]:

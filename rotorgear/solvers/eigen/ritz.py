@@ -20,10 +20,22 @@ _ROWS = 2048  # rows of a tall matrix that are taken at a time
 
 
 def orthonormalised(M: sp.csr_array, V: np.ndarray) -> np.ndarray:
-    """V (n, m) made M-orthonormal by Cholesky: V^T M V = identity to rounding."""
+    """V (n, m) made M-orthonormal by Cholesky: V^T M V = identity to rounding.
+
+    Raises:
+        ConvergenceError: the inertia of some combination of the vectors is rounding.
+    """
     gram = V.T @ (M @ V)
-    scale = 1.0 / np.sqrt(np.diag(gram))
-    triangle = la.cholesky(0.5 * (gram + gram.T) * scale * scale[:, None])
+    size = np.diag(gram)
+    try:
+        if not np.all(size > 0.0):
+            raise la.LinAlgError
+        scale = 1.0 / np.sqrt(size)
+        triangle = la.cholesky(0.5 * (gram + gram.T) * scale * scale[:, None])
+    except la.LinAlgError:
+        raise ConvergenceError(
+            "Inertias of the model are too many decades apart: those of some motions are rounding of the largest."
+        ) from None
     result: np.ndarray = V @ (scale[:, None] * la.solve_triangular(triangle, np.eye(scale.size)))
     return result
 
