@@ -35,6 +35,8 @@ from rotorgear.progress import Progress, silent
 USUAL = 20
 # Residual shapes whose mass is less than this share of the largest follow from the others.
 _DEPENDENT = 1e-10
+# Right-hand sides that are solved at a time: many share the reading of the factor, few need less memory.
+_COLUMNS = 16
 
 
 def reduce(
@@ -101,19 +103,21 @@ def reduce(
     M_internal = internal.T @ fe.matrices.times_mass(internal)
     squares, turn = la.eigh(_symmetric(K_internal), _symmetric(M_internal))
     internal = internal @ turn
+    static_stiffness = static.T @ fe.stiffness_times(static) + _spring_part(static, static, springs, flexibility)
+    K = _clean(static_stiffness, squares)
     basis = np.hstack([static, internal])
-    del fixed, residual, mass_fixed
-
+    del fixed, residual, mass_fixed, mass_static, static, internal
     mass_basis = fe.matrices.times_mass(basis)
-    stiffness = basis.T @ fe.stiffness_times(basis) + _spring_part(basis, basis, springs, flexibility)
-    mass = basis.T @ mass_basis
-    K = _clean(stiffness, seats, squares)
-    M = _symmetric(mass)
+    M = _symmetric(basis.T @ mass_basis)
     M[seats:, seats:] = np.eye(len(squares))
-    # E: answers to M Φ that the internal shapes can't follow; Xᵀ K X = (M Φ)ᵀ X, because X is such an answer.
     forces = space.forces(mass_basis)
-    answers = system.solve(forces) - (internal[space.dofs] / squares) @ (internal.T @ mass_basis)
-    error = _symmetric(forces.T @ answers)
+    del mass_basis
+    # E: answers to M Φ that the internal shapes can't follow; Xᵀ K X = (M Φ)ᵀ X, because X is such an answer.
+    error = np.empty_like(M)
+    for some in np.array_split(np.arange(len(M)), max(1, len(M) // _COLUMNS)):
+        followed = basis[space.dofs][:, seats:] @ (M[seats:, some] / squares[:, None])
+        error[:, some] = forces.T @ (system.solve(forces[:, some]) - followed)
+    error = _symmetric(error)
     seconds["residual shapes"] = time.perf_counter() - started
 
     body_mass, centre, inertia = fe.mass_properties
@@ -182,12 +186,9 @@ def _symmetric(matrix: np.ndarray) -> np.ndarray:
     return np.asarray(0.5 * (matrix + matrix.T))
 
 
-def _clean(stiffness: np.ndarray, seats: int, squares: np.ndarray) -> np.ndarray:
+def _clean(static: np.ndarray, squares: np.ndarray) -> np.ndarray:
     """K as theory has it: static shapes and internal shapes share no strain energy, and the inside is diagonal."""
-    K = np.zeros_like(stiffness)
-    K[:seats, :seats] = _symmetric(stiffness[:seats, :seats])
-    K[seats:, seats:] = np.diag(squares)
-    return K
+    return np.asarray(la.block_diag(_symmetric(static), np.diag(squares)))
 
 
 def _mount_damping(fe: FiniteElementBody, basis: np.ndarray) -> np.ndarray:

@@ -72,7 +72,11 @@ class LargeFactor:
             self._pardiso.factorize(self._upper)
         else:
             permuted = A if order is None else A[order][:, order]
-            self._lu: Any = symmetric_superlu(sp.csc_array(permuted), "MMD_AT_PLUS_A" if order is None else "NATURAL")
+            del A
+            # Rows of a symmetric matrix are its columns: no copy.
+            columns = sp.csc_array((permuted.data, permuted.indices, permuted.indptr), shape=permuted.shape)
+            del permuted
+            self._lu: Any = symmetric_superlu(columns, "MMD_AT_PLUS_A" if order is None else "NATURAL")
 
     def solve(self, B: np.ndarray) -> np.ndarray:
         """A⁻¹ B."""
