@@ -14,6 +14,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.casings.casing import forget
 from rotorgear.casings.file_mesh import FileMesh, NamedSet
+from rotorgear.casings.reduced_body import ReducedBody
 from tests.paths import ROOT
 from tests.unit.casings.blocks import block, write_inp
 
@@ -143,10 +144,14 @@ def test_the_command_writes_the_names_of_the_design_and_ends_with_2_where_the_me
 
 
 def test_a_body_is_kept_by_its_mesh_and_keys_and_a_damaged_file_is_made_anew(folder: Path) -> None:
-    model = rg.loads(MODEL, folder=folder)
-    first = model.layout.casing("box")
-    forget()
-    again = model.layout.casing("box")
+    def body(**changes: str) -> ReducedBody:
+        """The casing of a new model in a process that remembers nothing."""
+        forget()
+        model = rg.loads(MODEL, folder=folder)
+        return (model.with_(changes) if changes else model).layout.casing("box")
+
+    first = body()
+    again = body()
     assert again is not first
     assert again.seconds == {}, "it came from the disk"
     np.testing.assert_array_equal(first.stiffness, again.stiffness)
@@ -156,11 +161,10 @@ def test_a_body_is_kept_by_its_mesh_and_keys_and_a_damaged_file_is_made_anew(fol
     kept = next((folder / "cache").glob("casing-*.h5"))
     with h5py.File(kept, "r+") as file:
         file["mass"][0, 0] = 1.0
-    forget()
-    assert model.layout.casing("box").mass[0, 0] == first.mass[0, 0]
-    model.with_("casings.box.connection", "rigid").layout.casing("box")
+    assert body().mass[0, 0] == first.mass[0, 0]
+    body(**{"casings.box.connection": "rigid"})
     write_inp(folder / "box.inp", block((0.1, 0.06, 0.2), (1, 1, 2)))
-    model.layout.casing("box")
+    body()
     assert len(list((folder / "cache").glob("casing-*.h5"))) == 3
 
 

@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.linalg as la
+from scipy.optimize import brentq
 
+import rotorgear as rg
 from rotorgear.casings.assembly import Elastic
 from rotorgear.casings.fe_body import finite_element_body, mass_properties
 from rotorgear.casings.mesh_error import eigenvalue_errors
@@ -185,3 +187,40 @@ def test_the_error_of_the_mesh_is_estimated_to_a_factor(tmp_path: Path) -> None:
     estimate = eigenvalue_errors(fe, modes.eigenvalues, modes.shapes)
     assert np.all(estimate > 0.6 * true)
     assert np.all(estimate < 1.3 * true)
+
+
+def test_a_long_round_bar_has_the_modes_of_the_timoshenko_shaft(tmp_path: Path) -> None:
+    diameter, length = 0.04, 0.4
+    found = block((2.0, 2.0, length), (4, 4, 12), "hexahedron20")
+    x, y = found.points[:, 0] - 1.0, found.points[:, 1] - 1.0
+    # A square onto a disk: lines of the square become arcs of ellipses.
+    found.points[:, 0] = 0.5 * diameter * x * np.sqrt(1.0 - 0.5 * y**2)
+    found.points[:, 1] = 0.5 * diameter * y * np.sqrt(1.0 - 0.5 * x**2)
+    path = write_inp(tmp_path / "bar.inp", found)
+    bar = CasingSettings("b", (("mesh", path),), 1.0, STEEL, seats=(("one", "high"), ("two", "low")))
+    body, _ = reduce(finite_element_body(bar), 40e3)
+    shaft = rg.Model(
+        materials={"m": {"youngs_modulus": 206e9, "poisson_ratio": 0.3, "density": 7850.0}},
+        shafts={"s": {"material": "m", "sections": [{"length": length, "outer_diameter": diameter}]}},
+    )
+    beam = rg.modal(shaft, modes=11, accuracy=1e-4).frequency_hz
+    # Pairs of bending, and torsion and axial modes among them.
+    np.testing.assert_allclose(body.modes()[0][6:11], beam[6:11], rtol=5e-3)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("kind", "counts"), [("hexahedron20", (2, 3, 6))])
+def test_frequencies_of_a_smooth_block_converge_with_order_four(
+    tmp_path: Path, kind: str, counts: tuple[int, ...]
+) -> None:
+    found = [
+        free_modes(finite_element_body(settings(tmp_path, counts=(2 * n, n, 3 * n), kind=kind)), 1).frequency[0]
+        for n in counts
+    ]
+    coarse, middle, fine = (float(n) for n in counts)
+    ratio = (found[0] - found[1]) / (found[1] - found[2])
+
+    def of_order(p: float) -> float:
+        return (coarse**-p - middle**-p) / (middle**-p - fine**-p) - ratio
+
+    assert brentq(of_order, 1.0, 9.0) > 3.5
