@@ -8,13 +8,20 @@ import numpy as np
 
 from rotorgear.plots.figure import axes_for
 from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.campbell import WHIRL_WORDS
 from rotorgear.results.critical import CriticalMap
 
-_STYLE = {"forward": ("-", "#1f5fa8"), "backward": ("--", "#c2571a"), "other": (":", "#777777")}
+_MARKERS = {
+    "forward": ("^", "#1f5fa8", "forward whirl"),
+    "backward": ("v", "#c2571a", "backward whirl"),
+    "mixed": ("D", "#7a3f9d", "mixed whirl"),
+    "planar": ("_", "#2f7d32", "planar"),
+    "": (".", "#777777", "torsion or axial"),
+}
 
 
 def critical_map(result: CriticalMap, ax: Any = None) -> Any:
-    """Draw critical speeds over support stiffness, with the stiffness of the bearings.
+    """Draw critical speeds over support stiffness in ascending order, whirl by marker, with the stiffness of the bearings.
 
     Args:
         result: a map of critical speeds.
@@ -28,18 +35,16 @@ def critical_map(result: CriticalMap, ax: Any = None) -> Any:
     """
     title = f"{result.model.title or 'Critical speeds'}\nundamped critical speeds of {result.line}"
     axis = axes_for(ax, (9.0, 6.0), title)
-    for kind, (style, colour) in _STYLE.items():
-        name = "torsion or axial" if kind == "other" else f"{kind} whirl"
-        values = np.abs(getattr(result, kind)) * RPM_PER_RAD_S
-        for column in range(values.shape[1]):
-            axis.loglog(
-                result.stiffness,
-                values[:, column],
-                style,
-                color=colour,
-                lw=1.4,
-                label=name if column == 0 else None,
-            )
+    speeds = np.abs(result.speeds) * RPM_PER_RAD_S
+    for column in range(speeds.shape[1]):
+        # The k-th lowest speed over stiffness: such a curve never falls, while a mode may change its whirl along it.
+        axis.loglog(result.stiffness, speeds[:, column], "-", color="#999999", lw=0.9, zorder=2)
+    for word, (marker, colour, name) in _MARKERS.items():
+        rows, columns = np.nonzero((result.whirl == WHIRL_WORDS.index(word)) & np.isfinite(speeds))
+        if rows.size:
+            x = result.stiffness[rows]
+            y = speeds[rows, columns]
+            axis.plot(x, y, marker, color=colour, mfc="white", mew=0.9, ms=4.5, ls="none", label=name, zorder=3)
     _bearings(axis, result)
     axis.set_xlabel("radial stiffness of every bearing, N/m")
     axis.set_ylabel(f"critical speed of {result.model.reference_shaft}, rpm")

@@ -11,8 +11,6 @@ from rotorgear.plots.figure import figure_for
 from rotorgear.plots.static import plain_axis
 from rotorgear.results.frequency_response import FrequencyResponse
 
-_UNITS = {"receptance": "m/N", "mobility": "m/(N s)", "accelerance": "m/(N s$^2$)"}
-
 
 def frf(result: FrequencyResponse, fig: Any = None, *, quantity: str = "receptance") -> np.ndarray:
     """Draw frequency responses: size on a logarithmic scale above, phase below.
@@ -38,7 +36,8 @@ def frf(result: FrequencyResponse, fig: Any = None, *, quantity: str = "receptan
         label = f"{result.inputs[i]} to {result.outputs[o]}"
         size.semilogy(result.frequency_hz, np.abs(values[:, o, i]), color=colour, ls=style, lw=1.3, label=label)
         phase.plot(result.frequency_hz, np.degrees(np.angle(values[:, o, i])), color=colour, ls=style, lw=1.0)
-    size.set_ylabel(f"{quantity}, {_UNITS[quantity]} (rad and N m for rotations)", fontsize=9)
+    units = dict.fromkeys(result.unit(o, i, quantity) for o, i in pairs)
+    size.set_ylabel(f"{quantity}, {', '.join(units)}", fontsize=9)
     size.legend(frameon=False, fontsize=8)
     phase.set_ylabel("phase, deg", fontsize=9)
     phase.set_ylim(-190, 190)

@@ -36,7 +36,7 @@ class Crossing(Record):
     speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm", note=" there", form=".2f")
     frequency_hz: float = of("frequency", "Hz", note=" of the mode there, the damped one", form=".3f")
     damping_ratio: float = of("damping ratio", note=" of the mode there")
-    whirl: str = of("sense of whirl", note=" there")
+    whirl: str = of("sense of whirl", note=" there, for the shaft whose line it is")
     participation: float = of(
         "share of the exciting part in the energy of the mode",
         note=": a mesh in the strain energy, a shaft in the kinetic energy",
@@ -54,6 +54,7 @@ class Margin(Record):
     )
     mode_hz: float = of("damped frequency of that branch", "Hz", note="; `null`: none", form=".2f")
     margin: float = of("margin", note=": `mode_hz` over `frequency_hz`, less 1", form="+.4f")
+    whirl: str = of("sense of whirl", note=" of that branch for the shaft whose line it is")
     participation: float = of("share of the exciting part in the energy of the mode", note=", as at a crossing")
     crossing_speed: float = of(
         "nearest speed, in the range, at which the line meets a mode that it can excite",

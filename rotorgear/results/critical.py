@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.campbell import WHIRL_WORDS, ExcitationOrder
 from rotorgear.results.modal import NodeTable, Piece
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
@@ -18,7 +18,7 @@ class CriticalSpeed(Record):
     speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
     frequency_hz: float = of("frequency", "Hz", note=" of the mode there, the damped one", form=".3f")
     damping_ratio: float = of("damping ratio", note=" of the mode there; 0 in an undamped analysis")
-    whirl: str = of("sense of whirl", note=' there; `""` where nothing whirls')
+    whirl: str = of("sense of whirl", note=' there, for the shaft whose line it is; `""` where that does not bend')
     participation: float = of("share of the exciting part in the energy of the mode")
     excited: bool = of("whether the line can excite the mode", note=": whether the participation is above 1e-4")
     description: str = of("what moves")
@@ -84,24 +84,33 @@ class CriticalResult(ModelResult, kind="critical"):
 
 
 class CriticalMap(ModelResult, kind="critical_map"):
-    """Undamped critical speeds over one radial stiffness of all bearings, by sense of whirl.
+    """Undamped critical speeds over one radial stiffness of all bearings.
 
-    Speeds ascend at each stiffness, NaN beyond the last one; `other` are those of modes that don't whirl (torsion, axial,
-    planar). `dofs` are those of the largest problem.
+    The k-th lowest speed never falls with the stiffness (Rayleigh), whatever its mode looks like; NaN beyond the last one below
+    `top_speed`. `dofs` are those of the largest problem.
     """
 
     line: str = of("excitation line", note=" of the map")
     stiffness: np.ndarray = of(
         "stiffness", "N/m", "stiffness", json="stiffness_n_per_m", note=", radial, of all bearings"
     )
-    forward: np.ndarray = of(
-        "critical speeds with forward whirl", "rad/s", "stiffness", "forward_speed", json="forward_rpm"
+    speeds: np.ndarray = of(
+        "critical speeds of the input shaft",
+        "rad/s",
+        "stiffness",
+        "critical_speed",
+        json="critical_rpm",
+        note=", ascending",
     )
-    backward: np.ndarray = of(
-        "critical speeds with backward whirl", "rad/s", "stiffness", "backward_speed", json="backward_rpm"
-    )
-    other: np.ndarray = of(
-        "critical speeds of modes that do not whirl", "rad/s", "stiffness", "other_speed", json="other_rpm"
+    whirl: np.ndarray = of(
+        "sense of whirl",
+        "",
+        "stiffness",
+        "critical_speed",
+        json=Written(
+            "whirl", lambda result, whirl: [[WHIRL_WORDS[number] for number in row] for row in whirl.tolist()]
+        ),
+        note=' of the shaft whose line it is, `""` for a torsional or axial mode; in Python numbers into `WHIRL_WORDS`',
     )
     bearings: dict[str, np.ndarray] = of(
         "radial stiffness along x and y that the bearings of the model have",
@@ -111,3 +120,46 @@ class CriticalMap(ModelResult, kind="critical_map"):
         json="bearing_stiffness_n_per_m",
     )
     top_speed: float = of("highest speed looked at", "rad/s", json="top_speed_rpm")
+
+    @derived(
+        "critical speeds with forward whirl",
+        "rad/s",
+        "stiffness",
+        "forward_speed",
+        json="forward_rpm",
+        note=", ascending at each stiffness: no curves",
+    )
+    def forward(self) -> np.ndarray:
+        """Those of `speeds` with forward whirl, (k, f), NaN behind the last one."""
+        return self._with("forward")
+
+    @derived(
+        "critical speeds with backward whirl",
+        "rad/s",
+        "stiffness",
+        "backward_speed",
+        json="backward_rpm",
+        note=", ascending at each stiffness: no curves",
+    )
+    def backward(self) -> np.ndarray:
+        """Those of `speeds` with backward whirl, (k, b), NaN behind the last one."""
+        return self._with("backward")
+
+    @derived(
+        "critical speeds of modes that do not whirl",
+        "rad/s",
+        "stiffness",
+        "other_speed",
+        json="other_rpm",
+        note=", ascending at each stiffness: no curves",
+    )
+    def other(self) -> np.ndarray:
+        """Those of `speeds` that whirl in no single sense (torsion, axial, planar, mixed), (k, o), NaN behind the last one."""
+        return self._with("", "planar", "mixed")
+
+    def _with(self, *words: str) -> np.ndarray:
+        chosen = np.isin(self.whirl, [WHIRL_WORDS.index(word) for word in words]) & np.isfinite(self.speeds)
+        # Chosen ones first, in the order they have.
+        order = np.argsort(~chosen, axis=1, kind="stable")
+        found = np.take_along_axis(np.where(chosen, self.speeds, np.nan), order, axis=1)
+        return np.asarray(found[:, : int(chosen.sum(axis=1).max(initial=0))])

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.campbell.critical_error import speed_error
-from rotorgear.analysis.campbell.crossings import EXCITED, participation
+from rotorgear.analysis.campbell.crossings import EXCITED, participation, whirl_for
 from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.speed_family import SpeedFamily
 from rotorgear.analysis.campbell.speeds import highest_speed
@@ -238,7 +238,7 @@ def _result(
                 float(speeds[k]),
                 float(value.imag / (2.0 * np.pi)),
                 (float(-value.real / abs(value)) if damps else 0.0) + zeta,
-                seen.whirl[k],
+                whirl_for(line, seen, k),
                 share,
                 share >= EXCITED,
                 words[k],

@@ -12,25 +12,29 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.campbell.critical import roots_of
+from rotorgear.analysis.campbell.crossings import whirl_for
 from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.speed_family import SpeedFamily
 from rotorgear.analysis.campbell.speeds import highest_speed
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.modal.branch_shapes import BasisShapes
+from rotorgear.analysis.modal.branch_shapes import BasisShapes, whirl_numbers
 from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.model.parts.supports import Bearing
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
+from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.critical import CriticalMap
 from rotorgear.system.system import System
 
 # Decades below the softest and above the stiffest bearing of the model that the map covers.
 _DECADES = 2.0
 _POINTS = 33
+# With less bending in its kinetic energy a mode counts as torsional or axial.
+_BENDS = 0.5
 
 
 @renamed_arguments(top_speed="stop")
@@ -85,25 +89,25 @@ def critical_map(
         progress=progress,
     )
     clock.lap("mesh")
-    rows: list[dict[str, list[float]]] = []
+    rows: list[tuple[np.ndarray, np.ndarray]] = []
     for k, value in enumerate(values):
         progress(0.1 + 0.9 * k / len(values), f"{value:.3g} N/m")
         system = System(with_radial_stiffness(model, float(value)), plan=stiffest.plan, load=stiffest.load)
-        rows.append(_by_whirl(system, line.order, top))
+        rows.append(_with_whirl(system, line, top))
     clock.lap("critical speeds")
-    tables = {}
-    for kind in ("forward", "backward", "other"):
-        # How many lie below the top speed depends on the stiffness: NaN fills the rows up.
-        width = max((len(row[kind]) for row in rows), default=0)
-        filled = [row[kind] + [np.nan] * (width - len(row[kind])) for row in rows]
-        tables[kind] = np.array(filled).reshape(len(rows), width)
+    # How many lie below the top speed depends on the stiffness: NaN fills the rows up.
+    width = max(len(speeds) for speeds, _ in rows)
+    speeds = np.full((len(rows), width), np.nan)
+    whirl = np.zeros((len(rows), width), np.int8)
+    for k, (found, numbers) in enumerate(rows):
+        speeds[k, : len(found)] = found
+        whirl[k, : len(found)] = numbers
     return CriticalMap(
         model=given,
         line=line.name,
         stiffness=values,
-        forward=tables["forward"],
-        backward=tables["backward"],
-        other=tables["other"],
+        speeds=speeds,
+        whirl=whirl,
         bearings=radial,
         top_speed=top,
         dofs=stiffest.n,
@@ -111,25 +115,20 @@ def critical_map(
     )
 
 
-def _by_whirl(system: System, order: float, top: float) -> dict[str, list[float]]:
-    """Critical speeds by sense of whirl of the mode."""
-    found = roots_of(system, SpeedFamily(system, *sorted((0.0, top))), order, top, damped=False)
-    table: dict[str, list[float]] = {"forward": [], "backward": [], "other": []}
+def _with_whirl(system: System, line: ExcitationOrder, top: float) -> tuple[np.ndarray, np.ndarray]:
+    """Critical speeds (c,) in rad/s, ascending in size, and the whirl of each for the exciting shaft as a number."""
+    found = roots_of(system, SpeedFamily(system, *sorted((0.0, top))), line.order, top, damped=False)
     if not found:
-        return table
+        return np.zeros(0), np.zeros(0, np.int8)
+    found.sort(key=lambda root: root.speed)
     X = np.column_stack([root.vector for root in found])
     shapes = BasisShapes(system, [np.hstack([X.real, X.imag])])
     one = np.eye(len(found))
     speeds = np.copysign(np.array([root.speed for root in found]), top)
     seen = shapes.portraits(shapes.coordinates(0, np.vstack([one, 1j * one])), speeds)
     bending = seen.energies.kinetic_by_motion.get("bending", np.zeros(len(found)))
-    for k, speed in enumerate(speeds):
-        # Shafts of one gearbox may whirl in opposite senses: the mode has that of the shafts which bend most.
-        bends = {shaft: v[k] for (shaft, motion), v in seen.energies.kinetic_by_shaft.items() if motion == "bending"}
-        net = sum(float(v[k]) * float(bends.get(name, 0.0)) for name, v in seen.whirl_by_shaft.items())
-        kind = "other" if bending[k] < 0.5 else ("forward" if net > 0.0 else "backward")
-        table[kind].append(float(speed))
-    return {kind: sorted(values, key=abs) for kind, values in table.items()}
+    words = [whirl_for(line, seen, k) if bending[k] >= _BENDS else "" for k in range(len(found))]
+    return speeds, whirl_numbers(tuple(words))
 
 
 def radial_stiffness(bearing: Bearing) -> np.ndarray:

@@ -13,6 +13,7 @@ import numpy as np
 
 from rotorgear.analysis.campbell.snapshot_basis import SpeedModes
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits
+from rotorgear.analysis.modal.whirl import whirl_word_among
 from rotorgear.results.campbell import Crossing, ExcitationOrder, Margin
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
 
@@ -122,22 +123,47 @@ def refined(pencil: Pencil, s: complex, q: np.ndarray) -> tuple[complex, np.ndar
 def participation(line: ExcitationOrder, seen: Portraits, k: int) -> float:
     """Share of the exciting meshes in the strain energy of mode k, or of the exciting shafts in its kinetic energy.
 
-    First order of a shaft is unbalance: a force that turns with the shaft drives the forward part of its bending only, of which a
-    net sense w leaves (1 + w)/2. Other orders of a shaft may act in any motion.
+    First order of a shaft is unbalance, see `driven_by_unbalance`. Other orders of a shaft may act in any motion.
     """
     energies = seen.energies
     if line.kind != "shaft":
         return sum(
             float(energies.strain[f"meshes.{name}"][k]) for name in line.parts if f"meshes.{name}" in energies.strain
         )
-    total = 0.0
-    for name in line.parts:
-        if line.name.endswith(" 1x"):
-            share = energies.kinetic_by_shaft.get((name, "bending"))
-            total += 0.0 if share is None else float(share[k] * 0.5 * (1.0 + seen.whirl_by_shaft[name][k]))
-        else:
-            total += sum(float(v[k]) for (shaft, _), v in energies.kinetic_by_shaft.items() if shaft == name)
-    return total
+    if _is_unbalance(line):
+        return sum(driven_by_unbalance(seen, name, k) for name in line.parts)
+    return sum(
+        float(v[k]) for name in line.parts for (shaft, _), v in energies.kinetic_by_shaft.items() if shaft == name
+    )
+
+
+def driven_by_unbalance(seen: Portraits, shaft: str, k: int) -> float:
+    """Share of forward whirl of a shaft in the kinetic energy of mode k: (1 + w)/2 of its bending, w the net sense.
+
+    Unbalance turns with its shaft, so it drives the forward part of an orbit only.
+    """
+    share = seen.energies.kinetic_by_shaft.get((shaft, "bending"))
+    return 0.0 if share is None else float(share[k] * 0.5 * (1.0 + seen.whirl.net[shaft][k]))
+
+
+def _is_unbalance(line: ExcitationOrder) -> bool:
+    return line.kind == "shaft" and line.name.endswith(" 1x")
+
+
+def whirl_for(line: ExcitationOrder, seen: Portraits, k: int) -> str:
+    """Sense of whirl of mode k for the shaft whose line it is; for a mesh, for the shaft that bends most.
+
+    Two shafts of one gearbox turn in opposite senses, so that one orbit is forward for one of them and backward for the other. Of
+    several shafts with one line it is the one whose unbalance drives the mode.
+    """
+    if line.kind != "shaft":
+        return seen.words[k]
+    driven = [name for name in line.parts if _is_unbalance(line) and driven_by_unbalance(seen, name, k) >= EXCITED]
+    if driven:
+        return whirl_word_among(
+            seen.whirl, seen.energies, [max(driven, key=lambda name: driven_by_unbalance(seen, name, k))], k
+        )
+    return whirl_word_among(seen.whirl, seen.energies, line.parts, k)
 
 
 def crossings(
@@ -173,7 +199,7 @@ def crossings(
                 root.speed,
                 float(s.imag) / (2.0 * np.pi),
                 float(-s.real / abs(s)) + 0.0,
-                seen.whirl[place],
+                whirl_for(line, seen, place),
                 share,
                 share >= EXCITED,
             )
@@ -195,9 +221,10 @@ def margins(
         speeds = [item.speed for item in found if item.line == line.name and item.excited]
         nearest = min(speeds, key=lambda value: abs(value - speed), default=float("nan"))
         if not able or frequency > top:
-            table.append(Margin(line.name, frequency, 0, float("nan"), float("nan"), 0.0, nearest))
+            table.append(Margin(line.name, frequency, 0, float("nan"), float("nan"), "", 0.0, nearest))
             continue
         best = min(able, key=lambda b: abs(s[b].imag / (2.0 * np.pi) - frequency))
         mode = float(s[best].imag / (2.0 * np.pi))
-        table.append(Margin(line.name, frequency, best + 1, mode, mode / frequency - 1.0, shares[best], nearest))
+        whirl = whirl_for(line, seen, int(np.flatnonzero(known == best)[0]))
+        table.append(Margin(line.name, frequency, best + 1, mode, mode / frequency - 1.0, whirl, shares[best], nearest))
     return tuple(table)

@@ -56,9 +56,26 @@ def left_out(system: System, speed: float | None, *, rolls: bool = False) -> tup
                 if not element.is_given and element_law(element, 1.0).uses_velocity
             ]
             notes.append("damping matrix: " + (f"empty; only {', '.join(laws)} can damp" if laws else "nothing damps"))
+    notes += beta_notes(system, speed, rolls=rolls)
     # In time the stiffness varies as it is; what a transient leaves out of it, it says itself.
     meshes = () if rolls else mesh_stiffness_left_out(system)
     return (*notes, *casing_notes(system), *rolling_notes(system.model, rolls=rolls), *meshes)
+
+
+def beta_notes(system: System, speed: float | None, *, rolls: bool) -> Iterator[str]:
+    """Say on which stiffness the damping beta K of the model does not act, where there is such."""
+    if speed is None or not system.model.damping.rayleigh_beta:
+        return
+    if system.circulatory(speed).nnz:
+        yield "beta K of circulatory and cross-coupled stiffness: rayleigh_beta acts on the symmetric part of K"
+    if rolls:
+        laws = [f"nonlinear_elements.{name}" for name in system.model.nonlinear_elements]
+        laws += [f"bearings.{name}" for name, bearing in system.model.bearings.items() if bearing.rolling is not None]
+        if laws:
+            yield (
+                f"beta K of {', '.join(laws)}: rayleigh_beta acts on their tangents in linear analyses, in time they damp as "
+                "their laws say"
+            )
 
 
 def mode_warnings(

@@ -10,7 +10,7 @@ import numpy as np
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.modal.describe import describe
 from rotorgear.analysis.modal.energies import Energies, mode_energies
-from rotorgear.analysis.modal.whirl import whirl_by_shaft, whirl_words
+from rotorgear.analysis.modal.whirl import Whirl, whirl_of, whirl_words
 from rotorgear.results.campbell import WHIRL_WORDS
 from rotorgear.results.modal import NodeTable
 from rotorgear.system.system import System
@@ -21,11 +21,11 @@ _CHUNK = 4_000_000
 
 @dataclass(frozen=True)
 class Portraits:
-    """Energies and whirl of m modes: whirl words and net sense by shaft, as in a modal result."""
+    """Energies and whirl of m modes; `words` are those of the shaft that bends most, as in a modal result."""
 
     energies: Energies
-    whirl: tuple[str, ...]
-    whirl_by_shaft: dict[str, np.ndarray]
+    words: tuple[str, ...]
+    whirl: Whirl
 
 
 class BasisShapes:
@@ -90,9 +90,8 @@ class BasisShapes:
         modes = coordinates.shape[1]
         energies = mode_energies(self.system, speed, self.everything @ coordinates, np.zeros(modes, bool))
         shapes = self._at_nodes(coordinates)
-        by_shaft = whirl_by_shaft(self.system, shapes, speed)
-        words = whirl_words(self.system, shapes, by_shaft, energies) if speed else ("",) * modes
-        return Portraits(energies, words, by_shaft)
+        whirl = whirl_of(self.system, shapes, speed)
+        return Portraits(energies, whirl_words(whirl, energies), whirl)
 
 
 def _joined(found: list[Portraits], order: np.ndarray) -> Portraits:
@@ -101,8 +100,9 @@ def _joined(found: list[Portraits], order: np.ndarray) -> Portraits:
 
     names = ("kinetic", "strain", "kinetic_by_motion", "strain_by_motion", "kinetic_by_shaft")
     energies = Energies(*(join([getattr(part.energies, name) for part in found]) for name in names))
-    words = [word for part in found for word in part.whirl]
-    return Portraits(energies, tuple(words[k] for k in order), join([part.whirl_by_shaft for part in found]))
+    words = [word for part in found for word in part.words]
+    whirl = Whirl(join([part.whirl.net for part in found]), join([part.whirl.numbers for part in found]))
+    return Portraits(energies, tuple(words[k] for k in order), whirl)
 
 
 def whirl_numbers(words: tuple[str, ...]) -> np.ndarray:

@@ -13,7 +13,7 @@ from rotorgear.analysis.modal.conditioning import conditioning_warnings
 from rotorgear.analysis.modal.describe import describe
 from rotorgear.analysis.modal.energies import mode_energies
 from rotorgear.analysis.modal.modes import Modes
-from rotorgear.analysis.modal.whirl import whirl_by_shaft, whirl_words
+from rotorgear.analysis.modal.whirl import whirl_of, whirl_words
 from rotorgear.results.modal import ModalResult
 from rotorgear.system.system import System
 
@@ -33,8 +33,7 @@ def modal_result(
     everywhere = _turned(displaced.astype(complex))
     shapes = everywhere[: len(system.nodes)]
     energies = mode_energies(system, speed or 0.0, q, found.rigid)
-    whirl = whirl_by_shaft(system, shapes, speed or 0.0)
-    words = whirl_words(system, shapes, whirl, energies) if speed else tuple("" for _ in found.eigenvalues)
+    whirl = whirl_of(system, shapes, speed or 0.0)
     real_root = (found.eigenvalues.imag == 0.0) & ~found.rigid
     lines = describe(system, q, energies, found.rigid, real_root)
     clock.lap("energies")
@@ -50,8 +49,8 @@ def modal_result(
         strain_energy=energies.strain,
         kinetic_by_motion=energies.kinetic_by_motion,
         strain_by_motion=energies.strain_by_motion,
-        whirl=words,
-        whirl_by_shaft=whirl,
+        whirl=whirl_words(whirl, energies),
+        whirl_by_shaft=whirl.net,
         description=lines,
         backward_error=found.backward_error,
         dofs=system.n,

@@ -6,9 +6,13 @@ divided by the same sum of |X|^2 + |Y|^2, a circle gives +-1 and a line 0, for s
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass
+
 import numpy as np
 
 from rotorgear.analysis.modal.energies import Energies
+from rotorgear.results.campbell import WHIRL_WORDS
 from rotorgear.system.system import System
 
 # Below this share of the inertia-weighted orbit a mode is called planar.
@@ -17,6 +21,21 @@ _PLANAR = 0.02
 _MIXED = 0.05
 # A shaft with less of the kinetic energy in bending does not give the mode its sense.
 _LEAST_BENDING = 0.05
+# With less than this its orbit is rounding.
+_MOVES = 1e-8
+
+
+@dataclass(frozen=True)
+class Whirl:
+    """Precession of m modes in the sense of each shaft's own spin.
+
+    Attributes:
+        net: shaft -> (m,) from -1 (backward circle) to 1 (forward circle); 0 for a shaft at rest.
+        numbers: shaft -> (m,) into `WHIRL_WORDS`; that of "" where the shaft does not bend.
+    """
+
+    net: dict[str, np.ndarray]
+    numbers: dict[str, np.ndarray]
 
 
 def orbits(system: System, inertia: np.ndarray, shapes: np.ndarray, shaft: str) -> tuple[np.ndarray, np.ndarray]:
@@ -42,44 +61,58 @@ def diagonal_inertia(system: System) -> np.ndarray:
     return diagonal[: 6 * len(system.nodes)]
 
 
-def whirl_by_shaft(system: System, shapes: np.ndarray, speed: float) -> dict[str, np.ndarray]:
-    """Net sense of precession of each shaft in the sense of its own spin: shaft -> (m,), -1 to 1; 0 for a shaft at rest."""
+def whirl_of(system: System, shapes: np.ndarray, speed: float) -> Whirl:
+    """Whirl of modes with shapes (p, 6, m) at a speed of the input shaft.
+
+    A mode is forward for a shaft when it precesses as that shaft itself turns, not as the input does. "mixed" has nodes on the
+    shaft that sweep in either sense, "planar" hardly sweeps at all.
+    """
+    modes = shapes.shape[2]
+    net = {name: np.zeros(modes) for name in system.model.shafts}
+    numbers = {name: np.zeros(modes, np.int8) for name in system.model.shafts}
     if not speed or not system.model.has("bending"):
-        return {name: np.zeros(shapes.shape[2]) for name in system.model.shafts}
-    sense = {}
+        return Whirl(net, numbers)
     inertia = diagonal_inertia(system)
     for name in system.model.shafts:
+        spin = np.sign(system.train.ratio(name) * speed)
+        if spin == 0.0:
+            continue
         swept, size = orbits(system, inertia, shapes, name)
         total = size.sum(axis=0)
-        spin = np.sign(system.train.ratio(name) * speed)
-        # A mode is forward for this shaft when it precesses as the shaft itself turns, not as the input does.
-        sense[name] = spin * np.where(total > 0.0, swept.sum(axis=0) / np.where(total > 0.0, total, 1.0), 0.0)
-    return sense
+        moves = total > 0.0
+        net[name] = spin * np.where(moves, swept.sum(axis=0) / np.where(moves, total, 1.0), 0.0)
+        area = np.abs(swept).sum(axis=0)
+        one_way = np.maximum(swept, 0.0).sum(axis=0)
+        other_way = np.maximum(-swept, 0.0).sum(axis=0)
+        kinds = [~moves, area < _PLANAR * total, np.minimum(one_way, other_way) > _MIXED * area, net[name] > 0.0]
+        words = [WHIRL_WORDS.index(word) for word in ("", "planar", "mixed", "forward")]
+        numbers[name] = np.select(kinds, words, WHIRL_WORDS.index("backward")).astype(np.int8)
+    return Whirl(net, numbers)
 
 
-def whirl_words(
-    system: System, shapes: np.ndarray, by_shaft: dict[str, np.ndarray], energies: Energies
-) -> tuple[str, ...]:
-    """One word a mode, for the shaft with the most bending: forward, backward, mixed (both on one shaft), planar, or ""."""
-    if not system.model.has("bending"):
-        return ("",) * shapes.shape[2]
-    inertia = diagonal_inertia(system)
-    swept_of = {name: orbits(system, inertia, shapes, name) for name in by_shaft}
-    words = []
-    for mode in range(shapes.shape[2]):
-        bending = {name: energies.kinetic_by_shaft.get((name, "bending")) for name in by_shaft}
-        shares = {name: float(share[mode]) for name, share in bending.items() if share is not None}
-        name = max(shares, key=lambda key: shares[key], default="")
-        if not name or shares[name] < _LEAST_BENDING or system.train.ratio(name) == 0.0:
-            words.append("")
-            continue
-        swept = swept_of[name][0][:, mode]
-        size = swept_of[name][1][:, mode]
-        total = np.sum(np.abs(swept))
-        if total < _PLANAR * np.sum(size):
-            words.append("planar")
-        elif min(np.sum(swept[swept > 0]), -np.sum(swept[swept < 0])) > _MIXED * total:
-            words.append("mixed")
-        else:
-            words.append("forward" if by_shaft[name][mode] > 0 else "backward")
-    return tuple(words)
+def bending_shares(energies: Energies, shafts: Iterable[str]) -> dict[str, np.ndarray]:
+    """Share of each shaft's bending in the kinetic energy of each mode, of those that bend: shaft -> (m,)."""
+    found = {name: energies.kinetic_by_shaft.get((name, "bending")) for name in shafts}
+    return {name: share for name, share in found.items() if share is not None}
+
+
+def whirl_words(whirl: Whirl, energies: Energies) -> tuple[str, ...]:
+    """One word a mode, for the shaft with the most bending: forward, backward, mixed, planar, or ""."""
+    modes = len(next(iter(whirl.net.values())))
+    shares = bending_shares(energies, whirl.numbers)
+    if not shares:
+        return ("",) * modes
+    names = list(shares)
+    table = np.array([shares[name] for name in names])
+    most = table.argmax(axis=0)
+    return tuple(
+        WHIRL_WORDS[whirl.numbers[names[most[k]]][k]] if table[most[k], k] >= _LEAST_BENDING else ""
+        for k in range(modes)
+    )
+
+
+def whirl_word_among(whirl: Whirl, energies: Energies, shafts: Iterable[str], mode: int) -> str:
+    """The word of one mode for that one of some shafts which bends most; "" where none of them does."""
+    shares = {name: float(share[mode]) for name, share in bending_shares(energies, shafts).items()}
+    name = max(shares, key=lambda key: shares[key], default="")
+    return WHIRL_WORDS[whirl.numbers[name][mode]] if name and shares[name] >= _MOVES else ""

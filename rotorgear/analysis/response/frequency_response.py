@@ -24,6 +24,7 @@ from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.frequency_response import FrequencyResponse
@@ -115,6 +116,8 @@ def frf(
         frequency_hz=hz,
         inputs=tuple(inputs),
         outputs=tuple(outputs),
+        input_units=tuple("N m" if places[text][2] in DOF_NAMES[3:] else "N" for text in inputs),
+        output_units=tuple("rad" if places[text][2] in DOF_NAMES[3:] else "m" for text in outputs),
         receptance=receptance,
         damping_ratio=zeta,
         residual=residual,

@@ -65,7 +65,11 @@ class ModelDamping(Part):
     """Damping of the model as a whole."""
 
     rayleigh_alpha: Rate = Field(0.0, description="alpha of C = alpha M + beta K")
-    rayleigh_beta: Time = Field(0.0, description="beta of C = alpha M + beta K")
+    rayleigh_beta: Time = Field(
+        0.0,
+        description="beta of C = alpha M + beta K, of the symmetric part of K: cross-coupled and circulatory terms damp "
+        "nothing; tangents of nonlinear elements and rolling bearings take part in linear analyses only",
+    )
     modal_ratio: Ratio = Field(0.0, description="damping ratio added to that of every mode that is not rigid")
 
 

@@ -48,7 +48,8 @@ def campbell_table(result: CampbellResult, *, crossings: bool = False) -> Render
             ("branch", "right", lambda item: str(item.branch) if item.branch else "-"),
             ("Hz", "right", lambda item: _number(item.mode_hz, ".2f")),
             ("margin %", "right", lambda item: _number(100.0 * item.margin, "+.2f")),
-            ("takes part %", "right", lambda item: _number(100.0 * item.participation, ".2f") if item.branch else "-"),
+            ("whirl", "left", lambda item: item.whirl),
+            ("part %", "right", lambda item: _number(100.0 * item.participation, ".2f") if item.branch else "-"),
             ("crossing rpm", "right", lambda item: _number(item.crossing_speed * RPM_PER_RAD_S, ".1f")),
             title=f"Margins at {result.operating_speed * RPM_PER_RAD_S:.6g} rpm",
         )

@@ -6,12 +6,15 @@ import math
 from typing import TYPE_CHECKING
 
 from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.campbell import WHIRL_WORDS
 from rotorgear.results.tables.common import error_words, heading, lines, plain_table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from rotorgear.results.critical import CriticalMap, CriticalResult
+
+_LETTERS = {word: word[:1] for word in WHIRL_WORDS}
 
 
 def critical_table(result: CriticalResult) -> RenderableType:
@@ -55,13 +58,16 @@ def critical_table(result: CriticalResult) -> RenderableType:
 
 
 def critical_map_table(chart: CriticalMap) -> RenderableType:
-    """Return the map as one table."""
+    """Return the map as one table: critical speeds in ascending order, whirl by letter."""
+    from rich.console import Group
+    from rich.text import Text
+
     table = plain_table(f"Undamped map: {chart.line}, rpm of the input shaft")
     table.add_column("N/m", justify="right")
-    table.add_column("forward", overflow="fold")
-    table.add_column("backward", overflow="fold")
+    table.add_column("critical speeds", overflow="fold")
     for k in range(0, len(chart.stiffness), max(1, len(chart.stiffness) // 8)):
-        rows = [[f"{v * RPM_PER_RAD_S:.0f}" for v in values[k] if v == v] for values in (chart.forward, chart.backward)]
-        table.add_row(f"{chart.stiffness[k]:.2e}", *(", ".join(row) for row in rows))
-    chart_as_table: RenderableType = table
-    return chart_as_table
+        known = [(v, WHIRL_WORDS[w]) for v, w in zip(chart.speeds[k], chart.whirl[k], strict=True) if v == v]
+        row = ", ".join(f"{v * RPM_PER_RAD_S:.0f} {_LETTERS[word]}".rstrip() for v, word in known)
+        table.add_row(f"{chart.stiffness[k]:.2e}", row)
+    legend = "f forward, b backward, m mixed, p planar for the shaft of the line; no letter: torsional or axial"
+    return Group(table, Text(legend))

@@ -27,16 +27,22 @@ def frf_table(result: FrequencyResponse, *, quantity: str = "receptance") -> Ren
         if result.speed
         else ", at standstill"
     )
-    out = table("force at", "response at", "peak Hz", quantity, left=2)
+    out = table("force at", "response at", "peak Hz", quantity, "unit", left=2)
+    coarse = False
     for i, entry in enumerate(result.inputs):
         for o, place in enumerate(result.outputs):
-            for frequency, size in result.peaks(o, i, quantity)[:_PEAKS]:
-                out.add_row(entry, place, f"{frequency:.2f}", f"{size:.3e}")
+            for peak in result.peaks(o, i, quantity)[:_PEAKS]:
+                coarse |= not peak.resolved
+                sign = "" if peak.resolved else "> "
+                out.add_row(
+                    entry, place, f"{peak.frequency_hz:.2f}", f"{sign}{peak.size:.3e}", result.unit(o, i, quantity)
+                )
     notes = [
         f"{len(hz)} frequencies, {result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
         f"residual {error_words(result.residual)} of the forces inside; on a finer mesh the peaks change by "
         f"{error_words(result.error_estimate)}",
         f"damping ratio added to every elastic mode: {result.damping_ratio:g}",
+        *(["> the peak is narrower than a step of the frequencies, and higher than at any of them"] if coarse else []),
         *(f"left out: {note}" for note in result.left_out),
         *(f"Warning: {note}" for note in result.warnings),
     ]
