@@ -35,7 +35,7 @@ def critical_map(result: CriticalMap, ax: Any = None) -> Any:
     """
     title = f"{result.model.title or 'Critical speeds'}\nundamped critical speeds of {result.line}"
     axis = axes_for(ax, (9.0, 6.0), title)
-    speeds = np.abs(result.speeds) * RPM_PER_RAD_S
+    speeds = np.abs(result.critical_speeds) * RPM_PER_RAD_S
     for column in range(speeds.shape[1]):
         # The k-th lowest speed over stiffness: such a curve never falls, while a mode may change its whirl along it.
         axis.loglog(result.stiffness, speeds[:, column], "-", color="#999999", lw=0.9, zorder=2)

@@ -94,7 +94,7 @@ class CriticalMap(ModelResult, kind="critical_map"):
     stiffness: np.ndarray = of(
         "stiffness", "N/m", "stiffness", json="stiffness_n_per_m", note=", radial, of all bearings"
     )
-    speeds: np.ndarray = of(
+    critical_speeds: np.ndarray = of(
         "critical speeds of the input shaft",
         "rad/s",
         "stiffness",
@@ -130,7 +130,7 @@ class CriticalMap(ModelResult, kind="critical_map"):
         note=", ascending at each stiffness: no curves",
     )
     def forward(self) -> np.ndarray:
-        """Those of `speeds` with forward whirl, (k, f), NaN behind the last one."""
+        """Those of `critical_speeds` with forward whirl, (k, f), NaN behind the last one."""
         return self._with("forward")
 
     @derived(
@@ -142,7 +142,7 @@ class CriticalMap(ModelResult, kind="critical_map"):
         note=", ascending at each stiffness: no curves",
     )
     def backward(self) -> np.ndarray:
-        """Those of `speeds` with backward whirl, (k, b), NaN behind the last one."""
+        """Those of `critical_speeds` with backward whirl, (k, b), NaN behind the last one."""
         return self._with("backward")
 
     @derived(
@@ -154,12 +154,12 @@ class CriticalMap(ModelResult, kind="critical_map"):
         note=", ascending at each stiffness: no curves",
     )
     def other(self) -> np.ndarray:
-        """Those of `speeds` that whirl in no single sense (torsion, axial, planar, mixed), (k, o), NaN behind the last one."""
+        """Those of `critical_speeds` that whirl in no single sense, (k, o), NaN behind the last one."""
         return self._with("", "planar", "mixed")
 
     def _with(self, *words: str) -> np.ndarray:
-        chosen = np.isin(self.whirl, [WHIRL_WORDS.index(word) for word in words]) & np.isfinite(self.speeds)
+        chosen = np.isin(self.whirl, [WHIRL_WORDS.index(word) for word in words]) & np.isfinite(self.critical_speeds)
         # Chosen ones first, in the order they have.
         order = np.argsort(~chosen, axis=1, kind="stable")
-        found = np.take_along_axis(np.where(chosen, self.speeds, np.nan), order, axis=1)
+        found = np.take_along_axis(np.where(chosen, self.critical_speeds, np.nan), order, axis=1)
         return np.asarray(found[:, : int(chosen.sum(axis=1).max(initial=0))])

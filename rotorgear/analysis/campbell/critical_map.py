@@ -106,7 +106,7 @@ def critical_map(
         model=given,
         line=line.name,
         stiffness=values,
-        speeds=speeds,
+        critical_speeds=speeds,
         whirl=whirl,
         bearings=radial,
         top_speed=top,

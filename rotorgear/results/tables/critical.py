@@ -66,7 +66,7 @@ def critical_map_table(chart: CriticalMap) -> RenderableType:
     table.add_column("N/m", justify="right")
     table.add_column("critical speeds", overflow="fold")
     for k in range(0, len(chart.stiffness), max(1, len(chart.stiffness) // 8)):
-        known = [(v, WHIRL_WORDS[w]) for v, w in zip(chart.speeds[k], chart.whirl[k], strict=True) if v == v]
+        known = [(v, WHIRL_WORDS[w]) for v, w in zip(chart.critical_speeds[k], chart.whirl[k], strict=True) if v == v]
         row = ", ".join(f"{v * RPM_PER_RAD_S:.0f} {_LETTERS[word]}".rstrip() for v, word in known)
         table.add_row(f"{chart.stiffness[k]:.2e}", row)
     legend = "f forward, b backward, m mixed, p planar for the shaft of the line; no letter: torsional or axial"

@@ -50,7 +50,7 @@ def dual_spool(ratio: float = -1.5, polar: float = 0.02) -> rg.Model:
 
 def falls(chart: rg.CriticalMap) -> float:
     """The steepest fall of a curve of the map from one stiffness to the next, relative; 0 or above: none."""
-    speeds = np.abs(chart.speeds)
+    speeds = np.abs(chart.critical_speeds)
     return float(np.nanmin(speeds[1:] / speeds[:-1] - 1.0))
 
 
@@ -61,7 +61,7 @@ def test_no_curve_of_the_map_falls_and_none_begins_in_the_middle(name: str) -> N
     chart = rg.critical_map(model, stiffness=np.logspace(6.0, 10.0, 9).tolist(), stop=stop, elements=1)
     assert falls(chart) >= -1e-9
     # A curve leaves the map through its upper edge once, and does not come back.
-    there = np.isfinite(chart.speeds)
+    there = np.isfinite(chart.critical_speeds)
     assert not np.any(there[1:] & ~there[:-1])
     assert there[0].sum() >= 4
 
@@ -71,7 +71,7 @@ def test_the_picture_draws_what_does_not_fall() -> None:
     chart = rg.critical_map(dual_spool(), stiffness=np.logspace(6.0, 9.0, 7).tolist(), stop=2500.0, elements=1)
     axis = rg.plot.critical_map(chart)
     curves = [line.get_ydata() for line in axis.lines if len(line.get_xdata()) == 7 and line.get_linestyle() == "-"]
-    assert len(curves) == chart.speeds.shape[1]
+    assert len(curves) == chart.critical_speeds.shape[1]
     for curve in curves:
         assert np.all(np.diff(curve[np.isfinite(curve)]) >= -1e-9 * curve[0])
     names = {text.get_text() for text in axis.get_legend().get_texts()}
