@@ -33,11 +33,13 @@ Strain = Callable[[np.ndarray], np.ndarray]
 
 # Error of an eigenvalue by its residual, and of a vector, at which a round is the last.
 _SETTLED = 1e-12
-_SETTLED_VECTOR = 4e-7
+_SETTLED_VECTOR = 1e-7
 # Part of a correction that is not worth a column of the basis: relative to its mode, and to the largest correction.
 _NEGLIGIBLE = 1e-9
 _COARSE = 2e-3
 _ROUNDS = 8
+# Backward error above which the general solver is better.
+_SOUND = 2e-9
 # Share of the dofs above which a basis saves nothing.
 _LARGEST_SHARE = 0.8
 # Least relative gap between two frequencies in which modes are counted.
@@ -66,7 +68,7 @@ class GyroscopicProblem:
 
 
 def gyroscopic_modes(problem: GyroscopicProblem, count: int | None, below: float | None) -> DampedModes | None:
-    """The modes of smallest |s| as `damped_modes` gives them; None where a basis saves nothing or the count does not agree.
+    """The modes of smallest |s| as `damped_modes` gives them; None where a basis saves nothing, is too coarse, or the count does not agree.
 
     Args:
         problem: the pencil and its undamped modes, some more than are asked for.
@@ -94,7 +96,9 @@ def gyroscopic_modes(problem: GyroscopicProblem, count: int | None, below: float
             V = space.basis @ Y[:, :wanted]
             corrections, settled = _corrections(problem, factor, w[:wanted], V)
             if settled:
-                return _result(problem, w[:wanted], V, count, sigma) if _count_agrees(problem, w, wanted) else None
+                found = _result(problem, w[:wanted], V, count, sigma)
+                sound = found.backward_error.max(initial=0.0) <= _SOUND
+                return found if sound and _count_agrees(problem, w, wanted) else None
             space.extend(corrections, V)
     return None
 

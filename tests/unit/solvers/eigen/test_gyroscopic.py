@@ -66,7 +66,7 @@ def test_modes_that_spin_brings_down_from_above_the_basis_are_missed_by_no_count
 
 def test_a_basis_without_one_of_the_modes_is_refused_by_the_count() -> None:
     problem = spinning_string(150, 0.02)
-    # The fifth pair is taken out of the basis, and corrections of other modes don't bring it back: spin couples a mode with its twin only.
+    # The fifth pair is taken out of the basis, and no correction brings it back: spin couples a mode with its twin only.
     odd = np.arange(len(problem.frequencies)) // 2 != 4
     holed = replace(problem, frequencies=problem.frequencies[odd], modes=problem.modes[:, odd])
     found = gyroscopic_modes(holed, 12, None)
