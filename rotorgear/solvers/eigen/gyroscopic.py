@@ -2,12 +2,7 @@
 
 The basis begins with the undamped modes. Each round solves the projected pencil and adds to the basis what its residuals ask
 for, (K + sigma^2 M)^-1 Q(s) v, until eigenvalues and vectors no longer move; by Galerkin's condition an eigenvalue's error is the
-square of its vector's. With s = i w, K = L L^T, u = L^T v, A = L^-1 i G L^-T and N^2 = L^-1 M L^-T the projected pencil is a
-Hermitian eigenproblem, several times cheaper than a general one:
-
-    [ -A  N ] [ u ]     1  [ u ]
-    [  N  0 ] [ z ]  =  -  [ z ].
-                        w
+square of its vector's. The projected pencil is a Hermitian eigenproblem, see `gyroscopic_pairs`.
 
 That no mode is missing is counted. Q(i w) = K + i w G - w^2 M is Hermitian, and each mode makes one eigenvalue of it negative as
 w rises past it (x^H Q(i w) x has one positive root w for every x), so that the signs of its pivots count the modes below w.
@@ -21,12 +16,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.damped import DampedModes
 from rotorgear.solvers.eigen.quadratic import scaled
+from rotorgear.solvers.eigen.reduced_pencil import gyroscopic_pairs
 from rotorgear.solvers.sparse.factor import Factor, factor_symmetric, single_thread
 
 Strain = Callable[[np.ndarray], np.ndarray]
@@ -68,7 +63,7 @@ class GyroscopicProblem:
 
 
 def gyroscopic_modes(problem: GyroscopicProblem, count: int | None, below: float | None) -> DampedModes | None:
-    """The modes of smallest |s| as `damped_modes` gives them; None where a basis saves nothing, is too coarse, or the count does not agree.
+    """The modes of smallest |s| as `damped_modes` gives them; None where a basis does not serve or the count differs.
 
     Args:
         problem: the pencil and its undamped modes, some more than are asked for.
@@ -140,24 +135,8 @@ class _Space:
         """The lowest `most` frequencies w (m,) in rad/s of the projected pencil, and coordinates (size, m)."""
         V = self.basis
         S = self._problem.strain(V)
-        L = la.cholesky(S.T @ S, lower=True)
-
-        def reduced(A: np.ndarray) -> np.ndarray:
-            left = la.solve_triangular(L, A, lower=True)
-            return np.asarray(la.solve_triangular(L, left.T, lower=True).T)
-
         G = V.T @ (self._problem.G @ V)
-        squares, Q = np.linalg.eigh(reduced(V.T @ (self._problem.M @ V)))
-        N = (Q * np.sqrt(np.maximum(squares, 0.0))) @ Q.T
-        r = self.size
-        H = np.zeros((2 * r, 2 * r), complex)
-        H[:r, :r] = -0.5j * reduced(G - G.T)
-        H[:r, r:] = N
-        H[r:, :r] = N
-        last = 2 * r - 1
-        first = last - min(most, r) + 1
-        inverse, U = la.eigh(H, subset_by_index=(first, last), overwrite_a=True, check_finite=False)
-        return 1.0 / inverse[::-1], np.asarray(la.solve_triangular(L, U[:r, ::-1], lower=True, trans="T"))
+        return gyroscopic_pairs(V.T @ (self._problem.M @ V), 0.5 * (G - G.T), S.T @ S, most)
 
     def extend(self, corrections: np.ndarray, V: np.ndarray) -> None:
         """Add what complex corrections (n, m) of the modes V (n, m) bring beside the span."""
