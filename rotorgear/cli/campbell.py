@@ -35,7 +35,12 @@ def campbell(
     stop: ToOption = None,
     points: Annotated[int, typer.Option("--points", help="Number of speeds.")] = 51,
     modes: Annotated[
-        int | None, typer.Option("--modes", help="Number of lowest modes to follow (default 24).", show_default=False)
+        int | None,
+        typer.Option(
+            "--modes",
+            help="Number of lowest modes to follow (default: 24, or up to the mesh orders).",
+            show_default=False,
+        ),
     ] = None,
     fmax: Annotated[
         float | None, typer.Option("--fmax", help="Follow all modes up to this frequency in Hz.", show_default=False)

@@ -16,8 +16,12 @@ from rotorgear.analysis.campbell.crossings import Chain, crossings, margins, roo
 from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.snapshot_basis import Request, SpeedModes
 from rotorgear.analysis.campbell.speed_family import merged
+<<<<<<< HEAD
 from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, operating_speed
 from rotorgear.analysis.common.casings import reduction_errors
+=======
+from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, mesh_reach, operating_speed
+>>>>>>> 5103b60 (Campbell: modes up to the first order of every mesh where nothing is asked for)
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.notes import left_out
@@ -64,8 +68,9 @@ def campbell(
             1.25 times the operating speed.
         points: number of speeds between them, evenly spaced.
         speeds: these, all of one sense, in place of an evenly spaced range.
-        modes: a branch is returned when it is among the lowest so many oscillating modes at one of the speeds; 24 where neither
-            `modes` nor `fmax` is given.
+        modes: a branch is returned when it is among the lowest so many oscillating modes at one of the speeds. Where neither
+            `modes` nor `fmax` is given: 24, or all up to 1.05 times the first order of every mesh at the operating speed, where
+            that is further and some 120 at most.
         fmax: the same for all modes up to this many Hz.
         elements, accuracy, only: as in `modal`; an accuracy is met at both ends of the range.
         shaft_orders, mesh_orders, sidebands: excitation lines, as in `excitation_orders`.
@@ -77,8 +82,11 @@ def campbell(
         ConvergenceError: a guard of a solver was not met.
     """
     asked = chosen_speeds(model.model if isinstance(model, System) else model, speeds, start, stop, points)
+    beyond = ""
     if modes is None and fmax is None:
-        modes = DEFAULT_MODES
+        if mesh_orders and not isinstance(model, System):  # a given system has the mesh it has
+            fmax, beyond = mesh_reach(model)
+        modes = DEFAULT_MODES if fmax is None else None
     _check(modes, fmax, sidebands)
     clock = Clock()
     model, given, notes = about_equilibrium_of(model, [float(speed) for speed in asked])
@@ -100,6 +108,7 @@ def campbell(
     clock.lap("error estimate")
     lines = excitation_orders(system.model, shaft_orders, mesh_orders, sidebands)
     result = _result(system, found, (asked, grid, operating), chains, tracks, estimate, lines, clock, progress)
+<<<<<<< HEAD
     worst = float(np.max(estimate, initial=0.0, where=np.isfinite(estimate)))
     short = missed(
         accuracy, worst, "branches that rise into the range between its ends are not refined for; ask for more modes"
@@ -111,6 +120,9 @@ def campbell(
         warnings=(*result.warnings, *([short] if short else [])),
         status=short or "success",
     )
+=======
+    return replace(result, model=given, left_out=(*result.left_out, *notes, *([beyond] if beyond else [])))
+>>>>>>> 5103b60 (Campbell: modes up to the first order of every mesh where nothing is asked for)
 
 
 def _check(modes: int | None, fmax: float | None, sidebands: int) -> None:

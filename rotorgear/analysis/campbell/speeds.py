@@ -6,12 +6,22 @@ from collections.abc import Sequence
 
 import numpy as np
 
+<<<<<<< HEAD
 from rotorgear.analysis.common.request import check_whole, speed_in_si
+=======
+from rotorgear.analysis.common.excitation import excitation_orders
+from rotorgear.analysis.common.request import speed_in_si
+from rotorgear.analysis.modal.mode_count import expected_modes
+>>>>>>> 5103b60 (Campbell: modes up to the first order of every mesh where nothing is asked for)
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 
 DEFAULT_SPEEDS = 51
 _BEYOND = 1.25
+# How far above the first order of a mesh modes are followed, and between which numbers of modes.
+_ABOVE = 1.05
+_FEW = 15.0
+_MANY = 120.0
 
 
 def operating_speed(model: Model) -> float | None:
@@ -33,6 +43,28 @@ def highest_speed(model: Model, given: float | str | None = None) -> float:
             "the model has no operating speed, so say up to which speed to look (--to, such as '12000 rpm')"
         )
     return _BEYOND * operating
+
+
+def mesh_reach(model: Model) -> tuple[float | None, str]:
+    """Up to which frequency in Hz to follow modes where nothing is asked for, and what that leaves out.
+
+    It is a little above the first order of every mesh at the operating speed. None: so few modes lie below it that the default
+    number reaches further, or so many that they are followed only when asked for.
+    """
+    speed = operating_speed(model)
+    highest = (
+        max((line.frequency_hz(speed) for line in excitation_orders(model, (), (1,))), default=0.0) if speed else 0.0
+    )
+    expected = expected_modes(model, 2.0 * np.pi * highest) if highest else 0.0
+    if expected <= _FEW:
+        return None, ""
+    fmax = _ABOVE * highest
+    if expected <= _MANY:
+        return fmax, ""
+    return None, (
+        f"modes up to the first order of every mesh at the operating speed, {highest:.5g} Hz: about {expected:.0f}; "
+        f"--fmax {fmax:.4g} follows them"
+    )
 
 
 def speed_range(start: float, stop: float, points: int = DEFAULT_SPEEDS) -> np.ndarray:

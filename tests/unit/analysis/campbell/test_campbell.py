@@ -155,3 +155,23 @@ def test_a_result_comes_back_from_hdf5(tmp_path: Path) -> None:
 def test_what_makes_no_sense_is_refused(changes: dict[str, Any], words: str) -> None:
     with pytest.raises(rg.AnalysisError, match=words):
         rg.campbell(rigid_rotor(), **{"speeds": [0.0, 100.0], **changes})
+
+
+def test_modes_are_followed_up_to_the_first_order_of_every_mesh_where_they_are_not_too_many() -> None:
+    from rotorgear.analysis.campbell.speeds import mesh_reach
+
+    split = rg.load(MODELS / "split_torque.toml")
+    assert mesh_reach(split)[0] == pytest.approx(1.05 * 29 * 16350.0 / 60.0)
+    reach, note = mesh_reach(rg.load(MODELS / "geared_pair.toml"))
+    assert reach is None
+    assert "--fmax 8610" in note
+    assert mesh_reach(rg.load(MODELS / "jeffcott.toml")) == (None, "")
+
+
+@pytest.mark.long
+def test_every_first_order_of_a_mesh_has_its_margin_without_an_option() -> None:
+    result = rg.campbell(rg.load(MODELS / "split_torque.toml"), points=5)
+    first = [item for item in result.margins if item.line.startswith("mesh") and item.line.endswith(" 1x")]
+    assert len(first) == 2
+    assert all(item.branch for item in first)
+    assert np.nanmax(result.frequency_hz) > max(item.frequency_hz for item in first)
