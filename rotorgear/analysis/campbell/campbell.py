@@ -16,12 +16,8 @@ from rotorgear.analysis.campbell.crossings import Chain, crossings, margins, roo
 from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.snapshot_basis import Request, SpeedModes
 from rotorgear.analysis.campbell.speed_family import merged
-<<<<<<< HEAD
-from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, operating_speed
-from rotorgear.analysis.common.casings import reduction_errors
-=======
 from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, mesh_reach, operating_speed
->>>>>>> 5103b60 (Campbell: modes up to the first order of every mesh where nothing is asked for)
+from rotorgear.analysis.common.casings import reduction_errors
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.notes import left_out
@@ -108,7 +104,6 @@ def campbell(
     clock.lap("error estimate")
     lines = excitation_orders(system.model, shaft_orders, mesh_orders, sidebands)
     result = _result(system, found, (asked, grid, operating), chains, tracks, estimate, lines, clock, progress)
-<<<<<<< HEAD
     worst = float(np.max(estimate, initial=0.0, where=np.isfinite(estimate)))
     short = missed(
         accuracy, worst, "branches that rise into the range between its ends are not refined for; ask for more modes"
@@ -116,13 +111,10 @@ def campbell(
     return replace(
         result,
         model=given,
-        left_out=(*result.left_out, *notes),
+        left_out=(*result.left_out, *notes, *([beyond] if beyond else [])),
         warnings=(*result.warnings, *([short] if short else [])),
         status=short or "success",
     )
-=======
-    return replace(result, model=given, left_out=(*result.left_out, *notes, *([beyond] if beyond else [])))
->>>>>>> 5103b60 (Campbell: modes up to the first order of every mesh where nothing is asked for)
 
 
 def _check(modes: int | None, fmax: float | None, sidebands: int) -> None:

@@ -6,13 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-<<<<<<< HEAD
-from rotorgear.analysis.common.request import check_whole, speed_in_si
-=======
 from rotorgear.analysis.common.excitation import excitation_orders
-from rotorgear.analysis.common.request import speed_in_si
+from rotorgear.analysis.common.request import check_whole, speed_in_si
 from rotorgear.analysis.modal.mode_count import expected_modes
->>>>>>> 5103b60 (Campbell: modes up to the first order of every mesh where nothing is asked for)
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 
