@@ -93,8 +93,21 @@ def _show_old_names_as_sentences() -> None:
     warnings.showwarning = sentence
 
 
+def one_blas_thread() -> None:
+    """Have linear algebra run on one thread where the user has not said on how many.
+
+    Matrices of one gearbox are small or sparse: more threads gain nothing on them, and on a busy machine they wait for each other.
+    This is read when numpy is loaded, so it comes first. Threads of sweeps and transients are numba's, and are not touched.
+    """
+    names = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+    if not any(name in os.environ for name in (*names, "OMP_NUM_THREADS")):
+        for name in names:
+            os.environ[name] = "1"
+
+
 def main() -> None:
     """Run the command line."""
+    one_blas_thread()
     _show_old_names_as_sentences()
     if sys.stdout is None:  # started with a closed output
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
