@@ -96,8 +96,8 @@ def _show_old_names_as_sentences() -> None:
 def one_blas_thread() -> None:
     """Have linear algebra run on one thread where the user has not said on how many.
 
-    Matrices of one gearbox are small or sparse: more threads gain nothing on them, and on a busy machine they wait for each other.
-    This is read when numpy is loaded, so it comes first. Threads of sweeps and transients are numba's, and are not touched.
+    Matrices of one gearbox are small or sparse: more threads gain nothing on them, and on a busy machine they wait for each
+    other. This is read when numpy is loaded, so it comes first. Threads of sweeps and transients are numba's, and stay.
     """
     names = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
     if not any(name in os.environ for name in (*names, "OMP_NUM_THREADS")):
