@@ -91,7 +91,7 @@ def by_mesh(key: str, *axes: str) -> Written:
     return Written(key, value, axes=("MESH", "helix", *axes))
 
 
-def _forces(name: str, kind: str) -> tuple[Written, Written]:
+def _forces(name: str, kind: str, on: str = "the shaft") -> tuple[Written, Written]:
     """Force and moment of a support stand under keys of their own."""
     return (
         Written(
@@ -99,14 +99,14 @@ def _forces(name: str, kind: str) -> tuple[Written, Written]:
             lambda result, loads: {part: load[:3] for part, load in loads.items()},
             unit="N",
             axes=(name, "xyz"),
-            label="force on the shaft",
+            label=f"force on {on}",
         ),
         Written(
             f"{kind}_moment_n_m",
             lambda result, loads: {part: load[3:] for part, load in loads.items()},
             unit="N m",
             axes=(name, "xyz"),
-            label="moment on the shaft",
+            label=f"moment on {on}",
         ),
     )
 
@@ -191,6 +191,16 @@ class StaticResult(ModelResult, kind="static"):
     )
     support_force: dict[str, np.ndarray] = of(
         "force and moment on the shaft", "N, N m", "SUPPORT", "component", json=_forces("SUPPORT", "support")
+    )
+    casing_force: dict[str, np.ndarray] = of(
+        "force and moment of the ground on a casing",
+        "N, N m",
+        "CASING",
+        "component",
+        json=_forces("CASING", "casing", "the casing"),
+        note=", all that holds it together; the moment about the origin of the model",
+        default_factory=dict,
+        kw_only=True,
     )
     nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)
     displacement: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", json=None)

@@ -49,6 +49,35 @@ def bearing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     return forces
 
 
+def casing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
+    """Force and moment about the origin of the model of the ground on each casing, at what is held and at mounts, (6,).
+
+    They are what the bearings put on its seats and its weight leave to balance; a body without known weight has none.
+    """
+    system = equilibrium.system
+    gravity = system.model.operation.gravity if system.model.operation else None
+    bearings = bearing_forces(equilibrium)
+    found = {}
+    for name in system.model.casings:
+        body = system.layout.casing(name)
+        total = np.zeros(6)
+        if gravity:
+            if not np.isfinite(body.body_mass):
+                continue
+            weight = body.body_mass * np.array(gravity)
+            total += np.concatenate([weight, np.cross(body.centre, weight)])
+        for table in ("bearings", "nonlinear_elements"):
+            for part in getattr(system.model, table):
+                seat = system.layout.seat(f"{table}.{part}")
+                on_shaft = bearings.get(part if table == "bearings" else f"nonlinear_elements.{part}")
+                if seat is None or seat.casing != name or on_shaft is None:
+                    continue
+                place = body.seat_points[seat.number] + seat.arm
+                total -= np.concatenate([on_shaft[:3], on_shaft[3:] + np.cross(place, on_shaft[:3])])
+        found[name] = -total
+    return found
+
+
 def support_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     """Force and moment of each support on its shaft, (6,): of its springs, and what it holds fixed."""
     system = equilibrium.system

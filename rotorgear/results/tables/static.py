@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.tables.common import error_words, heading, lines, table
 
@@ -68,6 +70,10 @@ def static_table(result: StaticResult, *, sensitivity: bool = False) -> Renderab
         "tilts and twist in urad; L and R: helix at the smaller and the larger z",
         f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
         *_along(result),
+        *(
+            f"ground on casing {name}: {_triple(load[:3])} N, {_triple(load[3:])} N m about the origin"
+            for name, load in result.casing_force.items()
+        ),
         f"error: forces change by {error_words(result.error_estimate)} when every element is halved; "
         f"residual {error_words(result.imbalance)}",
         *(f"left out: {note}" for note in result.left_out),
@@ -92,6 +98,10 @@ def _meshes(result: StaticResult) -> Any:
             "-" if phase != phase else f"{phase:.4f}",
         )
     return out
+
+
+def _triple(values: np.ndarray) -> str:
+    return ", ".join(f"{_rounded(value, 0.005):.2f}" for value in values)
 
 
 def _along(result: StaticResult) -> list[str]:

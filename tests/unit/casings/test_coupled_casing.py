@@ -18,7 +18,7 @@ from tests.paths import ROOT
 def geared_box() -> rg.Model:
     """The model of docs/casings.md."""
     page = (ROOT / "docs" / "casings.md").read_text(encoding="utf-8")
-    text = page.split("<!-- file: box.toml -->\n```toml\n")[1].split("\n```")[0]
+    text = page.split("<!-- file: geared_box.toml -->\n```toml\n")[1].split("\n```")[0]
     return rg.loads(text, folder=ROOT)
 
 

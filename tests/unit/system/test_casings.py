@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -314,3 +315,20 @@ def test_a_model_without_casings_loads_no_reader_of_meshes() -> None:
         "assert not {'meshio', 'skfem', 'pymetis'} & set(sys.modules), 'readers of meshes'"
     )
     subprocess.run([sys.executable, "-c", program], cwd=ROOT, env={**os.environ, "PYTHONPATH": str(ROOT)}, check=True)
+
+
+def test_the_ground_holds_a_casing_as_it_holds_the_bar_as_a_shaft(tmp_path: Path) -> None:
+    path = write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4])
+    gravity = {"operation": {"gravity": [1.0, -9.81, 0.5]}}
+    model = in_casing(path, **gravity)
+    assert (
+        rg.static(model, elements=3).casing_force == {}
+    )  # the weight of matrices that are held is not known as a whole
+    mass = STEEL[3] * np.pi * 0.25 * DIAMETER**2 * 0.6
+    model.layout._casings["bar"] = replace(model.layout.casing("bar"), body_mass=mass, centre=np.array([0.0, 0.0, 0.3]))
+    found = rg.static(model, elements=3).casing_force["bar"]
+    ground = rg.static(beside_a_shaft(True, **gravity), elements=3).support_force["ground"]
+    about_origin = ground[3:] + np.cross([0.0, 0.0, 0.3], ground[:3])
+    assert found[:3] == pytest.approx(ground[:3], rel=1e-9)
+    assert found[3:] == pytest.approx(about_origin, rel=1e-7, abs=1e-7)
+    assert found[1] == pytest.approx(9.81 * (mass + 2.0 + STEEL[3] * np.pi * 0.01**2 * 0.6), rel=1e-9)
