@@ -29,6 +29,21 @@ def mesh_stiffness_left_out(system: System) -> Iterator[str]:
             yield f"meshes.{name}: the tilt of its gears along the face, which its teeth do not feel without tilt = true"
 
 
+def unlike_teeth_left_out(system: System) -> Iterator[str]:
+    """Yield a sentence for each gear whose teeth differ and that turns in several meshes of loaded teeth."""
+    layout = system.layout
+    for name in system.model.gears:
+        meshes = [
+            mesh for mesh in layout.meshes if mesh.part.stiffness == "tooth_fe" and name in (g.name for g in mesh.gears)
+        ]
+        if len(meshes) > 1 and layout.gear(name).flank.single_teeth:
+            where = " and ".join(f"meshes.{mesh.name}" for mesh in meshes)
+            yield (
+                f"which teeth of gears.{name} are in {where} at one time: its errors of single teeth begin with tooth 0 in each, "
+                "whatever the angle between the meshes"
+            )
+
+
 def _over_cycle(curve: MeshStiffness, taken: float) -> str:
     """Of loaded teeth about the joint state of all contacts over the mesh cycle."""
     share = float(np.ptp(curve.transverse)) / curve.mean

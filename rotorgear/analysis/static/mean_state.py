@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.analysis.common.mesh_notes import unlike_teeth_left_out
 from rotorgear.analysis.static.along_faces import about_faces
 from rotorgear.analysis.static.cycle import JointState, over_cycle
 from rotorgear.analysis.static.ground import torsion_sentence
@@ -64,7 +65,7 @@ def mean_state(system: System, speed: float) -> Setup:
         settled,
         contact_lines(settled),
         equilibrium.force,
-        (*torsion_sentence(equilibrium.notes), *_apart(joint)),
+        (*torsion_sentence(equilibrium.notes), *_apart(joint), *unlike_teeth_left_out(settled)),
         joint,
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.analysis.common.mesh_notes import unlike_teeth_left_out
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.transient import TransientResult
@@ -49,6 +50,7 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
             notes.append(
                 f"meshes.{name}: the tilt of its gears along the face, which its teeth do not feel without tilt = true"
             )
+    notes += unlike_teeth_left_out(system)
     tilted = [name for name, mesh in meshes.items() if mesh.face_loads]
     follow = [name for name in tilted if law_of[f"meshes.{name}"].components == 2]
     stay = [name for name in tilted if name not in follow]
