@@ -23,6 +23,7 @@ from tests.extreme.damped_errors import (
     whirl_error,
 )
 from tests.extreme.forced_errors import (
+    chain_estimate,
     chain_receptance,
     mass_on_spring,
     receptance,
@@ -272,6 +273,7 @@ FORCED: list[Case] = [
         1e-11,
         lambda: chain_receptance([0.3, 0.2, 0.1], [1e8, 1e8], 1e-4, 100.0),
     ),
+    Case("frf: ground of 1 N m/rad under 1e12, over its estimate", "estimate", 2.0, lambda: chain_estimate(1e12)),
     Case("frf: an inertia ratio of 1e12", "40 digits", 1e-13, lambda: chain_receptance([1e6, 1e-6], [1e3], 1e9, 1e3)),
     Case(
         "response: through resonance to 1e6 rpm",

@@ -77,7 +77,14 @@ def receptance(stiffness: float, damping: float, ratios: Sequence[float], mass: 
     return max(errors)
 
 
-def chain_receptance(inertias: Sequence[float], springs: Sequence[float], ground: float, hertz: float) -> float:
+def chain_estimate(stiffness: float) -> float:
+    """Error of a receptance over the estimate that the result states: a soft ground under a stiff coupling."""
+    return chain_receptance([0.3, 0.2], [stiffness], 1.0, 0.1, per_estimate=True)
+
+
+def chain_receptance(
+    inertias: Sequence[float], springs: Sequence[float], ground: float, hertz: float, *, per_estimate: bool = False
+) -> float:
     """Torsional chain, the first point held by a spring: solves (K - w^2 M) q = e_last with 40 digits."""
     n = len(inertias)
     hold = {"g": rg.Support(shaft="p0", at=0.0, stiffness=rg.StiffnessMatrix(torsion=ground))}
@@ -100,7 +107,8 @@ def chain_receptance(inertias: Sequence[float], springs: Sequence[float], ground
     load[n - 1] = 1
     exact = mp.lu_solve(Z, load)
     computed = found.receptance[0, :, 0]
-    return max(float(abs(mp.mpc(complex(h)) / e - 1)) for h, e in zip(computed, exact, strict=True))
+    error = max(float(abs(mp.mpc(complex(h)) / e - 1)) for h, e in zip(computed, exact, strict=True))
+    return error / found.error_estimate if per_estimate else error
 
 
 def unbalance_response(stiffness: float, damping: float, rad_s: Sequence[float], mass: float = 2.0) -> float:

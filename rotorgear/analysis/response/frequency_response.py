@@ -29,11 +29,14 @@ from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.solvers.sparse.factor import single_thread
+from rotorgear.solvers.sparse.pencil import EPS
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.system import System
 
 POINTS = 1000
 _CHECKED_ON_FINER = 8
+# Rounding below this is nothing beside the error of any mesh, and is not told.
+_ROUNDING = 1e-9
 _UNDAMPED = "nothing damps the model: heights near a resonance are those of the nearest frequency; give a damping"
 
 
@@ -88,7 +91,7 @@ def frf(
     first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
     limit = 2.0 * np.pi * DAMPED * float(hz[-1])
 
-    def solve(system: System, hz: np.ndarray, progress: Progress) -> tuple[np.ndarray, float]:
+    def solve(system: System, hz: np.ndarray, progress: Progress) -> tuple[np.ndarray, float, float]:
         modes = (*damped_modes(system, limit, turns), zeta) if zeta else None
         plant = Plant(system, contact_lines(system), modes)
         rows = {text: _row(system, text, place) for text, place in places.items()}
@@ -99,13 +102,15 @@ def frf(
         progress(0.02, "discretisation")
         plan = plan_up_to(at_speed(linear, turns), MARGIN * float(hz[-1]), elements, aim)
         system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
-        receptance, residual = solve(system, hz, progress)
+        receptance, residual, rounding = solve(system, hz, progress)
         progress(0.96, "error estimate")
         estimate = 0.0
         if any(system.nodes.elements.values()):
             at = _telling(receptance)
-            there, _ = solve(system.with_plan(all_finer(system)), hz[at], silent)
+            there, _, _ = solve(system.with_plan(all_finer(system)), hz[at], silent)
             estimate = relative_change(there, receptance[at])
+        if rounding > _ROUNDING:
+            estimate = max(estimate, rounding)
         if accuracy is None or estimate <= accuracy:
             break
     short = missed(accuracy, estimate, "ask for less, or give more damping to resonances in the range")
@@ -177,13 +182,21 @@ def _casing_row(system: System, casing: str, row: np.ndarray) -> np.ndarray:
 
 def _solved(
     plant: Plant, speed: float, hz: np.ndarray, inputs: list[np.ndarray], outputs: list[np.ndarray], progress: Progress
-) -> tuple[np.ndarray, float]:
-    """Receptances (f, o, i) and the largest relative residual."""
+) -> tuple[np.ndarray, float, float]:
+    """Receptances (f, o, i), the largest relative residual, and what the rounding of M and K may change.
+
+    A relative change eps of the entries of K and M moves the receptance f^T q at the input by up to
+    eps |q|^T (|K| + w^2 |M|) |q|; it is taken relative to the largest receptance there, as `relative_change` does.
+    """
     f = np.array(inputs).T
     read = np.array(outputs)
     dynamics = plant.dynamics(speed)
     rows = []
     worst = 0.0
+    moved = np.zeros(len(inputs))
+    largest = np.zeros(len(inputs))
+    size_K = abs(plant.system.stiffness(speed))
+    size_M = abs(plant.system.mass)
     with single_thread(plant.system.n):
         for k, value in enumerate(hz):
             if k % 10 == 0:
@@ -192,7 +205,11 @@ def _solved(
             q = dynamics.solve(w, f)
             worst = max(worst, dynamics.relative_residual(w, f, q))
             rows.append(read @ q)
-    return np.array(rows), worst
+            size = np.abs(q)
+            moved = np.maximum(moved, EPS * np.sum(size * (size_K @ size + w**2 * (size_M @ size)), axis=0))
+            largest = np.maximum(largest, np.abs(np.sum(f * q, axis=0)))
+    rounding = float(np.max(moved / np.where(largest > 0.0, largest, np.inf), initial=0.0))
+    return np.array(rows), worst, rounding
 
 
 def relative_change(exact: np.ndarray, receptance: np.ndarray) -> float:
