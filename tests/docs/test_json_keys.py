@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 
 from rotorgear.cli.main import app
 from tests.unit.analysis.geared import pair_file
+from tests.unit.casings.blocks import block, write_inp
 
 MODEL = ROOT / "models" / "split_torque.toml"
 # At this speed two modes are near the second mesh order of stage 2: one is matched, one is not. The shaft order of the output
@@ -125,6 +126,18 @@ def test_the_keys_of_sweep_and_of_its_convergence_study_are_documented(tmp_path:
 
 def test_the_keys_of_gear_are_documented(tmp_path: Path) -> None:
     assert differences(written(tmp_path, "gear", str(MODEL)), documented("gear")) == NONE
+
+
+def test_the_keys_of_casing_are_documented(tmp_path: Path) -> None:
+    pytest.importorskip("meshio")
+    write_inp(tmp_path / "box.inp", block(kind="tetra"))
+    shaft = 'position = [0.05, 0.03]\nstart = 0.2\nsections = [{ length = "1 m", outer_diameter = "20 mm" }]'
+    casing = 'mesh = "box.inp"\nunit = "m"\nmaterial = "steel"\nheld = ["low"]\nseats = { left = "high" }'
+    bearing = 'shaft = "a"\nat = "start"\nstiffness = { radial = 1e8 }\ncasing = "box"'
+    text = f"[shafts.a]\n{shaft}\n[casings.box]\n{casing}\n[bearings.left]\n{bearing}\n"
+    (tmp_path / "box.toml").write_text(text)
+    found = written(tmp_path, "casing", str(tmp_path / "box.toml"), "--modes", "2")
+    assert differences(found, documented("casing")) == NONE
 
 
 def test_the_keys_of_accuracy_are_documented(tmp_path: Path) -> None:
