@@ -135,7 +135,7 @@ def transient(
             out.print(beside.table())
             data["rig"] = beside.to_dict()
     write_json(data, json)
-    if save and result.status == "success":
+    if save and not result.ended_early:
         rg.save(result, save)
         rg.stream(save).close()
         typer.echo(f"saved {save}")
@@ -147,6 +147,6 @@ def transient(
     if vtk:
         paths = rg.write_motion(result, vtk)
         typer.echo(f"wrote {len(paths)} files to {vtk}; open motion.pvd in ParaView")
-    if result.status != "success":
+    if result.ended_early:
         typer.echo("the run ended early: what it gave so far stands above", err=True)
         raise typer.Exit(1)

@@ -54,7 +54,7 @@ class Result(Record):
     method: str = of("method", note=": solver, and what its guards said", default="", kw_only=True)
     status: str = of(
         "status",
-        note=': `"success"`, or why the analysis ended early and how to go on',
+        note=': `"success"`, `"accuracy ... not reached: ..."`, or why the analysis ended early and how to go on',
         default="success",
         kw_only=True,
     )
@@ -72,6 +72,11 @@ class Result(Record):
         cls.analysis_word = analysis or kind
         if kind:
             Result.kinds[kind] = cls
+
+    @property
+    def ended_early(self) -> bool:
+        """Whether the analysis stopped before its end; one that only missed an accuracy did not."""
+        return self.status != "success" and not self.status.startswith("accuracy ")
 
     # Results hold arrays; two runs of one analysis are told apart by `is`, and compared by `==`.
     __hash__ = None  # type: ignore[assignment]

@@ -141,6 +141,9 @@ class TransientResult(ModelResult, kind="transient"):
     quantity: tuple[str, ...] = of("names of the statistics with an error", "", "quantity", json=None)
     quantity_value: np.ndarray = of("values of the statistics", "", "quantity", json=None)
     quantity_error: np.ndarray = of("estimated errors of the statistics", "", "quantity", json=None)
+    quantity_scale: np.ndarray = of(
+        "sizes that the errors of the statistics are taken relative to", "", "quantity", json=None
+    )
 
     @derived("contacts in the time that counts", "", "contact", record=ContactStatistics)
     def contacts(self) -> tuple[ContactStatistics, ...]:

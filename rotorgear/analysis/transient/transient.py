@@ -10,6 +10,7 @@ import numpy as np
 
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.request import missed
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.ground import mean_torsion_notes
 from rotorgear.analysis.transient.histories import Histories, Stream
@@ -123,7 +124,13 @@ def transient(
     laps["integration"] = clock.perf_counter() - begun - sum(laps.values())
     laps["total"] = clock.perf_counter() - begun
     progress(1.0, "done")
-    return _result(task, grid, integrator.name, reason, found, others, laps, estimated=error_estimate)
+    result = _result(task, grid, integrator.name, reason, found, others, laps, estimated=error_estimate)
+    wanted = (accuracy or DEFAULT_ACCURACY) if steps is None else None
+    # A run without an estimate, or one that ended early, has said so already.
+    if result.status != "success" or not np.isfinite(result.error_estimate):
+        return result
+    short = missed(wanted, result.error_estimate, "take more steps in a mesh period (--steps)")
+    return replace(result, status=short, warnings=(*result.warnings, short)) if short else result
 
 
 def _result(
@@ -168,6 +175,7 @@ def _result(
         quantity=of_run.name,
         quantity_value=of_run.value,
         quantity_error=errors,
+        quantity_scale=of_run.scale,
         energy=found.ledger,
         step=grid.spacing / grid.every,
         steps=found.state.step,

@@ -103,29 +103,30 @@ def test_a_mistake_is_answered_with_one_sentence(shaken: str, options: list[str]
     assert "Traceback" not in text
 
 
-def test_the_convergence_study_of_a_transient_shows_second_order(shaken: str, tmp_path: Path) -> None:
-    target = tmp_path / "study.json"
-    done = CliRunner().invoke(
-        app,
-        [
-            "accuracy",
-            shaken,
-            "--analysis",
-            "transient",
-            "--time",
-            "4 ms",
-            "--json",
-            str(target),
-            "--plot",
-            str(tmp_path / "l.png"),
-        ],
+@pytest.mark.long
+def test_the_convergence_study_of_a_transient_shows_second_order(tmp_path: Path) -> None:
+    # Statistics of a pair whose teeth stay in contact: errors and estimates of the same quantities.
+    model = rg.load(MODEL.parent / "flexible_pair.toml")
+    study = rg.transient_convergence_study(model, steps=(80, 160), accuracies=(), repeat=0)
+    for family in ("newmark", "exponential"):
+        last = [rung for rung in study.rungs if rung.family == family][-1]
+        assert last.order == pytest.approx(2.0, abs=0.15)
+        assert last.effectivity == pytest.approx(1.0, abs=0.3)
+        assert last.error < 0.01
+    picture = rg.plot.save(study.plot(), tmp_path / "study.png")
+    assert picture.stat().st_size > 10_000
+
+
+def test_an_accuracy_that_is_missed_is_a_warning_and_a_status(shaken: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    # The step is chosen from the beginning of the run: here it is not allowed to get finer.
+    monkeypatch.setattr(
+        "rotorgear.analysis.transient.transient.fine_enough", lambda task, integrator, grid, *rest: grid
     )
-    assert done.exit_code == 0, done.output
-    rungs = json.loads(target.read_text(encoding="utf-8"))["rungs"]
-    last = [rung for rung in rungs if rung["family"] == "newmark"][-1]
-    assert last["order"] == pytest.approx(2.0, abs=0.15)
-    assert last["error"] < 0.05
-    assert (tmp_path / "l.png").stat().st_size > 10_000
+    result = rg.transient(rg.load(shaken), time="4 ms", discard=0.0, accuracy=1e-7)
+    assert result.error_estimate > 1e-7
+    assert result.status.startswith("accuracy 1e-07 not reached: the error is estimated at")
+    assert result.status in result.warnings
+    assert not result.ended_early
 
 
 def test_the_motion_at_the_end_is_written_for_paraview_with_its_times(shaken: str, tmp_path: Path) -> None:
