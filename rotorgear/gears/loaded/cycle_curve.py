@@ -17,6 +17,8 @@ from functools import cached_property
 
 import numpy as np
 
+# Positions nearer to each other than this, in base pitches, enclose an event.
+NEAR = 1e-5
 # Gauss-Legendre places in an interval: they are exact to rounding up to orders that turn by four periods within it.
 _PLACES = 24
 
@@ -53,7 +55,9 @@ class CycleCurve:
         h_after = np.roll(h, -1, axis=0)
         smooth = (h * before + h_before * chord) / (h + h_before)
         # Parabolas that stay on one side of an event, and chords between two events.
-        kink = self.event[:, None]
+        # So do positions with a step or a kink between them that is nearer than any smooth curve needs them.
+        near = h <= NEAR
+        kink = self.event[:, None] | near | np.roll(near, 1, axis=0)
         next_kink = np.roll(kink, -1, axis=0)
         forward = np.where(next_kink, chord, chord + (chord - after) * h / (h + h_after))
         backward = np.where(kink, chord, chord + (chord - before) * h / (h + h_before))

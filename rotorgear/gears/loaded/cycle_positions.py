@@ -19,7 +19,7 @@ from typing import Protocol
 
 import numpy as np
 
-from rotorgear.gears.loaded.cycle_curve import CycleCurve
+from rotorgear.gears.loaded.cycle_curve import NEAR, CycleCurve
 
 # A first look at a period takes a third of its positions, between these bounds.
 _FIRST = (8, 24)
@@ -41,9 +41,6 @@ _BUBBLE = 4.0 * _SHARES * (1.0 - _SHARES)
 _LEAST_BUBBLE = 0.25
 # Positions nearer to each other than this, in base pitches, are one.
 _SAME = 1e-7
-# Intervals shorter than this are not halved, since a step (where a contact line gets another number of slices) would take all
-# positions; curves count as monotone in them.
-_LEAST_WIDTH = 1e-5
 
 
 class Solved(Protocol):
@@ -198,9 +195,9 @@ class _Search:
         curve = self.curve()
         steepest = np.abs((np.roll(self.values, -1, axis=0) - self.values) / curve.width[:, None]).max(axis=0)
         self.error = np.minimum(self.error, steepest * curve.width[:, None])
-        # With 4 t (1 - t) a quarter of the rise is the most that keeps a curve monotone.
+        # Near positions enclose an event. Between them curves are monotone: with 4 t (1 - t) a quarter of the rise is the most for that.
         rise = np.abs(np.roll(self.values, -1, axis=0) - self.values)
-        narrow = curve.width[:, None] <= _LEAST_WIDTH
+        narrow = curve.width[:, None] <= NEAR
         self.error = np.where(narrow, np.minimum(self.error, 0.25 * rise), self.error)
 
     def _next(self, most: int) -> np.ndarray:
@@ -214,7 +211,8 @@ class _Search:
         # In harmonics an interval counts by its area.
         area = np.where(self.sides == 2, 4.0 / 3.0 * curve.width[:, None] * self.error / (self.period * scale), 0.0)
         gain = np.maximum(np.maximum(above, below), area).max(axis=1)
-        gain = np.where(curve.width > _LEAST_WIDTH, gain, -1.0)
+        # They are not halved either: a step, as where a contact line gets another number of slices, would take all positions.
+        gain = np.where(curve.width > NEAR, gain, -1.0)
         count = min(most, max(2, int(_ROUND * len(self.position))))
         chosen = np.argsort(-gain, kind="stable")[:count]
         # Where the cubic has a peak inside, there; else in the middle.
