@@ -65,7 +65,9 @@ def error_parts(
         return curves_at(request, other, request.base_force, u, periods, told)
 
     fe = teeth.fe
-    coarser = coarser_teeth(teeth)
+    width = teeth.width / teeth.first.normal_module
+    compared_with = replace(fe, preset="default") if space and fe.preset == "fine" else fe
+    coarser = replace(teeth, fe=replace(fe, size=coarser_size(compared_with, width, space=space)))
     share = 1.0 if fe.size is not None else _REMAINING[fe.preset][space]
     of_pressure = _OF_PRESSURE[fe.preset] if space and fe.size is None else share
     elements = _apart(here, curves(coarser, part_of(progress, 0.0, 0.6)), share, of_pressure)
@@ -74,15 +76,6 @@ def error_parts(
         more = replace(teeth, fe=replace(fe, slices=round(_MORE_SLICES * found.problem.slices)))
         slices = _apart(here, curves(more, part_of(progress, 0.6, 1.0)))
     return ErrorParts(elements, slices, sampling, _sum(elements, slices, sampling))
-
-
-def coarser_teeth(teeth: ToothPair) -> ToothPair:
-    """The same teeth on the mesh that they are compared with."""
-    space = in_space(teeth)[0]
-    fe = teeth.fe
-    compared_with = replace(fe, preset="default") if space and fe.preset == "fine" else fe
-    size = coarser_size(compared_with, teeth.width / teeth.first.normal_module, space=space)
-    return replace(teeth, fe=replace(fe, size=size))
 
 
 def _compared(found: SolvedHelices) -> np.ndarray:

@@ -9,16 +9,14 @@ import numpy as np
 
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.teeth.errors import ErrorParts, coarser_teeth, error_parts
+from rotorgear.analysis.teeth.errors import ErrorParts, error_parts
 from rotorgear.analysis.teeth.helices import Cycle, SolvedHelices, solve_helices
 from rotorgear.analysis.teeth.request import MeshRequest, mesh_request
 from rotorgear.errors import AnalysisError
-from rotorgear.gears.loaded.forecast import forecast
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, in_space
 from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 from rotorgear.gears.tooth_fe.settings import PRESETS
-from rotorgear.memory import free_memory, largest_memory
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.mesh import HelixContact, LoadPoint, MeshResult
@@ -108,30 +106,12 @@ def _periods(teeth: ToothPair, wanted: int | None) -> int:
 def _with_errors(
     request: MeshRequest, teeth: ToothPair, cycle: Cycle, estimate: bool, progress: Progress
 ) -> tuple[SolvedHelices, ErrorParts | None]:
-    _make_room(teeth, estimate, progress)
     share = 0.7 if estimate else 1.0
     told = part_of(progress, 0.0, share)
     found = solve_helices(request, teeth, request.base_force, cycle, told, judged=estimate)
     if not estimate:
         return found, None
     return found, error_parts(request, teeth, found, part_of(progress, share, 1.0))
-
-
-def _make_room(teeth: ToothPair, estimate: bool, progress: Progress) -> None:
-    """Say what teeth in space will take, before it is taken.
-
-    Raises:
-        AnalysisError: more memory than there is.
-    """
-    expected = forecast((teeth, coarser_teeth(teeth)) if estimate else (teeth,))
-    free = free_memory()
-    if free is not None and expected.memory > free:
-        raise AnalysisError(
-            f"Teeth with the preset {teeth.fe.preset} would take {1e-9 * expected.memory:.2g} GB of memory, and "
-            f"{1e-9 * free:.2g} GB are free: take --preset default or preview, or another machine."
-        )
-    if expected.seconds > 1.0:
-        progress(0.0, f"teeth in space: about {expected.seconds:.0f} s and {1e-9 * expected.memory:.1f} GB")
 
 
 def _refined(
@@ -211,7 +191,6 @@ def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> 
         slice_errors=None,
         sampling_errors=None,
         dofs=0,
-        memory_bytes=largest_memory(),
         seconds=clock.total(),
         loads=(),
         warnings=curve.warnings,
@@ -264,7 +243,6 @@ def _result(
         slice_errors=errors.slices if errors else None,
         sampling_errors=errors.sampling if errors else None,
         dofs=found.problem.unknowns,
-        memory_bytes=largest_memory(),
         seconds=clock.total(),
         loads=loads,
         warnings=tuple(dict.fromkeys(notes)),

@@ -49,8 +49,7 @@ def mesh_table(result: MeshResult, *, harmonics: int = 0) -> RenderableType:
         parts += ["", loads]
     parts += ["", *lines(*(f"Warning: {text}" for text in result.warnings))]
     if result.dofs:
-        memory = "" if result.memory_bytes is None else f", {1e-9 * result.memory_bytes:.1f} GB"
-        parts.append(f"{result.dofs} dofs, {result.seconds['total']:.2f} s{memory}")
+        parts.append(f"{result.dofs} dofs, {result.seconds['total']:.2f} s")
     return Group(*parts)
 
 
