@@ -195,7 +195,7 @@ class _Search:
         curve = self.curve()
         steepest = np.abs((np.roll(self.values, -1, axis=0) - self.values) / curve.width[:, None]).max(axis=0)
         self.error = np.minimum(self.error, steepest * curve.width[:, None])
-        # Near positions enclose an event. Between them curves are monotone: with 4 t (1 - t) a quarter of the rise is the most for that.
+        # Near positions enclose an event; between them curves are monotone: a quarter of the rise is the most for that.
         rise = np.abs(np.roll(self.values, -1, axis=0) - self.values)
         narrow = curve.width[:, None] <= NEAR
         self.error = np.where(narrow, np.minimum(self.error, 0.25 * rise), self.error)
