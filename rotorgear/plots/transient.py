@@ -96,7 +96,7 @@ def mesh_forces(result: TransientResult, ax: Any = None) -> Any:
 
 
 def transmission_error(result: TransientResult, ax: Any = None) -> Any:
-    """Draw the dynamic transmission error of each contact, along the flank normal, over the last periods.
+    """Draw the transmission error of each contact, the rotation at the base circles, over the last periods.
 
     Args:
         result: a transient.
@@ -108,7 +108,7 @@ def transmission_error(result: TransientResult, ax: Any = None) -> Any:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    return _histories(result, ax, 1e6 * result.deflection, "dynamic transmission error, um")
+    return _histories(result, ax, 1e6 * result.transmission_error, "transmission error, um")
 
 
 def spectra(result: TransientResult, fig: Any = None) -> np.ndarray:

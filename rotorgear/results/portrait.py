@@ -49,7 +49,7 @@ class Portraits(Record):
     """k points with j runs each, c contacts, s records at most.
 
     Records stand at even times; the first of a least common period T is a Poincare point. Values are displacement and velocity of
-    the contacts along their normal (without the transmission error), and force; NaN behind the last record of a point, and
+    the contacts along their normal (without the error of the teeth), and force; NaN behind the last record of a point, and
     where a run failed.
     """
 

@@ -149,7 +149,9 @@ class StaticResult(ModelResult, kind="static"):
         json=by_mesh("mesh_stiffness_n_per_m"),
         note="; of loaded teeth the mean tangent over the mesh cycle",
     )
-    mesh_deflection: np.ndarray = of("approach of the flanks", "m", "contact", json=by_mesh("mesh_deflection_m"))
+    mesh_deflection: np.ndarray = of(
+        "deflection of the teeth along the flank normal", "m", "contact", json=by_mesh("mesh_deflection_m")
+    )
     carries: np.ndarray = of("whether the contact is closed", "", "contact", json=by_mesh("mesh_carries"))
     driver: tuple[str, ...] = of(
         "gear that drives",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.old_names import warn_old
 from rotorgear.results.portrait import ContactLines, Portrait, Portraits, SpectrumLine
 from rotorgear.results.reduction import Reduction
 from rotorgear.results.result import ModelResult
@@ -27,9 +28,22 @@ class SweepContact(Record):
         note=" along the flank normal in static equilibrium, without excitation; negative on the coast flank",
     )
     static_deflection_m: float = of("static force over mean stiffness", "m")
-    peak_to_peak_m: float = of("approach of the flanks less the transmission error, peak to peak", "m")
-    peak_to_peak_dte_m: float = of("dynamic transmission error, peak to peak", "m")
-    rms_dte_m: float = of("root mean square of the dynamic transmission error about its mean", "m")
+    peak_to_peak_m: float = of(
+        "penetration of the flanks, peak to peak",
+        "m",
+        note=": displacement along their normal less the error of the teeth",
+    )
+    peak_to_peak_transmission_error_m: float = of(
+        "transmission error, peak to peak",
+        "m",
+        note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2",
+    )
+    peak_to_peak_approach_m: float = of(
+        "approach, peak to peak",
+        "m",
+        note=" of the flanks in the transverse plane, bending and axial motion included",
+    )
+    rms_approach_m: float = of("root mean square of the approach about its mean", "m")
     mean_force_n: float = of("mean force", "N")
     rms_force_n: float = of("root mean square of the force about its mean", "N")
     largest_force_n: float = of("largest force", "N")
@@ -40,6 +54,18 @@ class SweepContact(Record):
     apart_share: float = of("contact-loss ratio")
     back_share: float = of("share of the time on the coast flank", note=" (impact time ratio)")
     losses_per_mesh_period: float = of("contact losses in a period of the fastest mesh")
+
+    @property
+    def peak_to_peak_dte_m(self) -> float:
+        """Former name of `peak_to_peak_approach_m`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a contact", "peak_to_peak_dte_m", "peak_to_peak_approach_m (transverse)")
+        return self.peak_to_peak_approach_m
+
+    @property
+    def rms_dte_m(self) -> float:
+        """Former name of `rms_approach_m`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a contact", "rms_dte_m", "rms_approach_m (transverse)")
+        return self.rms_approach_m
 
 
 class SweepRun(Record):
@@ -72,9 +98,10 @@ class SweepPoint(Record):
 class SweepResult(ModelResult, kind="sweep"):
     """p points with r runs each, c mesh contacts, s sections a run, t exponents. NaN where a point or run failed.
 
-    `section` holds displacement and velocity of the contacts along their normal (without the transmission error) at the end
-    of each least common period T of all meshes. `amplitude` and `rms` are of the displacement d, `peak_to_peak` of the approach
-    d - e. The criterion that `tolerance` and `chaos` belong to stands in analysis/sweep/classify.py.
+    `section` holds displacement and velocity of the contacts along their normal (without the error e of the teeth) at the end of
+    each least common period T of all meshes. `transmission_error` and `approach` are peak to peak: rotation at the base circles,
+    and v.q / cos(beta_b) in the transverse plane; `peak_to_peak` is that of the penetration d - e. The criterion that `tolerance`
+    and `chaos` belong to stands in analysis/sweep/classify.py.
     """
 
     address: tuple[str, ...] = of("address of a parameter", "", "parameter", json=None)
@@ -91,12 +118,11 @@ class SweepResult(ModelResult, kind="sweep"):
     lyapunov_error: np.ndarray = of(
         "standard errors of the Lyapunov exponents", "", "point", "run", "exponent", json=None
     )
-    peak_to_peak: np.ndarray = of(
-        "approach of the flanks less the transmission error, peak to peak", "m", "point", "run", "contact", json=None
-    )
-    amplitude: np.ndarray = of("dynamic transmission error, peak to peak", "m", "point", "run", "contact", json=None)
-    rms: np.ndarray = of(
-        "root mean square of the dynamic transmission error about its mean", "m", "point", "run", "contact", json=None
+    peak_to_peak: np.ndarray = of("penetration of the flanks, peak to peak", "m", "point", "run", "contact", json=None)
+    transmission_error: np.ndarray = of("transmission error, peak to peak", "m", "point", "run", "contact", json=None)
+    approach: np.ndarray = of("approach, peak to peak", "m", "point", "run", "contact", json=None)
+    rms_approach: np.ndarray = of(
+        "root mean square of the approach about its mean", "m", "point", "run", "contact", json=None
     )
     mean_force: np.ndarray = of("mean force", "N", "point", "run", "contact", json=None)
     rms_force: np.ndarray = of(
@@ -153,8 +179,9 @@ class SweepResult(ModelResult, kind="sweep"):
             static_force_n=static,
             static_deflection_m=float(self.static_deflection[p, c]),
             peak_to_peak_m=float(self.peak_to_peak[at]),
-            peak_to_peak_dte_m=float(self.amplitude[at]),
-            rms_dte_m=float(self.rms[at]),
+            peak_to_peak_transmission_error_m=float(self.transmission_error[at]),
+            peak_to_peak_approach_m=float(self.approach[at]),
+            rms_approach_m=float(self.rms_approach[at]),
             mean_force_n=float(self.mean_force[at]),
             rms_force_n=float(self.rms_force[at]),
             largest_force_n=largest,
@@ -185,6 +212,18 @@ class SweepResult(ModelResult, kind="sweep"):
             for k, p in enumerate(kept.point.tolist())
             for j, r in enumerate(kept.run.tolist())
         )
+
+    @property
+    def amplitude(self) -> np.ndarray:
+        """Former name of `approach`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a sweep", "amplitude", "approach (transverse)")
+        return self.approach
+
+    @property
+    def rms(self) -> np.ndarray:
+        """Former name of `rms_approach`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a sweep", "rms", "rms_approach (transverse)")
+        return self.rms_approach
 
     @property
     def dynamic_factor(self) -> np.ndarray:

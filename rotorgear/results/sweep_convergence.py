@@ -15,9 +15,7 @@ class SweepRung(Record):
     exponent: float = of("mean of the largest Lyapunov exponents")
     scatter: float = of("standard deviation of these exponents over the runs")
     stated: float = of("standard error that one run states", note=", the median")
-    peak_to_peak: float = of(
-        "approach of the flanks less the transmission error, peak to peak", "m", note=", of the worst contact"
-    )
+    peak_to_peak: float = of("penetration of the flanks, peak to peak", "m", note=", of the worst contact")
     peak_to_peak_scatter: float = of("standard deviation of the peak to peak", "m")
     dynamic_factor: float = of("dynamic factor", note=" of that contact")
     dynamic_factor_scatter: float = of("standard deviation of the dynamic factor")

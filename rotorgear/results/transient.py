@@ -4,10 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.old_names import warn_old
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NodeTable
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
+
+# What a history of a contact is called, and the table it stands in; the last one by its former name.
+_OF_CONTACTS = {
+    "force": "mesh_force",
+    "transmission_error": "transmission_error",
+    "approach": "approach",
+    "deflection": "deflection",
+}
 
 
 def _at_end(key: str, label: str) -> Written:
@@ -64,11 +73,26 @@ class ContactStatistics(Record):
     largest_force_n: float = of("largest force", "N")
     smallest_force_n: float = of("smallest force", "N", note="; negative on the coast flank")
     dynamic_factor: float = of("dynamic factor", note=": largest over static force; `null` without load", form=".3f")
-    peak_to_peak_dte_m: float = of("dynamic transmission error, peak to peak", "m", note=" along the flank normal")
+    peak_to_peak_transmission_error_m: float = of(
+        "transmission error, peak to peak",
+        "m",
+        note=": rotation at the base circles, r_b1 theta_1 + r_b2 theta_2, at all steps in the time that counts",
+    )
+    peak_to_peak_approach_m: float = of(
+        "approach, peak to peak",
+        "m",
+        note=" of the flanks in the transverse plane, bending and axial motion included, at all steps in the time that counts",
+    )
     driving_share: float = of("share of the time on the working flank")
     apart_share: float = of("contact-loss ratio")
     back_share: float = of("share of the time on the coast flank")
     losses: int = of("contact losses", note=": how often contact was lost")
+
+    @property
+    def peak_to_peak_dte_m(self) -> float:
+        """Former name of `peak_to_peak_approach_m`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a contact", "peak_to_peak_dte_m", "peak_to_peak_approach_m (transverse)")
+        return self.peak_to_peak_approach_m
 
 
 class ChannelStatistics(Record):
@@ -93,9 +117,11 @@ class Quantity(Record):
 class TransientResult(ModelResult, kind="transient"):
     """r recorded instants of c contacts and p channels.
 
-    Statistics count from the time `settle` on. `deflection` is the approach of the flanks along their normal without the
-    transmission error (the dynamic transmission error); forces are positive on the working flank. One of `every` steps is
-    recorded. Where frames were asked for, `motion` holds the displacements of the nodes at the last w records.
+    Statistics count from the time `settle` on. `transmission_error` is the rotation at the base circles, r_b1 theta_1 +
+    r_b2 theta_2; `approach` that of the flanks in the transverse plane, v.q / cos(beta_b), bending and axial motion included:
+    both positive where the working flanks come together. Forces are positive on the working flank. One of `every` steps is
+    recorded; ranges are of all steps. Where frames were asked for, `motion` holds the displacements of the nodes at the last w
+    records.
     """
 
     speed: np.ndarray = of(
@@ -128,7 +154,14 @@ class TransientResult(ModelResult, kind="transient"):
         "mesh frequency", "Hz", "MESH", json="mesh_frequency_hz", note=" of each mesh, at the first speed"
     )
     contact: tuple[str, ...] = of("names of the contacts", "", "contact", json=None)
-    deflection: np.ndarray = of("approach of the flanks", "m", "record", "contact", json=None)
+    transmission_error: np.ndarray = of("transmission error", "m", "record", "contact", json=None)
+    approach: np.ndarray = of("approach", "m", "record", "contact", json=None)
+    transmission_error_range: np.ndarray = of(
+        "least and largest transmission error in the time that counts", "m", "contact", "end", json=None
+    )
+    approach_range: np.ndarray = of(
+        "least and largest approach in the time that counts", "m", "contact", "end", json=None
+    )
     mesh_force: np.ndarray = of("force along the flank normal", "N", "record", "contact", json=None)
     mean_force: np.ndarray = of("mean force", "N", "contact", json=None, note=": the static force")
     contact_time: np.ndarray = of(
@@ -148,12 +181,9 @@ class TransientResult(ModelResult, kind="transient"):
     @derived("contacts in the time that counts", "", "contact", record=ContactStatistics)
     def contacts(self) -> tuple[ContactStatistics, ...]:
         """Statistics of the contacts."""
-        return tuple(
-            self._contact(i, self.mesh_force[self.counted, i], self.deflection[self.counted, i])
-            for i in range(len(self.contact))
-        )
+        return tuple(self._contact(i, self.mesh_force[self.counted, i]) for i in range(len(self.contact)))
 
-    def _contact(self, i: int, force: np.ndarray, x: np.ndarray) -> ContactStatistics:
+    def _contact(self, i: int, force: np.ndarray) -> ContactStatistics:
         return ContactStatistics(
             name=self.contact[i],
             static_force_n=float(self.mean_force[i]),
@@ -162,7 +192,8 @@ class TransientResult(ModelResult, kind="transient"):
             largest_force_n=float(force.max(initial=-np.inf)),
             smallest_force_n=float(force.min(initial=np.inf)),
             dynamic_factor=float(self.dynamic_factor[i]),
-            peak_to_peak_dte_m=float(np.ptp(x)) if x.size else float("nan"),
+            peak_to_peak_transmission_error_m=float(np.ptp(self.transmission_error_range[i])) if force.size else np.nan,
+            peak_to_peak_approach_m=float(np.ptp(self.approach_range[i])) if force.size else np.nan,
             driving_share=float(self.contact_time[i, 0]),
             apart_share=float(self.contact_time[i, 1]),
             back_share=float(self.contact_time[i, 2]),
@@ -220,8 +251,22 @@ class TransientResult(ModelResult, kind="transient"):
         safe = np.where(self.mean_force > 0.0, self.mean_force, 1.0)
         return np.where(self.mean_force > 0.0, peak / safe, np.nan)
 
+    @property
+    def deflection(self) -> np.ndarray:
+        """Former name of `approach`, along the flank normal, (r, c)."""
+        warn_old("attribute of a transient", "deflection", "approach (transverse)")
+        return self.approach * self._transverse
+
+    @property
+    def _transverse(self) -> np.ndarray:
+        """cos(beta_b) of each contact, (c,)."""
+        meshes = (self.model.layout.mesh(name.partition(" ")[0]) for name in self.contact)
+        return np.cos([mesh.pinion.base_helix_angle for mesh in meshes])
+
     def history(self, name: str) -> np.ndarray:
-        """History (r,) of a channel, or of "force NAME" or "deflection NAME" of a contact.
+        """History (r,) of a channel, or of "force NAME", "transmission_error NAME" or "approach NAME" of a contact.
+
+        "deflection NAME", the approach along the flank normal, is read for the last time.
 
         Raises:
             KeyError: no such history.
@@ -229,8 +274,8 @@ class TransientResult(ModelResult, kind="transient"):
         if name in self.channel:
             return np.asarray(self.values[:, self.channel.index(name)])
         what, _, contact = name.partition(" ")
-        if contact in self.contact and what in ("force", "deflection"):
-            table = self.mesh_force if what == "force" else self.deflection
+        if contact in self.contact and what in _OF_CONTACTS:
+            table = getattr(self, _OF_CONTACTS[what])
             return np.asarray(table[:, self.contact.index(contact)])
         raise KeyError(name)
 

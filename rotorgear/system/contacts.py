@@ -75,10 +75,8 @@ def contact_lines(system: System) -> ContactLines:
         dofs = group.dofs[0]
         v[dofs, k] = strain[0, 0]
         turned[dofs, k] = _quarter_turn(strain[0, 0])
-        sense = state.torque_sense
+        rotation[dofs[:12], k] = rotation_vector(state)
         contact = state.contact
-        rotation[dofs[5], k] = sense * contact.pinion_base_radius
-        rotation[dofs[11], k] = sense * contact.gear_base_radius
         mesh = system.layout.mesh(contact.mesh).part
         gap[k] = mesh.index_error + (mesh.helix_index_error if contact.helix else 0.0)
         v_t = face_strains(contact_geometry(state), face_of(system.layout, state))[1]
@@ -104,6 +102,14 @@ def contact_lines(system: System) -> ContactLines:
         start=start,
         couple=couple,
     )
+
+
+def rotation_vector(state: MeshForce) -> np.ndarray:
+    """r_b1 tz_1 + r_b2 tz_2 over the dofs of pinion and gear, (12,), in the sense that presses the teeth."""
+    found = np.zeros(12)
+    found[5] = state.torque_sense * state.contact.pinion_base_radius
+    found[11] = state.torque_sense * state.contact.gear_base_radius
+    return found
 
 
 def _quarter_turn(vector: np.ndarray) -> np.ndarray:

@@ -18,7 +18,7 @@ from rotorgear.model.parts.excitation import ErrorHarmonic, StiffnessHarmonic
 from rotorgear.solvers.time.local_system import LocalSystem
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.assembly import assemble
-from rotorgear.system.contacts import contact_lines
+from rotorgear.system.contacts import contact_lines, rotation_vector
 from rotorgear.system.groups import (
     ElementGroup,
     contact_geometry,
@@ -132,6 +132,8 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
         load=load,
         rotation=rotation,
         G=system.gyroscopic if system.gyroscopic.nnz else None,
+        watched=T.T
+        @ np.column_stack([np.zeros((T.shape[0], 0)), *(p.rotation for p in parts if p.rotation is not None)]),
     )
     return LocalModel(system, local, parts, groups)
 
@@ -192,12 +194,14 @@ def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> list[LocalPart]:
                 coast_law = coast_loaded
                 if spring.gap == "dead zone":
                     law = replace(loaded, coast=coast_loaded)
-        found.append(LocalPart(part, label, law, column, is_mesh=True))
+        rotation = columns_at(system, dofs[:12], rotation_vector(force)[None])[:, 0]
+        transverse = float(np.cos(contact.base_helix_angle))
+        found.append(LocalPart(part, label, law, column, rotation, transverse))
         rubbing = friction_part(system, force, geometry, label, spring, dofs[:12], column)
         if rubbing is not None:
             found.append(rubbing)
         if spring.gap == "unilateral":
-            found.append(LocalPart(part, f"{label} back", coast_law, coast, is_mesh=True))
+            found.append(LocalPart(part, f"{label} back", coast_law, coast, -rotation, transverse))
     return found
 
 

@@ -26,13 +26,26 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LocalPart:
-    """A law and where it acts: its part, a label, the law, and the columns (a, k) of its displacements among all dofs."""
+    """A law and where it acts.
+
+    Attributes:
+        part, label: its part of the model and its name; law: what acts.
+        columns: (a, k) of its displacements among all dofs.
+        rotation: of a mesh contact: (a,) column among all dofs of its transmission error, r_b1 tz_1 + r_b2 tz_2, in m.
+        transverse: of a mesh contact: cos(beta_b), approach along the flank normal over that in the transverse plane.
+    """
 
     part: str
     label: str
     law: ForceLaw
     columns: np.ndarray
-    is_mesh: bool = False
+    rotation: np.ndarray | None = None
+    transverse: float = 1.0
+
+    @property
+    def is_mesh(self) -> bool:
+        """Whether it is the contact of a mesh."""
+        return self.rotation is not None
 
 
 def columns_at(system: System, dofs: np.ndarray, rows: np.ndarray) -> np.ndarray:

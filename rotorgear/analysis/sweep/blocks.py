@@ -21,6 +21,8 @@ from rotorgear.solvers.lanes.lanes import Orbit, Plan, Start, run_block
 _MOST_TABLE = 30_000_000
 # Seconds between two words on the progress of blocks that take long.
 _EVERY = 1.0
+# What a stream keeps of an orbit beside its end.
+_OF_ORBIT = ("section", "growth", "sums", "extremes", "finite")
 
 
 @dataclass(frozen=True)
@@ -147,15 +149,15 @@ class Workers:
 
 def packed(orbits: Sequence[Orbit]) -> dict[str, np.ndarray]:
     """Orbits of a block as arrays, for a stream."""
-    fields = {name: np.stack([getattr(o, name) for o in orbits]) for name in ("section", "growth", "sums", "finite")}
+    fields = {name: np.stack([getattr(o, name) for o in orbits]) for name in _OF_ORBIT}
     return {**fields, "z": np.stack([o.end.z for o in orbits]), "dz": np.stack([o.end.dz for o in orbits])}
 
 
 def unpacked(chunk: dict[str, np.ndarray]) -> list[Orbit]:
     """The orbits back."""
     return [
-        Orbit(section, growth, sums, Start(z, dz), bool(finite))
-        for section, growth, sums, z, dz, finite in zip(
-            *(chunk[name] for name in ("section", "growth", "sums", "z", "dz", "finite")), strict=True
+        Orbit(section, growth, sums, extremes, Start(z, dz), bool(finite))
+        for section, growth, sums, extremes, finite, z, dz in zip(
+            *(chunk[name] for name in (*_OF_ORBIT, "z", "dz")), strict=True
         )
     ]

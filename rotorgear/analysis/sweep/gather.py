@@ -19,8 +19,9 @@ from rotorgear.solvers.lanes.lanes import Orbit
 
 _TABLES = (
     "peak_to_peak",
-    "amplitude",
-    "rms",
+    "transmission_error",
+    "approach",
+    "rms_approach",
     "mean_force",
     "rms_force",
     "largest_force",
@@ -74,7 +75,7 @@ def gathered(
         mesh = point.system.columns.counted
         section_here = orbit.section[:, mesh]
         section[i, run] = section_here
-        measures = _indicators(orbit.sums[mesh], int(steps[i]))
+        measures = _indicators(orbit, mesh, int(steps[i]))
         for name, table in tables.items():
             table[i, run] = measures[name]
         k = orbit.growth.shape[1]
@@ -82,7 +83,7 @@ def gathered(
         largest = float(exponent[i, run, 0]) if k else None
         kind = classify(
             section_here[:, :, 0],
-            np.maximum(measures["amplitude"], measures["peak_to_peak"]),
+            np.maximum(measures["displacement"], measures["peak_to_peak"]),
             largest,
             float(error[i, run, 0]) if k else 0.0,
             request.tolerance,
@@ -134,17 +135,24 @@ def _size(point: Point) -> float:
     return float(max(np.abs(point.static_force / point.stiffness).max(), backlash.max(initial=0.0), 1e-6))
 
 
-def _indicators(sums: np.ndarray, steps: int) -> dict[str, np.ndarray]:
-    """Indicators of the contacts from their sums (c, 14)."""
+def _indicators(orbit: Orbit, counted: np.ndarray, steps: int) -> dict[str, np.ndarray]:
+    """Indicators of the contacts, which are the local displacements `counted` (m,); watched are two displacements of each."""
     from rotorgear.solvers.lanes import kernel_parts as k
 
+    sums = orbit.sums[counted]
+    transmission_error, approach = np.ptp(orbit.extremes, axis=1).reshape(2, -1)
     total = np.maximum(sums[:, [k.FRONT, k.APART, k.BACK]].sum(axis=1), 1.0)
     force = sums[:, k.F_SUM] / total
     d = sums[:, k.D_SUM] / total
+    displacement = sums[:, k.D_MAX] - sums[:, k.D_MIN]
+    rms = np.sqrt(np.maximum(sums[:, k.D_SQUARES] / total - d**2, 0.0))
+    transverse = approach / np.where(displacement > 0.0, displacement, 1.0)
     return {
         "peak_to_peak": sums[:, k.X_MAX] - sums[:, k.X_MIN],
-        "amplitude": sums[:, k.D_MAX] - sums[:, k.D_MIN],
-        "rms": np.sqrt(np.maximum(sums[:, k.D_SQUARES] / total - d**2, 0.0)),
+        "displacement": displacement,
+        "transmission_error": transmission_error,
+        "approach": approach,
+        "rms_approach": rms * transverse,
         "mean_force": force,
         "rms_force": np.sqrt(np.maximum(sums[:, k.F_SQUARES] / total - force**2, 0.0)),
         "largest_force": sums[:, k.F_MAX],

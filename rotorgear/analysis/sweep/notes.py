@@ -15,6 +15,8 @@ from rotorgear.solvers.lanes.lanes import Orbit
 
 # Decay exponent over the periods discarded: exp(-3) = 5 % of the initial deviation is left.
 _FORGOTTEN = 3.0
+# Sentences that are shown of those that do not hold for all points.
+_SOME = 4
 
 
 def notes(
@@ -56,15 +58,14 @@ def coarse_shafts(model: Model, elements: int | None) -> tuple[str, ...]:
     return ("each shaft segment has one element of second order: compare with --elements 8, say",)
 
 
-def tilts_held(model: Model) -> tuple[str, ...]:
-    """What a sweep leaves out of meshes that feel the tilt of their shafts."""
-    tilted = [name for name, mesh in model.meshes.items() if mesh.tilt]
-    if not tilted:
-        return ()
-    return (
-        f"how the load moves along the face of {', '.join(tilted)} in time is left out: the flanks resist a tilt by the tangent "
-        "about the static equilibrium, even where they part",
-    )
+def left_out_of(models: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+    """What is left out of all models of a sweep; of some of them only, the first such sentences."""
+    found = list(dict.fromkeys(text for texts in models for text in texts))
+    common = [text for text in found if all(text in texts for texts in models)]
+    some = [text for text in found if text not in common]
+    shown = [f"of some points: {text}" for text in some[:_SOME]]
+    more = [f"of some points: {len(some) - _SOME} more such sentences"] if len(some) > _SOME else []
+    return (*common, *shown, *more)
 
 
 def idle(axes: Sequence[Axis], points: Sequence[Point | None]) -> list[Axis]:

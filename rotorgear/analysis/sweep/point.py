@@ -8,10 +8,12 @@ from fractions import Fraction
 import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
+from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.static.along_faces import about_faces
 from rotorgear.analysis.static.ground import springs_about_mean
 from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
 from rotorgear.analysis.sweep.reduce import Large, Reduced, Wanted
+from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.solvers.lanes.columns import OWN_LAW, TABLE_ROWS, Columns
@@ -21,7 +23,7 @@ from rotorgear.solvers.time.contact_equilibrium import Equilibrium, equilibrium,
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.local_system import LocalSystem
 from rotorgear.solvers.time.motion import Rotation
-from rotorgear.system.local import local_model
+from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.system import System
 
 _KEPT = 1000  # states at rest
@@ -89,6 +91,8 @@ class Still:
 class PointMaker:
     """Makes models ready, and keeps states at rest for models where only the speed is another.
 
+    `left_out` has the sentences of each model that was made ready anew on what is left out of it.
+
     Args:
         wanted: of reductions, which all models get where it asks for modes, and else those that are large or have dofs without
             inertia. elements: in each shaft segment.
@@ -99,6 +103,7 @@ class PointMaker:
         self._elements = elements
         self._known: dict[str, Still | Large] = {}
         self._free: tuple[bytes, np.ndarray] = (b"", np.zeros((0, 0)))
+        self.left_out: list[tuple[str, ...]] = []
 
     def __call__(self, model: Model) -> Point | Large:
         """Make a model ready at its own speed; one that is to be reduced comes back as it is, for `sweep_reduce`.
@@ -129,6 +134,8 @@ class PointMaker:
         if system.n == 0:
             raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
         built = springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)
+        built = replace(built, local=_with_approaches(built))
+        self.left_out.append((*left_out(system, speed, rolls=True), *transient_left_out(built)))
         for part in built.parts:
             if why := part.law.unsettled():
                 raise AnalysisError(f"{part.part}: {why}")
@@ -150,6 +157,15 @@ class PointMaker:
         if key != self._free[0]:
             self._free = key, free_motions(local.M, about)
         return self._free[1]
+
+
+def _with_approaches(built: LocalModel) -> LocalSystem:
+    """The system that watches the approach of each contact in the transverse plane too, behind the transmission errors."""
+    local = built.local
+    meshes = [i for i, part in enumerate(built.parts) if part.is_mesh]
+    transverse = np.array([built.parts[i].transverse for i in meshes])
+    approach = local.B[:, local.forces.first[meshes]].toarray() / transverse
+    return replace(local, watched=np.hstack([local.watched_vectors, approach]))
 
 
 def _standing(model: Model) -> bool:

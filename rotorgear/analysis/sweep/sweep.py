@@ -8,13 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.sweep.axes import Axis, Family, axis_of, points_of
 from rotorgear.analysis.sweep.blocks import Pool, Workers, blocks, packed, unpacked, waves
 from rotorgear.analysis.sweep.classify import CHAOS, TOLERANCE
 from rotorgear.analysis.sweep.gather import gathered
-from rotorgear.analysis.sweep.notes import coarse_shafts, tilts_held
+from rotorgear.analysis.sweep.notes import coarse_shafts, left_out_of
 from rotorgear.analysis.sweep.point import Point, PointMaker
 from rotorgear.analysis.sweep.portrait import Wanted, portraits_of, wanted_points
 from rotorgear.analysis.sweep.reduce import Large
@@ -109,7 +108,7 @@ def sweep(
     values = points_of(axes)
     wanted = wanted_points(portraits, axes)
     with single_thread(0):
-        models, large, failure = _ready(model, axes, values, change, request, progress)
+        models, large, failure, left_out = _ready(model, axes, values, change, request, progress)
         points, failure, reduction = shrunk(large, failure, request.reduction, progress, _READY)
         chosen, refused = steps_of(points, steps)
         for i, reason in refused.items():
@@ -126,12 +125,8 @@ def sweep(
     result = gathered(model, axes, values, points, failure, chosen, request, orbits, laps, reduction)
     result = replace(
         result,
-        warnings=(
-            *result.warnings,
-            *coarse_shafts(model, elements),
-            *tilts_held(model),
-            *rolling_notes(model, rolls=True),
-        ),
+        left_out=left_out_of(left_out),
+        warnings=(*result.warnings, *coarse_shafts(model, elements)),
     )
     if wanted:
         result = replace(result, portraits=portraits_of(result, wanted, points, request, orbits, progress))
@@ -148,8 +143,8 @@ def _ready(
     change: Callable[[Model, tuple[float, ...]], Model] | None,
     request: Request,
     progress: Progress,
-) -> tuple[list[str], list[Point | Large | None], list[str]]:
-    """Hashes of the models, the points made ready, and why a point failed."""
+) -> tuple[list[str], list[Point | Large | None], list[str], list[tuple[str, ...]]]:
+    """Hashes of the models, the points made ready, why a point failed, and what is left out of each different model."""
     maker = PointMaker(request.reduction, request.elements)
     family = None if change else Family(model, axes)
     texts: list[str] = []
@@ -169,7 +164,7 @@ def _ready(
         texts.append(text)
         points.append(point)
         failure.append(reason)
-    return texts, points, failure
+    return texts, points, failure, maker.left_out
 
 
 def _run(

@@ -15,7 +15,8 @@ from rotorgear.results.transient import EnergyLedger
 from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Records, State
 from rotorgear.solvers.time.run import Schedule, run
 
-_STATE = ("q", "v", "a", "F", "before", "sums", "last", "events")
+_STATE = ("q", "v", "a", "F", "before", "sums", "last", "events", "extremes")
+_TABLES = ("t", "d", "watched", "F", "values")
 
 
 class Stream(Protocol):
@@ -41,7 +42,7 @@ class Histories:
     motion: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
 
     def table(self, name: str) -> np.ndarray:
-        """All records of "t", "d", "F" or "values"."""
+        """All records of "t", "d", "watched", "F" or "values"."""
         return np.concatenate([part[name] for part in self.parts])
 
 
@@ -63,7 +64,7 @@ def integrate(
 
     Args:
         frames: so many records at the end keep all displacements.
-        settled: records before the statistics count; contact events are counted anew from there.
+        settled: records before the statistics count; contact events and extremes are counted anew from there.
     """
     state = start.copy()
     found = Histories(state, schedule.h)
@@ -71,11 +72,13 @@ def integrate(
     for chunk in stream.begin(settings or {}) if stream else []:
         _take(found, book, chunk)
     boundary = settled * schedule.every
+    watched = np.ascontiguousarray(local.watched_vectors.T)
 
     def receive(records: Records, state: State) -> None:
         part = {
             "t": records.t,
             "d": records.d,
+            "watched": records.fields.rows("q", watched),
             "F": records.F,
             "values": wanted.values(records.fields, records.F),
         }
@@ -86,7 +89,7 @@ def integrate(
         book.add(records)
         found.parts.append(part)
         if state.step == boundary:
-            state.events[:] = 0
+            state.count_anew()
         if stream is not None:
             rows = np.vstack([np.zeros((0, 7)), *book.table[before:]])
             stream.write({**part, "ledger": rows, "spent": np.array(book.sums()), **state_arrays(state)})
@@ -127,7 +130,7 @@ def state_arrays(state: State) -> dict[str, np.ndarray]:
 
 def _take(found: Histories, book: LedgerBook, chunk: dict[str, np.ndarray]) -> None:
     """Take over a chunk of an interrupted run, with the state at its end."""
-    found.parts.append({name: chunk[name] for name in ("t", "d", "F", "values")})
+    found.parts.append({name: chunk[name] for name in _TABLES})
     if chunk["ledger"].size:
         book.table.append(chunk["ledger"])
     book.set_sums(chunk["spent"])

@@ -29,8 +29,11 @@ def history_of(result: TransientResult, name: str) -> tuple[np.ndarray, str]:
     """
     from rotorgear.quantity import nearest
 
-    known = [*result.channel, *(f"{what} {c}" for c in result.contact for what in ("force", "deflection"))]
-    if name not in known:
+    known = [
+        *result.channel,
+        *(f"{what} {c}" for c in result.contact for what in ("force", "transmission_error", "approach")),
+    ]
+    if name not in known and name.removeprefix("deflection ") not in result.contact:
         close = nearest(name, known)
         hint = f"; did you mean '{close}'?" if close else "; known: " + ", ".join(known[:6]) + " ..."
         raise AnalysisError(f"there is no history '{name}'{hint}")
@@ -47,7 +50,7 @@ def spectrum(result: TransientResult, name: str, *, window: str = "hann", orders
 
     Args:
         result: a transient result.
-        name: a channel, "force CONTACT" or "deflection CONTACT".
+        name: a channel, "force CONTACT", "transmission_error CONTACT" or "approach CONTACT".
         window: hann, flattop or boxcar.
         orders: over orders of the reference shaft, from the history at even angles: for run-ups.
 

@@ -93,8 +93,9 @@ def run_task(
     system = task.local.local
     settings = {
         "model": model_hash(task.local.system.model),
-        "run": f"{h!r} {grid.records} {grid.every} {grid.settled} {system.n} {integrator.name} {key} "
-        f"{system.rotation.times.tolist()} {system.rotation.speeds.tolist()}",
+        "run": f"{h!r} {grid.records} {grid.every} {grid.settled} {system.n} {system.watched_vectors.shape[1]} "
+        f"{integrator.name} {key} {system.rotation.times.tolist()} "
+        f"{system.rotation.speeds.tolist()}",
     }
 
     def told(fraction: float, step: str) -> None:

@@ -151,6 +151,8 @@ def _result(
     t = found.table("t")
     meshes = [i for i, part in enumerate(task.local.parts) if part.is_mesh]
     columns = [int(local.forces.first[i]) for i in meshes]
+    transverse = np.array([task.local.parts[i].transverse for i in meshes])
+    extremes = found.state.extremes
     events = found.state.events[meshes].astype(float)
     if found.ledger is None:
         raise ConvergenceError(found.status)
@@ -164,7 +166,10 @@ def _result(
         speed=local.rotation.speed(t),
         settle=grid.settled * grid.spacing,
         contact=tuple(task.local.parts[i].label for i in meshes),
-        deflection=found.table("d")[:, columns],
+        approach=found.table("d")[:, columns] / transverse,
+        transmission_error=found.table("watched"),
+        approach_range=extremes[columns] / transverse[:, None],
+        transmission_error_range=extremes[local.m :],
         mesh_force=found.table("F")[:, columns],
         mean_force=task.rest_force[columns],
         contact_time=events[:, :3] / np.maximum(events[:, :3].sum(axis=1, keepdims=True), 1.0),

@@ -8,6 +8,12 @@ from typing import Any, Literal
 # Heading of a column, the side it stands on, and what it says of a row.
 Column = tuple[str, Literal["left", "right"], Callable[[Any], str]]
 
+# What the two displacements of a contact are, beside every table that has them.
+TRANSMISSION_WORDS = (
+    "transmission error: rotation at the base circles, r_b1 theta_1 + r_b2 theta_2; approach: of the flanks, transverse, with "
+    "bending and axial motion"
+)
+
 
 def heading(title: str, rest: str = "") -> Any:
     """A title in bold, and what follows it on the line; brackets in it are no markup."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rotorgear.results.tables.common import error_words, heading, lines, table
+from rotorgear.results.tables.common import TRANSMISSION_WORDS, error_words, heading, lines, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -19,10 +19,6 @@ if TYPE_CHECKING:
 # Rows of a run of orders before the rest of it shares one.
 _SHOWN = 5
 _SHORT = {"transmission error": "transm. error"}
-_WORDS = (
-    "transmission error: rotation at the base circles, r_b1 theta_1 + r_b2 theta_2; approach: of the flanks, transverse, with "
-    "bending and axial motion",
-)
 
 
 def response_table(result: ResponseResult) -> RenderableType:
@@ -43,7 +39,7 @@ def response_table(result: ResponseResult) -> RenderableType:
             " to ".join(f"{result.frequency_hz[o, -1]:.2f}" for o in ends),
         )
     notes = [
-        *(_WORDS if result.contact_mesh else ()),
+        *((TRANSMISSION_WORDS,) if result.contact_mesh else ()),
         "amplitudes are half of peak to peak, each order by itself; forces without their mean",
         f"{len(result.speeds)} speeds, {result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
         f"solver error {error_words(result.solver_error)} at {result.checked} points checked; "

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rotorgear.results.tables.common import table
+from rotorgear.results.tables.common import TRANSMISSION_WORDS, table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -35,7 +35,7 @@ def sweep_table(result: SweepResult) -> RenderableType:
     if rows > _MOST:
         parts.append(Text(f"... {rows - _MOST} more lines: see --json, --save and --plot"))
     parts += _portraits(result)
-    columns = "p-p, K_dyn, contact loss and coast flank: of the worst contact"
+    columns = "p-p, TE, approach, K_dyn, contact loss and coast flank: of the worst contact"
     if result.lyapunov.shape[2]:
         columns = f"LE: largest Lyapunov exponent per period of the fastest mesh, +- one standard error; {columns}"
     steps = result.steps[result.steps > 0]  # a point that failed has none
@@ -44,6 +44,7 @@ def sweep_table(result: SweepResult) -> RenderableType:
     notes = [
         "",
         columns,
+        f"p-p: penetration of the flanks; TE: {TRANSMISSION_WORDS}; all three peak to peak",
         f"T is {result.period_words}; {result.settle} periods discarded, {result.count} sampled; repeats within "
         f"{100.0 * result.tolerance:g} % of the peak to peak; chaotic: LE > {result.chaos:g}",
         f"{result.dofs} dofs, {fewest if fewest == most else f'{fewest} to {most}'} steps a mesh period, "
@@ -52,6 +53,7 @@ def sweep_table(result: SweepResult) -> RenderableType:
     ]
     if result.reduction:
         notes.append(result.reduction.sentence)
+    notes += [f"left out: {note}" for note in result.left_out]
     notes += [f"Warning: {note}" for note in result.warnings]
     return Group(*parts, *(Text(note) for note in notes), "")
 
@@ -75,7 +77,8 @@ def _points(result: SweepResult, rows: range) -> Any:
     names = [f"{a.rpartition('.')[2]} {u}".strip() for a, u in zip(result.address, result.unit, strict=True)]
     names += ["start"] if several else []
     names += ["response"] + (["LE", "+-"] if result.lyapunov.shape[2] else [])
-    out = table(*names, "p-p um", "K_dyn", "loss %", "coast %", left=0)
+    out = table(*names, "p-p\num", "TE\num", "appr.\num", "K_dyn", "loss\n%", "coast\n%", left=0)
+    out.collapse_padding = True
     for row in rows:
         p, r = divmod(row, len(result.run))
         cells = [f"{x:.6g}" for x in result.values[p]] + ([result.run[r]] if several else [])
@@ -85,6 +88,8 @@ def _points(result: SweepResult, rows: range) -> Any:
         out.add_row(
             *cells,
             _largest(1e6 * result.peak_to_peak[p, r], ".2f"),
+            _largest(1e6 * result.transmission_error[p, r], ".2f"),
+            _largest(1e6 * result.approach[p, r], ".2f"),
             _largest(result.dynamic_factor[p, r], ".2f"),
             _largest(100.0 * result.apart[p, r], ".1f"),
             _largest(100.0 * result.back[p, r], ".1f"),

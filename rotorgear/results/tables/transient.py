@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.tables.common import TRANSMISSION_WORDS
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -27,10 +28,11 @@ def transient_table(result: TransientResult) -> RenderableType:
     turns = rpm[0] if rpm[0] == rpm[1] else f"{rpm[0]} to {rpm[1]}"
     counted = f"{result.time[-1] - result.settle:.4g} s after {result.settle:.4g} s"
     title = f"{result.model.title or 'Transient'}: {result.model.reference_shaft} at {turns} rpm, {counted}"
-    contacts = Table(box=None, pad_edge=False, header_style="bold")
+    contacts = Table(box=None, pad_edge=False, collapse_padding=True, header_style="bold")
     contacts.add_column("contact", overflow="fold")
-    for name in ("static N", "mean", "rms", "largest", "K_dyn", "DTE um", "loss %", "coast %", "losses"):
-        contacts.add_column(name, justify="right")
+    heads = ("static\nN", "mean", "rms", "largest", "K_dyn", "TE\num", "appr.\num", "loss\n%", "coast\n%", "losses")
+    for name in heads:
+        contacts.add_column(name, justify="right", no_wrap=True)
     for row in result.contacts:
         contacts.add_row(
             row.name,
@@ -39,7 +41,8 @@ def transient_table(result: TransientResult) -> RenderableType:
             _value(row.rms_force_n),
             _value(row.largest_force_n),
             f"{row.dynamic_factor:.3f}" if math.isfinite(row.dynamic_factor) else "-",
-            f"{1e6 * row.peak_to_peak_dte_m if math.isfinite(row.peak_to_peak_dte_m) else 0.0:.2f}",
+            _micrometres(row.peak_to_peak_transmission_error_m),
+            _micrometres(row.peak_to_peak_approach_m),
             f"{100.0 * row.apart_share:.1f}",
             f"{100.0 * row.back_share:.1f}",
             str(row.losses),
@@ -49,6 +52,7 @@ def transient_table(result: TransientResult) -> RenderableType:
         parts.append(_channels(result))
     notes = [
         "",
+        *((f"TE: {TRANSMISSION_WORDS}; both peak to peak",) if result.contact else ()),
         f"{result.dofs} dofs, {result.steps} steps of {result.step:.4g} s, {result.seconds['total']:.2f} s; {result.method} "
         f"({result.reason})",
     ]
@@ -79,6 +83,10 @@ def _channels(result: TransientResult) -> Any:
             row.unit,
         )
     return table
+
+
+def _micrometres(length: float) -> str:
+    return f"{1e6 * length:.2f}" if math.isfinite(length) else "-"
 
 
 def _value(value: float) -> str:

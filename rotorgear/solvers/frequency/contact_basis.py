@@ -254,5 +254,6 @@ def reduced(local: LocalSystem, among: Candidates, Q: np.ndarray) -> tuple[Local
         load=V.T @ local.load,
         rotation=local.rotation,
         G=None if local.G is None else sp.csc_array(T.T @ among.G @ T),
+        watched=V.T @ local.watched_vectors,
     )
     return in_basis, V

@@ -32,13 +32,14 @@ class LaneSystem(NamedTuple):
 
     Attributes:
         matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1).
-        across: d and d' of each column from (z, z'), (2 m, 2 n). pushes: -B, (n, m).
+        across: d and d' of each column from (z, z'), (2 m, 2 n). pushes: -B, (n, m). watched: W^T by rows, (p, n).
         rigid: orthonormal motions without strain, (r, n, w); root: S with S^T S the mean stiffness, (n, n, w).
     """
 
     matrix: SparseRows
     across: SparseRows
     pushes: SparseRows
+    watched: SparseRows
     rigid: np.ndarray
     root: np.ndarray
 
@@ -93,11 +94,15 @@ class LaneMotion(NamedTuple):
 
 
 class LaneRecords(NamedTuple):
-    """What is found in p common periods: growth of tangents (p, t, w), sections (p, 2 m, w), and sums (m, 14, w) so far."""
+    """What is found in p common periods: growth of tangents (p, t, w) and sections (p, 2 m, w).
+
+    So far: sums (m, 14, w), and extremes, the least and largest of the watched displacements, (2, p, w).
+    """
 
     growth: np.ndarray
     section: np.ndarray
     sums: np.ndarray
+    extremes: np.ndarray
 
 
 class TangentWork(NamedTuple):

@@ -16,7 +16,7 @@ from rotorgear.solvers.contact.vectors import LANES, fill, get, put, work
 from rotorgear.solvers.lanes.arguments import TangentWork
 from rotorgear.solvers.lanes.kernel_jumps import add_used_along, missing, missing_along, push
 from rotorgear.solvers.lanes.kernel_laws import SPACE, force_laws, laws_along, schedule_laws
-from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, contacts, count, product, read_table
+from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, contacts, count, product, read_table, widen
 from rotorgear.solvers.lanes.kernel_tangents import orthonormal
 from rotorgear.solvers.time.compiled import compiled
 
@@ -154,6 +154,10 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
     growth = records.growth
     section = records.section
     sums = records.sums
+    extremes = records.extremes
+    watched = system.watched
+    p = extremes.shape[1]
+    seen = work(p)
     n = state.shape[0] // 2
     m = counted.size
     t = tangents.shape[0]
@@ -195,6 +199,8 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
                     force_laws(laws, condition, d, F, found, blocks, space)
                 if number == 0 and counting:
                     count(counted, now, d, F, found, last, sums)
+                    product(watched, stage, seen)
+                    widen(seen, extremes, p)
                 advance(number, h, matrix, stage, ahead, 0, state, 0, total)
                 if t:
                     tangent_stage(number, h, system, columns, laws, found, kept, moved, moved_ahead, tangents, along)

@@ -98,6 +98,15 @@ def leave(now, prescribed, weight, rate, j, F, found, used):
 
 
 @compiled(fast=True)
+def widen(seen, extremes, p):
+    """Take p displacements (p, w) into their least and largest values so far, (2, p, w)."""
+    for j in range(p):
+        x = get(seen, j)
+        put(extremes, j, smaller(get(extremes, j), x))
+        put(extremes, p + j, larger(get(extremes, p + j), x))
+
+
+@compiled(fast=True)
 def count(counted, table, d, F, found, last, sums):
     """Take a step into the statistics of the columns that are counted (m,); arrays as in `contacts`, sums (m, 14, w)."""
     one = fill(1.0)

@@ -66,12 +66,14 @@ class Orbit:
         section: displacement and velocity (in m and m/s) of each local displacement at the end of each common period, (p, m, 2).
         growth: (p, t) logarithm of the growth of each tangent in a common period.
         sums: (m, 14) statistics, see kernel_parts.py; forces in N.
+        extremes: (p, 2) least and largest of the watched displacements.
         end: state at the end. finite: whether everything stayed finite.
     """
 
     section: np.ndarray
     growth: np.ndarray
     sums: np.ndarray
+    extremes: np.ndarray
     end: Start
     finite: bool
 
@@ -119,6 +121,9 @@ def run_block(
         aligned((m, LANES)),
     )
     sums = blank_sums(m)
+    extremes = aligned((2, first.W.shape[1], LANES))
+    extremes[0] = np.inf
+    extremes[1] = -np.inf
 
     def run(begun: int, periods: int, counting: bool, followed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         growth = aligned((periods, len(followed), LANES))
@@ -134,7 +139,7 @@ def run_block(
                 table,
                 laws,
                 motion._replace(tangents=followed),
-                LaneRecords(growth[p : p + stride], section[p : p + stride], sums),
+                LaneRecords(growth[p : p + stride], section[p : p + stride], sums, extremes),
             )
         return growth, section
 
@@ -143,11 +148,17 @@ def run_block(
         run(0, plan.settle - warm, False, motion.tangents[:0])
         run(plan.settle - warm, warm, False, motion.tangents)
         growth, section = run(plan.settle, plan.count, True, motion.tangents)
-    return [_orbit(filled[i], i, growth, section, sums, motion.state) for i in range(count)]
+    return [_orbit(filled[i], i, growth, section, sums, extremes, motion.state) for i in range(count)]
 
 
 def _orbit(
-    system: SmallSystem, lane: int, growth: np.ndarray, section: np.ndarray, sums: np.ndarray, state: np.ndarray
+    system: SmallSystem,
+    lane: int,
+    growth: np.ndarray,
+    section: np.ndarray,
+    sums: np.ndarray,
+    extremes: np.ndarray,
+    state: np.ndarray,
 ) -> Orbit:
     """One lane, with forces in N and velocities in m/s."""
     from rotorgear.solvers.lanes.kernel_parts import F_MAX, F_MIN, F_SQUARES, F_SUM
@@ -161,7 +172,7 @@ def _orbit(
     moved[:, :, 1] *= system.w
     end = Start(state[:n, lane].copy(), state[n:, lane].copy())
     finite = bool(np.all(np.isfinite(moved)) and np.all(np.isfinite(end.z)))
-    return Orbit(moved, growth[..., lane].copy(), found, end, finite)
+    return Orbit(moved, growth[..., lane].copy(), found, extremes[:, :, lane].T.copy(), end, finite)
 
 
 def blank_sums(m: int) -> np.ndarray:
@@ -210,6 +221,7 @@ def _matrices(systems: Sequence[SmallSystem]) -> LaneSystem:
             ]
         ),
         pushes=_sparse([-s.B for s in systems]),
+        watched=_sparse([s.W.T for s in systems]),
         rigid=_stacked([s.rigid for s in systems]),
         root=_stacked([s.energy for s in systems]),
     )

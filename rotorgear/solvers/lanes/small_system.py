@@ -47,7 +47,8 @@ class SmallSystem:
     """n degrees of freedom, m local displacements.
 
     Attributes:
-        K, D: (n, n); load: (n,); B: (n, m); rigid: (r, n) orthonormal motions without strain; rest: z in equilibrium, (n,).
+        K, D: (n, n); load: (n,); B: (n, m); W: (n, p) watched displacements.
+        rigid: (r, n) orthonormal motions without strain; rest: z in equilibrium, (n,).
         root: L, (n, n). energy: S with S^T S the stiffness with all contacts closed, (n, n).
         columns: of the local forces; own: those that act by laws of their own.
         w: rad/s of the fastest excitation; turns: its periods in the common one.
@@ -59,6 +60,7 @@ class SmallSystem:
     D: np.ndarray
     load: np.ndarray
     B: np.ndarray
+    W: np.ndarray
     rigid: np.ndarray
     rest: np.ndarray
     root: np.ndarray
@@ -129,6 +131,7 @@ def small_system(
         _clean(D) / w,
         inverse @ local.load / w**2,
         _clean(B),
+        _clean(inverse @ local.watched_vectors),
         rigid,
         L.T @ rest.q,
         L,

@@ -92,6 +92,7 @@ class Carried(NamedTuple):
     sums: np.ndarray
     last: np.ndarray
     events: np.ndarray
+    extremes: np.ndarray
 
 
 class Kept(NamedTuple):
@@ -148,10 +149,11 @@ class Triangles(NamedTuple):
 
 
 class NewmarkStep(NamedTuple):
-    """Of one step of a generalised-alpha method: S factored, B^T by rows, P = S^-1 B (n, m), and the compliance."""
+    """Of one step of a generalised-alpha method: S factored, B^T and W^T by rows, P = S^-1 B (n, m), and the compliance."""
 
     S: Triangles
     Bt: SparseRows
+    Wt: SparseRows
     P: np.ndarray
     compliance: Compliance
 
@@ -169,7 +171,8 @@ class ModalStep(NamedTuple):
 
     Attributes:
         er, ei: e^(s h), (nz,). Gr, Gi: e Q1 + Q0, (m, nz). gr, gi: of the load, (nz,). Qr, Qi: Q1, (m, nz).
-        Cr, Ci: (m, nz) rows that give d; 2 m, those of v below, where something depends on v.
+        Cr, Ci: (m, nz) rows that give d; 2 m, those of v below, where something depends on v; then (p, nz) those that give the
+        watched displacements.
     """
 
     er: np.ndarray
@@ -185,9 +188,10 @@ class ModalStep(NamedTuple):
 
 
 class RigidStep(NamedTuple):
-    """Motions without stiffness and damping: local displacements of each, (nr, m), and the load on it, (nr,)."""
+    """Motions without stiffness and damping: local and watched displacements of each, (nr, m), (nr, p), and loads (nr,)."""
 
     B: np.ndarray
+    W: np.ndarray
     load: np.ndarray
 
 
@@ -196,12 +200,14 @@ class Reference(NamedTuple):
 
     Attributes:
         Z: (2 m, 2 m), turns d and v without the rest u of the step's end into those without the local forces there.
+        watched: (p, m) what that rest adds to the watched displacements by the modes.
     """
 
     Z: np.ndarray
     compliance: Compliance
     k: np.ndarray
     c: np.ndarray
+    watched: np.ndarray
 
 
 class ModalMotion(NamedTuple):

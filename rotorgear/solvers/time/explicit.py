@@ -129,12 +129,16 @@ class ExplicitStepper:
         state.events[rows, np.where(now > 0, 0, np.where(now < 0, 2, 1))] += 1
         state.events[:, 3] += (now == 0) & (state.last != 0)
         state.last[:] = now
+        d = self.system.B.T @ state.q
+        moved = np.concatenate([d, self.system.watched_vectors.T @ state.q])
+        state.extremes[:, 0] = np.minimum(state.extremes[:, 0], moved)
+        state.extremes[:, 1] = np.maximum(state.extremes[:, 1], moved)
         if number % every == 0:
             r = number // every - 1
             kept.q[r] = state.q
             kept.v[r] = state.v
             kept.a[r] = state.a
-            kept.d[r] = self.system.B.T @ state.q
+            kept.d[r] = d
             kept.F[r] = F
             kept.energy[r, :, 0] = powers[:, 0]
             kept.energy[r, :, 1:] = state.sums - 0.5 * self.h * powers[:, 1:3]

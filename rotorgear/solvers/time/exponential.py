@@ -97,17 +97,20 @@ class ExponentialStepper:
         self._mobile = modes.basis @ (modes.basis.T @ B) + modes.rigid @ Br
         self._pushed = modes.basis @ (modes.basis.T @ system.load) + modes.rigid @ self._rigid_load
         needs_v = bool(np.any(c_ref)) or any(law.uses_velocity for law in system.forces.laws)
-        rows = C if needs_v else C[:m]
+        watched = system.watched_vectors.T @ modes.shapes
+        rows = np.vstack([C if needs_v else C[:m], watched])
         G = (e[:, None] * self._Q1 + Q0).T
         rotation = system.rotation
         self._turning = Turning(rotation.times, rotation.speeds, rotation.angles)
         self._modal = ModalStep(*_parts(e), *_parts(G), *_parts(h * first * push), *_parts(self._Q1.T), *_parts(rows))
-        self._rigid = RigidStep(np.ascontiguousarray(Br), self._rigid_load)
+        Wr = modes.rigid.T @ system.watched_vectors
+        self._rigid = RigidStep(np.ascontiguousarray(Br), np.ascontiguousarray(Wr), self._rigid_load)
         self._reference = Reference(
             Z=np.ascontiguousarray(Z),
             compliance=Compliance(np.ascontiguousarray(compliance[:m]), np.ascontiguousarray(compliance[m:])),
             k=k_ref,
             c=c_ref,
+            watched=np.ascontiguousarray(np.real(watched @ self._Q1)),
         )
         self._laws = system.forces.arguments()
         self._rows: dict[tuple[str, int], tuple[np.ndarray, ...]] = {}

@@ -118,6 +118,15 @@ def take_account(energy, h, carried):
 
 
 @compiled
+def widen(extremes, i, value):
+    """Take a displacement into its least and largest value so far."""
+    if value < extremes[i, 0]:
+        extremes[i, 0] = value
+    if value > extremes[i, 1]:
+        extremes[i, 1] = value
+
+
+@compiled
 def record_forces(r, h, work, carried, kept):
     """Record local displacements, forces and energies, whose sums follow the trapezoidal rule."""
     kept.d[r] = work.d

@@ -12,7 +12,14 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.time.compiled import compiled
-from rotorgear.solvers.time.kernel_contact import contact_step, contact_work, record_forces, schedule_all, take_account
+from rotorgear.solvers.time.kernel_contact import (
+    contact_step,
+    contact_work,
+    record_forces,
+    schedule_all,
+    take_account,
+    widen,
+)
 from rotorgear.solvers.time.kernel_time import rotation_at
 
 _BLOCK = 256
@@ -112,7 +119,10 @@ def exponential_loop(span, turning, modal, rigid, reference, laws, motion, carri
     F = carried.F
     before = carried.before
     B = rigid.B
+    W = rigid.W
     load = rigid.load
+    extremes = carried.extremes
+    watched = reference.watched
     Z = reference.Z
     k_ref = reference.k
     c_ref = reference.c
@@ -130,6 +140,7 @@ def exponential_loop(span, turning, modal, rigid, reference, laws, motion, carri
     d = work.d
     v = work.v
     out = np.empty(modal.Cr.shape[0])
+    local = out.size - len(watched)
     free = np.zeros(2 * m)
     solutions = 0
     for number in range(1, span.steps + 1):
@@ -137,7 +148,7 @@ def exponential_loop(span, turning, modal, rigid, reference, laws, motion, carri
         angle, speed = rotation_at(t, turning)
         schedule_all(laws, angle, speed, t, state)
         modal_pass(modal, u, yr, yi, out)
-        for i in range(out.size):
+        for i in range(local):
             free[i] = out[i]
         for k in range(nr):
             total = load[k]
@@ -174,6 +185,15 @@ def exponential_loop(span, turning, modal, rigid, reference, laws, motion, carri
             r0[k] += h * h * total / 6.0
             r1[k] += 0.5 * h * total
         take_account(energy, h, carried)
+        for i in range(m):
+            widen(extremes, i, d[i])
+        for i in range(len(watched)):
+            x = out[local + i]
+            for j in range(m):
+                x += watched[i, j] * u[j]
+            for k in range(nr):
+                x += W[k, i] * r0[k]
+            widen(extremes, m + i, x)
         if number % span.every == 0:
             r = number // span.every - 1
             for j in range(nz):

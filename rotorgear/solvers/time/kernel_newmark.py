@@ -13,7 +13,14 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.time.compiled import compiled
-from rotorgear.solvers.time.kernel_contact import contact_step, contact_work, record_forces, schedule_all, take_account
+from rotorgear.solvers.time.kernel_contact import (
+    contact_step,
+    contact_work,
+    record_forces,
+    schedule_all,
+    take_account,
+    widen,
+)
 from rotorgear.solvers.time.kernel_time import inertia_products, lu_solve, rotation_at, subtract_products
 
 
@@ -34,6 +41,10 @@ def newmark_loop(span, weights, turning, structure, step, laws, motion, carried,
     Bt_first = step.Bt.first
     Bt_column = step.Bt.column
     Bt_value = step.Bt.value
+    Wt_first = step.Wt.first
+    Wt_column = step.Wt.column
+    Wt_value = step.Wt.value
+    extremes = carried.extremes
     factors = step.S
     compliance = step.compliance
     P = step.P
@@ -97,6 +108,13 @@ def newmark_loop(span, weights, turning, structure, step, laws, motion, carried,
             q[i] += beta * h * h * total
             v[i] += gamma * h * total
         take_account(energy, h, carried)
+        for j in range(m):
+            widen(extremes, j, work.d[j])
+        for j in range(Wt_first.size - 1):
+            x = 0.0
+            for p in range(Wt_first[j], Wt_first[j + 1]):
+                x += Wt_value[p] * q[Wt_column[p]]
+            widen(extremes, m + j, x)
         if number % span.every == 0:
             r = number // span.every - 1
             kept.q[r] = q

@@ -19,7 +19,7 @@ from rotorgear.solvers.time.motion import Rotation
 
 @dataclass(frozen=True)
 class LocalSystem:
-    """n degrees of freedom with m local displacements d = B^T q.
+    """n degrees of freedom with m local displacements d = B^T q, and p watched ones W^T q that no force acts on.
 
     Attributes:
         M, D, K: sparse (n, n): inertia, velocity terms without W G, stiffness, all without the local forces.
@@ -28,6 +28,7 @@ class LocalSystem:
         load: constant load f, (n,).
         rotation: prescribed rotation of the reference, which gives the laws their phases.
         G: gyroscopic matrix for unit speed of the reference; None where nothing gyrates.
+        watched: W (n, p): displacements whose extremes at all steps are kept; none where it is None.
     """
 
     M: sp.csc_array
@@ -38,6 +39,7 @@ class LocalSystem:
     load: np.ndarray
     rotation: Rotation
     G: sp.csc_array | None = None
+    watched: np.ndarray | None = None
 
     @property
     def n(self) -> int:
@@ -48,6 +50,11 @@ class LocalSystem:
     def m(self) -> int:
         """Number of local displacements."""
         return self.forces.m
+
+    @property
+    def watched_vectors(self) -> np.ndarray:
+        """Watched displacements, (n, p)."""
+        return np.zeros((self.n, 0)) if self.watched is None else self.watched
 
     def velocity_terms(self, speed: float) -> sp.csc_array:
         """D + W G at a speed of the reference, sparse (n, n)."""
@@ -69,7 +76,8 @@ class State:
     """Where a run stands after `step` steps: displacements, velocities, accelerations (n,), local forces (m,) and sums.
 
     `before` are the forces a step earlier; `sums` (l, 2): energy put in and dissipated by each law; `events` (l, 4): steps on
-    the front side, without contact, on the back side, and contact losses; `inner`: what else an integrator carries on.
+    the front side, without contact, on the back side, and contact losses; `extremes` (m + p, 2): least and largest of the local
+    and the watched displacements at all steps so far; `inner`: what else an integrator carries on.
     """
 
     step: int
@@ -81,12 +89,18 @@ class State:
     sums: np.ndarray
     last: np.ndarray
     events: np.ndarray
+    extremes: np.ndarray
     inner: dict[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def carried(self) -> Carried:
         """What the local forces carry on, for the compiled loops to change in place."""
-        return Carried(self.F, self.before, self.sums, self.last, self.events)
+        return Carried(self.F, self.before, self.sums, self.last, self.events, self.extremes)
+
+    def count_anew(self) -> None:
+        """Forget events and extremes of the steps so far."""
+        self.events[:] = 0
+        self.extremes[:] = (np.inf, -np.inf)
 
     def copy(self) -> State:
         """Return a copy with arrays of its own."""
@@ -101,6 +115,7 @@ class State:
             self.sums.copy(),
             self.last.copy(),
             self.events.copy(),
+            self.extremes.copy(),
             inner,
         )
 
@@ -236,6 +251,7 @@ def state_at_rest(system: LocalSystem, h: float, q: np.ndarray, v: np.ndarray | 
         0.5 * h * powers[:, 1:3].copy(),
         powers[:, 3].astype(np.int64),
         np.zeros((laws, 4), dtype=np.int64),
+        np.tile([np.inf, -np.inf], (system.m + system.watched_vectors.shape[1], 1)),
     )
 
 

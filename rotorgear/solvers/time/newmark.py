@@ -96,7 +96,6 @@ class NewmarkStepper:
         B = system.B.toarray()
         P = factor.solve(B) if system.m else np.zeros((system.n, 0))
         condensed = (1.0 - af) * (B.T @ P)
-        Bt = sp.csr_array(system.B.T)
         rotation = system.rotation
         first, column, (K, D_nz, M) = _one_pattern(system.K, D, system.M)
         self._weights = Weights(float(am), float(af), float(beta), float(gamma))
@@ -104,7 +103,8 @@ class NewmarkStepper:
         self._structure = Structure(first, column, K, D_nz, M, np.ascontiguousarray(system.load, dtype=float))
         self._step = NewmarkStep(
             S=_triangles(factor._lu),
-            Bt=SparseRows(Bt.indptr.astype(np.int32), Bt.indices.astype(np.int32), Bt.data.astype(float)),
+            Bt=_rows(system.B.T),
+            Wt=_rows(system.watched_vectors.T),
             P=np.ascontiguousarray(P),
             compliance=Compliance(
                 np.ascontiguousarray(beta * h**2 * condensed), np.ascontiguousarray(gamma * h * condensed)
@@ -138,6 +138,12 @@ class NewmarkStepper:
         r = t.size
         fields = PlainFields(kept.q[:r], kept.v[:r], kept.a[:r])
         return Records(t, kept.d[:r], kept.F[:r], kept.energy[:r], fields, done, status, solutions)
+
+
+def _rows(A: sp.csc_array | np.ndarray) -> SparseRows:
+    """A matrix by rows."""
+    rows = sp.csr_array(A)
+    return SparseRows(rows.indptr.astype(np.int32), rows.indices.astype(np.int32), rows.data.astype(float))
 
 
 def _one_pattern(*matrices: sp.csc_array) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:

@@ -57,7 +57,10 @@ def amplitudes(result: TransientResult, values: np.ndarray, frequencies: np.ndar
 
 
 def assert_agree(model: rg.Model, speed: float, orders: int, rel: float) -> None:
-    """Mesh and bearing forces of every order; what an order hardly moves is held to the size of the others."""
+    """Forces of meshes and bearings, transmission errors and approaches of every order.
+
+    What an order hardly moves is held to the size of the others.
+    """
     linear: ResponseResult = rg.response(model, speeds=[speed], elements=1, method="direct")
     assert len(linear.orders) == orders
     result = rg.transient(
@@ -78,6 +81,12 @@ def assert_agree(model: rg.Model, speed: float, orders: int, rel: float) -> None
     bearing = amplitudes(result, held, frequencies)  # of the shaft on the bearing
     for kind, found, expected in (
         ("mesh", mesh, linear.mesh_force[:, 0]),
+        (
+            "transmission error",
+            amplitudes(result, result.transmission_error, frequencies),
+            linear.transmission_error[:, 0],
+        ),
+        ("approach", amplitudes(result, result.approach, frequencies), linear.approach[:, 0]),
         ("bearing", bearing, -linear.bearing_force[:, 0, :, :2].reshape(orders, -1)),
     ):
         for o, name in enumerate(linear.orders):
@@ -140,3 +149,28 @@ def test_a_small_variation_of_the_stiffness_acts_with_its_phase_in_both() -> Non
         unbalances={},
     )
     assert_agree(model, 300.0, 1, 0.02)
+
+
+@pytest.mark.parametrize("method", ["newmark", "exponential"])
+def test_ranges_of_transmission_error_and_approach_are_those_of_all_steps(method: str) -> None:
+    """Steps that are not recorded count as well: a run that records each step finds the same range in its records."""
+    how: dict[str, Any] = {"time": 0.002, "discard": 0.001, "steps": 60, "elements": 1, "error_estimate": False}
+    model = herringbone(damping__rayleigh_alpha=None)
+    few = rg.transient(model, records=5, method=method, **how)
+    every = rg.transient(model, records=60, method=method, **how)
+    for name in ("transmission_error", "approach"):
+        records = getattr(every, name)[every.counted]
+        expected = np.stack([records.min(axis=0), records.max(axis=0)], axis=1)
+        size = np.ptp(expected, axis=1).max()
+        assert np.abs(getattr(few, f"{name}_range") - expected).max() < 1e-6 * size
+    assert np.ptp(few.approach[few.counted], axis=0).max() < 0.999 * np.ptp(few.approach_range, axis=1).max()
+
+
+def test_former_names_of_the_approach_are_read_with_a_warning() -> None:
+    result = rg.transient(herringbone(), time=3e-4, discard=0.0, steps=40, elements=1, error_estimate=False)
+    name = result.contact[1]
+    normal = np.cos(result.model.layout.mesh("pair").pinion.base_helix_angle)
+    with pytest.warns(FutureWarning, match="approach"):
+        assert result.history(f"deflection {name}") == pytest.approx(normal * result.history(f"approach {name}"))
+    with pytest.warns(FutureWarning, match="approach"):
+        assert result.contacts[1].peak_to_peak_dte_m == result.contacts[1].peak_to_peak_approach_m

@@ -59,7 +59,7 @@ def test_at_a_crawl_the_approach_is_that_of_the_static_contact(change: str, torq
         method="exponential",
         error_estimate=False,
     )
-    approach = found.deflection[found.counted, 0][-count:]
+    approach = found.approach[found.counted, 0][-count:]
     phase = 34 * found.angle[found.counted][-count:] + (load.phase(force.contact) or 0.0)
     static = teeth.approach_at(np.full(count, force.normal_force), phase / (2.0 * np.pi))
     assert found.mesh_force[found.counted, 0][-count:].mean() == pytest.approx(force.normal_force, rel=1e-3)

@@ -12,7 +12,7 @@ def test_contact_is_lost_each_time_a_flank_is_left() -> None:
     sides = [1, 1, 0, 0, 1, 0, -1, -1, 0, 1, -1, 0]
     events = np.zeros((2, 4), np.int64)
     last = np.array([1, 0], np.int64)
-    carried = Carried(np.zeros(2), np.zeros(2), np.zeros((2, 2)), last, events)
+    carried = Carried(np.zeros(2), np.zeros(2), np.zeros((2, 2)), last, events, np.zeros((2, 2)))
     for side in sides:
         energy = np.zeros(8)
         energy[3] = side
