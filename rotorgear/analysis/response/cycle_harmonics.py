@@ -5,6 +5,8 @@ A curve x(u) over a cycle u = 0 to 1 is its mean plus the sum of Re(c_n e^{2 pi 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 # Harmonics of a given curve that count: up to this one, and not below this share of the strongest.
@@ -12,12 +14,12 @@ HIGHEST = 10
 SMALLEST = 0.01
 # Harmonics of a given curve that are looked at, so that what is left out has a size.
 SEEN = 100
-# Harmonics of loaded teeth are left out while they are below the first share of the strongest, and while all of them together
+# Harmonics of loaded teeth below the first share of the strongest are minor ones. They are left out while all of them together
 # change no peak to peak by more than the second share.
-_WEAK = 0.004
+_MINOR = 0.004
 _PEAK_TO_PEAK = 0.005
 # Teeth that differ have orders without end; no more than so many are taken.
-_MOST = 160
+_MOST = 1024
 _NODES = 256
 
 
@@ -63,21 +65,32 @@ def harmonics_of_cycle(values: np.ndarray) -> np.ndarray:
     return np.asarray(2.0 * np.fft.fft(values, axis=0)[1 : count + 1] / len(values))
 
 
-def that_matter(values: np.ndarray) -> tuple[list[int], float, float]:
-    """Which harmonics of values (p, c) over a cycle are needed for their peak to peak.
+@dataclass(frozen=True)
+class Needed:
+    """Harmonics of a curve that are needed for its peak to peak.
 
-    Returns:
-        Their numbers, rising; the largest of the others relative to the strongest; and the largest change of a peak to peak
-        without the others, relative to the largest peak to peak.
+    Attributes:
+        numbers: theirs, rising; major: those of them that are large by themselves.
+        weak: the largest of the others, relative to the strongest.
+        change: largest change of a peak to peak without the others, relative to the largest peak to peak.
     """
+
+    numbers: tuple[int, ...] = ()
+    major: frozenset[int] = frozenset()
+    weak: float = 0.0
+    change: float = 0.0
+
+
+def that_matter(values: np.ndarray) -> Needed:
+    """Which harmonics of values (p, c) over a cycle are needed for their peak to peak."""
     spectrum = np.fft.rfft(values, axis=0)
     spectrum[0] = 0.0
     size = np.abs(spectrum).max(axis=1)
     largest = float(size.max(initial=0.0))
     if not largest:
-        return [], 0.0, 0.0
+        return Needed()
     order = np.argsort(-size, kind="stable")
-    least = min(int(np.count_nonzero(size > _WEAK * largest)), _MOST)
+    least = min(int(np.count_nonzero(size > _MINOR * largest)), _MOST)
     whole = np.ptp(values, axis=0)
 
     def change(count: int) -> float:
@@ -91,6 +104,7 @@ def that_matter(values: np.ndarray) -> tuple[list[int], float, float]:
         count += max(1, count // 16)
     # Rounding is no harmonic, and the highest of an even number of values has no phase.
     numbers = sorted(int(n) for n in order[:count] if size[n] > 1e-12 * largest and 2 * n < len(values))
-    rest = np.delete(size, numbers)
-    weak = float(rest.max(initial=0.0)) / largest
-    return (numbers, weak, change(count)) if weak > 1e-9 else (numbers, 0.0, 0.0)
+    major = frozenset(n for n in numbers if size[n] > _MINOR * largest)
+    weak = float(np.delete(size, numbers).max(initial=0.0)) / largest
+    some = weak > 1e-9
+    return Needed(tuple(numbers), major, weak if some else 0.0, change(count) if some else 0.0)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -48,6 +48,7 @@ class Order:
         unbalance: force per square of the reference speed at the free dofs, (n,).
         error: transmission error of each contact, (c,) m; force: F_0 times the stiffness variation, and impacts, (c,) N.
         couple: of loaded teeth that feel the tilt of their shafts, about the place of each contact along its face, (c,) N m.
+        minor: whether it is one of the many small orders that loaded teeth need for their peak to peak only.
     """
 
     name: str
@@ -56,6 +57,7 @@ class Order:
     error: np.ndarray
     force: np.ndarray
     couple: np.ndarray
+    minor: bool = False
 
     def load(self, lines: ContactLines, speed: float) -> np.ndarray:
         """Force on the free dofs at a reference speed in rad/s, (n,)."""
@@ -80,11 +82,10 @@ def orders_of(setup: Setup) -> tuple[list[Order], tuple[str, ...]]:
         _add(found, ("shaft", 1, round(ratio, 9)), shaft, ratio, load, np.zeros((3, count), complex))
     for mesh, harmonic, ratio, terms in _meshes(setup, left):
         _add(found, ("mesh", harmonic, round(ratio, 9)), mesh, ratio, np.zeros(system.n, complex), terms)
-    for kind, name, multiple, ratio, terms in _loaded_teeth(setup, left):
-        _add(found, (kind, multiple, round(ratio, 9)), name, ratio, np.zeros(system.n, complex), terms)
+    for kind, name, multiple, ratio, terms, minor in _loaded_teeth(setup, left):
+        _add(found, (kind, multiple, round(ratio, 9)), name, ratio, np.zeros(system.n, complex), terms, minor=minor)
     orders = [
-        Order(f"{kind} {', '.join(names)} {harmonic}x", o.ratio, o.unbalance, o.error, o.force, o.couple)
-        for (kind, harmonic, _), (names, o) in found.items()
+        replace(o, name=f"{kind} {', '.join(names)} {harmonic}x") for (kind, harmonic, _), (names, o) in found.items()
     ]
     return sorted(orders, key=lambda order: order.ratio), tuple(dict.fromkeys(left))
 
@@ -96,12 +97,14 @@ def _add(
     ratio: float,
     load: np.ndarray,
     terms: np.ndarray,
+    *,
+    minor: bool = False,
 ) -> None:
-    names, old = found.get(key, ([], Order("", ratio, np.zeros_like(load), *np.zeros_like(terms))))
+    names, old = found.get(key, ([], Order("", ratio, np.zeros_like(load), *np.zeros_like(terms), minor=True)))
     if name not in names:
         names.append(name)
     whole = np.array([old.error, old.force, old.couple]) + terms
-    found[key] = names, Order("", old.ratio, old.unbalance + load, *whole)
+    found[key] = names, Order("", old.ratio, old.unbalance + load, *whole, minor=old.minor and minor)
 
 
 def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:
@@ -169,8 +172,8 @@ def _weak(what: str, rest: float) -> list[str]:
     return [f"harmonics of its {what} of up to {100.0 * rest:.2g} % of the strongest"] if rest > 0.0 else []
 
 
-def _loaded_teeth(setup: Setup, left: list[str]) -> Iterable[tuple[str, str, int | Fraction, float, np.ndarray]]:
-    """(kind, name, harmonic, ratio, [errors; forces; couples] of all contacts) of the joint state of loaded teeth.
+def _loaded_teeth(setup: Setup, left: list[str]) -> Iterable[tuple[str, str, int | Fraction, float, np.ndarray, bool]]:
+    """(kind, name, harmonic, ratio, [errors; forces; couples] of all contacts, minor) of the joint state of loaded teeth.
 
     The damping of a contact is that of its deflection: what the approach is at first touch acts as a transmission error e, and
     the force f + k e makes up for it in k (v.q - e).
@@ -183,18 +186,18 @@ def _loaded_teeth(setup: Setup, left: list[str]) -> Iterable[tuple[str, str, int
         f = joint.excitation(cycle)
         # Contacts are weighed by the deflection that their force stands for.
         k = np.where(joint.stiffness > 0.0, joint.stiffness, np.inf)
-        numbers, weak, change = that_matter(f / k)
-        if weak > 0.0:
+        needed = that_matter(f / k)
+        if needed.weak > 0.0:
             left.append(
-                f"meshes {', '.join(cycle.meshes)}: orders of their loaded teeth of up to {100.0 * weak:.2g} % of the strongest; "
-                f"they would change its peak to peak at a crawl by {100.0 * change:.2g} %"
+                f"meshes {', '.join(cycle.meshes)}: orders of their loaded teeth of up to {100.0 * needed.weak:.2g} % of the "
+                f"strongest; they would change its peak to peak at a crawl by {100.0 * needed.change:.2g} %"
             )
         error = joint.no_load(cycle)
         varied = (error, f + joint.stiffness * error, joint.couple(cycle))
         terms = np.stack([harmonics_of_cycle(values) for values in varied], axis=1)
-        for n in numbers:
+        for n in needed.numbers:
             for kind, name, harmonic in _named(setup.system, cycle, Fraction(n, cycle.periods)):
-                yield kind, name, harmonic, n / cycle.periods * cycle.ratio, terms[n - 1]
+                yield kind, name, harmonic, n / cycle.periods * cycle.ratio, terms[n - 1], n not in needed.major
                 terms[n - 1] = 0.0  # further names of one order add nothing to it
 
 

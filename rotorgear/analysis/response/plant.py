@@ -44,6 +44,10 @@ class Readings:
         forces = np.hstack([self.mesh_force, self.bearing_force.reshape(orders, -1)])
         return forces if forces.size else self.displacement[:, :, :3].reshape(orders, -1)
 
+    def chosen(self, which: np.ndarray) -> Readings:
+        """Those of some orders, in their sequence."""
+        return Readings(**{item.name: getattr(self, item.name)[which] for item in fields(Readings)})
+
 
 def joined(parts: Sequence[Readings]) -> Readings:
     """Readings of several lists of orders at one speed as those of all of them."""

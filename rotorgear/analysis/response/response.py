@@ -88,14 +88,18 @@ def response(
     )
     orders, weak = orders_of(first)
     orders, left = _within(orders, chosen, fmax)
-    top = max(order.ratio for order in orders) * float(np.max(np.abs(chosen)))
+    fastest = float(np.max(np.abs(chosen)))
+    highest = max(order.ratio for order in orders) * fastest
+    # The many minor orders of teeth that differ go far up; the mesh is made for those that shake.
+    top = max((order.ratio for order in orders if not order.minor), default=highest / fastest) * fastest
+    left += _beyond_mesh(orders, top, fastest)
     speed = float(chosen[-1])
     for aim in aims(accuracy):
         progress(0.02, "discretisation")
         plan = plan_up_to(at_speed(linear, speed), MARGIN * top / (2.0 * np.pi), elements, aim)
         setup, orders = _discretised(first, linear, plan, orders)
         system = setup.system
-        modes, w = damped_modes(system, DAMPED * top, speed)
+        modes, w = damped_modes(system, DAMPED * highest, speed)
         plant = Plant(system, setup.lines, (modes, w, zeta))
         how, why = choose_method(method, len(chosen) * len(orders), system.n)
         run = (
@@ -165,6 +169,17 @@ def response(
         status=short or "success",
         method=f"{run.method} ({how}: {why})",
     )
+
+
+def _beyond_mesh(orders: list[Order], top: float, fastest: float) -> list[str]:
+    """A sentence on minor orders above the frequency (rad/s) that the mesh is made for."""
+    beyond = [order for order in orders if order.ratio * fastest > (1.0 + 1e-9) * top]
+    if not beyond:
+        return []
+    return [
+        f"a finer mesh for {len(beyond)} small orders of loaded teeth above {top / (2.0 * np.pi):.5g} Hz, up to "
+        f"{beyond[-1].ratio * fastest / (2.0 * np.pi):.5g} Hz: they are solved on the mesh for the larger ones"
+    ]
 
 
 def _spread(speeds: np.ndarray) -> list[float]:

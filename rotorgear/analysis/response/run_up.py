@@ -23,6 +23,8 @@ _PER_ROUND = 6
 _SPEEDS_WHILE_GROWING = 24
 # Modes up to this much above the highest frequency of an order are in its basis.
 _MODES_UP_TO = 1.5
+# So many minor orders share a basis.
+_IN_A_BUNCH = 32
 
 
 @dataclass(frozen=True)
@@ -168,18 +170,31 @@ def modal_sweep(
     error = 0.0
     checked = 0
     sizes = []
+    bunches = _bunches(orders)
     with single_thread(plant.system.n):
-        for number, order in enumerate(orders):
-            top = _MODES_UP_TO * order.ratio * float(np.max(np.abs(speeds)))
-            sweep = ModalSweep(plant, [order], speeds, shapes[:, w <= top])
-            share = _Share(progress, number, len(orders), order.name)
-            readings.append(_swept(sweep, order.name, share))
+        for number, bunch in enumerate(bunches):
+            own = [orders[o] for o in bunch]
+            top = _MODES_UP_TO * own[-1].ratio * float(np.max(np.abs(speeds)))
+            sweep = ModalSweep(plant, own, speeds, shapes[:, w <= top])
+            share = _Share(progress, number, len(bunches), own[-1].name)
+            readings.append(_swept(sweep, own[-1].name, share))
             error = max(error, sweep.error)
             checked = checked + sweep.checked
             sizes.append((sweep.modes, sweep.basis.shape[1] - sweep.modes))
     most, added = max(sizes)
     method = f"modal, up to {most} modes and {added} static and direct solutions as basis of an order"
-    return Sweep([joined(parts) for parts in zip(*readings, strict=True)], error, checked, method)
+    back = np.argsort(np.concatenate(bunches))
+    whole = [joined(parts).chosen(back) for parts in zip(*readings, strict=True)]
+    return Sweep(whole, error, checked, method)
+
+
+def _bunches(orders: list[Order]) -> list[list[int]]:
+    """Numbers of the orders that share a basis: minor ones with those of like frequency, every other order has its own."""
+    minor = [o for o, order in enumerate(orders) if order.minor]
+    return [
+        *([o] for o, order in enumerate(orders) if not order.minor),
+        *(minor[at : at + _IN_A_BUNCH] for at in range(0, len(minor), _IN_A_BUNCH)),
+    ]
 
 
 @dataclass(frozen=True)
