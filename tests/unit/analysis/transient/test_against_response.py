@@ -174,3 +174,10 @@ def test_former_names_of_the_approach_are_read_with_a_warning() -> None:
         assert result.history(f"deflection {name}") == pytest.approx(normal * result.history(f"approach {name}"))
     with pytest.warns(FutureWarning, match="approach"):
         assert result.contacts[1].peak_to_peak_dte_m == result.contacts[1].peak_to_peak_approach_m
+
+
+def test_where_only_torsion_moves_transmission_error_and_approach_are_one() -> None:
+    model = spur_pair(motions=["torsion"])
+    result = rg.transient(model, time=0.01, discard=0.0, steps=60, elements=1, method="newmark", error_estimate=False)
+    assert np.ptp(result.approach) > 1e-6
+    assert result.transmission_error == pytest.approx(result.approach, abs=1e-9 * np.ptp(result.approach))
