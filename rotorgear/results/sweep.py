@@ -99,8 +99,8 @@ class SweepResult(ModelResult, kind="sweep"):
     """p points with r runs each, c mesh contacts, s sections a run, t exponents. NaN where a point or run failed.
 
     `section` holds displacement and velocity of the contacts along their normal (without the error e of the teeth) at the end of
-    each least common period T of all meshes. `transmission_error` and `approach` are peak to peak: rotation at the base circles,
-    and v.q / cos(beta_b) in the transverse plane; `peak_to_peak` is that of the penetration d - e. The criterion that `tolerance`
+    each least common period T of all meshes. `peak_to_peak_transmission_error` is that of the rotation at the base circles,
+    `peak_to_peak_approach` of v.q / cos(beta_b) in the transverse plane; `peak_to_peak` is that of the penetration d - e. The criterion that `tolerance`
     and `chaos` belong to stands in analysis/sweep/classify.py.
     """
 
@@ -119,8 +119,10 @@ class SweepResult(ModelResult, kind="sweep"):
         "standard errors of the Lyapunov exponents", "", "point", "run", "exponent", json=None
     )
     peak_to_peak: np.ndarray = of("penetration of the flanks, peak to peak", "m", "point", "run", "contact", json=None)
-    transmission_error: np.ndarray = of("transmission error, peak to peak", "m", "point", "run", "contact", json=None)
-    approach: np.ndarray = of("approach, peak to peak", "m", "point", "run", "contact", json=None)
+    peak_to_peak_transmission_error: np.ndarray = of(
+        "transmission error, peak to peak", "m", "point", "run", "contact", json=None
+    )
+    peak_to_peak_approach: np.ndarray = of("approach, peak to peak", "m", "point", "run", "contact", json=None)
     rms_approach: np.ndarray = of(
         "root mean square of the approach about its mean", "m", "point", "run", "contact", json=None
     )
@@ -179,8 +181,8 @@ class SweepResult(ModelResult, kind="sweep"):
             static_force_n=static,
             static_deflection_m=float(self.static_deflection[p, c]),
             peak_to_peak_m=float(self.peak_to_peak[at]),
-            peak_to_peak_transmission_error_m=float(self.transmission_error[at]),
-            peak_to_peak_approach_m=float(self.approach[at]),
+            peak_to_peak_transmission_error_m=float(self.peak_to_peak_transmission_error[at]),
+            peak_to_peak_approach_m=float(self.peak_to_peak_approach[at]),
             rms_approach_m=float(self.rms_approach[at]),
             mean_force_n=float(self.mean_force[at]),
             rms_force_n=float(self.rms_force[at]),
@@ -215,9 +217,9 @@ class SweepResult(ModelResult, kind="sweep"):
 
     @property
     def amplitude(self) -> np.ndarray:
-        """Former name of `approach`, from the time when it was taken along the flank normal."""
-        warn_old("attribute of a sweep", "amplitude", "approach (transverse)")
-        return self.approach
+        """Former name of `peak_to_peak_approach`, from the time when it was taken along the flank normal."""
+        warn_old("attribute of a sweep", "amplitude", "peak_to_peak_approach (transverse)")
+        return self.peak_to_peak_approach
 
     @property
     def rms(self) -> np.ndarray:

@@ -19,8 +19,8 @@ from rotorgear.solvers.lanes.lanes import Orbit
 
 _TABLES = (
     "peak_to_peak",
-    "transmission_error",
-    "approach",
+    "peak_to_peak_transmission_error",
+    "peak_to_peak_approach",
     "rms_approach",
     "mean_force",
     "rms_force",
@@ -150,8 +150,8 @@ def _indicators(orbit: Orbit, counted: np.ndarray, steps: int) -> dict[str, np.n
     return {
         "peak_to_peak": sums[:, k.X_MAX] - sums[:, k.X_MIN],
         "displacement": displacement,
-        "transmission_error": transmission_error,
-        "approach": approach,
+        "peak_to_peak_transmission_error": transmission_error,
+        "peak_to_peak_approach": approach,
         "rms_approach": rms * transverse,
         "mean_force": force,
         "rms_force": np.sqrt(np.maximum(sums[:, k.F_SQUARES] / total - force**2, 0.0)),

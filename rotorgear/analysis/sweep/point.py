@@ -10,7 +10,7 @@ import numpy as np
 from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.static.along_faces import about_faces
-from rotorgear.analysis.static.ground import springs_about_mean
+from rotorgear.analysis.static.ground import mean_torsion_notes, springs_about_mean
 from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
 from rotorgear.analysis.sweep.reduce import Large, Reduced, Wanted
 from rotorgear.analysis.transient.notes import transient_left_out
@@ -135,7 +135,8 @@ class PointMaker:
             raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
         built = springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)
         built = replace(built, local=_with_approaches(built))
-        self.left_out.append((*left_out(system, speed, rolls=True), *transient_left_out(built)))
+        notes = (*left_out(system, speed, rolls=True), *transient_left_out(built), *mean_torsion_notes(system, speed))
+        self.left_out.append(notes)
         for part in built.parts:
             if why := part.law.unsettled():
                 raise AnalysisError(f"{part.part}: {why}")

@@ -88,8 +88,8 @@ def _points(result: SweepResult, rows: range) -> Any:
         out.add_row(
             *cells,
             _largest(1e6 * result.peak_to_peak[p, r], ".2f"),
-            _largest(1e6 * result.transmission_error[p, r], ".2f"),
-            _largest(1e6 * result.approach[p, r], ".2f"),
+            _largest(1e6 * result.peak_to_peak_transmission_error[p, r], ".2f"),
+            _largest(1e6 * result.peak_to_peak_approach[p, r], ".2f"),
             _largest(result.dynamic_factor[p, r], ".2f"),
             _largest(100.0 * result.apart[p, r], ".1f"),
             _largest(100.0 * result.back[p, r], ".1f"),

@@ -107,7 +107,7 @@ def test_a_linear_law_from_python_is_a_support_in_transients_and_sweeps() -> Non
     assert "nonlinear_elements.extra force y" in runs[0].channel
     over = {"operation.speed": ["1500 rpm"]}
     swept = [rg.sweep(model, over, elements=1, discard=50, sample=5, exponents=0) for model in (law, support)]
-    assert swept[0].approach == pytest.approx(swept[1].approach, rel=1e-3)
+    assert swept[0].peak_to_peak_approach == pytest.approx(swept[1].peak_to_peak_approach, rel=1e-3)
 
 
 def rigid_rotor(load: float, **bearing: Any) -> rg.Model:

@@ -125,7 +125,7 @@ def test_statistics_of_a_sweep_are_those_of_the_transient() -> None:
     row = run.to_dict()["contacts"][0]
     assert swept.motion == ("1T",)
     assert swept.largest_force[0, 0, 0] == pytest.approx(row["largest_force_n"], rel=2e-3)
-    assert swept.approach[0, 0, 0] == pytest.approx(row["peak_to_peak_approach_m"], rel=2e-3)
+    assert swept.peak_to_peak_approach[0, 0, 0] == pytest.approx(row["peak_to_peak_approach_m"], rel=2e-3)
     assert swept.mean_force[0, 0, 0] == pytest.approx(row["mean_force_n"], rel=5e-3)
     assert swept.rms_force[0, 0, 0] == pytest.approx(row["rms_force_n"], rel=5e-3)
     assert swept.apart[0, 0, 0] == pytest.approx(row["apart_share"], abs=5e-3)
@@ -424,12 +424,12 @@ def test_two_stages_over_their_common_period_are_those_of_the_transient() -> Non
     for i, row in enumerate(run.to_dict()["contacts"]):
         assert swept.contact[i] == row["name"]
         assert swept.largest_force[0, 0, i] == pytest.approx(row["largest_force_n"], rel=5e-3)
-        assert swept.approach[0, 0, i] == pytest.approx(row["peak_to_peak_approach_m"], rel=5e-3)
+        assert swept.peak_to_peak_approach[0, 0, i] == pytest.approx(row["peak_to_peak_approach_m"], rel=5e-3)
         error = row["peak_to_peak_transmission_error_m"]
-        assert swept.transmission_error[0, 0, i] == pytest.approx(error, rel=5e-3)
+        assert swept.peak_to_peak_transmission_error[0, 0, i] == pytest.approx(error, rel=5e-3)
         assert swept.rms_force[0, 0, i] == pytest.approx(row["rms_force_n"], rel=1e-2)
         end = run.approach[-1, i]
-        assert swept.section[0, 0, -1, i, 0] == pytest.approx(end, abs=5e-3 * swept.approach[0, 0, i])
+        assert swept.section[0, 0, -1, i, 0] == pytest.approx(end, abs=5e-3 * swept.peak_to_peak_approach[0, 0, i])
 
 
 def test_unstable_motions_are_no_chaos() -> None:

@@ -115,7 +115,7 @@ def test_models_with_such_laws_give_the_transient(changes: dict[str, Any]) -> No
     )
     row = run.to_dict()["contacts"][0]
     assert swept.largest_force[0, 0, 0] == pytest.approx(row["largest_force_n"], rel=5e-3)
-    assert swept.approach[0, 0, 0] == pytest.approx(row["peak_to_peak_approach_m"], rel=1e-2)
+    assert swept.peak_to_peak_approach[0, 0, 0] == pytest.approx(row["peak_to_peak_approach_m"], rel=1e-2)
     assert swept.rms_force[0, 0, 0] == pytest.approx(row["rms_force_n"], rel=1e-2)
     assert any("bearing cages never repeat" in warning for warning in swept.warnings) == (
         "bearings__a__rolling" in changes
@@ -132,7 +132,7 @@ def test_each_ripple_of_a_torque_has_its_own_table() -> None:
     )
     both = rg.sweep(model, {"loads.drive.ripple": [0.1, 0.4]}, discard=40, sample=20, elements=1)
     # Teeth never part, so the motion is linear in the ripple.
-    assert both.approach[1, 0, 0] == pytest.approx(4.0 * both.approach[0, 0, 0], rel=1e-3)
+    assert both.peak_to_peak_approach[1, 0, 0] == pytest.approx(4.0 * both.peak_to_peak_approach[0, 0, 0], rel=1e-3)
 
 
 def test_a_torque_that_steps_is_refused() -> None:

@@ -172,7 +172,7 @@ def test_portraits_go_on_where_the_counted_run_ended_and_have_its_statistics(swe
         if swept.motion_at(p) == "chaotic":
             continue
         assert np.abs((points[:32, 0, :2] - swept.section[p, 0, 31:63, 0]) / size[:2]).max() < 1e-9
-        assert size[DISPLACEMENT] == pytest.approx(swept.approach[p, 0, 0], rel=1e-9)
+        assert size[DISPLACEMENT] == pytest.approx(swept.peak_to_peak_approach[p, 0, 0], rel=1e-9)
         assert path[:, 0, FORCE].max() == pytest.approx(swept.largest_force[p, 0, 0], rel=1e-9)
         assert path[:, 0, FORCE].mean() == pytest.approx(swept.mean_force[p, 0, 0], rel=1e-9)
 

@@ -115,7 +115,7 @@ def test_a_large_model_agrees_with_its_own_transient_where_teeth_part() -> None:
     assert swept.reduction.error <= 0.01
     assert row["apart_share"] > 0.2
     assert swept.apart[0, 0, 0] == pytest.approx(row["apart_share"], abs=0.01)
-    assert swept.approach[0, 0, 0] == pytest.approx(row["peak_to_peak_approach_m"], rel=0.01)
+    assert swept.peak_to_peak_approach[0, 0, 0] == pytest.approx(row["peak_to_peak_approach_m"], rel=0.01)
     assert swept.largest_force[0, 0, 0] == pytest.approx(row["largest_force_n"], rel=0.01)
     assert swept.static_force[0, 0] == pytest.approx(row["static_force_n"], rel=1e-9)
 
