@@ -99,9 +99,9 @@ class SweepResult(ModelResult, kind="sweep"):
     """p points with r runs each, c mesh contacts, s sections a run, t exponents. NaN where a point or run failed.
 
     `section` holds displacement and velocity of the contacts along their normal (without the error e of the teeth) at the end of
-    each least common period T of all meshes. `peak_to_peak_transmission_error` is that of the rotation at the base circles,
-    `peak_to_peak_approach` of v.q / cos(beta_b) in the transverse plane; `peak_to_peak` is that of the penetration d - e. The criterion that `tolerance`
-    and `chaos` belong to stands in analysis/sweep/classify.py.
+    each least common period T of all meshes. `peak_to_peak_transmission_error` is of the rotation at the base circles,
+    `peak_to_peak_approach` of v.q / cos(beta_b) in the transverse plane, `peak_to_peak` of the penetration d - e. The criterion
+    that `tolerance` and `chaos` belong to stands in analysis/sweep/classify.py.
     """
 
     address: tuple[str, ...] = of("address of a parameter", "", "parameter", json=None)
