@@ -234,7 +234,9 @@ def _along_face(system: System, force: MeshForce, spring: MeshContact, teeth: Fa
         error_cos=spring.error_cos,
         error_sin=spring.error_sin,
     )
-    found = [LocalPart(part, label, law, columns, is_mesh=True)]
+    rotation = columns_at(system, dofs[:12], rotation_vector(force)[None])[:, 0]
+    transverse = float(np.cos(contact.base_helix_angle))
+    found = [LocalPart(part, label, law, columns, rotation, transverse)]
     approach = columns[:, :1]
     if spring.impact:
         blow = replace(spring, stiffness=0.0, damping=0.0, gap="bilateral", expanded=False)
@@ -251,7 +253,7 @@ def _along_face(system: System, force: MeshForce, spring: MeshContact, teeth: Fa
         own_normal = columns_at(system, dofs[:12], contact_vector(turned)[None])
         column = own_normal if spring.gap == "unilateral" else -approach
         coast_law = _loaded_teeth(_back(touching), other_teeth, behind, phase)
-        found.append(LocalPart(part, f"{label} back", coast_law, column, is_mesh=True))
+        found.append(LocalPart(part, f"{label} back", coast_law, column, -rotation, transverse))
     return found
 
 

@@ -100,11 +100,13 @@ def _add(
     *,
     minor: bool = False,
 ) -> None:
-    names, old = found.get(key, ([], Order("", ratio, np.zeros_like(load), *np.zeros_like(terms), minor=True)))
+    error, force, couple = np.zeros_like(terms)
+    blank = Order("", ratio, np.zeros_like(load), error, force, couple, minor=True)
+    names, old = found.get(key, ([], blank))
     if name not in names:
         names.append(name)
-    whole = np.array([old.error, old.force, old.couple]) + terms
-    found[key] = names, Order("", old.ratio, old.unbalance + load, *whole, minor=old.minor and minor)
+    error, force, couple = np.array([old.error, old.force, old.couple]) + terms
+    found[key] = names, Order("", old.ratio, old.unbalance + load, error, force, couple, old.minor and minor)
 
 
 def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:
