@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import atexit
 import json
 import pickle
+import shutil
+import tempfile
 from dataclasses import fields, replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,6 +26,7 @@ from rotorgear.results.schema import Record, of
 from rotorgear.results.spectrum import SpectralLines
 from tests.paths import ROOT
 from tests.unit.analysis.geared import pair_file
+from tests.unit.casings.blocks import block, write_inp
 
 # Names that mean two things since 0.1: files and scripts hold them. A new one is a mistake.
 HOMONYMS = {"amplitude", "bearing_force", "bearings", "error_estimate", "mesh", "motion", "reason", "settle"}
@@ -30,6 +35,18 @@ HOMONYMS = {"amplitude", "bearing_force", "bearings", "error_estimate", "mesh", 
 @cache
 def model(name: str) -> rg.Model:
     return rg.load(ROOT / "models" / f"{name}.toml")
+
+
+def block_casing() -> rg.Model:
+    """A shaft in a block of a few elements, whose mesh lies in a folder that is gone with the process."""
+    folder = Path(tempfile.mkdtemp())
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    write_inp(folder / "box.inp", block(kind="tetra"))
+    shaft = 'position = [0.05, 0.03]\nstart = 0.2\nsections = [{ length = "1 m", outer_diameter = "20 mm" }]'
+    casing = 'mesh = "box.inp"\nunit = "m"\nmaterial = "steel"\nheld = ["low"]\nseats = { left = "high" }'
+    bearing = 'shaft = "a"\nat = "start"\nstiffness = { radial = 1e8 }\ncasing = "box"'
+    text = f"[shafts.a]\n{shaft}\n[casings.box]\n{casing}\n[bearings.left]\n{bearing}\n"
+    return rg.loads(text, folder=folder)
 
 
 @cache
@@ -48,6 +65,7 @@ def example(kind: str) -> Result:
         "static": lambda: rg.static(model("helical_pair"), elements=1),
         "response": lambda: rg.response(model("backlash_pair"), points=3),
         "check": lambda: rg.check(model("geared_pair")),
+        "casing": lambda: rg.casing(block_casing(), modes=2),
         "gear": lambda: rg.gear(model("helical_pair")),
         "mesh": lambda: rg.mesh(model("helical_pair"), stiffness="iso", positions=16),
         "mesh_optimum": lambda: rg.optimise_flanks(
