@@ -38,7 +38,8 @@ carries over its true error, smallest and largest over the modes whose true erro
 an estimate of `inf` (the mesh can't follow that mode) is left out of it. Times are medians of three whole analyses, assembly
 to energies, on one thread of the machine that made this page.
 
-[Effectivity](effectivity.md) has all analyses, campbell to transients. Other methods have their studies beside them: [loaded teeth](mesh.md#accuracy),
+[Effectivity](effectivity.md) has all analyses, campbell to transients.
+Other methods have their studies beside them: [loaded teeth](mesh.md#accuracy),
 [integrators of the transient](transient.md), [exponents and indicators of sweeps](sweep.md#what-the-numbers-are-worth) and
 [their reductions](sweep.md#models-with-flexible-shafts).
 """
