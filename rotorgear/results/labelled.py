@@ -86,10 +86,16 @@ def _columns(record: Record, prefix: str = "") -> Iterator[Column]:
                     yield Column(f"{name}.{key}", declared.axes[1:], np.asarray(entry), declared)
         elif isinstance(value, np.ndarray):
             yield Column(name, declared.axes, value, declared)
-        elif isinstance(value, tuple) and declared.axes:
+        elif isinstance(value, tuple) and declared.axes and not _left_out(record, declared.name, value):
             texts = np.empty(len(value), dtype=object)
             texts[:] = value
             yield Column(name, declared.axes, texts, declared)
+
+
+def _left_out(record: Record, name: str, value: tuple[Any, ...]) -> bool:
+    """Whether a field is empty because the model has nothing of its kind, as its default says: it isn't counted by its axis."""
+    default = type(record).__dataclass_fields__[name].default
+    return value == () and default == ()
 
 
 def data_set(result: Record) -> Any:
