@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -100,7 +101,9 @@ def read(path: str | Path) -> Any:
             digest = digest_of(file)
             # A field that came later has its default in an older file; the version stands in every file.
             old = {"rotorgear_version": str(file.attrs["rotorgear_version"])}
-            result = cls(**old | {name: get_value(file[name]) for name in stored_fields(cls) if name in file})
+            stored = {name: get_value(file[name]) for name in stored_fields(cls) if name in file}
+            _require_fields(path, cls, stored)
+            result = cls(**old | stored)
         except ModelError as error:
             raise ReadError(path, f"its model does not pass the checks of rotorgear {VERSION}\n{error}") from None
         except (KeyError, ValueError, TypeError, AttributeError, OSError, RuntimeError) as error:
@@ -111,6 +114,24 @@ def read(path: str | Path) -> Any:
                 path, "it is damaged: its values are not those that rotorgear wrote; run the analysis again"
             )
         return result
+
+
+def _require_fields(path: Path, cls: type[Any], stored: dict[str, Any]) -> None:
+    """ReadError for a file of a version that did not compute all that such a result holds today."""
+    lacking = [
+        one.name
+        for one in fields(cls)
+        if one.init
+        and one.default is MISSING
+        and one.default_factory is MISSING
+        and one.name not in stored
+        and one.name in stored_fields(cls)
+    ]
+    if lacking and len(lacking) < len(stored):
+        raise ReadError(
+            path,
+            f"it is from a rotorgear that did not compute {', '.join(lacking)}; run the analysis again",
+        )
 
 
 def _import_h5py() -> ModuleType:

@@ -192,7 +192,9 @@ def test_teeth_of_an_overhung_pinion_rest_with_their_shafts() -> None:
     assert found.equilibrium.moment[0] == pytest.approx(face.moment - face.static.place * face.force, rel=1e-5)
     # What is found, given to the pair alone, is the same contact.
     alone = rg.mesh(model.with_("meshes.stage.misalignment", face.misalignment), estimate=False)
-    assert alone.helix[0].largest_pressure_pa == pytest.approx(face.peak_pressure, rel=1e-6)
+    # Statics look at 64 even positions, the pair alone where its curves need more: its largest pressure is a little larger.
+    assert alone.helix[0].largest_pressure_pa == pytest.approx(face.peak_pressure, rel=5e-3)
+    assert alone.helix[0].largest_pressure_pa >= face.peak_pressure * (1.0 - 1e-3)
 
 
 @pytest.mark.long
