@@ -43,7 +43,7 @@ _TABLE = [
     ("torque", "N*m", "a torque", "120 N m"),
     ("power", "W", "a power", "2.5 MW"),
     ("stiffness", "N/m", "a stiffness", "2e8 N/m"),
-    ("stiffness_per_area", "N/m^3", "a stiffness per area", "1e13 N/m^3"),
+    ("stiffness_per_area", "N/m^3", "a stiffness per area or a cubic stiffness", "1e13 N/m^3"),
     ("rotational_stiffness", "N*m/rad", "a rotational stiffness", "1e5 N m/rad"),
     ("unbalance", "kg*m", "an unbalance", "20 g mm"),
     ("acceleration", "m/s^2", "an acceleration", "9.81 m/s^2"),

@@ -397,7 +397,7 @@ REFUSED += [
     Refused("critical: a speed of 0", "no line of excitation", lambda: rg.critical(tilting(0.1, 0.08, 1e3), stop=0.0)),
     Refused("a massless group with a damper", "dampers but no inertia", lambda: rg.modal(_damped_end(), speed=1.0)),
     Refused("mesh: faces that just do not overlap", "face", lambda: pair_of((24, 36)).with_("gears.b.at", 0.04)),
-    Refused("gear: 3 teeth, thinner than their shaft", "teeth", lambda: pair_of((3, 36))),
+    Refused("gear: 3 teeth, thinner than their shaft", "bore", lambda: pair_of((3, 36))),
     Refused("transient: 1e9 s", "would take", lambda: rg.transient(pair_of((24, 36)), time=1e9)),
     Refused("transient: 1e-9 s", "gives only", lambda: rg.transient(pair_of((24, 36)), time=1e-9)),
     Refused(

@@ -57,6 +57,7 @@ class SpeedFamily:
 
     def __init__(self, system: System, low: float, high: float) -> None:
         self.system = system
+        self._low = low
         self.mass = system.mass
         self.gyroscopic = system.gyroscopic
         beta = system.model.damping.rayleigh_beta
@@ -92,7 +93,7 @@ class SpeedFamily:
         B = abs(forms.strain)
         strained = [sp.csc_array(B.T @ A @ B) for A in sizes if A.nnz]
         found = independent_groups([self.mass, self.gyroscopic, *strained, *(A for pair in self._tables for A in pair)])
-        return groups_with_inertia(self.system, found, self.system.damping())[0]
+        return groups_with_inertia(self.system, found, self.system.damping(self._low))[0]
 
     def reduced(self, V: np.ndarray) -> ReducedFamily:
         """Matrices in the coordinates of a basis V (n, r), real."""

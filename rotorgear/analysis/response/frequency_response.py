@@ -86,6 +86,8 @@ def frf(
     _check(hz, inputs, outputs, modal_damping)
     of_casings = {text: casing_row(model, text) for text in (*inputs, *outputs) if text.startswith("casings.")}
     places = {text: named_place(model, text) for text in (*inputs, *outputs) if text not in of_casings}
+    direction = {text: place[2] for text, place in places.items()}
+    direction |= {text: text.rpartition(":")[2] for text in of_casings}
     zeta = modal_damping + model.damping.modal_ratio
     linear, notes = about_equilibrium(model, [turns or None])
     first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
@@ -121,8 +123,8 @@ def frf(
         frequency_hz=hz,
         inputs=tuple(inputs),
         outputs=tuple(outputs),
-        input_units=tuple("N m" if places[text][2] in DOF_NAMES[3:] else "N" for text in inputs),
-        output_units=tuple("rad" if places[text][2] in DOF_NAMES[3:] else "m" for text in outputs),
+        input_units=tuple("N m" if direction[text] in DOF_NAMES[3:] else "N" for text in inputs),
+        output_units=tuple("rad" if direction[text] in DOF_NAMES[3:] else "m" for text in outputs),
         receptance=receptance,
         damping_ratio=zeta,
         residual=residual,

@@ -147,6 +147,10 @@ def gyroscopic_pairs(M: np.ndarray, G: np.ndarray, K: np.ndarray, most: int) -> 
     return 1.0 / inverse[::-1][found], np.asarray(vectors)
 
 
+# The Hermitian problem gives 1/w to the rounding of the largest: w errs by eps w/w_min, here 2e-11.
+_HERMITIAN_SPREAD = 1e5
+
+
 def _conservative(pencil: Pencil, smallest: float, count: int) -> Eigen | None:
     """The pairs of a pencil with skew D and positive definite K, which are their own left vectors; None for another one."""
     K = 0.5 * (pencil.K + pencil.K.T)
@@ -159,7 +163,7 @@ def _conservative(pencil: Pencil, smallest: float, count: int) -> Eigen | None:
             w, q = gyroscopic_pairs(pencil.M * both, pencil.D * both, K * both, count)
     except la.LinAlgError:  # rigid-body motions among the coordinates
         return None
-    if not len(w) or w[0] <= smallest:
+    if not len(w) or w[0] <= smallest or w[-1] > _HERMITIAN_SPREAD * w[0]:
         return None
     s = 1j * w
     q = scale[:, None] * q

@@ -97,7 +97,7 @@ def test_the_static_deflection_in_vtk_is_true_in_metres(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["response", str(GEARBOX), "--points", "0"], "points: got"),
+        (["response", str(GEARBOX), "--points", "0"], "the number of points must be at least 1, got 0"),
         (["response", str(GEARBOX), "--from", "10 mm"], "--from: got"),
         (["response", str(GEARBOX), "--from", "0", "--points", "2"], "none of them 0"),
         (["response", str(ROOT / "models" / "geared_pair.toml"), "--points", "2"], "nothing excites"),

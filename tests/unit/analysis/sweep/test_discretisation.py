@@ -13,10 +13,16 @@ from rotorgear.analysis.transient.task import prepare
 from rotorgear.errors import AnalysisError
 from tests.paths import ROOT
 
+# Models whose teeth or casing are computed by finite elements first.
+COSTLY = {"overhung_pinion", "relieved_pair", "split_torque_casing", "web_wheel"}
 
-def test_a_transient_and_a_sweep_of_a_shipped_model_have_the_same_dofs() -> None:
+
+@pytest.mark.parametrize("costly", [False, pytest.param(True, marks=pytest.mark.long)])
+def test_a_transient_and_a_sweep_of_a_shipped_model_have_the_same_dofs(costly: bool) -> None:
     compared = 0
     for path in sorted((ROOT / "models").glob("*.toml")):
+        if (path.stem in COSTLY) != costly:
+            continue
         model = rg.load(path)
         try:
             point = PointMaker()(model)
@@ -25,7 +31,7 @@ def test_a_transient_and_a_sweep_of_a_shipped_model_have_the_same_dofs() -> None
         dofs = point.local.n if hasattr(point, "local") else point.system.n
         assert dofs == prepare(model, None, None).local.local.n, path.name
         compared += 1
-    assert compared > 5
+    assert compared >= (3 if costly else 6)
 
 
 def test_only_shafts_with_internal_damping_find_their_state_at_rest_anew_at_each_speed(
