@@ -117,7 +117,7 @@ def read(path: str | Path) -> Any:
 
 
 def _require_fields(path: Path, cls: type[Any], stored: dict[str, Any]) -> None:
-    """ReadError for a file of a version that did not compute all that such a result holds today."""
+    """ReadError for a file that lacks what every such result holds today."""
     lacking = [
         one.name
         for one in fields(cls)
@@ -127,10 +127,10 @@ def _require_fields(path: Path, cls: type[Any], stored: dict[str, Any]) -> None:
         and one.name not in stored
         and one.name in stored_fields(cls)
     ]
-    if lacking and len(lacking) < len(stored):
+    if lacking:
         raise ReadError(
             path,
-            f"it is from a rotorgear that did not compute {', '.join(lacking)}; run the analysis again",
+            f"it is damaged, or from a rotorgear that did not compute {', '.join(lacking)}; run the analysis again",
         )
 
 
