@@ -19,7 +19,8 @@ from typing import Any, ClassVar
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
+from rotorgear.forces.law import parameter, refuse
+from rotorgear.forces.loaded_map import LoadedMap
 from rotorgear.forces.loaded_teeth import (
     ABOUT,
     BEGIN,
@@ -50,7 +51,6 @@ from rotorgear.solvers.time.compiled import force_function, schedule_function
 # Steps of x up to the largest load, and loads between which a map is turned over.
 STEPS = 192
 _LOADS = 1500
-_HARMONICS = 10
 # At each step of x of one tilt: force, tangent stiffness, energy, dM/dx and moment.
 FORCE, TANGENT, ENERGY, LIFT, MOMENT = range(5)
 NODE = 5
@@ -161,7 +161,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
 
 
 @dataclass(frozen=True, eq=False)
-class LoadedFace(ForceLaw):
+class LoadedFace(LoadedMap):
     """Contact of one helix by the maps of its loaded teeth at several tilts of the flanks."""
 
     title: ClassVar[str] = "loaded teeth that tilt"
@@ -208,16 +208,6 @@ class LoadedFace(ForceLaw):
             raise refuse(self, "approach", "for each tilt and position an approach that rises with the load")
         if self.moment.shape != shape:
             raise refuse(self, "moment", "a moment for each approach")
-
-    def __eq__(self, other: object) -> bool:
-        """Whether all parameters are the same, arrays element by element."""
-        return type(other) is type(self) and all(
-            np.array_equal(getattr(self, name), getattr(other, name)) for name in self.declared()
-        )
-
-    def __hash__(self) -> int:
-        """Of the loads: equal laws have equal ones."""
-        return hash(self.load.tobytes())
 
     @property
     def components(self) -> int:
@@ -308,30 +298,6 @@ class LoadedFace(ForceLaw):
         at = np.array([1.0, self.place])
         return (self.damping if self.contact_damping != "penetration" else 0.0) * np.outer(at, at)
 
-    @property
-    def can_part(self) -> bool:
-        """The flanks push only."""
-        return True
-
-    @property
-    def known_up_to(self) -> float:
-        """The largest load of the map."""
-        return float(self.load[-1])
-
-    def left_out(self) -> tuple[str, ...]:
-        """Nothing of the loaded teeth but what moves too fast for them to be at rest; the damping is no part of their map."""
-        damped = "no damping of the teeth is given"
-        if self.damping and self.contact_damping == "penetration":
-            damped = f"damping is {self.damping:.4g} N s/m times the deflection over {1e6 * self.reference:.3g} um"
-        elif self.damping:
-            damped = (
-                f"damping goes with the stiffness that carries, {self.damping:.4g} N s/m at {self.stiffness:.4g} N/m, and is "
-                "nothing where the teeth part"
-            )
-        return (
-            f"inertia of the teeth on their bodies: they follow their static contact over the mesh cycle; {damped}",
-        )
-
     def mean(self) -> LoadedFace:
         """The same map at one position: mean approach and moment under each load and tilt."""
         return replace(
@@ -342,13 +308,6 @@ class LoadedFace(ForceLaw):
             error_cos=(),
             error_sin=(),
         )
-
-    def repeats(self) -> tuple[Repeats, ...]:
-        """The mesh cycle, or the several base pitches after which the map repeats."""
-        if not self.order or (self.approach.shape[1] == 1 and not (self.error_cos or self.error_sin)):
-            return ()
-        highest = max(_HARMONICS, len(self.error_cos), len(self.error_sin))
-        return (Repeats(abs(self.order) / self.periods, highest * self.periods),)
 
     def columns(self, speed: float = 1.0) -> tuple[Column, ...]:
         """By the compiled functions, one system at a time; contact is counted of the approach."""

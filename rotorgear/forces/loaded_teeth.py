@@ -20,7 +20,8 @@ from typing import Any, ClassVar
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
+from rotorgear.forces.law import parameter, refuse
+from rotorgear.forces.loaded_map import LoadedMap
 from rotorgear.forces.mesh_contact import DAMPINGS
 from rotorgear.solvers.contact.gap_contact import curve_contact
 from rotorgear.solvers.contact.kinds import PENETRATION
@@ -30,8 +31,6 @@ from rotorgear.solvers.time.compiled import compiled, force_function, schedule_f
 # Steps of x up to the largest load, and loads between which the map is turned over.
 STEPS = 192
 _LOADS = 1500
-# Harmonics of a base pitch that count: teeth part, and corners strike.
-_HARMONICS = 10
 _TURN = 2.0 * np.pi
 # Places of the parameters, which cosine and sine of each harmonic of e follow, and then the rows of the map; COAST is where the
 # parameters of the coast flanks begin, or 0; LENGTH the numbers in a row.
@@ -184,7 +183,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
 
 
 @dataclass(frozen=True, eq=False)
-class LoadedTeeth(ForceLaw):
+class LoadedTeeth(LoadedMap):
     """Contact of one helix by the map of its loaded teeth."""
 
     title: ClassVar[str] = "loaded teeth"
@@ -222,16 +221,6 @@ class LoadedTeeth(ForceLaw):
             raise refuse(self, "load", "loads that rise from 0")
         if self.approach.shape[1:] != self.load.shape or np.any(np.diff(self.approach, axis=1) <= 0.0):
             raise refuse(self, "approach", "for each position an approach that rises with the load")
-
-    def __eq__(self, other: object) -> bool:
-        """Whether all parameters are the same, arrays element by element."""
-        return type(other) is type(self) and all(
-            np.array_equal(getattr(self, name), getattr(other, name)) for name in self.declared()
-        )
-
-    def __hash__(self) -> int:
-        """Of the loads: equal laws have equal ones."""
-        return hash(self.load.tobytes())
 
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
@@ -307,42 +296,11 @@ class LoadedTeeth(ForceLaw):
         """c, as with teeth that never part."""
         return np.array([[self.damping if self.expanded and self.contact_damping != "penetration" else 0.0]])
 
-    @property
-    def can_part(self) -> bool:
-        """The flanks push only."""
-        return True
-
-    @property
-    def known_up_to(self) -> float:
-        """The largest load of the map."""
-        return float(self.load[-1])
-
-    def left_out(self) -> tuple[str, ...]:
-        """Nothing of the loaded teeth but what moves too fast for them to be at rest; the damping is no part of their map."""
-        damped = "no damping of the teeth is given"
-        if self.damping and self.contact_damping == "penetration":
-            damped = f"damping is {self.damping:.4g} N s/m times the deflection over {1e6 * self.reference:.3g} um"
-        elif self.damping:
-            damped = (
-                f"damping goes with the stiffness that carries, {self.damping:.4g} N s/m at {self.stiffness:.4g} N/m, and is "
-                "nothing where the teeth part"
-            )
-        return (
-            f"inertia of the teeth on their bodies: they follow their static contact over the mesh cycle; {damped}",
-        )
-
     def mean(self) -> LoadedTeeth:
         """The same map at one position: the mean approach under each load, so that the mean force has the mean approach."""
         behind = self.coast and self.coast.mean()
         still = self.approach.mean(axis=0)[None]
         return replace(self, approach=still, periods=1, error_cos=(), error_sin=(), coast=behind)
-
-    def repeats(self) -> tuple[Repeats, ...]:
-        """The mesh cycle, or the several base pitches after which the map repeats."""
-        if not self.order or (len(self.approach) == 1 and not (self.error_cos or self.error_sin)):
-            return ()
-        highest = max(_HARMONICS, len(self.error_cos), len(self.error_sin))
-        return (Repeats(abs(self.order) / self.periods, highest * self.periods),)
 
     def columns(self, speed: float = 1.0) -> tuple[Column, ...]:
         """By the compiled functions, one system at a time; contact is counted."""
