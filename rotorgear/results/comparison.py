@@ -12,6 +12,7 @@ import math
 from collections.abc import Sequence
 
 from rotorgear.errors import ModelError, Problem
+from rotorgear.results.learnt import LearntParameter
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, derived, of
 
@@ -194,6 +195,23 @@ class Comparison(Result, kind="compare"):
     tolerance: float = of("tolerance", note=": largest relative difference of a match")
     excitation_tolerance: float = of("relative distance at which a line coincides with an excitation")
     chance: Chance = of("what chance gives", record=Chance)
+    stiffnesses: tuple[LearntParameter, ...] = of(
+        "what the matched lines teach of each stiffness",
+        "",
+        "stiffness",
+        record=LearntParameter,
+        note="; empty where nothing matched or only frequencies were given",
+        default=(),
+    )
+
+    @derived(
+        "effective number of stiffnesses that the matched lines teach",
+        note=": the sum of the learnt shares; `null` where `stiffnesses` is empty",
+        form=".1f",
+    )
+    def learnt_parameters(self) -> float | None:
+        """Sum of the learnt shares."""
+        return sum(row.learnt for row in self.stiffnesses) if self.stiffnesses else None
 
     @derived("number of rig lines", json="rig_lines")
     def rig_count(self) -> int:

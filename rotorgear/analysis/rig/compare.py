@@ -7,7 +7,7 @@ unmatched. Rigid modes take no part.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole
 from rotorgear.analysis.rig.chance import estimate_chance
+from rotorgear.analysis.rig.learnt import learnt_stiffnesses
 from rotorgear.errors import AnalysisError
 from rotorgear.results.comparison import (
     Candidate,
@@ -40,6 +41,7 @@ def compare_lines(
     *,
     rigid: ArrayLike | None = None,
     damping_ratio: ArrayLike | None = None,
+    strain_energy: Mapping[str, ArrayLike] | None = None,
     excitations: Sequence[ExcitationLine] = (),
     tolerance: float = 0.05,
     excitation_tolerance: float = 0.005,
@@ -56,6 +58,8 @@ def compare_lines(
         rig_lines: the measured lines, in any order.
         rigid: True for rigid-body modes (m,); they, and modes at 0 Hz, are never matched.
         damping_ratio: of the modes, as fractions (m,); NaN where unknown.
+        strain_energy: share of each part in the strain energy of the modes, part -> (m,), from which follows what the matched
+            lines teach of the stiffnesses.
         excitations: shaft and mesh orders. One coincides with a rig line within `excitation_tolerance` or the line's
             own uncertainty, whichever is larger, and with a mode within `excitation_tolerance`.
         tolerance: largest |f_mode / f_rig - 1| of a match.
@@ -80,6 +84,7 @@ def compare_lines(
     limits = _band(rig_hz, tolerance, band)
     pairs = {row: int(modes.elastic[column]) for row, column in assign(rig_hz, modes.elastic_hz, tolerance)}
     near = _Neighbourhood(modes, tuple(excitations), frozenset(pairs.values()), tolerance, excitation_tolerance)
+    matched = [lines[row] for row in pairs]
     return Comparison(
         matches=tuple(near.match(lines[row], mode) for row, mode in pairs.items()),
         unmatched_rig=tuple(near.unmatched(line) for row, line in enumerate(lines) if row not in pairs),
@@ -87,6 +92,7 @@ def compare_lines(
         tolerance=tolerance,
         excitation_tolerance=excitation_tolerance,
         chance=estimate_chance(rig_hz, modes.elastic_hz, tolerance, limits, samples=samples, seed=seed),
+        stiffnesses=learnt_stiffnesses(strain_energy or {}, list(pairs.values()), matched),
         warnings=tuple(_warnings(rig_hz, modes.elastic_hz, limits, band, known_to_hz)),
     )
 

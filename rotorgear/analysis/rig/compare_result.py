@@ -104,6 +104,7 @@ def compare(
         rigid=result.rigid,
         # At standstill without damping a ratio of 0 is no statement about the damping.
         damping_ratio=result.damping_ratio if result.speed is not None else None,
+        strain_energy=result.strain_energy,
         excitations=excitation_lines(result.model, turning) if turning else (),
         tolerance=tolerance,
         excitation_tolerance=excitation_tolerance,

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from rotorgear.results.comparison import Candidate, Comparison, ExcitationLine, Match, UnmatchedRigLine
+from rotorgear.results.learnt import learnt_words
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -27,7 +28,7 @@ def compare_table(comparison: Comparison) -> RenderableType:
         f"{100 * chance.probability_as_close:.3g} % come as close. Independent lines in closed form: "
         f"{chance.binomial_expected:.2f}, {100 * chance.binomial_probability:.3g} %."
     )
-    rest = [by_chance, *(f"Warning: {warning}." for warning in comparison.warnings)]
+    rest = [by_chance, *_learnt(comparison), *(f"Warning: {warning}." for warning in comparison.warnings)]
     matches = Table(title="Rig comparison", title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
     for name in ("rig Hz", "mode", "model Hz", "error %"):
         matches.add_column(name, justify="right", no_wrap=True)
@@ -51,6 +52,15 @@ def compare_table(comparison: Comparison) -> RenderableType:
         Text(comparison.verdict, style="bold"),
     ]
     return Group(*parts)
+
+
+def _learnt(comparison: Comparison) -> list[str]:
+    """What the matched lines would teach of the stiffnesses, and what is assumed for it."""
+    rows = comparison.stiffnesses
+    if not rows:
+        return []
+    taken = f"if stiffnesses are known to {100 * rows[0].prior:.0f} % and lines to 0.5 % where they state nothing"
+    return [f"{learnt_words(rows, len(comparison.matches), 'matched lines')} This holds {taken}."]
 
 
 def _notes(match: Match) -> list[str]:

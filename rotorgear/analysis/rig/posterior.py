@@ -1,0 +1,75 @@
+"""What measured lines teach of uncertain numbers: the linear Gaussian estimate, by singular values.
+
+Unknown is x = ln(p / p0), normal with the standard deviations of the prior, S = diag(sigma_p). Measured is
+y = ln(f / f0) = J x + noise, with standard deviations N = diag(sigma_y). In units of both, W = N^-1 J S = U diag(s) V^T.
+The direction V_k of the parameters is known from the lines to the share s_k^2 / (1 + s_k^2), the rest is the prior's; the
+sum of the shares is the effective number of parameters learnt (MacKay 1992, Bayesian interpolation, Neural Computation 4,
+eq. 4.9). Posterior covariance: S (1 - V diag(share) V^T) S.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """The estimate of p parameters from n lines.
+
+    Attributes:
+        jacobian: d ln f / d ln p (n, p).
+        noise: relative standard deviation of the lines (n,), positive.
+        prior: relative standard deviation of the parameters before the test (p,), positive.
+    """
+
+    jacobian: NDArray[np.float64]
+    noise: NDArray[np.float64]
+    prior: NDArray[np.float64]
+
+    @cached_property
+    def _directions(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """U (n, r), s (r,) and V (p, r), r = min(n, p)."""
+        weighted = self.jacobian * self.prior / self.noise[:, None]
+        left, singular, right = np.linalg.svd(weighted, full_matrices=False)
+        return left, singular, right.T
+
+    @property
+    def shares(self) -> NDArray[np.float64]:
+        """How much of each direction comes from the lines, s^2 / (1 + s^2), (r,), largest first."""
+        singular = self._directions[1]
+        return singular**2 / (1.0 + singular**2)
+
+    @property
+    def directions(self) -> NDArray[np.float64]:
+        """The directions in units of the prior, (p, r), in the order of `shares`."""
+        return self._directions[2]
+
+    @property
+    def learnt(self) -> NDArray[np.float64]:
+        """Share of each parameter's prior variance that the lines removed, (p,); their sum is the number learnt."""
+        return self.directions**2 @ self.shares
+
+    @property
+    def sigma(self) -> NDArray[np.float64]:
+        """Relative standard deviation of each parameter after the test, (p,)."""
+        # What no line sees, 1 - sum V^2, and what each direction leaves, V^2 / (1 + s^2): no difference of nearly equal numbers
+        # in a direction that is known to 1e-8.
+        left = 1.0 / (1.0 + self._directions[1] ** 2)
+        unseen = np.maximum(1.0 - np.sum(self.directions**2, axis=1), 0.0)
+        return self.prior * np.sqrt(unseen + self.directions**2 @ left)
+
+    @property
+    def correlation(self) -> NDArray[np.float64]:
+        """Correlation of the estimates, (p, p)."""
+        scaled = np.eye(len(self.prior)) - (self.directions * self.shares) @ self.directions.T
+        spread = np.sqrt(np.diag(scaled))
+        return scaled / np.outer(spread, spread)
+
+    def estimate(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Most probable x (p,) for y - f(x_0) + J x_0 = `residual` (n,)."""
+        left, singular, right = self._directions
+        return self.prior * (right @ (singular / (1.0 + singular**2) * (left.T @ (residual / self.noise))))
