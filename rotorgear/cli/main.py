@@ -1,4 +1,4 @@
-"""The entry point `rotorgear`: gathers the commands and turns errors into one clear text and exit code 2."""
+"""The entry point `rotorgear`: the commands, and errors turned into one clear text and exit code 2."""
 
 from __future__ import annotations
 
@@ -9,58 +9,20 @@ from typing import Annotated, Any
 
 import typer
 
-from rotorgear.cli import (
-    accuracy,
-    campbell,
-    casing,
-    check,
-    compare,
-    critical,
-    frf,
-    gear,
-    mesh,
-    modal,
-    response,
-    schema,
-    static,
-    sweep,
-    transient,
-    validate,
-    view,
-)
-from rotorgear.cli.old_options import Commands
+from rotorgear.cli.commands import CommandGroup
 from rotorgear.errors import RotorgearError
 from rotorgear.old_names import OldNameWarning
 
 app = typer.Typer(
     name="rotorgear",
-    cls=Commands,
+    cls=CommandGroup,
     help="Finite-element rotor-gear analysis: shafts, gears, meshes and bearings from one readable file.",
     no_args_is_help=True,
     add_completion=False,
+    rich_markup_mode=None,  # plain help: to import rich's takes longer than all else
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},  # every command inherits it
 )
-for command in (
-    modal.modal,
-    campbell.campbell,
-    critical.critical,
-    compare.compare,
-    static.static,
-    response.response,
-    frf.frf,
-    transient.transient,
-    sweep.sweep,
-    check.check,
-    gear.gear,
-    mesh.mesh,
-    casing.casing,
-    accuracy.accuracy,
-    view.view,
-    schema.schema,
-    validate.validate,
-):
-    app.command()(command)
 
 
 def _version(wanted: bool) -> None:

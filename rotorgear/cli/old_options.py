@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-from typing import Any
-
 import typer
-from typer.core import TyperGroup
 
 # Command -> former option -> option.
 OPTIONS: dict[str, dict[str, str]] = {
@@ -23,22 +19,6 @@ OPTIONS: dict[str, dict[str, str]] = {
     },
     "transient": {"--settle": "--discard"},
 }
-
-
-class Commands(TyperGroup):
-    """The commands, told former options by their present names."""
-
-    def resolve_command(self, ctx: Any, args: list[str]) -> tuple[Any, Any, list[str]]:
-        name, command, rest = super().resolve_command(ctx, args)
-        return name, command, with_current_options(name or "", rest)
-
-    def invoke(self, ctx: Any) -> Any:
-        # Here and not in main(): typer makes an exit without a word of an interrupt.
-        try:
-            return super().invoke(ctx)
-        except KeyboardInterrupt:
-            sys.stderr.write("interrupted; nothing half-written is left behind\n")
-            raise SystemExit(130) from None
 
 
 def with_current_options(command: str, args: list[str]) -> list[str]:

@@ -10,7 +10,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.plots.figure import axes_for
 from rotorgear.plots.labels import Labels, spread
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.campbell import WHIRL_WORDS, CampbellResult, Crossing, ExcitationOrder
+from rotorgear.results.campbell import CampbellResult, Crossing, ExcitationOrder
+from rotorgear.results.whirl_words import WHIRL_WORDS
 
 COLOURS = ("motion", "mesh", "damping")
 _MOTION = {"bending": (0.12, 0.37, 0.66), "axial": (0.18, 0.60, 0.25), "torsion": (0.80, 0.23, 0.13)}

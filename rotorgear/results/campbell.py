@@ -8,8 +8,7 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.modal import NodeTable, Piece
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
-
-WHIRL_WORDS = ("", "forward", "backward", "mixed", "planar")
+from rotorgear.results.whirl_words import WHIRL_WORDS
 
 
 class ExcitationOrder(Record):

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.campbell import WHIRL_WORDS, ExcitationOrder
+from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.results.modal import NodeTable, Piece
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
+from rotorgear.results.whirl_words import WHIRL_WORDS
 
 
 class CriticalSpeed(Record):

@@ -83,6 +83,11 @@ def test_help_loads_nothing_heavy(tmp_path: Path, program: str, arguments: tuple
 
 
 @needs_command_line
+def test_the_list_of_commands_loads_no_model_and_no_colours(tmp_path: Path) -> None:
+    assert not {"pydantic", "pydantic_core", "rich"} & loaded(tmp_path, AS_MODULE, "--help")
+
+
+@needs_command_line
 @needs_models
 def test_a_modal_run_loads_no_graphics_and_no_compiler(tmp_path: Path) -> None:
     model = min((ROOT / "models").glob("*.toml"), key=lambda file: file.stat().st_size)

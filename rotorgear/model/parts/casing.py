@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema, create_model, model_validator
+from pydantic import BeforeValidator, Field, GetJsonSchemaHandler, WithJsonSchema, create_model, model_validator
+from pydantic_core import CoreSchema
 
 from rotorgear.model.parts.fields import (
     Density,
@@ -75,9 +76,12 @@ else:
     )
 
 
-def _text_or_table() -> dict[str, Any]:
-    table = {key: value for key, value in Seat.model_json_schema().items() if key != "$defs"}
-    return {"anyOf": [{"type": "string"}, table]}
+class _TextOrTable:
+    """Marks a seat in the JSON Schema: the name of a set, or the table."""
+
+    def __get_pydantic_json_schema__(self, _: CoreSchema, __: GetJsonSchemaHandler) -> dict[str, Any]:
+        table = {key: value for key, value in Seat.model_json_schema().items() if key != "$defs"}
+        return {"anyOf": [{"type": "string"}, table]}
 
 
 def _one_or_several(value: Any) -> Any:
@@ -129,7 +133,7 @@ class Casing(Part):
     density: Density | None = Field(None, description="density, in place of a material")
     held: tuple[str, ...] = Field((), description="face or node sets that are held fixed")
     mounts: dict[str, Mount] = Field(default_factory=dict, description="face or node sets on springs to the ground")
-    seats: dict[Name, Annotated[Seat, WithJsonSchema(_text_or_table())]] = Field(
+    seats: dict[Name, Annotated[Seat, _TextOrTable()]] = Field(
         default_factory=dict,
         description="where bearings sit, by the name of the bearing: a face or node set, or a place",
     )

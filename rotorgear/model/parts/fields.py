@@ -39,7 +39,8 @@ _SHORT = 3
 class Part(BaseModel):
     """Base of every part of a model: frozen, without unknown keys, without coercion of strings."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    # A validator is built when a part is first made: most models have few of the kinds.
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     def __init__(self, /, **data: Any) -> None:
         try:

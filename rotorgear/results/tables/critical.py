@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.campbell import WHIRL_WORDS
 from rotorgear.results.tables.common import error_words, heading, lines, plain_table
+from rotorgear.results.whirl_words import WHIRL_WORDS
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -1,0 +1,79 @@
+"""The commands: known by name and by what the help says of them, each imported only when it is called.
+
+A command's function stands in the file of its name. The sentences below are the first of these functions' docstrings, which
+`tests/unit/cli/test_commands.py` holds equal: help lists all commands without an import of any.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+from rotorgear.cli.old_options import with_current_options
+
+HELP = {
+    "modal": "Natural frequencies and mode shapes; undamped at standstill, or damped and gyroscopic at a --speed.",
+    "campbell": "Campbell diagram: modes over speed, excitation lines, crossings, margins, whirl and stability.",
+    "critical": "Critical speeds, damped or undamped, of every shaft and mesh order; with --map over support stiffness.",
+    "compare": "Compare modes with rig frequencies, and with the matches of random frequencies.",
+    "static": "Deflections, bearing and mesh forces, load sharing of branches and helices, assembly condition of loops.",
+    "response": "Run-up: response to unbalances, transmission errors and stiffness variation, by order and speed.",
+    "frf": "Frequency responses between points or parts: unit force in, displacement, velocity or acceleration out.",
+    "transient": "Time response from the static equilibrium: contact forces, transmission error, bearings, spectra.",
+    "sweep": "Bifurcation diagram, Lyapunov exponents and response types of a model over its parameters.",
+    "check": "Show what a model file describes: speeds, mesh frequencies, torques, contact ratios, masses, dofs, warnings.",
+    "gear": "Print the gear sheet: geometry, measures, contact ratios, backlash and stiffness of all teeth.",
+    "mesh": "Print stiffness, transmission error, load sharing and pressure of one mesh over its cycle.",
+    "casing": "Read the meshes of casings: mass, free and held modes, seats, errors of mesh and reduction, cost.",
+    "accuracy": "Convergence study: error against run time and dofs over a series of discretisations, with the measured order.",
+    "view": "Open a window that shows the gearbox and animates its modes.",
+    "schema": "Print the JSON Schema of the model file, for completion and checks in editors.",
+    "validate": "Run the validation cases: expected, got, error, dofs, seconds. Exit code 1 where one is out of tolerance.",
+}
+
+
+class Commands(Mapping[str, Any]):
+    """Name -> command, made of its function when it is asked for."""
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in HELP:
+            raise KeyError(name)
+        function = getattr(import_module(f"rotorgear.cli.{name}"), name)
+        single = typer.Typer(add_completion=False, rich_markup_mode=None)
+        single.command(name)(function)
+        return typer.main.get_command(single)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(HELP)
+
+    def __len__(self) -> int:
+        return len(HELP)
+
+
+class CommandGroup(TyperGroup):
+    """The group of all commands; they are told former options by their present names."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self.commands = Commands()  # type: ignore[assignment]
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl(list(HELP.items()))
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> tuple[Any, Any, list[str]]:
+        name, command, rest = super().resolve_command(ctx, args)
+        return name, command, with_current_options(name or "", rest)
+
+    def invoke(self, ctx: Any) -> Any:
+        # Here and not in main(): typer makes an exit without a word of an interrupt.
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            sys.stderr.write("interrupted; nothing half-written is left behind\n")
+            raise SystemExit(130) from None
