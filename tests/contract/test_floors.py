@@ -76,6 +76,7 @@ ROOMS = {
 BY_NAME = {
     "rotorgear.forces.registry": "rotorgear.forces",
     "rotorgear.gears.stiffness_models": "rotorgear.gears",
+    "rotorgear.cli.commands": "rotorgear.cli",
     "rotorgear.lazy": "rotorgear",  # the loader of the face, which is where its names are listed
     "rotorgear.results.kinds": "rotorgear.results",
     "rotorgear.results.result": "rotorgear.results.tables",
