@@ -19,9 +19,10 @@ from rotorgear.model.parts.casing import Casing, Join, Mount, Seat
 from rotorgear.model.parts.excitation import CornerImpact, ErrorHarmonic, StiffnessHarmonic, Unbalance
 from rotorgear.model.parts.flank import Flank, ToothFeTable
 from rotorgear.model.parts.gear import Gear, GearBody
+from rotorgear.model.parts.load import Load, LoadHistory
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.model.parts.nonlinear_element import NonlinearElement
-from rotorgear.model.parts.operation import Load, ModelDamping, Operation, Point
+from rotorgear.model.parts.operation import ModelDamping, Operation, Point
 from rotorgear.model.parts.shaft import LIBRARY, Material, Section, Shaft
 from rotorgear.model.parts.supports import (
     Bearing,
@@ -69,6 +70,7 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("[point_masses.NAME]", PointMass),
     ("[damping]", ModelDamping),
     ("[loads.NAME]", Load),
+    ("history = { ... } of a load, in place of a file", LoadHistory),
     ("[unbalances.NAME]", Unbalance),
     ("[points.NAME]", Point),
 ]
@@ -140,14 +142,25 @@ RULES: dict[type[BaseModel], str] = {
         says about which state. Displacements are those of the shaft less those of `to_shaft`, and the force acts against
         them.""",
     Unbalance: """
-        A transient takes it. It turns with its shaft; [conventions](conventions.md) count angles from +x about +z.""",
+        Responses, transients and sweeps take it. It turns with its shaft; [conventions](conventions.md) count angles from +x
+        about +z.""",
     Disk: """
         Give `mass` and both inertias, or `outer_diameter` and `width`.""",
     ModelDamping: """
         Damping counts in analyses at a `--speed` only.""",
     Load: """
-        It stands in place of `power` or `torque` under `[operation]`. The torques must balance in power; leave that of
-        one output out and it takes the rest.""",
+        Either a torque that drives the train or takes its power, or a force with its moment at any place.
+
+        A torque has `shaft`, `kind` and `torque` or `power`, in place of those under `[operation]`. The torques must balance in
+        power; leave that of one output out and it takes the rest.
+
+        A force has `force`, `moment` or both, along and about x, y and z, or a `history`; and one of `shaft` with `at`, `gear`,
+        `point`. It is constant, or goes with `order` or `frequency`: one that turns is two loads a quarter turn apart. A constant
+        moment about z on a shaft that turns takes part in the balance of torques.
+
+        A `history` is a CSV file with a column `time` or `angle` and others `force_x` to `moment_z`, each with its unit in the
+        header (`angle_deg,force_y_kN`), linear between its rows; angles are those of the shaft and begin again after 360 deg.
+        [Forces and moments](static.md#forces-and-moments) says which analysis takes what.""",
     Point: """
         Give `on`, or `shaft` and `at`. The modal result lists each mode's amplitude there.""",
 }

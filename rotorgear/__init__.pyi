@@ -8,7 +8,7 @@ from rotorgear.model.load import loads as loads
 from rotorgear.model.load import schema as schema
 from rotorgear.model.model import Model as Model
 from rotorgear.model.parts.operation import Operation as Operation
-from rotorgear.model.parts.operation import Load as Load
+from rotorgear.model.parts.load import Load as Load
 from rotorgear.model.parts.operation import ModelDamping as ModelDamping
 from rotorgear.model.parts.operation import Point as Point
 from rotorgear.model.parts.shaft import Material as Material

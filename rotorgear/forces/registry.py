@@ -29,6 +29,7 @@ _SHIPPED = {
     "rotating_force": "RotatingForce",
     "torque_curve": "TorqueCurve",
     "plain_spring": "PlainSpring",
+    "tabulated_force": "TabulatedForce",
 }
 _REGISTERED: dict[str, type[ForceLaw]] = {}
 Law = TypeVar("Law", bound=type[ForceLaw])

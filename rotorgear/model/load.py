@@ -64,6 +64,7 @@ def loads(text: str, source: str = "model", folder: str | Path = ".") -> Model:
         raise ModelError([_syntax_problem(source, str(error), text)], source) from None
     _find_topographies(data, Path(folder))
     _find_meshes(data, Path(folder))
+    _find_histories(data, Path(folder))
     try:
         return Model(**data)
     except ModelError as error:
@@ -77,6 +78,14 @@ def _find_topographies(data: dict[str, Any], folder: Path) -> None:
         flank = gear.get("flank") if isinstance(gear, dict) else None
         if isinstance(flank, dict) and isinstance(flank.get("topography"), str):
             flank["topography"] = str(folder / flank["topography"])
+
+
+def _find_histories(data: dict[str, Any], folder: Path) -> None:
+    """Let files of loads over time or angle be looked for beside the model file."""
+    loads = data.get("loads")
+    for load in loads.values() if isinstance(loads, dict) else ():
+        if isinstance(load, dict) and isinstance(load.get("history"), str):
+            load["history"] = str(folder / load["history"])
 
 
 def _find_meshes(data: dict[str, Any], folder: Path) -> None:

@@ -81,6 +81,9 @@ class ResponseResult(ModelResult, kind="response"):
     speeds: np.ndarray = of("speed of the input shaft", "rad/s", "speed", json="speed_rpm")
     orders: tuple[str, ...] = of("name of each order", "", "order", json="order")
     ratio: np.ndarray = of("frequency over that of the input shaft", "", "order", json="frequency_ratio")
+    fixed_frequency: np.ndarray = of(
+        "frequency that does not go with the speed", "Hz", "order", note=" of a load in Hz; else 0"
+    )
 
     @property
     def speed_rpm(self) -> np.ndarray:
@@ -90,7 +93,7 @@ class ResponseResult(ModelResult, kind="response"):
     @derived("frequency", "Hz", "order", "speed", note=" of each order at each speed")
     def frequency_hz(self) -> np.ndarray:
         """Frequency of each order at each speed, (o, s)."""
-        return self.ratio[:, None] * np.abs(self.speeds) / (2.0 * np.pi)
+        return self.ratio[:, None] * np.abs(self.speeds) / (2.0 * np.pi) + self.fixed_frequency[:, None]
 
     contact_mesh: tuple[str, ...] = of("mesh of each contact", "", "contact", json=None)
     contact_helix: np.ndarray = of("0 or 1 for the helix at the smaller or larger z", "", "contact", json=None)

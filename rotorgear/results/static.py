@@ -124,6 +124,13 @@ class StaticResult(ModelResult, kind="static"):
         note=", for flanks and bearings with tables; `null` without one",
     )
     torque: dict[str, float] = of("applied torque", "N m", "TORQUE", json="torque_n_m", note=" about +z, by name")
+    load_force: dict[str, np.ndarray] = of(
+        "constant force and moment of each load",
+        "N, N m",
+        "LOAD",
+        "component",
+        json=_forces("LOAD", "load", "the structure"),
+    )
     contact_mesh: tuple[str, ...] = of("mesh of each contact", "", "contact", json=None)
     contact_helix: np.ndarray = of("0 or 1 for the helix at the smaller or larger z", "", "contact", json=None)
     mesh_force: np.ndarray = of(

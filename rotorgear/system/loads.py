@@ -1,9 +1,10 @@
-"""Static loads of a model over all dofs: applied torques and weight."""
+"""Static loads of a model over all dofs: applied torques, forces and moments from outside, weight."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.model.layout.external_loads import ExternalLoad
 from rotorgear.system.system import System
 
 
@@ -12,6 +13,29 @@ def torque_loads(system: System) -> np.ndarray:
     f = np.zeros(system.dofs.transform.shape[0])
     for item in system.load.applied:
         f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
+    return f
+
+
+def wrench_load(system: System, load: ExternalLoad, wrench: np.ndarray) -> np.ndarray:
+    """Force and moment (6,) at the places of a load, in equal parts, over all dofs (a,)."""
+    f = np.zeros(system.dofs.transform.shape[0], wrench.dtype)
+    for place in load.places:
+        node = system.nodes.at(*place)
+        f[6 * node : 6 * node + 6] += wrench / len(load.places)
+    return f
+
+
+def external_load(system: System, *, histories: bool = True) -> np.ndarray:
+    """Constant parts of forces and moments from outside, (a,), without moments that the balance of torques has already.
+
+    Args:
+        system: nodes and dofs.
+        histories: whether those of loads over time or angle are among them.
+    """
+    f = np.zeros(system.dofs.transform.shape[0])
+    for load in system.layout.external_loads:
+        if histories or load.history is None:
+            f += wrench_load(system, load, load.constant_on_structure)
     return f
 
 

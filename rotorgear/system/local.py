@@ -29,7 +29,7 @@ from rotorgear.system.groups import (
     tilt_damper,
     tilt_only,
 )
-from rotorgear.system.loads import weight_loads
+from rotorgear.system.loads import external_load, weight_loads
 from rotorgear.system.local_faces import face_law
 from rotorgear.system.local_parts import (
     LocalPart,
@@ -37,6 +37,7 @@ from rotorgear.system.local_parts import (
     columns_at,
     element_parts,
     expansion_stiffness,
+    external_parts,
     friction_part,
     is_rolling,
     load_parts,
@@ -104,13 +105,14 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
         *_mesh_parts(system, mapped),
         *bearing_parts(system),
         *element_parts(system),
-        *unbalance_parts(system),
+        *unbalance_parts(system, rotation),
         *load_parts(system),
+        *external_parts(system),
     )
     T = system.dofs.transform
     columns = np.hstack([np.zeros((T.shape[0], 0)), *(part.columns for part in parts)])
     operation = system.model.operation
-    steady = torque_load(system)
+    steady = torque_load(system) + external_load(system, histories=False)
     if operation and operation.gravity:
         steady = steady + weight_loads(system, operation.gravity)
     lines = contact_lines(system)
@@ -141,8 +143,10 @@ def local_model(system: System, rotation: Rotation, speed: float, *, along_faces
 def torque_load(system: System) -> np.ndarray:
     """Torques of the operating point that never change, on all dofs, (a,)."""
     f = np.zeros(system.dofs.transform.shape[0])
+    # A history acts as a law with its whole value, the moment about z in the balance of torques included.
+    histories = {load.address for load in system.layout.external_loads if load.history}
     for item in system.load.applied:
-        if varying_load(system, item.name) is not None:
+        if varying_load(system, item.name) is not None or item.name in histories:
             continue
         f[6 * system.nodes.at(item.shaft, item.z) + 5] += item.torque
     return f

@@ -13,10 +13,12 @@ from rotorgear.elements.gear_mesh import ContactGeometry, sliding_vectors
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.model.parts.load import COMPONENTS, Load
 from rotorgear.model.parts.nonlinear_element import element_law
-from rotorgear.model.parts.operation import Load
 from rotorgear.model.parts.supports import Bearing
+from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.groups import ElementGroup, node_dofs
+from rotorgear.system.loads import wrench_load
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -201,13 +203,22 @@ def friction_part(
     return LocalPart(f"meshes.{both.name}", f"{label} friction", law, np.hstack([column, across]))
 
 
-def unbalance_parts(system: System) -> Iterator[LocalPart]:
-    """Yield the unbalances: two components that turn with their shaft."""
+def unbalance_parts(system: System, rotation: Rotation) -> Iterator[LocalPart]:
+    """Yield the unbalances: two components that turn with their shaft, accelerated along their path where its speed changes."""
     from rotorgear.forces.rotating_force import RotatingForce
 
+    times, accelerations = rotation.accelerations
     for name, item in system.model.unbalances.items():
         node = system.nodes.at(*system.layout.place(f"unbalances.{name}"))
-        law = RotatingForce(item.magnitude, float(system.train.ratio(item.shaft)), item.phase, 2.0, plane=True)
+        law = RotatingForce(
+            item.magnitude,
+            float(system.train.ratio(item.shaft)),
+            item.phase,
+            2.0,
+            plane=True,
+            times=times,
+            accelerations=accelerations,
+        )
         yield LocalPart(f"unbalances.{name}", name, law, columns_at(system, node_dofs(node)[0], np.eye(6)[:2]))
 
 
@@ -239,6 +250,30 @@ def load_parts(system: System) -> Iterator[LocalPart]:
             law,
             columns_at(system, node_dofs(system.nodes.at(item.shaft, item.z))[0], np.eye(6)[5:]),
         )
+
+
+def external_parts(system: System) -> Iterator[LocalPart]:
+    """Yield the forces and moments from outside that vary: each along its own direction in the space of the dofs."""
+    from rotorgear.forces.rotating_force import RotatingForce
+    from rotorgear.forces.tabulated_force import TabulatedForce
+
+    for load in system.layout.external_loads:
+        name = load.address.removeprefix("loads.")
+        if load.history is None:
+            size = float(np.linalg.norm(load.amplitude))
+            if size:
+                column = wrench_load(system, load, load.amplitude / size)[:, None]
+                law = RotatingForce(size, load.order, load.phase, frequency=load.frequency)
+                yield LocalPart(load.address, name, law, column)
+            continue
+        for component, values in zip(load.history.components, load.history.values, strict=True):
+            k = COMPONENTS.index(component)
+            table = TabulatedForce(
+                load.history.places, values, load.history.over == "angle", load.ratio, float(load.constant[k])
+            )
+            yield LocalPart(
+                load.address, f"{name} {component}", table, wrench_load(system, load, np.eye(6)[k])[:, None]
+            )
 
 
 def varying_load(system: System, name: str) -> Load | None:

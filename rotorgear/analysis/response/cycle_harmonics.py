@@ -31,11 +31,20 @@ def harmonics_of_pieces(pieces: tuple[tuple[float, float, float], ...]) -> np.nd
     start, first, last = np.array(pieces, dtype=float).T
     end = np.append(start[1:], 1.0)
     mean = float((0.5 * (first + last) * (end - start)).sum())
+    return _of_straight(start, end, first, last) / mean
+
+
+def harmonics_of_line(u: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Coefficients (SEEN,) of values x (k,) at rising places u (k,) from 0 to 1, linear in between."""
+    return _of_straight(u[:-1], u[1:], x[:-1], x[1:])
+
+
+def _of_straight(start: np.ndarray, end: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
     w = 2.0 * np.pi * np.arange(1, SEEN + 1)[:, None]
     a = np.exp(-1j * w * start)
     b = np.exp(-1j * w * end)
     slope = (last - first) / (end - start)
-    return np.asarray(2.0 / mean * ((last * b - first * a) * 1j / w + (b - a) * slope / w**2).sum(axis=1))
+    return np.asarray(2.0 * ((last * b - first * a) * 1j / w + (b - a) * slope / w**2).sum(axis=1))
 
 
 def harmonics_of_pulse(duration: float, at: float) -> np.ndarray:

@@ -47,6 +47,8 @@ def mesh_error(
     zeta, limit = damping
     rich = Plant(finer, lines, (*damped_modes(finer, limit, float(speeds[-1])), zeta) if zeta else None)
     forces = np.array([item.stacked for item in readings])  # (s, o, ...)
+    if not forces.size:
+        return float("nan")  # the model has no part and no point whose answer could be compared
     size = np.abs(forces).max(axis=2, initial=0.0)
     worst = 0.0
     wanted = {order.name: order for order in orders_of(replace(setup, system=finer, lines=lines))[0]}
@@ -101,6 +103,8 @@ def speed_warnings(
     top = float(np.max(np.abs(speeds)))
     width = np.inf
     for order in orders:
+        if not order.ratio:  # its frequency does not sweep over resonances
+            continue
         # A mode that the order does not push, as an axial one of spur gears, has no resonance with it.
         pushed = np.abs(shapes[:, elastic].T @ plant.loads([order], float(speeds[-1]))[1][:, 0])
         met = (w[elastic] >= order.ratio * float(np.min(np.abs(speeds)))) & (w[elastic] <= order.ratio * top)

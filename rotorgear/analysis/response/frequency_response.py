@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rotorgear.analysis.common.casings import casing_notes
+from rotorgear.analysis.common.load_notes import load_notes
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
@@ -137,6 +138,7 @@ def frf(
             *notes,
             *casing_notes(system),
             *rolling_notes(model, rolls=False),
+            *load_notes(system, "frf"),
             *mesh_stiffness_left_out(system),
         ),
         warnings=(

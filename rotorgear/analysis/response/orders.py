@@ -1,5 +1,8 @@
 """What excites a gearbox harmonically, by order: unbalances at the speeds of their shafts, meshes at multiples of theirs.
 
+A load A cos(order angle + phase) pushes A e^{i s phase} at its order, one of a frequency in Hz A e^{i phase} at that; a torque
+ripples with its share of the mean torque, and a load over the angle of a shaft has the harmonics of its table.
+
 An unbalance U at phase a on a shaft that turns with W_i puts m e W_i^2 (cos(W_i t + a), sin(W_i t + a)) on its node. In
 Re(f e^{i w t}) with w = |W_i| that is f_x = U W_i^2 e^{i s a}, f_y = -i s U W_i^2 e^{i s a}, s the sign of W_i.
 
@@ -19,7 +22,9 @@ from fractions import Fraction
 import numpy as np
 
 from rotorgear.analysis.response.cycle_harmonics import (
+    SEEN,
     harmonics_of_cycle,
+    harmonics_of_line,
     harmonics_of_pieces,
     harmonics_of_pulse,
     strong,
@@ -27,13 +32,16 @@ from rotorgear.analysis.response.cycle_harmonics import (
 )
 from rotorgear.analysis.static.cycle import Cycle
 from rotorgear.analysis.static.mean_state import Setup
+from rotorgear.model.parts.load import COMPONENTS, LoadHistory
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.system.contacts import ContactLines
+from rotorgear.system.loads import wrench_load
 from rotorgear.system.local import cycle_pieces
+from rotorgear.system.local_parts import varying_load
 from rotorgear.system.system import System
 
 # What has one frequency: "shaft" or "mesh", the multiple of its frequency, and the ratio to the reference speed.
-_Key = tuple[str, int | Fraction, float]
+_Key = tuple[str, int | float | Fraction, float]
 
 _FIRST_ORDER = "the product of its varying stiffness and the vibration; it acts to first order, as a force"
 
@@ -44,9 +52,10 @@ class Order:
 
     Attributes:
         name: "shaft input 1x" or "mesh stage_1a, stage_1b 2x".
-        ratio: frequency in rad/s over the size of the reference speed.
+        ratio: frequency in rad/s over the size of the reference speed; fixed: what of it does not go with the speed, in rad/s.
         unbalance: force per square of the reference speed at the free dofs, (n,).
         error: transmission error of each contact, (c,) m; force: F_0 times the stiffness variation, and impacts, (c,) N.
+        push: force at the free dofs whatever the speed, (n,) or 0.
         couple: of loaded teeth that feel the tilt of their shafts, about the place of each contact along its face, (c,) N m.
         minor: whether it is one of the many small orders that loaded teeth need for their peak to peak only.
     """
@@ -58,12 +67,19 @@ class Order:
     force: np.ndarray
     couple: np.ndarray
     minor: bool = False
+    push: np.ndarray | float = 0.0
+    fixed: float = 0.0
+
+    def frequency_at(self, speed: float) -> float:
+        """Frequency in rad/s at a reference speed in rad/s."""
+        return self.ratio * abs(speed) + self.fixed
 
     def load(self, lines: ContactLines, speed: float) -> np.ndarray:
         """Force on the free dofs at a reference speed in rad/s, (n,)."""
-        w = self.ratio * abs(speed)
+        w = self.frequency_at(speed)
         return np.asarray(
             speed**2 * self.unbalance
+            + self.push
             + lines.vectors @ ((lines.stiffness + 1j * w * lines.damping) * self.error - self.force)
             - lines.tilt @ self.couple
         )
@@ -84,10 +100,18 @@ def orders_of(setup: Setup) -> tuple[list[Order], tuple[str, ...]]:
         _add(found, ("mesh", harmonic, round(ratio, 9)), mesh, ratio, np.zeros(system.n, complex), terms)
     for kind, name, multiple, ratio, terms, minor in _loaded_teeth(setup, left):
         _add(found, (kind, multiple, round(ratio, 9)), name, ratio, np.zeros(system.n, complex), terms, minor=minor)
+    for key, name, ratio, fixed, push in _external_loads(system, left):
+        blank = np.zeros(system.n, complex)
+        _add(found, key, name, ratio, blank, np.zeros((3, count), complex))
+        names, order = found[key]
+        found[key] = names, replace(order, push=order.push + push, fixed=fixed)
     orders = [
-        replace(o, name=f"{kind} {', '.join(names)} {harmonic}x") for (kind, harmonic, _), (names, o) in found.items()
+        replace(o, name=f"{kind} {', '.join(names)} {harmonic:g}" + (" Hz" if o.fixed else "x"))
+        if isinstance(harmonic, float)
+        else replace(o, name=f"{kind} {', '.join(names)} {harmonic}x")
+        for (kind, harmonic, _), (names, o) in found.items()
     ]
-    return sorted(orders, key=lambda order: order.ratio), tuple(dict.fromkeys(left))
+    return sorted(orders, key=lambda order: (order.ratio, order.fixed)), tuple(dict.fromkeys(left))
 
 
 def _add(
@@ -106,7 +130,56 @@ def _add(
     if name not in names:
         names.append(name)
     error, force, couple = np.array([old.error, old.force, old.couple]) + terms
-    found[key] = names, Order("", old.ratio, old.unbalance + load, error, force, couple, old.minor and minor)
+    found[key] = (
+        names,
+        Order("", old.ratio, old.unbalance + load, error, force, couple, old.minor and minor, old.push, old.fixed),
+    )
+
+
+def _external_loads(system: System, left: list[str]) -> Iterable[tuple[_Key, str, float, float, np.ndarray]]:
+    """(key, name, ratio, fixed frequency in rad/s, force on the free dofs) of each harmonic of loads and torque ripples."""
+    T = system.dofs.transform
+    for item in system.load.applied:
+        torque = varying_load(system, item.name)
+        ratio = abs(system.train.ratio(item.shaft))
+        if torque is None or not torque.ripple or not ratio:
+            continue
+        f = np.zeros(T.shape[0], complex)
+        f[6 * system.nodes.at(item.shaft, item.z) + 5] = item.torque * torque.ripple
+        yield _turning(torque.ripple_order, item.shaft, ratio, T.T @ f)
+    for load in system.layout.external_loads:
+        sense = system.direction * np.sign(load.ratio)
+        if load.frequency:
+            push = T.T @ wrench_load(system, load, load.amplitude * cmath.exp(1j * load.phase))
+            name = load.address.removeprefix("loads.")
+            yield ("load", load.frequency, 0.0), name, 0.0, 2.0 * np.pi * load.frequency, push
+        elif load.order:
+            push = T.T @ wrench_load(system, load, load.amplitude * cmath.exp(1j * sense * load.phase))
+            yield _turning(abs(load.order / load.ratio), load.counted, abs(load.ratio), push)
+        elif load.history is not None and load.history.over == "angle":
+            coefficients, rest = _of_history(load.history)
+            for n, wrench in coefficients:
+                push = T.T @ wrench_load(system, load, wrench if sense > 0 else wrench.conj())
+                yield _turning(float(n), load.counted, abs(load.ratio), push)
+            left += [f"{load.address}: {sentence}" for sentence in _weak("table over the angle", rest)]
+
+
+def _turning(order: float, shaft: str, ratio: float, push: np.ndarray) -> tuple[_Key, str, float, float, np.ndarray]:
+    """The key, name and ratio of an order of a shaft; one of a whole number is that of its unbalances."""
+    multiple = int(order) if order == int(order) else order
+    return ("shaft", multiple, round(order * ratio, 9)), shaft, order * ratio, 0.0, push
+
+
+def _of_history(history: LoadHistory) -> tuple[list[tuple[int, np.ndarray]], float]:
+    """Harmonics of a load over the angle that count, each (6,), and the largest other one relative to the strongest."""
+    found = np.zeros((SEEN, 6), complex)
+    for name, values in zip(history.components, history.values, strict=True):
+        angles, turned = history.whole_turn(values)
+        found[:, COMPONENTS.index(name)] = harmonics_of_line(angles / (2.0 * np.pi), turned)
+    scale = np.maximum(np.abs(found).max(axis=0), 1e-300)
+    size = (np.abs(found) / scale).max(axis=1)
+    kept, rest = strong(size.astype(complex))
+    return [(n, found[n - 1]) for n, _ in kept], rest
 
 
 def _unbalances(system: System) -> Iterable[tuple[str, float, np.ndarray]]:

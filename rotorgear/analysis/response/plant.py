@@ -39,10 +39,15 @@ class Readings:
 
     @property
     def stacked(self) -> np.ndarray:
-        """All forces, (o, c + 3 b); where a model has neither mesh nor bearing, the displacements, (o, 3 d)."""
+        """All forces, (o, c + 3 b); where a model has neither mesh nor bearing, the displacements of its parts, (o, 3 d).
+
+        Where it has no part on a shaft either, the accelerations of its points, (o, k).
+        """
         orders = len(self.mesh_force)
         forces = np.hstack([self.mesh_force, self.bearing_force.reshape(orders, -1)])
-        return forces if forces.size else self.displacement[:, :, :3].reshape(orders, -1)
+        if forces.size:
+            return forces
+        return self.displacement[:, :, :3].reshape(orders, -1) if self.displacement.size else self.acceleration
 
     def chosen(self, which: np.ndarray) -> Readings:
         """Those of some orders, in their sequence."""
@@ -111,7 +116,7 @@ class Plant:
 
     def loads(self, orders: list[Order], speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Frequencies (o,) in rad/s and loads (n, o) of all orders at a reference speed."""
-        w = np.array([order.ratio for order in orders]) * abs(speed)
+        w = np.array([order.frequency_at(speed) for order in orders])
         return w, np.array([order.load(self.lines, speed) for order in orders]).T
 
     def read(self, orders: list[Order], speed: float, w: np.ndarray, q: np.ndarray) -> Readings:

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from rotorgear.analysis.common.casings import casing_notes
+from rotorgear.analysis.common.load_notes import load_notes
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
@@ -60,7 +61,8 @@ def response(
     """Return the linear response to all excitations of a model, by order and speed.
 
     Args:
-        model: a model with unbalances, or meshes with harmonics of transmission error or stiffness.
+        model: a model with unbalances, loads of an order or a frequency, or meshes with harmonics of transmission error or
+            stiffness.
         start, stop: lowest and highest speed of the input shaft, in rad/s or with units; where not given 10 and 120 % of
             the operating speed.
         points: number of speeds between them, evenly spaced.
@@ -89,9 +91,9 @@ def response(
     orders, weak = orders_of(first)
     orders, left = _within(orders, chosen, fmax)
     fastest = float(np.max(np.abs(chosen)))
-    highest = max(order.ratio for order in orders) * fastest
+    highest = max(order.frequency_at(fastest) for order in orders)
     # The many minor orders of teeth that differ go far up; the mesh is made for those that shake.
-    top = max((order.ratio for order in orders if not order.minor), default=highest / fastest) * fastest
+    top = max((order.frequency_at(fastest) for order in orders if not order.minor), default=highest)
     left += _beyond_mesh(orders, top, fastest)
     speed = float(chosen[-1])
     for aim in aims(accuracy):
@@ -133,6 +135,7 @@ def response(
         speeds=chosen,
         orders=tuple(order.name for order in orders),
         ratio=np.array([order.ratio for order in orders]),
+        fixed_frequency=np.array([order.fixed / (2.0 * np.pi) for order in orders]),
         contact_mesh=setup.lines.names,
         contact_helix=np.array([state.contact.helix for state in setup.lines.states], dtype=int),
         mean_force=setup.mean_force,
@@ -160,7 +163,15 @@ def response(
         discretisation=pieces(system),
         largest=largest,
         seconds={"total": time.perf_counter() - clock},
-        left_out=(*left, *weak, *setup.notes, *notes, *casing_notes(system), *rolling_notes(model, rolls=False)),
+        left_out=(
+            *left,
+            *weak,
+            *setup.notes,
+            *notes,
+            *casing_notes(system),
+            *rolling_notes(model, rolls=False),
+            *load_notes(system, "response"),
+        ),
         warnings=(
             *speed_warnings(plant, orders, chosen, (modes, w, zeta)),
             *parting(setup, stacked["mesh_force"], chosen),
@@ -173,12 +184,12 @@ def response(
 
 def _beyond_mesh(orders: list[Order], top: float, fastest: float) -> list[str]:
     """A sentence on minor orders above the frequency (rad/s) that the mesh is made for."""
-    beyond = [order for order in orders if order.ratio * fastest > (1.0 + 1e-9) * top]
+    beyond = [order for order in orders if order.frequency_at(fastest) > (1.0 + 1e-9) * top]
     if not beyond:
         return []
     return [
         f"a finer mesh for {len(beyond)} small orders of loaded teeth above {top / (2.0 * np.pi):.5g} Hz, up to "
-        f"{beyond[-1].ratio * fastest / (2.0 * np.pi):.5g} Hz: they are solved on the mesh for the larger ones"
+        f"{beyond[-1].frequency_at(fastest) / (2.0 * np.pi):.5g} Hz: they are solved on the mesh for the larger ones"
     ]
 
 
@@ -200,16 +211,18 @@ def _within(orders: list[Order], speeds: np.ndarray, fmax: float | None) -> tupl
     """The orders up to a frequency at the highest speed, and sentences about the others."""
     if not orders:
         raise AnalysisError(
-            "nothing excites the model: give [unbalances], or a mesh its transmission_error or stiffness_variation"
+            "nothing excites the model: give [unbalances], [loads] with an order, a frequency or a ripple, or a mesh its "
+            "transmission_error or stiffness_variation"
         )
-    limit = np.inf if fmax is None else 2.0 * np.pi * fmax / float(np.max(np.abs(speeds)))
-    kept = [order for order in orders if order.ratio <= limit]
+    fastest = float(np.max(np.abs(speeds)))
+    limit = np.inf if fmax is None else 2.0 * np.pi * fmax
+    kept = [order for order in orders if order.frequency_at(fastest) <= limit]
     if not kept:
-        lowest = orders[0].ratio * float(np.max(np.abs(speeds))) / (2.0 * np.pi)
+        lowest = min(order.frequency_at(fastest) for order in orders) / (2.0 * np.pi)
         raise AnalysisError(f"fmax: no order is as low as {fmax:g} Hz, the lowest comes to {lowest:.6g} Hz")
     above: dict[str, list[str]] = {}
     for order in orders:
-        if order.ratio > limit:
+        if order.frequency_at(fastest) > limit:
             part, _, multiple = order.name.rpartition(" ")
             above.setdefault(part, []).append(multiple)
     runs = {part: m[0] if len(m) == 1 else f"{m[0]} to {m[-1]}, {len(m)} orders" for part, m in above.items()}

@@ -77,7 +77,7 @@ class ModalSweep:
 
     def __init__(self, plant: Plant, orders: list[Order], speeds: np.ndarray, modes: np.ndarray) -> None:
         self.plant, self.orders, self.speeds = plant, orders, np.asarray(speeds, float)
-        top = max(order.ratio for order in orders) * float(np.max(np.abs(self.speeds)))
+        top = max(order.frequency_at(float(np.max(np.abs(self.speeds)))) for order in orders)
         M = plant.system.mass
         K = plant.system.stiffness(float(self.speeds[-1]))
         self.scale = np.sqrt(np.abs(K.diagonal()) + (0.1 * top) ** 2 * np.abs(M.diagonal()))
@@ -174,7 +174,7 @@ def modal_sweep(
     with single_thread(plant.system.n):
         for number, bunch in enumerate(bunches):
             own = [orders[o] for o in bunch]
-            top = _MODES_UP_TO * own[-1].ratio * float(np.max(np.abs(speeds)))
+            top = _MODES_UP_TO * max(order.frequency_at(float(np.max(np.abs(speeds)))) for order in own)
             sweep = ModalSweep(plant, own, speeds, shapes[:, w <= top])
             share = _Share(progress, number, len(bunches), own[-1].name)
             readings.append(_swept(sweep, own[-1].name, share))

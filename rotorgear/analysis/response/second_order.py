@@ -73,7 +73,7 @@ def peaks_of(
                 unit=unit,
                 order=o,
                 speed_rpm=float(abs(speeds[s]) * RPM_PER_RAD_S * np.sign(speeds[s])),
-                frequency_hz=orders[o].ratio * abs(float(speeds[s])) / (2.0 * math.pi),
+                frequency_hz=orders[o].frequency_at(float(speeds[s])) / (2.0 * math.pi),
                 amplitude=amplitude,
                 left_out=left,
                 teeth_part=parts,

@@ -43,7 +43,7 @@ def mean_state(system: System, speed: float) -> Setup:
     index = any(mesh.index_error or mesh.helix_index_error for mesh in system.model.meshes.values())
     operation = system.model.operation
     weight = bool(operation and operation.gravity and any(operation.gravity))
-    if not system.load.forces or not (system.load.applied or index or weight):
+    if not system.load.forces or not (system.load.applied or index or weight or system.layout.loaded_from_outside):
         lines = contact_lines(system)
         meshes = system.model.meshes.items()
         varied = [name for name, m in meshes if m.stiffness_variation or not isinstance(m.stiffness, int | float)]

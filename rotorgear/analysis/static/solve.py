@@ -22,7 +22,7 @@ from rotorgear.solvers.sparse.static import UnbalancedLoadError
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import ContactLines, contact_lines
 from rotorgear.system.groups import ElementGroup
-from rotorgear.system.loads import torque_loads, weight_loads
+from rotorgear.system.loads import external_load, torque_loads, weight_loads
 from rotorgear.system.local_parts import LocalPart, expansion_stiffness, without_linear_part
 from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
@@ -64,7 +64,7 @@ class Equilibrated:
 
 
 def equilibrate(system: System, speed: float, closed: np.ndarray | None = None) -> Equilibrated:
-    """Return the equilibrium under torques, weight and index errors.
+    """Return the equilibrium under torques, forces and moments from outside, weight and index errors.
 
     Args:
         system: about a mean load.
@@ -205,9 +205,9 @@ def _laws_at_rest(
 
 
 def outer_loads(system: System) -> np.ndarray:
-    """Torques and weight over all dofs, (a,)."""
+    """Torques, forces and moments from outside, and weight over all dofs, (a,)."""
     operation = system.model.operation
-    loads = torque_loads(system)
+    loads = torque_loads(system) + external_load(system)
     if operation and operation.gravity:
         loads = loads + weight_loads(system, operation.gravity)
     return loads

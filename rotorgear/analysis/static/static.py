@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from rotorgear.analysis.common.casings import casing_notes
+from rotorgear.analysis.common.load_notes import load_notes
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.places import displacement_places
 from rotorgear.analysis.common.points import point_amplitudes
@@ -50,7 +51,7 @@ def static(
     """Return deflections, forces, load sharing and its sensitivities.
 
     Args:
-        model: a model with torques, gravity or index errors.
+        model: a model with torques, forces or moments, gravity or index errors.
         speed: of the input shaft in rad/s or with its unit; it chooses the working flanks and the values of bearings with
             tables. None: the operating speed.
         elements: basic elements in each shaft segment; 4 where it is not given. They are exact in statics.
@@ -122,7 +123,8 @@ def _check_loaded(system: System) -> None:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     gravity = model.operation.gravity if model.operation else None
     index = any(mesh.index_error or mesh.helix_index_error for mesh in model.meshes.values())
-    if not system.load.applied and not (gravity and any(gravity)) and not index:
+    outside = system.layout.loaded_from_outside
+    if not system.load.applied and not (gravity and any(gravity)) and not index and not outside:
         raise AnalysisError(
             "nothing loads the model in statics: give [operation] a power or torque with its output_shaft, [loads], or gravity"
         )
@@ -176,6 +178,7 @@ def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimat
         mesh_phase=phases_in_pitches(system.load),
         assembly=tuple(LoopAssembly(loop.mesh, loop.gear, math.degrees(loop.clocking), loop.rest) for loop in loops),
         torque={item.name: item.torque for item in system.load.applied},
+        load_force={load.address: load.constant for load in system.layout.external_loads},
         point_displacement={n: float(v[0]) for n, v in point_amplitudes(system, moved).items()},
         imbalance=imbalance(equilibrium),
         error_estimate=estimate,
@@ -271,7 +274,12 @@ def _left_out(equilibrium: Equilibrated) -> tuple[str, ...]:
             for name in model.casings
             if np.any(np.isnan(equilibrium.system.layout.casing(name).inertia_force[:, :3]))
         ]
-    return (*notes, *casing_notes(equilibrium.system), *rolling_notes(model, rolls=False))
+    return (
+        *notes,
+        *casing_notes(equilibrium.system),
+        *rolling_notes(model, rolls=False),
+        *load_notes(equilibrium.system, "static"),
+    )
 
 
 def _warnings(equilibrium: Equilibrated) -> list[str]:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from rotorgear.errors import Problem
 from rotorgear.model.checks.casings import casings
 from rotorgear.model.checks.gears import gear_problems, inertia_problems
+from rotorgear.model.checks.loads import loads, loads_that_stand_still
 from rotorgear.model.checks.meshes import massless_gears, mesh_problems, mesh_settings
 from rotorgear.model.checks.names import duplicate_names, points, unknown_materials, unknown_names
 from rotorgear.model.checks.nonlinear_elements import nonlinear_elements
@@ -39,7 +40,7 @@ def find_problems(layout: Layout, broken: Iterable[PartName] = ()) -> list[Probl
     stages: tuple[Callable[[Layout], Iterable[Problem]], ...] = (
         lambda rest: [*stations(rest.model), *coupled_points(rest.model)],
         mesh_problems,
-        lambda rest: [*inertia_problems(rest), *train_problems(rest, dropped)],
+        lambda rest: [*inertia_problems(rest), *train_problems(rest, dropped), *loads_that_stand_still(rest)],
         massless_gears,
     )
     for stage in stages:
@@ -65,4 +66,5 @@ def _by_themselves(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
     yield from nonlinear_elements(rest)
     yield from mesh_settings(rest)
     yield from points(rest)
+    yield from loads(rest)
     yield from operating_point(rest, broken)

@@ -45,9 +45,15 @@ class Reference:
 
 def references(model: Tables) -> Iterator[Reference]:
     """Yield every name of a shaft, a gear or another part that some part gives (materials apart)."""
-    for table in (*ON_SHAFTS, "loads", "unbalances"):
+    for table in (*ON_SHAFTS, "unbalances"):
         for name, part in getattr(model, table).items():
             yield Reference((table, name), "shaft", ("shafts", part.shaft))
+    for name, load in model.loads.items():
+        named = {"shaft": load.shaft, "gear": load.gear, "point": load.point, "order_of": load.order_of}
+        for key, part in named.items():
+            if part is not None:
+                table = "shafts" if key == "order_of" else f"{key}s"
+                yield Reference(("loads", name), key, (table, part))
     for name, mesh in model.meshes.items():
         yield Reference(("meshes", name), "pinion", ("gears", mesh.pinion))
         yield Reference(("meshes", name), "gear", ("gears", mesh.gear))

@@ -8,7 +8,8 @@ from rotorgear.errors import Problem
 from rotorgear.model.checks.references import PartName
 from rotorgear.model.layout.applied_torques import applied_torques
 from rotorgear.model.layout.layout import Layout
-from rotorgear.model.parts.operation import Load, Operation
+from rotorgear.model.parts.load import Load
+from rotorgear.model.parts.operation import Operation
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import LARGEST
 

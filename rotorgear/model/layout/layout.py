@@ -16,12 +16,13 @@ from rotorgear.errors import Problem
 from rotorgear.gears.geometry.blank import RigidBody
 from rotorgear.model.layout.assembly import Assembly, put_together
 from rotorgear.model.layout.bodies import NodeBody, disk_body
+from rotorgear.model.layout.external_loads import ExternalLoad, external_loads
 from rotorgear.model.layout.gear_layout import GearLayout
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.model.layout.places import Place
 from rotorgear.model.layout.seats import Seat, find_seat, reduced
 from rotorgear.model.layout.train import Train, walk
-from rotorgear.model.parts.operation import Load
+from rotorgear.model.parts.load import Load
 from rotorgear.model.parts.tables import Tables
 
 if TYPE_CHECKING:
@@ -126,8 +127,8 @@ class Layout:
     def places(self, address: str) -> tuple[Place, ...]:
         """Where a part stands, such as "bearings.left": both ends of a coupling, both nodes of a herringbone gear, else one.
 
-        A load without a place is at the start of its shaft if it is an input, else at the end. A point on another part is
-        where that part's first node is.
+        A force on a gear is where the gear has its nodes. A torque without a place is at the start of its shaft if it is an
+        input, else at the end. A point on another part is where that part's first node is.
         """
         table, _, name = address.partition(".")
         part: Any = getattr(self.model, table)[name]
@@ -139,7 +140,7 @@ class Layout:
             to_at = part.at if part.to_at is None else part.to_at
             return self.at(part.shaft, part.at), self.at(part.to_shaft, to_at)
         if table == "loads":
-            return (self.load_place(part),)
+            return self._load_places(part)
         if table == "points" and part.on is not None:
             return self.places(part.on)[:1]
         return (self.at(part.shaft, part.at),)
@@ -155,7 +156,14 @@ class Layout:
     def load_place(self, load: Load) -> Place:
         """Where a torque acts."""
         end = "start" if load.kind == "input" else "end"
-        return self.at(load.shaft, end if load.at is None else load.at)
+        return self.at(load.on_shaft, end if load.at is None else load.at)
+
+    def _load_places(self, load: Load) -> tuple[Place, ...]:
+        if load.gear is not None:
+            return self.gear(load.gear).places
+        if load.point is not None:
+            return self.places(f"points.{load.point}")[:1]
+        return (self.load_place(load),)
 
     def disk_body(self, name: str) -> RigidBody:
         """Mass and inertias of a disk.
@@ -169,6 +177,16 @@ class Layout:
     def elastic_gears(self) -> dict[str, BlankTorsion]:
         """Gears whose teeth turn against their shaft: those whose mesh stiffness leaves their wind-up to the rotor model."""
         return {gear.name: gear.torsion for mesh in self.meshes for gear in mesh.elastic_gears}
+
+    @cached_property
+    def external_loads(self) -> tuple[ExternalLoad, ...]:
+        """Forces and moments from outside."""
+        return external_loads(self.model, self.train, self.places)
+
+    @property
+    def loaded_from_outside(self) -> bool:
+        """Whether a constant force or moment acts from outside."""
+        return any(load.constant.any() for load in self.external_loads)
 
     @cached_property
     def bodies(self) -> tuple[NodeBody, ...]:

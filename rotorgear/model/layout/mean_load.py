@@ -251,7 +251,7 @@ def torque_flow(layout: Layout, direction: int = 1) -> MeanLoad:
         AnalysisError: a stiffness model that can't do its teeth.
         ConvergenceError: in a loop, mesh stiffness and torque split don't come to agree.
     """
-    applied = [replace(item, torque=direction * item.torque) for item in applied_torques(layout)[0]]
+    applied = [replace(item, torque=direction * item.torque) for item in applied_torques(layout, direction)[0]]
     # Forces come first from the standard's stiffness: a model may need a load, and in a train without loops they stay.
     first = "iso" if applied else None
     curves: Curves = {mesh.name: mesh.helix_stiffness(name=first) for mesh in layout.meshes if mesh.is_modelled}

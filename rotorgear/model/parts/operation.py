@@ -1,4 +1,4 @@
-"""What the gearbox does: its speed, its loads, its damping, and the points that are looked at."""
+"""What the gearbox does: its speed, its damping, and the points that are looked at."""
 
 from __future__ import annotations
 
@@ -9,12 +9,9 @@ from pydantic import Field
 from rotorgear.model.parts.fields import (
     Gravity,
     Part,
-    PositiveRatio,
-    PositiveTime,
     Power,
     Rate,
     Ratio,
-    SignedRatio,
     Speed,
     Station,
     Time,
@@ -33,32 +30,6 @@ class Operation(Part):
     gravity: Gravity | None = Field(
         None, description="acceleration of gravity along x, y and z, for statics and transients; default: none"
     )
-
-
-class Load(Part):
-    """A torque on one shaft, for trains with several inputs or outputs."""
-
-    shaft: str = Field(description="name of the shaft")
-    kind: Literal["input", "output"] = Field(description="input: drives; output: takes power")
-    at: Station | None = Field(None, description="z of the place; default: start for an input, end for an output")
-    torque: Torque | None = Field(
-        None, description="size of the torque; one load, an output as a rule, may leave it out and takes the rest"
-    )
-    power: Power | None = Field(None, description="power, in place of the torque")
-    speed_power: SignedRatio = Field(
-        0.0,
-        description="transient: the torque goes with this power of the speed; 2 for a propeller, -1 for constant power",
-    )
-    ripple: Ratio = Field(0.0, description="transient: amplitude of the torque's ripple as a share of it")
-    ripple_order: PositiveRatio = Field(1.0, description="transient: periods of the ripple in a turn of its shaft")
-    step_to: Ratio = Field(1.0, description="transient: share of the torque that remains after a step")
-    step_at: Time = Field(0.0, description="transient: time at which the step begins")
-    step_duration: PositiveTime = Field(0.001, description="transient: how long the step takes")
-
-    @property
-    def varies(self) -> bool:
-        """Whether the torque changes with time or speed."""
-        return bool(self.speed_power or self.ripple or self.step_to != 1.0)
 
 
 class ModelDamping(Part):

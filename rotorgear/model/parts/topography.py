@@ -75,7 +75,7 @@ def parse_topography(text: str, name: str) -> dict[str, Any]:
     Raises:
         PydanticCustomError: what is wrong, with line and column; `Model` makes a `Problem` of it.
     """
-    rows = _rows(text, name)
+    rows = csv_rows(text, name, "point, such as roll_length_mm,z_mm,deviation_um")
     header = rows[0][1]
     columns = [_column(cell, f"{name}:{rows[0][0]}") for cell in header]
     names = [column for column, _ in columns]
@@ -106,16 +106,16 @@ def parse_topography(text: str, name: str) -> dict[str, Any]:
     return {"by": by[0], "grids": grids}
 
 
-def _rows(text: str, name: str) -> list[tuple[int, list[str]]]:
-    """Line number and stripped cells of every row that says something, the header first."""
+def csv_rows(text: str, name: str, example: str) -> list[tuple[int, list[str]]]:
+    """Line number and stripped cells of every row that says something, the header first; `example` is for the error."""
     lines = text.splitlines()
     written = [
         (number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")
     ]
     if len(written) < 2:
-        raise refuse(f"a header and at least one point, such as roll_length_mm,z_mm,deviation_um; {name} has none")
+        raise refuse(f"a header and at least one {example}; {name} has none")
     if len(written) > _MOST_ROWS:
-        raise refuse(f"up to {_MOST_ROWS} points; {name} has {len(written) - 1}")
+        raise refuse(f"up to {_MOST_ROWS} rows; {name} has {len(written) - 1}")
     delimiter = max(";\t,", key=written[0][1].count)
     return [
         (number, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]) for number, line in written

@@ -35,6 +35,9 @@ def static_table(result: StaticResult, *, sensitivity: bool = False) -> Renderab
     if result.torque:
         torques = "; ".join(f"{name} {value:.2f} N m" for name, value in result.torque.items())
         parts += lines(f"torques about z: {torques}")
+    for name, load in result.load_force.items():
+        if load.any():
+            parts += lines(f"{name}: {_triple(load[:3])} N, {_triple(load[3:])} N m")
     if result.contact_mesh:
         parts += ["", _meshes(result)]
     if result.faces:

@@ -31,6 +31,14 @@ class Rotation:
         return bool(np.all(self.speeds == self.speeds[0]))
 
     @property
+    def accelerations(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Times in s and the accelerations in rad/s^2 that hold from them on; none where the speed never changes."""
+        if self.is_constant:
+            return (), ()
+        steps = np.diff(self.speeds) / np.diff(self.times)
+        return tuple(map(float, self.times)), (*map(float, steps), 0.0)
+
+    @property
     def angles(self) -> np.ndarray:
         """Angle in rad at each of the times, with 0 at time 0."""
         steps = 0.5 * (self.speeds[1:] + self.speeds[:-1]) * np.diff(self.times)

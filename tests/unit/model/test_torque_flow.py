@@ -11,8 +11,9 @@ from rotorgear.errors import ModelError
 from rotorgear.model.layout.mean_load import MeanLoad
 from rotorgear.model.model import Model
 from rotorgear.model.parts.gear import Gear
+from rotorgear.model.parts.load import Load
 from rotorgear.model.parts.mesh import Mesh
-from rotorgear.model.parts.operation import Load, Operation
+from rotorgear.model.parts.operation import Operation
 from rotorgear.model.parts.shaft import Section, Shaft
 from rotorgear.model.parts.supports import Coupling, StiffnessMatrix
 

@@ -1,0 +1,95 @@
+"""Checks of loads: a torque of the train, or a force and moment at one place, with one way to vary."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rotorgear.errors import Problem
+from rotorgear.model.layout.layout import Layout
+from rotorgear.model.parts.load import Load
+from rotorgear.model.parts.tables import Tables
+
+_OF_TORQUES = (
+    "kind",
+    "torque",
+    "power",
+    "speed_power",
+    "ripple",
+    "ripple_order",
+    "step_to",
+    "step_at",
+    "step_duration",
+)
+_OF_FORCES = ("gear", "point", "order", "order_of", "frequency", "phase")
+
+
+def loads(model: Tables) -> Iterator[Problem]:
+    """Each load is of one kind, at one place, and varies in one way."""
+    for name, load in model.loads.items():
+        address = f"loads.{name}"
+        if load.is_torque:
+            yield from _torque(address, load)
+            continue
+        given = [key for key in _OF_TORQUES if getattr(load, key) != Load.model_fields[key].default]
+        if given:
+            yield Problem(
+                f"{address}.{given[0]}",
+                "",
+                f"a torque of the train ({', '.join(_OF_TORQUES)}), or a force and moment at a place, not both",
+                "give two loads",
+            )
+        yield from _place(address, load)
+        yield from _variation(address, load)
+
+
+def _torque(address: str, load: Load) -> Iterator[Problem]:
+    if load.kind is None:
+        yield Problem(f"{address}.kind", "", "missing", "input or output; or give force = [x, y, z] or a moment")
+    elif load.shaft is None:
+        yield Problem(f"{address}.shaft", "", "missing", "the shaft that the torque acts on")
+    for key in _OF_FORCES:
+        if getattr(load, key) != Load.model_fields[key].default:
+            yield Problem(
+                f"{address}.{key}", "", "only beside a force or a moment", "a torque has shaft, at and ripple"
+            )
+
+
+def _place(address: str, load: Load) -> Iterator[Problem]:
+    ways = [key for key in ("shaft", "gear", "point") if getattr(load, key) is not None]
+    if len(ways) != 1:
+        yield Problem(address, " and ".join(ways) or "no place", "one of shaft (with at), gear, point")
+    elif ways == ["shaft"] and load.at is None:
+        yield Problem(f"{address}.at", "", "missing", "required beside shaft: z on that shaft")
+    elif ways != ["shaft"] and load.at is not None:
+        yield Problem(f"{address}.at", f"at beside {ways[0]}", f"a {ways[0]} alone, which says where it is", "")
+
+
+def _variation(address: str, load: Load) -> Iterator[Problem]:
+    if load.history is not None and (load.force is not None or load.moment is not None):
+        yield Problem(
+            address, "a history beside force or moment", "one of them; the columns of the history are the forces"
+        )
+    ways = [key for key in ("order", "frequency", "history") if getattr(load, key) is not None]
+    if len(ways) > 1:
+        yield Problem(address, " and ".join(ways), "one of them, or none for a constant load")
+    if load.phase and load.order is None and load.frequency is None:
+        yield Problem(f"{address}.phase", "a phase", "beside an order or a frequency only", "a constant load has none")
+    over_angle = load.history is not None and load.history.over == "angle"
+    if load.order_of is not None and load.order is None and not over_angle:
+        yield Problem(f"{address}.order_of", "a shaft", "beside an order, or a history over angle", "")
+
+
+def loads_that_stand_still(layout: Layout) -> Iterator[Problem]:
+    """An order, or a history over angle, of a shaft that nothing turns never varies."""
+    for name, load in layout.model.loads.items():
+        if load.is_torque:
+            continue
+        shaft = load.order_of or layout.place(f"loads.{name}").shaft
+        over_angle = load.history is not None and load.history.over == "angle"
+        if (load.order is not None or over_angle) and layout.train.ratios.get(shaft, 0) == 0:
+            yield Problem(
+                f"loads.{name}",
+                f"an order or angle of shaft '{shaft}', which stands still",
+                "a shaft that turns",
+                "name one with order_of, or give a frequency",
+            )

@@ -1,0 +1,92 @@
+"""Forces and moments from outside: where each acts, its constant part, and how the rest goes with angle or time.
+
+    F(t) = F_0 + A cos(n theta + 2 pi f t + phase),   theta = ratio * angle of the reference
+
+n is the order, f the frequency; of a history over the angle theta or over the time, F_0 is its mean over a turn or its value at
+time 0, where a transient begins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.model.layout.places import Place
+from rotorgear.model.layout.train import Train
+from rotorgear.model.parts.load import Load, LoadHistory
+from rotorgear.model.parts.tables import Tables
+
+
+@dataclass(frozen=True)
+class ExternalLoad:
+    """A force with its moment.
+
+    Attributes:
+        address: such as "loads.belt".
+        places: where it acts, in equal parts: the nodes of a herringbone gear, else one.
+        constant: mean force and moment (6,) in N and N m.
+        amplitude: of the harmonic part (6,).
+        order: n times the ratio of the shaft, with its sign: radians for each of the reference.
+        frequency: f in Hz; phase: in rad.
+        history: what it follows over time or angle; then `ratio` is that of the shaft whose angle counts.
+        counted: the shaft whose turns the order or the history counts.
+        in_train: whether its moment about z drives or loads a train that turns: a shaft that turns, and no support holds.
+    """
+
+    address: str
+    places: tuple[Place, ...]
+    constant: np.ndarray
+    amplitude: np.ndarray
+    order: float
+    frequency: float
+    phase: float
+    history: LoadHistory | None
+    ratio: float
+    counted: str
+    in_train: bool
+
+    @property
+    def constant_on_structure(self) -> np.ndarray:
+        """The constant part (6,) without the moment that the balance of torques has already."""
+        held = self.constant.copy()
+        if self.in_train:
+            held[5] = 0.0
+        return held
+
+
+def external_loads(
+    model: Tables, train: Train, places_of: Callable[[str], tuple[Place, ...]]
+) -> tuple[ExternalLoad, ...]:
+    """All forces and moments of a model; `places_of` tells the places of a load by its address."""
+    fixed = [support.shaft for support in model.supports.values() if {"torsion", "all"} & set(support.fixed)]
+    held = {train.group[shaft] for shaft in fixed}
+    found = []
+    for name, load in model.loads.items():
+        if not load.is_torque:
+            places = places_of(f"loads.{name}")
+            shaft = places[0].shaft
+            turns = train.ratios.get(shaft, 0) != 0 and train.group[shaft] not in held
+            ratio = train.ratio(load.order_of or shaft)
+            found.append(_external(f"loads.{name}", load, places, ratio, turns))
+    return tuple(found)
+
+
+def _external(address: str, load: Load, places: tuple[Place, ...], ratio: float, turns: bool) -> ExternalLoad:
+    given = np.array([*(load.force or (0.0,) * 3), *(load.moment or (0.0,) * 3)])
+    varies = load.order is not None or load.frequency is not None
+    nothing = np.zeros(6)
+    return ExternalLoad(
+        address=address,
+        places=places,
+        constant=load.history.mean if load.history else nothing if varies else given,
+        amplitude=given if varies else nothing,
+        order=(load.order or 0.0) * ratio,
+        frequency=load.frequency or 0.0,
+        phase=load.phase,
+        history=load.history,
+        ratio=ratio,
+        counted=load.order_of or places[0].shaft,
+        in_train=turns,
+    )

@@ -1,0 +1,236 @@
+"""Loads from outside: torques that drive the train or take its power, and forces and moments at any place.
+
+A force with its moment is constant, goes as cos(order * angle of a shaft + phase) or cos(2 pi f t + phase), or follows a CSV
+file over time or over the angle of a shaft.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, WithJsonSchema
+
+from rotorgear.model.parts.fields import (
+    Angle,
+    Frequency,
+    Part,
+    PositiveRatio,
+    PositiveTime,
+    Power,
+    Ratio,
+    SignedRatio,
+    Station,
+    Time,
+    Torque,
+    Unit,
+    refuse,
+)
+from rotorgear.model.parts.topography import csv_rows
+from rotorgear.quantity import QuantityError, nearest, parse_quantity
+
+COMPONENTS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
+_TURN = 2.0 * np.pi
+
+
+def _three(value: Any, example: str) -> Any:
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        raise refuse(f"its x, y and z such as {example}")
+    return value
+
+
+ForceVector = Annotated[
+    tuple[Annotated[float, Unit("force")], Annotated[float, Unit("force")], Annotated[float, Unit("force")]],
+    BeforeValidator(lambda value: _three(value, "['0 N', '100 N', '0 N']")),
+]
+MomentVector = Annotated[
+    tuple[Annotated[float, Unit("torque")], Annotated[float, Unit("torque")], Annotated[float, Unit("torque")]],
+    BeforeValidator(lambda value: _three(value, "['0 N m', '0 N m', '5 N m']")),
+]
+
+
+class LoadHistory(Part):
+    """Forces and moments over time, or over the angle of a shaft, linear in between."""
+
+    over: Literal["time", "angle"] = Field(description="what the places are")
+    places: tuple[float, ...] = Field(description="times in s or angles in rad, rising; a turn of angles begins again")
+    components: tuple[str, ...] = Field(description="names of the components that are given")
+    values: tuple[tuple[float, ...], ...] = Field(description="of each component at the places, in N and N m")
+
+    @property
+    def mean(self) -> np.ndarray:
+        """The part (6,) that statics take: the mean over a turn, or the values at time 0, from which a transient starts."""
+        found = np.zeros(6)
+        for name, values in zip(self.components, self.values, strict=True):
+            if self.over == "time":
+                mean = float(np.interp(0.0, self.places, values))
+            else:
+                angles, turned = self.whole_turn(values)
+                mean = float(np.trapezoid(turned, angles)) / _TURN
+            found[COMPONENTS.index(name)] = mean
+        return found
+
+    def whole_turn(self, values: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
+        """Angles from 0 to 2 pi and the values there, closed."""
+        angles = np.array(self.places)
+        start = float(np.interp(0.0, angles, values, period=_TURN))
+        inner = (angles > 0.0) & (angles < _TURN)
+        return (
+            np.concatenate([[0.0], angles[inner], [_TURN]]),
+            np.concatenate([[start], np.array(values)[inner], [start]]),
+        )
+
+
+def _read(value: Any) -> Any:
+    """A path becomes the contents of its file; numbers stay."""
+    if not isinstance(value, str):
+        return value
+    file = Path(value)
+    try:
+        text = file.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise refuse(f"a CSV file of a load over time or angle; there is no '{value}'") from None
+    except UnicodeDecodeError:
+        raise refuse(f"a CSV file in UTF-8, which '{file.name}' is not") from None
+    except (OSError, ValueError) as error:
+        raise refuse(f"a CSV file that can be read: {error}") from None
+    return parse_history(text, file.name)
+
+
+def parse_history(text: str, name: str) -> dict[str, Any]:
+    """Fields of a `LoadHistory` from the text of a CSV file: a column `time` or `angle`, others force_x ... moment_z.
+
+    Each column has its unit behind its name: `time_s`, `angle_deg`, `force_y (kN)`, `moment_z_Nm`.
+
+    Args:
+        text: of the file.
+        name: what errors call it.
+
+    Raises:
+        PydanticCustomError: what is wrong, with its line.
+    """
+    rows = csv_rows(text, name, "a row, such as time_s,force_y_N")
+    columns = [_column(cell, f"{name}:{rows[0][0]}") for cell in rows[0][1]]
+    names = [column for column, _, _ in columns]
+    over = [column for column in ("time", "angle") if column in names]
+    if len(over) != 1 or len(set(names)) != len(names) or len(names) < 2:
+        raise refuse(
+            f"one column of time or angle, and each of {', '.join(COMPONENTS)} at most once; {name} has {names}"
+        )
+    table = []
+    for number, cells in rows[1:]:
+        if len(cells) != len(columns):
+            raise refuse(f"{len(columns)} cells in each row; {name}:{number} has {len(cells)}")
+        try:
+            table.append(
+                [
+                    parse_quantity(f"{float(c)!r} {unit}", kind)
+                    for c, (_, kind, unit) in zip(cells, columns, strict=True)
+                ]
+            )
+        except (ValueError, QuantityError):
+            raise refuse(f"a finite number in each cell; {name}:{number} has '{', '.join(cells)}'") from None
+    by_name = dict(zip(names, zip(*table, strict=True), strict=True))
+    places = by_name.pop(over[0])
+    if len(places) < 2 or any(b <= a for a, b in pairwise(places)):
+        raise refuse(f"at least two rows, with rising {over[0]}s; {name} has others")
+    if over[0] == "angle":
+        places, by_name = _one_turn(places, by_name, name)
+    return {"over": over[0], "places": places, "components": tuple(by_name), "values": tuple(by_name.values())}
+
+
+def _one_turn(places: Any, by_name: dict[str, Any], name: str) -> tuple[Any, dict[str, Any]]:
+    """Angles from 0 to below a whole turn; a last row at 360 deg repeats the first one."""
+    if places[0] < 0.0 or places[-1] > _TURN * (1.0 + 1e-9):
+        raise refuse(f"angles from 0 to 360 deg, one turn that begins again; {name} goes beyond")
+    if places[0] == 0.0 and places[-1] > _TURN * (1.0 - 1e-9):
+        size = max(abs(x) for values in by_name.values() for x in values)
+        if any(abs(values[-1] - values[0]) > 1e-9 * size for values in by_name.values()):
+            raise refuse(f"the same values at 360 deg as at 0 deg, where the turn begins again; {name} has others")
+        return places[:-1], {column: values[:-1] for column, values in by_name.items()}
+    return places, by_name
+
+
+def _column(cell: str, line: str) -> tuple[str, str, str]:
+    """Name, dimension and unit of a column from its header."""
+    kinds = {"time": "time", "angle": "angle"} | {c: "force" if c[0] == "f" else "torque" for c in COMPONENTS}
+    text = cell.strip().strip("])").replace("[", " ").replace("(", " ")
+    found = next((name for name in kinds if text.lower().startswith(name)), None)
+    if found is None:
+        guess = nearest(text.lower(), list(kinds))
+        raise refuse(
+            f"columns that are known; {line} has '{cell}' "
+            f"({f'did you mean {guess}?' if guess else 'there are ' + ', '.join(kinds)})"
+        )
+    unit = text[len(found) :].strip(" _")
+    try:
+        parse_quantity(f"1.0 {unit}", kinds[found])
+    except QuantityError as error:
+        raise refuse(f"the unit of '{found}' in its header, {error}; {line} has '{cell}'") from None
+    return found, kinds[found], unit
+
+
+HistoryFile = Annotated[
+    LoadHistory,
+    BeforeValidator(_read),
+    WithJsonSchema({"type": "string", "description": "CSV file over time or angle, beside the model file"}),
+]
+
+
+class Load(Part):
+    """A torque that drives or loads the train, or a force and a moment at a place."""
+
+    shaft: str | None = Field(None, description="name of the shaft")
+    kind: Literal["input", "output"] | None = Field(None, description="of a torque; input: drives; output: takes power")
+    at: Station | None = Field(
+        None, description="z of the place; default of a torque: start for an input, end for an output"
+    )
+    torque: Torque | None = Field(
+        None, description="size of the torque; one load, an output as a rule, may leave it out and takes the rest"
+    )
+    power: Power | None = Field(None, description="power, in place of the torque")
+    speed_power: SignedRatio = Field(
+        0.0,
+        description="transient: the torque goes with this power of the speed; 2 for a propeller, -1 for constant power",
+    )
+    ripple: Ratio = Field(0.0, description="transient and response: amplitude of the torque's ripple as a share of it")
+    ripple_order: PositiveRatio = Field(1.0, description="periods of the ripple in a turn of its shaft")
+    step_to: Ratio = Field(1.0, description="transient: share of the torque that remains after a step")
+    step_at: Time = Field(0.0, description="transient: time at which the step begins")
+    step_duration: PositiveTime = Field(0.001, description="transient: how long the step takes")
+    gear: str | None = Field(
+        None, description="name of the gear that a force acts on, in place of shaft and at; in the middle of its face"
+    )
+    point: str | None = Field(None, description="name of the point that a force acts at, in place of shaft and at")
+    force: ForceVector | None = Field(None, description="force along x, y and z")
+    moment: MomentVector | None = Field(None, description="moment about x, y and z")
+    order: PositiveRatio | None = Field(
+        None,
+        description="force and moment go as cos(order * angle + phase) with the angle of a shaft; default: constant",
+    )
+    order_of: str | None = Field(None, description="name of the shaft whose angle counts; default: that it acts on")
+    frequency: Frequency | None = Field(
+        None, description="force and moment go as cos(2 pi frequency * time + phase), in place of an order"
+    )
+    phase: Angle = Field(0.0, description="phase at angle or time 0")
+    history: HistoryFile | None = Field(
+        None,
+        description="forces and moments over time, or over the angle of a shaft, in place of force and moment",
+    )
+
+    @property
+    def is_torque(self) -> bool:
+        """Whether it is a torque that drives or loads the train, not a force or moment at a place."""
+        return self.force is None and self.moment is None and self.history is None
+
+    @property
+    def on_shaft(self) -> str:
+        """The shaft of a torque; "" where it names none, which is a problem of the model."""
+        return self.shaft or ""
+
+    @property
+    def varies(self) -> bool:
+        """Whether a torque changes with time or speed."""
+        return bool(self.speed_power or self.ripple or self.step_to != 1.0)
