@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -127,10 +127,22 @@ def flush_tilt(rim: float, web: float, line_load: float) -> float:
 
 
 def patch(compliance: GearCompliance, half: float, *, elliptic: bool) -> np.ndarray:
-    """Nodal shares (r,) of a unit load at the pitch point over a patch along the flank, by quadratic shape functions."""
-    base = compliance.base_radius
-    arc = compliance.roll**2 / (2.0 * base)
-    pitch_point = (base * math.tan(GEAR.transverse_pressure_angle)) ** 2 / (2.0 * base)
+    """Nodal shares (r,) of a unit load at the pitch point of the wheel, over a patch along the flank."""
+    return patch_shares(compliance.roll, replace(GEAR, normal_module=1.0), half, elliptic=elliptic)
+
+
+def patch_shares(roll: np.ndarray, gear: GearGeometry, half: float, *, elliptic: bool) -> np.ndarray:
+    """Nodal shares (r,) of a unit load at the pitch point, over a patch along the flank, by quadratic shape functions.
+
+    Args:
+        roll: (r,) roll lengths of the flank's nodes in modules.
+        gear: with a module of 1.
+        half: half-width of the patch in modules.
+        elliptic: whether its pressure is semi-elliptic rather than even.
+    """
+    base = gear.base_radius
+    arc = roll**2 / (2.0 * base)
+    pitch_point = (base * math.tan(gear.transverse_pressure_angle)) ** 2 / (2.0 * base)
     t, weight = np.polynomial.legendre.leggauss(40)
     weight = weight * np.sqrt(1.0 - t**2) if elliptic else weight
     ends = arc[::2]

@@ -14,6 +14,7 @@ from rotorgear.gears.geometry.blank import BlankShape
 from rotorgear.gears.tooth_fe.blank_section import BlankSection, blank_torsion
 from rotorgear.system.rigid_motions import rigid_motions
 from tests.paths import ROOT
+from validation.benchmarks.wheel_torsion import CASES, held_model, program_hz, reference_hz, rigid_in_hub
 
 NU = 0.3
 WEBBED = BlankShape(
@@ -105,6 +106,21 @@ def test_the_torsional_mode_of_wheel_and_shaft_is_that_of_the_whole_blank() -> N
         found = np.sqrt(la.eigh(*ours, eigvals_only=True))
         expected = np.sqrt(la.eigh(*exact, eigvals_only=True)[:2])
         assert found == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("case", CASES)
+def test_the_lowest_torsional_mode_of_wheel_and_shaft_is_that_of_3d_elements(case: str) -> None:
+    model = held_model(CASES[case])
+    assert program_hz(model)[0] == pytest.approx(reference_hz(model, rigid=False)[0], rel=0.01)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("case", [name for name in CASES if name.startswith("long shaft")])
+def test_so_is_the_second_where_the_shaft_within_the_hub_is_rigid(case: str) -> None:
+    """There the rim turns against its shaft; on a short shaft the ends of the rigid stretch count, up to 3 %."""
+    model = rigid_in_hub(held_model(CASES[case]))
+    assert program_hz(model) == pytest.approx(reference_hz(model, rigid=True), rel=0.01)
 
 
 def test_a_gear_winds_up_in_all_its_meshes_alike() -> None:

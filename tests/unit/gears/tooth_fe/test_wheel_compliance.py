@@ -13,6 +13,7 @@ from rotorgear.gears.tooth_fe.compliance_model import compliance_key, gear_compl
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.settings import ToothFe
+from validation.benchmarks.cyclic_wheel import WHEELS, cyclic_deflection, program_deflection
 from validation.benchmarks.wheel_compliance import TABLE, Expected, found
 
 SIZE = MeshSize(5, 2, 4, 2, 4, 4)
@@ -122,3 +123,14 @@ def test_the_wheel_in_3d_within_a_percent(row: Expected) -> None:
     assert ours.wind_up == pytest.approx(row.wind_up, rel=0.01)
     assert ours.mean - ours.wind_up == pytest.approx(row.mean - row.wind_up, rel=0.015)
     assert ours.even == pytest.approx(row.mean, rel=0.015)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", WHEELS)
+def test_blanks_of_all_kinds_within_two_percent_of_a_plain_sector(name: str) -> None:
+    """Webs off the middle and flush, thick rims: mean, middle, both ends and wind-up."""
+    truth = cyclic_deflection(WHEELS[name])
+    ours = program_deflection(WHEELS[name])
+    assert (ours.mean, ours.middle, *ours.ends) == pytest.approx((truth.mean, truth.middle, *truth.ends), rel=0.02)
+    assert ours.wind_up == pytest.approx(truth.wind_up, rel=0.01)
+    assert ours.mean - ours.wind_up == pytest.approx(truth.mean - truth.wind_up, rel=0.02)
