@@ -1,4 +1,4 @@
-"""Errors of `rotorgear mesh` beside what it estimates: python -m validation.benchmarks.mesh_estimates [positions] [presets]
+"""Errors of `rotorgear mesh` beside its estimates: python -m validation.benchmarks.mesh_estimates [positions] [presets] [wheels]
 
 positions: ten pairs, spur and helical, asked for 8 to 1024 positions in a mesh period. Errors are those against 2048 positions on
 the same elements; estimates are those of the sampling alone, in space with those of the slices: wherever a contact line gets
@@ -6,7 +6,8 @@ another number of slices the curves make a small step, which lies between positi
 presets: six helical pairs and an overload by the presets default and fine, with 64 positions. Errors are those against a finer
 mesh, 0.54 modules a layer; estimates are what `rotorgear mesh` prints: elements, slices and positions together. It takes a
 quarter of an hour and 2.4 GB.
-Without a word: both. Names of pairs after it take these alone.
+wheels: pairs with the web wheel of `models/web_wheel.toml` and lighter ones, likewise, against a finer mesh of teeth and blank.
+Without a word: all three. Names of pairs after it take these alone.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.settings import ToothFe, sized
 from rotorgear.results.mesh import MeshErrors
+from tests.paths import ROOT
 
 ASKED = (8, 12, 16, 24, 32, 48, 64, 128, 256, 512, 1024)
 REFERENCE_POSITIONS = 2048
@@ -36,6 +38,8 @@ COARSE = (MeshSize(5, 2, 4, 2, 3), 3.6)
 # The reference of the presets, and its layers in normal modules.
 FINEST = (MeshSize(12, 4, 7, 3, 4), 0.54)
 POSITIONS = 64
+# The reference of wheels: rows, columns and polynomials.
+FINEST_WHEEL = MeshSize(20, 5, 14, 5, 10, 12)
 
 
 @dataclass(frozen=True)
@@ -140,6 +144,12 @@ HELICAL = {
     "34/80 20.86 x 10": Pair((34, 80), 20.86, 5.0, 54.0, 10000.0),
 }
 
+WHEELS: dict[str, dict[str, object]] = {
+    "web 6.4 mm": {},
+    "web 3.2 mm": {"gears.wheel.body.web_thickness": "3.2 mm"},
+    "rim 4.5 mm": {"gears.wheel.body.rim_thickness": "4.5 mm"},
+}
+
 
 def _figures(found: SolvedHelices) -> np.ndarray:
     """Mean stiffness, peaks to peaks of stiffness and transmission error, and largest pressure."""
@@ -196,13 +206,16 @@ def preset_errors(pair: Pair) -> list[tuple[str, np.ndarray, np.ndarray, float]]
     request = pair.request()
     assert request.teeth is not None
     width = request.teeth.width / request.teeth.first.normal_module
+    return _preset_errors(request, sized(ToothFe(preset="fine"), FINEST, width))
 
+
+def _preset_errors(request: MeshRequest, finest: ToothFe) -> list[tuple[str, np.ndarray, np.ndarray, float]]:
     def solved(fe: ToothFe) -> tuple[ToothPair, SolvedHelices]:
         assert request.teeth is not None
         teeth = replace(request.teeth, fe=fe)
         return teeth, solve_helices(request, teeth, request.base_force, Cycle(POSITIONS), judged=True)
 
-    exact = _figures(solved(sized(ToothFe(preset="fine"), FINEST, width))[1])
+    exact = _figures(solved(finest)[1])
     rows = []
     for preset in ("default", "fine"):
         start = time.process_time()
@@ -214,10 +227,19 @@ def preset_errors(pair: Pair) -> list[tuple[str, np.ndarray, np.ndarray, float]]
     return rows
 
 
+def wheel_errors(changes: dict[str, object]) -> list[tuple[str, np.ndarray, np.ndarray, float]]:
+    """As `preset_errors`, for the file's web wheel with changes."""
+    file = rg.load(ROOT / "models" / "web_wheel.toml")
+    request = mesh_request(file.with_(changes) if changes else file, None, None, None, {})
+    finest = ToothFe(preset="fine", size=FINEST_WHEEL, blank_coarseness=0.5)
+    return _preset_errors(request, finest)
+
+
 def main(words: list[str]) -> None:
     """Print the tables."""
-    kinds = [word for word in words if word in ("positions", "presets")] or ["positions", "presets"]
-    names = [word for word in words if word not in ("positions", "presets")]
+    tables = ("positions", "presets", "wheels")
+    kinds = [word for word in words if word in tables] or tables
+    names = [word for word in words if word not in tables]
     if "positions" in kinds:
         print(
             "errors in % / estimates of what lies between positions in %; ! where an error is more than 1.5 times its estimate"
@@ -230,17 +252,21 @@ def main(words: list[str]) -> None:
                 continue
             for count, errors, estimates, seconds in sampled_errors(pair):
                 _line(f"{name:20} {count:10}", errors, estimates, seconds, 1e-5)
-    if "presets" in kinds:
+    for table, pairs in (("presets", HELICAL), ("wheels", WHEELS)):
+        if table not in kinds:
+            continue
         print(
             "errors against the finest mesh in % / estimates in %; ! where an error is more than 1.5 times its estimate"
         )
         print(
             f"{'':20}preset                  k            k pp          STE pp           p_max      CPU   worst estimate/error"
         )
-        for name, pair in HELICAL.items():
+        for name, pair in pairs.items():
             if names and name not in names:
                 continue
-            for preset, errors, estimates, seconds in preset_errors(pair):
+            for preset, errors, estimates, seconds in (
+                preset_errors(pair) if isinstance(pair, Pair) else wheel_errors(pair)
+            ):
                 _line(
                     f"{name:20}{preset:11}",
                     errors,

@@ -56,6 +56,7 @@ class BlankSection:
         outer_radius: of the circle.
         poisson_ratio: of the material.
         axial_side: largest side of an element along the axis.
+        coarseness: of all other sides over the usual ones.
 
     Attributes:
         z: (k,) places along the axis of the nodes on the circle, rising.
@@ -67,9 +68,15 @@ class BlankSection:
     """
 
     def __init__(
-        self, shape: BlankShape, width: float, outer_radius: float, poisson_ratio: float, axial_side: float = AXIAL_SIDE
+        self,
+        shape: BlankShape,
+        width: float,
+        outer_radius: float,
+        poisson_ratio: float,
+        axial_side: float = AXIAL_SIDE,
+        coarseness: float = 1.0,
     ) -> None:
-        points, cells = _section_mesh(parts_of(shape, width, outer_radius), axial_side)
+        points, cells = _section_mesh(parts_of(shape, width, outer_radius), axial_side, coarseness)
         self.points = points
         self.radius = points[:, 0]
         on_circle = self.radius > outer_radius * (1.0 - 1e-9)
@@ -165,10 +172,11 @@ def _dofs(nodes: np.ndarray) -> np.ndarray:
     return np.asarray((3 * nodes[:, None] + np.arange(3)).ravel())
 
 
-def _section_mesh(parts: Sequence[Rectangle], axial_side: float) -> tuple[np.ndarray, np.ndarray]:
+def _section_mesh(parts: Sequence[Rectangle], axial_side: float, coarseness: float) -> tuple[np.ndarray, np.ndarray]:
     """Nodes (p, 2) and cells (9, e) of quadratic rectangles over the parts of a section, on lines that all parts share."""
-    r = _lines([part[:2] for part in parts], _RADIAL_SIDE)
-    z = _lines([part[2:] for part in parts], axial_side)
+    across = coarseness * _ACROSS_PART
+    r = _lines([part[:2] for part in parts], coarseness * _RADIAL_SIDE, across)
+    z = _lines([part[2:] for part in parts], axial_side, across)
     rows, columns = np.meshgrid(np.arange(len(r) - 1), np.arange(len(z) - 1), indexing="ij")
     x = 0.5 * (r[rows] + r[rows + 1])
     y = 0.5 * (z[columns] + z[columns + 1])
@@ -185,13 +193,13 @@ def _section_mesh(parts: Sequence[Rectangle], axial_side: float) -> tuple[np.nda
     return points, cells.reshape(-1, 9).T
 
 
-def _lines(intervals: Sequence[Sequence[float]], largest: float) -> np.ndarray:
+def _lines(intervals: Sequence[Sequence[float]], largest: float, across: float) -> np.ndarray:
     """Lines through the ends of all intervals, and between them so close that each interval has a few elements."""
     ends = np.unique(np.round(np.concatenate([np.asarray(interval) for interval in intervals]), 9))
     found = [ends[:1]]
     for low, high in pairwise(ends):
         middle = 0.5 * (low + high)
-        side = min((_ACROSS_PART * (b - a) for a, b in intervals if a < middle < b), default=largest)
+        side = min((across * (b - a) for a, b in intervals if a < middle < b), default=largest)
         count = max(1, int(np.ceil((high - low) / min(side, largest) - 1e-9)))
         found.append(np.linspace(low, high, count + 1)[1:])
     return np.concatenate(found)

@@ -47,6 +47,7 @@ class ComplianceKey:
         arc: pitches of a rim; 0 for a full ring or a wheel.
         blank: of a wheel; None where the inner circle is held.
         face: width of the rim of a wheel, also of a plane model; 0 where the inner circle is held.
+        coarseness: of the blank's mesh over the usual one.
     """
 
     geometry: GearGeometry
@@ -57,6 +58,7 @@ class ComplianceKey:
     arc: int
     blank: BlankShape | None = None
     face: float = 0.0
+    coarseness: float = 1.0
 
 
 def compliance_key(
@@ -104,6 +106,7 @@ def compliance_key(
         fe.arc if body == "rim" else 0,
         wheel,
         _rounded(width / m) if wheel else 0.0,
+        fe.blank_coarseness if wheel else 1.0,
     )
 
 
@@ -157,7 +160,7 @@ def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
         wheel = wheel_sector(key, mesh, part_of(progress, 0.0, 0.6))
         # Polynomials along the face are smooth: on a wide one a dozen elements follow them.
         side = AXIAL_SIDE if key.width else max(AXIAL_SIDE, key.face / _POLYNOMIAL_CELLS)
-        blank = BlankSection(key.blank, key.face, key.inner_radius, key.poisson_ratio, side)
+        blank = BlankSection(key.blank, key.face, key.inner_radius, key.poisson_ratio, side, key.coarseness)
         G, asymmetry = wheel_flexibility(wheel, blank, teeth, reach, part_of(progress, 0.6, 1.0))
         if not key.width:
             # Means along the face for forces of the whole face: a plane model has those of a unit width.

@@ -38,6 +38,7 @@ class ToothFe:
         size: mesh size in place of the preset's.
         patch: largest half-width of a load patch in normal modules, in place of the preset's.
         slices: slices of a contact line over the whole face, in place of two a layer.
+        blank_coarseness: sides of the elements below the teeth of a wheel over the usual ones.
     """
 
     preset: Preset = "default"
@@ -49,6 +50,7 @@ class ToothFe:
     size: MeshSize | None = None
     patch: float | None = None
     slices: int | None = None
+    blank_coarseness: float = 1.0
 
     def __post_init__(self) -> None:
         if self.preset not in PRESETS:

@@ -89,6 +89,18 @@ def test_where_the_rim_is_cut_from_the_blank_does_not_matter() -> None:
     assert cut == pytest.approx(whole, rel=5e-3)
 
 
+def test_a_coarser_mesh_of_the_blank_is_stiffer_by_a_little() -> None:
+    """Quadratic elements are compatible: the fewer, the stiffer. The teeth above have the same mesh."""
+    gear = GearGeometry(TEETH, 1.0, math.radians(20.0), 0.0)
+    found = [
+        mean(gear_compliance(compliance_key(gear, fe, 0.3, WIDTH, 4.0, space=False, blank=webbed())))
+        for fe in (ToothFe(body="wheel", size=EVEN, blank_coarseness=side) for side in (1.0, 2.0, 3.0))
+    ]
+    assert found == sorted(found, reverse=True)
+    assert found[0] == pytest.approx(found[1], rel=0.01)
+    assert found[0] != found[1]
+
+
 def test_a_web_off_the_middle_tilts_the_rim() -> None:
     low, high = (compliance(webbed(position=position), space=True) for position in (-2.0, 2.0))
     planes = len(low.height)
