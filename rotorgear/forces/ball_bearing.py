@@ -113,6 +113,12 @@ class BallBearing(ForceLaw):
     poisson_ratio: float = parameter("", "of balls and rings", 0.3, above=-1.0, below=0.5)
     order: float = parameter("rad/rad", "turns of the cage for each turn of the reference", 0.0)
     phase: float = parameter("rad", "angle of a ball at angle 0", 0.0)
+    contact: float = parameter(
+        "N/m^1.5",
+        "c_p, load over deflection^(3/2) of a ball between both raceways; 0: by Hertz from the geometry",
+        0.0,
+        least=0.0,
+    )
     reference: tuple[float, ...] = parameter(
         "N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * _COMPONENTS
     )
@@ -136,7 +142,9 @@ class BallBearing(ForceLaw):
 
     @property
     def contact_constant(self) -> float:
-        """c_p in N/m^1.5."""
+        """c_p in N/m^1.5, as given or by Hertz."""
+        if self.contact:
+            return self.contact
         return point_contact(
             self.ball_diameter,
             self.pitch_diameter,

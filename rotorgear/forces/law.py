@@ -236,12 +236,12 @@ class ForceLaw(ABC):
     def linearised(self, d: Any = 0.0, v: Any = 0.0, *, speed: float = 0.0) -> Linearised:
         """Mean force, stiffness and damping about displacements d and velocities v (k,), as linear analyses take them.
 
-        What varies in time is left out (`mean`); rolling elements and the like are averaged over a `cycle`, because a linear
-        analysis may not depend on where one of them happens to stand.
+        What varies in time is left out (`mean`). Rolling elements and the like that turn are averaged over a `cycle`, because an
+        analysis at speed may not depend on where one of them happens to stand; at speed 0 they stand still, at angle 0.
         """
         still = self.mean()
         k = self.components
-        angles = still.cycle() * np.arange(_CYCLE_POINTS) / _CYCLE_POINTS if still.cycle() else np.zeros(1)
+        angles = still.cycle() * np.arange(_CYCLE_POINTS) / _CYCLE_POINTS if still.cycle() and speed else np.zeros(1)
         d, v = (np.broadcast_to(np.asarray(x, float), (angles.size, k)) for x in (d, v))
         values = still.evaluate_many(d, v, angle=angles, speed=speed)
         return Linearised(

@@ -10,6 +10,9 @@ from rotorgear.results.modal import NODE_COUNT, NodeTable
 from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
 
+# Of the largest component of a force, below which another one is not told.
+_NEGLIGIBLE = 1e-6
+
 
 class Share(Record):
     """Share of a mesh in the load of a gear that it drives, or is driven by, together with other meshes.
@@ -80,6 +83,40 @@ class MeshFace(Record):
     def misalignment_m(self) -> float:
         """The whole misalignment (m): what `misalignment` of the mesh in a file would be for rigid shafts."""
         return self.shaft_misalignment_m + self.given_misalignment_m
+
+
+class LawRow(Record):
+    """A bearing or nonlinear element in equilibrium, by its force law."""
+
+    part: str = of("bearing or nonlinear element")
+    force: np.ndarray = of(
+        "force of the shaft on it", "N and N m", "component", note=" along its displacements", json="force"
+    )
+    displacement: np.ndarray = of("displacement of the shaft against it", "m and rad", "component")
+    stiffness: np.ndarray = of("tangent stiffness", "SI", "component", "displacement")
+    damping: np.ndarray = of("tangent damping", "SI", "component", "velocity")
+    averaged: bool = of("whether these are means over a pitch of its rolling elements")
+
+    @property
+    def sentence(self) -> str:
+        """Its state in words: "bearings.front: 15.11 um, 99.2 N/um at 1000 N", with the stiffness along the force, F.KF/F^2."""
+        across = slice(0, min(2, len(self.force)))
+        F = self.force[across]
+        moved = 1e6 * float(np.linalg.norm(self.displacement[across]))
+        size = float(np.linalg.norm(F))
+        whole = float(np.abs(self.force).max(initial=0.0))
+        if not whole:
+            return f"{self.part}: carries nothing at {moved:.4g} um"
+        words = []
+        if size > _NEGLIGIBLE * whole:
+            along = float(F @ self.stiffness[across, across] @ F) / size**2
+            words.append(f"{moved:.4g} um, {1e-6 * along:.4g} N/um at {size:.4g} N")
+        if len(self.force) >= 3 and abs(self.force[2]) > _NEGLIGIBLE * whole:
+            stiffness = 1e-6 * float(self.stiffness[2, 2])
+            pushed = 1e6 * float(self.displacement[2])
+            words.append(f"{pushed:.4g} um, {stiffness:.4g} N/um at {self.force[2]:.4g} N along z")
+        mean = ", mean over a pitch of its elements" if self.averaged else ""
+        return f"{self.part}: {' and '.join(words)}{mean}"
 
 
 def by_mesh(key: str, *axes: str) -> Written:
@@ -188,6 +225,15 @@ class StaticResult(ModelResult, kind="static"):
         record=MeshFace,
         default=(),
         kw_only=True,
+    )
+    laws: tuple[LawRow, ...] = of(
+        "state of each force law",
+        "",
+        "law",
+        record=LawRow,
+        default=(),
+        kw_only=True,
+        note=" of bearings and nonlinear elements",
     )
     passes: int = of(
         "passes until shafts and loads along the faces agreed",

@@ -12,8 +12,10 @@ import pytest
 from machinery.snippets import ROOT
 from typer.testing import CliRunner
 
+from rotorgear.analysis.static.static import static
 from rotorgear.cli.main import app
 from tests.unit.analysis.geared import pair_file
+from tests.unit.analysis.static.test_bearing_states import rotor
 from tests.unit.casings.blocks import block, write_inp
 
 MODEL = ROOT / "models" / "split_torque.toml"
@@ -175,6 +177,8 @@ def test_the_keys_of_static_are_documented(tmp_path: Path) -> None:
     data["warnings"] = ["one"]  # this model has none
     data["faces"] = written(tmp_path, "static", str(ROOT / "models" / "overhung_pinion.toml"))["faces"]  # nor any
     data["casing_force_n"] = data["casing_moment_n_m"] = {"box": [0.0, 0.0, 0.0]}  # nor a casing
+    bearing = rotor('kind = "ball", elements = 7, element_diameter = 0.01, pitch_diameter = 0.04', "[9.0, 0.0, 0.0]")
+    data |= {key: static(bearing).to_dict()[key] for key in ("laws", "load_force_n", "load_moment_n_m")}  # nor these
     assert differences(data, documented("static")) == NONE
 
 

@@ -33,13 +33,17 @@ _PULLS = 1e-9
 
 @dataclass(frozen=True)
 class LawState:
-    """A law in equilibrium: displacements d and force (k,), and its tangents there, (k, k), stiffness and damping."""
+    """A law in equilibrium: displacements d and force (k,), and its tangents there, (k, k), stiffness and damping.
+
+    `averaged`: whether its rolling elements turn, so that force and tangents are means over a pitch of them.
+    """
 
     part: LocalPart
     d: np.ndarray
     force: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
+    averaged: bool = False
 
 
 @dataclass(frozen=True)
@@ -200,7 +204,7 @@ def _laws_at_rest(
     for part, a, b in zip(parts, ends, ends[1:], strict=False):
         d = found.d[a:b]
         tangent = part.law.linearised(d, speed=speed)
-        states.append(LawState(part, d, tangent.force, tangent.stiffness, tangent.damping))
+        states.append(LawState(part, d, tangent.force, tangent.stiffness, tangent.damping, speed != 0.0))
     return states
 
 

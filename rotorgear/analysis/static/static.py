@@ -19,6 +19,7 @@ from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.along_faces import AlongFaces, decided_by_loads, equilibrate_along_faces, misalignments
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.forces import bearing_forces, casing_forces, forces_on_gears, imbalance, support_forces
+from rotorgear.analysis.static.law_states import law_rows
 from rotorgear.analysis.static.sensitivity import Sensitivity, sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
@@ -185,6 +186,7 @@ def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimat
         dofs=system.n,
         seconds={"total": time.perf_counter() - start},
         faces=faces,
+        laws=law_rows(equilibrium.laws),
         passes=found.passes,
         left_out=(*_left_out(equilibrium), *_unfelt(faces), *change.left_out),
         warnings=(*system.nodes.merged, *_warnings(equilibrium), *_face_warnings(found, faces)),

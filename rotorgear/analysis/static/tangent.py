@@ -72,6 +72,7 @@ def _about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Mo
         notes += without
     if not wanted:
         return model, tuple(notes)
+    from rotorgear.analysis.static.law_states import law_rows
     from rotorgear.analysis.static.solve import equilibrate
 
     operating = model.operation.speed if model.operation else None
@@ -88,6 +89,9 @@ def _about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Mo
     notes.append(
         f"what is not linear of {', '.join(sorted(wanted))}: linearised about the static equilibrium at {where} rpm"
     )
+    for speed, state in {at[0]: states[0], at[-1]: states[-1]}.items():
+        turning = f" at {speed * RPM_PER_RAD_S:.6g} rpm" if len(at) > 1 else ""
+        notes += [f"{row.sentence}{turning}" for row in law_rows(state[part] for part in sorted(wanted))]
     return model.model_copy(update=changed), tuple(notes)
 
 

@@ -73,6 +73,7 @@ def static_table(result: StaticResult, *, sensitivity: bool = False) -> Renderab
         "tilts and twist in urad; L and R: helix at the smaller and the larger z",
         f"{result.dofs} dofs, {result.seconds['total']:.2f} s; {result.method}",
         *_along(result),
+        *(row.sentence for row in result.laws),
         *(
             f"ground on casing {name}: {_triple(load[:3])} N, {_triple(load[3:])} N m about the origin"
             for name, load in result.casing_force.items()
