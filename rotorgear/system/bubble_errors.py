@@ -12,6 +12,7 @@ other sign.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,7 +33,7 @@ _RESOLVED = 2.0
 
 
 @dataclass(frozen=True)
-class _Bubbles:
+class Bubbles:
     """Bubble modes of the k different elements of a group: w^2 (k, b), and what they take from an element's dofs, (k, b, d)."""
 
     squared: np.ndarray
@@ -40,6 +41,31 @@ class _Bubbles:
     stiffness: np.ndarray
     gyroscopic: np.ndarray
     lumping: np.ndarray | None
+
+
+@dataclass(frozen=True)
+class BubbleGroup:
+    """Elements of a shaft of one order: the kind of each (e,), the dofs of each (e, d), and the bubbles of the kinds."""
+
+    shaft: str
+    elements: list[Element]
+    which: np.ndarray
+    dofs: np.ndarray
+    bubbles: Bubbles
+
+
+def bubble_groups(system: System) -> Iterator[BubbleGroup]:
+    """Yield the elastic shaft elements of a system with the bubbles that they lack."""
+    model = system.model
+    for shaft in model.shafts:
+        shear = model.shafts[shaft].shear_deformation
+        lumped = model.shafts[shaft].mass_matrix == "lumped"
+        for rigid, order, elements in alike(model, system.nodes, shaft):
+            if rigid:
+                continue
+            kinds, which = element_data(model, shaft, elements).unique()
+            bubbles = _bubble_modes(kinds, order, shear, lumped, model.motions)
+            yield BubbleGroup(shaft, elements, which, shaft_dofs(system.nodes, elements, shear), bubbles)
 
 
 def bubble_errors(system: System, speed: float | None, s: np.ndarray, x: np.ndarray) -> dict[PieceKey, np.ndarray]:
@@ -56,18 +82,15 @@ def bubble_errors(system: System, speed: float | None, s: np.ndarray, x: np.ndar
     right = system.dofs.expand(x)
     left = system.dofs.expand(y)
     errors: dict[PieceKey, np.ndarray] = {}
-    for shaft in system.model.shafts:
-        for rigid, order, elements in alike(system.model, system.nodes, shaft):
-            if rigid:
-                continue
-            moved = _moved(system, speed or 0.0, shaft, order, elements, s, right, left)  # (e, m)
-            for piece in sorted({element.piece for element in elements}):
-                of_piece = [k for k, element in enumerate(elements) if element.piece == piece]
-                change = np.abs(moved[of_piece].sum(axis=0))
-                finite = np.where(np.isfinite(change), change, 0.0)
-                # Root of second e^2 + first e = |d| in the form that loses no digits where the square matters little.
-                share = 2.0 * finite / (first + np.sqrt(first**2 + 4.0 * second * finite))
-                errors[shaft, piece] = np.where(np.isfinite(change), share, np.inf)
+    for group in bubble_groups(system):
+        moved = _moved(system, speed or 0.0, group, s, right, left)  # (e, m)
+        for piece in sorted({element.piece for element in group.elements}):
+            of_piece = [k for k, element in enumerate(group.elements) if element.piece == piece]
+            change = np.abs(moved[of_piece].sum(axis=0))
+            finite = np.where(np.isfinite(change), change, 0.0)
+            # Root of second e^2 + first e = |d| in the form that loses no digits where the square matters little.
+            share = 2.0 * finite / (first + np.sqrt(first**2 + 4.0 * second * finite))
+            errors[group.shaft, piece] = np.where(np.isfinite(change), share, np.inf)
     return errors
 
 
@@ -88,21 +111,14 @@ def _frequency_form(
 
 
 def _moved(
-    system: System,
-    speed: float,
-    shaft: str,
-    order: int,
-    elements: list[Element],
-    s: np.ndarray,
-    right: np.ndarray,
-    left: np.ndarray,
+    system: System, speed: float, group: BubbleGroup, s: np.ndarray, right: np.ndarray, left: np.ndarray
 ) -> np.ndarray:
     """Change of the quadratic form by the bubbles of each element, (e, m)."""
     model = system.model
-    shear = model.shafts[shaft].shear_deformation
-    kinds, which = element_data(model, shaft, elements).unique()
-    bubbles = _bubble_modes(kinds, order, shear, model.shafts[shaft].mass_matrix == "lumped", model.motions)
-    dofs = shaft_dofs(system.nodes, elements, shear)
+    shaft = group.shaft
+    bubbles = group.bubbles
+    which = group.which
+    dofs = group.dofs
     # (e, d, m)
     x = right[dofs]
     y = left[dofs].conj()
@@ -128,7 +144,7 @@ def _moved(
     return np.where(coarse & (moved != 0.0), np.inf, moved)
 
 
-def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, motions: tuple[str, ...]) -> _Bubbles:
+def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, motions: tuple[str, ...]) -> Bubbles:
     """Modes of the bubbles of an element that is two orders richer, between fixed nodes, for each different element."""
     rich = distinct_elements(kinds, order=order + _RICHER)
     assert rich.mass is not None
@@ -154,4 +170,4 @@ def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, m
         plain = distinct_elements(kinds, lumped=True).mass
         assert plain is not None
         lumping = rich.mass[:, :12, :12] - plain
-    return _Bubbles(np.array(squared), np.array(mass), np.array(stiffness), np.array(gyroscopic), lumping)
+    return Bubbles(np.array(squared), np.array(mass), np.array(stiffness), np.array(gyroscopic), lumping)

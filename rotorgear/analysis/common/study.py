@@ -84,6 +84,7 @@ class Study(Generic[R]):
         resolution: relative error below which the reference, or rounding, decides, and no estimate can be judged.
         rising: families whose number divides the step, so that the error falls with its power: the order is measured there.
         repeat: runs that are timed at least.
+        below: what a row says whose error is below the resolution.
     """
 
     run: Callable[[dict[str, Any]], R]
@@ -91,6 +92,7 @@ class Study(Generic[R]):
     resolution: float
     rising: tuple[str, ...] = ("elements",)
     repeat: int = REPEAT
+    below: str = "below what the reference resolves"
 
     def rungs(self, settings: Sequence[Setting], progress: Progress) -> tuple[Rung, ...]:
         """Run all settings; one that does not come to an end stands as such in the table."""
@@ -117,7 +119,7 @@ class Study(Generic[R]):
             order = float(np.log(coarser / error) / np.log(setting.number / before.setting))
         notes = []
         if error <= self.resolution:
-            notes.append("below what the reference resolves")
+            notes.append("exact: error and estimate are 0" if max(error, estimate) == 0.0 else self.below)
         if setting.family == "accuracy" and not max(error, estimate) <= max(setting.number, self.resolution):
             notes.append("accuracy missed")
         if cost.spread > _NOISE:

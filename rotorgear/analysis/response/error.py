@@ -16,7 +16,8 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.system.contacts import contact_lines
 
 _CHECKED_ON_FINER = 4
-_PEAKS = 3
+# Of an order: so many speeds where it is highest, and so many where its elements lack most.
+_PEAKS = 2
 # A resonance shows its height to this share when its half-power width spans so many speeds.
 _SPEEDS_A_PEAK = 2.0
 # An order pushes a mode that takes more than this share of what the most pushed one takes: the rest is rounding.
@@ -35,9 +36,8 @@ def mesh_error(
 ) -> float:
     """Change of the forces of the strongest orders on a finer mesh, relative to the largest force of the order.
 
-    The finer mesh has two orders more in every piece, or twice the elements. An error of a natural frequency changes the complex
-    amplitude H of its resonance by |dH| ~ |H|^2 dw^2, so most at the peak: the highest local maxima of an order are looked at,
-    because a lower one of a higher mode may have the larger error.
+    The finer mesh has two orders more in every piece, or twice the elements. It is looked at where an order is highest, and where
+    what the elements lack would change it most: that may be on the flank of a resonance, or at the low peak of a higher mode.
     """
     system = plant.system
     if not any(system.nodes.elements.values()):
@@ -50,13 +50,14 @@ def mesh_error(
     if not forces.size:
         return float("nan")  # the model has no part and no point whose answer could be compared
     size = np.abs(forces).max(axis=2, initial=0.0)
+    lacking = np.array([item.bubble_change for item in readings])  # (s, o)
     worst = 0.0
     wanted = {order.name: order for order in orders_of(replace(setup, system=finer, lines=lines))[0]}
     for o in strongest_orders(size):
         order = [wanted[orders[o].name]]
         changed = 0.0
         largest = float(size[:, o].max())
-        for s in _highest_peaks(size[:, o]):
+        for s in np.union1d(highest_peaks(size[:, [o]], _PEAKS), highest_peaks(lacking[:, [o]], _PEAKS)):
             w, f = rich.loads(order, float(speeds[s]))
             q = solve_orders(rich, rich.dynamics(float(speeds[s])), w, f)
             there = rich.read(order, float(speeds[s]), w, q).stacked[0]
@@ -72,11 +73,12 @@ def strongest_orders(size: np.ndarray) -> np.ndarray:
     return np.argsort(-size.max(axis=0), kind="stable")[:_CHECKED_ON_FINER]
 
 
-def _highest_peaks(size: np.ndarray) -> np.ndarray:
-    """Numbers of the highest local maxima over speed, the ends among them, from amplitudes (s,)."""
-    padded = np.concatenate([[-1.0], size, [-1.0]])
-    peaks = np.flatnonzero((size >= padded[:-2]) & (size > padded[2:]))
-    return peaks[np.argsort(-size[peaks], kind="stable")][:_PEAKS]
+def highest_peaks(size: np.ndarray, count: int) -> np.ndarray:
+    """Rows of the `count` highest local maxima of each column, the ends among them, of sizes (r, c): each row once, rising."""
+    padded = np.pad(size, ((1, 1), (0, 0)), constant_values=-1.0)
+    peaks = (size >= padded[:-2]) & (size > padded[2:])
+    ranked = np.argsort(-np.where(peaks, size, -1.0), axis=0, kind="stable")[:count]
+    return np.unique(ranked[np.take_along_axis(peaks, ranked, axis=0)])
 
 
 def speed_warnings(

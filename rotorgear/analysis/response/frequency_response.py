@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from rotorgear.analysis.common.points import casing_row, named_place
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, direction_of, missed, speed_in_si
 from rotorgear.analysis.modal.refine import all_finer
+from rotorgear.analysis.response.error import highest_peaks
 from rotorgear.analysis.response.mesh import DAMPED, MARGIN, aims, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant, dof_row
 from rotorgear.analysis.static.mean_state import mean_state
@@ -32,10 +34,11 @@ from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import EPS
 from rotorgear.system.contacts import contact_lines
+from rotorgear.system.forced_changes import ForcedChanges
 from rotorgear.system.system import System
 
 POINTS = 1000
-_CHECKED_ON_FINER = 8
+_CHECKED_ON_FINER = 4
 # Rounding below this is nothing beside the error of any mesh, and is not told.
 _ROUNDING = 1e-9
 _UNDAMPED = "nothing damps the model: heights near a resonance are those of the nearest frequency; give a damping"
@@ -94,7 +97,7 @@ def frf(
     first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
     limit = 2.0 * np.pi * DAMPED * float(hz[-1])
 
-    def solve(system: System, hz: np.ndarray, progress: Progress) -> tuple[np.ndarray, float, float]:
+    def solve(system: System, hz: np.ndarray, progress: Progress) -> _Solved:
         modes = (*damped_modes(system, limit, turns), zeta) if zeta else None
         plant = Plant(system, contact_lines(system), modes)
         rows = {text: _row(system, text, place) for text, place in places.items()}
@@ -105,15 +108,16 @@ def frf(
         progress(0.02, "discretisation")
         plan = plan_up_to(at_speed(linear, turns), MARGIN * float(hz[-1]), elements, aim)
         system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
-        receptance, residual, rounding = solve(system, hz, progress)
+        found = solve(system, hz, progress)
+        receptance = found.receptance
         progress(0.96, "error estimate")
         estimate = 0.0
         if any(system.nodes.elements.values()):
-            at = _telling(receptance)
-            there, _, _ = solve(system.with_plan(all_finer(system)), hz[at], silent)
-            estimate = relative_change(there, receptance[at])
-        if rounding > _ROUNDING:
-            estimate = max(estimate, rounding)
+            at = _telling(receptance, found.bubble_change)
+            there = solve(system.with_plan(all_finer(system)), hz[at], silent)
+            estimate = relative_change(there.receptance, receptance[at], np.abs(receptance).max(axis=0))
+        if found.rounding > _ROUNDING:
+            estimate = max(estimate, found.rounding)
         if accuracy is None or estimate <= accuracy:
             break
     short = missed(accuracy, estimate, "ask for less, or give more damping to resonances in the range")
@@ -128,7 +132,7 @@ def frf(
         output_units=tuple("rad" if direction[text] in DOF_NAMES[3:] else "m" for text in outputs),
         receptance=receptance,
         damping_ratio=zeta,
-        residual=residual,
+        residual=found.residual,
         error_estimate=estimate,
         dofs=system.n,
         discretisation=pieces(system),
@@ -184,18 +188,32 @@ def _casing_row(system: System, casing: str, row: np.ndarray) -> np.ndarray:
     return np.asarray(system.dofs.transform[system.nodes.of_casing(casing), :].T @ row)
 
 
+@dataclass(frozen=True)
+class _Solved:
+    """Receptances (f, o, i), and what may be wrong with them.
+
+    Attributes:
+        bubble_change: (f, i) change of the receptance at each input by polynomials that the shaft elements lack.
+        residual: the largest relative one.
+        rounding: what the rounding of M and K may change. A relative change eps of their entries moves the receptance f^T q
+            at the input by up to eps |q|^T (|K| + w^2 |M|) |q|; it is relative to the largest receptance there.
+    """
+
+    receptance: np.ndarray
+    bubble_change: np.ndarray
+    residual: float
+    rounding: float
+
+
 def _solved(
     plant: Plant, speed: float, hz: np.ndarray, inputs: list[np.ndarray], outputs: list[np.ndarray], progress: Progress
-) -> tuple[np.ndarray, float, float]:
-    """Receptances (f, o, i), the largest relative residual, and what the rounding of M and K may change.
-
-    A relative change eps of the entries of K and M moves the receptance f^T q at the input by up to
-    eps |q|^T (|K| + w^2 |M|) |q|; it is taken relative to the largest receptance there, as `relative_change` does.
-    """
+) -> _Solved:
     f = np.array(inputs).T
     read = np.array(outputs)
     dynamics = plant.dynamics(speed)
+    bubbles = ForcedChanges.of(plant.system)
     rows = []
+    changes = []
     worst = 0.0
     moved = np.zeros(len(inputs))
     largest = np.zeros(len(inputs))
@@ -209,26 +227,33 @@ def _solved(
             q = dynamics.solve(w, f)
             worst = max(worst, dynamics.relative_residual(w, f, q))
             rows.append(read @ q)
+            changes.append(bubbles.change(speed, np.full(len(inputs), w), q, turning=False))
             size = np.abs(q)
             moved = np.maximum(moved, EPS * np.sum(size * (size_K @ size + w**2 * (size_M @ size)), axis=0))
             largest = np.maximum(largest, np.abs(np.sum(f * q, axis=0)))
     rounding = float(np.max(moved / np.where(largest > 0.0, largest, np.inf), initial=0.0))
-    return np.array(rows), worst, rounding
+    return _Solved(np.array(rows), np.array(changes), worst, rounding)
 
 
-def relative_change(exact: np.ndarray, receptance: np.ndarray) -> float:
-    """Largest difference of receptances (f, o, i), each relative to the largest size of its response."""
-    largest = np.abs(exact).max(axis=0)
-    return float(np.max(np.abs(exact - receptance) / np.where(largest > 0.0, largest, 1.0)))
+def relative_change(exact: np.ndarray, receptance: np.ndarray, largest: np.ndarray | None = None) -> float:
+    """Largest difference of receptances (f, o, i), each relative to the largest size of its response.
+
+    Args:
+        exact, receptance: at the same frequencies.
+        largest: (o, i) sizes of the responses over more frequencies than these.
+    """
+    size = np.abs(exact).max(axis=0)
+    if largest is not None:
+        size = np.maximum(size, largest)
+    return float(np.max(np.abs(exact - receptance) / np.where(size > 0.0, size, 1.0)))
 
 
-def _telling(receptance: np.ndarray) -> np.ndarray:
-    """Numbers of the frequencies where a finer mesh is looked at: the highest local maxima of each response.
+def _telling(receptance: np.ndarray, bubble_change: np.ndarray) -> np.ndarray:
+    """Numbers of the frequencies where a finer mesh is looked at.
 
-    Not the highest one alone: the lower peak of a higher mode may have the larger error.
+    These are the highest peak of each response, and the peaks of what the elements lack: a higher mode may have the larger
+    error where the response itself is low.
     """
     flat = np.abs(receptance).reshape(len(receptance), -1)
-    padded = np.pad(flat, ((1, 1), (0, 0)), constant_values=-1.0)
-    peaks = (flat >= padded[:-2]) & (flat > padded[2:])
-    ranked = np.argsort(-np.where(peaks, flat, -1.0), axis=0, kind="stable")[:_CHECKED_ON_FINER]
-    return np.unique(np.concatenate([flat.argmax(axis=0), ranked.ravel()]))
+    highest = highest_peaks(flat, 1)
+    return np.union1d(highest, highest_peaks(bubble_change, _CHECKED_ON_FINER))

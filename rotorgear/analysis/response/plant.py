@@ -13,6 +13,7 @@ from rotorgear.analysis.response.orders import Order
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.frequency.harmonic import Dynamics, LowRankDamping
 from rotorgear.system.contacts import ContactLines
+from rotorgear.system.forced_changes import ForcedChanges
 from rotorgear.system.system import System
 
 
@@ -26,6 +27,7 @@ class Readings:
         bearing_force: (o, b, 3); acceleration: of the named points, (o, k).
         displacement: x y z tx ty tz at gears, disks and bearings, (o, d, 6).
         normal_velocity: of the casings with a surface, root of the mean of |v_n|^2 over it, (o, k).
+        bubble_change: (o,) size of what polynomials that the shaft elements lack would change, as a change of f^H q.
     """
 
     mesh_force: np.ndarray
@@ -36,6 +38,7 @@ class Readings:
     acceleration: np.ndarray
     displacement: np.ndarray
     normal_velocity: np.ndarray
+    bubble_change: np.ndarray
 
     @property
     def stacked(self) -> np.ndarray:
@@ -95,6 +98,7 @@ class Plant:
         }
         self._parts: tuple[sp.csc_array, ...] | None = None
         self._read: tuple[np.ndarray, np.ndarray] | None = None
+        self._bubbles = ForcedChanges.of(system)
 
     def dynamics(self, speed: float) -> Dynamics:
         """M, D and K at a reference speed in rad/s."""
@@ -136,7 +140,8 @@ class Plant:
         transverse = middle / np.cos([state.contact.base_helix_angle for state in lines.states])
         rotation = (lines.rotation.T @ q).T
         normal = w[:, None] * self._normal(q)
-        return Readings(force, rotation, transverse, approach, held, -(w**2)[:, None] * moved, there, normal)
+        lacking = self._bubbles.change(speed, w, q, turning=True)
+        return Readings(force, rotation, transverse, approach, held, -(w**2)[:, None] * moved, there, normal, lacking)
 
     def _normal(self, q: np.ndarray) -> np.ndarray:
         """Root of the mean square of the normal displacement over each casing's surface, (o, k), from q (n, o)."""

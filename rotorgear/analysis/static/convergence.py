@@ -56,7 +56,9 @@ def static_convergence_study(
         forces = np.concatenate([result.mesh_force, *held])
         return Judged(result.dofs, np.abs(forces - truth) / size, np.array([result.error_estimate]))
 
-    study = Study(lambda options: static(model, speed=speed, **options), judge, RESOLUTION, repeat=repeat)
+    study = Study(
+        lambda options: static(model, speed=speed, **options), judge, RESOLUTION, repeat=repeat, below="rounding only"
+    )
     rungs = study.rungs(mesh_settings(elements, accuracies), progress)
     words = f"elements with internal polynomials up to order {_ORDER}, {finest.system.n} dofs"
     return ConvergenceStudy(
