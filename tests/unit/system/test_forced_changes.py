@@ -20,7 +20,12 @@ def rotor(shaft: dict[str, Any], damping: dict[str, float]) -> rg.Model:
     return rg.Model(
         motions=["bending"],
         materials=STEEL,
-        shafts={"rotor": {"sections": [{"length": 0.2, "outer_diameter": 0.1}, {"length": 0.1, "outer_diameter": 0.1}], **shaft}},
+        shafts={
+            "rotor": {
+                "sections": [{"length": 0.2, "outer_diameter": 0.1}, {"length": 0.1, "outer_diameter": 0.1}],
+                **shaft,
+            }
+        },
         bearings={end: {"shaft": "rotor", "at": end, "stiffness": {"radial": 1e9}} for end in ("start", "end")},
         operation={"input_shaft": "rotor"},
         damping=damping,
