@@ -95,20 +95,20 @@ def reduce(
     residual = space.shapes @ system.solve(space.forces(mass_static))
     residual -= fixed @ (mass_fixed.T @ residual)
     residual -= fixed @ (mass_fixed.T @ residual)
-    residual = _independent(residual, fe.matrices.times_mass(residual))
+    residual = independent(residual, fe.matrices.times_mass(residual))
     internal = np.hstack([fixed, residual])
 
     # Internal coordinates of the inside's own pencil: its stiffness and mass become diagonal.
     K_internal = internal.T @ fe.stiffness_times(internal) + _spring_part(internal, internal, springs, flexibility)
     M_internal = internal.T @ fe.matrices.times_mass(internal)
-    squares, turn = la.eigh(_symmetric(K_internal), _symmetric(M_internal))
+    squares, turn = la.eigh(symmetric(K_internal), symmetric(M_internal))
     internal = internal @ turn
     static_stiffness = static.T @ fe.stiffness_times(static) + _spring_part(static, static, springs, flexibility)
     K = _clean(static_stiffness, squares)
     basis = np.hstack([static, internal])
     del fixed, residual, mass_fixed, mass_static, static, internal
     mass_basis = fe.matrices.times_mass(basis)
-    M = _symmetric(basis.T @ mass_basis)
+    M = symmetric(basis.T @ mass_basis)
     M[seats:, seats:] = np.eye(len(squares))
     forces = space.forces(mass_basis)
     del mass_basis
@@ -117,7 +117,7 @@ def reduce(
     for some in np.array_split(np.arange(len(M)), max(1, len(M) // _COLUMNS)):
         followed = basis[space.dofs][:, seats:] @ (M[seats:, some] / squares[:, None])
         error[:, some] = forces.T @ (system.solve(forces[:, some]) - followed)
-    error = _symmetric(error)
+    error = symmetric(error)
     seconds["residual shapes"] = time.perf_counter() - started
 
     body_mass, centre, inertia = fe.mass_properties
@@ -173,22 +173,22 @@ def _spring_part(left: np.ndarray, right: np.ndarray, springs: np.ndarray, flexi
     return np.asarray((left.T @ springs) @ ((springs.T @ right) / flexibility[:, None]))
 
 
-def _independent(shapes: np.ndarray, mass_shapes: np.ndarray) -> np.ndarray:
+def independent(shapes: np.ndarray, mass_shapes: np.ndarray) -> np.ndarray:
     """Combinations of shapes that are M-orthonormal, without those that follow from the others."""
-    gram = _symmetric(shapes.T @ mass_shapes)
+    gram = symmetric(shapes.T @ mass_shapes)
     scale = np.sqrt(np.diag(gram).clip(min=1e-300))
     values, vectors = la.eigh(gram / np.outer(scale, scale))
     strong = values > _DEPENDENT * values[-1] if len(values) else np.zeros(0, dtype=bool)
     return np.asarray(shapes @ (vectors[:, strong] / np.sqrt(values[strong]) / scale[:, None]))
 
 
-def _symmetric(matrix: np.ndarray) -> np.ndarray:
+def symmetric(matrix: np.ndarray) -> np.ndarray:
     return np.asarray(0.5 * (matrix + matrix.T))
 
 
 def _clean(static: np.ndarray, squares: np.ndarray) -> np.ndarray:
     """K as theory has it: static shapes and internal shapes share no strain energy, and the inside is diagonal."""
-    return np.asarray(la.block_diag(_symmetric(static), np.diag(squares)))
+    return np.asarray(la.block_diag(symmetric(static), np.diag(squares)))
 
 
 def _mount_damping(fe: FiniteElementBody, basis: np.ndarray) -> np.ndarray:

@@ -48,6 +48,7 @@ class CasingSettings:
         damping_ratio: of every elastic mode.
         mass: as stated, in kg; or None.
         mass_tolerance: as a share.
+        table: of the model file that it stands in.
     """
 
     name: str
@@ -63,8 +64,9 @@ class CasingSettings:
     damping_ratio: float = 0.0
     mass: float | None = None
     mass_tolerance: float = 0.05
+    table: str = "casings"
 
     @property
     def address(self) -> str:
         """Where it stands in the model file."""
-        return f"casings.{self.name}"
+        return f"{self.table}.{self.name}"

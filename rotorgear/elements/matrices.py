@@ -24,6 +24,7 @@ class ElementMatrices:
         gyroscopic: gyroscopic matrix G for unit spin of the element's own shaft, shape (e, d, d), skew.
         circulation: constitutive matrix of the non-symmetric part of the stiffness, shape (e, s, s).
         circulation_per_speed: the same for unit spin of the element's own shaft, shape (e, s, s).
+        modulus_per_square: what D grows by for unit spin of the element's own shaft, with the square of it, shape (e, s, s).
     """
 
     strain: np.ndarray | None = None
@@ -33,6 +34,7 @@ class ElementMatrices:
     gyroscopic: np.ndarray | None = None
     circulation: np.ndarray | None = None
     circulation_per_speed: np.ndarray | None = None
+    modulus_per_square: np.ndarray | None = None
 
     @property
     def stiffness(self) -> np.ndarray | None:

@@ -89,7 +89,12 @@ def _find_histories(data: dict[str, Any], folder: Path) -> None:
 
 
 def _find_meshes(data: dict[str, Any], folder: Path) -> None:
-    """Let files of casings be looked for beside the model file likewise."""
+    """Let files of casings and of gear bodies be looked for beside the model file likewise."""
+    gears = data.get("gears")
+    for gear in gears.values() if isinstance(gears, dict) else ():
+        body = gear.get("body") if isinstance(gear, dict) else None
+        if isinstance(body, dict) and isinstance(body.get("mesh"), str):
+            body["mesh"] = str(folder / body["mesh"])
     casings = data.get("casings")
     for casing in casings.values() if isinstance(casings, dict) else ():
         if not isinstance(casing, dict):

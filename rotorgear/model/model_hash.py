@@ -10,11 +10,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rotorgear.model.model import Model
 
+# Keys of a gear body that only a mesh has.
+_OF_MESHES = ("connection", "damping_ratio", "mass_tolerance")
+
 
 def model_hash(model: Model) -> str:
     """Return the SHA-256 of the canonical JSON of a model's fields, in SI units: 64 hexadecimal digits.
 
-    Of a casing what its files hold counts, not where they lie.
+    Of a casing and of a gear body what its files hold counts, not where they lie.
 
     Canonical: keys in alphabetical order and no blanks, so that it does not matter how the file was written or in which order
     its tables stand; Python writes the shortest digits that give a float back.
@@ -23,6 +26,12 @@ def model_hash(model: Model) -> str:
     for casing in fields["casings"].values():
         files = {**casing["mesh"], **({"matrices": casing["matrices"]} if "matrices" in casing else {})}
         casing |= {"files": {name: _digest(Path(path)) for name, path in files.items()}, "mesh": [], "matrices": ""}
+    for gear in fields["gears"].values():
+        body = gear["body"]
+        if "mesh" in body:
+            body["mesh"] = _digest(Path(body["mesh"]))
+        else:  # a gear without a mesh keeps the name that it had before there were any
+            gear["body"] = {key: value for key, value in body.items() if key not in _OF_MESHES}
     if not fields["casings"]:
         del fields["casings"]  # a model without them keeps the name that it had before there were any
     text = json.dumps(fields, sort_keys=True, separators=(",", ":"), ensure_ascii=False)

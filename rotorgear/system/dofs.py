@@ -1,7 +1,8 @@
-"""Degrees of freedom: which of the six of every node are free, and how rigid stretches of shaft tie nodes together.
+"""Degrees of freedom: which of the six of every node are free, how rigid stretches of shaft tie nodes together, and how teeth
+move that stand on elastic gear bodies.
 
 All displacements q_all (6 a node, then the internal ones of the elements) follow from the free ones by q_all = T q. Without
-rigid sections T only selects.
+rigid sections and such bodies T only selects.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import scipy.sparse as sp
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.tables import Tables
-from rotorgear.system.nodes import CASING, Nodes
+from rotorgear.system.nodes import CASING, FOLLOWS, GEAR_BODY, Nodes
 
 MOTION_DOFS = {"bending": (0, 1, 3, 4), "axial": (2,), "torsion": (5,)}
 _FIXED = {"x": (0,), "y": (1,), "z": (2,), "tilt_x": (3,), "tilt_y": (4,), "torsion": (5,), "all": (0, 1, 2, 3, 4, 5)}
@@ -57,6 +58,9 @@ class DofMap:
             for name, (first, count) in nodes.casings.items():
                 if first <= number < first + count:
                     return f"dof {number - first + 1} of casing '{name}'"
+            for name, (first, count) in nodes.bodies.items():
+                if first <= number < first + count:
+                    return f"elastic dof {number - first + 1} of gear '{name}'"
             return f"an internal {nodes.internal[number]} dof of a shaft element"
         node, k = divmod(row, 6)
         return f"{('x', 'y', 'z', 'tilt_x', 'tilt_y', 'torsion')[k]} of shaft '{nodes.shaft[node]}' at z = {nodes.z[node]:.6g} m"
@@ -81,12 +85,13 @@ def map_dofs(layout: Layout, nodes: Nodes) -> DofMap:
             soft = [k for k in range(3) if any(rows[k]) or any(row[k] for row in rows)]
             held[nodes.of_pedestal(name), [k for k in range(6) if k not in soft]] = True
     by_support = int(held.sum()) - by_motion
-    inside = np.array([motion not in (*model.motions, CASING) for motion in nodes.internal], dtype=bool)
-    by_motion += int(inside.sum())
+    follows = np.array([motion == FOLLOWS for motion in nodes.internal], dtype=bool)
+    inside = np.array([motion not in (*model.motions, CASING, GEAR_BODY) for motion in nodes.internal], dtype=bool)
+    by_motion += int((inside & ~follows).sum())
     groups = rigid_groups(model, nodes)
     counts = {"motions": by_motion, "supports": by_support, "rigid sections": sum(6 * (len(g) - 1) for g in groups)}
-    if groups:
-        return _tied(nodes, held, inside, groups, counts)
+    if groups or nodes.feet:
+        return _with_feet(_tied(nodes, held, inside, groups, counts), layout, nodes)
     free = np.flatnonzero(~np.concatenate([held.ravel(), inside]))
     size = held.size + inside.size
     column = np.full(size, -1)
@@ -140,6 +145,32 @@ def _tied(
     size = held.size + inside.size
     T = sp.csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(cols))), shape=(size, n))
     return DofMap(T, np.full(size, -1), False, counts)
+
+
+def _with_feet(dofs: DofMap, layout: Layout, nodes: Nodes) -> DofMap:
+    """The map with the teeth on elastic gear bodies, which move with their node and with the body under them."""
+    if not nodes.feet:
+        return dofs
+    T = dofs.transform
+    size = T.shape[0]
+    parts: list[sp.sparray] = [sp.csr_array(sp.eye_array(size))]
+    for ((mesh, helix), name), first in nodes.feet.items():
+        gear = layout.gear(name)
+        contact = layout.mesh(mesh).contacts[helix]
+        pinion = name == contact.pinion
+        assert gear.wheel is not None, "feet are those of gears with an elastic body"
+        foot = gear.wheel.foot(
+            angle=contact.psi if pinion else contact.psi + np.pi,
+            radius=gear.base_radius / np.cos(contact.pressure_angle),
+            z=contact.contact_z - (contact.pinion_z if pinion else contact.gear_z),
+        )
+        node = 6 * nodes.at(*layout.place(f"gears.{name}")) + np.arange(6)
+        rows = 6 * len(nodes) + first + np.arange(6)
+        values = np.hstack([np.eye(6), foot])
+        columns = np.concatenate([node, nodes.of_body(name)])
+        place = (np.repeat(rows, len(columns)), np.tile(columns, 6))
+        parts.append(sp.csr_array(sp.coo_array((values.ravel(), place), shape=(size, size))))
+    return DofMap(sp.csr_array(sum(parts[1:], parts[0]) @ T), dofs.column, False, dofs.held)
 
 
 def _null_space(constraints: np.ndarray) -> np.ndarray:

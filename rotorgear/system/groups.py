@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rotorgear.casings.wheel import ReducedWheel
 from rotorgear.elements.elastic_body import elastic_body
+from rotorgear.elements.gear_body import gear_body
 from rotorgear.elements.gear_mesh import (
     ContactGeometry,
     Face,
@@ -44,6 +46,7 @@ class ElementGroup:
         dofs: numbers among all dofs, those of nodes first, then internal ones, shape (e, d).
         spin: speed of its shaft over the reference speed.
         strain_motions: the motion each strain belongs to; empty for springs and meshes.
+        body_motions: the motion of each dof of an elastic gear body behind those of its node.
     """
 
     part: str
@@ -52,6 +55,21 @@ class ElementGroup:
     dofs: np.ndarray
     spin: float = 0.0
     strain_motions: tuple[str, ...] = ()
+    body_motions: tuple[str, ...] = ()
+
+    def at(self, speed: float) -> ElementGroup:
+        """The group at a reference speed in rad/s: with the stiffness that its rotation brings."""
+        m = self.matrices
+        if m.modulus_per_square is None or m.modulus is None or not self.spin * speed:
+            return self
+        return replace(self, matrices=replace(m, modulus=m.modulus + (self.spin * speed) ** 2 * m.modulus_per_square))
+
+    @property
+    def stiffness_per_square(self) -> np.ndarray | None:
+        """What the stiffness (e, d, d) grows by with the square of the reference speed; None where it does not."""
+        B = self.matrices.strain
+        S = self.matrices.modulus_per_square
+        return None if B is None or S is None else np.asarray(self.spin**2 * (np.swapaxes(B, 1, 2) @ S @ B))
 
     def circulatory_at(self, speed: float) -> np.ndarray | None:
         """Non-symmetric stiffness (e, d, d) at a reference speed in rad/s; None where there is none."""
@@ -67,6 +85,8 @@ class ElementGroup:
         d = self.dofs.shape[1]
         if self.part.startswith("casings."):
             return (CASING,) * d
+        if self.body_motions:
+            return (*_NODE_MOTIONS, *self.body_motions)
         internal = self.strain_motions[6:] if d > 12 else ()
         return _NODE_MOTIONS * ((d - len(internal)) // 6) + internal
 
@@ -92,6 +112,7 @@ def constant_groups(layout: Layout, load: MeanLoad, nodes: Nodes) -> list[Elemen
         else:
             matrices = rigid_body(b.mass, b.polar_inertia, b.diametral_inertia)
         found.append(ElementGroup(body.part, body.shaft, matrices, dofs, layout.train.ratio(body.shaft)))
+    found += [_gear_body(layout, nodes, name, wheel) for name, wheel in layout.elastic_bodies.items()]
     for force in load.forces:
         c = force.contact
         geometry = contact_geometry(force)
@@ -154,6 +175,16 @@ def _casing(layout: Layout, nodes: Nodes, name: str) -> ElementGroup:
     except ValueError as error:
         raise AnalysisError(f"casings.{name}: {error}") from None
     return ElementGroup(f"casings.{name}", "", matrices, nodes.of_casing(name)[None])
+
+
+def _gear_body(layout: Layout, nodes: Nodes, name: str, wheel: ReducedWheel) -> ElementGroup:
+    place = layout.place(f"gears.{name}")
+    own = nodes.of_body(name)
+    dofs = np.hstack([node_dofs(nodes.at(*place)), own[None]])
+    motions = tuple(nodes.internal[k - 6 * len(nodes)] for k in own)
+    return ElementGroup(
+        f"gears.{name}", place.shaft, gear_body(wheel), dofs, layout.train.ratio(place.shaft), body_motions=motions
+    )
 
 
 def _rows(matrix: StiffnessMatrix | DampingMatrix | None) -> np.ndarray:
@@ -281,7 +312,10 @@ def face_of(layout: Layout, force: MeshForce) -> Face:
 def mesh_dofs(layout: Layout, nodes: Nodes, force: MeshForce) -> np.ndarray:
     """Numbers (1, d) of the dofs of one contact: of the teeth of both gears, and of the ends of faces cut on their shaft."""
     c = force.contact
-    dofs = [nodes.of_gear(c.pinion, c.pinion_shaft, c.pinion_z), nodes.of_gear(c.gear, c.gear_shaft, c.gear_z)]
+    dofs = [
+        nodes.of_teeth((c.mesh, c.helix), c.pinion, c.pinion_shaft, c.pinion_z),
+        nodes.of_teeth((c.mesh, c.helix), c.gear, c.gear_shaft, c.gear_z),
+    ]
     mesh = layout.mesh(c.mesh)
     ends = mesh.face(c.helix)
     if force.face is not None and ends is not None:

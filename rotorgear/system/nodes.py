@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from rotorgear.casings.wheel import ReducedWheel
 from rotorgear.elements.shaft_bubbles import bubble_motions
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.layout import Layout
@@ -20,6 +21,10 @@ MERGE_DISTANCE = 1e-9
 MOST_ELEMENTS = 200_000
 # What the dofs of a casing are called where those of shafts are called by their motion.
 CASING = "casing"
+# The same for coordinates of elastic gear bodies with two and more nodal diameters; those with one bend like a shaft.
+GEAR_BODY = "gear body"
+# Displacements of teeth that follow from the coordinates of a gear body: no dofs of their own.
+FOLLOWS = "follows"
 
 
 @dataclass(frozen=True)
@@ -54,9 +59,11 @@ class Nodes:
         pedestal: name of the bearing whose pedestal a node is, else "".
         elements: shaft -> its elements from left to right.
         internal: the motion of each internal dof: those of the elements in their order, then those of elastic gears, then
-            those of casings, whose motion is "casing".
+            those of casings, whose motion is "casing", then those of gear bodies and of the teeth on them.
         teeth: gear and z of its node -> number of its internal dof, the rotation of teeth that turn against their shaft.
         casings: casing -> number of the first of its internal dofs, and how many they are.
+        bodies: gear with an elastic body -> number of the first of its internal dofs, and how many they are.
+        feet: (mesh, helix) and gear with an elastic body -> number of the first of the six motions of its teeth there.
         merged: sentences about places that became one node.
     """
 
@@ -67,6 +74,8 @@ class Nodes:
     internal: list[str] = field(default_factory=list)
     teeth: dict[tuple[str, float], int] = field(default_factory=dict)
     casings: dict[str, tuple[int, int]] = field(default_factory=dict)
+    bodies: dict[str, tuple[int, int]] = field(default_factory=dict)
+    feet: dict[tuple[tuple[str, int], str], int] = field(default_factory=dict)
     merged: list[str] = field(default_factory=list)
     _on_shaft: dict[str, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
 
@@ -88,6 +97,17 @@ class Nodes:
         if (gear, z) in self.teeth:
             dofs[5] = 6 * len(self) + self.teeth[gear, z]
         return dofs
+
+    def of_teeth(self, contact: tuple[str, int], gear: str, shaft: str, z: float) -> np.ndarray:
+        """Numbers (6,) of the dofs of a gear's teeth in a contact (mesh, helix): on an elastic body they move by themselves."""
+        if (contact, gear) not in self.feet:
+            return self.of_gear(gear, shaft, z)
+        return 6 * len(self) + self.feet[contact, gear] + np.arange(6)
+
+    def of_body(self, gear: str) -> np.ndarray:
+        """Numbers (k,) of the elastic dofs of a gear body."""
+        first, count = self.bodies[gear]
+        return 6 * len(self) + first + np.arange(count)
 
     def of_casing(self, casing: str) -> np.ndarray:
         """Numbers (n,) of the dofs of a casing: six a seat, then its other ones."""
@@ -162,7 +182,24 @@ def discretise(layout: Layout, plan: Plan) -> Nodes:
         size = layout.casing(name).size
         nodes.casings[name] = (len(nodes.internal), size)
         nodes.internal += [CASING] * size
+    for name, wheel in layout.elastic_bodies.items():
+        nodes.bodies[name] = (len(nodes.internal), wheel.size)
+        nodes.internal += [_body_motion(wheel, k) for k in range(wheel.size)]
+    for mesh in layout.meshes:
+        for contact in mesh.contacts:
+            for gear in mesh.gears:
+                if gear.name in nodes.bodies:
+                    nodes.feet[(mesh.name, contact.helix), gear.name] = len(nodes.internal)
+                    nodes.internal += [FOLLOWS] * 6
     return nodes
+
+
+def _body_motion(wheel: ReducedWheel, k: int) -> str:
+    """What a coordinate of a gear body is called: by the motion of shafts that it takes part in."""
+    n = int(wheel.diameters[k])
+    if n == 0:
+        return "torsion" if abs(wheel.rim_motion[5, k]) * wheel.rim_radius > abs(wheel.rim_motion[2, k]) else "axial"
+    return "bending" if n == 1 else GEAR_BODY
 
 
 def _merged_places(model: Tables, shaft: str, wanted: list[tuple[float, str]]) -> tuple[list[float], list[str]]:

@@ -63,6 +63,11 @@ def _candidates(system: System) -> np.ndarray:
         for (gear, _), number in nodes.teeth.items():
             if system.layout.gear(gear).shaft == name:
                 block[6 * len(nodes) + number, 5] = 1.0  # elastic gears turn with their shaft
+        for (_, gear), number in nodes.feet.items():
+            place = system.layout.place(f"gears.{gear}")
+            if place.shaft == name:
+                foot = 6 * len(nodes) + number
+                block[foot : foot + 6] = rigid_transfer(np.array([0.0, 0.0, place.z - middle]))
         block[:, 3:] /= max(shaft.length, 1e-3)
         columns.append(block)
     for k, bearing in enumerate(nodes.pedestal):

@@ -92,10 +92,11 @@ class System:
 
     @property
     def has_tables(self) -> bool:
-        """Whether stiffness or damping of some part depends on speed by a table."""
+        """Whether stiffness or damping of some part depends on speed in another way than in proportion: tables, gear bodies."""
         model = self.model
         tables = [bearing.table for bearing in model.bearings.values()]
-        return any([*tables, *(element.table for element in model.nonlinear_elements.values())])
+        bodies = [gear.body.mesh for gear in model.gears.values()]
+        return any([*tables, *bodies, *(element.table for element in model.nonlinear_elements.values())])
 
     @cached_property
     def groups(self) -> list[ElementGroup]:
@@ -104,7 +105,7 @@ class System:
 
     def groups_at(self, speed: float) -> list[ElementGroup]:
         """All element groups at a reference speed in rad/s."""
-        return self.groups + table_groups(self.layout, self.nodes, speed)
+        return [group.at(speed) for group in self.groups] + table_groups(self.layout, self.nodes, speed)
 
     @cached_property
     def mass(self) -> sp.csc_array:
@@ -118,6 +119,13 @@ class System:
             self.groups,
             lambda g: None if g.matrices.gyroscopic is None or not g.spin else g.spin * g.matrices.gyroscopic,
         )
+
+    @cached_property
+    def stiffness_per_square(self) -> sp.csc_array | None:
+        """What the stiffness grows by with the square of the reference speed, sparse (n, n); None without gear bodies."""
+        if not self.nodes.bodies:
+            return None
+        return self._sum(self.groups, lambda g: g.stiffness_per_square)
 
     def stiffness(self, speed: float = 0.0) -> sp.csc_array:
         """Symmetric part of the stiffness at a reference speed in rad/s, sparse (n, n); that of the last speed is kept."""

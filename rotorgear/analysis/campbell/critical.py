@@ -183,15 +183,19 @@ def affine_pieces(system: System, family: SpeedFamily, top: float, damped: bool)
     inner = sorted(abs(float(speed)) for speed in family.knots if 0.0 < abs(speed) < end * (1.0 - 1e-12))
     edges = [min((abs(float(w)) for w in family.knots), default=0.0), *inner, end]
     edges = sorted(set(edges))
+    square = system.stiffness_per_square
     for low, high in itertools.pairwise(edges):
         (D_a, K_a), (D_b, K_b) = (_matrices(system, sign * speed, damped) for speed in (low, high))
+        if square is not None:
+            K_a = sp.csc_array(K_a - low**2 * square)
+            K_b = sp.csc_array(K_b - high**2 * square)
         D1 = (D_b - D_a) / (high - low)
         K1 = (K_b - K_a) / (high - low)
         D0 = D_a - low * D1
         K0 = K_a - low * K1
         parts = ((D0, D_a), (D1, D_b / high), (K0, K_a), (K1, K_b / high))
         D0, D1, K0, K1 = (_clean(A, scale) for A, scale in parts)
-        yield Affine(system.mass, D0, D1, K0, K1, low, high)
+        yield Affine(system.mass, D0, D1, K0, K1, low, high, square)
 
 
 def _clean(A: sp.csc_array, scale: sp.csc_array) -> sp.csc_array:

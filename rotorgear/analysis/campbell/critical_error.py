@@ -39,7 +39,8 @@ def speed_error(system: System, ranges: Sequence[Affine], root: Synchronous, ord
     here = min(ranges, key=lambda piece: max(piece.low - root.speed, root.speed - piece.high))
     D, _ = here.at(root.speed)
     y = left_shapes(system, speed, s, x)[:, 0].conj()
-    turned = y @ (root.eigenvalue * (here.D1 @ root.vector) + here.K1 @ root.vector)
+    K_slope = here.K1 if here.K2 is None else here.K1 + 2.0 * root.speed * here.K2
+    turned = y @ (root.eigenvalue * (here.D1 @ root.vector) + K_slope @ root.vector)
     held = y @ (2.0 * root.eigenvalue * (here.M @ root.vector) + D @ root.vector)
     slope = -float(np.imag(turned / held))
     along = abs(1.0 - slope / order)

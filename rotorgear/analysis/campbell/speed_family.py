@@ -7,7 +7,7 @@ at these rows is exact. Stiffness is projected through its strains, so that soft
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,13 +24,17 @@ from rotorgear.system.system import System
 
 @dataclass(frozen=True)
 class ReducedFamily:
-    """Dense matrices (r, r) over speed; `table_damping` and `table_stiffness` (k, r, r) at the speeds `knots` (k,)."""
+    """Dense matrices (r, r) over speed; `table_damping` and `table_stiffness` (k, r, r) at the speeds `knots` (k,).
+
+    `per_square` grows with the square of the speed: centrifugal forces in gear bodies.
+    """
 
     mass: np.ndarray
     damping: np.ndarray
     gyroscopic: np.ndarray
     stiffness: np.ndarray
     per_speed: np.ndarray
+    per_square: np.ndarray
     knots: np.ndarray
     table_damping: np.ndarray
     table_stiffness: np.ndarray
@@ -38,7 +42,7 @@ class ReducedFamily:
     def at(self, speed: float) -> Pencil:
         """M, D and K at a speed in rad/s."""
         D = self.damping + speed * self.gyroscopic
-        K = self.stiffness + speed * self.per_speed
+        K = self.stiffness + speed * self.per_speed + speed**2 * self.per_square
         if len(self.knots):
             right = int(np.clip(np.searchsorted(self.knots, speed), 1, len(self.knots) - 1))
             left = right - 1
@@ -63,6 +67,8 @@ class SpeedFamily:
         beta = system.model.damping.rayleigh_beta
         self._constant = strain_forms(system.groups, system.dofs, 0.0, beta)
         self._per_speed = strain_forms(system.groups, system.dofs, 1.0, beta).circulation - self._constant.circulation
+        self._per_square = self._square(system)
+        self._ends = (low, high)
         self.knots = table_speeds(system, low, high)
         self._tables = [self._table(speed) for speed in self.knots]
 
@@ -75,6 +81,17 @@ class SpeedFamily:
         symmetric = assemble(bearings, self.system.dofs, lambda g: g.matrices.stiffness)
         return sp.csc_array(C + beta * symmetric), K
 
+    def _square(self, system: System) -> sp.csr_array:
+        """Growth of the modulus of all strains with the square of the reference speed, sparse (s, s)."""
+        growing = []
+        for group in system.groups:
+            S = group.matrices.modulus_per_square
+            D = None if S is None else group.spin**2 * S
+            growing.append(replace(group, matrices=replace(group.matrices, modulus=D)))
+        if all(group.matrices.modulus is None for group in growing):
+            return sp.csr_array(self._constant.modulus.shape)
+        return strain_forms(growing, system.dofs, 0.0, 0.0).modulus
+
     @property
     def is_conservative(self) -> bool:
         """Whether nothing takes energy out or brings it in (no damping, cross-coupled or indefinite spring): s is imaginary."""
@@ -82,14 +99,14 @@ class SpeedFamily:
         quiet = not (forms.viscosity.nnz or forms.circulation.nnz or self._per_speed.nnz)
         tables = all(not C.nnz and abs(K - K.T).max() == 0.0 for C, K in self._tables)
         alpha = self.system.model.damping.rayleigh_alpha
-        speeds = [float(speed) for speed in self.knots] or [0.0]
+        speeds = [float(speed) for speed in (*self.knots, *(self._ends if self._per_square.nnz else ()))] or [0.0]
         return quiet and tables and not alpha and all(self.system.strain_factor(w) is not None for w in speeds)
 
     @property
     def groups(self) -> list[np.ndarray]:
         """Dofs that act on each other at no speed and have inertia, largest group first."""
         forms = self._constant
-        sizes = [abs(A) for A in (forms.modulus, forms.viscosity, forms.circulation, self._per_speed)]
+        sizes = [abs(A) for A in (forms.modulus, forms.viscosity, forms.circulation, self._per_speed, self._per_square)]
         B = abs(forms.strain)
         strained = [sp.csc_array(B.T @ A @ B) for A in sizes if A.nnz]
         found = independent_groups([self.mass, self.gyroscopic, *strained, *(A for pair in self._tables for A in pair)])
@@ -110,6 +127,7 @@ class SpeedFamily:
             gyroscopic=0.5 * (gyroscopic - gyroscopic.T),
             stiffness=strained.T @ (forms.modulus @ strained) + strained.T @ (forms.circulation @ strained),
             per_speed=strained.T @ (self._per_speed @ strained),
+            per_square=strained.T @ (self._per_square @ strained),
             knots=self.knots,
             table_damping=np.array([pair[0] for pair in tables]).reshape(len(tables), r, r),
             table_stiffness=np.array([pair[1] for pair in tables]).reshape(len(tables), r, r),

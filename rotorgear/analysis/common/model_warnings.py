@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
+from rotorgear.analysis.common.gear_bodies import gear_body_warnings
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_warnings
 from rotorgear.gears.geometry.geometry import check_gear
 from rotorgear.model.checks.pairs import mesh_findings
@@ -23,6 +24,7 @@ def model_warnings(system: System) -> Iterator[str]:
     yield from _faces(system)
     yield from _meshes(system)
     yield from mesh_stiffness_warnings(system)
+    yield from gear_body_warnings(system)
     yield from _train(system)
     # A coupling ties its two points as if they were at one place: far apart, a shaft likely starts where it should not.
     for name, coupling in system.model.couplings.items():

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rotorgear.analysis.common.casings import casing_notes
+from rotorgear.analysis.common.gear_bodies import body_notes
 from rotorgear.analysis.common.load_notes import load_notes
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out, mesh_stiffness_warnings
 from rotorgear.model.model import Model
@@ -61,7 +61,7 @@ def left_out(system: System, speed: float | None, *, rolls: bool = False) -> tup
     # In time the stiffness varies as it is; what a transient leaves out of it, it says itself.
     meshes = () if rolls else mesh_stiffness_left_out(system)
     loads = load_notes(system, "time" if rolls else "modes")
-    return (*notes, *casing_notes(system), *rolling_notes(system.model, rolls=rolls), *meshes, *loads)
+    return (*notes, *body_notes(system), *rolling_notes(system.model, rolls=rolls), *meshes, *loads)
 
 
 def beta_notes(system: System, speed: float | None, *, rolls: bool) -> Iterator[str]:

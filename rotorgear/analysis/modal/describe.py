@@ -70,6 +70,11 @@ def _words(system: System, q: np.ndarray, shaft: str, motion: str) -> str:
     table, _, name = motion.partition(".")
     if table == "casings":
         return f"casing {name}: {casing_words(system.layout.casing(name), q[system.nodes.of_casing(name)])}"
+    if table == "gears":
+        p = q[system.nodes.of_body(name)]
+        diameters = system.layout.elastic_bodies[name].diameters
+        most = max(range(2, int(diameters.max()) + 1), key=lambda n: float(np.sum(np.abs(p[diameters == n]) ** 2)))
+        return f"gear {name}: {most} nodal diameters"
     return f"{shaft} {motion}" if shaft else motion
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.system.groups import ElementGroup
-from rotorgear.system.nodes import CASING
+from rotorgear.system.nodes import CASING, GEAR_BODY
 from rotorgear.system.system import System
 
 _SPRING_KINDS = {
@@ -42,7 +42,11 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
     modes = q.shape[1]
     kinetic: dict[str, np.ndarray] = {}
     strain: dict[str, np.ndarray] = {}
-    motions_of_all = (*system.model.motions, *((CASING,) if system.model.casings else ()))
+    motions_of_all = (
+        *system.model.motions,
+        *((CASING,) if system.model.casings else ()),
+        *((GEAR_BODY,) if system.nodes.bodies else ()),
+    )
     kinetic_by_motion: dict[str, np.ndarray] = {motion: np.zeros(modes) for motion in motions_of_all}
     strain_by_motion: dict[str, np.ndarray] = {}
     kinetic_by_shaft: dict[tuple[str, str], np.ndarray] = {}
@@ -59,7 +63,7 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
             part = local[:, dofs]
             energy = np.real(np.einsum("edm,edm->m", part.conj(), M[:, dofs][:, :, dofs] @ part))
             _add(kinetic, group.part, energy)
-            _add(kinetic_by_shaft, ("", group.part) if motion == CASING else (group.shaft, motion), energy)
+            _add(kinetic_by_shaft, ("", group.part) if motion in (CASING, GEAR_BODY) else (group.shaft, motion), energy)
             kinetic_by_motion[motion] += energy
         for label, energy in _strain_energies(group, local):
             elastic = np.where(rigid, 0.0, energy)

@@ -17,7 +17,7 @@ from rotorgear.solvers.eigen.eigen import UndampedModes, lowest_modes
 from rotorgear.solvers.eigen.shift_invert import shifted_operator
 from rotorgear.solvers.sparse.pencil import LooseDofError, check_pencil
 from rotorgear.system.components import dof_motions, groups_with_inertia, independent_groups
-from rotorgear.system.nodes import CASING
+from rotorgear.system.nodes import CASING, GEAR_BODY
 from rotorgear.system.plan import Plan
 from rotorgear.system.strain_forms import StrainForms
 from rotorgear.system.system import System
@@ -224,7 +224,7 @@ def group_notes(motions: np.ndarray, groups: list[np.ndarray], chosen: list[np.n
     """Say which groups of dofs were solved apart and which were left out."""
     notes = []
     kept = {int(group[0]) for group in chosen}
-    for motion in ("bending", "axial", "torsion", CASING):
+    for motion in ("bending", "axial", "torsion", CASING, GEAR_BODY):
         dropped = [g for g in groups if int(g[0]) not in kept and motions[g[0]] == motion]
         if dropped:
             notes.append(f"{motion}: {sum(map(len, dropped))} dofs decoupled, not among the motions asked for")

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.analysis.common.casings import casing_notes
+from rotorgear.analysis.common.gear_bodies import body_notes
 from rotorgear.analysis.common.load_notes import load_notes
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out
 from rotorgear.analysis.common.notes import rolling_notes
@@ -140,7 +140,7 @@ def frf(
         left_out=(
             *first.notes,
             *notes,
-            *casing_notes(system),
+            *body_notes(system),
             *rolling_notes(model, rolls=False),
             *load_notes(system, "frf"),
             *mesh_stiffness_left_out(system),

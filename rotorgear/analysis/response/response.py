@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rotorgear.analysis.common.casings import casing_notes
+from rotorgear.analysis.common.gear_bodies import body_notes
 from rotorgear.analysis.common.load_notes import load_notes
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
@@ -168,7 +168,7 @@ def response(
             *weak,
             *setup.notes,
             *notes,
-            *casing_notes(system),
+            *body_notes(system),
             *rolling_notes(model, rolls=False),
             *load_notes(system, "response"),
         ),

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rotorgear.analysis.common.casings import casing_notes
+from rotorgear.analysis.common.gear_bodies import body_notes
 from rotorgear.analysis.common.load_notes import load_notes
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.places import displacement_places
@@ -278,7 +278,7 @@ def _left_out(equilibrium: Equilibrated) -> tuple[str, ...]:
         ]
     return (
         *notes,
-        *casing_notes(equilibrium.system),
+        *body_notes(equilibrium.system),
         *rolling_notes(model, rolls=False),
         *load_notes(equilibrium.system, "static"),
     )

@@ -170,15 +170,18 @@ def _with_approaches(built: LocalModel) -> LocalSystem:
 
 
 def _standing(model: Model) -> bool:
-    """Whether only the rotation depends on the speed: no power, no tables, no internal damping, no torque over speed."""
+    """Whether only the rotation depends on the speed: no power, tables, gear bodies, internal damping, torque over speed."""
     operation = model.operation
     assert operation is not None
     powers = [operation.power, *(load.power for load in model.loads.values())]
     varying = any(load.varies for load in model.loads.values())
     tables = any(bearing.table for bearing in model.bearings.values())
+    bodies = any(gear.body.mesh for gear in model.gears.values())
     inner = any(shaft.internal_damping for shaft in model.shafts.values())
     # Laws of one's own may depend on the speed as they like.
-    return all(power is None for power in powers) and not (varying or tables or inner or model.nonlinear_elements)
+    return all(power is None for power in powers) and not (
+        varying or tables or bodies or inner or model.nonlinear_elements
+    )
 
 
 def still(

@@ -123,6 +123,8 @@ def _held(model: Model) -> str:
     damped = [name for name, shaft in model.shafts.items() if shaft.internal_damping]
     parts = [f"the tables of the bearings {', '.join(tables)}"] if tables else []
     parts += [f"the internal damping of {', '.join(damped)}"] if damped else []
+    bodies = [name for name, gear in model.gears.items() if gear.body.mesh is not None]
+    parts += [f"the centrifugal terms of {', '.join(bodies)}"] if bodies else []
     return " and ".join(parts)
 
 

@@ -47,7 +47,7 @@ def casings(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
         for bearing, seat in casing.seats.items():
             if bearing not in seated and not {(table, "") for table in tables} & broken:
                 yield unknown(f"{address}.seats.{bearing}", bearing, seated, "a bearing")
-            yield from _seat(f"{address}.seats.{bearing}", seat)
+            yield from seat_problems(f"{address}.seats.{bearing}", seat)
     yield from _seated(model)
 
 
@@ -73,7 +73,8 @@ def _material(address: str, casing: Casing) -> Iterator[Problem]:
             yield Problem(f"{address}.poisson_ratio", f"{casing.poisson_ratio:.4g}", "one from 0 to below 0.5")
 
 
-def _seat(address: str, seat: Seat) -> Iterator[Problem]:
+def seat_problems(address: str, seat: Seat) -> Iterator[Problem]:
+    """A seat is a set, or a whole place."""
     given = [key for key in _PLACE if getattr(seat, key) is not None]
     if seat.set is not None and given:
         yield Problem(address, f"set and {', '.join(given)}", "one of the two ways to say where it is")

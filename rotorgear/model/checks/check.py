@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 from rotorgear.errors import Problem
 from rotorgear.model.checks.casings import casings
+from rotorgear.model.checks.gear_bodies import gear_bodies
 from rotorgear.model.checks.gears import gear_problems, inertia_problems
 from rotorgear.model.checks.loads import loads, loads_that_stand_still
 from rotorgear.model.checks.meshes import massless_gears, mesh_problems, mesh_settings
@@ -61,6 +62,7 @@ def _by_themselves(model: Tables, broken: set[PartName]) -> Iterator[Problem]:
     yield from materials(rest)
     yield from sections(rest)
     yield from gear_problems(rest)
+    yield from gear_bodies(rest)
     yield from matrices(rest)
     yield from casings(rest, broken)
     yield from nonlinear_elements(rest)

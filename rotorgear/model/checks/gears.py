@@ -86,7 +86,7 @@ def _lumped_gear(address: str, gear: Gear) -> Iterator[Problem]:
     yield from pressure_angle_problems(f"{address}.transverse_pressure_angle", gear.transverse_pressure_angle)
     if gear.kind == "herringbone" and gear.width is None:
         yield missing(f"{address}.width", "width of one helix, which with the gap places the two helices")
-    if not inertia_is_given(gear):
+    if not inertia_is_given(gear) and gear.body.mesh is None:
         yield missing(f"{address}.mass", "mass and moments of inertia of a gear that is given by its base radius")
 
 
@@ -131,6 +131,8 @@ def inertia_problems(layout: Layout) -> Iterator[Problem]:
 def _body(layout: Layout, address: str, name: str, part: Gear | Disk) -> Iterator[Problem]:
     """Mass and inertias: all that the motions of the model need, or the sizes to compute them from."""
     model = layout.model
+    if isinstance(part, Gear) and part.body.mesh is not None:
+        return  # its mesh has them; reading it waits for an analysis
     found: list[Problem] = []
     if inertia_is_given(part):
         found += _given_inertia(model, address, part)

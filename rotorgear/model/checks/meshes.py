@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from rotorgear.errors import Problem, RotorgearError
 from rotorgear.gears.geometry.pair import working_centre_distance
+from rotorgear.model.checks.gear_bodies import counted_twice
 from rotorgear.model.checks.gears import degrees, missing, pressure_angle_problems
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import MeshLayout
@@ -53,6 +54,7 @@ def mesh_problems(layout: Layout) -> Iterator[Problem]:
             found = [*_mates(address, pinion, gear), *_faces(address, both), *_teeth(address, mesh, pinion, gear)]
             yield from found or _axes(address, both, in_bending=layout.model.has("bending"))
             if not found:
+                yield from counted_twice(address, both)
                 yield from _wind_up(address, both, [other for other in layout.meshes if other is not both])
 
 
@@ -223,7 +225,8 @@ def massless_gears(layout: Layout) -> Iterator[Problem]:
     """A damping ratio needs the inertia of both gears."""
     for mesh in layout.meshes:
         ratio = mesh.part.damping_ratio
-        empty = [gear.name for gear in mesh.gears if ratio and not gear.body.polar_inertia]
+        rigid = [gear for gear in mesh.gears if gear.part.body.mesh is None]
+        empty = [gear.name for gear in rigid if ratio and not gear.body.polar_inertia]
         if empty:
             text = f"{ratio:g} with gear '{empty[0]}' of no polar inertia"
             hint = "c = 2 zeta sqrt(k m_e) needs the inertia of both gears"

@@ -92,6 +92,11 @@ def unknown_materials(model: Tables, broken: Broken) -> Iterator[Problem]:
         for name, part in getattr(model, table).items()
         if part.material is not None
     ]
+    named += [
+        (f"gears.{name}.body.material", gear.body.material)
+        for name, gear in model.gears.items()
+        if gear.body.material is not None
+    ]
     valid = [*_names(model, "materials", broken), *LIBRARY]
     for address, material in named:
         if material not in valid and ("materials", "") not in broken:

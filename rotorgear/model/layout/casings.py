@@ -28,7 +28,7 @@ def casing_settings(model: Tables, name: str) -> CasingSettings:
             MountSettings(place, mount.as_rows(), mount.damping.as_rows() if mount.damping else _NO_DAMPING)
             for place, mount in casing.mounts.items()
         ),
-        seats=tuple((bearing, _place(seat)) for bearing, seat in casing.seats.items()),
+        seats=tuple((bearing, place_of(seat)) for bearing, seat in casing.seats.items()),
         connection=casing.connection,
         joins=tuple(JoinSettings(*one.faces, one.stiffness) for one in casing.joins),
         modes_to=casing.modes_to,
@@ -46,7 +46,8 @@ def _material(model: Tables, casing: Casing) -> Elastic:
     return Elastic(casing.youngs_modulus or 0.0, casing.poisson_ratio or 0.0, casing.density or 0.0)
 
 
-def _place(seat: Seat) -> str | Cylinder:
+def place_of(seat: Seat) -> str | Cylinder:
+    """Name of a set, or a bore."""
     if seat.set is not None:
         return seat.set
     # Checked: where there is no set, the whole place is given.

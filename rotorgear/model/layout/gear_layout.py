@@ -19,9 +19,11 @@ from rotorgear.model.parts.flank import Flank
 from rotorgear.model.parts.tables import Tables
 
 if TYPE_CHECKING:
+    from rotorgear.casings.wheel import ReducedWheel
     from rotorgear.gears.geometry.flank import FlankModification
     from rotorgear.gears.stiffness.mesh_stiffness import ToothBody
     from rotorgear.gears.tooth_fe.blank_section import BlankTorsion
+    from rotorgear.model.parts.shaft import Material
 
 
 class GearLayout:
@@ -34,6 +36,7 @@ class GearLayout:
     """
 
     def __init__(self, model: Tables, name: str) -> None:
+        self._model = model
         self.name = name
         self.part = model.gears[name]
         self.shaft = self.part.shaft
@@ -90,13 +93,35 @@ class GearLayout:
         return max(self.shaft_part.diameter_at(place.z) for place in self.places)
 
     @cached_property
+    def wheel(self) -> ReducedWheel | None:
+        """The elastic body of a gear with a mesh, reduced once and kept; None where it is rigid.
+
+        Raises:
+            AnalysisError: what is wrong with the mesh. MissingExtraError: meshio or scikit-fem is not installed.
+        """
+        if self.part.body.mesh is None:
+            return None
+        from rotorgear.model.layout.wheels import reduced_wheel
+
+        return reduced_wheel(self.name, self.part, self.mesh_material)
+
+    @property
+    def mesh_material(self) -> Material:
+        """Material of the mesh of its body."""
+        return self._model.material_of(self.shaft, name=self.part.body.material or self.part.material)
+
+    @cached_property
     def body(self) -> RigidBody:
-        """Mass and inertias of the whole gear about its middle, given or from its blank.
+        """Mass and inertias of the whole gear about its middle, given, from its blank or from its mesh.
 
         Raises:
             ValueError: the sizes make no blank; the text is what was expected.
         """
         gear = self.part
+        if self.wheel is not None:
+            steiner = self.wheel.body_mass * self.wheel.centre**2
+            diametral = self.wheel.diametral_inertia + steiner
+            return RigidBody(self.wheel.body_mass, self.wheel.polar_inertia, diametral)
         if inertia_is_given(gear):
             return given_body(gear)
         if self.geometry is None or not gear.width:

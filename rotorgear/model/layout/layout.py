@@ -26,6 +26,7 @@ from rotorgear.model.parts.load import Load
 from rotorgear.model.parts.tables import Tables
 
 if TYPE_CHECKING:
+    from rotorgear.casings.wheel import ReducedWheel
     from rotorgear.gears.tooth_fe.blank_section import BlankTorsion
 
 
@@ -60,6 +61,11 @@ class Layout:
                 name, part, self.gear(part.pinion), self.gear(part.gear), lambda: self.train
             )
         return self._meshes[name]
+
+    @cached_property
+    def elastic_bodies(self) -> dict[str, ReducedWheel]:
+        """The bodies of all gears that have a mesh."""
+        return {gear.name: gear.wheel for gear in self.gears if gear.wheel is not None}
 
     def casing(self, name: str) -> ReducedBody:
         """The reduced body of a casing, made once and kept; whoever is `listening` hears of its progress.
@@ -190,8 +196,8 @@ class Layout:
 
     @cached_property
     def bodies(self) -> tuple[NodeBody, ...]:
-        """The rigid bodies of all gears, disks and point masses, one for each node."""
-        found = [body for gear in self.gears for body in gear.node_bodies]
+        """The rigid bodies of all gears, disks and point masses, one for each node; gears with a mesh are none."""
+        found = [body for gear in self.gears if gear.part.body.mesh is None for body in gear.node_bodies]
         others = {f"disks.{name}": self.disk_body(name) for name in self.model.disks}
         for name, point in self.model.point_masses.items():
             others[f"point_masses.{name}"] = RigidBody(point.mass, 0.0, 0.0)

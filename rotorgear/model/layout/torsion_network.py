@@ -82,6 +82,9 @@ def contact_forces(layout: Layout, applied: Sequence[AppliedTorque], lines: Sequ
         for name, torsion in layout.elastic_gears.items()
         for place in layout.gear(name).places
     }
+    for name, wheel in layout.elastic_bodies.items():
+        place = layout.place(f"gears.{name}")
+        elastic[name, place] = network.branch(network.node(*place), 1.0 / float(wheel.rim_flexibility[5, 5]))
 
     def teeth_of(gear: str, place: Place) -> int:
         return elastic[gear, place] if (gear, place) in elastic else network.node(*place)

@@ -76,7 +76,7 @@ else:
     )
 
 
-class _TextOrTable:
+class TextOrTable:
     """Marks a seat in the JSON Schema: the name of a set, or the table."""
 
     def __get_pydantic_json_schema__(self, _: CoreSchema, __: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -133,7 +133,7 @@ class Casing(Part):
     density: Density | None = Field(None, description="density, in place of a material")
     held: tuple[str, ...] = Field((), description="face or node sets that are held fixed")
     mounts: dict[str, Mount] = Field(default_factory=dict, description="face or node sets on springs to the ground")
-    seats: dict[Name, Annotated[Seat, _TextOrTable()]] = Field(
+    seats: dict[Name, Annotated[Seat, TextOrTable()]] = Field(
         default_factory=dict,
         description="where bearings sit, by the name of the bearing: a face or node set, or a place",
     )

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from rotorgear.gears.geometry.backlash import Allowance
 from rotorgear.gears.geometry.geometry import GearGeometry
+from rotorgear.model.parts.casing import Seat, TextOrTable
 from rotorgear.model.parts.fields import (
     Angle,
     Flag,
+    Frequency,
     Inertia,
     Length,
     Mass,
@@ -28,7 +30,7 @@ from rotorgear.model.parts.flank import Flank
 
 
 class GearBody(Part):
-    """Shape of a gear's blank, for its mass and its compliance: rim, web and hub. What is left out is solid."""
+    """A gear's blank, for its mass and its compliance: rim, web and hub, or a finite-element mesh. What is left out is solid."""
 
     bore: NonNegativeLength | None = Field(None, description="bore; default: the shaft's diameter there")
     rim_thickness: PositiveLength | None = Field(None, description="thickness of the rim below the tooth roots")
@@ -36,6 +38,32 @@ class GearBody(Part):
     web_position: Length = Field(0.0, description="z of the web's middle from the middle of the face")
     hub_diameter: PositiveLength | None = Field(None, description="outer diameter of the hub")
     hub_width: PositiveLength | None = Field(None, description="width of the hub along z")
+    mesh: str | None = Field(
+        None,
+        description="file of a finite-element mesh of an elastic body, beside the model file; z is its axis, and its middle "
+        "the origin",
+    )
+    unit: Literal["m", "dm", "cm", "mm", "um", "in", "ft"] | None = Field(
+        None, description="unit of length of the mesh: such files carry none"
+    )
+    material: str | None = Field(None, description="material of the mesh; default: the gear's")
+    seat: Annotated[Seat | None, TextOrTable()] = Field(
+        None, description="where the mesh sits on its shaft, its bore: a face or node set, or a place"
+    )
+    rim: Annotated[Seat | None, TextOrTable()] = Field(
+        None, description="face of the mesh that carries the teeth: a face or node set, or a place"
+    )
+    connection: Literal["rigid", "mean"] = Field(
+        "rigid",
+        description="whether the shaft holds the bore as a rigid body (RBE2), or in its mean motion alone (RBE3)",
+    )
+    modes_to: Frequency | None = Field(
+        None, description="highest frequency of the modes of the mesh on its bore that are kept; default: the lowest 20"
+    )
+    damping_ratio: Ratio = Field(0.0, description="damping ratio of every mode of the mesh on its bore")
+    mass_tolerance: PositiveRatio = Field(
+        0.05, description="how far the mesh's mass and inertias may be off those that the gear states"
+    )
 
 
 class Gear(Part):

@@ -4,7 +4,8 @@ Between two speeds a and b the matrices are affine, D = D_0 + W D_1 and K = K_0 
 
     [ K_0 + s (p D_0 - i K_1) + s^2 (p^2 M - i p D_1) ] x = 0 ,       W = Im s
 
-which for D_0 = K_1 = 0 is K x = W^2 (p^2 M - i p G) x, a Hermitian but indefinite pair. It is inverted at s = i (a + b)/2, so
+which for D_0 = K_1 = 0 is K x = W^2 (p^2 M - i p G) x, a Hermitian but indefinite pair. A stiffness W^2 K_2, of gear bodies that
+turn, stands beside p^2 M as -K_2. It is inverted at s = i (a + b)/2, so
 that all speeds between a and b lie in the disc around it. With damping Re s is not zero, and the root of Im lambda(W) = p W is
 found from it by a secant, each trial an eigenpair of the pencil at a real W.
 """
@@ -33,7 +34,7 @@ BACK_SUBSTITUTED = 1e-10  # the same, above which a root is refused
 
 @dataclass(frozen=True)
 class Affine:
-    """M, D = D_0 + W D_1, K = K_0 + W K_1 for speeds W from `low` to `high` in rad/s; sparse (n, n), real."""
+    """M, D = D_0 + W D_1, K = K_0 + W K_1 + W^2 K_2 for speeds W from `low` to `high` in rad/s; sparse (n, n), real."""
 
     M: sp.csc_array
     D0: sp.csc_array
@@ -42,15 +43,23 @@ class Affine:
     K1: sp.csc_array
     low: float
     high: float
+    K2: sp.csc_array | None = None
 
     def at(self, speed: float) -> tuple[sp.csc_array, sp.csc_array]:
         """D and K at a speed."""
-        return sp.csc_array(self.D0 + speed * self.D1), sp.csc_array(self.K0 + speed * self.K1)
+        K = self.K0 + speed * self.K1
+        return sp.csc_array(self.D0 + speed * self.D1), sp.csc_array(K if self.K2 is None else K + speed**2 * self.K2)
+
+    def inertia(self, order: float) -> sp.csc_array:
+        """p^2 M - i p D_1 - K_2: what grows with s^2."""
+        H = order**2 * self.M - 1j * order * self.D1
+        return sp.csc_array(H if self.K2 is None else H - self.K2)
 
     def cut(self, dofs: np.ndarray) -> Affine:
         """The same of some dofs, that no other acts on."""
         M, D0, D1, K0, K1 = (sp.csc_array(A[:, dofs][dofs]) for A in (self.M, self.D0, self.D1, self.K0, self.K1))
-        return Affine(M, D0, D1, K0, K1, self.low, self.high)
+        K2 = None if self.K2 is None else sp.csc_array(self.K2[:, dofs][dofs])
+        return Affine(M, D0, D1, K0, K1, self.low, self.high, K2)
 
 
 @dataclass(frozen=True)
@@ -100,7 +109,7 @@ def _starts(family: Affine, order: float, attempt: int) -> tuple[np.ndarray, np.
     S = sp.diags_array(scale)
     A0 = sp.csc_array(S @ family.K0 @ S, dtype=complex)
     A1 = sp.csc_array(S @ (order * family.D0 - 1j * family.K1) @ S * centre)
-    A2 = sp.csc_array(S @ (order**2 * family.M - 1j * order * family.D1) @ S * centre**2)
+    A2 = sp.csc_array(S @ family.inertia(order) @ S * centre**2)
     # Inverted at s = i (a + b)/2, in units in which that is i: T [x; s x] as in `quadratic.InverseState`.
     sigma = 1j
     n = family.M.shape[0]
@@ -196,7 +205,7 @@ def _count_agrees(family: Affine, order: float, roots: list[Synchronous]) -> boo
     skew = abs(family.D1 + family.D1.T)
     if family.D0.nnz or family.K1.nnz or (skew.nnz and skew.max() > 1e-12 * abs(family.D1).max()):
         return True
-    H = sp.csc_array(order**2 * family.M - 1j * order * family.D1)
+    H = family.inertia(order)
     low = 0.999 * min([family.high, *(r.speed for r in roots)])
     high = family.high
     first = max(family.low, 1e-4 * low)

@@ -158,14 +158,14 @@ def test_a_body_is_kept_by_its_mesh_and_keys_and_a_damaged_file_is_made_anew(fol
     np.testing.assert_array_equal(first.surface.basis, again.surface.basis)  # type: ignore[union-attr]
     assert again.seats == first.seats == ("left",)
 
-    kept = next((folder / "cache").glob("casing-*.h5"))
+    kept = next((folder / "cache").glob("body-*.h5"))
     with h5py.File(kept, "r+") as file:
         file["mass"][0, 0] = 1.0
     assert body().mass[0, 0] == first.mass[0, 0]
     body(**{"casings.box.connection": "rigid"})
     write_inp(folder / "box.inp", block((0.1, 0.06, 0.2), (1, 1, 2)))
     body()
-    assert len(list((folder / "cache").glob("casing-*.h5"))) == 3
+    assert len(list((folder / "cache").glob("body-*.h5"))) == 3
 
 
 def test_a_seat_may_be_a_bore_of_its_place(folder: Path) -> None:

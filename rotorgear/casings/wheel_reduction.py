@@ -1,0 +1,366 @@
+"""Reduction of a gear body that turns: modes on its bore, what rim and acceleration move statically, and their nodal diameters.
+
+The coordinates are modes with the bore at rest, up to a frequency, and what else answers statically to forces on the rim's mean
+motion and to accelerations of the bore, so that the static flexibility between bore and rim is that of the mesh.
+
+In a body of revolution a field that is turned about the axis is a field of the same body. Turned by a small angle dα it changes
+by -L u dα, L u = ∂u/∂θ - k x u. Two modes of one frequency are its waves of n nodal diameters, f = u_1 + i u_2 ~ exp(i n θ), L f
+= i n f; they are told by Λ = ∫ ρ Eᵀ L E dV, and n by the largest wave of the rim. With ∂u/∂θ = L u + k x u all that rotation
+brings follows from integrals of the fields themselves:
+
+    T = L + Z,    H = Lᵀ L + Lᵀ Z + Zᵀ L + Q,    Z = ∫ ρ Eᵀ (k x E) dV,    Q = ∫ ρ (k x E)ᵀ (k x E) dV
+
+A body with equal parts about its axis, and a mesh, is one of revolution nearly: a wave of a body with N holes has others of n ± N
+in it, and two modes may have frequencies apart. Every matrix is replaced by its mean over all angles, which drops what couples
+different n, and the two modes by their mean. So the system seen from the ground has constant matrices; how far that moves
+frequencies is measured and kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from rotorgear.casings.assembly import rigid_motions
+from rotorgear.casings.constrained import Constrained, ElasticBody
+from rotorgear.casings.fe_body import FiniteElementBody
+from rotorgear.casings.modes import modes_up_to
+from rotorgear.casings.reduction import independent, symmetric
+from rotorgear.casings.spin import spin_integrals
+from rotorgear.casings.wheel import ReducedWheel
+from rotorgear.errors import AnalysisError
+from rotorgear.progress import Progress, silent
+from rotorgear.quantity import millimetres
+
+# Modes of the body where neither the file nor the analysis says a frequency.
+USUAL = 20
+# Two modes nearer than this (relative) may be a pair.
+_PAIR = 5e-3
+# A pair turns into each other by n; what other modes turn into each other by rounding is far below.
+_TURNS = 0.3
+# How far a body may be from one of revolution (relative): in its moments of inertia, and in the frequencies of its modes when it
+# is taken for one.
+_OFF_INERTIA = 0.02
+_OFF = 0.1
+# How far centres may be off the axis, over the radius of the rim.
+_OFF_AXIS = 5e-3
+
+
+def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progress = silent) -> ReducedWheel:
+    """Reduce a body whose seats are its bore and its rim, in this order.
+
+    Args:
+        fe: the body, in the axes of the gear.
+        modes_to: Hz; None: the lowest `USUAL` modes.
+        progress: of the steps.
+
+    Raises:
+        AnalysisError: a body that is not near to one of revolution about z, or more memory than there is.
+        ConvergenceError: a factorisation or an iteration that failed.
+    """
+    name = fe.settings.address
+    bore, rim = fe.seats
+    _about_the_axis(fe)
+    rigid_bore = fe.settings.connection == "rigid"
+    clamped = replace(fe, held=bore.nodes if rigid_bore else fe.held, seats=(rim,))
+    space = clamped.free_space(held=True, rigid_seats=False)
+    R = rigid_motions(fe.mesh.points)
+    body = ElasticBody(fe.stiffness_in(space.shapes), R[space.dofs][:, : 0 if rigid_bore else 6], name, progress)
+    at_rest = np.zeros((len(space.dofs), 0)) if rigid_bore else space.forces(fe.mean_weights((bore,)))
+    system = Constrained(body, at_rest)
+
+    progress(0.4, f"{name}: modes on the bore")
+
+    def times_mass(columns: np.ndarray) -> np.ndarray:
+        return space.forces(fe.matrices.times_mass(space.shapes @ columns))
+
+    squares, modes, left = modes_up_to(system.solve, times_mass, len(space.dofs), modes_to, USUAL)
+    kept, left = _whole_pairs(np.sqrt(squares) / (2.0 * np.pi), left)
+    progress(0.7, f"{name}: static shapes of the rim")
+    modes = space.shapes @ modes[:, :kept]
+    rim_weights = fe.mean_weights((rim,))
+    static = space.shapes @ system.solve(space.forces(np.hstack([rim_weights, fe.matrices.times_mass(R)])))
+    mass_modes = fe.matrices.times_mass(modes)
+    for _ in range(2):
+        static -= modes @ (mass_modes.T @ static)
+    E = np.hstack([modes, independent(static, fe.matrices.times_mass(static))])
+    squares, turn = la.eigh(symmetric(E.T @ fe.stiffness_times(E)), symmetric(E.T @ fe.matrices.times_mass(E)))
+    E = E @ turn
+
+    progress(0.8, f"{name}: rotation")
+    stretched = space.shapes @ system.solve(space.forces(_centrifugal_forces(fe)))
+    spin = spin_integrals(fe.mesh, fe.settings.material, stretched[:, 0])
+    waves = _waves(fe, E, np.sqrt(squares), spin.transport)
+    frequency = waves.frequency
+    own = np.flatnonzero(waves.first < kept)
+    averaged = float(np.abs(waves.shift[own]).max(initial=0.0))
+    if averaged > _OFF:
+        raise _no_revolution(name, f"taking it for one moves the frequency of a mode by {100.0 * averaged:.2g} %")
+
+    E = E @ waves.shapes
+    everything = np.hstack([R, E])
+    across = _across(everything)
+    M = waves.mean(symmetric(everything.T @ fe.matrices.times_mass(everything)))
+    M[6:, 6:] = np.eye(len(frequency))
+    Z = waves.mean(everything.T @ fe.matrices.times_mass(across))
+    Q = waves.mean(across.T @ fe.matrices.times_mass(across))
+    stress = waves.mean(la.block_diag(np.zeros((6, 6)), _each_direction(spin.stress, E)))
+    L = waves.turning
+    T = M @ L + Z
+    H = L.T @ M @ L + L.T @ Z + Z.T @ L + Q
+    rim_motion = np.zeros_like(M)
+    rim_motion[:6, 6:] = _from_point(rim.point) @ (rim_weights.T @ E)
+    cosine, sine = _rim_waves(fe, E, waves.diameters)
+    mass, centre, inertia = fe.mass_properties
+    progress(1.0, f"{name}: reduced to {len(frequency)} coordinates")
+    return ReducedWheel(
+        mass=M,
+        gyroscopic=T - T.T,
+        frequency=frequency,
+        diameters=waves.diameters,
+        spin_stiffness=symmetric(stress - H)[6:, 6:],
+        turning=L[6:, 6:],
+        damping_ratio=fe.settings.damping_ratio,
+        body_mass=mass,
+        polar_inertia=float(inertia[2, 2]),
+        diametral_inertia=float(0.5 * (inertia[0, 0] + inertia[1, 1])),
+        centre=float(centre[2]),
+        rim_motion=waves.mean(rim_motion)[:6, 6:],
+        rim_cosine=cosine,
+        rim_sine=sine,
+        rim_radius=_radius(fe),
+        modes=len(own),
+        left_frequency=left,
+        averaged=averaged,
+        notes=fe.mesh.notes,
+    )
+
+
+@dataclass(frozen=True)
+class _Waves:
+    """The coordinates by nodal diameters.
+
+    Attributes:
+        shapes: (m, k) their sums of the m modes; pairs stand side by side, all in the order of their frequencies.
+        diameters: (k,) n.
+        frequency: (k,) in Hz: of pairs that of their mean stiffness.
+        shift: (k,) by how much (relative) that is off the modes' own.
+        first: (k,) number of the first mode that each is of.
+    """
+
+    shapes: np.ndarray
+    diameters: np.ndarray
+    frequency: np.ndarray
+    shift: np.ndarray
+    first: np.ndarray
+
+    @cached_property
+    def turning(self) -> np.ndarray:
+        """L (6 + k, 6 + k) of rigid motions and coordinates, of a pair with L (u_1 + i u_2) = i n (u_1 + i u_2)."""
+        n = np.concatenate([_RIGID_DIAMETERS, self.diameters])
+        L = np.zeros((len(n), len(n)))
+        k = 0
+        while k < len(n):
+            if n[k]:
+                L[k, k + 1] = n[k]
+                L[k + 1, k] = -n[k]
+            k += 2 if n[k] else 1
+        return L
+
+    def mean(self, X: np.ndarray) -> np.ndarray:
+        """The mean over all angles of the body of a matrix (6 + k, 6 + k) of rigid motions and coordinates."""
+        values, waves = la.eigh(-1j * self.turning)
+        n = np.rint(values)
+        Y = waves.conj().T @ X @ waves
+        Y[n[:, None] != n[None, :]] = 0.0
+        return np.asarray(np.real(waves @ Y @ waves.conj().T))
+
+
+# Of the rigid motions x y z rx ry rz: x + i y turns like a wave of one nodal diameter.
+_RIGID_DIAMETERS = np.array([1, 1, 0, 1, 1, 0])
+
+
+def _waves(fe: FiniteElementBody, E: np.ndarray, rates: np.ndarray, transport: sp.csr_array) -> _Waves:
+    """Modes E (3p, m) of the angular frequencies (m,) as waves; a mode whose partner is not among them is left out."""
+    turned = _each_direction(transport, E) - E.T @ fe.matrices.times_mass(_across(E))
+    turned = 0.5 * (turned - turned.T)
+    power = _RimPower(fe)
+    found: list[tuple[float, int, int, list[np.ndarray], float]] = []
+    single: list[int] = []
+
+    def add(columns: list[np.ndarray], first: int, n: int) -> None:
+        # Of the mean stiffness of a pair.
+        rate = float(np.sqrt(np.mean([rates**2 @ column**2 for column in columns])))
+        members = np.flatnonzero(np.abs(np.array(columns)).max(axis=0) > 0.1)
+        shift = float(np.abs(rate / rates[members] - 1.0).max())
+        found.append((rate / (2.0 * np.pi), n, first, columns, shift))
+
+    start = 0
+    for stop in range(1, len(rates) + 1):
+        if stop < len(rates) and rates[stop] < (1.0 + _PAIR) * rates[stop - 1]:
+            continue
+        values, parts = la.eigh(-1j * turned[start:stop, start:stop])
+        for value, part in zip(values, parts.T, strict=True):
+            if value > _TURNS:
+                f = np.zeros(len(rates), dtype=complex)
+                f[start:stop] = np.sqrt(2.0) * part
+                add([f.real, f.imag], start, max(1, power.largest(E @ f)))
+        still = parts[:, np.abs(values) <= _TURNS]
+        if still.shape[1]:
+            # Real shapes without waves keep their own frequencies: modes again, of the span.
+            real = la.orth(np.hstack([still.real, still.imag]), rcond=1e-6)
+            if start + 1 == stop:
+                single.append(start)
+            else:
+                for column in (real @ la.eigh((real.T * rates[start:stop] ** 2) @ real)[1]).T:
+                    alone = np.zeros(len(rates))
+                    alone[start:stop] = column
+                    add([alone], start, 0)
+        start = stop
+    # Of a body with N equal parts the two waves of N/2 and N nodal diameters have frequencies apart.
+    while single:
+        k = single.pop(0)
+        partner = max(single, key=lambda j: abs(turned[k, j]), default=None)
+        alone = np.eye(len(rates))[k]
+        if partner is not None and abs(turned[k, partner]) > max(_TURNS, 0.5 * power.largest(E[:, k])):
+            single.remove(partner)
+            other = np.sign(turned[k, partner]) * np.eye(len(rates))[partner]
+            add([alone, other], k, max(1, power.largest(E @ (alone + 1j * other))))
+        elif power.largest(E[:, k]) == 0:
+            add([alone], k, 0)
+    found.sort(key=lambda one: (one[0], one[2]))
+    sizes = [len(one[3]) for one in found]
+    return _Waves(
+        shapes=np.column_stack([column for one in found for column in one[3]]),
+        diameters=np.repeat([one[1] for one in found], sizes),
+        frequency=np.repeat([one[0] for one in found], sizes),
+        shift=np.repeat([one[4] for one in found], sizes),
+        first=np.repeat([one[2] for one in found], sizes),
+    )
+
+
+class _RimPower:
+    """How much of the rim's motion is of which number of nodal diameters."""
+
+    def __init__(self, fe: FiniteElementBody) -> None:
+        rim = fe.seats[1]
+        self.nodes = rim.nodes
+        x, y, _ = fe.mesh.points[rim.nodes].T
+        angle = np.arctan2(y, x)
+        self.frame = np.exp(-1j * angle)
+        most = max(2, len(np.unique(np.round(angle, 6))) // 4)
+        self.waves = np.exp(-1j * np.arange(most + 1)[:, None] * angle) * (rim.surface_mass @ np.ones(len(rim.nodes)))
+
+    def largest(self, field: np.ndarray) -> int:
+        """The n >= 0 of the largest wave exp(i n θ), or of cos and sin together of a real field (3p,)."""
+        u = field.reshape(-1, 3)[self.nodes]
+        c, s = self.frame.real, -self.frame.imag
+        parts = np.array([c * u[:, 0] + s * u[:, 1], c * u[:, 1] - s * u[:, 0], u[:, 2]])
+        return int(
+            np.argmax(
+                np.sum(np.abs(self.waves @ parts.T) ** 2, axis=1) * np.where(np.arange(len(self.waves)), 2.0, 1.0)
+            )
+        )
+
+
+def _rim_waves(fe: FiniteElementBody, fields: np.ndarray, diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cos nθ and sin nθ parts (2, 3, k) of what the rim moves along radius, circumference and axis: at z = 0, and per m of z.
+
+    Nearest over the area of the rim to v(θ) + z w(θ); of pairs together, as f ~ exp(i n θ).
+    """
+    rim = fe.seats[1]
+    x, y, z = fe.mesh.points[rim.nodes].T
+    weight = rim.surface_mass @ np.ones(len(rim.nodes))
+    angle = np.arctan2(y, x)
+    c, s = np.cos(angle), np.sin(angle)
+    u = fields.reshape(-1, 3, fields.shape[1])[rim.nodes]
+    along = np.stack(
+        [c[:, None] * u[:, 0] + s[:, None] * u[:, 1], c[:, None] * u[:, 1] - s[:, None] * u[:, 0], u[:, 2]]
+    )
+    powers = np.array([np.ones(len(z)), z])
+    moments = np.linalg.inv((powers * weight) @ powers.T)
+    cosine = np.zeros((2, 3, fields.shape[1]))
+    sine = np.zeros_like(cosine)
+    k = 0
+    while k < len(diameters):
+        n = int(diameters[k])
+        f = along[:, :, k] + 1j * along[:, :, k + 1] if n else along[:, :, k]
+        A = moments @ ((powers * weight) @ (f * np.exp(-1j * n * angle)).T)
+        cosine[:, :, k] = A.real
+        if n:
+            # The pair is Re and Im of A exp(i n θ).
+            cosine[:, :, k], cosine[:, :, k + 1] = A.real, A.imag
+            sine[:, :, k], sine[:, :, k + 1] = -A.imag, A.real
+        k += 2 if n else 1
+    return cosine, sine
+
+
+def _across(fields: np.ndarray) -> np.ndarray:
+    """k x u (3p, k) of displacements."""
+    u = fields.reshape(-1, 3, fields.shape[1])
+    return np.asarray((u[:, [1, 0, 2]] * np.array([-1.0, 1.0, 0.0])[:, None]).reshape(fields.shape))
+
+
+def _each_direction(scalar: sp.csr_array, fields: np.ndarray) -> np.ndarray:
+    """Uᵀ (A x I) U for a matrix A (p, p) of nodes and fields U (3p, k)."""
+    return np.asarray(fields.T @ (scalar @ fields.reshape(scalar.shape[0], -1)).reshape(fields.shape))
+
+
+def _centrifugal_forces(fe: FiniteElementBody) -> np.ndarray:
+    """(3p, 1): of the rotation at 1 rad/s."""
+    outward = fe.mesh.points * np.array([1.0, 1.0, 0.0])
+    return fe.matrices.times_mass(outward.reshape(-1, 1))
+
+
+def _from_point(point: np.ndarray) -> np.ndarray:
+    """(6, 6): motion of a rigid body about the origin from that about a point: v - θ x r."""
+    x, y, z = point
+    carried = np.eye(6)
+    carried[:3, 3:] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
+    return carried
+
+
+def _whole_pairs(frequency: np.ndarray, left: float) -> tuple[int, float]:
+    """How many of the modes are kept so that no pair is torn apart, and the frequency of the first that is left."""
+    kept = len(frequency)
+    while kept and left < (1.0 + _PAIR) * frequency[kept - 1]:
+        kept -= 1
+        left = float(frequency[kept])
+    return kept, left
+
+
+def _radius(fe: FiniteElementBody) -> float:
+    """Mean radius of the rim."""
+    rim = fe.seats[1]
+    weight = rim.surface_mass @ np.ones(len(rim.nodes))
+    return float(weight @ np.linalg.norm(fe.mesh.points[rim.nodes, :2], axis=1) / weight.sum())
+
+
+def _about_the_axis(fe: FiniteElementBody) -> None:
+    """The body turns about z, and its moments of inertia are those of a body of revolution."""
+    name = fe.settings.address
+    radius = _radius(fe)
+    _, centre, inertia = fe.mass_properties
+    places = {"the middle of the bore": fe.seats[0].point, "the middle of the rim": fe.seats[1].point}
+    for what, place in (*places.items(), ("its centre of mass", centre)):
+        off = float(np.hypot(place[0], place[1]))
+        if off > _OFF_AXIS * radius:
+            raise AnalysisError(
+                f"{name}.mesh: {what} is {millimetres(off)} off the z axis. The mesh of a gear body is in the axes of its gear: "
+                "z along the shaft, through the origin."
+            )
+    tilt = 0.5 * (inertia[0, 0] + inertia[1, 1])
+    uneven = max(abs(inertia[0, 0] - inertia[1, 1]), 2.0 * np.abs(inertia[[0, 0, 1], [1, 2, 2]]).max()) / tilt
+    if uneven > _OFF_INERTIA:
+        raise _no_revolution(name, f"its moments of inertia differ by {100.0 * uneven:.2g} % across the axis")
+
+
+def _no_revolution(name: str, why: str) -> AnalysisError:
+    return AnalysisError(
+        f"{name}: the body is not near to one of revolution about its axis: {why}. The matrices of a body that turns must not "
+        "depend on its angle, which takes three or more equal parts around the axis, and a mesh that is fine enough."
+    )
