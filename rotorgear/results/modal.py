@@ -124,7 +124,7 @@ class ModalResult(ModelResult, kind="modal"):
         "",
         "MOTION",
         "mode",
-        note=": bending, axial motion, torsion, casings as `casing`, and gear bodies of two and more nodal diameters as `gear body`",
+        note=": bending, axial motion, torsion, casings as `casing`, gear bodies (two and more nodal diameters) as `gear body`",
     )
     strain_by_motion: dict[str, np.ndarray] = of(
         "share of a motion in the strain energy",
