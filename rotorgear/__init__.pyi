@@ -70,6 +70,8 @@ from rotorgear.solvers.time.kernel_contact import no_schedule as no_schedule
 from rotorgear.analysis.rig.compare_result import compare as compare
 from rotorgear.analysis.rig.rig_file import read_rig_lines as read_rig_lines
 from rotorgear.analysis.rig.rig_spectrum import compare_spectrum as compare_spectrum
+from rotorgear.analysis.rig.update import update as update
+from rotorgear.analysis.rig.measured import Measured as Measured
 from rotorgear.analysis.transient.spectra import spectrum as spectrum
 from rotorgear.analysis.transient.spectra import spectral_lines as spectral_lines
 

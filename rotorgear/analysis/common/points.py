@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
+import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
 from rotorgear.model.checks.references import ON_SHAFTS
@@ -21,6 +23,16 @@ def point_amplitudes(system: System, shapes: np.ndarray) -> dict[str, np.ndarray
         node = system.nodes.at(*system.layout.place(f"points.{name}"))
         found[name] = shapes[node, DOF_NAMES.index(point.direction)]
     return found
+
+
+def point_rows(system: System, names: Sequence[str]) -> sp.csr_array:
+    """Rows R (s, n) with the displacement R q of named points along their directions, from the free dofs q (n)."""
+    dofs = [
+        6 * system.nodes.at(*system.layout.place(f"points.{name}"))
+        + DOF_NAMES.index(system.model.points[name].direction)
+        for name in names
+    ]
+    return sp.csr_array(system.dofs.transform[dofs])
 
 
 def named_place(model: Model, text: str) -> tuple[str, float, str]:

@@ -62,6 +62,13 @@ class Posterior:
         unseen = np.maximum(1.0 - np.sum(self.directions**2, axis=1), 0.0)
         return self.prior * np.sqrt(unseen + self.directions**2 @ left)
 
+    def spread_of(self, slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Standard deviation after the test of quantities with derivatives `slopes` (m, p), (m,)."""
+        scaled = slopes * self.prior
+        seen = scaled @ self.directions
+        variance = np.sum(scaled**2, axis=1) - np.sum(seen**2 * self.shares, axis=1)
+        return np.sqrt(np.maximum(variance, 0.0))
+
     @property
     def correlation(self) -> NDArray[np.float64]:
         """Correlation of the estimates, (p, p)."""

@@ -1,0 +1,51 @@
+"""Which mode of the model a measured line is: by frequency, and by shape where shapes were measured.
+
+Before the test the model predicts ln f with the variance sigma_f^2 + sum_j (J_ij sigma_pj)^2, noise and the spread of its uncertain
+numbers. A pair costs the squared distance in units of that, and (1 - MAC) / 0.1 squared for its shapes: a mode whose shape agrees to 0.9
+weighs as much as one that is one standard deviation off. The assignment of all lines together costs least.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rotorgear.analysis.rig.mac import mac
+from rotorgear.solvers.eigen.assignment import assign
+
+_MAC_SCALE = 0.1
+# Further away in frequency, or less alike in shape, nothing is paired.
+_FARTHEST = 4.0
+_LEAST_MAC = 0.3
+
+
+def pairs_of(
+    measured_hz: NDArray[np.float64],
+    mode_hz: NDArray[np.float64],
+    spread: NDArray[np.float64],
+    measured_shapes: NDArray[np.float64],
+    mode_shapes: NDArray[np.float64],
+    tolerance: float,
+) -> list[tuple[int, int]]:
+    """Return (line, mode), ascending in lines.
+
+    Args:
+        measured_hz: frequencies of the lines (n,).
+        mode_hz: frequencies of the modes (m,).
+        spread: standard deviation of ln f of the modes, model and noise together (m,).
+        measured_shapes: at s points (n, s), NaN where unknown; s may be 0.
+        mode_shapes: the same points (m, s).
+        tolerance: largest |f_mode / f_line - 1| where there are no shapes.
+    """
+    if measured_shapes.size == 0 or not np.isfinite(measured_shapes).any():
+        return sorted(assign(measured_hz, mode_hz, tolerance))
+    from scipy.optimize import linear_sum_assignment
+
+    distance = np.abs(np.log(mode_hz[None, :] / measured_hz[:, None])) / spread[None, :]
+    alike = mac(measured_shapes, mode_shapes)
+    cost = distance**2 + (np.nan_to_num(1.0 - alike, nan=0.0) / _MAC_SCALE) ** 2
+    allowed = (distance <= _FARTHEST) & ~(alike < _LEAST_MAC)
+    # One pair that is not allowed costs more than all allowed ones together.
+    outside = 1.0 + min(cost.shape) * (_FARTHEST**2 + _MAC_SCALE**-2)
+    rows, columns = linear_sum_assignment(np.where(allowed, cost, outside))
+    return [(int(i), int(k)) for i, k in zip(rows, columns, strict=True) if allowed[i, k]]

@@ -1,0 +1,141 @@
+"""Derivatives of natural frequencies and mode shapes with respect to free numbers of a model.
+
+With (K - w^2 M) phi = 0 and phi^T M phi = 1 (Fox and Kapoor 1968, Rates of change of eigenvalues and eigenvectors, AIAA Journal 6):
+
+    d w^2 / dx = phi^T (K' - w^2 M') phi,    so    d ln f / dx = (strain' - w^2 kinetic') / (2 w^2),
+
+where strain' and kinetic' are the changes of phi^T K phi and phi^T M phi with phi held. They are central differences of energies summed
+element by element: no eigenproblem is solved again, and nothing cancels as it would in K' phi of a stiff shaft. A stiffness enters
+linearly, a diameter to the fourth power, a place by the lengths beside it: the same few lines serve any number of the file.
+
+Shapes follow from Nelson's method (1976, Simplified calculation of eigenvector derivatives, AIAA Journal 14): the bordered system
+
+    [K - w^2 M   M phi] [phi']   [-(K' - w^2 M' - (w^2)' M) phi]
+    [phi^T M     0    ] [  . ] = [-phi^T M' phi / 2           ]
+
+is regular where w is a simple eigenvalue, and phi' is exact, without a sum over modes that would have to be cut.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from rotorgear.analysis.rig.free_numbers import FreeNumbers
+from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.system.plan import Plan
+from rotorgear.system.system import System
+
+# Half width of the central differences in x = ln p: their error is h^2 / 6 times the third derivative, some 1e-9 here, and rounding
+# is 1e-15 / h of the energies.
+STEP = 1e-4
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What one free number changes at fixed shapes X (n, m), per unit of x = ln p.
+
+    Attributes:
+        strain: of phi^T K phi (m,).
+        kinetic: of phi^T M phi (m,).
+        stiffness_times: K' X (n, m), None where shapes were not asked for.
+        mass_times: M' X (n, m), the same.
+    """
+
+    strain: NDArray[np.float64]
+    kinetic: NDArray[np.float64]
+    stiffness_times: NDArray[np.float64] | None
+    mass_times: NDArray[np.float64] | None
+
+
+def changes_of(
+    numbers: FreeNumbers, x: NDArray[np.float64], plan: Plan, X: NDArray[np.float64], *, shapes: bool = False
+) -> list[Changes]:
+    """Return what each number changes about x (p,), on the mesh of a plan, at shapes X (n, m) of the free dofs.
+
+    Raises:
+        AnalysisError: a number that moves a place away from another one that it coincides with.
+    """
+    found = []
+    for j in range(len(x)):
+        step = np.zeros(len(x))
+        step[j] = STEP
+        above = system_of(numbers.at(x + step), plan)
+        below = system_of(numbers.at(x - step), plan)
+        if not above.n == below.n == X.shape[0]:
+            # Two places that coincide part under the change, and shapes of one mesh mean nothing on the other.
+            raise AnalysisError(
+                f"{numbers.addresses[j]}: a change moves a place away from another one that it coincides with, so that the "
+                "shafts are cut otherwise; move one of them by a hair in the file, or leave it out"
+            )
+        strain, kinetic = (
+            (high - low) / (2.0 * STEP) for high, low in zip(energies(above, X), energies(below, X), strict=True)
+        )
+        K = (above.stiffness() @ X - below.stiffness() @ X) / (2.0 * STEP) if shapes else None
+        M = (above.mass @ X - below.mass @ X) / (2.0 * STEP) if shapes else None
+        found.append(Changes(strain, kinetic, K, M))
+    return found
+
+
+def system_of(model: Model, plan: Plan) -> System:
+    """The linear system of a model at standstill, about its equilibrium, on the mesh of a plan."""
+    linear, _ = about_equilibrium(model, [None])
+    return System(linear, plan=plan)
+
+
+def frequency_derivatives(changes: list[Changes], eigenvalues: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return d ln f / dx, (m, p), of modes with eigenvalues w^2 (m,) and modal mass 1."""
+    columns = [(change.strain - eigenvalues * change.kinetic) / (2.0 * eigenvalues) for change in changes]
+    return np.array(columns).T.reshape(len(eigenvalues), len(changes))
+
+
+def shape_derivatives(
+    system: System, changes: list[Changes], eigenvalues: NDArray[np.float64], X: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return d phi / dx, (n, m, p), of modes X (n, m) with modal mass 1, each a simple eigenvalue w^2 (m,)."""
+    K = system.stiffness()
+    M = system.mass
+    found = np.zeros((*X.shape, len(changes)))
+    for i, w2 in enumerate(eigenvalues):
+        phi = X[:, i]
+        border = sp.csc_array((M @ phi)[:, None])
+        bordered = sp.csc_array(sp.block_array([[K - w2 * M, border], [border.T, None]]))
+        right = np.zeros((len(phi) + 1, len(changes)))
+        for j, change in enumerate(changes):
+            assert change.stiffness_times is not None
+            assert change.mass_times is not None
+            slope = change.strain[i] - w2 * change.kinetic[i]
+            right[:-1, j] = -(change.stiffness_times[:, i] - w2 * change.mass_times[:, i] - slope * (M @ phi))
+            right[-1, j] = -0.5 * change.kinetic[i]
+        found[:, i] = _solved(bordered, right)[:-1]
+    return found
+
+
+def energies(system: System, X: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return phi^T K phi and phi^T M phi, (m,) each, summed element by element from strains, for shapes X (n, m)."""
+    q = system.dofs.expand(X)
+    strain = np.zeros(X.shape[1])
+    kinetic = np.zeros(X.shape[1])
+    for group in system.groups_at(0.0):
+        local = q[group.dofs]  # (e, d, m)
+        m = group.matrices
+        if m.mass is not None:
+            kinetic += np.einsum("edm,edm->m", local, m.mass @ local)
+        if m.strain is not None and m.modulus is not None:
+            strains = m.strain @ local
+            strain += np.einsum("esm,esm->m", strains, m.modulus @ strains)
+    return strain, kinetic
+
+
+def _solved(A: sp.csc_array, right: NDArray[np.float64]) -> NDArray[np.float64]:
+    from scipy.sparse.linalg import splu
+
+    # Stiffnesses in N/m stand beside ones in N m/rad, and the border beside both: to unit size first.
+    scale = 1.0 / np.sqrt(np.maximum(abs(A).max(axis=1).toarray().ravel(), 1e-300))
+    S = sp.diags_array(scale)
+    return np.asarray(scale[:, None] * splu(sp.csc_array(S @ A @ S)).solve(scale[:, None] * right))
