@@ -25,6 +25,11 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
     ),
     ("compare", "`rotorgear compare MODEL RIG --json compare.json` writes these keys.", (("compare", ""),)),
     (
+        "update",
+        "`rotorgear update MODEL --rig FILE --json update.json`. [Updating by a rig](rig.md) says what the numbers mean.",
+        (("update", ""),),
+    ),
+    (
         "mesh",
         "`rotorgear mesh MODEL --mesh NAME --json mesh.json`. Stiffness and transmission error are transverse, of all helices\n"
         "together where `helix[]` doesn't stand before them. What a stiffness model doesn't know is `null`, and `helix[]` is\n"

@@ -72,6 +72,8 @@ from rotorgear.analysis.rig.rig_file import read_rig_lines as read_rig_lines
 from rotorgear.analysis.rig.rig_spectrum import compare_spectrum as compare_spectrum
 from rotorgear.analysis.rig.update import update as update
 from rotorgear.analysis.rig.measured import Measured as Measured
+from rotorgear.analysis.rig.shape_file import read_rig_shapes as read_rig_shapes
+from rotorgear.analysis.rig.mac import mac as mac
 from rotorgear.analysis.transient.spectra import spectrum as spectrum
 from rotorgear.analysis.transient.spectra import spectral_lines as spectral_lines
 
@@ -80,6 +82,7 @@ from rotorgear.export.hdf5 import save as save
 from rotorgear.export.hdf5 import read as read
 from rotorgear.export.stream import stream as stream
 from rotorgear.export.uff import write_uff as write_uff
+from rotorgear.export.updated_model import write_updated_model as write_updated_model
 from rotorgear.export.casing_vtk import write_casing_vtk as write_casing_vtk
 from rotorgear.export.vtk import write_vtk as write_vtk
 from rotorgear.export.vtk_motion import write_motion as write_motion
@@ -106,6 +109,7 @@ from rotorgear.results.mesh_optimum import MeshOptimum as MeshOptimum
 from rotorgear.results.convergence import ConvergenceStudy as ConvergenceStudy
 from rotorgear.results.comparison import Comparison as Comparison
 from rotorgear.results.comparison import RigLine as RigLine
+from rotorgear.results.update import UpdateResult as UpdateResult
 
 # The errors.
 from rotorgear.errors import RotorgearError as RotorgearError

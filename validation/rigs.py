@@ -3,8 +3,8 @@
     python -m validation.rigs           200 rigs: do stated intervals cover the truth, and are modes paired right? (long)
     python -m validation.rigs 20        so many rigs
 
-Each rig is split_torque.toml with its 14 stiffnesses times exp(0.2 N(0, 1)); 20 elastic modes are measured to 0.5 %, with shapes at 12 points
-to 2 % of their root mean square. The update starts from the file, with a prior of 20 %.
+Each rig is split_torque.toml with its 14 stiffnesses times exp(0.2 N(0, 1)); 20 elastic modes are measured to 0.5 %, with
+shapes at 12 points to 2 % of their root mean square. The update starts from the file, with a prior of 20 %.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 
 import rotorgear as rg
-from rotorgear.analysis.rig.free_numbers import free_numbers
 from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.pairing import pairs_of
 from rotorgear.analysis.rig.rig_model import RigModel
+from rotorgear.model.free_numbers import free_numbers
 from rotorgear.results.comparison import RigLine
 from rotorgear.system.plan import Plan
 

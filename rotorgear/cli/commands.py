@@ -21,6 +21,7 @@ HELP = {
     "campbell": "Campbell diagram: modes over speed, excitation lines, crossings, margins, whirl and stability.",
     "critical": "Critical speeds, damped or undamped, of every shaft and mesh order; with --map over support stiffness.",
     "compare": "Compare modes with rig frequencies, and with the matches of random frequencies.",
+    "update": "Update numbers of a model by a rig: most probable values, what the lines teach, and held-out proof.",
     "static": "Deflections, bearing and mesh forces, load sharing of branches and helices, assembly condition of loops.",
     "response": "Run-up: response to unbalances, transmission errors and stiffness variation, by order and speed.",
     "frf": "Frequency responses between points or parts: unit force in, displacement, velocity or acceleration out.",

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.model.free_numbers import FreeNumbers
+from rotorgear.model.model import Model
 from rotorgear.results.comparison import RigLine
 from rotorgear.results.learnt import IDENTIFIED, LearntParameter
 from rotorgear.results.result import ModelResult
@@ -27,7 +29,7 @@ class UpdatedParameter(LearntParameter):
 
 
 class UpdatedLine(Record):
-    """One measured line and its mode. The held-out frequency is predicted from all other lines, to first order about the estimate."""
+    """One measured line and its mode; the held-out frequency is predicted from the others, to first order about the estimate."""
 
     rig: RigLine = of("rig line", record=RigLine)
     mode_number: int = of("number of the mode", note=", from 1, elastic modes counted")
@@ -40,7 +42,7 @@ class UpdatedLine(Record):
 
 
 class UpdateResult(ModelResult, kind="update"):
-    """The update of a model; `model` is the updated one."""
+    """The update of a model; `model` is the one before, `updated_model()` the one after."""
 
     parameters: tuple[UpdatedParameter, ...] = of("free numbers", "", "parameter", record=UpdatedParameter)
     lines: tuple[UpdatedLine, ...] = of("measured lines with a mode", "", "line", record=UpdatedLine)
@@ -71,6 +73,12 @@ class UpdateResult(ModelResult, kind="update"):
     def verdict(self) -> tuple[str, ...]:
         """What was proven on held-out lines, whether the model can fit at all, and what stays unknown."""
         return tuple(_verdict(self))
+
+    def updated_model(self) -> Model:
+        """The model with the most probable numbers."""
+        factors = np.array([row.factor for row in self.parameters])
+        addresses = tuple(row.address for row in self.parameters)
+        return FreeNumbers(self.model, addresses, np.array([row.prior for row in self.parameters])).at(np.log(factors))
 
     def _rms(self, found_hz: list[float]) -> float:
         errors = np.log([hz / row.rig.frequency_hz for hz, row in zip(found_hz, self.lines, strict=True)])

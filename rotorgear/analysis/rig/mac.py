@@ -12,7 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 
 
 def mac(a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
-    """Return the MAC of each shape of a (n, s) with each of b (m, s), (n, m); NaN entries are unknown."""
+    """Return the MAC of each shape of one set with each of another.
+
+    Args:
+        a: real or complex displacements at s points (n, s); NaN where unknown.
+        b: the same points (m, s).
+
+    Returns:
+        MAC (n, m), NaN where two shapes share no point.
+    """
     first = np.asarray(a)
     second = np.asarray(b)
     known_a = np.isfinite(first)

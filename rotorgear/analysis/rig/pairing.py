@@ -1,8 +1,8 @@
 """Which mode of the model a measured line is: by frequency, and by shape where shapes were measured.
 
-Before the test the model predicts ln f with the variance sigma_f^2 + sum_j (J_ij sigma_pj)^2, noise and the spread of its uncertain
-numbers. A pair costs the squared distance in units of that, and (1 - MAC) / 0.1 squared for its shapes: a mode whose shape agrees to 0.9
-weighs as much as one that is one standard deviation off. The assignment of all lines together costs least.
+Before the test the model predicts ln f with the variance sigma_f^2 + sum_j (J_ij sigma_pj)^2, noise and the spread of its
+uncertain numbers. A pair costs the squared distance in units of that, and (1 - MAC) / 0.1 squared for its shapes: a mode whose
+shape agrees to 0.9 weighs as much as one that is one standard deviation off. The assignment of all lines together costs least.
 """
 
 from __future__ import annotations

@@ -72,9 +72,11 @@ class Posterior:
     @property
     def correlation(self) -> NDArray[np.float64]:
         """Correlation of the estimates, (p, p)."""
-        scaled = np.eye(len(self.prior)) - (self.directions * self.shares) @ self.directions.T
-        spread = np.sqrt(np.diag(scaled))
-        return scaled / np.outer(spread, spread)
+        shared = -(self.directions * self.shares) @ self.directions.T
+        spread = self.sigma / self.prior
+        found = np.clip(shared / np.outer(spread, spread), -1.0, 1.0)
+        np.fill_diagonal(found, 1.0)
+        return found
 
     def estimate(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
         """Most probable x (p,) for y - f(x_0) + J x_0 = `residual` (n,)."""

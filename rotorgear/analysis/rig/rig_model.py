@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from rotorgear.analysis.common.points import point_rows
 from rotorgear.analysis.modal.modes import Wanted
 from rotorgear.analysis.modal.solve import solve
-from rotorgear.analysis.rig.free_numbers import FreeNumbers
 from rotorgear.analysis.rig.sensitivity import changes_of, frequency_derivatives, shape_derivatives, system_of
+from rotorgear.model.free_numbers import FreeNumbers
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 

@@ -1,12 +1,14 @@
 """Derivatives of natural frequencies and mode shapes with respect to free numbers of a model.
 
-With (K - w^2 M) phi = 0 and phi^T M phi = 1 (Fox and Kapoor 1968, Rates of change of eigenvalues and eigenvectors, AIAA Journal 6):
+With (K - w^2 M) phi = 0 and phi^T M phi = 1 (Fox and Kapoor 1968, Rates of change of eigenvalues and eigenvectors, AIAA Journal
+6):
 
     d w^2 / dx = phi^T (K' - w^2 M') phi,    so    d ln f / dx = (strain' - w^2 kinetic') / (2 w^2),
 
-where strain' and kinetic' are the changes of phi^T K phi and phi^T M phi with phi held. They are central differences of energies summed
-element by element: no eigenproblem is solved again, and nothing cancels as it would in K' phi of a stiff shaft. A stiffness enters
-linearly, a diameter to the fourth power, a place by the lengths beside it: the same few lines serve any number of the file.
+where strain' and kinetic' are the changes of phi^T K phi and phi^T M phi with phi held. They are central differences of
+energies summed element by element: no eigenproblem is solved again, and nothing cancels as it would in K' phi of a stiff shaft.
+A stiffness enters linearly, a diameter to the fourth power, a place by the lengths beside it: the same few lines serve any
+number of the file.
 
 Shapes follow from Nelson's method (1976, Simplified calculation of eigenvector derivatives, AIAA Journal 14): the bordered system
 
@@ -24,15 +26,15 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from rotorgear.analysis.rig.free_numbers import FreeNumbers
 from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.errors import AnalysisError
+from rotorgear.model.free_numbers import FreeNumbers
 from rotorgear.model.model import Model
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
-# Half width of the central differences in x = ln p: their error is h^2 / 6 times the third derivative, some 1e-9 here, and rounding
-# is 1e-15 / h of the energies.
+# Half width of the central differences in x = ln p: their error is h^2 / 6 times the third derivative, some 1e-9 here, and
+# rounding is 1e-15 / h of the energies.
 STEP = 1e-4
 
 

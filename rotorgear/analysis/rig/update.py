@@ -1,13 +1,14 @@
 """Update free numbers of a model by the lines and shapes of a test rig: the most probable values, and what the rig taught.
 
-The log of each number is normal about the file's value with the spread of the prior, each measured ln f and each displacement of a measured
-shape about the model's with its noise. Gauss-Newton finds the most probable numbers (Tarantola 2005, Inverse problem theory, section 3.4),
+The log of each number is normal about the file's value with the spread of the prior, each measured ln f and each displacement
+of a measured shape about the model's with its noise. Gauss-Newton finds the most probable numbers (Tarantola 2005, Inverse
+problem theory, section 3.4),
 
     x = S W^T (1 + W W^T)^-1 N^-1 (y - f(x_k) + J x_k),    W = N^-1 J S,
 
-with J from the modes themselves (`sensitivity.py`), so that a step costs one modal solution. Shapes have no scale: the residual of
-measured y and shape phi is y - a phi with the a that fits best, and its derivative loses what lies along phi. Shapes of close modes are
-compared as the plane they span: y less its projection on it.
+with J from the modes themselves (`sensitivity.py`), so that a step costs one modal solution. Shapes have no scale: the residual
+of measured y and shape phi is y - a phi with the a that fits best, and its derivative loses what lies along phi. Shapes of
+close modes are compared as the plane they span: y less its projection on it.
 """
 
 from __future__ import annotations
@@ -22,7 +23,6 @@ from numpy.typing import NDArray
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.rig.compare_result import ABOVE_RIG, rig_lines_of
-from rotorgear.analysis.rig.free_numbers import DEFAULT_PRIOR, free_numbers
 from rotorgear.analysis.rig.learnt import line_noise
 from rotorgear.analysis.rig.mac import mac
 from rotorgear.analysis.rig.measured import Measured
@@ -30,6 +30,7 @@ from rotorgear.analysis.rig.pairing import pairs_of
 from rotorgear.analysis.rig.posterior import Posterior
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes
 from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.model.free_numbers import DEFAULT_PRIOR, free_numbers
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.comparison import RigLine
@@ -43,12 +44,12 @@ CLOSE = 0.03
 # How much the noise is enlarged on the way: by these shares of a shape's root mean square, and so much of ln f at 1.
 _LOOSENESS = (0.5, 0.2, 0.07)
 _LOOSE_FREQUENCY = 0.1
+# So much further apart are modes still close.
+_LOOSE_CLOSE = 0.15
 _MOST_SOLUTIONS = 40
 _LOOKS = 2
-# A step below this share of what the estimate is known to changes nothing that anybody could tell.
-_AT_REST = 0.02
-# Objectives that differ by less are the same but for rounding.
-_SAME = 1e-9
+# A step that changes the objective by less than this share moves no number by more than a twentieth of what it is known to.
+_AT_REST = 1e-5
 
 
 @recorded
@@ -172,18 +173,18 @@ class _Problem:
         for k, looseness in enumerate(_LOOSENESS):
             progress(0.1 + 0.1 * k, f"approach {k + 1}")
             loose = replace(self, looseness=looseness)
-            state = loose._beside(state.x, state.modes, state.pairs)
+            state = loose._beside(state.x, state.modes, loose._pairs(state.x, state.modes, posterior))
             posterior = loose._linear(state)
             x = posterior.estimate(state.residual + posterior.jacobian @ state.x)
             modes = self.model.modes(x)
-            state = self._beside(x, modes, self._pairs(x, modes, posterior))
-        return state
+            state = loose._beside(x, modes, state.pairs)
+        return self._beside(x, modes, self._pairs(x, modes, posterior))
 
     def estimate(self, state: _State, progress: Progress) -> tuple[_State, Posterior]:
         """The most probable x and the posterior about it, by steps of Levenberg (1944) and Marquardt (1963).
 
-        With `damping` 0 a step is Gauss-Newton's. Where the objective would grow, it is held back in the metric of the priors. Pairs
-        are looked at again when it rests.
+        With `damping` 0 a step is Gauss-Newton's. Where the objective would grow, it is held back in the metric of the priors.
+        Pairs are looked at again when it rests.
         """
         posterior = self._linear(state)
         damping = 0.0
@@ -197,10 +198,12 @@ class _Problem:
             x = state.x + step
             modes = self.model.modes(x)
             trial = self._beside(x, modes, _followed(state, modes))
-            if trial.objective > state.objective + _SAME * max(1.0, state.objective):
+            gain = state.objective - trial.objective
+            level = abs(gain) < _AT_REST * max(1.0, state.objective)
+            if gain < 0.0 and not level:
                 damping = max(10.0 * damping, 1.0)
                 continue
-            rests = damping < 1.0 and bool(np.all(np.abs(step) < _AT_REST * posterior.sigma))
+            rests = level and damping < 1.0
             state = trial
             posterior = self._linear(state)
             damping = 0.1 * damping if damping > 0.1 else 0.0
@@ -219,7 +222,8 @@ class _Problem:
     def _pairs(self, x: NDArray[np.float64], modes: RigModes, known: Posterior | None) -> tuple[_Pair, ...]:
         """Pair lines and modes, by what is known of the numbers so far."""
         hz = np.array([line.frequency_hz for line in self.given.lines])
-        spread = np.full(len(modes.eigenvalues), max(line_noise(line) for line in self.given.lines))
+        noise = max(line_noise(line) for line in self.given.lines)
+        spread = np.full(len(modes.eigenvalues), np.hypot(noise, _LOOSE_FREQUENCY * self.looseness))
         if self.given.points:
             every = np.arange(len(modes.eigenvalues))
             slopes, _ = self.model.derivatives(x, modes, every, shapes=False)
@@ -227,7 +231,7 @@ class _Problem:
             before = np.sqrt(np.sum((slopes * prior) ** 2, axis=1)) if known is None else known.spread_of(slopes)
             spread = np.hypot(spread, before)
         found = pairs_of(hz, modes.frequency_hz, spread, self.given.real_shapes, modes.at_points, self.tolerance)
-        return tuple(_Pair(line, mode, _close(modes, mode)) for line, mode in found)
+        return tuple(_Pair(line, mode, _close(modes, mode, self.looseness)) for line, mode in found)
 
     def shape_points(self, line: int) -> NDArray[np.intp]:
         """Points at which the shape of a line is compared; a shape at a single point is all scale."""
@@ -276,9 +280,9 @@ class _Problem:
         return Posterior(np.array(rows).reshape(-1, len(state.x)), state.noise, self.model.numbers.prior)
 
 
-def _close(modes: RigModes, mode: int) -> tuple[int, ...]:
+def _close(modes: RigModes, mode: int, looseness: float) -> tuple[int, ...]:
     """The modes that are close to one, itself among them."""
-    near = np.abs(np.log(modes.eigenvalues / modes.eigenvalues[mode])) < 2.0 * CLOSE
+    near = np.abs(np.log(modes.eigenvalues / modes.eigenvalues[mode])) < 2.0 * (CLOSE + _LOOSE_CLOSE * looseness)
     return tuple(int(k) for k in np.flatnonzero(near))
 
 
@@ -331,7 +335,7 @@ def _result(problem: _Problem, start: _State, state: _State, p: Posterior) -> Up
     count = len(state.residual) - sum(fitted)
     rows = zip(numbers.addresses, p.prior, p.sigma, p.learnt, np.exp(state.x), strict=True)
     return UpdateResult(
-        model=numbers.at(state.x),
+        model=numbers.model,
         parameters=tuple(
             UpdatedParameter(address, float(prior), float(sigma), float(learnt), float(factor))
             for address, prior, sigma, learnt, factor in rows

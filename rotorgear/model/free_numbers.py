@@ -68,7 +68,8 @@ def free_numbers(
 
     Args:
         model: the model.
-        free: addresses such as "bearings.*.stiffness", in a list or with commas between; "*" stands for all names or places there.
+        free: addresses such as "bearings.*.stiffness", in a list or with commas between; "*" stands for all names or places
+            there.
         prior: relative standard deviation before the test, such as 0.3 or "30 %", of all or by address ("*" as above).
 
     Raises:

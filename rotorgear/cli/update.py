@@ -1,0 +1,68 @@
+"""rotorgear update: the numbers of a model that a rig's lines and shapes make most probable, and what they taught."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rotorgear.cli.common import JsonOption, ModelFile, SaveOption, ToleranceOption, console, progress_bar, write_json
+
+
+def update(
+    model: ModelFile,
+    rig: Annotated[
+        Path | None, typer.Option("--rig", help="Measured frequencies (CSV) of the rig at rest.", show_default=False)
+    ] = None,
+    shapes: Annotated[
+        Path | None,
+        typer.Option("--shapes", help="Measured mode shapes and frequencies (UFF, dataset 55).", show_default=False),
+    ] = None,
+    points: Annotated[
+        Path | None,
+        typer.Option("--points", help="Sensors of the shapes (CSV: point,node,direction).", show_default=False),
+    ] = None,
+    free: Annotated[
+        str, typer.Option("--free", help="Addresses of the free numbers, with commas between; * for all names.")
+    ] = "bearings.*.stiffness, meshes.*.stiffness",
+    prior: Annotated[
+        str, typer.Option("--prior", help="Relative standard deviation of the free numbers before the test.")
+    ] = "30 %",
+    shape_noise: Annotated[
+        float, typer.Option("--shape-noise", help="Noise of a shape, as a share of its root mean square.")
+    ] = 0.02,
+    tolerance: ToleranceOption = 0.05,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write the updated model file here.", show_default=False)
+    ] = None,
+    json: JsonOption = None,
+    save: SaveOption = None,
+) -> None:
+    """Update numbers of a model by a rig: most probable values, what the lines teach, and held-out proof."""
+    import rotorgear as rg
+    from rotorgear.errors import AnalysisError
+
+    if (rig is None) == (shapes is None):
+        raise AnalysisError("give what was measured: --rig lines.csv, or --shapes rig.uff with --points sensors.csv")
+    if (shapes is None) != (points is None):
+        raise AnalysisError("--shapes and --points belong together: the table of sensors says where each node is")
+    loaded = rg.load(model)
+    if shapes is not None and points is not None:
+        measured = rg.read_rig_shapes(shapes, points)
+    else:
+        assert rig is not None
+        measured = rg.Measured(rg.read_rig_lines(rig))
+    with progress_bar("update") as progress:
+        result = rg.update(
+            loaded, measured, free=free, prior=prior, shape_noise=shape_noise, tolerance=tolerance, progress=progress
+        )
+    out = console()
+    out.print(result.table())
+    write_json(result.to_dict(), json)
+    if save is not None:
+        rg.save(result, save)
+        out.print(f"saved {save}")
+    if output is not None:
+        rg.write_updated_model(result, model, output)
+        out.print(f"wrote {output}")

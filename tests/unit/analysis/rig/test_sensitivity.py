@@ -1,0 +1,91 @@
+"""Derivatives of modes against a closed form and against modes solved anew."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.analysis.rig.rig_model import RigModel
+from rotorgear.errors import AnalysisError, ModelError
+from rotorgear.model.free_numbers import free_numbers
+from rotorgear.system.plan import Plan
+from tests.paths import MODELS
+
+FREE = "meshes.*.stiffness, bearings.*.stiffness, shafts.rotor_1.sections[1].outer_diameter, disks.generator.mass"
+
+
+@pytest.fixture(scope="module")
+def pair():
+    model = rg.load(MODELS / "geared_pair.toml")
+    points = {"a": {"on": "disks.generator", "direction": "y"}, "b": {"on": "gears.pinion", "direction": "torsion"}}
+    model = model.with_("points", points)
+    return RigModel(free_numbers(model, FREE), Plan(1, 3), 120.0, ("a", "b"))
+
+
+def test_derivatives_of_frequencies_and_shapes_are_those_of_modes_solved_anew(pair):
+    x = np.zeros(len(pair.numbers.addresses))
+    modes = pair.modes(x)
+    chosen = np.arange(8)
+    slopes, shape_slopes = pair.derivatives(x, modes, chosen, shapes=True)
+    h = 1e-4
+    for j, address in enumerate(pair.numbers.addresses):
+        step = np.zeros(len(x))
+        step[j] = h
+        high, low = pair.modes(x + step), pair.modes(x - step)
+        logs = (np.log(high.frequency_hz) - np.log(low.frequency_hz))[chosen] / (2 * h)
+        np.testing.assert_allclose(slopes[:, j], logs, atol=1e-6, err_msg=address)
+
+        def along(other):
+            sign = np.sign(np.sum(other.vectors * (modes.system.mass @ modes.vectors), axis=0))
+            return (other.at_points * sign[:, None])[chosen]
+
+        differences = (along(high) - along(low)) / (2 * h)
+        np.testing.assert_allclose(
+            shape_slopes[..., j], differences, atol=1e-5 * abs(differences).max(), err_msg=address
+        )
+
+
+def test_all_springs_and_moduli_together_raise_every_frequency_by_half():
+    # f ~ sqrt(k): a model whose every stiffness is doubled has all frequencies times sqrt 2.
+    model = rg.load(MODELS / "geared_pair.toml")
+    free = "meshes.*.stiffness, bearings.*.stiffness, materials.*.youngs_modulus, materials.*.shear_modulus"
+    problem = RigModel(free_numbers(model, free), Plan(1, 3), 120.0)
+    x = np.zeros(len(problem.numbers.addresses))
+    modes = problem.modes(x)
+    slopes, _ = problem.derivatives(x, modes, np.arange(6), shapes=False)
+    np.testing.assert_allclose(slopes.sum(axis=1), 0.5, rtol=1e-7)
+
+
+def test_numbers_are_scaled_whole_and_only_numbers():
+    model = rg.load(MODELS / "split_torque.toml")
+    numbers = free_numbers(model, "bearings.input_left.stiffness, meshes.stage_1a.stiffness", {"meshes.*": "10 %"})
+    np.testing.assert_array_equal(numbers.prior, [0.3, 0.1])
+    changed = numbers.at(np.log([2.0, 3.0]))
+    old, new = (np.array(m.bearings["input_left"].stiffness.as_rows()) for m in (model, changed))
+    np.testing.assert_allclose(new, 2.0 * old, rtol=1e-12)
+    assert changed.meshes["stage_1a"].stiffness == pytest.approx(3.0 * model.meshes["stage_1a"].stiffness)
+    assert numbers.at(np.zeros(2)) == model
+
+
+@pytest.mark.parametrize(
+    ("free", "prior", "text"),
+    [
+        ("bearings.left.stiffness", 0.3, "no 'left'"),
+        ("gears.*.kind", 0.3, "only numbers have a spread"),
+        ("", 0.3, "addresses of numbers"),
+        ("bearings.*.stiffness", "-5 %", "relative standard deviation"),
+        ("bearings.*.stiffness", "many", "relative standard deviation"),
+    ],
+)
+def test_what_has_no_spread_is_refused_with_its_address(free, prior, text):
+    with pytest.raises(ModelError, match=text):
+        free_numbers(rg.load(MODELS / "split_torque.toml"), free, prior)
+
+
+def test_a_place_that_coincides_with_another_is_refused_with_its_address():
+    numbers = free_numbers(rg.load(MODELS / "split_torque.toml"), "gears.pinion_1.width")
+    problem = RigModel(numbers, Plan(1, 2), 1000.0)
+    modes = problem.modes(np.zeros(1))
+    with pytest.raises(AnalysisError, match=r"gears\.pinion_1\.width: a change moves a place away"):
+        problem.derivatives(np.zeros(1), modes, np.arange(3), shapes=False)

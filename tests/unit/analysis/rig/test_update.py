@@ -1,0 +1,88 @@
+"""Updating on rigs whose truth is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.analysis.rig.rig_model import RigModel
+from rotorgear.errors import AnalysisError
+from rotorgear.model.free_numbers import free_numbers
+from rotorgear.system.plan import Plan
+from tests.paths import MODELS
+
+FREE = "meshes.*.stiffness, bearings.*.stiffness"
+POINTS = {
+    "generator_x": ("disks.generator", "x"),
+    "generator_y": ("disks.generator", "y"),
+    "wheel_x": ("gears.wheel", "x"),
+    "wheel_y": ("gears.wheel", "y"),
+    "pinion_x": ("gears.pinion", "x"),
+    "pinion_y": ("gears.pinion", "y"),
+}
+
+
+@pytest.fixture(scope="module")
+def model():
+    points = {name: {"on": on, "direction": direction} for name, (on, direction) in POINTS.items()}
+    return rg.load(MODELS / "geared_pair.toml").with_("points", points)
+
+
+def measured(model, x, noise, *, shapes, modes=10, seed=1):
+    """What a rig with numbers times exp(x) shows: frequencies, and shapes to twice the noise."""
+    random = np.random.default_rng(seed)
+    mesh = Plan(1, 7)  # to 1e-9 of the limit
+    true = RigModel(free_numbers(model, FREE), mesh, 120.0, tuple(POINTS)).modes(np.asarray(x))
+    f = true.frequency_hz[:modes] * np.exp(noise * random.standard_normal(modes))
+    lines = tuple(rg.RigLine(float(hz), f"true {k + 1}", noise * float(hz)) for k, hz in enumerate(f))
+    if not shapes:
+        return rg.Measured(lines)
+    rows = true.at_points[:modes]
+    size = np.sqrt(np.mean(rows**2, axis=1, keepdims=True))
+    # A sensor's scale and phase mean nothing.
+    turned = np.exp(1j * random.uniform(0.0, 6.0, (modes, 1)))
+    return rg.Measured(lines, tuple(POINTS), turned * (rows / size + 2 * noise * random.standard_normal(rows.shape)))
+
+
+def test_lines_and_shapes_without_noise_give_back_every_number_that_is_learnt(model):
+    x = 0.2 * np.random.default_rng(7).standard_normal(5)
+    result = rg.update(model, measured(model, x, 1e-8, shapes=True), free=FREE, shape_noise=2e-8, accuracy=1e-9)
+    known = np.array([1.0 - row.learnt < 1e-6 for row in result.parameters])
+    assert known.sum() >= 4
+    estimate = np.log([row.factor for row in result.parameters])
+    np.testing.assert_allclose(estimate[known], x[known], atol=1e-5)
+    assert result.modal_solutions <= 20
+    assert all(line.rig.label == f"true {line.mode_number}" for line in result.lines)
+    assert min(line.mac_after for line in result.lines) > 1.0 - 1e-9
+    assert result.error_held_out < result.error_before
+
+
+def test_the_verdict_names_a_model_that_no_numbers_of_it_can_save(model):
+    rig = measured(model, np.zeros(5), 1e-3, shapes=False)
+    wrong = model.with_("shafts.rotor_1.sections[1].outer_diameter", "330 mm")
+    result = rg.update(wrong, rig, free="meshes.*.stiffness", prior="10 %", tolerance=0.2)
+    assert result.misfit_probability < 1e-6
+    assert any("the model is wrong in more than these numbers" in sentence for sentence in result.verdict)
+    right = rg.update(model, rig, free=FREE)
+    assert right.misfit_probability > 1e-3
+    assert any("nothing speaks against" in sentence for sentence in right.verdict)
+
+
+def test_the_table_says_what_is_not_identified(model):
+    result = rg.update(model, measured(model, np.zeros(5), 5e-3, shapes=False, modes=3), free=FREE)
+    unsure = [row for row in result.parameters if not row.identified]
+    assert unsure
+    assert "not identified" in result.text()
+    assert result.learnt_parameters <= 3.0
+    assert all(row.sigma <= row.prior for row in result.parameters)
+
+
+def test_points_that_the_model_has_not_and_lines_far_away_are_refused(model):
+    rig = measured(model, np.zeros(5), 1e-3, shapes=True)
+    with pytest.raises(AnalysisError, match="no point of the model"):
+        rg.update(model, rg.Measured(rig.lines, ("somewhere", *rig.points[1:]), rig.shapes), free=FREE)
+    with pytest.raises(AnalysisError, match="near a mode"):
+        rg.update(model, [1.0], free=FREE, tolerance=0.01)
+    with pytest.raises(AnalysisError, match="one row a line"):
+        rg.Measured(rig.lines, rig.points[1:], rig.shapes)
