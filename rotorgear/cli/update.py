@@ -33,6 +33,9 @@ def update(
         float, typer.Option("--shape-noise", help="Noise of a shape, as a share of its root mean square.")
     ] = 0.02,
     tolerance: ToleranceOption = 0.05,
+    accuracy: Annotated[
+        float, typer.Option("--accuracy", help="Refine the mesh to this relative error of every frequency.")
+    ] = 1e-4,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Write the updated model file here.", show_default=False)
     ] = None,
@@ -41,21 +44,20 @@ def update(
 ) -> None:
     """Update numbers of a model by a rig: most probable values, what the lines teach, and held-out proof."""
     import rotorgear as rg
-    from rotorgear.errors import AnalysisError
 
-    if (rig is None) == (shapes is None):
-        raise AnalysisError("give what was measured: --rig lines.csv, or --shapes rig.uff with --points sensors.csv")
-    if (shapes is None) != (points is None):
-        raise AnalysisError("--shapes and --points belong together: the table of sensors says where each node is")
     loaded = rg.load(model)
-    if shapes is not None and points is not None:
-        measured = rg.read_rig_shapes(shapes, points)
-    else:
-        assert rig is not None
-        measured = rg.Measured(rg.read_rig_lines(rig))
     with progress_bar("update") as progress:
         result = rg.update(
-            loaded, measured, free=free, prior=prior, shape_noise=shape_noise, tolerance=tolerance, progress=progress
+            loaded,
+            rig,
+            shapes=shapes,
+            points=points,
+            free=free,
+            prior=prior,
+            shape_noise=shape_noise,
+            tolerance=tolerance,
+            accuracy=accuracy,
+            progress=progress,
         )
     out = console()
     out.print(result.table())

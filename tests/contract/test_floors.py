@@ -49,7 +49,7 @@ ROOMS = {
         "transient": {"common", "static"},
         "sweep": {"common", "static", "transient"},
         "teeth": {"common"},
-        "rig": {"common", "modal"},
+        "rig": {"common", "modal", "static"},
         "casing": set(),
         "": {"campbell", "modal", "response", "static", "sweep", "teeth", "transient"},
     },

@@ -29,6 +29,7 @@ from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.pairing import pairs_of
 from rotorgear.analysis.rig.posterior import Posterior
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes
+from rotorgear.analysis.rig.shape_file import read_rig_shapes
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.free_numbers import DEFAULT_PRIOR, free_numbers
 from rotorgear.model.model import Model
@@ -55,8 +56,10 @@ _AT_REST = 1e-5
 @recorded
 def update(
     model: Model,
-    rig: str | Path | Measured | Sequence[RigLine | float],
+    rig: str | Path | Measured | Sequence[RigLine | float] | None = None,
     *,
+    shapes: str | Path | None = None,
+    points: str | Path | None = None,
     free: str | Iterable[str] = "bearings.*.stiffness, meshes.*.stiffness",
     prior: float | str | Mapping[str, float | str] = DEFAULT_PRIOR,
     shape_noise: float = SHAPE_NOISE,
@@ -68,7 +71,9 @@ def update(
 
     Args:
         model: the model.
-        rig: a rig file (CSV), lines, plain frequencies in Hz, or lines with measured shapes (`rg.read_rig_shapes`).
+        rig: a rig file (CSV), lines, plain frequencies in Hz, or lines with measured shapes (`rg.Measured`).
+        shapes: in place of it, a universal file with shapes and their frequencies, and
+        points: its table of sensors; as in `rg.read_rig_shapes`.
         free: addresses of numbers, with commas between; "*" stands for all names or places there.
         prior: relative standard deviation of the free numbers before the test, of all or by address.
         shape_noise: standard deviation of a measured displacement over the root mean square of its shape.
@@ -84,7 +89,7 @@ def update(
         ModelError: addresses that lead nowhere, a rig file that can't be read.
         ConvergenceError: the steps don't come to rest.
     """
-    given = rig if isinstance(rig, Measured) else Measured(rig_lines_of(rig))
+    given = _measured(rig, shapes, points)
     given.check_points(model)
     if not 0.0 < shape_noise < 1.0:
         raise AnalysisError(f"the noise of shapes is a share between 0 and 1, such as 0.02; got {shape_noise:g}")
@@ -101,6 +106,20 @@ def update(
     near = problem.approach(start, progress)
     state, posterior = problem.estimate(near, progress)
     return _result(problem, start, state, posterior)
+
+
+def _measured(
+    rig: str | Path | Measured | Sequence[RigLine | float] | None, shapes: str | Path | None, points: str | Path | None
+) -> Measured:
+    """What was measured, from whichever of the two it is given by."""
+    if (rig is None) == (shapes is None):
+        raise AnalysisError("give what was measured: --rig lines.csv, or --shapes rig.uff with --points sensors.csv")
+    if (shapes is None) != (points is None):
+        raise AnalysisError("--shapes and --points belong together: the table of sensors says where each node is")
+    if shapes is not None and points is not None:
+        return read_rig_shapes(shapes, points)
+    assert rig is not None
+    return rig if isinstance(rig, Measured) else Measured(rig_lines_of(rig))
 
 
 def _plan_of(model: Model, fmax: float, accuracy: float) -> Plan:
