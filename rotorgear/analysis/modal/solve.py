@@ -207,9 +207,12 @@ def _merged(
     owner = np.concatenate([np.full(len(part.eigenvalues), k) for k, part in enumerate(solved)])
     column = np.concatenate([np.arange(len(part.eigenvalues)) for part in solved])
     order = np.lexsort((np.abs(s), ~rigid))[:most]
-    vectors = np.zeros((system.n, len(order)), dtype=np.result_type(*[part.vectors for part in solved]))
-    for place, k in enumerate(order):
-        vectors[groups[owner[k]], place] = solved[owner[k]].vectors[:, column[k]]
+    if len(solved) == 1 and len(groups[0]) == system.n:
+        vectors = solved[0].vectors[:, order]
+    else:
+        vectors = np.zeros((system.n, len(order)), dtype=np.result_type(*[part.vectors for part in solved]))
+        for place, k in enumerate(order):
+            vectors[groups[owner[k]], place] = solved[owner[k]].vectors[:, column[k]]
     if np.sum(rigid[order]) > 1:
         # Any combination of rigid motions is one: choose those that a person can read.
         vectors[:, rigid[order]] = sorted_rigid(system, np.real(vectors[:, rigid[order]]))

@@ -22,6 +22,7 @@ from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.damped import DampedModes
 from rotorgear.solvers.eigen.quadratic import scaled
 from rotorgear.solvers.eigen.reduced_pencil import gyroscopic_pairs
+from rotorgear.solvers.sparse.entries import norm_1
 from rotorgear.solvers.sparse.factor import Factor, factor_symmetric, single_thread
 
 Strain = Callable[[np.ndarray], np.ndarray]
@@ -108,7 +109,7 @@ def _precesses(problem: GyroscopicProblem, sigma: float) -> bool:
     G = scale @ problem.G @ scale  # units of forces and moments do not matter
     R = problem.rigid * size[:, None]
     R = R / np.linalg.norm(R, axis=0)
-    return float(np.abs(G @ R).max()) > _ROUNDING * float(abs(G).sum(axis=0).max())
+    return float(np.abs(G @ R).max()) > _ROUNDING * norm_1(sp.csc_array(G))
 
 
 class _Space:

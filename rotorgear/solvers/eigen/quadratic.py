@@ -15,6 +15,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.solvers.sparse.entries import norm_1, scaled_on_both_sides
 from rotorgear.solvers.sparse.factor import Factor, factor_general
 from rotorgear.solvers.sparse.nullspace import SupportedSolver, left_null_space
 from rotorgear.solvers.sparse.pencil import EPS, LooseDofError
@@ -47,7 +48,7 @@ class Quadratic:
     def residuals(self, values: np.ndarray, V: np.ndarray) -> np.ndarray:
         """Backward errors ||Q(z) v|| / ((|z|^2 ||M||_1 + |z| ||D||_1 + ||K||_1) ||v||) of scaled pairs: (m,)."""
         left = (self.M @ V) * values**2 + (self.D @ V) * values + self.K @ V
-        norms = [float(abs(A).sum(axis=0).max()) for A in (self.M, self.D, self.K)]
+        norms = [norm_1(A) for A in (self.M, self.D, self.K)]
         size = np.abs(values) ** 2 * norms[0] + np.abs(values) * norms[1] + norms[2]
         size = np.maximum(size * np.linalg.norm(V, axis=0), np.finfo(float).tiny)  # K = 0 leaves no residual either
         errors: np.ndarray = np.linalg.norm(left, axis=0) / size
@@ -77,8 +78,13 @@ def scaled(M: sp.csc_array, D: sp.csc_array, K: sp.csc_array, w0: float) -> Quad
     if np.any(diagonal <= 0.0):
         raise LooseDofError(np.flatnonzero(diagonal <= 0.0))
     scale = 1.0 / np.sqrt(diagonal)
-    S = sp.diags_array(scale)
-    return Quadratic(sp.csc_array(S @ M @ S * w0**2), sp.csc_array(S @ D @ S * w0), sp.csc_array(S @ K @ S), scale, w0)
+    return Quadratic(
+        M=scaled_on_both_sides(M, w0 * scale),
+        D=scaled_on_both_sides(D, np.sqrt(w0) * scale),
+        K=scaled_on_both_sides(K, scale),
+        scale=scale,
+        w0=w0,
+    )
 
 
 class InverseState:
@@ -157,7 +163,7 @@ def zero_states(quadratic: Quadratic, rigid: np.ndarray) -> np.ndarray:
     if rigid.shape[1] == 0:
         return np.zeros((2 * quadratic.n, 0))
     R = np.linalg.qr(rigid)[0]
-    if np.any(np.abs(K @ R) > 1e-6 * float(abs(K).sum(axis=0).max())):
+    if np.any(np.abs(K @ R) > 1e-6 * norm_1(K)):
         raise AnalysisError(
             "A vector given as rigid-body motion is strained: it is not in the null space of the stiffness."
         )
@@ -165,7 +171,7 @@ def zero_states(quadratic: Quadratic, rigid: np.ndarray) -> np.ndarray:
     drag = L.T @ (D @ R)
     U, size, W = la.svd(drag)
     # R carries rounding of EPS in every dof, so a drag up to EPS |D| is none, wherever the exact R moves no damper.
-    noise = 100.0 * EPS * float(abs(D).sum(axis=0).max())
+    noise = 100.0 * EPS * norm_1(D)
     rank = int(np.count_nonzero(size > max(noise, EPS**2)))
     drift = R @ W[rank:].T
     first = np.vstack([R, np.zeros_like(R)])

@@ -7,7 +7,7 @@ Parlett, The Symmetric Eigenvalue Problem, section 3.3 (SIAM 1998).
 from __future__ import annotations
 
 from contextlib import AbstractContextManager, nullcontext
-from functools import cache
+from functools import cache, cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -16,6 +16,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from threadpoolctl import ThreadpoolController
 
 from rotorgear.errors import ConvergenceError
+from rotorgear.solvers.sparse.entries import norm_1
 
 # Unknowns from which a second BLAS thread saves more than it costs.
 _THREADS_PAY_FROM = 2000
@@ -38,8 +39,9 @@ def single_thread(n: int) -> AbstractContextManager[object]:
 class Factor:
     """Sparse LU of a square matrix; `solve(b)` for b (n,) or (n, p), real or complex like the matrix."""
 
-    def __init__(self, lu: SuperLU) -> None:
+    def __init__(self, lu: SuperLU, *, is_complex: bool) -> None:
         self._lu: Any = lu  # the stubs of scipy know fewer types of right-hand sides than SuperLU takes
+        self._is_complex = is_complex  # SuperLU itself tells by a copy of all its entries only
 
     @property
     def n(self) -> int:
@@ -49,7 +51,7 @@ class Factor:
     def solve(self, b: np.ndarray, *, transposed: bool = False) -> np.ndarray:
         """Solve A x = b, or A^T x = b when `transposed`. A real factor accepts a complex b."""
         trans: Literal["T", "N"] = "T" if transposed else "N"
-        if np.iscomplexobj(b) and self._lu.U.dtype.kind != "c":
+        if np.iscomplexobj(b) and not self._is_complex:
             return self._solve(b.real, trans) + 1j * self._solve(b.imag, trans)
         return self._solve(b, trans)
 
@@ -61,10 +63,11 @@ class Factor:
 class SymmetricFactor(Factor):
     """A = L D L^T of a symmetric matrix without pivoting, in a fill-reducing order."""
 
-    def __init__(self, lu: SuperLU) -> None:
-        super().__init__(lu)
-        self.pivots: np.ndarray = lu.U.diagonal()
-        self._row_order = lu.perm_r
+    @cached_property
+    def pivots(self) -> np.ndarray:
+        """The diagonal of D, in the order of elimination."""
+        pivots: np.ndarray = self._lu.U.diagonal()
+        return pivots
 
     def negative_count(self) -> int:
         """Number of negative eigenvalues of A (Sylvester's law of inertia)."""
@@ -72,7 +75,7 @@ class SymmetricFactor(Factor):
 
     def pivots_by_row(self) -> np.ndarray:
         """The pivot each row of A met (n,): a tiny one marks a row that depends on rows eliminated before."""
-        by_row: np.ndarray = self.pivots[self._row_order]
+        by_row: np.ndarray = self.pivots[self._lu.perm_r]
         return by_row
 
 
@@ -84,7 +87,7 @@ def factor_symmetric(A: sp.csc_array) -> SymmetricFactor:
     Raises:
         ConvergenceError: the matrix is singular, holds NaN, or needs row exchanges.
     """
-    return SymmetricFactor(symmetric_superlu(A, "MMD_AT_PLUS_A"))
+    return SymmetricFactor(symmetric_superlu(A, "MMD_AT_PLUS_A"), is_complex=np.iscomplexobj(A.data))
 
 
 def symmetric_superlu(A: sp.csc_array, order: Literal["MMD_AT_PLUS_A", "NATURAL"]) -> SuperLU:
@@ -109,7 +112,8 @@ def factor_general(A: sp.csc_array) -> Factor:
         ConvergenceError: the matrix is singular or holds NaN.
     """
     # Rows are exchanged only where the diagonal is less than a tenth of its column: the symmetric order keeps its low fill.
-    return Factor(_superlu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1, options={"SymmetricMode": True}))
+    lu = _superlu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1, options={"SymmetricMode": True})
+    return Factor(lu, is_complex=np.iscomplexobj(A.data))
 
 
 def solve_error(A: sp.csc_array, factor: Factor) -> float:
@@ -118,7 +122,7 @@ def solve_error(A: sp.csc_array, factor: Factor) -> float:
         factor.n
     )  # random, so that it meets every pivot; fixed, to be repeatable
     x = factor.solve(b)
-    scale = abs(A).sum(axis=0).max() * np.linalg.norm(x) + np.linalg.norm(b)
+    scale = norm_1(A) * np.linalg.norm(x) + np.linalg.norm(b)
     return float(np.linalg.norm(A @ x - b) / scale)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.solvers.sparse.entries import norm_1
 from rotorgear.solvers.sparse.factor import SymmetricFactor, factor_symmetric, solve_error
 
 EPS = float(np.finfo(float).eps)
@@ -77,8 +78,7 @@ def backward_errors(M: sp.csr_array, K: sp.csr_array, values: np.ndarray, V: np.
     """||K v - lambda M v|| / ((||K||_1 + |lambda| ||M||_1) ||v||) of each pair: (m,)."""
     V = np.ascontiguousarray(V)
     residual = np.linalg.norm(K @ V - M @ (V * values), axis=0)
-    norm_K, norm_M = (float(abs(A).sum(axis=0).max()) for A in (K, M))
-    size = (norm_K + np.abs(values) * norm_M) * np.linalg.norm(V, axis=0)
+    size = (norm_1(K) + np.abs(values) * norm_1(M)) * np.linalg.norm(V, axis=0)
     errors: np.ndarray = residual / np.maximum(size, np.finfo(float).tiny)  # K = 0 leaves no residual either
     return errors
 

@@ -11,6 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.solvers.sparse.entries import norm_1
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.nullspace import SupportedSolver
 from rotorgear.solvers.sparse.pencil import check_pencil
@@ -74,7 +75,7 @@ def static_solution(K: sp.csc_array, M: sp.csc_array, f: np.ndarray, rigid_vecto
         solver = SupportedSolver(K, comparable, comparable)
 
         # Refine, and take out the rigid part that the choice of the support left in.
-        norm = float(abs(K).sum(axis=0).max())
+        norm = norm_1(K)
         q = np.zeros_like(loads)
         for _ in range(_REFINEMENTS):
             q = q + solver.solve(loads - K @ q)

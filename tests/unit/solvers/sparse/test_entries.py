@@ -1,0 +1,27 @@
+"""Sums and scalings on the entries of a sparse matrix give what scipy's products give."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from rotorgear.solvers.sparse.entries import norm_1, scaled_on_both_sides
+
+
+@pytest.mark.parametrize("kind", [sp.csc_array, sp.csr_array])
+def test_the_norm_is_the_largest_sum_of_a_column(kind: type) -> None:
+    A = np.array([[1.0, -2.0, 0.0], [0.0, 3.0, 0.0], [-4.5, 0.0, 0.0]])
+    assert norm_1(kind(A)) == 5.5 == np.linalg.norm(A, 1)
+    assert norm_1(kind((3, 3))) == 0.0
+
+
+def test_scaling_on_both_sides_leaves_the_matrix_itself_alone() -> None:
+    A = sp.csc_array(sp.random_array((7, 7), density=0.4, rng=1))
+    before = A.toarray()
+    scale = np.linspace(0.5, 3.0, 7)
+    scaled = scaled_on_both_sides(A, scale)
+    np.testing.assert_allclose(scaled.toarray(), scale[:, None] * before * scale, rtol=1e-15)
+    scaled.data[:] = 0.0
+    scaled.indices[:] = 0
+    assert np.array_equal(A.toarray(), before)
