@@ -246,7 +246,8 @@ def read_only(value: Any) -> Any:
         return view
     if isinstance(value, dict):
         return {key: read_only(entry) for key, entry in value.items()}
-    if isinstance(value, tuple) and any(isinstance(entry, np.ndarray | dict) for entry in value):
+    # Names of a hundred thousand nodes are of one type: look at the types, not at the names.
+    if isinstance(value, tuple) and any(issubclass(kind, np.ndarray | dict) for kind in set(map(type, value))):
         return tuple(read_only(entry) for entry in value)
     return value
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rotorgear.results.modal import Piece
+from rotorgear.system.nodes import Element
 from rotorgear.system.system import System
 
 
@@ -10,8 +11,10 @@ def pieces(system: System) -> tuple[Piece, ...]:
     """Say how each shaft segment was cut."""
     found = []
     for shaft, elements in system.nodes.elements.items():
-        for number in sorted({element.piece for element in elements}):
-            cut = [element for element in elements if element.piece == number]
+        of_piece: dict[int, list[Element]] = {}
+        for element in elements:
+            of_piece.setdefault(element.piece, []).append(element)
+        for _, cut in sorted(of_piece.items()):
             start = system.nodes.z[cut[0].left]
             end = system.nodes.z[cut[-1].right]
             found.append(Piece(shaft, start, end, len(cut), cut[0].order))
