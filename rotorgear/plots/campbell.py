@@ -61,10 +61,12 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
         axis.annotate(
             "operating speed",
             (result.operating_speed * RPM_PER_RAD_S, top),
-            xytext=(0, 3),
+            xytext=(-3, -9),  # inside: the names of lines that end at the top stand above
             textcoords="offset points",
             fontsize=7,
-            ha="center",
+            ha="right",
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
+            zorder=6,
         )
     axis.set_xlabel(f"speed of {result.model.reference_shaft}, rpm")
     axis.set_ylabel("damped frequency, Hz")

@@ -50,6 +50,8 @@ def convergence(result: ConvergenceStudy, fig: Any = None) -> np.ndarray:
 
 def _curves(axis: Any, reached: Sequence[Rung], key: str) -> None:
     families = dict.fromkeys(rung.family for rung in reached)
+    sizes = [float(getattr(rung, key)) for rung in reached]
+    far_right = min(sizes) ** 0.3 * max(sizes) ** 0.7 if reached else np.inf  # in the last third of the axis
     for number, family in enumerate(families):
         marker, colour, name = _STYLE.get(family, ("osd^v<>"[number % 7], f"C{number}", family))
         rungs = [rung for rung in reached if rung.family == family]
@@ -59,12 +61,22 @@ def _curves(axis: Any, reached: Sequence[Rung], key: str) -> None:
         axis.errorbar(x, y, xerr=bar, marker=marker, color=colour, lw=1.2, ms=5, elinewidth=0.8, label=name)
         axis.plot(x, [max(rung.estimate, _NONE) for rung in rungs], "x", color=colour, ms=6, alpha=0.7)
         for place, text in _labels(x, y, [rung.setting for rung in rungs]):
-            axis.annotate(text, place, xytext=(4, 4), textcoords="offset points", fontsize=7, color=colour)
+            # Inside the axes, and those of one family above, of the next below: different families may meet in a point.
+            to_the_left = place[0] > far_right
+            axis.annotate(
+                text,
+                place,
+                xytext=(-4 if to_the_left else 4, -9 if number % 2 else 4),
+                textcoords="offset points",
+                ha="right" if to_the_left else "left",
+                fontsize=7,
+                color=colour,
+            )
     axis.plot([], [], "x", color="#444444", alpha=0.7, label="its own estimate")
     axis.set_xscale("log")
     axis.set_yscale("log")
     if reached:
-        _ticks(axis, [float(getattr(rung, key)) for rung in reached])
+        _ticks(axis, sizes)
     axis.grid(True, which="major", alpha=0.25)
 
 

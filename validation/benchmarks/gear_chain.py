@@ -1,7 +1,7 @@
 """A chain of geared shafts: what each step of an analysis takes over the number of shafts.
 
-Each shaft carries one helical gear between two bearings and meshes with the next. `large_model` runs this for several lengths, each
-in a process of its own; alone,  python -m validation.benchmarks.gear_chain 50  prints one as JSON.
+Each shaft carries one helical gear between two bearings and meshes with the next. `large_model` runs this for several lengths,
+each in a process of its own; alone,  python -m validation.benchmarks.gear_chain 50  prints one as JSON.
 """
 
 from __future__ import annotations

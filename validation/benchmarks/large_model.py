@@ -1,10 +1,10 @@
 """How time and memory grow: a split-torque model refined to a million dofs, and a chain of geared shafts up to 200 of them.
 
 Run  python -m validation.benchmarks.large_model [--plot FILE]  (one BLAS thread is set by this file itself). Each size runs in a
-process of its own, so that its peak memory is its own. The modes of the refined model stand against one sparse factorisation of the
-same stiffness, and against ARPACK (scipy's `eigsh` at the same shift, the factor given). Exponents are those of a fit t = c n^p; the
-work of n log n has 1.08 over these sizes. Exit code 1 where memory or a time grows with an exponent above 1.25, a frequency
-differs from ARPACK's, or 100,000 dofs take 20 factorisations or more.
+process of its own, so that its peak memory is its own. The modes of the refined model stand against one sparse factorisation of
+the same stiffness, and against ARPACK (scipy's `eigsh` at the same shift, the factor given). Exponents are those of a fit
+t = c n^p; the work of n log n has 1.08 over these sizes. Exit code 1 where memory or a time grows with an exponent above 1.25, a
+frequency differs from ARPACK's, or 100,000 dofs take 20 factorisations or more.
 """
 
 from __future__ import annotations
