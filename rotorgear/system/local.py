@@ -14,6 +14,7 @@ import scipy.sparse as sp
 
 from rotorgear.elements.gear_mesh import ContactGeometry, contact_vector, face_strains
 from rotorgear.model.layout.mean_load import MeshForce
+from rotorgear.model.layout.mesh_layout import POSITIONS
 from rotorgear.model.parts.excitation import ErrorHarmonic, StiffnessHarmonic
 from rotorgear.solvers.time.local_system import LocalSystem
 from rotorgear.solvers.time.motion import Rotation
@@ -356,7 +357,8 @@ def cycle_pieces(system: System, force: MeshForce) -> tuple[tuple[float, float, 
     if not system.layout.mesh(force.contact.mesh).varies:
         return ()
     curve = system.load.curve(force)
-    share = curve.transverse / curve.transverse.mean()
+    values = curve.evenly(POSITIONS) if curve.event is not None else curve.transverse
+    share = values / values.mean()
     # Positions count along the path from approach of the pinion: where the gear drives, time runs the other way.
     if not force.pinion_drives:
         share = np.roll(share[::-1], 1)

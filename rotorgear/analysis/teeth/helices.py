@@ -10,18 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.analysis.teeth.request import MeshRequest
-from rotorgear.gears.loaded.contact_events import contact_events, known_events
-from rotorgear.gears.loaded.cycle_curve import CycleCurve
-from rotorgear.gears.loaded.cycle_positions import SampledCurves, sampled
-from rotorgear.gears.loaded.mesh_cycle import MeshCycle, with_more
-from rotorgear.gears.loaded.stiffness import loaded_cycle
+from rotorgear.gears.loaded.cycle_positions import SampledCurves
+from rotorgear.gears.loaded.helix_cycles import HelixCycles
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
+from rotorgear.gears.stiffness.cycle_curve import CycleCurve
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.model.layout.mesh_layout import mirrored
-from rotorgear.progress import Progress, part_of, silent
-
-# Curves that positions are chosen for: peak to peak of transmission error and stiffness, and the largest pressure.
-_SIDES = np.array([2, 2, 1])
+from rotorgear.progress import Progress, silent
 
 
 @dataclass(frozen=True)
@@ -76,86 +72,6 @@ class SolvedHelices:
         return float(np.mean([cycle.contact_ratio for cycle in self.cycles]))
 
 
-class _Solving:
-    """Cycles of all helices of a mesh, to which positions are added."""
-
-    def __init__(
-        self,
-        request: MeshRequest,
-        teeth: ToothPair,
-        base_force: float,
-        stagger: float,
-        period: float,
-        progress: Progress,
-    ) -> None:
-        self.load = base_force
-        self.period = period
-        self.kinds = [teeth if ahead > 0 else mirrored(teeth) for ahead in request.senses]
-        self.shift = [helix * stagger for helix in range(len(self.kinds))]
-        # Equal helices half a period apart repeat together after half a period: so do their positions.
-        self.twice = len(self.kinds) == 2 and self.kinds[0] == self.kinds[1] and stagger == 0.5
-        # Equal helices abreast are solved once.
-        self.solved = (
-            1 if len(self.kinds) == 2 and self.kinds[0] == self.kinds[1] and stagger == 0.0 else len(self.kinds)
-        )
-        self.problems: list[ContactProblem] = []
-        self.cycles: list[MeshCycle] = []
-        self.progress = progress
-
-    @property
-    def repeats(self) -> float:
-        """Base pitches after which the common curves repeat."""
-        return 0.5 * self.period if self.twice else self.period
-
-    def add(self, positions: np.ndarray) -> np.ndarray:
-        """Solve all helices at new positions; transmission error, stiffness and largest pressure (m, 3) there."""
-        u = np.sort(np.concatenate([positions, positions + self.repeats])) if self.twice else np.sort(positions)
-        first = not self.cycles
-        for helix in range(self.solved):
-            place = u + self.shift[helix]
-            told = part_of(self.progress, helix / self.solved, (helix + 1) / self.solved)
-            if first:
-                problem, cycle = loaded_cycle(self.kinds[helix], self.load, place, told)
-                self.problems.append(problem)
-                self.cycles.append(cycle)
-            else:
-                self.cycles[helix] = with_more(self.problems[helix], self.cycles[helix], place)
-        return self.values(self.numbers(positions))[:, [0, 1, 3]]
-
-    def numbers(self, positions: np.ndarray) -> np.ndarray:
-        """Numbers of solved positions."""
-        u = self.cycles[0].position
-        after = np.clip(np.searchsorted(u, positions), 1, len(u) - 1)
-        return np.where(np.abs(u[after] - positions) < np.abs(u[after - 1] - positions), after, after - 1)
-
-    def values(self, numbers: np.ndarray) -> np.ndarray:
-        """Transmission error, stiffness, tangent stiffness and largest pressure (m, 4) at positions by number."""
-        cycles = self.cycles
-        helices = len(self.kinds)
-        error = np.mean([cycle.deflection[numbers] for cycle in cycles], axis=0)
-        no_load = np.mean([cycle.no_load[numbers] for cycle in cycles], axis=0)
-        tangent = helices / np.mean([1.0 / cycle.tangent[numbers] for cycle in cycles], axis=0)
-        pressure = np.max([_largest_pressure(cycle)[numbers] for cycle in cycles], axis=0)
-        return np.stack([error, self.load * helices / (error - no_load), tangent, pressure], axis=1)
-
-    def events(self) -> tuple[np.ndarray, np.ndarray]:
-        """Guesses of where pairs of any helix come and go, and the solved positions next to them."""
-        found = [contact_events(cycle, self.period) for cycle in self.cycles]
-        shifts = self.shift[: self.solved]
-        guesses, nearest = (
-            np.mod(np.concatenate([one[i] - shift for one, shift in zip(found, shifts, strict=True)]), self.repeats)
-            for i in (0, 1)
-        )
-        return guesses, nearest
-
-
-def _largest_pressure(cycle: MeshCycle) -> np.ndarray:
-    """Of the slices at each position, (p,) in Pa."""
-    found = np.zeros(len(cycle.position))
-    np.maximum.at(found, cycle.slices.position, cycle.pressure)
-    return found
-
-
 def solve_helices(
     request: MeshRequest,
     teeth: ToothPair,
@@ -174,16 +90,8 @@ def solve_helices(
         progress: told how far it is.
         judged: whether more positions are solved for the estimate of what lies between those that are kept.
     """
-    stagger = request.mesh.lead_on_path(request.sense)
-    periods = cycle.periods
-    solving = _Solving(request, teeth, base_force, stagger, float(periods), progress)
-    halves = 2 if solving.twice else 1
-    known = np.empty(0)
-    if not teeth.first.helix_angle:
-        known = np.concatenate([known_events(solving.kinds[0], shift) for shift in solving.shift])
-        known = (known + np.arange(periods)[:, None]).ravel()
-    count = cycle.positions * periods // halves
-    found = sampled(solving, count, solving.repeats, known, _SIDES, judged=judged)
+    solving = _cycles(request, teeth, base_force, cycle.periods, progress)
+    found = solving.sample(cycle.positions, judged=judged)
     u = found.curve.position
     event = found.curve.event
     if solving.twice:
@@ -191,12 +99,12 @@ def solve_helices(
         event = np.concatenate([event, event])
     numbers = solving.numbers(u)
     cycles = [one.chosen(numbers) for one in solving.cycles]
-    if solving.solved < len(solving.kinds):
-        cycles = [cycles[0]] * len(solving.kinds)
+    if solving.solved < len(solving.helices):
+        cycles = [cycles[0]] * len(solving.helices)
     return SolvedHelices(
         problem=solving.problems[-1],
         cycles=tuple(cycles),
-        curve=CycleCurve(u, solving.values(numbers), float(periods), event),
+        curve=CycleCurve(u, solving.values(numbers), float(cycle.periods), event),
         no_load=np.mean([one.no_load for one in cycles], axis=0),
         sampling=found,
     )
@@ -211,7 +119,12 @@ def curves_at(
     progress: Progress = silent,
 ) -> np.ndarray:
     """Transmission error (m), stiffness (N/m) and largest pressure (Pa) of all helices at some positions: (m, 3)."""
-    stagger = request.mesh.lead_on_path(request.sense)
-    solving = _Solving(request, teeth, base_force, stagger, float(periods), progress)
+    solving = _cycles(request, teeth, base_force, periods, progress)
     solving.twice = False
     return solving.add(positions)
+
+
+def _cycles(request: MeshRequest, teeth: ToothPair, base_force: float, periods: int, progress: Progress) -> HelixCycles:
+    """The helices of a request along the path of contact."""
+    helices = [teeth if ahead > 0 else mirrored(teeth) for ahead in request.senses]
+    return HelixCycles(helices, base_force, request.mesh.lead_on_path(request.sense), periods, progress)

@@ -15,8 +15,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.geometry.root_section import root_section
 from rotorgear.gears.loaded.contact_points import patch_loads
+from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
-from rotorgear.gears.loaded.stiffness import loaded_cycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, gear_key, in_space
 from rotorgear.gears.loaded.tooth_solution import solve_teeth, tooth_inside
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair

@@ -19,7 +19,7 @@ from typing import Protocol
 
 import numpy as np
 
-from rotorgear.gears.loaded.cycle_curve import NEAR, CycleCurve
+from rotorgear.gears.stiffness.cycle_curve import NEAR, CycleCurve
 
 # A first look at a period takes a third of its positions, between these bounds.
 _FIRST = (8, 24)

@@ -15,8 +15,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from rotorgear.gears.loaded.helix_cycles import helix_cycle
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
-from rotorgear.gears.loaded.stiffness import loaded_cycle
 from rotorgear.gears.stiffness.face_load import FaceLoad, FaceSpring
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.progress import listener
@@ -42,32 +42,33 @@ def loaded_face(teeth: ToothPair, force: float, positions: int = _POSITIONS) -> 
         MissingExtraError: scikit-fem is needed and not installed.
     """
     cosine = float(np.cos(teeth.pair.base_helix_angle))
-    problem, cycle = loaded_cycle(teeth, force * cosine, np.arange(positions) / positions, listener())
+    found = helix_cycle(teeth, force * cosine, positions, listener())
+    cycle = found.cycle
     # A tilt that closes the flanks at larger z.
     tangents = cycle.along_face * np.array([1.0, -1.0])
     place = tangents[:, 0, 1] / tangents[:, 0, 0]
     against_tilt = tangents[:, 1, 1] - place * tangents[:, 0, 1]
-    mean = tangents.mean(axis=0)
-    z, line_load = load_per_width(cycle, teeth.width, min(_PLACES, problem.slices))
+    deflection, moment = found.mean(np.stack([cycle.deflection, cycle.moment], axis=1))
+    compliance, mean_place, mean_against_tilt = found.mean_of_tangents(
+        np.stack([1.0 / tangents[:, 0, 0], place, against_tilt], axis=1)
+    )
+    k, k_tilt, _, tilt_tilt = found.mean_of_tangents(tangents.reshape(-1, 4))
+    z, line_load = load_per_width(cycle, teeth.width, min(_PLACES, found.problem.slices))
     largest = int(np.argmax(line_load))
     return FaceLoad(
         width=teeth.width,
         misalignment=teeth.misalignment,
         force=force,
-        moment=float(cycle.moment.mean()),
-        approach=cosine * float(cycle.deflection.mean()),
-        static=FaceSpring(
-            1.0 / float(np.mean(1.0 / tangents[:, 0, 0])), float(place.mean()), float(against_tilt.mean())
-        ),
-        dynamic=FaceSpring(
-            float(mean[0, 0]), float(mean[0, 1] / mean[0, 0]), float(mean[1, 1] - mean[0, 1] ** 2 / mean[0, 0])
-        ),
+        moment=float(moment),
+        approach=cosine * float(deflection),
+        static=FaceSpring(1.0 / float(compliance), float(mean_place), float(mean_against_tilt)),
+        dynamic=FaceSpring(float(k), float(k_tilt / k), float(tilt_tilt - k_tilt**2 / k)),
         z=z,
         line_load=line_load,
         load_factor=float(line_load[largest] * teeth.width / force),
         peak_place=float(z[largest]),
         peak_pressure=float(cycle.pressure.max()),
-        warnings=problem.warnings + cycle.warnings,
+        warnings=found.problem.warnings + cycle.warnings,
     )
 
 

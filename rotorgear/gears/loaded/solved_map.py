@@ -3,6 +3,10 @@
 Slices and compliances of a position serve several loads. In space they serve those between two bounds, since patches and reach of
 corners follow the load; what the change of patches moves at such a bound fades away towards the next one.
 
+In the plane positions are even and dense, for solutions are cheap. In space those of a spur pair are chosen where pairs come and
+go and where the curve of the working load needs them; those of a helical pair, whose curves are smooth, are even. Either is read
+by cubics at more even positions, which the map keeps (`map_positions.py`).
+
 With pitch errors, period n has the pairs whose teeth are n ahead. Periods in which the same errors touch are solved once.
 """
 
@@ -17,13 +21,15 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.contact_map import ContactMap
 from rotorgear.gears.loaded.loaded_contact import PositionContact, solve_contact, solve_many
+from rotorgear.gears.loaded.map_positions import MapPositions, even_positions, map_positions
 from rotorgear.gears.loaded.map_store import kept_map
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, WideContactError, mesh_cycle, settled
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.progress import Progress, listener, part_of
 
-# Positions in a base pitch, in the plane and in space. In the plane the approach has a kink wherever a tooth pair comes or goes.
+# Positions that are solved in a base pitch, in the plane and in space. In the plane the approach has a kink wherever a tooth pair
+# comes or goes.
 POSITIONS = (512, 96)
 # Loads as multiples of the working load: resonances with contact loss reach four to five times it. In the plane pairs come and go
 # suddenly with the load too, and solutions are cheap.
@@ -35,8 +41,8 @@ _IN_SPACE = (
     (1.25, 1.5, 1.8, 2.2),
     (2.7, 3.3, 4.1, 5.0),
 )
-# Linear analyses stay near the working load.
-_NEAR_POSITIONS = 64
+# Linear analyses stay near the working load. Kinks of spur pairs need more positions than smooth curves of helical ones.
+_NEAR_POSITIONS = {"spur": 128, "helical": 64}
 _NEAR_IN_SPACE = ((0.04, 0.16, 0.4, 0.7, 1.0), (1.4, 2.0))
 # More differing periods than these are refused.
 _MOST_DIFFERING = 128
@@ -60,7 +66,8 @@ def contact_map(teeth: ToothPair, load: float, positions: int | None = None, nea
     Args:
         teeth: one helix.
         load: working force (N) along the flank normal.
-        positions: in a base pitch; default 512 in the plane, and in space 96, or 64 near the working load.
+        positions: so many even ones in a base pitch, and the map keeps these; default 512 even ones in the plane, and in space
+            where the curves need them: 128 of a spur pair, 96 of a helical one, or 64 near the working load.
         near: for linear analyses: in space fewer loads, up to about twice the working one.
 
     Raises:
@@ -76,21 +83,27 @@ def contact_map(teeth: ToothPair, load: float, positions: int | None = None, nea
         told = part_of(progress, 0.5, 1.0)
         if problem.plane and not problem.uncoupled:
             # One slice for a tooth pair: cheap, with patches that follow no load, so that one group has all loads.
-            return solved_map(problem, load, positions or POSITIONS[0], _IN_PLANE, told)
-        if near:
-            return solved_map(problem, load, positions or _NEAR_POSITIONS, _NEAR_IN_SPACE, told)
-        return solved_map(problem, load, positions or POSITIONS[1], _IN_SPACE, told)
+            return solved_map(problem, load, even_positions(positions or POSITIONS[0]), _IN_PLANE, told)
+        groups = _NEAR_IN_SPACE if near else _IN_SPACE
+        if positions:
+            return solved_map(problem, load, even_positions(positions), groups, told)
+        few = _NEAR_POSITIONS["helical" if teeth.first.helix_angle else "spur"]
+        chosen = map_positions(teeth, load * _cosine(problem), few if near else max(few, POSITIONS[1]))
+        return solved_map(problem, load, chosen, groups, told)
 
     return kept_map((teeth, load, positions, near), solve)
 
 
 def solved_map(
-    problem: ContactProblem, load: float, positions: int, groups: tuple[tuple[float, ...], ...], progress: Progress
+    problem: ContactProblem,
+    load: float,
+    positions: MapPositions,
+    groups: tuple[tuple[float, ...], ...],
+    progress: Progress,
 ) -> ContactMap:
-    """The map for groups of rising multiples of a working load (N)."""
+    """The map at some positions for groups of rising multiples of a working load (N)."""
     of_period = _errors_by_period(problem)
     kinds = list(dict.fromkeys(of_period))
-    u = np.arange(positions) / positions
     solved: list[list[_Column]] = [[] for _ in kinds]
     touch: list[np.ndarray] = []
     notes: list[str] = []
@@ -98,7 +111,8 @@ def solved_map(
     for number, group in enumerate(groups):
         told = part_of(progress, number / len(groups), (number + 1) / len(groups))
         try:
-            cycle = mesh_cycle(problem, group[-1] * load * _cosine(problem), u, told)
+            known = positions.cycle if group[-1] == 1.0 else None
+            cycle = known or mesh_cycle(problem, group[-1] * load * _cosine(problem), positions.position, told)
         except WideContactError:
             if not factors:
                 raise
@@ -120,17 +134,24 @@ def solved_map(
     loads = load * np.array([0.0, *factors])
     approach = [np.stack([touch[k], *(c.approach for c in solved[k])], axis=1) for k in range(len(kinds))]
     slope = [_with_start(np.stack([c.slope for c in solved[k]], axis=1), approach[k], loads) for k in range(len(kinds))]
-    moment = [np.stack([np.zeros(positions), *(c.moment for c in columns)], axis=1) for columns in solved]
+    moment = [np.stack([np.zeros(len(positions.position)), *(c.moment for c in columns)], axis=1) for columns in solved]
     order = [kinds.index(errors) for errors in of_period]
     varies = not problem.plane or problem.uncoupled
+    working = int(np.argmin(np.abs(loads - load)))
+    position, *curves = positions.kept(
+        np.concatenate([approach[k] for k in order]),
+        np.concatenate([slope[k] for k in order]),
+        np.concatenate([moment[k] for k in order]),
+        working,
+    )
     return ContactMap(
-        position=np.arange(positions * len(of_period)) / positions,
+        position=position,
         periods=len(of_period),
         load=loads,
-        approach=np.concatenate([approach[k] for k in order]),
+        approach=curves[0],
         warnings=tuple(dict.fromkeys((*problem.warnings, *notes))),
-        compliance=np.concatenate([slope[k] for k in order]),
-        moment=np.concatenate([moment[k] for k in order]) if varies else None,
+        compliance=curves[1],
+        moment=curves[2] if varies else None,
     )
 
 

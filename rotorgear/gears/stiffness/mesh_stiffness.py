@@ -22,9 +22,12 @@ from rotorgear.gears.geometry.blank import BlankShape
 from rotorgear.gears.geometry.flank import FlankModification
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.pair import PairGeometry
+from rotorgear.gears.stiffness.cycle_curve import CycleCurve
 from rotorgear.gears.tooth_fe.settings import ToothFe
 
 Definition = Literal["secant", "tangent"]
+# Positions nearer to each other than this, in mesh periods, are one.
+_SAME = 1e-9
 _EXACT = FlankModification()
 _DEFAULT_FE = ToothFe()
 
@@ -107,7 +110,7 @@ class MeshStiffness:
 
     Attributes:
         model: name of the stiffness model, as in the model file.
-        position: shares u of the mesh period, evenly spaced from 0, shape (n,).
+        position: shares u of the mesh period, rising from 0, shape (n,); evenly spaced where there is no `event`.
         transverse: F_bt / delta in N/m, shape (n,).
         definition: "secant" (force over approach) or "tangent" (its derivative at the load).
         helices: how many helices it stands for, 1 or 2.
@@ -116,6 +119,7 @@ class MeshStiffness:
         base_helix_angle: b_b (rad), for the stiffness along the flank normal.
         warnings: sentences.
         tangent: dF_bt / d delta in N/m at the load, shape (n,), of a model whose stiffness depends on it; else None.
+        event: (n,) whether the curves have a kink there, of positions that are not even; else None.
     """
 
     model: str
@@ -128,6 +132,26 @@ class MeshStiffness:
     base_helix_angle: float
     warnings: tuple[str, ...] = ()
     tangent: np.ndarray | None = None
+    event: np.ndarray | None = None
+
+    def over_period(self, values: np.ndarray) -> float:
+        """Mean of values (n,) at the positions over the mesh period."""
+        if self.event is None:
+            return float(np.mean(values))
+        if self.definition == "tangent":  # it steps where pairs come and go: straight between positions
+            return float(np.trapezoid([*values, values[0]], [*self.position, 1.0]))
+        return float(self._curve(values).mean()[0])
+
+    def evenly(self, count: int) -> np.ndarray:
+        """Transverse stiffness (count,) in N/m at even positions from 0."""
+        u = np.arange(count) / count
+        if self.event is None:
+            return np.interp(u, self.position, self.transverse, period=1.0)
+        return np.asarray(self._curve(self.transverse).at(u)[:, 0])
+
+    def _curve(self, values: np.ndarray) -> CycleCurve:
+        assert self.event is not None
+        return CycleCurve(self.position, values[:, None], 1.0, self.event)
 
     @property
     def normal(self) -> np.ndarray:
@@ -137,7 +161,7 @@ class MeshStiffness:
     @property
     def mean(self) -> float:
         """Mean of the transverse stiffness in N/m."""
-        return float(np.mean(self.transverse))
+        return self.over_period(self.transverse)
 
     @property
     def mean_normal(self) -> float:
@@ -150,7 +174,7 @@ class MeshStiffness:
         if self.tangent is None:
             return self.mean_normal
         # At a constant load the deflections F / k are averaged, not the stiffnesses.
-        return 1.0 / (float(np.mean(1.0 / self.transverse)) * math.cos(self.base_helix_angle) ** 2)
+        return 1.0 / (self.over_period(1.0 / self.transverse) * math.cos(self.base_helix_angle) ** 2)
 
     @property
     def dynamic_normal(self) -> float:
@@ -176,6 +200,8 @@ class MeshStiffness:
         most = (len(self.transverse) - 1) // 2
         if count > most:
             raise AnalysisError(f"{len(self.transverse)} positions give {most} harmonics, not {count}: ask for fewer.")
+        if self.event is not None:
+            return np.asarray(self._curve(self.transverse).harmonics(count)[:, 0])
         return np.asarray(2.0 * np.fft.fft(self.transverse)[1 : count + 1] / len(self.transverse))
 
     def of_both_helices(self, stagger: float = 0.0, second: MeshStiffness | None = None) -> MeshStiffness:
@@ -186,17 +212,38 @@ class MeshStiffness:
         """
         other = self if second is None else second
         load = None if self.load is None else 2.0 * self.load
+        position = self.position
+        event = self.event
+        if self.event is not None and other.event is not None:
+            # Both have kinks of their own.
+            theirs = np.mod(other.position - stagger, 1.0)
+            position = np.concatenate([self.position, np.where(theirs > 1.0 - _SAME, 0.0, theirs)])
+            order = np.argsort(position, kind="stable")
+            order = order[np.diff(position[order], prepend=-1.0) > _SAME]
+            position = position[order]
+            event = np.concatenate([self.event, other.event])[order]
 
-        def ahead(values: np.ndarray) -> np.ndarray:
-            return np.interp(self.position + stagger, self.position, values, period=1.0)
+        def at(curve: MeshStiffness, values: np.ndarray, ahead: float) -> np.ndarray:
+            if curve.event is None:
+                return np.interp(position + ahead, curve.position, values, period=1.0)
+            return np.asarray(curve._curve(values).at(position + ahead)[:, 0])
 
         # Stiffness that does not depend on the load: two springs in parallel.
         if self.tangent is None or other.tangent is None:
-            both = self.transverse + ahead(other.transverse)
+            both = at(self, self.transverse, 0.0) + at(other, other.transverse, stagger)
             return replace(self, transverse=both, helices=2 * self.helices, load=load)
         # Curves at a load: the floating pinion gives each helix half of it, so the approaches are averaged,
         # (F_1 + F_2) / mean(delta) = 4 / (1/k_1 + 1/k_2).
-        secant = 4.0 / (1.0 / self.transverse + ahead(1.0 / other.transverse))
-        tangent = 4.0 / (1.0 / self.tangent + ahead(1.0 / other.tangent))
+        secant = 4.0 / (at(self, 1.0 / self.transverse, 0.0) + at(other, 1.0 / other.transverse, stagger))
+        tangent = 4.0 / (at(self, 1.0 / self.tangent, 0.0) + at(other, 1.0 / other.tangent, stagger))
         notes = tuple(dict.fromkeys(self.warnings + other.warnings))
-        return replace(self, transverse=secant, tangent=tangent, helices=2 * self.helices, load=load, warnings=notes)
+        return replace(
+            self,
+            position=position,
+            event=event,
+            transverse=secant,
+            tangent=tangent,
+            helices=2 * self.helices,
+            load=load,
+            warnings=notes,
+        )

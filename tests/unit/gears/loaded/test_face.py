@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from rotorgear.gears.loaded.face import load_per_width, loaded_face
+from rotorgear.gears.loaded.helix_cycles import helix_cycle
 from rotorgear.gears.loaded.loaded_contact import solve_contact
+from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
-from rotorgear.gears.loaded.stiffness import loaded_cycle
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.model.layout.mesh_layout import mirrored
 from tests.unit.gears.tooth_pairs import LOAD, WIDTH, cycle, helical, pair
@@ -25,7 +26,7 @@ def _pressed(found: MeshCycle, force: float) -> tuple[float, float]:
     place = found.slices.z @ found.slices.weight
     states = [solve_contact(contact, force) for contact in found.contacts]
     moments = [state.force @ place[found.slices.at(i)] for i, state in enumerate(states)]
-    return float(np.mean([state.approach for state in states])), float(np.mean(moments))
+    return float(found.weight @ [state.approach for state in states]), float(found.weight @ moments)
 
 
 # The coarse slices of the helical pair come off one at a time, and corners are cut anew where the misalignment changes.
@@ -34,7 +35,7 @@ def test_static_springs_are_the_slopes_of_mean_deflection_and_moment(name: str, 
     teeth = PAIRS[name]
     face = loaded_face(teeth, LOAD, POSITIONS)
     # The same slices and patches under a little more and less: at each load of their own they would be cut anew.
-    contacts = loaded_cycle(teeth, LOAD * np.cos(teeth.pair.base_helix_angle), np.arange(POSITIONS) / POSITIONS)[1]
+    contacts = helix_cycle(teeth, LOAD * np.cos(teeth.pair.base_helix_angle), POSITIONS).cycle
     h = 1e-3
     more, less = (_pressed(contacts, LOAD * (1.0 + s)) for s in (h, -h))
     dF = 2.0 * h * LOAD
@@ -42,13 +43,20 @@ def test_static_springs_are_the_slopes_of_mean_deflection_and_moment(name: str, 
     assert (more[1] - less[1]) / dF == pytest.approx(face.static.place, rel=5e-3)
 
     step = 1e-6
-    wider, closer = (
-        loaded_face(replace(teeth, misalignment=teeth.misalignment + s), LOAD, POSITIONS) for s in (step, -step)
-    )
+    positions = contacts.position
+
+    def means(misalignment: float) -> np.ndarray:
+        """Approach along the normal and moment, straight between the same positions: chosen anew, they would differ a little."""
+        cosine = np.cos(teeth.pair.base_helix_angle)
+        askew = replace(teeth, misalignment=misalignment)
+        found = loaded_cycle(askew, LOAD * cosine, positions)[1]
+        return np.array([cosine * found.weight @ found.deflection, found.weight @ found.moment])
+
+    approach, moment = means(teeth.misalignment + step) - means(teeth.misalignment - step)
     # At a constant load: ddelta = -e dtilt, dM = k_t dtilt, and a misalignment is less tilt.
     tilt = -2.0 * step / WIDTH
-    assert (wider.approach - closer.approach) / tilt == pytest.approx(-face.static.place, rel=near)
-    assert (wider.moment - closer.moment) / tilt == pytest.approx(face.static.tilt_stiffness, rel=near)
+    assert approach / tilt == pytest.approx(-face.static.place, rel=near)
+    assert moment / tilt == pytest.approx(face.static.tilt_stiffness, rel=near)
 
 
 def test_slices_that_do_not_feel_each_other_resist_a_tilt_like_a_line_of_springs() -> None:

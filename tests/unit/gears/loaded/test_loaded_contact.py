@@ -11,7 +11,7 @@ import scipy.optimize as so
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.flank import FlankModification
 from rotorgear.gears.loaded.loaded_contact import PositionContact, hertz_half_width, solve_contact
-from rotorgear.gears.loaded.stiffness import loaded_cycle
+from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from tests.unit.gears.tooth_pairs import COARSE, LOAD, WIDTH, cycle, helical, pair, spur

@@ -12,9 +12,9 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.flank import FlankGrid, FlankModification
 from rotorgear.gears.loaded.contact_map import ContactMap
 from rotorgear.gears.loaded.loaded_contact import PositionContact, solve_contact, solve_many
+from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
 from rotorgear.gears.loaded.map_store import kept_map
 from rotorgear.gears.loaded.solved_map import contact_map
-from rotorgear.gears.loaded.stiffness import loaded_cycle
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import ToothFe
