@@ -185,7 +185,7 @@ def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> list[LocalPart]:
         # A map begins where its flanks touch, a spring about a mean state does not.
         touching = replace(spring, error_mean=_gap(system, force))
         if teeth is not None:
-            loaded = _loaded_teeth(touching, teeth, force, spring.phase)
+            loaded = _loaded_teeth(touching, teeth, force, load.path_phase(contact) or 0.0)
             law = loaded
             if spring.impact:
                 blow = replace(spring, stiffness=0.0, damping=0.0, gap="bilateral", expanded=False)
@@ -194,7 +194,7 @@ def _mesh_parts(system: System, faces: dict[int, FaceMap]) -> list[LocalPart]:
                 behind = force.on_other_flank
                 other_teeth = load.coast_map(force)
                 assert other_teeth is not None  # its working load is that of the other flank
-                phase = load.on_other_flank(contact.mesh).phase(contact) or 0.0
+                phase = load.on_other_flank(contact.mesh).path_phase(contact) or 0.0
                 coast_loaded = _loaded_teeth(_back(touching), other_teeth, behind, phase)
                 coast_law = coast_loaded
                 if spring.gap == "dead zone":
@@ -234,7 +234,7 @@ def _along_face(system: System, force: MeshForce, spring: MeshContact, teeth: Fa
         reference=spring.ramp,
         order=spring.order,
         phase=spring.phase,
-        path_phase=spring.phase,
+        path_phase=load.path_phase(contact) or 0.0,
         forward=1 if force.pinion_drives else -1,
         error_cos=spring.error_cos,
         error_sin=spring.error_sin,
@@ -253,7 +253,7 @@ def _along_face(system: System, force: MeshForce, spring: MeshContact, teeth: Fa
         behind = force.on_other_flank
         other_teeth = load.coast_map(force)
         assert other_teeth is not None  # its working load is that of the other flank
-        phase = load.on_other_flank(contact.mesh).phase(contact) or 0.0
+        phase = load.on_other_flank(contact.mesh).path_phase(contact) or 0.0
         turned = replace(geometry, torque_sense=-geometry.torque_sense)
         own_normal = columns_at(system, dofs[:12], contact_vector(turned)[None])
         column = own_normal if spring.gap == "unilateral" else -approach

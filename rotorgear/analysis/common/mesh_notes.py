@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rotorgear.model.layout.tooth_numbers import unlike_gears
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -30,13 +31,10 @@ def mesh_stiffness_left_out(system: System) -> Iterator[str]:
 
 
 def unlike_teeth_left_out(system: System) -> Iterator[str]:
-    """Yield a sentence for each gear whose teeth differ and that turns in several meshes of loaded teeth."""
-    layout = system.layout
-    for name in system.model.gears:
-        meshes = [
-            mesh for mesh in layout.meshes if mesh.part.stiffness == "tooth_fe" and name in (g.name for g in mesh.gears)
-        ]
-        if len(meshes) > 1 and layout.gear(name).flank.single_teeth:
+    """Yield a sentence for each gear whose teeth differ where it is not known which of them are in its meshes at one time."""
+    unknown = system.load.tooth_numbers.unknown
+    for name, meshes in unlike_gears(system.layout).items():
+        if name in unknown:
             where = " and ".join(f"meshes.{mesh.name}" for mesh in meshes)
             yield (
                 f"which teeth of gears.{name} are in {where} at one time: its errors of single teeth begin with tooth 0 in each, "

@@ -219,7 +219,7 @@ def joint_state(equilibrium: Equilibrated) -> JointState | None:
     have = [one is not None or along is not None for one, along in zip(maps, face_maps, strict=True)]
     if not any(have):
         return None
-    phases = [load.phase(state.contact) for state in lines.states]
+    phases = [load.path_phase(state.contact) for state in lines.states]
     ratios = [
         _mesh_ratio(equilibrium.system, state) if mapped else -1.0
         for state, mapped in zip(lines.states, have, strict=True)

@@ -26,6 +26,7 @@ from rotorgear.errors import ConvergenceError
 from rotorgear.model.layout.applied_torques import AppliedTorque, applied_torques
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.layout.mesh_layout import Contact, MeshLayout
+from rotorgear.model.layout.tooth_numbers import ToothNumbers, tooth_numbers
 from rotorgear.model.layout.torsion_network import contact_forces
 from rotorgear.model.parts.helix_state import FaceState, HelixState
 
@@ -199,6 +200,20 @@ class MeanLoad:
             return None
         return phase + 2.0 * math.pi * self.layout.mesh(contact.mesh).lead(contact.helix, self.direction)
 
+    @cached_property
+    def tooth_numbers(self) -> ToothNumbers:
+        """Where the maps of loaded teeth begin in the meshes of a gear whose teeth differ."""
+        return tooth_numbers(
+            self.layout, self.direction, {force.contact.mesh: force for force in reversed(self.forces)}
+        )
+
+    def path_phase(self, contact: Contact) -> float | None:
+        """Phase of one helix in rad on the map of its loaded teeth, which counts the teeth; None without teeth."""
+        phase = self.phase(contact)
+        if phase is None:
+            return None
+        return phase + 2.0 * math.pi * self.tooth_numbers.ahead.get(contact.mesh, 0)
+
     def whole_curve(self, mesh: str) -> MeshStiffness | None:
         """Stiffness of both helices together; None where the file names no stiffness model."""
         if mesh not in self.curves:
@@ -210,7 +225,7 @@ class MeanLoad:
 
         Its working load is the mean one of the mesh in the torque flow, so that equal helices share one map, and so do all
         analyses. Teeth that feel the tilt of their shafts keep that of the state they are about. In time u runs with the mesh
-        phase phi (`phase`): u = phi / 2 pi where the pinion drives, and the other way, u = -phi / 2 pi, where the gear does.
+        phase phi (`path_phase`): u = phi / 2 pi where the pinion drives, and the other way, u = -phi / 2 pi, where the gear does.
         `near` gives the one for linear analyses, which takes less time.
         """
         mesh = self.layout.mesh(force.contact.mesh)

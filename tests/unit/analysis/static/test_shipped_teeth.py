@@ -58,9 +58,36 @@ def train() -> rg.Model:
     )
 
 
-def test_a_wheel_with_unlike_teeth_in_two_meshes_is_named() -> None:
+def test_unlike_teeth_whose_place_is_not_known_are_named() -> None:
     model = train()
-    system = System(model.with_({f"meshes.{name}.stiffness": 1e8 for name in model.meshes}))
-    assert not list(unlike_teeth_left_out(system))
-    (said,) = unlike_teeth_left_out(System(model))
+    assert not list(unlike_teeth_left_out(System(model)))
+    given = System(model.with_("meshes.bc.phase", "10 deg"))
+    (said,) = unlike_teeth_left_out(given)
     assert said.startswith("which teeth of gears.b are in meshes.ab and meshes.bc")
+    stiffnesses = {f"meshes.{name}.stiffness": 1e8 for name in model.meshes}
+    assert not list(unlike_teeth_left_out(System(given.model.with_(stiffnesses))))
+
+
+@pytest.mark.parametrize("speed", [100.0, -100.0])
+@pytest.mark.parametrize(("place", "teeth"), [((0.3, 0.0), 15), ((0.15, 0.15), 7.5), ((0.15, -0.15), 22.5)])
+def test_a_tooth_of_a_middle_gear_comes_into_its_second_mesh_after_its_turn(
+    place: tuple[float, float], teeth: float, speed: float
+) -> None:
+    """From the pitch point with its driver to that with what it drives it turns by the angle between them: so many teeth.
+
+    The teeth of b push against a with their backs and against c with their fronts, half a pitch apart without backlash.
+    """
+    model = train().with_({"shafts.three.position": list(place), "operation.speed": speed})
+    load = model.mean_load(1 if speed > 0.0 else -1)
+    turns = []
+    for name in ("ab", "bc"):
+        contact = load.of_mesh(name)[0].contact
+        phase = load.path_phase(contact)
+        assert phase is not None
+        turns.append(phase / (2.0 * np.pi))
+    # The middle gear turns against the sense of the first one.
+    sense = -1.0 if speed > 0.0 else 1.0
+    angle = (np.arctan2(place[1], place[0] - 0.15) - np.pi) * sense
+    apart = angle / (2.0 * np.pi) * 30.0
+    assert np.mod(turns[0] - turns[1] - (apart - 0.5) + 1.0, 30.0) == pytest.approx(1.0, abs=1e-9)
+    assert teeth in (np.mod(apart, 30.0), np.mod(-apart, 30.0))
