@@ -28,6 +28,7 @@ from rotorgear.model.parts.supports import (
     Bearing,
     Coupling,
     DampingMatrix,
+    JournalGeometry,
     Pedestal,
     RollingElements,
     StiffnessMatrix,
@@ -55,6 +56,7 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("corner_impact = { ... } of a mesh", CornerImpact),
     ("[bearings.NAME]", Bearing),
     ("rolling = { ... } of a bearing", RollingElements),
+    ("journal = { ... } of a bearing", JournalGeometry),
     ("table = [{ ... }] of a bearing", TableRow),
     ("pedestal = { ... } of a bearing", Pedestal),
     ("stiffness = { ... } of a bearing, support or coupling", StiffnessMatrix),
@@ -114,8 +116,8 @@ RULES: dict[type[BaseModel], str] = {
         stand at the centre distance that teeth and profile shifts give, to a twentieth of the module. Signs:
         [conventions](conventions.md#mesh-of-a-parallel-axis-pair).""",
     Bearing: """
-        Give `stiffness` (and `damping`), a `table` over speed, or `rolling` elements. A bearing holds no torsion unless told
-        to.""",
+        Give `stiffness` (and `damping`), a `table` over speed, `rolling` elements, or a `journal`. A bearing holds no torsion
+        unless told to.""",
     TableRow: """
         At least two rows, speeds rising. A speed outside the table is refused, never extrapolated.""",
     Pedestal: """
@@ -135,6 +137,11 @@ RULES: dict[type[BaseModel], str] = {
         A transient and a sweep take them. With a `stiffness` beside them (along x, y, axial and tilt), statics and linear
         analyses keep that and say so; without one, statics solves for their contacts, and linear analyses take the tangent at
         that equilibrium, the mean over a pitch of the elements.""",
+    JournalGeometry: """
+        The film carries across; what holds the shaft along z is a support or a bearing of its own. Statics, transients and
+        sweeps solve its pressure, linear analyses take its stiffness and damping at the static equilibrium, over speed.
+        [Journal bearings](static.md#journal-bearings) tells more. Refused: turbulent films, eccentricities above 0.95, lengths
+        above two diameters.""",
     NonlinearElement: """
         A force law of the package, such as `journal_bearing` or `plain_spring`, or one registered from Python before the file
         is loaded. It acts in every analysis: as it is in statics, transients and sweeps, and by its tangents at the static

@@ -248,6 +248,14 @@ class ForceLaw(ABC):
             values.force.mean(axis=0), values.in_displacement.mean(axis=0), values.in_velocity.mean(axis=0)
         )
 
+    def settled(self, d: Any) -> ForceLaw:
+        """The law as it stays for small motions about displacements d (k,): an inlet that statics place stays there then."""
+        return self
+
+    def beyond(self, d: Any, speed: float) -> str:
+        """Why the law does not hold at displacements d (k,) in equilibrium at a speed of the reference, as a clause; or ""."""
+        return ""
+
     # What the law says of itself to the reader of a result.
 
     @property

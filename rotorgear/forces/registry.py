@@ -24,6 +24,7 @@ _SHIPPED = {
     "loaded_face": "LoadedFace",
     "mesh_friction": "MeshFriction",
     "journal_bearing": "JournalBearing",
+    "journal_film": "JournalFilm",
     "ball_bearing": "BallBearing",
     "roller_bearing": "RollerBearing",
     "rotating_force": "RotatingForce",

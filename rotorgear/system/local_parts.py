@@ -15,13 +15,14 @@ from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.load import COMPONENTS, Load
 from rotorgear.model.parts.nonlinear_element import element_law
-from rotorgear.model.parts.supports import Bearing
+from rotorgear.model.parts.supports import Bearing, JournalGeometry
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.groups import ElementGroup, node_dofs
 from rotorgear.system.loads import wrench_load
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
+    from rotorgear.forces.journal_film import JournalFilm
     from rotorgear.forces.law import ForceLaw
     from rotorgear.forces.mesh_contact import MeshContact
 
@@ -102,9 +103,9 @@ def expansion_stiffness(law: ForceLaw, load: float, speed: float) -> np.ndarray:
 
 
 def is_rolling(system: System, group: ElementGroup) -> bool:
-    """Whether the stiffness of a group gives way to rolling elements."""
+    """Whether the stiffness of a group gives way to the force law of a bearing."""
     table, _, name = group.part.partition(".")
-    return table == "bearings" and name in system.model.bearings and system.model.bearings[name].rolling is not None
+    return table == "bearings" and name in system.model.bearings and system.model.bearings[name].has_law
 
 
 def without_stiffness(group: ElementGroup) -> ElementGroup:
@@ -113,9 +114,9 @@ def without_stiffness(group: ElementGroup) -> ElementGroup:
 
 
 def bearing_parts(system: System) -> Iterator[LocalPart]:
-    """Yield the bearings with rolling elements."""
+    """Yield the bearings with a force law: rolling elements or an oil film."""
     for name, bearing in system.model.bearings.items():
-        if bearing.rolling is None:
+        if not bearing.has_law:
             continue
         law = _bearing_law(bearing, float(system.train.ratio(bearing.shaft)))
         rows = np.eye(6)[: law.components]
@@ -130,7 +131,33 @@ def bearing_parts(system: System) -> Iterator[LocalPart]:
         yield LocalPart(f"bearings.{name}", name, law, columns_at(system, dofs, rows))
 
 
+def journal_law(journal: JournalGeometry, ratio: float) -> JournalFilm:
+    """The film of a journal bearing on a shaft that turns at so many times the speed of the reference."""
+    from rotorgear.forces.journal_film import JournalFilm
+
+    return JournalFilm(
+        viscosity=journal.viscosity,
+        radius=0.5 * journal.diameter,
+        length=journal.length,
+        clearance=journal.clearance,
+        order=ratio,
+        lobes=journal.lobes,
+        arc=journal.lobe_arc or 0.0,
+        at=journal.lobe_at,
+        preload=journal.preload,
+        offset=journal.offset,
+        inlet=journal.inlet or 0.0,
+        follows=journal.inlet is None and journal.lobes == 1,
+        cavitation=journal.cavitation,
+        density=journal.density,
+        around=journal.around,
+        along=journal.along,
+    )
+
+
 def _bearing_law(bearing: Bearing, ratio: float) -> ForceLaw:
+    if bearing.journal is not None:
+        return journal_law(bearing.journal, ratio)
     from rotorgear.forces.ball_bearing import BallBearing
     from rotorgear.forces.roller_bearing import RollerBearing
 

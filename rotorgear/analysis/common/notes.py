@@ -72,7 +72,7 @@ def beta_notes(system: System, speed: float | None, *, rolls: bool) -> Iterator[
         yield "beta K of circulatory and cross-coupled stiffness: rayleigh_beta acts on the symmetric part of K"
     if rolls:
         laws = [f"nonlinear_elements.{name}" for name in system.model.nonlinear_elements]
-        laws += [f"bearings.{name}" for name, bearing in system.model.bearings.items() if bearing.rolling is not None]
+        laws += [f"bearings.{name}" for name, bearing in system.model.bearings.items() if bearing.has_law]
         if laws:
             yield (
                 f"beta K of {', '.join(laws)}: rayleigh_beta acts on their tangents in linear analyses, in time they damp as "

@@ -203,7 +203,9 @@ def _laws_at_rest(
     states = []
     for part, a, b in zip(parts, ends, ends[1:], strict=False):
         d = found.d[a:b]
-        tangent = part.law.linearised(d, speed=speed)
+        if why := part.law.beyond(d, speed):
+            raise AnalysisError(f"{part.part}: in equilibrium at {speed * RPM_PER_RAD_S:.6g} rpm {why}")
+        tangent = part.law.settled(d).linearised(d, speed=speed)
         states.append(LawState(part, d, tangent.force, tangent.stiffness, tangent.damping, speed != 0.0))
     return states
 

@@ -53,9 +53,7 @@ def _about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Mo
         for name, element in model.nonlinear_elements.items()
         if element.is_given
     ]
-    wanted = {
-        f"bearings.{name}" for name, bearing in model.bearings.items() if bearing.rolling and not bearing.stiffness
-    }
+    wanted = {f"bearings.{name}" for name, bearing in model.bearings.items() if not bearing.is_linear}
     wanted |= {
         f"nonlinear_elements.{name}" for name, element in model.nonlinear_elements.items() if not element.is_given
     }
@@ -120,8 +118,8 @@ def _linear(model: Model, part: str, speeds: Sequence[float], states: Sequence[L
     owner = getattr(model, table)[name]
     given = np.array(owner.damping.as_rows()) if owner.damping else np.zeros((6, 6))
     used = [DOF_NAMES.index(d) for d in owner.directions] if table == "nonlinear_elements" else None
-    # The linear bearing has no rolling elements any more, so that no note speaks of two descriptions.
-    linear: dict[str, Any] = {} if table == "nonlinear_elements" else {"rolling": None}
+    # The linear bearing has no law any more, so that no note speaks of two descriptions.
+    linear: dict[str, Any] = {} if table == "nonlinear_elements" else {"rolling": None, "journal": None}
     pairs = [(_six(state.stiffness, used), given + _six(state.damping, used)) for state in states]
     ratio = abs(float(model.layout.train.ratio(owner.shaft)))
     first = pairs[0]

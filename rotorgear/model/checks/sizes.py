@@ -9,7 +9,15 @@ from itertools import pairwise
 from rotorgear.errors import Problem
 from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import Section
-from rotorgear.model.parts.supports import Bearing, DampingMatrix, Pedestal, RollingElements, StiffnessMatrix, TableRow
+from rotorgear.model.parts.supports import (
+    Bearing,
+    DampingMatrix,
+    JournalGeometry,
+    Pedestal,
+    RollingElements,
+    StiffnessMatrix,
+    TableRow,
+)
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import RPM_PER_RAD_S, millimetres
 
@@ -86,8 +94,8 @@ def matrices(model: Tables) -> Iterator[Problem]:
 
 
 def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
-    if bearing.stiffness is None and not bearing.table and bearing.rolling is None:
-        text = "stiffness (with damping), a table over speed, or rolling elements"
+    if bearing.stiffness is None and not bearing.table and not bearing.has_law:
+        text = "stiffness (with damping), a table over speed, rolling elements, or a journal"
         yield Problem(address, "neither stiffness nor table", text)
     elif bearing.stiffness is not None and bearing.table:
         yield Problem(address, "stiffness and table", "one of the two")
@@ -97,8 +105,47 @@ def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
     yield from _table(address, bearing.table)
     if bearing.rolling:
         yield from _rolling(address, bearing, bearing.rolling)
+    if bearing.journal:
+        yield from _journal(address, bearing, bearing.journal)
     if bearing.pedestal:
         yield from _pedestal(f"{address}.pedestal", bearing.pedestal)
+
+
+def _journal(address: str, bearing: Bearing, journal: JournalGeometry) -> Iterator[Problem]:
+    """An oil film alone in its bearing, with lobes that fit, on a grid that serves."""
+    here = f"{address}.journal"
+    beside = [key for key in ("stiffness", "damping", "rolling") if getattr(bearing, key) is not None]
+    if beside or bearing.table:
+        wanted = "a journal alone; what holds the shaft along z is a support or a bearing of its own"
+        yield Problem(here, f"a journal beside {beside[0] if beside else 'a table'}", wanted)
+    if not journal.viscosity:
+        yield Problem(f"{here}.viscosity", "0", "a viscosity above 0 such as '0.02 Pa s'")
+    if journal.length > 2.0 * journal.diameter:
+        got = f"{millimetres(journal.length)} on a diameter of {millimetres(journal.diameter)}"
+        yield Problem(f"{here}.length", got, "at most two diameters, beyond which shafts bend in their bearing")
+    if journal.clearance > 0.1 * journal.diameter:
+        got = f"{millimetres(journal.clearance)} on a diameter of {millimetres(journal.diameter)}"
+        yield Problem(f"{here}.clearance", got, "a film that is thin: at most a tenth of the diameter, 1e-3 as a rule")
+    for key, most in (("lobes", 8), ("around", 2000), ("along", 200)):
+        if getattr(journal, key) > most:
+            yield Problem(f"{here}.{key}", f"{getattr(journal, key)}", f"at most {most}")
+    for key, least in (("around", 24), ("along", 2)):
+        if getattr(journal, key) < least:
+            yield Problem(f"{here}.{key}", f"{getattr(journal, key)}", f"at least {least} cells")
+    if journal.lobes == 1 and (
+        journal.preload or journal.lobe_arc is not None or journal.lobe_at or journal.offset != 0.5
+    ):
+        yield Problem(f"{here}.lobes", "keys of lobes in a plain bearing", "2 lobes or more beside them")
+    if journal.lobes > 1 and journal.inlet is not None:
+        yield Problem(f"{here}.inlet", "an inlet", "none beside lobes: oil comes in between them")
+    if not 0.0 <= journal.preload < 1.0:
+        yield Problem(f"{here}.preload", f"{journal.preload:g}", "a share from 0 to below 1")
+    if journal.offset > 1.0:
+        yield Problem(f"{here}.offset", f"{journal.offset:g}", "a share of the arc from 0 to 1")
+    arc = 0.0 if journal.lobe_arc is None else journal.lobe_arc
+    if not 0.0 <= journal.lobes * arc <= 2.0 * math.pi * (1.0 + 1e-9) or (journal.lobe_arc is not None and not arc):
+        got = f"{journal.lobes} of {math.degrees(arc):.6g} deg"
+        yield Problem(f"{here}.lobe_arc", got, "lobes that fit on 360 deg")
 
 
 def _table(address: str, table: tuple[TableRow, ...]) -> Iterator[Problem]:

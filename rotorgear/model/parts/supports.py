@@ -9,12 +9,14 @@ from pydantic import Field
 from rotorgear.model.parts.fields import (
     Angle,
     Damping,
+    Density,
     Mass,
     Matrix6,
     NonNegativeLength,
     Part,
     PositiveLength,
     PositiveRatio,
+    Ratio,
     RotationalDamping,
     RotationalStiffness,
     SignedDamping,
@@ -22,6 +24,7 @@ from rotorgear.model.parts.fields import (
     Speed,
     Station,
     Stiffness,
+    Viscosity,
     Whole,
 )
 
@@ -122,8 +125,40 @@ class RollingElements(Part):
     outer_groove: PositiveRatio = Field(0.53, description="groove radius of the outer ring over the ball's diameter")
 
 
+class JournalGeometry(Part):
+    """A journal bearing with its oil film: plain, or with lobes."""
+
+    diameter: PositiveLength = Field(description="diameter of the journal")
+    length: PositiveLength = Field(description="length of the bearing, up to two diameters")
+    clearance: PositiveLength = Field(
+        description="radial clearance; of lobes where the gap of the centred journal is least"
+    )
+    viscosity: Viscosity = Field(description="dynamic viscosity of the oil in the film")
+    density: Density = Field(870.0, description="density of the oil, for the limit of laminar flow")
+    cavitation: Literal["reynolds", "half_sommerfeld"] = Field(
+        "reynolds",
+        description="how the film cavitates; reynolds: pressure and its slope vanish together; half_sommerfeld: negative "
+        "pressures of the full film are cut",
+    )
+    inlet: Angle | None = Field(
+        None,
+        description="angle of the oil inlet of a plain bearing, from +x about +z; default: where the gap is widest",
+    )
+    lobes: Whole = Field(1, description="number of lobes; 1: a plain bearing")
+    lobe_arc: Angle | None = Field(None, description="extent of a lobe; default: its share of the circle")
+    lobe_at: Angle = Field(0.0, description="angle of the middle of the first lobe, from +x about +z")
+    preload: Ratio = Field(0.0, description="preload of the lobes: 1 - clearance over (lobe radius - journal radius)")
+    offset: Ratio = Field(
+        0.5,
+        description="where in a lobe the gap of the centred journal is least, as a share of its arc in the sense of rotation; "
+        "0.5: symmetric; 1 with two lobes: offset halves",
+    )
+    around: Whole = Field(240, description="cells of the grid around the circle")
+    along: Whole = Field(12, description="cells of the grid over half the length")
+
+
 class Bearing(Part):
-    """A bearing between a shaft and the ground or a pedestal: linear, and in a transient with its rolling elements if given."""
+    """A bearing between a shaft and the ground, a pedestal or a casing: a stiffness, or a law by its geometry."""
 
     shaft: str = Field(description="name of the shaft")
     at: Station = Field(description="z of the bearing, or 'start' or 'end'")
@@ -135,10 +170,23 @@ class Bearing(Part):
     rolling: RollingElements | None = Field(
         None, description="rolling elements, which take the place of the stiffness in a transient"
     )
+    journal: JournalGeometry | None = Field(
+        None, description="journal bearing by its geometry, in place of stiffness, damping and rolling elements"
+    )
     pedestal: Pedestal | None = Field(None, description="flexible pedestal; default: rigid ground")
     casing: str | None = Field(
         None, description="name of the casing that the bearing stands on: its seat has the bearing's name"
     )
+
+    @property
+    def has_law(self) -> bool:
+        """Whether its geometry gives a force law."""
+        return self.rolling is not None or self.journal is not None
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether it has a stiffness that linear analyses take."""
+        return not self.has_law or self.stiffness is not None
 
 
 class Support(Part):
