@@ -51,6 +51,9 @@ _MOST_SOLUTIONS = 40
 _LOOKS = 2
 # A step that changes the objective by less than this share moves no number by more than a twentieth of what it is known to.
 _AT_REST = 1e-5
+# A misfit of so many times the number of values, and steps that lessen it by less than this share.
+_MISFIT = 2.0
+_CRAWL = 0.01
 
 
 @recorded
@@ -226,7 +229,14 @@ class _Problem:
             state = trial
             posterior = self._linear(state)
             damping = 0.1 * damping if damping > 0.1 else 0.0
-            if rests:
+            crawls = 0.0 <= gain < _CRAWL * state.objective and state.objective > _MISFIT * len(state.residual)
+            if crawls and looked < _LOOKS:
+                # A misfit that steps no longer lessen is a wrong pair, most likely: all pairs are open again.
+                looked += 1
+                damping = 0.0
+                state = self.approach(state, progress)
+                posterior = self._linear(state)
+            elif rests:
                 pairs = self._pairs(state.x, state.modes, posterior)
                 if pairs == state.pairs or looked == _LOOKS:
                     return state, posterior
@@ -270,7 +280,7 @@ class _Problem:
             points = self.shape_points(pair.line)
             if len(points):
                 y = self.given.real_shapes[pair.line, points]
-                residual += list(_off_subspace(modes.at_points[np.ix_(pair.near, points)].T, y))
+                residual += list(_off_subspace(modes.at_points[np.ix_(list(pair.near), points)].T, y))
                 share = np.hypot(self.shape_noise, self.looseness)
                 noise += [float(share * np.sqrt(np.mean(y**2)))] * len(points)
                 owner += [pair.line] * len(points)
@@ -292,7 +302,7 @@ class _Problem:
             rows.append(slopes[place[pair.mode]])
             points = self.shape_points(pair.line)
             if len(points):
-                basis = modes.at_points[np.ix_(pair.near, points)].T
+                basis = modes.at_points[np.ix_(list(pair.near), points)].T
                 share = np.linalg.lstsq(basis, self.given.real_shapes[pair.line, points], rcond=None)[0]
                 change = sum(a * shape_slopes[place[k]][points] for a, k in zip(share, pair.near, strict=True))
                 rows += list(_off_subspace(basis, np.asarray(change)))
