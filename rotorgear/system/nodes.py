@@ -205,7 +205,8 @@ def _body_motion(wheel: ReducedWheel, k: int) -> str:
 def _merged_places(model: Tables, shaft: str, wanted: list[tuple[float, str]]) -> tuple[list[float], list[str]]:
     """Return the different places of a shaft in order, and sentences about those that were merged."""
     part = model.shafts[shaft]
-    tolerance = MERGE_DISTANCE * part.length
+    # A shaft without length has one place, whatever number stands for it.
+    tolerance = MERGE_DISTANCE * part.length if part.sections else np.inf
     kept: list[tuple[float, str]] = []
     notes = []
     for z, what in sorted(wanted):

@@ -103,7 +103,7 @@ def response(
         system = setup.system
         modes, w = damped_modes(system, DAMPED * highest, speed)
         plant = Plant(system, setup.lines, (modes, w, zeta))
-        how, why = choose_method(method, len(chosen) * len(orders), system.n)
+        how, why = choose_method(method, len(chosen), len(orders), system.n)
         run = (
             direct_sweep(plant, orders, chosen, progress)
             if how == "direct"

@@ -18,6 +18,8 @@ from rotorgear.solvers.sparse.factor import factor_symmetric, single_thread
 TOLERANCE = 1e-6
 # Above so many unknowns in all, the basis is cheaper than direct solutions.
 _DIRECT_UP_TO = 100_000
+# A basis takes about so many direct solutions of every order until it is proved.
+_FEW_SPEEDS = 20
 _ROUNDS = 40
 _PER_ROUND = 6
 _SPEEDS_WHILE_GROWING = 24
@@ -37,10 +39,13 @@ class Sweep:
     method: str
 
 
-def choose_method(asked: str, points: int, n: int) -> tuple[str, str]:
+def choose_method(asked: str, speeds: int, orders: int, n: int) -> tuple[str, str]:
     """Return "direct" or "modal" and the reason."""
     if asked != "auto":
         return asked, "as asked for"
+    if speeds <= _FEW_SPEEDS:
+        return "direct", f"only {speeds} speed{'s'[: speeds != 1]}"
+    points = speeds * orders
     size = f"{points} solutions of {n} dofs"
     if points * n <= _DIRECT_UP_TO:
         return "direct", f"only {size}"

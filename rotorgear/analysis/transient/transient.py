@@ -23,7 +23,7 @@ from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.transient import TransientResult
-from rotorgear.solvers.time.explicit import Explicit
+from rotorgear.solvers.time.explicit import Explicit, check_length
 from rotorgear.solvers.time.exponential import Exponential
 from rotorgear.solvers.time.local_system import Integrator
 from rotorgear.system.system import System
@@ -107,7 +107,9 @@ def transient(
         gamma=gamma,
     )
     laps = {"model": clock.perf_counter() - begun}
-    if steps is None and not isinstance(integrator, Explicit):
+    if isinstance(integrator, Explicit):
+        check_length(task.local.local, grid.records * grid.spacing)
+    elif steps is None:
         grid = fine_enough(task, integrator, grid, accuracy or DEFAULT_ACCURACY, progress)
     laps["choice of step"] = clock.perf_counter() - begun - sum(laps.values())
     others = _comparisons(task, integrator, grid, progress) if error_estimate else []

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy.linalg as la
 from scipy.integrate import DOP853
 
 from rotorgear.errors import AnalysisError
@@ -18,6 +19,11 @@ from rotorgear.solvers.time.arguments import Answer, Kept, Turning
 from rotorgear.solvers.time.local_system import LocalSystem, PlainFields, Records, State, blank_records
 
 MOST_DOFS = 600
+# Evaluations of the forces that a run may take, at some 0.1 ms each and once more for the error estimate: a minute.
+MOST_EVALUATIONS = 2e5
+# A step spans about so many radians of the fastest motion, and evaluates the forces so often.
+_RADIANS = 6.0
+_STAGES = 12
 _FINEST = 1e-13
 
 
@@ -49,6 +55,24 @@ class Explicit:
                 f"{system.n} dofs are too many for the explicit integrator (at most {MOST_DOFS}); use newmark"
             )
         return ExplicitStepper(system, h, speed, max(self.relative, _FINEST))
+
+
+def check_length(system: LocalSystem, time: float) -> None:
+    """Refuse a time in s that explicit steps would not come through.
+
+    Raises:
+        AnalysisError: with the frequency that makes the steps small.
+    """
+    if system.n > MOST_DOFS or np.any(system.M.diagonal() <= 0.0):
+        return  # refused with their own sentences when the method is made ready
+    squared = la.eigvalsh(system.K.toarray(), system.M.toarray(), subset_by_index=[system.n - 1, system.n - 1])[0]
+    fastest = float(np.sqrt(max(squared, 0.0)))
+    evaluations = _STAGES * time * fastest / _RADIANS
+    if evaluations > MOST_EVALUATIONS:
+        raise AnalysisError(
+            f"{time:g} s would take about {evaluations:.1g} evaluations: explicit steps follow the fastest motion of the "
+            f"structure, {fastest / (2.0 * np.pi):.3g} Hz; ask for less time, or use newmark"
+        )
 
 
 @dataclass

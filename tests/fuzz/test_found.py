@@ -1,0 +1,43 @@
+"""What mutants brought to light, each with its seed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import rotorgear as rg
+from rotorgear.analysis.response.run_up import choose_method
+from rotorgear.errors import AnalysisError
+from tests.fuzz.runner import mutant
+from tests.paths import ROOT
+
+
+def model_of(seed: int, folder: Path) -> rg.Model:
+    path = folder / "mutant.toml"
+    path.write_text(mutant(seed)[1], encoding="utf-8")
+    return rg.load(path)
+
+
+def test_inertias_of_26_decades_leave_any_basis_of_the_rigid_motions(tmp_path: Path) -> None:
+    found = rg.modal(model_of(10025, tmp_path), modes=12)
+    assert found.rigid.sum() >= 9
+
+
+def test_places_on_a_shaft_without_length_are_one(tmp_path: Path) -> None:
+    found = rg.check(model_of(10934, tmp_path))
+    assert any("gears.hp_pinion at 9.99988867e-321 m taken to" in warning for warning in found.warnings)
+
+
+def test_few_speeds_are_solved_directly_however_many_orders_there_are() -> None:
+    assert choose_method("auto", 5, 87, 300)[0] == "direct"  # seed 10235: 12 CPU s in place of 63
+    assert choose_method("auto", 221, 87, 300)[0] == "modal"
+    assert choose_method("modal", 5, 87, 300)[0] == "modal"
+
+
+@pytest.mark.parametrize("name", ["jeffcott", "helical_pair"])
+def test_explicit_steps_that_would_not_come_through_are_refused(name: str) -> None:  # seeds 10488 and 5378
+    with pytest.raises(
+        AnalysisError, match=r"would take about .* evaluations: explicit steps follow the fastest motion"
+    ):
+        rg.transient(rg.load(ROOT / "models" / f"{name}.toml"), method="explicit")
