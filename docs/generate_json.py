@@ -105,6 +105,12 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
         (("sweep", ""),),
     ),
     (
+        "orbits",
+        "`rotorgear orbits MODEL --over ADDRESS=FROM:TO --json orbits.json`. Lists over points follow the branches; coefficients of\n"
+        "all harmonics are in the HDF5 file of `--save`.",
+        (("orbits", ""),),
+    ),
+    (
         "sweep accuracy",
         "`rotorgear accuracy MODEL --analysis sweep --json accuracy.json`.",
         (("sweep_convergence", ""),),

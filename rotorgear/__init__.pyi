@@ -43,6 +43,7 @@ from rotorgear.analysis.response.frequency_response import frf as frf
 from rotorgear.analysis.transient.transient import transient as transient
 from rotorgear.analysis.sweep.sweep import sweep as sweep
 from rotorgear.analysis.sweep.cluster import cluster as cluster
+from rotorgear.analysis.orbits.orbits import orbits as orbits
 from rotorgear.analysis.teeth.gear_sheet import gear as gear
 from rotorgear.analysis.casing.casing import casing as casing
 from rotorgear.analysis.teeth.mesh import mesh as mesh
@@ -99,6 +100,7 @@ from rotorgear.results.frequency_response import FrequencyResponse as FrequencyR
 from rotorgear.results.transient import TransientResult as TransientResult
 from rotorgear.results.sweep import SweepResult as SweepResult
 from rotorgear.results.sweep_convergence import SweepConvergenceStudy as SweepConvergenceStudy
+from rotorgear.results.orbits import OrbitsResult as OrbitsResult
 from rotorgear.results.portrait import Portraits as Portraits
 from rotorgear.results.gear_sheet import GearSheet as GearSheet
 from rotorgear.results.casing import CasingSurvey as CasingSurvey

@@ -8,6 +8,7 @@ from rotorgear.plots.run_up import response as response
 from rotorgear.plots.frf import frf as frf
 from rotorgear.plots.transient import transient as transient
 from rotorgear.plots.sweep import sweep as sweep
+from rotorgear.plots.orbits import orbits as orbits
 from rotorgear.plots.gear_mesh import gear as gear
 from rotorgear.plots.mesh_cycle import mesh as mesh
 from rotorgear.plots.mesh_map import mesh_map as mesh_map
@@ -21,7 +22,7 @@ from rotorgear.plots.waterfall import waterfall as waterfall
 from rotorgear.plots.transient import mesh_forces as mesh_forces
 from rotorgear.plots.transient import transmission_error as transmission_error
 from rotorgear.plots.transient import spectra as spectra
-from rotorgear.plots.transient import orbits as orbits
+from rotorgear.plots.transient import shaft_orbits as shaft_orbits
 from rotorgear.plots.transient import energy as energy
 from rotorgear.plots.transient import spectrogram as spectrogram
 from rotorgear.plots.sweep import bifurcation as bifurcation

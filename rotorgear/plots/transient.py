@@ -32,7 +32,7 @@ def write_pictures(result: TransientResult, directory: str | Path) -> list[Path]
     plans: list[Callable[..., Any]] = [mesh_forces, transmission_error, spectra] if result.contact else []
     plans.append(energy)
     if _orbits(result):
-        plans.append(orbits)
+        plans.append(shaft_orbits)
     if np.ptp(result.speed) > 0.0:
         plans.append(spectrogram)
     return save_all({f"{draw.__name__}.png": partial(draw, result) for draw in plans}, directory)
@@ -160,7 +160,7 @@ def _orbits(result: TransientResult) -> list[str]:
     return [name for name in ends if f"{name} displacement y" in result.channel and name.startswith("bearings.")]
 
 
-def orbits(result: TransientResult, fig: Any = None) -> np.ndarray:
+def shaft_orbits(result: TransientResult, fig: Any = None) -> np.ndarray:
     """Draw the path of the shaft in each bearing about its mean, over the last periods.
 
     Args:

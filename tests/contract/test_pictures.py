@@ -28,7 +28,8 @@ PICTURES = {
     "mesh_map": ("mesh_map", "mesh_quantity"),
     "root_stress": ("root_stress",),
     "convergence": ("convergence",),
-    "transient": ("transient", "mesh_forces", "transmission_error", "spectra", "orbits", "energy", "spectrogram"),
+    "transient": ("transient", "mesh_forces", "transmission_error", "spectra", "shaft_orbits", "energy", "spectrogram"),
+    "orbits": ("orbits",),
     "sweep": ("sweep", "bifurcation", "sections", "portraits", "portrait_spectra"),
 }
 # Of a stage of pyvista, of a map over two parameters, and of minutes of contact analyses: each has its own test or a long one.
@@ -67,6 +68,7 @@ def results() -> dict[str, Any]:
             steps=40,
             error_estimate=False,
         ),
+        "orbits": rg.orbits(loose, {"operation.speed": "4000 rpm:4200 rpm"}, step=0.5),
         "sweep": rg.sweep(
             loose, {"operation.speed": ["3000 rpm", "3250 rpm"]}, steps=80, discard=20, sample=20, portraits=2
         ),

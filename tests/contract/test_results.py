@@ -81,6 +81,7 @@ def example(kind: str) -> Result:
         "mesh_map": lambda: rg.mesh_map(rg.loads(pair_file()), over={"torque": [500.0]}, preset="preview", positions=8),
         "transient": lambda: rg.transient(model("backlash_pair"), time=2e-3, discard=1e-3, error_estimate=False),
         "sweep": lambda: rg.sweep(model("backlash_pair"), {"operation.speed": ["8000 rpm"]}, discard=2, sample=9),
+        "orbits": lambda: rg.orbits(model("backlash_pair"), {"operation.speed": "4000 rpm:4200 rpm"}, step=0.5),
         "spectral_lines": lambda: rg.spectral_lines(
             example("transient"),
             f"force {example('transient').contact[0]}",  # type: ignore[attr-defined]

@@ -26,7 +26,7 @@ except ImportError:
 
 warnings.filterwarnings("ignore", category=NumbaExperimentalFeatureWarning)
 # Places in the package whose functions are compiled, or compiled into others.
-COMPILED = ("forces", "solvers/contact", "solvers/time", "solvers/lanes")
+COMPILED = ("forces", "solvers/contact", "solvers/time", "solvers/lanes", "solvers/periodic")
 # Folders of other sources that are kept beside: of other checkouts or versions in use at the same time.
 MOST_VERSIONS = 12
 # Sums may be reordered so that they vectorise; NaN and infinity keep their meaning, so that divergence is seen.

@@ -1,0 +1,1 @@
+"""Periodic motions as objects: branches over a parameter, their stability, and special points."""

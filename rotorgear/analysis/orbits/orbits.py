@@ -1,0 +1,229 @@
+"""Periodic motions over a parameter: branches with stable and unstable parts, Floquet multipliers, special points."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from rotorgear.analysis.common.notes import left_out
+from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.request import check_whole, missed
+from rotorgear.analysis.orbits.family import SystemFamily, range_of
+from rotorgear.analysis.orbits.follow import AnyOrbits, Branch, doubled_branches, main_branches
+from rotorgear.analysis.orbits.gather import contacts_of, gathered
+from rotorgear.analysis.orbits.refined import largest_error
+from rotorgear.analysis.orbits.start import first_node
+from rotorgear.analysis.orbits.verify import verified
+from rotorgear.analysis.static.ground import mean_torsion_notes
+from rotorgear.analysis.transient.notes import transient_left_out
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, silent
+from rotorgear.results.orbits import OrbitsResult
+from rotorgear.solvers.periodic.arclength import Walk
+from rotorgear.solvers.periodic.balance import Grid
+from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits, static_displacements
+from rotorgear.solvers.periodic.plant import Plant
+from rotorgear.solvers.periodic.shooting import MOST_COORDINATES, MOST_RATIO, ShootingOrbits
+from rotorgear.solvers.sparse.factor import single_thread
+
+HARMONICS = 30
+# Instants for each harmonic: aliasing, not the cut, sets the error.
+INSTANTS = 16
+METHODS = ("auto", "harmonic balance", "shooting")
+_UNLOADED = 1e-6
+
+
+@recorded
+def orbits(
+    model: Model,
+    over: Mapping[str, str | Sequence[float | str]],
+    *,
+    harmonics: int | None = None,
+    instants: int | None = None,
+    method: str = "auto",
+    excite: str | None = None,
+    from_transient: bool = False,
+    switch: bool = False,
+    verify: bool = False,
+    accuracy: float | None = None,
+    step: float = 0.04,
+    points: int = 600,
+    elements: int | None = None,
+    progress: Progress = silent,
+) -> OrbitsResult:
+    """Follow the periodic motions of a model over a parameter, through folds, with the stability of each.
+
+    Args:
+        model: the model.
+        over: {"operation.speed": "3000 rpm:6000 rpm"}: an address and both ends of its range, as a text or two values.
+        harmonics: of the base period; 30 where not given.
+        instants: at which laws are evaluated in a base period; 16 for each harmonic where not given.
+        method: harmonic balance, shooting (small systems), or auto, which takes shooting where it serves.
+        excite: name of a mesh (or another part that varies): its stage excites alone, all others are at their mean.
+        from_transient: begin from the motion that a transient of 400 periods settles on, not from the static state.
+        switch: follow the branches of twice the period behind period doublings, too.
+        verify: start transients on some of the motions and tell how they leave them.
+        accuracy: wanted relative accuracy of the motions; harmonics and instants are doubled until it is reached.
+        step: longest step along a branch as a share of the range. points: of a branch, at most.
+        elements: basic elements in each shaft segment; one of second order where not given, as in `transient`.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: nothing repeats, a common period that is too long, laws without periodic motions, or a request that makes
+            no sense.
+    """
+    begun = clock.perf_counter()
+    _check(over, harmonics, instants, method, accuracy, step, points)
+    ((address, ends),) = over.items()
+    along = range_of(model, address, ends)
+    with single_thread(0):
+        progress(0.0, "model")
+        family = SystemFamily(model, [along], excite, elements)
+        contacts = contacts_of(family)
+        scale = _scale(family.plant(0.0))
+        H = harmonics or HARMONICS
+        laps = {"model": clock.perf_counter() - begun}
+        doublings = 0
+        while True:
+            N = _even(instants * 2**doublings if instants else INSTANTS * H)
+            problem, why = _equations(method, family, Grid(H, N, family.order), scale)
+            used = clock.process_time()
+            first = first_node(problem, family, from_transient=from_transient, progress=progress)
+            branches = main_branches(problem, first, Walk(longest=step, most=points), progress)
+            if switch:
+                for branch in list(branches):
+                    branches += doubled_branches(branch, Walk(longest=step, most=points), progress)
+            used = clock.process_time() - used
+            progress(0.95, "error estimate")
+            error = largest_error(branches[0], contacts.column)
+            if accuracy is None or error <= accuracy or doublings >= 2 or isinstance(problem, ShootingOrbits):
+                break
+            doublings += 1
+            H *= 2
+        laps["branches"] = clock.perf_counter() - begun - laps["model"]
+        fields = gathered(branches, contacts, family, along, H)
+        checks = verified(branches, family, contacts, along) if verify else ()
+    laps["total"] = clock.perf_counter() - begun
+    short = missed(accuracy, error, "ask for more harmonics (--harmonics) or instants (--instants)")
+    progress(1.0, "done")
+    count = sum(len(branch.nodes) for branch in branches)
+    return OrbitsResult(
+        model=model,
+        address=(along.address,),
+        unit=(along.unit,),
+        per_unit=np.array([along.per_unit]),
+        excited=family.label,
+        order=family.order,
+        contact=contacts.label,
+        **fields,  # type: ignore[arg-type]
+        verifications=checks,
+        harmonics=H,
+        instants=N,
+        error_estimate=error,
+        cpu_per_point=used / max(count, 1),
+        dofs=family.local.local.n,
+        seconds=laps,
+        method=why,
+        status=short or "success",
+        left_out=(
+            *left_out(family.local.system, family.plant(0.0).speed, rolls=True),
+            *transient_left_out(family.local),
+            *mean_torsion_notes(family.local.system, family.plant(0.0).speed),
+            *family.notes,
+            *_modes_left_out(problem),
+        ),
+        warnings=(*_warnings(branches), *((short,) if short else ())),
+    )
+
+
+def _check(
+    over: Mapping[str, object],
+    harmonics: int | None,
+    instants: int | None,
+    method: str,
+    accuracy: float | None,
+    step: float,
+    points: int,
+) -> None:
+    if len(over) != 1:
+        raise AnalysisError(f"over: got {len(over)} parameters, expected one")
+    for name, count in (("harmonics", harmonics), ("instants", instants), ("points", points)):
+        if count is not None:
+            check_whole(f"the number of {name}", count)
+    if instants is not None and instants < 4 * (harmonics or HARMONICS) + 2:
+        raise AnalysisError(
+            f"instants: got {instants}, expected at least {4 * (harmonics or HARMONICS) + 2}, four for each harmonic; "
+            "16 for each keep aliasing small"
+        )
+    if method not in METHODS:
+        raise AnalysisError(f"method: got '{method}', expected one of {', '.join(METHODS)}")
+    if accuracy is not None and not 1e-9 <= accuracy < 1.0:
+        raise AnalysisError(f"the accuracy must lie between 1e-9 and 1, got {accuracy:g}")
+    if not 1e-4 <= step <= 0.5:
+        raise AnalysisError(f"step: got {step:g}, expected a share of the range between 1e-4 and 0.5")
+
+
+def _even(count: int) -> int:
+    return count + count % 2
+
+
+def _scale(plant: Plant) -> np.ndarray:
+    """Sizes of the local displacements: their static ones, at least a micrometre's share where there are none."""
+    d = np.abs(static_displacements(plant) if plant.m else np.zeros(0))
+    k = np.diag(plant.forces.reference_stiffness)
+    least = np.where(k > 0.0, _UNLOADED, 0.0)
+    largest = max(float(d[k > 0.0].max(initial=0.0)), _UNLOADED)
+    return np.maximum(np.where(k > 0.0, d, largest), least)
+
+
+def _equations(method: str, family: SystemFamily, grid: Grid, scale: np.ndarray) -> tuple[AnyOrbits, str]:
+    """The equations and what they are, in words.
+
+    Raises:
+        AnalysisError: shooting was asked for, and the system is too large for it.
+    """
+    plant = family.plant(0.0)
+    coordinates = plant.M.shape[0] - plant.free.shape[1]
+    small = coordinates <= MOST_COORDINATES
+    if method != "harmonic balance" and small:
+        w = grid.frequency(plant.speed)
+        trial = HarmonicOrbits(family.plant, grid, scale)
+        ratio = trial.modes(0.0).highest / w
+        if ratio <= MOST_RATIO:
+            own = ShootingOrbits(family.plant, grid.order, scale, grid.harmonics, grid.instants)
+            return own, f"shooting with steps to the switches of the laws, {own.size} states"
+    if method == "shooting":
+        raise AnalysisError(
+            f"method: shooting serves up to {MOST_COORDINATES} coordinates that are not stiff, this model has {coordinates}; "
+            "take harmonic balance"
+        )
+    return (
+        HarmonicOrbits(family.plant, grid, scale),
+        f"harmonic balance of {plant.m} local displacements, {grid.harmonics} harmonics at {grid.instants} instants, arc length",
+    )
+
+
+def _modes_left_out(problem: AnyOrbits) -> tuple[str, ...]:
+    if isinstance(problem, ShootingOrbits):
+        return ()
+    basis = problem.modes(0.0)
+    if basis.complete:
+        return ()
+    return (
+        f"of Floquet multipliers: modes beyond the lowest {basis.count} (to {basis.highest / 2.0 / np.pi:.4g} Hz) but for the "
+        "static shapes of the contacts; the motions themselves hold all",
+    )
+
+
+def _warnings(branches: list[Branch]) -> list[str]:
+    notes = [
+        f"branch {branch.name} ended early, at {len(branch.nodes)} points: {branch.ended}"
+        for branch in branches
+        if branch.ended not in ("the end of the range", "the branch closed")
+    ]
+    if not any(one.stable for branch in branches for one in branch.nodes):
+        notes.append("no motion of the range is stable: a transient settles on none of them")
+    return notes

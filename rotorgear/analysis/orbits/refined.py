@@ -1,0 +1,60 @@
+"""Error of motions along a branch: from twice the harmonics and instants, or from a wider tolerance."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rotorgear.analysis.orbits.follow import Branch
+from rotorgear.errors import ConvergenceError
+from rotorgear.solvers.periodic.arclength import at_value
+from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
+
+# Points of a branch that are solved anew.
+_POINTS = 3
+
+
+def largest_error(branch: Branch, columns: np.ndarray) -> float:
+    """Largest relative difference of the displacements' coefficients at some points from a finer solution.
+
+    Of harmonic balance the finer solution has twice the harmonics and instants. Of shooting it is harmonic balance with many
+    instants, another method: their difference is the larger error of both.
+
+    Args:
+        branch: a branch. columns: of the mesh contacts among the local displacements.
+    """
+    orbits = branch.orbits
+    numbers = np.unique(np.linspace(0, len(branch.nodes) - 1, _POINTS + 2).round().astype(int)[1:-1])
+    # Beside a fold both solutions of one value lie next to each other: there the value says too little.
+    sound = [i for i in numbers if abs(branch.nodes[i].node.tangent[-1]) > 1e-3]
+    found = []
+    for i in sound:
+        node = branch.nodes[i].node
+        coarse = orbits.cycle(node.y, node.p).displacement
+        finer = finer_of(orbits)
+        c = np.zeros((finer.grid.harmonics + 1, coarse.shape[1]), complex)
+        c[: len(coarse)] = coarse
+        try:
+            finer.settle_on(node.p)
+            better = finer.coefficients(at_value(finer, finer.unknowns(c), node.p).y)
+        except ConvergenceError:
+            found.append(np.nan)
+            continue
+        size = np.abs(better[1:, columns]).max(axis=0)
+        found.append(float((np.abs(better - c)[:, columns].max(axis=0) / size).max()))
+    return float(max(found, default=float("nan")))
+
+
+def finer_of(orbits: object) -> HarmonicOrbits:
+    """Equations of twice the harmonics and instants."""
+    from rotorgear.solvers.periodic.balance import Grid
+    from rotorgear.solvers.periodic.shooting import ShootingOrbits
+
+    if isinstance(orbits, ShootingOrbits):
+        H = 2 * orbits.harmonics * orbits.periods
+        grid = Grid(H, 2 * 16 * H, orbits.order / orbits.periods)
+        return HarmonicOrbits(orbits._plant_at, grid, orbits.scale)
+    assert isinstance(orbits, HarmonicOrbits)
+    grid = replace(orbits.grid, harmonics=2 * orbits.grid.harmonics, instants=2 * orbits.grid.instants)
+    return HarmonicOrbits(orbits._plant_at, grid, orbits.scale)

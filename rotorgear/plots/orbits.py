@@ -1,0 +1,70 @@
+"""Picture of periodic motions over a parameter: stable and unstable branches, special points, size of the multipliers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rotorgear.old_names import warn_old
+from rotorgear.plots.colours import COLOURS
+from rotorgear.plots.figure import figure_for
+from rotorgear.plots.transient import shaft_orbits
+from rotorgear.results.orbits import OrbitsResult
+from rotorgear.results.transient import TransientResult
+
+_MARKERS = {"fold": "o", "period doubling": "D", "Neimark-Sacker": "s"}
+_SIZE = (7.5, 6.0)
+
+
+def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: int | None = None) -> np.ndarray:
+    """Draw the peak to peak of a contact's approach over the parameter: solid where stable, dashed where unstable.
+
+    Args:
+        result: periodic motions over a parameter.
+        fig: figure to draw on; a new one for None.
+        contact: its number, counted from 0; the one that moves most where not given.
+
+    Returns:
+        The axes: peak to peak, and the largest Floquet multiplier below it.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    if isinstance(result, TransientResult):
+        warn_old("picture of a transient", "orbits", "shaft_orbits")
+        return shaft_orbits(result, fig)
+    axes = figure_for(fig, _SIZE, "").subplots(2, 1, sharex=True, height_ratios=(3, 1))
+    sizes = 1e6 * result.peak_to_peak_approach
+    c = int(np.argmax(sizes.max(axis=0))) if contact is None else contact
+    x = result.value / result.per_unit[0]
+    largest = np.nanmax(np.abs(result.multipliers), axis=1)
+    for number, branch in enumerate(result.branches):
+        own = np.flatnonzero(result.branch == number)
+        colour = COLOURS[number % len(COLOURS)]
+        for stable, style in ((True, "-"), (False, "--")):
+            # A piece between two points is drawn as the first of them is.
+            kept = result.stable[own] == stable
+            shown = kept | np.roll(kept, 1)
+            shown[0] = kept[0]
+            label = f"{branch.name}, {'stable' if stable else 'unstable'}"
+            if kept.any():
+                y = np.where(shown, sizes[own, c], np.nan)
+                axes[0].plot(x[own], y, style, color=colour, lw=1.4, label=label)
+        axes[1].plot(x[own], largest[own], "-", color=colour, lw=1.0)
+    for kind, marker in _MARKERS.items():
+        points = [one for one in result.special_points if one.kind == kind]
+        if points:
+            at = [one.value / result.per_unit[0] for one in points]
+            y = [1e6 * float(np.ptp(one.approach_range[c])) for one in points]
+            axes[0].plot(at, y, marker, color="k", mfc="w", ms=6, ls="none", label=kind, zorder=5)
+    axes[1].axhline(1.0, color="k", lw=0.6)
+    axes[0].set_ylabel("approach, peak to peak, um")
+    axes[0].set_title(f"{result.contact[c]}: periodic motions", fontsize=9)
+    axes[0].legend(fontsize=7)
+    axes[1].set_ylabel("largest |mu|")
+    unit = f", {result.unit[0]}" if result.unit[0] else ""
+    axes[1].set_xlabel(f"{result.address[0]}{unit}")
+    for one in axes:
+        one.grid(alpha=0.25)
+    return np.asarray(axes)

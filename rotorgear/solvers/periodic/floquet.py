@@ -1,0 +1,204 @@
+"""Floquet multipliers of a periodic motion in complex modes, from the tangents of the laws along it.
+
+    delta u = [k - K(t), c - C(t)] [delta d; delta d'] moves the modes,   z' = s z + Y_f B delta u
+
+Over each of N steps the tangents are their mean, delta u is linear and the modes are exact: second order in the step, also
+where tangents jump within it. Multipliers are eigenvalues of the map over a period.
+Seydel, Practical Bifurcation and Stability Analysis
+(Springer 2010), ch. 7; Hochbruck and Ostermann, Acta Numerica 19 (2010) 209.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from rotorgear.solvers.periodic.balance import pairs
+from rotorgear.solvers.periodic.plant import Plant
+from rotorgear.solvers.periodic.samples import Samples, answered
+from rotorgear.solvers.time.exponential import _phi
+
+# Instants whose tangents make the mean of a step.
+FINER = 4
+# Systems up to this size keep all modes; larger ones those below some multiple of what excites, and static shapes.
+_ALL = 60
+_LEAST = 24
+_MOST = 120
+
+
+@dataclass(frozen=True)
+class ModalBasis:
+    """V (n, r), M-orthonormal: elastic modes and static shapes of the local forces; `complete` where it spans all motions.
+
+    `highest`: frequency of its highest mode in rad/s. `loose`: whether velocity terms tie motions without strain to it, which
+    then belong to it.
+    """
+
+    V: np.ndarray
+    complete: bool
+    highest: float
+    count: int
+
+
+def basis_of(plant: Plant, up_to: float) -> ModalBasis:
+    """The modes of a plant that matter up to a frequency in rad/s."""
+    M = plant.M
+    K = sp.csc_array(0.5 * (plant.K + plant.K.T))
+    R = plant.free
+    n = M.shape[0]
+    if n <= _ALL:
+        dense = M.toarray()
+        stiff = K.toarray()
+        w2, V = la.eigh(stiff, dense)
+        V = _free_of(V, R, M)[:, : n - R.shape[1]] if R.shape[1] else V
+        count = n - R.shape[1]
+        highest = float(np.sqrt(max(w2[-1], 0.0)))
+        complete = True
+    else:
+        from rotorgear.solvers.eigen.eigen import lowest_modes
+
+        wanted = min(_LEAST, n)
+        while True:
+            found = lowest_modes(M, K, count=wanted)
+            w2 = np.asarray(found.eigenvalues)
+            if found.complete or w2[-1] >= up_to**2 or wanted >= min(_MOST, n):
+                break
+            wanted = min(2 * wanted, _MOST, n)
+        V = np.asarray(found.vectors[:, found.rigid_count :])
+        count = V.shape[1]
+        highest = float(np.sqrt(max(w2[-1], 0.0)))
+        V = _free_of(np.hstack([V, plant.still.X]), R, M)
+        complete = False
+    if R.shape[1] and _tied(plant, R):
+        V = np.hstack([R, V])
+    return ModalBasis(V, complete, highest, count)
+
+
+def _free_of(V: np.ndarray, R: np.ndarray, M: sp.csc_array) -> np.ndarray:
+    """M-orthonormal vectors that span those given without the motions R."""
+    for _ in range(2):
+        V = V - R @ (R.T @ (M @ V))
+    size = np.sqrt(np.maximum(np.einsum("ij,ij->j", V, M @ V), 1e-300))
+    V = V / size
+    w, U = la.eigh(V.T @ (M @ V))
+    kept = w > 1e-10 * w[-1]
+    return np.asarray(V @ (U[:, kept] / np.sqrt(w[kept]))[:, ::-1])
+
+
+def _tied(plant: Plant, R: np.ndarray) -> bool:
+    """Whether velocity terms or local forces couple motions without strain to the others."""
+    D = plant.D @ R
+    own = plant.M @ R @ (R.T @ D)
+    other = plant.D.T @ R
+    own_other = plant.M @ R @ (R.T @ other)
+    scale = abs(plant.D).max() if plant.D.nnz else 0.0
+    size = np.abs(R).max(initial=0.0)
+    loose = max(np.abs(D - own).max(initial=0.0), np.abs(other - own_other).max(initial=0.0)) > 1e-9 * scale * size
+    # A torque that does not depend on the motion moves nothing else.
+    now = answered(np.zeros(1), np.zeros((1, plant.m)), np.zeros((1, plant.m)), plant.forces, plant.speed)
+    a, b, flat = pairs(plant.forces.first)
+    felt = np.zeros(plant.m, bool)
+    for tangent, reference in (
+        (now.Kd, plant.forces.reference_stiffness),
+        (now.Kv, plant.forces.reference_damping),
+    ):
+        np.logical_or.at(felt, b, (tangent[0, flat] != 0.0) | (reference[a, b] != 0.0))
+    seen = np.abs(plant.B.T @ R).max(axis=1, initial=0.0) * felt
+    return bool(loose or seen.max(initial=0.0) > 1e-9 * np.abs(plant.B).max(initial=0.0) * size)
+
+
+def multipliers(plant: Plant, basis: ModalBasis, fine: Samples) -> np.ndarray:
+    """Floquet multipliers, largest first, from the laws at FINER instants a step of one period.
+
+    Args:
+        plant: at the motion's own value. basis: its modes. fine: N FINER instants.
+    """
+    return sorted_by_size(la.eigvals(monodromy(plant, basis, fine)))
+
+
+def sorted_by_size(values: np.ndarray) -> np.ndarray:
+    """Largest first; of a pair the one above the real axis."""
+    return np.asarray(values[np.lexsort((-values.imag, -np.round(np.abs(values), 12)))])
+
+
+def monodromy(plant: Plant, basis: ModalBasis, fine: Samples) -> np.ndarray:
+    """The map (2 r, 2 r) of small deviations [q, q'/w0] in the basis over one period."""
+    V = basis.V
+    r = V.shape[1]
+    m = plant.m
+    K = V.T @ (plant.K @ V)
+    D = V.T @ (plant.D @ V)
+    B = V.T @ plant.B
+    N = len(fine.t) // FINER
+    period = (fine.t[1] - fine.t[0]) * len(fine.t)
+    h = period / N
+    # In w = [unit q, q'] with unit from the diagonal of K an undamped structure has orthogonal eigenvectors.
+    stiff = np.sqrt(np.maximum(np.diag(K), 0.0))
+    unit = np.maximum(stiff, 0.01 / period)
+    A = np.zeros((2 * r, 2 * r))
+    A[:r, r:] = np.diag(unit)
+    A[r:, :r] = -K / unit
+    A[r:, r:] = -D
+    forced = np.vstack([np.zeros((r, m)), B])
+    s, X = la.eig(A)
+    condition = np.linalg.cond(X, 1)
+    if condition > 1e9:
+        return _dense_monodromy(A, forced, B, unit, plant, fine, h)
+    Y = np.linalg.inv(X)
+    kept = s.imag >= 0.0
+    weight = np.where(s[kept].imag > 0.0, 2.0, 1.0)
+    s = s[kept]
+    Y = Y[kept]
+    shapes = X[:, kept] * weight
+    e = np.exp(s * h)[:, None]
+    first, second = _phi(s * h)
+    gain = Y @ forced
+    Q0 = (h * (first - second))[:, None] * gain
+    Q1 = (h * second)[:, None] * gain
+    rows = np.vstack([B.T @ (shapes[:r] / unit[:, None]), B.T @ shapes[r:]])
+    S = _means(plant, fine, N)
+    lift = np.real(rows @ Q1)
+    implicit = np.linalg.solve(np.eye(m) - S @ lift, S)
+    z = Y.astype(complex)
+    seen = np.real(rows @ z)
+    for k in range(N):
+        z = e * z + Q0 @ (S[k] @ seen)
+        free = np.real(rows @ z)
+        u = implicit[k] @ free
+        z += Q1 @ u
+        seen = free + lift @ u
+    return np.asarray(np.real(shapes @ z))
+
+
+def _means(plant: Plant, fine: Samples, N: int) -> np.ndarray:
+    """[k - K, c - C], its mean over each step, (N, m, 2 m): each step by the trapezoidal rule on its instants."""
+    m = plant.m
+    a, b, flat = pairs(plant.forces.first)
+    S = np.zeros((N, m, 2 * m))
+    for place, reference, tangent in (
+        (0, plant.forces.reference_stiffness, fine.Kd),
+        (m, plant.forces.reference_damping, fine.Kv),
+    ):
+        values = reference[a, b] - tangent[:, flat]
+        ends = 0.5 * (values + np.roll(values, -1, axis=0))
+        S[:, a, place + b] = ends.reshape(N, FINER, -1).mean(axis=1)
+    return S
+
+
+def _dense_monodromy(
+    A: np.ndarray, forced: np.ndarray, B: np.ndarray, unit: np.ndarray, plant: Plant, fine: Samples, h: float
+) -> np.ndarray:
+    """The same by exponentials of whole matrices, where eigenvectors lie too near to each other."""
+    r = len(unit)
+    N = len(fine.t) // FINER
+    S = _means(plant, fine, N)
+    rows = np.zeros((2 * plant.m, 2 * r))
+    rows[: plant.m, :r] = B.T / unit
+    rows[plant.m :, r:] = B.T
+    total = np.eye(2 * r)
+    for k in range(N):
+        total = la.expm((A + forced @ (S[k] @ rows)) * h) @ total
+    return np.asarray(total)

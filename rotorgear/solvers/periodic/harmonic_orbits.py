@@ -1,0 +1,225 @@
+"""Periodic motions of a family of plants by harmonic balance, as equations for the continuation."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rotorgear.solvers.periodic.arclength import Linear
+from rotorgear.solvers.periodic.balance import Grid, balance, coefficients, samples_of, synthesised, unknowns
+from rotorgear.solvers.periodic.cycle import Cycle
+from rotorgear.solvers.periodic.floquet import FINER, ModalBasis, basis_of, multipliers
+from rotorgear.solvers.periodic.plant import Plant, PlantAt
+from rotorgear.solvers.periodic.receptances import Receptances
+
+# Step of a difference in the parameter, as a share of the range.
+_DIFFERENCE = 1e-6
+# Modes up to so many base frequencies, and so many times the contact's own, belong to the map over a period.
+_BASES = 16.0
+_CONTACTS = 3.0
+
+
+class HarmonicOrbits:
+    """Coefficients of the local displacements over their scale, as unknowns; the parameter from 0 to 1.
+
+    Args:
+        plant_at: the plant at a value of the parameter. grid: harmonics and instants.
+        scale: displacements (m,) that count as 1.
+    """
+
+    method = "harmonic balance"
+
+    def __init__(self, plant_at: PlantAt, grid: Grid, scale: np.ndarray) -> None:
+        self._plant_at = plant_at
+        self.grid = grid
+        self.scale = scale
+        self._receptances = Receptances(grid.harmonics, grid.order)
+        self._exact: tuple[float, np.ndarray, np.ndarray] | None = None
+        self._last: tuple[bytes, float, np.ndarray] | None = None
+        self._basis: ModalBasis | None = None
+        self._basis_of: Plant | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return (2 * self.grid.harmonics + 1) * self.scale.size
+
+    def settle_on(self, p: float) -> None:
+        """Solve for the exact receptances at a value."""
+        if self._exact is None or self._exact[0] != p:
+            R, X = self._receptances.exact(self._plant_at(p))
+            self._exact = (p, R, X)
+
+    def _receptance(self, p: float) -> np.ndarray:
+        if self._exact is not None and self._exact[0] == p:
+            return self._exact[1]
+        if self._exact is None:
+            self.settle_on(p)
+            assert self._exact is not None
+            return self._exact[1]
+        return self._receptances.near(self._plant_at(p))
+
+    def coefficients(self, y: np.ndarray) -> np.ndarray:
+        """c (H + 1, m) in m or rad from unknowns."""
+        return coefficients(y, self.grid, self.scale.size) * self.scale
+
+    def unknowns(self, c: np.ndarray) -> np.ndarray:
+        """Unknowns of coefficients."""
+        return unknowns(c / self.scale)
+
+    def start(self, p: float) -> np.ndarray:
+        """Unknowns of the static state at a value."""
+        plant = self._plant_at(p)
+        c = np.zeros((self.grid.harmonics + 1, plant.m), complex)
+        c[0] = static_displacements(plant)
+        return self.unknowns(c)
+
+    def from_samples(self, d: np.ndarray) -> np.ndarray:
+        """Unknowns of displacements (N, m) over a period."""
+        c = np.fft.rfft(d, axis=0)[: self.grid.harmonics + 1] / len(d)
+        c[1:] *= 2.0
+        full = np.zeros((self.grid.harmonics + 1, d.shape[1]), complex)
+        full[: len(c)] = c
+        return self.unknowns(full)
+
+    def residual(self, y: np.ndarray, p: float) -> np.ndarray:
+        """c - d0 - R u over the scale."""
+        plant = self._plant_at(p)
+        c = self.coefficients(y)
+        found = balance(c, plant, self.grid, tangents=False)
+        return self._rest(c, plant, self._receptance(p), found.u)
+
+    def _rest(self, c: np.ndarray, plant: Plant, R: np.ndarray, u: np.ndarray) -> np.ndarray:
+        rest = c - np.einsum("hab,hb->ha", R, u)
+        rest[0] -= plant.still.d
+        return unknowns(rest / self.scale)
+
+    def linear(self, y: np.ndarray, p: float) -> Linear:
+        """The residual and its derivatives; that by the parameter by a difference."""
+        plant = self._plant_at(p)
+        c = self.coefficients(y)
+        R = self._receptance(p)
+        found = balance(c, plant, self.grid)
+        rest = self._rest(c, plant, R, found.u)
+        H = self.grid.harmonics
+        m = plant.m
+        moved = (R @ found.tangent.reshape(H + 1, m, -1)).reshape(H + 1, m, 2 * H + 1, m)
+        moved = moved * self.scale / self.scale[None, :, None, None]
+        J = np.eye(self.size)
+        J[: (H + 1) * m] -= moved.real.reshape((H + 1) * m, -1)
+        J[(H + 1) * m :] -= moved[1:].imag.reshape(H * m, -1)
+        # Between exact solutions the rational form is smooth: both ends of the difference come from it.
+        ends = []
+        for value in (p - _DIFFERENCE, p + _DIFFERENCE):
+            other = self._plant_at(value)
+            u = balance(c, other, self.grid, tangents=False).u
+            ends.append(self._rest(c, other, self._receptances.near(other), u))
+        return Linear(rest, J, (ends[1] - ends[0]) / (2.0 * _DIFFERENCE))
+
+    def _modes(self, plant: Plant) -> ModalBasis:
+        """The basis of the map over a period: that of the last plant where inertia and stiffness are the same."""
+        if self._basis is None or self._basis_of is None or self._basis_of.K is not plant.K:
+            contact = plant.forces.reference_stiffness
+            root = np.sqrt(np.maximum(np.diag(contact), 0.0))
+            R = plant.still.R * root * root[:, None]
+            alive = np.linalg.eigvalsh(0.5 * (R + R.T)).max(initial=0.0)
+            w = self.grid.frequency(plant.speed)
+            own = _contact_frequency(plant) if alive > 0.0 else 0.0
+            self._basis = basis_of(plant, max(_BASES * w, _CONTACTS * own))
+            self._basis_of = plant
+        return self._basis
+
+    def modes(self, p: float) -> ModalBasis:
+        """The basis of the map over a period at a value."""
+        return self._modes(self._plant_at(p))
+
+    def multipliers(self, y: np.ndarray, p: float) -> np.ndarray:
+        """Floquet multipliers of a solution."""
+        plant = self._plant_at(p)
+        fine = samples_of(self.coefficients(y), plant, self.grid, FINER * self.grid.instants)
+        return multipliers(plant, self._modes(plant), fine)
+
+    def cycle(self, y: np.ndarray, p: float, instants: int | None = None) -> Cycle:
+        """A period of a solution; `settle_on` has been at its value."""
+        plant = self._plant_at(p)
+        grid = self.grid
+        c = self.coefficients(y)
+        self.settle_on(p)
+        assert self._exact is not None
+        X = self._exact[2]
+        u = balance(c, plant, grid, tangents=False).u
+        W = plant.watched
+        seen = np.zeros((grid.harmonics + 1, W.shape[1]), complex)
+        seen[0] = W.T @ (plant.still.q + plant.still.X @ u[0].real)
+        if W.shape[1]:
+            seen[1:] = np.einsum("np,hnm,hm->hp", W, X, u[1:], optimize=True)
+        N = instants or grid.instants
+        w = grid.frequency(plant.speed)
+        laws = plant.forces
+        turn = 1j * w * np.arange(grid.harmonics + 1)[:, None]
+        force = c @ laws.reference_stiffness.T + turn * (c @ laws.reference_damping.T) - u
+        return Cycle(2.0 * np.pi / w, samples_of(c, plant, grid, N), synthesised(seen, w, N)[0], c, force)
+
+    def state(self, y: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and velocities (n,) of a solution at the begin of its period."""
+        self.settle_on(p)
+        assert self._exact is not None
+        plant = self._plant_at(p)
+        u = balance(self.coefficients(y), plant, self.grid, tangents=False).u
+        q = np.einsum("hnm,hm->hn", self._exact[2], u[1:])
+        turn = 1j * self.grid.frequency(plant.speed) * np.arange(1, len(u))[:, None]
+        still = plant.still.q + plant.still.X @ u[0].real
+        return still + q.real.sum(axis=0), (turn * q).real.sum(axis=0)
+
+    def doubled(self) -> HarmonicOrbits:
+        """The same with twice the period."""
+        grid = replace(
+            self.grid,
+            harmonics=2 * self.grid.harmonics,
+            instants=2 * self.grid.instants,
+            order=0.5 * self.grid.order,
+        )
+        return HarmonicOrbits(self._plant_at, grid, self.scale)
+
+    def twice(self, y: np.ndarray, other: HarmonicOrbits) -> np.ndarray:
+        """The unknowns of one motion in the equations of twice its period."""
+        c = self.coefficients(y)
+        wide = np.zeros((other.grid.harmonics + 1, c.shape[1]), complex)
+        wide[: 2 * len(c) - 1 : 2] = c
+        return other.unknowns(wide)
+
+
+def static_displacements(plant: Plant) -> np.ndarray:
+    """Local displacements (m,) in the equilibrium of the mean laws."""
+    from rotorgear.solvers.sparse.newton import settle
+    from rotorgear.solvers.time.local_forces import gather
+
+    mean = replace(
+        gather(tuple(law.mean() for law in plant.forces.laws)),
+        reference_stiffness=plant.forces.reference_stiffness,
+        reference_damping=plant.forces.reference_damping,
+    )
+    still = plant.still
+
+    def tangent(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        from rotorgear.solvers.periodic.balance import pairs
+        from rotorgear.solvers.periodic.samples import answered
+
+        now = answered(np.zeros(1), d[None], np.zeros((1, d.size)), mean, plant.speed)
+        K = np.zeros((d.size, d.size))
+        a, b, flat = pairs(mean.first)
+        K[a, b] = now.Kd[0, flat]
+        return now.F[0], K
+
+    found = settle(still.d, still.R, plant.forces.reference_stiffness, tangent)
+    return np.asarray(found.d if found.converged else still.d)
+
+
+def _contact_frequency(plant: Plant) -> float:
+    """Highest frequency at which a contact alone would vibrate on the inertia it meets, rad/s."""
+    from rotorgear.solvers.time.local_system import acceleration
+
+    k = np.diag(plant.forces.reference_stiffness)
+    squares = [k[j] * float(b @ acceleration(plant.M, b)) for j, b in enumerate(plant.B.T) if k[j] > 0.0]
+    return float(np.sqrt(max(squares, default=0.0)))

@@ -1,0 +1,139 @@
+"""Compiled: a small system and its tangents over a time, by the method of Dormand and Prince with error control on both.
+
+    P'' = f - D P' - K P - C F(E P, w E P', tau/w),     tau = w t
+
+A step that a kink or a jump of a tangent lies in is cut down to it: the tangents' own error finds it, to the tolerance.
+Dormand and Prince, J. Computational and Applied Mathematics 6 (1980) 19.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.solvers.time.arguments import Answer
+from rotorgear.solvers.time.compiled import compiled
+from rotorgear.solvers.time.kernel_contact import ENERGIES, force_all, schedule_all
+
+_STAGES = 7
+_SMALLEST = 1e-13
+
+
+@compiled
+def rates(small, laws, tau, x, work, out):
+    """Rates (2 n, 1 + c) of state and tangents x over tau; the first column is the state."""
+    n = small.K.shape[0]
+    m = small.C.shape[1]
+    columns = x.shape[1]
+    t = tau / small.w
+    schedule_all(laws, small.speed * t, small.speed, t, work.state)
+    d = work.d
+    v = work.v
+    for i in range(m):
+        a = 0.0
+        b = 0.0
+        for j in range(n):
+            a += small.E[i, j] * x[j, 0]
+            b += small.E[i, j] * x[n + j, 0]
+        d[i] = a
+        v[i] = small.w * b
+    answer = work.answer
+    force_all(laws, work.state, d, v, answer)
+    for c in range(columns):
+        if c == 0:
+            for i in range(m):
+                work.push[i] = answer.F[i]
+        else:
+            for law in range(laws.kind.size):
+                first = laws.first[law]
+                k = laws.first[law + 1] - first
+                block = laws.block_first[law]
+                for i in range(k):
+                    total = 0.0
+                    for r in range(k):
+                        a = 0.0
+                        b = 0.0
+                        for j in range(n):
+                            a += small.E[first + r, j] * x[j, c]
+                            b += small.E[first + r, j] * x[n + j, c]
+                        total += answer.Kd[block + i * k + r] * a + answer.Kv[block + i * k + r] * small.w * b
+                    work.push[first + i] = total
+        for i in range(n):
+            total = small.f[i] if c == 0 else 0.0
+            for j in range(n):
+                total -= small.K[i, j] * x[j, c] + small.D[i, j] * x[n + j, c]
+            for j in range(m):
+                total -= small.C[i, j] * work.push[j]
+            out[i, c] = x[n + i, c]
+            out[n + i, c] = total
+
+
+@compiled
+def flow(small, laws, tableau, x, work, outputs, tolerance, kept, most):
+    """Advance state and tangents x (2 n, 1 + c) in place through times `outputs`, and keep the state there.
+
+    Returns the steps, or -1 where they are too many or numbers are none.
+    """
+    A = tableau.A
+    e = tableau.e
+    node = tableau.c
+    rows, columns = x.shape
+    k = np.zeros((_STAGES, rows, columns))
+    trial = np.empty((rows, columns))
+    tau = outputs[0]
+    end = outputs[-1]
+    kept[0] = x[:, 0]
+    number = 1
+    h = 0.01
+    rates(small, laws, tau, x, work, k[0])
+    steps = 0
+    while number < outputs.size:
+        if steps > most:
+            return -1
+        stop = outputs[number]
+        last = tau + h >= stop - 1e-14 * abs(end)
+        step = stop - tau if last else h
+        for stage in range(1, _STAGES):
+            for i in range(rows):
+                for c in range(columns):
+                    total = 0.0
+                    for s in range(stage):
+                        total += A[stage, s] * k[s, i, c]
+                    trial[i, c] = x[i, c] + step * total
+            rates(small, laws, tau + node[stage] * step, trial, work, k[stage])
+        # The last stage stands at the end of the step: first same as last.
+        error = 0.0
+        for c in range(columns):
+            size = 1.0
+            off = 0.0
+            for i in range(rows):
+                total = 0.0
+                for s in range(_STAGES):
+                    total += e[s] * k[s, i, c]
+                off = max(off, abs(step * total))
+                size = max(size, abs(trial[i, c]))
+            error = max(error, off / size)
+        if not np.isfinite(error):
+            return -1
+        steps += 1
+        scaled = error / tolerance
+        if scaled <= 1.0 or step <= _SMALLEST:
+            tau = stop if last else tau + step
+            for i in range(rows):
+                for c in range(columns):
+                    x[i, c] = trial[i, c]
+                    k[0, i, c] = k[6, i, c]
+            if last:
+                kept[number] = x[:, 0]
+                number += 1
+            factor = 5.0 if scaled < 1e-4 else min(5.0, 0.9 * scaled ** (-0.2))
+            # A step cut short by an output says nothing against the length before it.
+            h = max(h, factor * step) if last else factor * step
+        else:
+            h = step * max(0.1, 0.9 * scaled ** (-0.2))
+    return steps
+
+
+@compiled
+def shooting_answer(m, blocks, laws):
+    """Arrays for the laws' answers."""
+    return Answer(np.zeros(m), np.zeros(blocks), np.zeros(blocks), np.zeros(ENERGIES * laws))

@@ -1,0 +1,114 @@
+"""A turning structure with local forces, as equations of its periodic motions take it.
+
+    M q'' + D q' + K q = f + B u,   d = B^T q,   u = k d + c d' - F(d, d', t)
+
+K and D hold the linear reference k, c of the laws and, in D, the gyroscopic terms at the plant's own speed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.solvers.sparse.nullspace import SupportedSolver, left_null_space
+from rotorgear.solvers.time.contact_equilibrium import free_motions
+from rotorgear.solvers.time.local_forces import LocalForces
+from rotorgear.solvers.time.local_system import LocalSystem
+
+# Strain of a motion, relative to the sums of its parts, below which it is rounding.
+_FREE = 1e-9
+
+
+@dataclass(frozen=True)
+class Plant:
+    """One value of a parameter: M, D, K sparse (n, n), B (n, m), load f (n,), laws, speed in rad/s, watched W (n, p).
+
+    `free`: (n, r), M-orthonormal motions without strain.
+    """
+
+    M: sp.csc_array
+    D: sp.csc_array
+    K: sp.csc_array
+    B: np.ndarray
+    load: np.ndarray
+    forces: LocalForces
+    speed: float
+    watched: np.ndarray
+    free: np.ndarray
+
+    @property
+    def m(self) -> int:
+        """Number of local displacements."""
+        return self.forces.m
+
+    @cached_property
+    def still(self) -> Still:
+        """What follows from stiffness and load alone."""
+        solver = SupportedSolver(
+            self.K,
+            self.free * np.sqrt(np.maximum(self.K.diagonal(), 1e-300))[:, None],
+            left_null_space(self.K, self.M, self.free),
+        )
+
+        def settled(f: np.ndarray) -> np.ndarray:
+            q = solver.solve(f - self.M @ (self.free @ (self.free.T @ f)))
+            return np.asarray(q - self.free @ (self.free.T @ (self.M @ q)))
+
+        X = settled(self.B)
+        q = settled(self.load)
+        return Still(X, q, self.B.T @ X, self.B.T @ q)
+
+
+@dataclass(frozen=True)
+class Still:
+    """Static displacements X (n, m) of unit local forces and q (n,) of the load, and what of them the laws see."""
+
+    X: np.ndarray
+    q: np.ndarray
+    R: np.ndarray
+    d: np.ndarray
+
+
+PlantAt = Callable[[float], Plant]
+
+
+class Plants:
+    """Makes plants of systems and keeps what neighbours share.
+
+    Systems that differ in speed and load only share their static solution and their motions without strain.
+    """
+
+    def __init__(self) -> None:
+        self._last: Plant | None = None
+
+    def of(self, system: LocalSystem) -> Plant:
+        """The plant of a system at the (constant) speed of its rotation."""
+        speed = float(system.rotation.speeds[0])
+        K = system.stiffness_about
+        D = system.damping_about if system.G is None else sp.csc_array(system.damping_about + speed * system.G)
+        old = self._last
+        B = system.B.toarray()
+        same = old is not None and _alike(old.K, K) and _alike(old.M, system.M) and np.array_equal(old.B, B)
+        if old is not None and same:
+            plant = Plant(old.M, D, old.K, old.B, system.load, system.forces, speed, system.watched_vectors, old.free)
+            if np.array_equal(old.load, system.load):
+                plant.__dict__["still"] = old.still  # a cached property of the same arguments
+        else:
+            free = old.free if old is not None and _unstrained(K, old.free) else free_motions(system.M, K)
+            plant = Plant(system.M, D, K, B, system.load, system.forces, speed, system.watched_vectors, free)
+        self._last = plant
+        return plant
+
+
+def _alike(A: sp.csc_array, B: sp.csc_array) -> bool:
+    if A is B:
+        return True
+    return A.nnz == B.nnz and np.array_equal(A.indices, B.indices) and np.array_equal(A.data, B.data)
+
+
+def _unstrained(K: sp.csc_array, R: np.ndarray) -> bool:
+    return bool(R.shape[1]) and bool(np.all(np.abs(K @ R) <= _FREE * (abs(K) @ np.abs(R)) + 1e-300))

@@ -1,0 +1,238 @@
+"""Periodic motions of small systems by shooting: phi_T(x) = x, with the derivative of the flow along it.
+
+The flow and its derivative are integrated to a tolerance near rounding, steps end at every switch of a law, and the derivative
+over a period is the monodromy matrix, whose eigenvalues are the Floquet multipliers. Seydel (2010), ch. 7.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rotorgear.errors import ConvergenceError
+from rotorgear.solvers.periodic.arclength import Linear
+from rotorgear.solvers.periodic.cycle import Cycle, spectrum
+from rotorgear.solvers.periodic.floquet import basis_of, sorted_by_size
+from rotorgear.solvers.periodic.harmonic_orbits import static_displacements
+from rotorgear.solvers.periodic.plant import Plant, PlantAt
+from rotorgear.solvers.periodic.samples import answered, arguments_of
+
+# Relative tolerance of the flow and its derivative.
+TOLERANCE = 1e-11
+_MOST_STEPS = 400_000
+_DIFFERENCE = 1e-5
+# Largest system, in coordinates, and steps in a base period that are asked for by its highest frequency.
+MOST_COORDINATES = 6
+MOST_RATIO = 200.0
+
+
+class Small(NamedTuple):
+    """M^-1 K / w^2 and so on of `kernel_shooting`; see there."""
+
+    K: np.ndarray
+    D: np.ndarray
+    C: np.ndarray
+    E: np.ndarray
+    f: np.ndarray
+    w: float
+    speed: float
+
+
+class Work(NamedTuple):
+    """Arrays of the kernel: state of the laws, d, v, push (m,), answer."""
+
+    state: np.ndarray
+    d: np.ndarray
+    v: np.ndarray
+    push: np.ndarray
+    answer: object
+
+
+class Tableau(NamedTuple):
+    """Of a Runge-Kutta method: matrix, weights, differences of both orders, nodes."""
+
+    A: np.ndarray
+    b: np.ndarray
+    e: np.ndarray
+    c: np.ndarray
+
+
+def _dormand_prince() -> Tableau:
+    A = np.zeros((7, 7))
+    A[1, :1] = (1 / 5,)
+    A[2, :2] = (3 / 40, 9 / 40)
+    A[3, :3] = (44 / 45, -56 / 15, 32 / 9)
+    A[4, :4] = (19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729)
+    A[5, :5] = (9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656)
+    A[6, :6] = (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84)
+    fourth = np.array([5179 / 57600, 0.0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40])
+    return Tableau(A, A[6].copy(), A[6] - fourth, np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0]))
+
+
+class ShootingOrbits:
+    """Displacements and velocities at the begin of a period, over their scale, as unknowns; the parameter from 0 to 1.
+
+    Args:
+        plant_at: the plant at a value of the parameter. order: base periods in a turn of the reference.
+        scale: local displacements (m,) that count as 1. harmonics, instants: of the cycles that are handed out.
+        periods: how many base periods the motion takes.
+    """
+
+    method = "shooting"
+
+    def __init__(
+        self, plant_at: PlantAt, order: float, scale: np.ndarray, harmonics: int, instants: int, periods: int = 1
+    ) -> None:
+        self._plant_at = plant_at
+        self.order = order
+        self.scale = scale
+        self.harmonics = harmonics
+        self.instants = instants
+        self.periods = periods
+        self._tableau = _dormand_prince()
+        first = plant_at(0.5)
+        self._V = basis_of(first, np.inf).V
+        moved = np.abs(first.B.T @ self._V)
+        used = moved.max(axis=1) > 0.0
+        self._size = float(np.median(scale[used] / moved[used].max(axis=1))) if np.any(used) else 1.0
+        self._known: dict[tuple[bytes, float, int], tuple[np.ndarray, np.ndarray]] = {}
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return 2 * int(self._V.shape[1])
+
+    def settle_on(self, p: float) -> None:
+        """Nothing is approximated."""
+
+    def _small(self, plant: Plant) -> Small:
+        V = self._V
+        w = self.order * abs(plant.speed)
+        # The laws act whole: their reference is taken off again.
+        laws = plant.forces
+        B = V.T @ plant.B
+        K = V.T @ (plant.K @ V) - B @ laws.reference_stiffness @ B.T
+        D = V.T @ (plant.D @ V) - B @ laws.reference_damping @ B.T
+        M = V.T @ (plant.M @ V)
+        inverse = np.linalg.inv(M)
+        s = self._size
+        return Small(
+            np.ascontiguousarray(inverse @ K / w**2),
+            np.ascontiguousarray(inverse @ D / w),
+            np.ascontiguousarray(inverse @ B / (s * w**2)),
+            np.ascontiguousarray(s * B.T),
+            inverse @ (V.T @ plant.load) / (s * w**2),
+            w,
+            plant.speed,
+        )
+
+    def _run(self, y: np.ndarray, p: float, columns: int, outputs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """State and tangents at the end, (2 n, 1 + columns), and the states at the outputs (r, 2 n)."""
+        from rotorgear.solvers.periodic.kernel_shooting import flow, shooting_answer
+
+        plant = self._plant_at(p)
+        laws = plant.forces
+        small = self._small(plant)
+        rows = self.size
+        x = np.zeros((rows, 1 + columns))
+        x[:, 0] = y
+        if columns:
+            x[:, 1:] = np.eye(rows)
+        kept = np.zeros((len(outputs), rows))
+        blocks = int(laws.block_first[-1])
+        work = Work(
+            np.zeros(int(laws.state_first[-1])),
+            np.zeros(plant.m),
+            np.zeros(plant.m),
+            np.zeros(plant.m),
+            shooting_answer(plant.m, blocks, len(laws.laws)),
+        )
+        steps = flow(
+            small, arguments_of(laws), self._tableau, x, work, outputs, TOLERANCE, kept, _MOST_STEPS * self.periods
+        )
+        if steps < 0 or not np.all(np.isfinite(x)):
+            raise ConvergenceError("the motion over a period can't be integrated")
+        return x, kept
+
+    def _mapped(self, y: np.ndarray, p: float, columns: int) -> np.ndarray:
+        key = (y.tobytes(), p, columns)
+        if key not in self._known:
+            found = self._run(y, p, columns, np.array([0.0, 2.0 * np.pi * self.periods]))[0]
+            if len(self._known) > 16:
+                self._known.clear()
+            self._known[key] = (found[:, 0], found[:, 1:])
+        return np.column_stack(self._known[key])
+
+    def residual(self, y: np.ndarray, p: float) -> np.ndarray:
+        """phi_T(x) - x."""
+        return np.asarray(self._mapped(y, p, self.size)[:, 0] - y)
+
+    def linear(self, y: np.ndarray, p: float) -> Linear:
+        """The residual, the monodromy matrix less one, and the derivative by the parameter, by a central difference."""
+        here = self._mapped(y, p, self.size)
+        ends = [self._run(y, p + by, 0, np.array([0.0, 2.0 * np.pi * self.periods]))[0][:, 0] for by in _BOTH]
+        slope = (ends[1] - ends[0]) / (2.0 * _DIFFERENCE)
+        return Linear(here[:, 0] - y, here[:, 1:] - np.eye(self.size), slope)
+
+    def monodromy(self, y: np.ndarray, p: float) -> np.ndarray:
+        """Derivative of the map over a period, (2 n, 2 n)."""
+        return np.asarray(self._mapped(y, p, self.size)[:, 1:])
+
+    def multipliers(self, y: np.ndarray, p: float) -> np.ndarray:
+        """Floquet multipliers of a solution."""
+        return sorted_by_size(np.linalg.eigvals(self.monodromy(y, p)))
+
+    def start(self, p: float) -> np.ndarray:
+        """Unknowns of the static state at a value."""
+        plant = self._plant_at(p)
+        still = plant.still
+        d = static_displacements(plant)
+        # q = q0 + X u with u from the laws at d.
+        u = np.linalg.lstsq(still.R, d - still.d, rcond=None)[0]
+        return self.from_motion(still.q + still.X @ u, np.zeros(len(still.q)), plant)
+
+    def from_motion(self, q: np.ndarray, v: np.ndarray, plant: Plant) -> np.ndarray:
+        """Unknowns of displacements and velocities (n,) at the begin of a period."""
+        w = self.order * abs(plant.speed)
+        rows = self._V.T @ (plant.M @ np.column_stack([q, v]))
+        own = np.linalg.solve(self._V.T @ (plant.M @ self._V), rows)
+        return np.concatenate([own[:, 0] / self._size, own[:, 1] / (self._size * w)])
+
+    def motion(self, y: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and velocities (n,) of unknowns."""
+        n = self._V.shape[1]
+        w = self.order * abs(self._plant_at(p).speed)
+        return self._V @ (self._size * y[:n]), self._V @ (self._size * w * y[n:])
+
+    def cycle(self, y: np.ndarray, p: float, instants: int | None = None) -> Cycle:
+        """A period of a solution."""
+        plant = self._plant_at(p)
+        N = (instants or self.instants) * self.periods
+        outputs = 2.0 * np.pi * self.periods * np.arange(N + 1) / N
+        states = self._run(y, p, 0, outputs)[1][:-1]
+        n = self._V.shape[1]
+        w = self.order * abs(plant.speed)
+        q = self._size * states[:, :n]
+        v = self._size * w * states[:, n:]
+        E = self._V.T @ plant.B
+        at = answered(outputs[:-1] / w, q @ E, v @ E, plant.forces, plant.speed)
+        H = self.harmonics * self.periods
+        return Cycle(
+            2.0 * np.pi * self.periods / w,
+            at,
+            q @ (self._V.T @ plant.watched),
+            spectrum(at.d, H),
+            spectrum(at.F, H),
+        )
+
+    def doubled(self) -> ShootingOrbits:
+        """The same with twice the period."""
+        return ShootingOrbits(self._plant_at, self.order, self.scale, self.harmonics, self.instants, 2 * self.periods)
+
+    def twice(self, y: np.ndarray, other: ShootingOrbits) -> np.ndarray:
+        """The unknowns of one motion in the equations of twice its period: the same state."""
+        return y.copy()
+
+
+_BOTH = (-_DIFFERENCE, _DIFFERENCE)

@@ -1,0 +1,144 @@
+"""Special points of a branch of periodic motions: fold, period doubling and Neimark-Sacker point, told and located.
+
+Between two solutions a test function changes its sign: at a fold the parameter's part of the tangent; at a period doubling
+prod (1 + mu), the determinant of the monodromy matrix plus one; at a Neimark-Sacker point |mu| - 1 of the complex pair. The root
+is found along the chord, each time on the branch itself. Seydel (2010), ch. 5 and 7.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from rotorgear.errors import ConvergenceError
+from rotorgear.solvers.periodic.arclength import Equations, Node, corrected
+
+FOLD = "fold"
+DOUBLING = "period doubling"
+NEIMARK_SACKER = "Neimark-Sacker"
+# Root of the test function along the chord, as a share of it.
+_TOLERANCE = 1e-8
+_EVALUATIONS = 40
+_REAL = 1e-9
+# Multipliers nearer to zero are rounding.
+_NOTHING = 1e-6
+
+
+class Orbits(Equations, Protocol):
+    """Equations of periodic motions that know their multipliers."""
+
+    def multipliers(self, y: np.ndarray, p: float) -> np.ndarray:
+        """Floquet multipliers of a solution."""
+
+
+@dataclass(frozen=True)
+class Certified:
+    """A solution with its multipliers."""
+
+    node: Node
+    multipliers: np.ndarray
+
+    @property
+    def stable(self) -> bool:
+        """Whether small deviations die out."""
+        return bool(np.all(np.abs(self.multipliers) <= 1.0 + 1e-9))
+
+
+@dataclass(frozen=True)
+class Special:
+    """A special point: what it is, the solution there, and the node of the branch behind which it lies."""
+
+    kind: str
+    at: Certified
+    after: int
+
+
+def kinds_between(a: Certified, b: Certified) -> list[str]:
+    """What lies between two neighbours of a branch."""
+    found = []
+    left = _outside(b.multipliers) - _outside(a.multipliers)
+    if a.node.tangent[-1] * b.node.tangent[-1] < 0.0:
+        found.append(FOLD)
+        left -= int(np.sign(left))
+    if _doubling(a.multipliers) * _doubling(b.multipliers) < 0.0:
+        found.append(DOUBLING)
+        left -= int(np.sign(left))
+    if abs(left) >= 2 and any(_pair(one.multipliers).size for one in (a, b)):
+        found.append(NEIMARK_SACKER)
+    return found
+
+
+def located(orbits: Orbits, a: Certified, b: Certified, kind: str) -> Certified | None:
+    """The special point of a kind between two neighbours; None where the branch can't be solved there."""
+    chord = b.node.z - a.node.z
+    length = float(np.linalg.norm(chord))
+    normal = chord / length
+    known: dict[float, Certified] = {0.0: a, 1.0: b}
+
+    def test(share: float) -> float:
+        if share not in known:
+            node = corrected(orbits, a.node.z + share * chord, normal, normal)
+            known[share] = Certified(node, orbits.multipliers(node.y, node.p))
+        one = known[share]
+        if kind == FOLD:
+            return float(one.node.tangent[-1] * np.sign(one.node.tangent @ normal))
+        return _doubling(one.multipliers) if kind == DOUBLING else _ring(one.multipliers)
+
+    try:
+        root = _root(test, _TOLERANCE)
+    except ConvergenceError:
+        return None
+    return known[root]
+
+
+def _root(test: object, tolerance: float) -> float:
+    """Root of a function between 0 and 1 by the Illinois form of the rule of false position."""
+    assert callable(test)
+    low = 0.0
+    high = 1.0
+    at_low = test(low)
+    at_high = test(high)
+    best = (abs(at_low), low) if abs(at_low) < abs(at_high) else (abs(at_high), high)
+    for _ in range(_EVALUATIONS):
+        middle = (low * at_high - high * at_low) / (at_high - at_low)
+        inside = 0.01 * abs(high - low)
+        middle = min(max(middle, min(low, high) + inside), max(low, high) - inside)
+        value = test(middle)
+        if abs(value) < best[0]:
+            best = (abs(value), middle)
+        if value == 0.0:
+            return float(middle)
+        if value * at_high < 0.0:
+            low = high
+            at_low = at_high
+        else:
+            at_low *= 0.5
+        moved = abs(middle - high)
+        high = middle
+        at_high = value
+        if moved < tolerance or abs(high - low) < tolerance:
+            break
+    return float(best[1])
+
+
+def _outside(multipliers: np.ndarray) -> int:
+    return int(np.sum(np.abs(multipliers) > 1.0))
+
+
+def _doubling(multipliers: np.ndarray) -> float:
+    """prod (1 + mu) with its sign; those near zero left out."""
+    mu = multipliers[np.abs(multipliers) > _NOTHING]
+    return float(np.real(np.prod(1.0 + mu)))
+
+
+def _pair(multipliers: np.ndarray) -> np.ndarray:
+    mu = multipliers[np.abs(multipliers) > 0.5]
+    return np.asarray(mu[np.abs(mu.imag) > _REAL])
+
+
+def _ring(multipliers: np.ndarray) -> float:
+    """How far the complex pair nearest to the circle lies outside it."""
+    sizes = np.abs(_pair(multipliers)) - 1.0
+    return float(sizes[np.argmax(sizes)]) if sizes.size else -1.0

@@ -1,0 +1,72 @@
+"""Periodic motions over a parameter: special points of a known oscillator, linear models, refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.errors import AnalysisError
+from tests.paths import MODELS
+from validation.dead_zone import HALF_BACKLASH, DeadZone
+
+
+def test_shooting_finds_the_fold_of_an_oscillator_with_a_dead_zone() -> None:
+    case = DeadZone(amplitude=0.05)
+    found = case.orbits((0.738, 0.758))
+    assert "shooting" in found.method
+    fold = found.special_points[0]
+    assert fold.kind == "fold"
+    assert case.ratio_of(fold.value) == pytest.approx(0.7481043, abs=1e-6)
+    assert 1.0 + fold.approach_range[0] / HALF_BACKLASH == pytest.approx([0.967804, 1.235125], abs=2e-6)
+    assert np.sort(fold.multiplier_real) == pytest.approx([0.431762, 1.0], abs=1e-4)
+    mu = np.where(np.isnan(found.multipliers), 1.0, found.multipliers)
+    exact = np.exp(-2.0 * case.ratio * case.frequency * found.period)
+    assert mu.prod(axis=1) == pytest.approx(exact, rel=1e-8)
+
+
+def test_both_methods_find_the_period_doubling_and_shooting_the_branch_behind_it() -> None:
+    case = DeadZone(amplitude=0.2)
+    exact = case.orbits((1.63, 1.59), step=0.2, switch=True)
+    kinds = [(point.kind, point.branch) for point in exact.special_points]
+    assert ("period doubling", 0) in kinds
+    at = next(point for point in exact.special_points if point.branch == 0)
+    assert case.ratio_of(at.value) == pytest.approx(1.6076657, abs=1e-6)
+    assert exact.branches[1].name == "2T"
+    twice = exact.branch == 1
+    assert exact.period[twice] == pytest.approx(2.0 * 2.0 * np.pi / (20.0 * exact.value[twice]))
+    balance = case.orbits((1.63, 1.59), step=0.2, method="harmonic balance")
+    assert [point.kind for point in balance.special_points] == ["period doubling"]
+    assert case.ratio_of(balance.special_points[0].value) == pytest.approx(1.6076657, abs=1e-3)
+
+
+def test_orbits_of_a_linear_model_are_its_forced_response() -> None:
+    text = (MODELS / "flexible_pair.toml").read_text(encoding="utf-8")
+    cut = [line for line in text.splitlines() if not line.startswith(("backlash", "stiffness_variation"))]
+    model = rg.loads("\n".join(cut))
+    found = rg.orbits(model, {"operation.speed": "2000 rpm:2200 rpm"}, harmonics=4, step=0.5, elements=1)
+    response = rg.response(model, speeds=found.value, elements=1)
+    for harmonic in (1, 2):
+        own = np.abs(found.force_harmonics[:, harmonic])
+        assert own == pytest.approx(np.abs(response.mesh_force[harmonic - 1]), rel=1e-10)
+
+
+def test_stages_without_a_short_common_period_are_refused_with_the_remedy() -> None:
+    model = rg.load(MODELS / "split_torque.toml")
+    with pytest.raises(AnalysisError, match=r"repeat together after .* excite one stage at a time"):
+        rg.orbits(model, {"operation.speed": "9000 rpm:9100 rpm"})
+
+
+@pytest.mark.parametrize(
+    ("over", "options", "said"),
+    [
+        ({"operation.speed": "3000 rpm"}, {}, "expected FROM:TO"),
+        ({"operation.speed": "0 rpm:3000 rpm"}, {}, "standstill"),
+        ({"operation.speed": "3000 rpm:3000 rpm"}, {}, "two different values"),
+        ({"operation.speed": "3000 rpm:4000 rpm"}, {"excite": "nobody"}, "nothing that excites is named"),
+        ({"operation.speed": "3000 rpm:4000 rpm"}, {"method": "magic"}, "expected one of auto"),
+    ],
+)
+def test_requests_that_make_no_sense_are_refused(over: dict[str, str], options: dict[str, object], said: str) -> None:
+    with pytest.raises(AnalysisError, match=said):
+        rg.orbits(rg.load(MODELS / "backlash_pair.toml"), over, **options)  # type: ignore[arg-type]
