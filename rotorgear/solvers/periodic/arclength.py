@@ -18,6 +18,7 @@ from rotorgear.errors import ConvergenceError
 _ITERATIONS = 14
 _HALVINGS = 5
 _ENOUGH = 1e-10
+_ROUNDING = 1e-13
 # Steps along the arc: iterations that lengthen and shorten the next one, largest turn of the tangent.
 _FEW = 4
 _MANY = 8
@@ -80,7 +81,9 @@ def corrected(equations: Equations, guess: np.ndarray, normal: np.ndarray, tange
         z, done, iterations = _newton(equations, z, guess, normal)
         taken += iterations
         equations.settle_on(float(z[-1]))
-        if np.linalg.norm(equations.residual(z[:-1], float(z[-1]))) <= 10.0 * max(done, _ENOUGH):
+        if np.linalg.norm(equations.residual(z[:-1], float(z[-1]))) <= 10.0 * max(
+            done, _ROUNDING * (1.0 + float(np.linalg.norm(z)))
+        ):
             break
     else:
         raise ConvergenceError("the solution drifts between exact and approximate equations")
@@ -122,7 +125,7 @@ def _newton(
         assert best is not None
         z = best[1]
         scale = 1.0 + float(np.linalg.norm(z))
-        if length <= _ENOUGH * scale or (best[0] <= 1e-13 * scale):
+        if length <= _ENOUGH * scale or (best[0] <= _ROUNDING * scale):
             return z, best[0], iteration
         # Rounding of the equations: nothing gets better any more, and what is left is small.
         if best[0] >= 0.5 * last and length <= 1e-7 * scale:
