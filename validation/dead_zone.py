@@ -113,7 +113,7 @@ def main() -> None:
                 f"  product of multipliers over exp(-2 z T), less 1: {np.abs(mu.prod(axis=1) / exact - 1.0).max():.1e}"
             )
             for point in found.special_points:
-                low, high = 1.0 + point.approach_range[0] / HALF_BACKLASH
+                low, high = 1.0 + point.approach_extremes[0] / HALF_BACKLASH
                 sizes = ", ".join(f"{x:.6f}" for x in point.multiplier_real)
                 W = case.ratio_of(point.value)
                 print(f"  {point.kind} at W {W:.7f}, x {low:.6f} to {high:.6f}, multipliers {sizes}")

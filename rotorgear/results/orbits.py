@@ -17,8 +17,8 @@ class SpecialPoint(Record):
     period: float = of("period", "s", json="period_s")
     multiplier_real: np.ndarray = of("real part of the Floquet multipliers", "", "multiplier", note=", largest first")
     multiplier_imaginary: np.ndarray = of("imaginary part of the Floquet multipliers", "", "multiplier")
-    approach_range: np.ndarray = of(
-        "approach of the flanks", "m", "contact", "extreme", json="approach_range_m", note=", least and largest"
+    approach_extremes: np.ndarray = of(
+        "least and largest approach of the flanks", "m", "contact", "extreme", json="approach_extremes_m"
     )
 
 
@@ -58,14 +58,14 @@ class OrbitsResult(ModelResult, kind="orbits"):
     period: np.ndarray = of("period", "s", "point", json="period_s")
     stable: np.ndarray = of("whether the motion is stable", "", "point")
     multipliers: np.ndarray = of("Floquet multipliers", "", "point", "multiplier", json=None)
-    approach_range: np.ndarray = of(
-        "approach of the flanks",
+    approach_extremes: np.ndarray = of(
+        "least and largest approach of the flanks",
         "m",
         "point",
         "contact",
         "extreme",
-        json="approach_range_m",
-        note=", transverse, least and largest",
+        json="approach_extremes_m",
+        note=", transverse",
     )
     peak_to_peak_transmission_error: np.ndarray = of(
         "transmission error, peak to peak", "m", "point", "contact", json="peak_to_peak_transmission_error_m"
@@ -75,7 +75,7 @@ class OrbitsResult(ModelResult, kind="orbits"):
         "root mean square of the force about its mean", "N", "point", "contact", json="rms_force_n"
     )
     largest_force: np.ndarray = of("largest force", "N", "point", "contact", json="largest_force_n")
-    apart: np.ndarray = of("share of the time without contact", "", "point", "contact", json="apart_share")
+    apart: np.ndarray = of("contact-loss ratio", "", "point", "contact", json="apart_share")
     back: np.ndarray = of("share of the time on the coast flank", "", "point", "contact", json="back_share")
     force_harmonics: np.ndarray = of(
         "coefficients of the mesh force, F = Re sum c_h exp(i h w t)", "N", "point", "harmonic", "contact", json=None
@@ -111,10 +111,10 @@ class OrbitsResult(ModelResult, kind="orbits"):
         """Of each point."""
         return np.asarray(self.multipliers.imag)
 
-    @derived("peak to peak of the approach", "m", "point", "contact", json="peak_to_peak_approach_m")
+    @derived("approach, peak to peak", "m", "point", "contact", json="peak_to_peak_approach_m")
     def peak_to_peak_approach(self) -> np.ndarray:
         """Of each point."""
-        return np.asarray(self.approach_range[:, :, 1] - self.approach_range[:, :, 0])
+        return np.asarray(self.approach_extremes[:, :, 1] - self.approach_extremes[:, :, 0])
 
     @derived("amplitude of the mesh force's first harmonic", "N", "point", "contact", json="first_harmonic_n")
     def first_harmonic(self) -> np.ndarray:

@@ -110,7 +110,7 @@ def test_the_keys_of_orbits_are_documented(tmp_path: Path) -> None:
     pair = str(ROOT / "models" / "backlash_pair.toml")
     data = written(tmp_path, "orbits", pair, "--over", "operation.speed=4000 rpm:4200 rpm", "--step", "0.5", "--verify")
     point = {"kind": "fold", "value": 1.0, "branch": 0, "period_s": 1.0, "multiplier_real": [1.0]}
-    data["special_points"] = [point | {"multiplier_imaginary": [0.0], "approach_range_m": [[0.0, 1.0]]}]
+    data["special_points"] = [point | {"multiplier_imaginary": [0.0], "approach_extremes_m": [[0.0, 1.0]]}]
     data["warnings"] = ["one"]  # these motions have none, or one
     assert differences(data, documented("orbits")) == NONE
 

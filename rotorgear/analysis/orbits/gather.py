@@ -50,7 +50,7 @@ def gathered(
             "period",
             "stable",
             "multipliers",
-            "approach_range",
+            "approach_extremes",
             "peak_to_peak_transmission_error",
             "mean_force",
             "rms_force",
@@ -98,7 +98,7 @@ def read(cycle: Cycle, contacts: Contacts, harmonics: int, periods: int) -> dict
     F = at.F[:, contacts.column]
     return {
         "period": cycle.period,
-        "approach_range": cycle.extremes()[contacts.column] / contacts.transverse[:, None],
+        "approach_extremes": cycle.extremes()[contacts.column] / contacts.transverse[:, None],
         "peak_to_peak_transmission_error": np.ptp(cycle.watched[:, : len(contacts.column)], axis=0),
         "mean_force": F.mean(axis=0),
         "rms_force": F.std(axis=0),

@@ -18,7 +18,7 @@ def test_shooting_finds_the_fold_of_an_oscillator_with_a_dead_zone() -> None:
     fold = found.special_points[0]
     assert fold.kind == "fold"
     assert case.ratio_of(fold.value) == pytest.approx(0.7481043, abs=1e-6)
-    assert 1.0 + fold.approach_range[0] / HALF_BACKLASH == pytest.approx([0.967804, 1.235125], abs=2e-6)
+    assert 1.0 + fold.approach_extremes[0] / HALF_BACKLASH == pytest.approx([0.967804, 1.235125], abs=2e-6)
     assert np.sort(fold.multiplier_real) == pytest.approx([0.431762, 1.0], abs=1e-4)
     mu = np.where(np.isnan(found.multipliers), 1.0, found.multipliers)
     exact = np.exp(-2.0 * case.ratio * case.frequency * found.period)
