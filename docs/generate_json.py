@@ -106,8 +106,8 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
     ),
     (
         "orbits",
-        "`rotorgear orbits MODEL --over ADDRESS=FROM:TO --json orbits.json`. Lists over points follow the branches; coefficients of\n"
-        "all harmonics are in the HDF5 file of `--save`.",
+        "`rotorgear orbits MODEL --over ADDRESS=FROM:TO --json orbits.json`. Lists over points follow branches; coefficients\n"
+        "of all harmonics are in the HDF5 file of `--save`.",
         (("orbits", ""),),
     ),
     (

@@ -72,7 +72,7 @@ def orbits(
         progress: callable that is told fraction and step.
 
     Raises:
-        AnalysisError: nothing repeats, a common period that is too long, laws without periodic motions, or a request that makes
+        AnalysisError: nothing repeats, a least common period that is too long, laws without periodic motions, or a request that makes
             no sense.
     """
     begun = clock.perf_counter()
