@@ -72,8 +72,8 @@ def orbits(
         progress: callable that is told fraction and step.
 
     Raises:
-        AnalysisError: nothing repeats, a least common period that is too long, laws without periodic motions, or a request that makes
-            no sense.
+        AnalysisError: nothing repeats, a least common period that is too long, laws without periodic motions, or a request
+            that makes no sense.
     """
     begun = clock.perf_counter()
     _check(over, harmonics, instants, method, accuracy, step, points)
