@@ -12,7 +12,7 @@ from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.static.along_faces import about_faces
 from rotorgear.analysis.static.ground import mean_torsion_notes, springs_about_mean
 from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
-from rotorgear.analysis.sweep.reduce import Large, Reduced, Wanted
+from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, Large, Reduced, Wanted
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -27,6 +27,8 @@ from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.system import System
 
 _KEPT = 1000  # states at rest
+# Systems with casings are reduced from this many dofs on; below, there is nothing to gain.
+LEAST_DOFS = 24
 
 
 @dataclass(frozen=True)
@@ -147,8 +149,12 @@ class PointMaker:
         orders = meshes + others
         refuse_long(meshes, orders)
         contact = tuple(part.label for part in built.parts if part.is_mesh)
-        if self._wanted.modes is not None or system.n > MOST_DOFS or np.any(built.local.M.diagonal() <= 0.0):
-            return Large(built.local, orders, contact, speed, model.damping.modal_ratio)
+        # Casings and gear bodies bring static shapes at high frequencies, which few of the contacts' motions need.
+        bodies = bool(system.model.casings) or bool(system.nodes.bodies)
+        large = system.n > MOST_DOFS or (bodies and system.n > LEAST_DOFS)
+        if self._wanted.modes is not None or large or np.any(built.local.M.diagonal() <= 0.0):
+            most = MOST_WITH_BODIES if bodies else MOST_COORDINATES
+            return Large(built.local, orders, contact, speed, model.damping.modal_ratio, most)
         return still(built.local, orders, contact, self._free_of(built.local))
 
     def _free_of(self, local: LocalSystem) -> np.ndarray:

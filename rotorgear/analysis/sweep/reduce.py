@@ -21,6 +21,8 @@ from rotorgear.solvers.time.local_system import LocalSystem
 
 # Coordinates of a reduced system at most: its cost grows with the square of them.
 MOST_COORDINATES = 160
+# A gearbox in its casing has some 280 modes below the third harmonic of a fast mesh, nearly all of which move its contacts.
+MOST_WITH_BODIES = 320
 # Modes that are chosen from.
 _CANDIDATES = 300
 
@@ -35,13 +37,17 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Large:
-    """A point before its reduction: the whole system, orders of what varies, names of contacts, speed in rad/s, added damping."""
+    """A point before its reduction: the whole system, orders of what varies, names of contacts, speed in rad/s, added damping.
+
+    `most`: coordinates that it may have.
+    """
 
     local: LocalSystem
     orders: list[Fraction]
     contact: tuple[str, ...]
     speed: float
     modal_ratio: float
+    most: int = MOST_COORDINATES
 
     @property
     def key(self) -> bytes:
@@ -94,13 +100,13 @@ class Reducer:
         choice = self._chosen(
             among,
             lambda begin: choose(
-                among, full, probes, scale, self._wanted.error, MOST_COORDINATES, begin, self._wanted.modes, heard
+                among, full, probes, scale, self._wanted.error, first.most, begin, self._wanted.modes, heard
             ),
         )
         complete = choice.basis.shape[1] == local.n  # what is left then is rounding
         if self._wanted.modes is None and not (complete or choice.error <= self._wanted.error):
             raise AnalysisError(
-                f"{local.n} dofs can't be reduced: with {choice.basis.shape[1]} coordinates (at most {MOST_COORDINATES}) the "
+                f"{local.n} dofs can't be reduced: with {choice.basis.shape[1]} coordinates (at most {first.most}) the "
                 f"receptances at the contacts are {100.0 * choice.error:.2g} % off up to {top / 2.0 / np.pi:.6g} Hz, expected "
                 f"{100.0 * self._wanted.error:.2g} %; lower the speed, lump the shafts (rigid gears on springs), or allow more "
                 "(reduction_error, --reduction-error)"

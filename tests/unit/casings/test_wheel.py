@@ -343,3 +343,21 @@ def test_a_body_that_lacks_or_repeats_something_is_refused(folder: Path, wheel: 
 def test_mass_that_is_stated_otherwise_than_the_mesh_has_it_is_refused(folder: Path, more: str, text: str) -> None:
     with pytest.raises(AnalysisError, match=text):
         rg.static(pair(folder, WHEEL % "" + more))
+
+
+def test_a_sweep_takes_a_small_gearbox_with_an_elastic_body_in_a_basis(folder: Path) -> None:
+    from rotorgear.analysis.sweep.point import PointMaker
+    from rotorgear.analysis.sweep.reduce import Large, Reducer, Wanted
+
+    text = MODEL.replace('outer_diameter = "30 mm" }', 'outer_diameter = "30 mm", rigid = true }')
+    pair(folder)
+    (folder / "rigid.toml").write_text(text % ("210 GPa", WHEEL % ", damping_ratio = 0.01"), encoding="utf-8")
+    point = PointMaker()(rg.load(folder / "rigid.toml"))
+    assert isinstance(point, Large)
+    assert 24 < point.local.n <= 80
+    reducer = Reducer(Wanted())
+    reduced = reducer([point], lambda size, error: None)[0]
+    assert reduced.local.n < 0.6 * point.local.n
+    summary = reducer.summary
+    assert summary is not None
+    assert max(summary.closed, summary.apart) <= 0.01
