@@ -7,7 +7,17 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli.common import JsonOption, ModelFile, SaveOption, ToleranceOption, console, progress_bar, write_json
+from rotorgear.cli.common import (
+    AccuracyOption,
+    ElementsOption,
+    JsonOption,
+    ModelFile,
+    SaveOption,
+    ToleranceOption,
+    console,
+    progress_bar,
+    write_json,
+)
 
 
 def update(
@@ -33,9 +43,8 @@ def update(
         float, typer.Option("--shape-noise", help="Noise of a shape, as a share of its root mean square.")
     ] = 0.02,
     tolerance: ToleranceOption = 0.05,
-    accuracy: Annotated[
-        float, typer.Option("--accuracy", help="Refine the mesh to this relative error of every frequency.")
-    ] = 1e-4,
+    accuracy: AccuracyOption = None,
+    elements: ElementsOption = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Write the updated model file here.", show_default=False)
     ] = None,
@@ -57,6 +66,7 @@ def update(
             shape_noise=shape_noise,
             tolerance=tolerance,
             accuracy=accuracy,
+            elements=elements,
             progress=progress,
         )
     out = console()

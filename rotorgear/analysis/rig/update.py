@@ -47,6 +47,8 @@ _LOOSENESS = (0.5, 0.2, 0.07)
 _LOOSE_FREQUENCY = 0.1
 # So much further apart are modes still close.
 _LOOSE_CLOSE = 0.15
+# The mesh is finer than the noise by a tenth, within these bounds.
+_MESH_ERROR = (1e-10, 1e-4)
 _MOST_SOLUTIONS = 40
 _LOOKS = 2
 # A step that changes the objective by less than this share moves no number by more than a twentieth of what it is known to.
@@ -67,7 +69,8 @@ def update(
     prior: float | str | Mapping[str, float | str] = DEFAULT_PRIOR,
     shape_noise: float = SHAPE_NOISE,
     tolerance: float = 0.05,
-    accuracy: float = 1e-4,
+    accuracy: float | None = None,
+    elements: int | None = None,
     progress: Progress = silent,
 ) -> UpdateResult:
     """Return the most probable free numbers of a model, given what a rig measured at standstill.
@@ -81,7 +84,9 @@ def update(
         prior: relative standard deviation of the free numbers before the test, of all or by address.
         shape_noise: standard deviation of a measured displacement over the root mean square of its shape.
         tolerance: largest |f_mode / f_rig - 1| of a pair where no shapes were measured.
-        accuracy: relative accuracy of the frequencies that the mesh is refined to.
+        accuracy: relative accuracy of the frequencies that the mesh is refined to; default: a tenth of the least noise of a line,
+            at most 1e-4.
+        elements: so many basic elements in each piece of a section, and no refinement.
         progress: callable that is told fraction and step.
 
     Returns:
@@ -101,7 +106,8 @@ def update(
     reach = ABOVE_RIG * (1.0 + 0.5 * float(numbers.prior.max()))
     fmax = reach * max(line.frequency_hz for line in given.lines)
     progress(0.05, "mesh")
-    plan = _plan_of(model, fmax, accuracy)
+    least = min(line_noise(line) for line in given.lines)
+    plan = Plan(elements) if elements else _plan_of(model, fmax, accuracy or float(np.clip(0.1 * least, *_MESH_ERROR)))
     problem = _Problem(RigModel(numbers, plan, fmax, given.points), given, shape_noise, tolerance)
     start = problem.start()
     if not start.pairs:
@@ -280,7 +286,7 @@ class _Problem:
             points = self.shape_points(pair.line)
             if len(points):
                 y = self.given.real_shapes[pair.line, points]
-                residual += list(_off_subspace(modes.at_points[np.ix_(list(pair.near), points)].T, y))
+                residual += list(_off_subspace(modes.at_points[np.ix_(np.array(pair.near), points)].T, y))
                 share = np.hypot(self.shape_noise, self.looseness)
                 noise += [float(share * np.sqrt(np.mean(y**2)))] * len(points)
                 owner += [pair.line] * len(points)
@@ -302,7 +308,7 @@ class _Problem:
             rows.append(slopes[place[pair.mode]])
             points = self.shape_points(pair.line)
             if len(points):
-                basis = modes.at_points[np.ix_(list(pair.near), points)].T
+                basis = modes.at_points[np.ix_(np.array(pair.near), points)].T
                 share = np.linalg.lstsq(basis, self.given.real_shapes[pair.line, points], rcond=None)[0]
                 change = sum(a * shape_slopes[place[k]][points] for a, k in zip(share, pair.near, strict=True))
                 rows += list(_off_subspace(basis, np.asarray(change)))
