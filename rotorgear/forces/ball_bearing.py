@@ -99,6 +99,7 @@ class BallBearing(ForceLaw):
     """Ball bearing with five relative displacements: x, y, z of the inner ring against the outer one, and tilts about x and y."""
 
     title: ClassVar[str] = "ball bearing"
+    conserves: ClassVar[bool] = True
 
     balls: int = parameter("", "number of balls Z", least=3)
     ball_diameter: float = parameter("m", "diameter D_w of a ball", above=0.0)

@@ -178,6 +178,9 @@ class ForceLaw(ABC):
     title: ClassVar[str]
     # Whether the force alone can't bring energy into the structure while nothing prescribed moves.
     passive: ClassVar[bool] = True
+    # Whether the energy that it stores is the potential of its elastic force. Time integration then keeps energy to rounding
+    # where sides meet and part; a law that does not say so is taken half way through each step, and may gain energy there.
+    conserves: ClassVar[bool] = False
     # Name of the parameter that holds the turns of the law's shaft for each turn of the reference; a model file fills it in.
     shaft_ratio: ClassVar[str] = ""
 

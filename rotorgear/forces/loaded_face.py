@@ -165,6 +165,7 @@ class LoadedFace(LoadedMap):
     """Contact of one helix by the maps of its loaded teeth at several tilts of the flanks."""
 
     title: ClassVar[str] = "loaded teeth that tilt"
+    conserves: ClassVar[bool] = True
 
     load: np.ndarray = parameter("N", "loads F_j along the flank normal, (l,), rising from 0")  # noqa: RUF009
     tilt: np.ndarray = parameter("m/m", "tilts (k,), rising, that close the flanks at larger z")  # noqa: RUF009

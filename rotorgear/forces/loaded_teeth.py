@@ -187,6 +187,7 @@ class LoadedTeeth(LoadedMap):
     """Contact of one helix by the map of its loaded teeth."""
 
     title: ClassVar[str] = "loaded teeth"
+    conserves: ClassVar[bool] = True
 
     load: np.ndarray = parameter("N", "loads F_j along the flank normal, (l,), rising from 0")  # noqa: RUF009
     approach: np.ndarray = parameter("m", "approach (p, l) under these loads at even positions over all periods")  # noqa: RUF009

@@ -136,6 +136,7 @@ class MeshContact(ForceLaw):
     """Contact of one helix of a mesh."""
 
     title: ClassVar[str] = "tooth contact"
+    conserves: ClassVar[bool] = True
 
     stiffness: float = parameter("N/m", "mean stiffness k along the flank normal", least=0.0)
     damping: float = parameter("N s/m", "damping coefficient c", 0.0, least=0.0)

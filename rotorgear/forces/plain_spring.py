@@ -36,6 +36,7 @@ class PlainSpring(ForceLaw):
     """Spring with cubic term and clearance."""
 
     title: ClassVar[str] = "spring with cubic term and clearance"
+    conserves: ClassVar[bool] = True
 
     stiffness: float = parameter("N/m", "k")
     cubic: float = parameter("N/m^3", "k3", 0.0)

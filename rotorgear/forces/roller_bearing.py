@@ -72,6 +72,7 @@ class RollerBearing(ForceLaw):
     """Cylindrical roller bearing with two relative displacements: x and y of the inner ring against the outer one."""
 
     title: ClassVar[str] = "cylindrical roller bearing"
+    conserves: ClassVar[bool] = True
 
     rollers: int = parameter("", "number of rollers Z", least=3)
     length: float = parameter("m", "effective length L of a roller", above=0.0)

@@ -72,6 +72,10 @@ class ContactStatistics(Record):
     rms_force_n: float = of("root mean square of the force about its mean", "N")
     largest_force_n: float = of("largest force", "N")
     smallest_force_n: float = of("smallest force", "N", note="; negative on the coast flank")
+    driving_impulse_n_s: float = of(
+        "impulse on the working flank", "N s", note=": the integral of its force over that time"
+    )
+    back_impulse_n_s: float = of("impulse on the coast flank", "N s", note=", positive")
     dynamic_factor: float = of("dynamic factor", note=": largest over static force; `null` without load", form=".3f")
     peak_to_peak_transmission_error_m: float = of(
         "transmission error, peak to peak",
@@ -117,7 +121,8 @@ class Quantity(Record):
 class TransientResult(ModelResult, kind="transient"):
     """r recorded instants of c contacts and p channels.
 
-    Statistics count from the time `settle` on. `transmission_error` is the rotation at the base circles, r_b1 theta_1 +
+    Statistics count from the time `settle` on, and are those of all steps, with a cubic between steps where a largest or least
+    value is sought; the histories serve pictures and spectra. `transmission_error` is the rotation at the base circles, r_b1 theta_1 +
     r_b2 theta_2; `approach` that of the flanks in the transverse plane, v.q / cos(beta_b), bending and axial motion included:
     both positive where the working flanks come together. Forces are positive on the working flank. One of `every` steps is
     recorded; ranges are of all steps. Where frames were asked for, `motion` holds the displacements of the nodes at the last w
@@ -164,6 +169,12 @@ class TransientResult(ModelResult, kind="transient"):
     )
     mesh_force: np.ndarray = of("force along the flank normal", "N", "record", "contact", json=None)
     mean_force: np.ndarray = of("mean force", "N", "contact", json=None, note=": the static force")
+    force_mean: np.ndarray = of("mean of the force in the time that counts", "N", "contact", json=None)
+    force_rms: np.ndarray = of("root mean square of the force about that mean", "N", "contact", json=None)
+    force_range: np.ndarray = of("least and largest force in the time that counts", "N", "contact", "end", json=None)
+    impulse: np.ndarray = of(
+        "impulse on the working and on the coast flank in the time that counts", "N s", "contact", "side", json=None
+    )
     contact_time: np.ndarray = of(
         "share of the time on the working flank, apart, on the coast flank", "", "contact", "state", json=None
     )
@@ -171,6 +182,11 @@ class TransientResult(ModelResult, kind="transient"):
     channel: tuple[str, ...] = of("names of the channels", "", "channel", json=None)
     unit: tuple[str, ...] = of("unit", "", "channel", json=None)
     values: np.ndarray = of("values", "", "record", "channel", json=None)
+    value_mean: np.ndarray = of("mean values of the channels in the time that counts", "", "channel", json=None)
+    value_rms: np.ndarray = of("root mean squares of the channels about these", "", "channel", json=None)
+    value_range: np.ndarray = of(
+        "least and largest values of the channels in the time that counts", "", "channel", "end", json=None
+    )
     quantity: tuple[str, ...] = of("names of the statistics with an error", "", "quantity", json=None)
     quantity_value: np.ndarray = of("values of the statistics", "", "quantity", json=None)
     quantity_error: np.ndarray = of("estimated errors of the statistics", "", "quantity", json=None)
@@ -181,19 +197,21 @@ class TransientResult(ModelResult, kind="transient"):
     @derived("contacts in the time that counts", "", "contact", record=ContactStatistics)
     def contacts(self) -> tuple[ContactStatistics, ...]:
         """Statistics of the contacts."""
-        return tuple(self._contact(i, self.mesh_force[self.counted, i]) for i in range(len(self.contact)))
+        return tuple(self._contact(i) for i in range(len(self.contact)))
 
-    def _contact(self, i: int, force: np.ndarray) -> ContactStatistics:
+    def _contact(self, i: int) -> ContactStatistics:
         return ContactStatistics(
             name=self.contact[i],
             static_force_n=float(self.mean_force[i]),
-            mean_force_n=_mean(force),
-            rms_force_n=_rms(force),
-            largest_force_n=float(force.max(initial=-np.inf)),
-            smallest_force_n=float(force.min(initial=np.inf)),
+            mean_force_n=float(self.force_mean[i]),
+            rms_force_n=float(self.force_rms[i]),
+            largest_force_n=float(self.force_range[i, 1]),
+            smallest_force_n=float(self.force_range[i, 0]),
+            driving_impulse_n_s=float(self.impulse[i, 0]),
+            back_impulse_n_s=float(self.impulse[i, 1]),
             dynamic_factor=float(self.dynamic_factor[i]),
-            peak_to_peak_transmission_error_m=float(np.ptp(self.transmission_error_range[i])) if force.size else np.nan,
-            peak_to_peak_approach_m=float(np.ptp(self.approach_range[i])) if force.size else np.nan,
+            peak_to_peak_transmission_error_m=float(np.ptp(self.transmission_error_range[i])),
+            peak_to_peak_approach_m=float(np.ptp(self.approach_range[i])),
             driving_share=float(self.contact_time[i, 0]),
             apart_share=float(self.contact_time[i, 1]),
             back_share=float(self.contact_time[i, 2]),
@@ -203,20 +221,17 @@ class TransientResult(ModelResult, kind="transient"):
     @derived("channels in the time that counts", "", "channel", record=ChannelStatistics)
     def channels(self) -> tuple[ChannelStatistics, ...]:
         """Statistics of the channels."""
-        rows = []
-        for i, name in enumerate(self.channel):
-            values = self.values[self.counted, i]
-            rows.append(
-                ChannelStatistics(
-                    name=name,
-                    unit=self.unit[i],
-                    mean=_mean(values),
-                    rms=_rms(values),
-                    largest=float(values.max(initial=-np.inf)),
-                    smallest=float(values.min(initial=np.inf)),
-                )
+        return tuple(
+            ChannelStatistics(
+                name=name,
+                unit=self.unit[i],
+                mean=float(self.value_mean[i]),
+                rms=float(self.value_rms[i]),
+                largest=float(self.value_range[i, 1]),
+                smallest=float(self.value_range[i, 0]),
             )
-        return tuple(rows)
+            for i, name in enumerate(self.channel)
+        )
 
     @derived("statistics with an error", "", "quantity", record=Quantity)
     def quantities(self) -> tuple[Quantity, ...]:
@@ -246,8 +261,7 @@ class TransientResult(ModelResult, kind="transient"):
     @property
     def dynamic_factor(self) -> np.ndarray:
         """(c,) largest mesh force over the static mean force; NaN where no load flows."""
-        force = self.mesh_force[self.counted]
-        peak = force.max(axis=0) if force.size else np.full(len(self.contact), np.nan)
+        peak = self.force_range[:, 1]
         safe = np.where(self.mean_force > 0.0, self.mean_force, 1.0)
         return np.where(self.mean_force > 0.0, peak / safe, np.nan)
 
@@ -278,12 +292,3 @@ class TransientResult(ModelResult, kind="transient"):
             table = getattr(self, _OF_CONTACTS[what])
             return np.asarray(table[:, self.contact.index(contact)])
         raise KeyError(name)
-
-
-def _mean(x: np.ndarray) -> float:
-    return float(x.mean()) if x.size else float("nan")
-
-
-def _rms(x: np.ndarray) -> float:
-    """Root mean square about the mean."""
-    return float(x.std()) if x.size else float("nan")

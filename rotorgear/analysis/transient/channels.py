@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.model.parts.fields import DOF_NAMES
-from rotorgear.solvers.time.local_system import Fields
+from rotorgear.solvers.time.local_system import Fields, Observed
 from rotorgear.system.local import LocalModel
 
 _AXES = ("x", "y", "z")
@@ -27,6 +27,13 @@ class Channels:
         for kind, (which, Y) in self.rows.items():
             values[:, which] += F @ Y.T if kind == "F" else fields.rows(kind, Y)
         return values
+
+    def observed(self, n: int, m: int) -> Observed:
+        """The channels as rows that integrators gather statistics of at every step, for n dofs and m local forces."""
+        rows = {kind: np.zeros((len(self.names), m if kind == "F" else n)) for kind in "qvaF"}
+        for kind, (which, Y) in self.rows.items():
+            rows[kind][which] = Y
+        return Observed(**rows)
 
 
 def channels(local: LocalModel) -> Channels:

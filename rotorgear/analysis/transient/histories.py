@@ -12,10 +12,11 @@ from rotorgear.analysis.transient.energy_ledger import LedgerBook
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress, silent
 from rotorgear.results.transient import EnergyLedger
+from rotorgear.solvers.time.arguments import Gathered
 from rotorgear.solvers.time.local_system import Integrator, LocalSystem, Records, State
 from rotorgear.solvers.time.run import Schedule, run
 
-_STATE = ("q", "v", "a", "F", "before", "sums", "last", "events", "extremes")
+_STATE = ("q", "v", "a", "F", "before", "d", "sums", "last", "events")
 _TABLES = ("t", "d", "watched", "F", "values")
 
 
@@ -64,7 +65,7 @@ def integrate(
 
     Args:
         frames: so many records at the end keep all displacements.
-        settled: records before the statistics count; contact events and extremes are counted anew from there.
+        settled: records before the statistics count; contact events and statistics are counted anew from there.
     """
     state = start.copy()
     found = Histories(state, schedule.h)
@@ -115,6 +116,9 @@ def integrate(
         except KeyboardInterrupt:
             found.status = f"interrupted after {state.step} of {schedule.steps} steps"
             break
+    if state.step < boundary:
+        # Nothing counts yet: what was gathered while settling is no statistic.
+        state.count_anew()
     if not any(part["t"].size for part in found.parts):
         raise ConvergenceError(found.status)
     found.ledger = book.close()
@@ -124,8 +128,9 @@ def integrate(
 def state_arrays(state: State) -> dict[str, np.ndarray]:
     """A state as arrays, for a stream."""
     plain = {f"state {name}": getattr(state, name) for name in _STATE}
+    gathered = {f"gathered {name}": value for name, value in state.gathered._asdict().items()}
     inner = {f"inner {name}": value for name, value in state.inner.items()}
-    return {"state step": np.array(state.step), **plain, **inner}
+    return {"state step": np.array(state.step), **plain, **gathered, **inner}
 
 
 def _take(found: Histories, book: LedgerBook, chunk: dict[str, np.ndarray]) -> None:
@@ -138,4 +143,5 @@ def _take(found: Histories, book: LedgerBook, chunk: dict[str, np.ndarray]) -> N
     state.step = int(chunk["state step"])
     for name in _STATE:
         setattr(state, name, chunk[f"state {name}"].copy())
+    state.gathered = Gathered(*(chunk[f"gathered {name}"].copy() for name in Gathered._fields))
     state.inner = {name.removeprefix("inner "): x.copy() for name, x in chunk.items() if name.startswith("inner ")}

@@ -12,7 +12,7 @@ from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.quantity import QuantityError, parse_quantity
 from rotorgear.solvers.time.exponential import Exponential
-from rotorgear.solvers.time.local_system import Integrator, LocalSystem
+from rotorgear.solvers.time.local_system import Integrator, LocalSystem, contact_rates
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.solvers.time.newmark import Newmark
 from rotorgear.system.system import System
@@ -107,15 +107,7 @@ def base_frequencies(system: System, speed: float) -> dict[str, float]:
 
 def contact_frequency(local: LocalSystem) -> float:
     """Highest frequency in Hz at which a contact alone would vibrate on the inertia it meets: sqrt(k b^T M^-1 b)."""
-    from rotorgear.solvers.time.local_system import acceleration
-
-    k = np.diag(local.forces.reference_stiffness)
-    squares = [
-        k[j] * float(column @ acceleration(local.M, column))
-        for j, column in enumerate(local.B.toarray().T)
-        if k[j] > 0.0
-    ]
-    return float(np.sqrt(max(squares, default=0.0))) / (2.0 * np.pi)
+    return float(contact_rates(local).max(initial=0.0)) / (2.0 * np.pi)
 
 
 def grid_of(

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.transient.histories import Histories
+from rotorgear.solvers.time.gathered import StepStatistics
 
 # Contact forces that move by less than this share of their size do not move: what is left is rounding.
 _STILL = 1e-8
@@ -22,27 +23,27 @@ class Statistics:
     scale: np.ndarray
 
 
-def statistics(found: Histories, task: Any, settled: int) -> Statistics:
+def of_forces(found: Histories, task: Any) -> StepStatistics:
+    """Statistics of the mesh contacts' forces over all steps that count."""
+    columns = [int(task.local.local.forces.first[i]) for i, part in enumerate(task.local.parts) if part.is_mesh]
+    return StepStatistics.of(found.state.gathered).chosen(np.array(columns, dtype=int))
+
+
+def of_channels(found: Histories, task: Any) -> StepStatistics:
+    """Statistics of the channels over all steps that count."""
+    all_of = StepStatistics.of(found.state.gathered)
+    return all_of.chosen(slice(all_of.mean.size - len(task.channels.names), None))
+
+
+def statistics(found: Histories, task: Any) -> Statistics:
     """Mean, root mean square about it and largest of each contact force, and root mean square of each channel."""
-    t = found.table("t")
-    counted = slice(settled, None) if t.size > settled else slice(None)
-    F = found.table("F")[counted]
-    values = found.table("values")[counted]
-    names: list[str] = []
-    data: list[float] = []
-    scale: list[float] = []
-    first = task.local.local.forces.first
-    for i, part in enumerate(task.local.parts):
-        if not part.is_mesh:
-            continue
-        force = F[:, first[i]]
-        level = float(np.sqrt(np.mean(force**2)))
-        for what, value in (("mean", force.mean()), ("rms", force.std()), ("largest", force.max())):
-            names.append(f"{what} force {part.label}")
-            data.append(float(value))
-            scale.append(level)
+    force = of_forces(found, task)
+    labels = [part.label for part in task.local.parts if part.is_mesh]
+    names = [f"{what} force {label}" for label in labels for what in ("mean", "rms", "largest")]
+    data = np.column_stack([force.mean, force.rms, force.largest]).ravel().tolist()
+    scale = np.repeat(np.sqrt(force.mean**2 + force.rms**2), 3).tolist()
     still = bool(data) and all(data[i + 1] <= _STILL * scale[i] for i in range(0, len(data), 3))
-    rms = values.std(axis=0) if values.shape[1] else np.zeros(0)
+    rms = of_channels(found, task).rms
     units = np.array(task.channels.units)
     for i, name in enumerate(task.channels.names):
         names.append(f"rms {name}")
@@ -58,6 +59,6 @@ def compared(fine: Statistics, coarse: Statistics, factor: float = 3.0) -> tuple
     `factor`: by how much the better one is better, less 1; 3 for a step ratio of 2 and order 2.
     """
     errors = np.abs(fine.value - coarse.value) / factor
-    known = fine.scale > 0.0
+    known = ~(fine.scale <= 0.0)
     relative = errors[known] / fine.scale[known]
     return errors, float(relative.max(initial=0.0)) if np.all(np.isfinite(relative)) else float("inf")

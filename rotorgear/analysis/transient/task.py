@@ -26,6 +26,9 @@ from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.system import System
 
 _HALVINGS = 6
+# So many halvings in a row that leave more than this share of the error are given up.
+_FRUITLESS = 2
+_FALLS = 0.5
 # The search for a step runs over so many steps at most.
 _PROBE = 60_000
 
@@ -40,6 +43,14 @@ class Task:
     rest_force: np.ndarray
     frequencies: dict[str, float]
     largest: float
+
+    @property
+    def drifts(self) -> bool:
+        """Whether the loads don't balance on a motion that nothing holds."""
+        drift = self.rest.drift
+        return bool(
+            drift.size and np.abs(drift).max() > 1e-9 * max(float(np.linalg.norm(self.local.local.load)), 1e-300)
+        )
 
 
 def prepare(
@@ -62,7 +73,10 @@ def prepare(
     local = springs_about_mean(local_model(given, rotation, largest, along_faces=True), largest)
     rest = equilibrium(local.local)
     force = still_forces(local.local, tuple(part.law.mean() for part in local.parts))
-    return Task(local, channels(local), rest, force, mesh_frequencies(given, largest), largest)
+    seen = channels(local)
+    observed = seen.observed(local.local.n, local.local.m)
+    local = replace(local, local=replace(local.local, observed=observed))
+    return Task(local, seen, rest, force, mesh_frequencies(given, largest), largest)
 
 
 def damped(model: Model | System, modal_damping: float | None) -> Model | System:
@@ -128,14 +142,19 @@ def fine_enough(task: Task, integrator: Integrator, grid: Grid, accuracy: float,
     records = min(grid.records, max(_PROBE // grid.every, 8))
     probe = replace(grid, records=records, settled=min(grid.settled, records // 2))
     last = _probed(task, integrator, probe, progress)
+    errors: list[float] = []
     for _ in range(_HALVINGS):
         finer = replace(probe, every=2 * probe.every)
         now = _probed(task, integrator, finer, progress)
         error = compared(now, last)[1] if now and last else np.inf
+        errors.append(error)
         # What the finer of the two was found to be good for.
         if error <= accuracy:
             # Second order: the coarser one is four times worse.
             return replace(grid, every=finer.every if 4.0 * error > accuracy else probe.every)
+        if len(errors) > _FRUITLESS and min(errors[-_FRUITLESS:]) > _FALLS * errors[-1 - _FRUITLESS] < np.inf:
+            # Steps four times finer give other statistics, no better ones: the motion is chaotic, or the time too short for it.
+            return grid
         probe = finer
         last = now
     return replace(grid, every=probe.every)
@@ -147,4 +166,4 @@ def _probed(task: Task, integrator: Integrator, grid: Grid, progress: Progress) 
         found = run_task(task, integrator, grid, progress, text="choosing the step")
     except ConvergenceError:
         return None
-    return statistics(found, task, grid.settled) if found.status == "success" else None
+    return statistics(found, task) if found.status == "success" else None

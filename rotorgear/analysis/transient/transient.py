@@ -13,10 +13,11 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import missed
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.ground import mean_torsion_notes
+from rotorgear.analysis.transient.balance import unbalanced
 from rotorgear.analysis.transient.histories import Histories, Stream
 from rotorgear.analysis.transient.notes import transient_left_out, transient_warnings
 from rotorgear.analysis.transient.request import Grid, base_frequencies, grid_of, integrator_of, quantity, run_up
-from rotorgear.analysis.transient.statistics import Statistics, compared, statistics
+from rotorgear.analysis.transient.statistics import Statistics, compared, of_channels, of_forces, statistics
 from rotorgear.analysis.transient.task import Task, damped, fine_enough, prepare, run_task, skipping
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
@@ -148,13 +149,16 @@ def _result(
 ) -> TransientResult:
     system = task.local.system
     local = task.local.local
-    of_run: Statistics = statistics(found, task, grid.settled)
-    errors, largest = _errors(of_run, found, others, task, grid)
+    of_run: Statistics = statistics(found, task)
+    errors, largest = _errors(of_run, found, others, task)
+    force = of_forces(found, task)
+    seen = of_channels(found, task)
     t = found.table("t")
     meshes = [i for i, part in enumerate(task.local.parts) if part.is_mesh]
     columns = [int(local.forces.first[i]) for i in meshes]
     transverse = np.array([task.local.parts[i].transverse for i in meshes])
-    extremes = found.state.extremes
+    extremes = np.where(np.isfinite(found.state.extremes), found.state.extremes, np.nan)
+    counted = extremes[local.m : local.m + local.watched_vectors.shape[1]]
     events = found.state.events[meshes].astype(float)
     if found.ledger is None:
         raise ConvergenceError(found.status)
@@ -171,14 +175,21 @@ def _result(
         approach=found.table("d")[:, columns] / transverse,
         transmission_error=found.table("watched"),
         approach_range=extremes[columns] / transverse[:, None],
-        transmission_error_range=extremes[local.m :],
+        transmission_error_range=counted,
         mesh_force=found.table("F")[:, columns],
         mean_force=task.rest_force[columns],
-        contact_time=events[:, :3] / np.maximum(events[:, :3].sum(axis=1, keepdims=True), 1.0),
+        force_mean=force.mean,
+        force_rms=force.rms,
+        force_range=np.column_stack([force.least, force.largest]),
+        impulse=np.column_stack([force.mean - force.negative, -force.negative]) * (force.steps * found.h),
+        contact_time=events[:, :3] / (force.steps or np.nan),
         contact_losses=found.state.events[meshes, 3],
         channel=task.channels.names,
         unit=task.channels.units,
         values=found.table("values"),
+        value_mean=seen.mean,
+        value_rms=seen.rms,
+        value_range=np.column_stack([seen.least, seen.largest]),
         quantity=of_run.name,
         quantity_value=of_run.value,
         quantity_error=errors,
@@ -203,7 +214,10 @@ def _result(
             *mean_torsion_notes(task.local.system, task.largest),
         ),
     )
-    return replace(result, warnings=transient_warnings(result, task.rest, task.local, estimated=estimated))
+    notes = transient_warnings(result, task.rest, task.local, estimated=estimated)
+    if result.status == "success":
+        notes += unbalanced(found, task, errors[: 3 * len(meshes) : 3])
+    return replace(result, warnings=notes)
 
 
 def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> list[tuple[Histories, float]]:
@@ -227,14 +241,10 @@ def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progr
 
 
 def _errors(
-    of_run: Statistics, found: Histories, others: list[tuple[Histories, float]], task: Task, grid: Grid
+    of_run: Statistics, found: Histories, others: list[tuple[Histories, float]], task: Task
 ) -> tuple[np.ndarray, float]:
     """Errors of the statistics: the sum of those that the comparisons tell, and the largest."""
     if not others or any(run.status != "success" for run in (found, *(run for run, _ in others))):
         return np.full(of_run.value.size, np.nan), float("nan")
-    pairs = []
-    for run, factor in others:
-        # A run of another step has records of its own: the first that counts is found by its time.
-        settled = int(np.searchsorted(run.table("t"), grid.settled * grid.spacing * (1.0 - 1e-9)))
-        pairs.append(compared(of_run, statistics(run, task, settled), factor))
+    pairs = [compared(of_run, statistics(run, task), factor) for run, factor in others]
     return np.sum([errors for errors, _ in pairs], axis=0), float(sum(largest for _, largest in pairs))

@@ -21,6 +21,7 @@ class Laws(NamedTuple):
     parameters_first: np.ndarray
     state_first: np.ndarray
     block_first: np.ndarray
+    conserves: np.ndarray
 
 
 class Instants(NamedTuple):
@@ -53,8 +54,10 @@ class ContactWork(NamedTuple):
     """Arrays in which the forces of a step are found.
 
     Attributes:
-        state: (s,) of the laws, filled at the step's end. d_free, v_free: (m,) there without local forces.
-        d, v: (m,) there with them. answer: of the laws to d and v. step: (m,) and J: (m, m) of Newton's method.
+        state: (s,) of the laws, filled for the step. d_free, v_free: (m,) at its end without local forces.
+        d, v: (m,) there with them; v is the mean velocity where forces are those of a whole step. answer: of the laws.
+        guess, step: (m,) and J: (m, m) of Newton's method. begin: (m,) displacements at the step's begin; middle: half way.
+        still, begun, ended: answers at rest in the middle, at the begin and at the end, all in the state of the step.
     """
 
     state: np.ndarray
@@ -63,8 +66,15 @@ class ContactWork(NamedTuple):
     d: np.ndarray
     v: np.ndarray
     answer: Answer
+    guess: np.ndarray
     step: np.ndarray
     J: np.ndarray
+    begin: np.ndarray
+    middle: np.ndarray
+    rest: np.ndarray
+    still: Answer
+    begun: Answer
+    ended: Answer
 
 
 class Span(NamedTuple):
@@ -84,15 +94,32 @@ class Turning(NamedTuple):
     angles: np.ndarray
 
 
+class Gathered(NamedTuple):
+    """Statistics of g quantities over the steps that count; see solvers/time/gathered.py.
+
+    Attributes:
+        recent: (g, 3) values at the last three steps, oldest first. level: (g,) that sums are taken about.
+        sums: (g, 3) over the steps of x - level, of its square, and of the negative part of x.
+        extremes: (g, 2) least and largest. count: (1,) steps.
+    """
+
+    recent: np.ndarray
+    level: np.ndarray
+    sums: np.ndarray
+    extremes: np.ndarray
+    count: np.ndarray
+
+
 class Carried(NamedTuple):
     """What the local forces carry from step to step; see `State`."""
 
     F: np.ndarray
     before: np.ndarray
+    d: np.ndarray
     sums: np.ndarray
     last: np.ndarray
     events: np.ndarray
-    extremes: np.ndarray
+    gathered: Gathered
 
 
 class Kept(NamedTuple):
@@ -134,6 +161,15 @@ class Structure(NamedTuple):
     load: np.ndarray
 
 
+class Observing(NamedTuple):
+    """Rows of p channels on q, v, a (p, n) and on the local forces (p, m)."""
+
+    q: SparseRows
+    v: SparseRows
+    a: SparseRows
+    F: SparseRows
+
+
 class Triangles(NamedTuple):
     """SuperLU's factors by columns (first, row, value) without their diagonals, 1/diag(U), and both orders."""
 
@@ -149,13 +185,14 @@ class Triangles(NamedTuple):
 
 
 class NewmarkStep(NamedTuple):
-    """Of one step of a generalised-alpha method: S factored, B^T and W^T by rows, P = S^-1 B (n, m), and the compliance."""
+    """Of one step: S factored, B^T and W^T by rows, P = S^-1 B (n, m), the compliance, and rows of the channels."""
 
     S: Triangles
     Bt: SparseRows
     Wt: SparseRows
     P: np.ndarray
     compliance: Compliance
+    observing: Observing
 
 
 class Motion(NamedTuple):
@@ -170,9 +207,9 @@ class ModalStep(NamedTuple):
     """Of one step in nz complex modes, real and imaginary parts.
 
     Attributes:
-        er, ei: e^(s h), (nz,). Gr, Gi: e Q1 + Q0, (m, nz). gr, gi: of the load, (nz,). Qr, Qi: Q1, (m, nz).
-        Cr, Ci: (m, nz) rows that give d; 2 m, those of v below, where something depends on v; then (p, nz) those that give the
-        watched displacements.
+        er, ei: e^(s h), (nz,). Gr, Gi: e Q, (m, nz). gr, gi: of the load, (nz,). Qr, Qi: Q, (m, nz).
+        Cr, Ci: (m, nz) rows that give d, then (p, nz) those that give the watched displacements and the channels.
+        Vr, Vi: (m, nz) rows that give v.
     """
 
     er: np.ndarray
@@ -185,13 +222,17 @@ class ModalStep(NamedTuple):
     Qi: np.ndarray
     Cr: np.ndarray
     Ci: np.ndarray
+    Vr: np.ndarray
+    Vi: np.ndarray
 
 
 class RigidStep(NamedTuple):
-    """Motions without stiffness and damping: local and watched displacements of each, (nr, m), (nr, p), and loads (nr,)."""
+    """Motions without stiffness and damping: local displacements of each (nr, m), what p watched displacements and channels get
+    of the motions and of their velocities (nr, p), and loads (nr,)."""
 
     B: np.ndarray
     W: np.ndarray
+    Wv: np.ndarray
     load: np.ndarray
 
 
@@ -199,19 +240,27 @@ class Reference(NamedTuple):
     """The linear reference k d + c v of the local forces, (m, m), which the modes hold.
 
     Attributes:
-        Z: (2 m, 2 m), turns d and v without the rest u of the step's end into those without the local forces there.
-        watched: (p, m) what that rest adds to the watched displacements by the modes.
+        Z: (m, m), turns d without the rest u of the step into d without its local forces.
+        A: (m, m), what the rest of the step adds to d, and Av to v, by modes and rigid motions.
+        watched: (p, m) what the rest of the step adds to watched displacements and channels by the modes; late: (p, m) what the
+        rest at the step's end adds to channels that hold accelerations; forced: (p, m) what local forces there add.
+        constant: (p,) of channels, by the load.
     """
 
     Z: np.ndarray
     compliance: Compliance
+    A: np.ndarray
+    Av: np.ndarray
     k: np.ndarray
     c: np.ndarray
     watched: np.ndarray
+    late: np.ndarray
+    forced: np.ndarray
+    constant: np.ndarray
 
 
 class ModalMotion(NamedTuple):
-    """y = z - Q1 u (nz,), motions without stiffness r and their rates (nr,), and the rest u of the local forces (m,)."""
+    """y = z - Q u (nz,), motions without stiffness r and their rates (nr,), and the rest u (m,) of local forces."""
 
     yr: np.ndarray
     yi: np.ndarray

@@ -138,6 +138,8 @@ class ExplicitStepper:
 
     def _look(self, state: State, kept: Kept, number: int, every: int, y: np.ndarray) -> None:
         """Take the state over after a step, with what forces did in it."""
+        from rotorgear.solvers.time.kernel_gather import gather
+
         n = self.system.n
         t = (state.step + number) * self.h
         state.q[:] = y[:n]
@@ -154,9 +156,9 @@ class ExplicitStepper:
         state.events[:, 3] += (now == 0) & (state.last != 0)
         state.last[:] = now
         d = self.system.B.T @ state.q
-        moved = np.concatenate([d, self.system.watched_vectors.T @ state.q])
-        state.extremes[:, 0] = np.minimum(state.extremes[:, 0], moved)
-        state.extremes[:, 1] = np.maximum(state.extremes[:, 1], moved)
+        state.d[:] = d
+        values = self.system.gathered_values(state.q, state.v, state.a, d, F)
+        gather(state.gathered, values, F.size, False)
         if number % every == 0:
             r = number // every - 1
             kept.q[r] = state.q

@@ -1,12 +1,14 @@
 """The exponential integrator: exact for the linear part in complex modes, second order in the local forces, speed constant.
 
-The local forces are split into their linear reference k d + c v, which goes into the modes, and the rest u, which is
-linear within a step and found by Newton's method on m unknowns. Hochbruck and Ostermann, Acta Numerica 19 (2010) 209.
+The local forces are split into their linear reference k d + c v, which goes into the modes, and the rest u, which is constant
+within a step and found by Newton's method on m unknowns. A contact whose vibration on the inertia that it meets the step does not
+resolve stays out of the modes: free of it, structures fly exactly, and its forces are impulses that keep energy.
+Hochbruck and Ostermann, Acta Numerica 19 (2010) 209; Li and Wu, SIAM J. Sci. Comput. 38 (2016) A1876.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -22,7 +24,10 @@ from rotorgear.solvers.time.arguments import (
     Span,
     Turning,
 )
-from rotorgear.solvers.time.local_system import LocalSystem, Records, State, blank_records
+from rotorgear.solvers.time.local_system import LocalSystem, Records, State, blank_records, contact_rates
+
+# Radians of a contact's vibration in a step above which it stays out of the modes.
+_RESOLVED = 0.8
 
 
 @dataclass(frozen=True)
@@ -32,6 +37,7 @@ class Exponential:
     modes: int | None = None
     modal_ratio: float = 0.0
     _known: list[tuple[LocalSystem, float, ComplexModes]] = field(default_factory=list, compare=False, repr=False)
+    _without: list[tuple[LocalSystem, np.ndarray, LocalSystem]] = field(default_factory=list, compare=False, repr=False)
 
     @property
     def name(self) -> str:
@@ -54,7 +60,29 @@ class Exponential:
         """
         if not system.rotation.is_constant and system.G is not None and system.G.nnz:
             raise AnalysisError("the exponential integrator needs a constant speed; use newmark for a run-up")
+        if not (self.modal_ratio or self.modes):
+            system = self._resolved(system, h)
         return ExponentialStepper(self._modes(system, speed), system, h, tolerance)
+
+    def _resolved(self, system: LocalSystem, h: float) -> LocalSystem:
+        """The system with those contacts out of the reference that the step does not resolve."""
+        fast = contact_rates(system) * h > _RESOLVED
+        if not np.any(fast):
+            return system
+        known = next(
+            (small for whole, out, small in self._without if whole is system and np.array_equal(out, fast)), None
+        )
+        if known is None:
+            held = np.where(fast[:, None] | fast[None, :], 0.0, 1.0)
+            laws = system.forces
+            forces = replace(
+                laws,
+                reference_stiffness=laws.reference_stiffness * held,
+                reference_damping=laws.reference_damping * held,
+            )
+            known = replace(system, forces=forces)
+            self._without.append((system, fast, known))
+        return known
 
     def _modes(self, system: LocalSystem, speed: float) -> ComplexModes:
         """The modes, found once for a system and speed."""
@@ -78,39 +106,54 @@ class ExponentialStepper:
         m = system.m
         s = modes.s
         e = np.exp(modes.s * h)
-        first, second = _phi(modes.s * h)
+        first = _phi(modes.s * h)
         gain = modes.gains @ (modes.basis.T @ B)
-        Q0 = (h * (first - second))[:, None] * gain
-        self._Q1 = (h * second)[:, None] * gain
+        self._Q = (h * first)[:, None] * gain
         push = modes.gains @ (modes.basis.T @ system.load)
-        CX = B.T @ modes.shapes
-        C = np.vstack([CX, CX * s])
+        C = B.T @ modes.shapes
+        V = C * s
         Br = modes.rigid.T @ B
-        A = np.real(C @ self._Q1) + np.vstack([h * h / 6.0 * Br.T @ Br, 0.5 * h * Br.T @ Br])
+        A = np.real(C @ self._Q) + 0.5 * h * h * Br.T @ Br
         k_ref = system.forces.reference_stiffness
         c_ref = system.forces.reference_damping
-        linear = np.eye(2 * m) - A @ np.hstack([k_ref, c_ref])
-        Z = np.linalg.inv(linear)
-        compliance = np.linalg.solve(linear, A)
-        self._Br = Br
+        linear = np.eye(m) - A @ (0.5 * k_ref + c_ref / h)
         self._rigid_load = modes.rigid.T @ system.load
         self._mobile = modes.basis @ (modes.basis.T @ B) + modes.rigid @ Br
         self._pushed = modes.basis @ (modes.basis.T @ system.load) + modes.rigid @ self._rigid_load
-        needs_v = bool(np.any(c_ref)) or any(law.uses_velocity for law in system.forces.laws)
-        watched = system.watched_vectors.T @ modes.shapes
-        rows = np.vstack([C if needs_v else C[:m], watched])
-        G = (e[:, None] * self._Q1 + Q0).T
+        seen = system.observed_rows
+        W = system.watched_vectors.T
+        p = len(W)
+        none = np.zeros((p, m))
+        watched = np.vstack(
+            [W @ modes.shapes, sum(Y @ (modes.shapes * s**power) for power, Y in enumerate((seen.q, seen.v, seen.a)))]
+        )
         rotation = system.rotation
         self._turning = Turning(rotation.times, rotation.speeds, rotation.angles)
-        self._modal = ModalStep(*_parts(e), *_parts(G), *_parts(h * first * push), *_parts(self._Q1.T), *_parts(rows))
-        Wr = modes.rigid.T @ system.watched_vectors
-        self._rigid = RigidStep(np.ascontiguousarray(Br), np.ascontiguousarray(Wr), self._rigid_load)
+        self._modal = ModalStep(
+            *_parts(e),
+            *_parts((e[:, None] * self._Q).T),
+            *_parts(h * first * push),
+            *_parts(self._Q.T),
+            *_parts(np.vstack([C, watched])),
+            *_parts(V),
+        )
+        self._rigid = RigidStep(
+            np.ascontiguousarray(Br),
+            np.ascontiguousarray(modes.rigid.T @ np.vstack([W, seen.q]).T),
+            np.ascontiguousarray(modes.rigid.T @ np.vstack([0.0 * W, seen.v]).T),
+            self._rigid_load,
+        )
         self._reference = Reference(
-            Z=np.ascontiguousarray(Z),
-            compliance=Compliance(np.ascontiguousarray(compliance[:m]), np.ascontiguousarray(compliance[m:])),
+            Z=np.ascontiguousarray(np.linalg.inv(linear)),
+            compliance=Compliance(np.ascontiguousarray(np.linalg.solve(linear, A)), np.zeros((m, m))),
+            A=np.ascontiguousarray(A),
+            Av=np.ascontiguousarray(np.real(V @ self._Q)),
             k=k_ref,
             c=c_ref,
-            watched=np.ascontiguousarray(np.real(watched @ self._Q1)),
+            watched=np.ascontiguousarray(np.real(watched @ self._Q)),
+            late=np.vstack([none, seen.a @ self._mobile]),
+            forced=np.vstack([none, seen.F]),
+            constant=np.concatenate([np.zeros(p), seen.a @ self._pushed]),
         )
         self._laws = system.forces.arguments()
         self._rows: dict[tuple[str, int], tuple[np.ndarray, ...]] = {}
@@ -129,7 +172,7 @@ class ExponentialStepper:
             + laws.reference_damping @ (system.B.T @ state.v)
             - state.F
         )
-        y = z - self._Q1 @ u
+        y = z - self._Q @ u
         rigid = modes.rigid.T @ (system.M @ np.column_stack([state.q, state.v]))
         state.inner = {
             "yr": y.real.copy(),
@@ -233,17 +276,13 @@ def _parts(A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.ascontiguousarray(A.real), np.ascontiguousarray(A.imag)
 
 
-def _phi(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """phi_1 = (e^x - 1)/x and phi_2 = (e^x - 1 - x)/x^2, by their series where x is small."""
+def _phi(x: np.ndarray) -> np.ndarray:
+    """phi_1 = (e^x - 1)/x, by its series where x is small."""
     small = np.abs(x) < 0.3
     safe = np.where(small, 1.0, x)
-    first = np.expm1(safe) / safe
-    second = (np.expm1(safe) - safe) / safe**2
-    a = np.zeros_like(x)
-    b = np.zeros_like(x)
+    series = np.zeros_like(x)
     term = np.ones_like(x)
     for k in range(1, 16):
-        a = a + term
-        b = b + term / (k + 1.0)
+        series = series + term
         term = term * x / (k + 1.0)
-    return np.where(small, a, first), np.where(small, b, second)
+    return np.where(small, series, np.expm1(safe) / safe)

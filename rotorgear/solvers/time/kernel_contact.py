@@ -1,7 +1,10 @@
-"""Compiled: evaluation of local laws, and Newton's method for the forces of one implicit step.
+"""Compiled: evaluation of local laws, and the forces of one implicit step.
 
-At the end of a step d = d_free - Ad F and v = v_free - Av F, with m x m compliances of the step; F follows from
-F = law(d, v). The iteration is exact after one linear solution for laws that are piecewise linear.
+At the end of a step d = d_free - Ad F and v = v_free - Av F, with m x m compliances of the step; F follows from F = law(d, v), or
+from the potential over the whole step (kernel_middle.py). Newton's method is exact after one linear solution for laws that are
+piecewise linear. Its steps are shortened until the residual falls. Where that does not help, forces are found one by one: with
+the others held, law(d(F_i)) - F_i falls with F_i at least as fast as -F_i, so the root lies between F_i and the answer of the
+law, and bisection always ends there (Gauss and Seidel's method, which converges for potentials that are convex).
 """
 
 from __future__ import annotations
@@ -10,12 +13,15 @@ import numpy as np
 
 from rotorgear.solvers.time.arguments import Answer, ContactWork
 from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
+from rotorgear.solvers.time.kernel_gather import ENERGIES
+from rotorgear.solvers.time.kernel_middle import all_straight, whole_step
 
-# Where a law's four energies stand.
-STORED, POWER_IN, DISSIPATED, SIDE = range(4)
-ENERGIES = 4
 _EPS = 2.220446049250313e-16
-_ITERATIONS = 60
+# Of Newton's method: solutions, and halvings of one; then rounds over all forces one by one, and bisections of one.
+_ITERATIONS = 40
+_HALVINGS = 5
+_ROUNDS = 400
+_BISECTIONS = 80
 FAILED = -1
 NOT_FINITE = -2
 
@@ -80,6 +86,33 @@ def force_all(laws, state, d, v, answer):
 
 
 @compiled
+def force_conserving(laws, state, d, v, answer):
+    """Fill the answer of those laws whose stored energy is their potential."""
+    forces = laws.forces
+    first = laws.first
+    parameters_first = laws.parameters_first
+    state_first = laws.state_first
+    block_first = laws.block_first
+    for i in range(laws.kind.size):
+        if not laws.conserves[i]:
+            continue
+        a = first[i]
+        b = first[i + 1]
+        p = block_first[i]
+        q = block_first[i + 1]
+        forces[laws.kind[i]](
+            laws.parameters[parameters_first[i] : parameters_first[i + 1]],
+            state[state_first[i] : state_first[i + 1]],
+            d[a:b],
+            v[a:b],
+            answer.F[a:b],
+            answer.Kd[p:q],
+            answer.Kv[p:q],
+            answer.energy[ENERGIES * i : ENERGIES * (i + 1)],
+        )
+
+
+@compiled
 def evaluate_instants(schedules, forces, parameters, state, instants, answer):
     """Fill the answer of one law, the first of the functions, to d and v at r instants."""
     for i in range(instants.angle.size):
@@ -94,48 +127,6 @@ def evaluate_instants(schedules, forces, parameters, state, instants, answer):
             answer.Kv[i],
             answer.energy[i],
         )
-
-
-@compiled
-def take_account(energy, h, carried):
-    """Sum up energies put in and dissipated; count steps on the front side, apart and on the back, and contact losses."""
-    sums = carried.sums
-    last = carried.last
-    events = carried.events
-    for law in range(last.size):
-        sums[law, 0] += h * energy[ENERGIES * law + POWER_IN]
-        sums[law, 1] += h * energy[ENERGIES * law + DISSIPATED]
-        now = int(energy[ENERGIES * law + SIDE])
-        if now > 0:
-            events[law, 0] += 1
-        elif now < 0:
-            events[law, 2] += 1
-        else:
-            events[law, 1] += 1
-            if last[law] != 0:
-                events[law, 3] += 1
-        last[law] = now
-
-
-@compiled
-def widen(extremes, i, value):
-    """Take a displacement into its least and largest value so far."""
-    if value < extremes[i, 0]:
-        extremes[i, 0] = value
-    if value > extremes[i, 1]:
-        extremes[i, 1] = value
-
-
-@compiled
-def record_forces(r, h, work, carried, kept):
-    """Record local displacements, forces and energies, whose sums follow the trapezoidal rule."""
-    kept.d[r] = work.d
-    kept.F[r] = carried.F
-    energy = work.answer.energy
-    for law in range(carried.last.size):
-        kept.energy[r, law, 0] = energy[ENERGIES * law + STORED]
-        kept.energy[r, law, 1] = carried.sums[law, 0] - 0.5 * h * energy[ENERGIES * law + POWER_IN]
-        kept.energy[r, law, 2] = carried.sums[law, 1] - 0.5 * h * energy[ENERGIES * law + DISSIPATED]
 
 
 @compiled
@@ -168,83 +159,121 @@ def solve_small(A, b, n):
 
 
 @compiled
+def blank_answer(laws, m):
+    """Arrays for an answer of all laws."""
+    blocks = laws.block_first[-1]
+    return Answer(np.zeros(m), np.zeros(blocks), np.zeros(blocks), np.zeros(ENERGIES * laws.kind.size))
+
+
+@compiled
 def contact_work(laws, m):
     """Arrays for `contact_step`."""
-    blocks = laws.block_first[-1]
     return ContactWork(
         np.zeros(laws.state_first[-1]),
         np.empty(m),
         np.empty(m),
         np.empty(m),
         np.empty(m),
-        Answer(np.empty(m), np.zeros(blocks), np.zeros(blocks), np.zeros(ENERGIES * laws.kind.size)),
+        blank_answer(laws, m),
+        np.empty(m),
         np.empty(m),
         np.empty((m, m)),
+        np.empty(m),
+        np.empty(m),
+        np.zeros(m),
+        blank_answer(laws, m),
+        blank_answer(laws, m),
+        blank_answer(laws, m),
     )
 
 
 @compiled
-def contact_step(laws, compliance, work, F, tolerance):
+def answer_to(laws, compliance, work, F, h):
+    """Fill d, v and the answer of the laws to forces F: at the step's end, or of the whole step of h > 0.
+
+    Returns the largest difference between answer and F, its bound by rounding, and the largest force; NaN where one is none.
+    """
+    Ad = compliance.Ad
+    Av = compliance.Av
+    d = work.d
+    v = work.v
+    d_free = work.d_free
+    answer = work.answer
+    m = F.size
+    for i in range(m):
+        x = d_free[i]
+        for j in range(m):
+            x -= Ad[i, j] * F[j]
+        d[i] = x
+    if h > 0.0:
+        for i in range(m):
+            v[i] = (d[i] - work.begin[i]) / h
+            work.middle[i] = 0.5 * (d[i] + work.begin[i])
+        force_all(laws, work.state, work.middle, v, answer)
+        force_conserving(laws, work.state, d, v, work.ended)
+        if not all_straight(laws, work):
+            force_conserving(laws, work.state, work.middle, work.rest, work.still)
+            whole_step(laws, work, h)
+    else:
+        for i in range(m):
+            y = work.v_free[i]
+            for j in range(m):
+                y -= Av[i, j] * F[j]
+            v[i] = y
+        force_all(laws, work.state, d, v, answer)
+    size = 0.0
+    worst = 0.0
+    floor = 0.0
+    for i in range(m):
+        work.step[i] = answer.F[i] - F[i]
+        if not np.isfinite(work.step[i]):
+            return np.nan, 0.0, 0.0
+        size = max(size, abs(answer.F[i]))
+        worst = max(worst, abs(work.step[i]))
+    first = laws.first
+    for law in range(laws.kind.size):
+        a = first[law]
+        k = first[law + 1] - a
+        block = laws.block_first[law]
+        for i in range(k):
+            rounding = 0.0
+            for j in range(k):
+                reach = abs(d_free[a + j]) + abs(d[a + j])
+                rounding += (abs(answer.Kd[block + i * k + j]) + abs(work.ended.Kd[block + i * k + j])) * reach
+                if h > 0.0:
+                    rounding += abs(answer.Kv[block + i * k + j]) * reach / h
+            floor = max(floor, 8.0 * _EPS * rounding)
+    return worst, floor, size
+
+
+@compiled
+def contact_step(laws, compliance, work, F, tolerance, h):
     """Find F with F = law(d_free - Ad F, v_free - Av F), from the guess in F; d, v and the answer in `work` are filled.
 
-    Returns the number of linear solutions, or FAILED or NOT_FINITE.
+    With h > 0, F are the forces of the whole step from work.begin on. Returns the number of linear solutions, or FAILED or
+    NOT_FINITE.
     """
     kind = laws.kind
     Ad = compliance.Ad
     Av = compliance.Av
-    d_free = work.d_free
-    v_free = work.v_free
-    d = work.d
-    v = work.v
-    state = work.state
     answer = work.answer
-    trial = answer.F
     Kd = answer.Kd
     Kv = answer.Kv
     step = work.step
+    guess = work.guess
     J = work.J
     first = laws.first
     block_first = laws.block_first
     m = F.size
-    last = np.inf
-    share = 1.0
+    per_d = 0.5 if h > 0.0 else 1.0
+    worst, floor, size = answer_to(laws, compliance, work, F, h)
     for iteration in range(_ITERATIONS):
-        for i in range(m):
-            x = d_free[i]
-            y = v_free[i]
-            for j in range(m):
-                x -= Ad[i, j] * F[j]
-                y -= Av[i, j] * F[j]
-            d[i] = x
-            v[i] = y
-        force_all(laws, state, d, v, answer)
-        size = 0.0
-        worst = 0.0
-        floor = 0.0
-        for i in range(m):
-            step[i] = trial[i] - F[i]
-            if not np.isfinite(step[i]):
-                return NOT_FINITE
-            size = max(size, abs(trial[i]))
-            worst = max(worst, abs(step[i]))
-        for law in range(kind.size):
-            k = first[law + 1] - first[law]
-            for i in range(k):
-                rounding = 0.0
-                for j in range(k):
-                    rounding += abs(Kd[block_first[law] + i * k + j]) * (
-                        abs(d_free[first[law] + j]) + abs(d[first[law] + j])
-                    )
-                floor = max(floor, 8.0 * _EPS * rounding)
+        if np.isnan(worst):
+            return NOT_FINITE
         if worst <= tolerance * size + floor:
             for i in range(m):
-                F[i] = trial[i]
+                F[i] = answer.F[i]
             return iteration
-        # A full step that does not bring the residual down again and again runs in a circle: shorten it.
-        if iteration >= 5:
-            share = 0.5 * share if worst >= last else min(1.0, 1.5 * share)
-            share = max(share, 0.02)
-        last = worst
         for i in range(m):
             for j in range(m):
                 J[i, j] = 1.0 if i == j else 0.0
@@ -253,13 +282,68 @@ def contact_step(laws, compliance, work, F, tolerance):
             k = first[law + 1] - first[law]
             for i in range(k):
                 for r in range(k):
-                    kd = Kd[block_first[law] + i * k + r]
+                    kd = per_d * Kd[block_first[law] + i * k + r]
                     kv = Kv[block_first[law] + i * k + r]
                     if kd != 0.0 or kv != 0.0:
                         for j in range(m):
-                            J[a + i, j] += kd * Ad[a + r, j] + kv * Av[a + r, j]
+                            by_v = Ad[a + r, j] / h if h > 0.0 else Av[a + r, j]
+                            J[a + i, j] += kd * Ad[a + r, j] + kv * by_v
         if not solve_small(J, step, m):
-            return FAILED
+            break
+        last = worst
         for i in range(m):
-            F[i] += share * step[i]
+            guess[i] = F[i]
+            J[0, i] = step[i]  # the direction: step is filled anew with each residual
+            F[i] += step[i]
+        worst, floor, size = answer_to(laws, compliance, work, F, h)
+        share = 1.0
+        for _ in range(_HALVINGS):
+            # The first solutions may overshoot: from one side of a kink to the other they end the iteration.
+            if iteration < 4 or worst < last or worst <= tolerance * size + floor:
+                break
+            share *= 0.5
+            for i in range(m):
+                F[i] = guess[i] + share * J[0, i]
+            worst, floor, size = answer_to(laws, compliance, work, F, h)
+    return one_by_one(laws, compliance, work, F, tolerance, h)
+
+
+@compiled
+def one_by_one(laws, compliance, work, F, tolerance, h):
+    """The forces of `contact_step` one after the other, by bisection."""
+    m = F.size
+    for i in range(m):
+        if not np.isfinite(F[i]):
+            F[i] = 0.0
+    for number in range(_ROUNDS):
+        worst, floor, size = answer_to(laws, compliance, work, F, h)
+        if np.isnan(worst):
+            return NOT_FINITE
+        if worst <= tolerance * size + floor:
+            for i in range(m):
+                F[i] = work.answer.F[i]
+            return _ITERATIONS + number
+        moved = 0.0
+        for i in range(m):
+            answer_to(laws, compliance, work, F, h)
+            low = F[i]
+            old = low
+            gap = work.step[i]
+            high = low + gap
+            for _ in range(_BISECTIONS):
+                middle = 0.5 * (low + high)
+                if middle in (low, high):
+                    break
+                F[i] = middle
+                answer_to(laws, compliance, work, F, h)
+                if (work.step[i] > 0.0) == (gap > 0.0):
+                    low = middle
+                else:
+                    high = middle
+            F[i] = 0.5 * (low + high)
+            moved = max(moved, abs(F[i] - old))
+        # A damper that sets in over less than the rounding of d jumps: its force lies within the jump, and no answer meets it.
+        if moved <= tolerance * size + floor:
+            answer_to(laws, compliance, work, F, h)
+            return _ITERATIONS + number
     return FAILED

@@ -1,9 +1,10 @@
-"""Compiled: the loop of the exponential integrator in complex modes, with forces linear within a step.
+"""Compiled: the loop of the exponential integrator in complex modes, with local forces that are constant within a step.
 
-With z' = s z + w^T (B u + f) and u linear from u0 to u1, the exact step is z1 = e z0 + Q0 u0 + Q1 u1 + g. In
-y = z - Q1 u it reads y1 = e y + (e Q1 + Q0) u0 + g, so that one pass over the modes serves the step; d and v at its end are
-C y1 + A u1.
-Motions without stiffness and damping follow r1 = r + h r' + h^2 (u0/3 + u1/6), r1' = r' + h (u0 + u1)/2.
+With z' = s z + w^T (B u + f) and the rest u = k d_m + c w - F of the local forces, which all hold for the whole step,
+z1 = e z0 + Q u + g is exact. In y = z - Q u it reads y1 = e y + e Q u0 + g, so that one pass over the modes serves the step;
+d at its end is C y1 + A u1. Motions without stiffness and damping follow r1 = r + h r' + h^2/2 u, r1' = r' + h u.
+F does the work by which its potential changes (kernel_middle.py), and so the step keeps the energy of a system without damping,
+and loses energy with it, whatever its length: Li and Wu, SIAM J. Sci. Comput. 38 (2016) A1876.
 Hochbruck and Ostermann, Acta Numerica 19 (2010) 209.
 """
 
@@ -13,13 +14,14 @@ import numpy as np
 
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import (
+    blank_answer,
     contact_step,
     contact_work,
-    record_forces,
+    force_all,
+    force_conserving,
     schedule_all,
-    take_account,
-    widen,
 )
+from rotorgear.solvers.time.kernel_gather import gather, record_whole, take_energies, take_events
 from rotorgear.solvers.time.kernel_time import rotation_at
 
 _BLOCK = 256
@@ -118,82 +120,90 @@ def exponential_loop(span, turning, modal, rigid, reference, laws, motion, carri
     u = motion.u
     F = carried.F
     before = carried.before
+    begin = carried.d
+    gathered = carried.gathered
     B = rigid.B
-    W = rigid.W
     load = rigid.load
-    extremes = carried.extremes
     watched = reference.watched
+    late = reference.late
+    forced = reference.forced
     Z = reference.Z
+    A = reference.A
+    Av = reference.Av
     k_ref = reference.k
     c_ref = reference.c
-    compliance = reference.compliance
     Qr = modal.Qr
     Qi = modal.Qi
     m = F.size
     nr = r0.size
     nz = yr.size
     work = contact_work(laws, m)
-    state = work.state
-    d_free = work.d_free
-    v_free = work.v_free
-    energy = work.answer.energy
+    at_end = blank_answer(laws, m)
     d = work.d
-    v = work.v
     out = np.empty(modal.Cr.shape[0])
-    local = out.size - len(watched)
-    free = np.zeros(2 * m)
+    free = np.zeros(m)
+    u_before = np.empty(m)
+    seen = np.zeros(gathered.level.size)
     solutions = 0
     for number in range(1, span.steps + 1):
         t = (span.begun + number) * h
-        angle, speed = rotation_at(t, turning)
-        schedule_all(laws, angle, speed, t, state)
+        angle, speed = rotation_at(t - 0.5 * h, turning)
+        schedule_all(laws, angle, speed, t - 0.5 * h, work.state)
         modal_pass(modal, u, yr, yi, out)
-        for i in range(local):
+        for i in range(m):
             free[i] = out[i]
         for k in range(nr):
-            total = load[k]
-            for j in range(m):
-                total += B[k, j] * u[j]
-            # The share of u1 comes through the compliances Ad and Av; the constant load acts from both ends.
-            r0[k] += h * r1[k] + h * h * (total / 3.0 + load[k] / 6.0)
-            r1[k] += 0.5 * h * (total + load[k])
+            r0[k] += h * r1[k] + 0.5 * h * h * load[k]
+            r1[k] += h * load[k]
             for j in range(m):
                 free[j] += B[k, j] * r0[k]
-                free[m + j] += B[k, j] * r1[k]
+        for i in range(m):
+            # u has its reference half from the step's begin, half from its end; Z takes the latter to the left-hand side.
+            for j in range(m):
+                held = 0.0
+                for k in range(m):
+                    held += (0.5 * k_ref[j, k] - c_ref[j, k] / h) * begin[k]
+                free[i] += A[i, j] * held
         for i in range(m):
             x = 0.0
-            y = 0.0
-            for j in range(2 * m):
+            for j in range(m):
                 x += Z[i, j] * free[j]
-                y += Z[m + i, j] * free[j]
-            d_free[i] = x
-            v_free[i] = y
+            work.d_free[i] = x
+            work.v_free[i] = 0.0
+            work.begin[i] = begin[i]
+            u_before[i] = u[i]
             F[i], before[i] = 2.0 * F[i] - before[i], F[i]
-        code = contact_step(laws, compliance, work, F, tolerance)
+        force_conserving(laws, work.state, work.begin, work.rest, work.begun)
+        code = contact_step(laws, reference.compliance, work, F, tolerance, h)
         if code < 0:
             return number - 1, code, solutions
         solutions += code
         for i in range(m):
             total = -F[i]
             for j in range(m):
-                total += k_ref[i, j] * d[j] + c_ref[i, j] * v[j]
+                total += 0.5 * k_ref[i, j] * (d[j] + begin[j]) + c_ref[i, j] * work.v[j]
             u[i] = total
         for k in range(nr):
             total = 0.0
             for j in range(m):
                 total += B[k, j] * u[j]
-            r0[k] += h * h * total / 6.0
-            r1[k] += 0.5 * h * total
-        take_account(energy, h, carried)
+            r0[k] += 0.5 * h * h * total
+            r1[k] += h * total
+        take_energies(work.answer.energy, h, carried)
+        take_events(work.answer.energy, carried)
         for i in range(m):
-            widen(extremes, i, d[i])
+            begin[i] = d[i]
+            seen[i] = F[i]
+            seen[m + i] = d[i]
         for i in range(len(watched)):
-            x = out[local + i]
+            x = out[m + i] + reference.constant[i]
             for j in range(m):
-                x += watched[i, j] * u[j]
+                x += watched[i, j] * u[j] + late[i, j] * (1.5 * u[j] - 0.5 * u_before[j])
+                x += forced[i, j] * (1.5 * F[j] - 0.5 * before[j])
             for k in range(nr):
-                x += W[k, i] * r0[k]
-            widen(extremes, m + i, x)
+                x += rigid.W[k, i] * r0[k] + rigid.Wv[k, i] * r1[k]
+            seen[2 * m + i] = x
+        gather(gathered, seen, m, True)
         if number % span.every == 0:
             r = number // span.every - 1
             for j in range(nz):
@@ -207,6 +217,22 @@ def exponential_loop(span, turning, modal, rigid, reference, laws, motion, carri
             for k in range(nr):
                 kept_modal.rigid[r, k] = r0[k]
                 kept_modal.rigid[r, nr + k] = r1[k]
-            kept_modal.u[r] = u
-            record_forces(r, h, work, carried, kept)
+            for i in range(m):
+                total = 0.0
+                for j in range(nz):
+                    total += modal.Vr[i, j] * yr[j] - modal.Vi[i, j] * yi[j]
+                for j in range(m):
+                    total += Av[i, j] * u[j]
+                for k in range(nr):
+                    total += B[k, i] * r1[k]
+                work.v[i] = total
+            angle, speed = rotation_at(t, turning)
+            schedule_all(laws, angle, speed, t, work.state)
+            force_all(laws, work.state, d, work.v, at_end)
+            for i in range(m):
+                total = -at_end.F[i]
+                for j in range(m):
+                    total += k_ref[i, j] * d[j] + c_ref[i, j] * work.v[j]
+                kept_modal.u[r, i] = total
+            record_whole(r, at_end, work, carried, kept)
     return span.steps, 0, solutions

@@ -13,14 +13,8 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.time.compiled import compiled
-from rotorgear.solvers.time.kernel_contact import (
-    contact_step,
-    contact_work,
-    record_forces,
-    schedule_all,
-    take_account,
-    widen,
-)
+from rotorgear.solvers.time.kernel_contact import contact_step, contact_work, schedule_all
+from rotorgear.solvers.time.kernel_gather import add_rows, gather, record_forces, take_account
 from rotorgear.solvers.time.kernel_time import inertia_products, lu_solve, rotation_at, subtract_products
 
 
@@ -41,10 +35,9 @@ def newmark_loop(span, weights, turning, structure, step, laws, motion, carried,
     Bt_first = step.Bt.first
     Bt_column = step.Bt.column
     Bt_value = step.Bt.value
-    Wt_first = step.Wt.first
-    Wt_column = step.Wt.column
-    Wt_value = step.Wt.value
-    extremes = carried.extremes
+    gathered = carried.gathered
+    watched = step.Wt.first.size - 1
+    observing = step.observing
     factors = step.S
     compliance = step.compliance
     P = step.P
@@ -61,6 +54,7 @@ def newmark_loop(span, weights, turning, structure, step, laws, motion, carried,
     rhs = np.empty(n)
     permuted = np.empty(n)
     a_free = np.empty(n)
+    seen = np.zeros(gathered.level.size)
     solutions = 0
     for number in range(1, span.steps + 1):
         t = (span.begun + number) * h
@@ -96,7 +90,7 @@ def newmark_loop(span, weights, turning, structure, step, laws, motion, carried,
             d_free[j] = x
             v_free[j] = y
             F[j], before[j] = 2.0 * F[j] - before[j], F[j]  # a guess that goes on as before
-        code = contact_step(laws, compliance, work, F, tolerance)
+        code = contact_step(laws, compliance, work, F, tolerance, 0.0)
         if code < 0:
             return number - 1, code, solutions
         solutions += code
@@ -109,12 +103,16 @@ def newmark_loop(span, weights, turning, structure, step, laws, motion, carried,
             v[i] += gamma * h * total
         take_account(energy, h, carried)
         for j in range(m):
-            widen(extremes, j, work.d[j])
-        for j in range(Wt_first.size - 1):
-            x = 0.0
-            for p in range(Wt_first[j], Wt_first[j + 1]):
-                x += Wt_value[p] * q[Wt_column[p]]
-            widen(extremes, m + j, x)
+            carried.d[j] = work.d[j]
+            seen[j] = F[j]
+            seen[m + j] = work.d[j]
+        seen[2 * m :] = 0.0
+        add_rows(step.Wt, q, seen, 2 * m)
+        add_rows(observing.q, q, seen, 2 * m + watched)
+        add_rows(observing.v, v, seen, 2 * m + watched)
+        add_rows(observing.a, a, seen, 2 * m + watched)
+        add_rows(observing.F, F, seen, 2 * m + watched)
+        gather(gathered, seen, m, False)
         if number % span.every == 0:
             r = number // span.every - 1
             kept.q[r] = q

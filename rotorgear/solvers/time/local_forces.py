@@ -71,6 +71,10 @@ class LocalLaw(Protocol):
     def unsettled(self) -> str:
         """Why the law allows no settled motion, as a clause; empty where it does."""
 
+    @property
+    def conserves(self) -> bool:
+        """Whether the energy it stores is the potential of its elastic force."""
+
     def columns(self, speed: float = 1.0) -> tuple[Any, ...]:
         """How each displacement acts in a sweep: a `Column` of solvers/lanes/columns.py each."""
 
@@ -93,6 +97,7 @@ class LocalForces:
         parameters, parameters_first: all parameters, and (l + 1,) where those of each law begin.
         state_first: (l + 1,) the same for the state.
         block_first: (l + 1,) the same for the tangents, k*k each.
+        conserves: (l,) whether the energy that a law stores is the potential of its elastic force.
     """
 
     laws: tuple[LocalLaw, ...]
@@ -104,6 +109,7 @@ class LocalForces:
     parameters_first: np.ndarray
     state_first: np.ndarray
     block_first: np.ndarray
+    conserves: np.ndarray
     reference_stiffness: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
     reference_damping: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
@@ -123,6 +129,7 @@ class LocalForces:
             self.parameters_first,
             self.state_first,
             self.block_first,
+            self.conserves,
         )
 
 
@@ -160,6 +167,7 @@ def gather(laws: tuple[LocalLaw, ...]) -> LocalForces:
         parameters_first=_starts([p.size for p in parameters]),
         state_first=_starts([law.state_size() for law in laws]),
         block_first=_starts([size**2 for size in sizes]),
+        conserves=np.array([law.conserves for law in laws], dtype=bool),
         reference_stiffness=K,
         reference_damping=C,
     )

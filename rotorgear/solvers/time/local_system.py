@@ -12,9 +12,24 @@ from typing import Protocol
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.solvers.time.arguments import Carried, Kept
+from rotorgear.solvers.time.arguments import Carried, Gathered, Kept
+from rotorgear.solvers.time.gathered import blank_gathered
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.motion import Rotation
+
+
+@dataclass(frozen=True)
+class Observed:
+    """p channels whose statistics are gathered at every step: Y_q q + Y_v v + Y_a a, rows (p, n), + Y_F F, rows (p, m)."""
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    F: np.ndarray
+
+    def values(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, F: np.ndarray) -> np.ndarray:
+        """Values (p,) of a state."""
+        return np.asarray(self.q @ q + self.v @ v + self.a @ a + self.F @ F)
 
 
 @dataclass(frozen=True)
@@ -28,7 +43,8 @@ class LocalSystem:
         load: constant load f, (n,).
         rotation: prescribed rotation of the reference, which gives the laws their phases.
         G: gyroscopic matrix for unit speed of the reference; None where nothing gyrates.
-        watched: W (n, p): displacements whose extremes at all steps are kept; none where it is None.
+        watched: W (n, p): displacements whose statistics at all steps are kept; none where it is None.
+        observed: channels, the same; none where it is None.
     """
 
     M: sp.csc_array
@@ -40,6 +56,7 @@ class LocalSystem:
     rotation: Rotation
     G: sp.csc_array | None = None
     watched: np.ndarray | None = None
+    observed: Observed | None = None
 
     @property
     def n(self) -> int:
@@ -55,6 +72,16 @@ class LocalSystem:
     def watched_vectors(self) -> np.ndarray:
         """Watched displacements, (n, p)."""
         return np.zeros((self.n, 0)) if self.watched is None else self.watched
+
+    @property
+    def observed_rows(self) -> Observed:
+        """The channels."""
+        nothing = np.zeros((0, self.n))
+        return self.observed or Observed(nothing, nothing, nothing, np.zeros((0, self.m)))
+
+    def gathered_values(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, d: np.ndarray, F: np.ndarray) -> np.ndarray:
+        """What statistics are gathered of: local forces and displacements, watched displacements, channels, (2 m + p,)."""
+        return np.concatenate([F, d, self.watched_vectors.T @ q, self.observed_rows.values(q, v, a, F)])
 
     def velocity_terms(self, speed: float) -> sp.csc_array:
         """D + W G at a speed of the reference, sparse (n, n)."""
@@ -75,9 +102,10 @@ class LocalSystem:
 class State:
     """Where a run stands after `step` steps: displacements, velocities, accelerations (n,), local forces (m,) and sums.
 
-    `before` are the forces a step earlier; `sums` (l, 2): energy put in and dissipated by each law; `events` (l, 4): steps on
-    the front side, without contact, on the back side, and contact losses; `extremes` (m + p, 2): least and largest of the local
-    and the watched displacements at all steps so far; `inner`: what else an integrator carries on.
+    `before` are the forces a step earlier; `d` (m,) the local displacements; `sums` (l, 2): energy put in and dissipated by each
+    law; `events` (l, 4): steps on the front side, without contact, on the back side, and contact losses; `gathered`: statistics
+    of local forces and displacements, watched displacements and channels at all steps so far; `inner`: what else an integrator
+    carries on.
     """
 
     step: int
@@ -86,25 +114,32 @@ class State:
     a: np.ndarray
     F: np.ndarray
     before: np.ndarray
+    d: np.ndarray
     sums: np.ndarray
     last: np.ndarray
     events: np.ndarray
-    extremes: np.ndarray
+    gathered: Gathered
     inner: dict[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def carried(self) -> Carried:
         """What the local forces carry on, for the compiled loops to change in place."""
-        return Carried(self.F, self.before, self.sums, self.last, self.events, self.extremes)
+        return Carried(self.F, self.before, self.d, self.sums, self.last, self.events, self.gathered)
+
+    @property
+    def extremes(self) -> np.ndarray:
+        """Least and largest of the local and the watched displacements at all steps so far, (m + p, 2), then of the channels."""
+        return self.gathered.extremes[self.F.size :]
 
     def count_anew(self) -> None:
-        """Forget events and extremes of the steps so far."""
+        """Forget events and statistics of the steps so far."""
         self.events[:] = 0
-        self.extremes[:] = (np.inf, -np.inf)
+        self.gathered.sums[:] = 0.0
+        self.gathered.extremes[:] = (np.inf, -np.inf)
+        self.gathered.count[:] = 0
 
     def copy(self) -> State:
         """Return a copy with arrays of its own."""
-        inner = {name: value.copy() for name, value in self.inner.items()}
         return State(
             self.step,
             self.q.copy(),
@@ -112,11 +147,12 @@ class State:
             self.a.copy(),
             self.F.copy(),
             self.before.copy(),
+            self.d.copy(),
             self.sums.copy(),
             self.last.copy(),
             self.events.copy(),
-            self.extremes.copy(),
-            inner,
+            Gathered(*(x.copy() for x in self.gathered)),
+            {name: value.copy() for name, value in self.inner.items()},
         )
 
 
@@ -241,6 +277,7 @@ def state_at_rest(system: LocalSystem, h: float, q: np.ndarray, v: np.ndarray | 
     a = acceleration(system.M, system.load - D @ v - system.K @ q - system.B @ F)
     laws = len(system.forces.laws)
     powers = energy.reshape(laws, 4)
+    d = np.asarray(system.B.T @ q, dtype=float)
     return State(
         0,
         np.array(q, dtype=float),
@@ -248,10 +285,11 @@ def state_at_rest(system: LocalSystem, h: float, q: np.ndarray, v: np.ndarray | 
         a,
         F,
         F.copy(),
+        d,
         0.5 * h * powers[:, 1:3].copy(),
         powers[:, 3].astype(np.int64),
         np.zeros((laws, 4), dtype=np.int64),
-        np.tile([np.inf, -np.inf], (system.m + system.watched_vectors.shape[1], 1)),
+        blank_gathered(system.gathered_values(q, v, a, d, F)),
     )
 
 
@@ -264,6 +302,16 @@ def acceleration(M: sp.csc_array, force: np.ndarray) -> np.ndarray:
     if heavy.size:
         a[heavy] = factor_general(sp.csc_array(M[heavy][:, heavy])).solve(force[heavy])
     return a
+
+
+def contact_rates(system: LocalSystem) -> np.ndarray:
+    """Rates (m,) in rad/s at which each local displacement alone would vibrate on the inertia it meets: sqrt(k b^T M^-1 b)."""
+    k = np.diag(system.forces.reference_stiffness)
+    squares = np.zeros(system.m)
+    for j in np.flatnonzero(k > 0.0):
+        column = system.B[:, [j]].toarray()[:, 0]
+        squares[j] = k[j] * float(column @ acceleration(system.M, column))
+    return np.sqrt(squares)
 
 
 def blank_records(steps: int, every: int, n: int, system: LocalSystem) -> Kept:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.solvers.time.arguments import Carried
-from rotorgear.solvers.time.kernel_contact import take_account
+from rotorgear.solvers.time.gathered import blank_gathered
+from rotorgear.solvers.time.kernel_gather import take_account
 
 
 def test_contact_is_lost_each_time_a_flank_is_left() -> None:
     sides = [1, 1, 0, 0, 1, 0, -1, -1, 0, 1, -1, 0]
     events = np.zeros((2, 4), np.int64)
     last = np.array([1, 0], np.int64)
-    carried = Carried(np.zeros(2), np.zeros(2), np.zeros((2, 2)), last, events, np.zeros((2, 2)))
+    nothing = blank_gathered(np.zeros(2))
+    carried = Carried(np.zeros(2), np.zeros(2), np.zeros(2), np.zeros((2, 2)), last, events, nothing)
     for side in sides:
         energy = np.zeros(8)
         energy[3] = side
