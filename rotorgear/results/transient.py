@@ -122,10 +122,10 @@ class TransientResult(ModelResult, kind="transient"):
     """r recorded instants of c contacts and p channels.
 
     Statistics count from the time `settle` on, and are those of all steps, with a cubic between steps where a largest or least
-    value is sought; the histories serve pictures and spectra. `transmission_error` is the rotation at the base circles, r_b1 theta_1 +
-    r_b2 theta_2; `approach` that of the flanks in the transverse plane, v.q / cos(beta_b), bending and axial motion included:
-    both positive where the working flanks come together. Forces are positive on the working flank. One of `every` steps is
-    recorded; ranges are of all steps. Where frames were asked for, `motion` holds the displacements of the nodes at the last w
+    value is sought; the histories serve pictures and spectra. `transmission_error` is the rotation at the base circles, r_b1
+    theta_1 + r_b2 theta_2; `approach` that of the flanks in the transverse plane, v.q / cos(beta_b), bending and axial motion
+    included: both positive where the working flanks come together. Forces are positive on the working flank. One of `every` steps
+    is recorded; ranges are of all steps. Where frames were asked for, `motion` holds the displacements of the nodes at the last w
     records.
     """
 

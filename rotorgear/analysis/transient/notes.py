@@ -84,12 +84,16 @@ def _excites_nothing(local: LocalModel, name: str) -> bool:
 
 
 def transient_warnings(
-    result: TransientResult, rest: Equilibrium, local: LocalModel, *, estimated: bool
+    result: TransientResult, rest: Equilibrium, local: LocalModel, *, estimated: bool, keeps_energy: bool
 ) -> tuple[str, ...]:
     """What the reader should know before using the numbers."""
     notes = list(local.system.nodes.merged)
     if result.status != "success":
         notes.append(f"the run ended early at t = {result.time[-1]:.6g} s: {result.status}")
+        if result.time[-1] <= result.settle:
+            notes.append(
+                f"it ended before the {result.settle:.6g} s that are discarded: there are no statistics, only histories"
+            )
     if not rest.converged:
         notes.append("no static equilibrium was found; the run starts from that with linear contacts and has to settle")
     if rest.free.shape[1] and np.any(np.abs(rest.drift) > 1e-9 * max(float(np.linalg.norm(local.local.load)), 1e-300)):
@@ -103,6 +107,10 @@ def transient_warnings(
         )
     if estimated and result.status == "success" and not np.isfinite(result.error_estimate):
         notes.append("there is no error estimate: the run with twice the step, or with more modes, did not end well")
+    if not keeps_energy and result.contact_losses.any():
+        notes.append(
+            f"teeth part, and '{result.method}' may gain energy where they meet again: take newmark or exponential, which keep it"
+        )
     if result.energy.share > ENERGY_BOUND:
         notes.append(
             f"energy error: the integration added or removed {100.0 * result.energy.share:.2g} % of the energy; "

@@ -127,7 +127,7 @@ def transient(
     laps["integration"] = clock.perf_counter() - begun - sum(laps.values())
     laps["total"] = clock.perf_counter() - begun
     progress(1.0, "done")
-    result = _result(task, grid, integrator.name, reason, found, others, laps, estimated=error_estimate)
+    result = _result(task, grid, integrator, reason, found, others, laps, estimated=error_estimate)
     wanted = (accuracy or DEFAULT_ACCURACY) if steps is None else None
     # A run without an estimate, or one that ended early, has said so already.
     if result.status != "success" or not np.isfinite(result.error_estimate):
@@ -139,7 +139,7 @@ def transient(
 def _result(
     task: Task,
     grid: Grid,
-    method: str,
+    integrator: Integrator,
     reason: str,
     found: Histories,
     others: list[tuple[Histories, float]],
@@ -201,7 +201,7 @@ def _result(
         error_estimate=largest,
         dofs=local.n,
         seconds=laps,
-        method=method,
+        method=integrator.name,
         reason=reason,
         mesh_frequency=task.frequencies,
         nodes=nodes,
@@ -214,7 +214,7 @@ def _result(
             *mean_torsion_notes(task.local.system, task.largest),
         ),
     )
-    notes = transient_warnings(result, task.rest, task.local, estimated=estimated)
+    notes = transient_warnings(result, task.rest, task.local, estimated=estimated, keeps_energy=integrator.keeps_energy)
     if result.status == "success":
         notes += unbalanced(found, task, errors[: 3 * len(meshes) : 3])
     return replace(result, warnings=notes)

@@ -27,6 +27,10 @@ def transient_table(result: TransientResult) -> RenderableType:
     rpm = [f"{w * RPM_PER_RAD_S:.5g}" for w in (result.speed[0], result.speed[-1])]
     turns = rpm[0] if rpm[0] == rpm[1] else f"{rpm[0]} to {rpm[1]}"
     counted = f"{result.time[-1] - result.settle:.4g} s after {result.settle:.4g} s"
+    if result.time[-1] <= result.settle:
+        counted = (
+            f"ended at {result.time[-1]:.4g} s, before the {result.settle:.4g} s that are discarded: nothing counts"
+        )
     title = f"{result.model.title or 'Transient'}: {result.model.reference_shaft} at {turns} rpm, {counted}"
     contacts = Table(box=None, pad_edge=False, collapse_padding=True, header_style="bold")
     contacts.add_column("contact", overflow="fold")
@@ -43,8 +47,8 @@ def transient_table(result: TransientResult) -> RenderableType:
             f"{row.dynamic_factor:.3f}" if math.isfinite(row.dynamic_factor) else "-",
             _micrometres(row.peak_to_peak_transmission_error_m),
             _micrometres(row.peak_to_peak_approach_m),
-            f"{100.0 * row.apart_share:.1f}",
-            f"{100.0 * row.back_share:.1f}",
+            _percent(row.apart_share),
+            _percent(row.back_share),
             str(row.losses),
         )
     parts: list[RenderableType] = [Text(title, style="bold"), contacts, Text("")]
@@ -87,6 +91,10 @@ def _channels(result: TransientResult) -> Any:
 
 def _micrometres(length: float) -> str:
     return f"{1e6 * length:.2f}" if math.isfinite(length) else "-"
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.1f}" if math.isfinite(share) else "-"
 
 
 def _value(value: float) -> str:

@@ -38,6 +38,11 @@ class Explicit:
         """What it is, in words."""
         return f"explicit Runge-Kutta of order 8, tolerance {self.relative:.0e}"
 
+    @property
+    def keeps_energy(self) -> bool:
+        """To its tolerance."""
+        return True
+
     def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
         """None: all damping is in D."""
         return np.zeros((0, system.n))

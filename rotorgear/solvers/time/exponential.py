@@ -44,6 +44,11 @@ class Exponential:
         """What it is, in words."""
         return "exponential, " + ("all complex modes" if self.modes is None else f"{self.modes} modes with residuals")
 
+    @property
+    def keeps_energy(self) -> bool:
+        """Local forces do the work by which their potential changes over a step."""
+        return True
+
     def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
         """Rows Y (b, n) of the damping by modes: it dissipates |Y v|^2; none where no mode has its own ratio."""
         if not self.modal_ratio:

@@ -221,6 +221,10 @@ class Integrator(Protocol):
     def name(self) -> str:
         """What it is, in words."""
 
+    @property
+    def keeps_energy(self) -> bool:
+        """Whether contacts that part can't bring energy in, whatever the step."""
+
     def damping_rows(self, system: LocalSystem, speed: float) -> np.ndarray:
         """Rows Y (b, n) of damping that the method has beside D: it dissipates |Y v|^2."""
 

@@ -1,0 +1,71 @@
+"""Statistics of a transient are those of its steps: however many are recorded, in stiff contact, and where a run ends early."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.solvers.time.gathered import StepStatistics, blank_gathered
+from rotorgear.solvers.time.kernel_gather import gather
+from tests.unit.analysis.spur_pair import spur_pair
+
+IMPACT = {"force": "3000 N", "duration": 0.02}
+
+
+@pytest.mark.parametrize("method", ["newmark", "exponential", "generalised-alpha"])
+def test_statistics_do_not_depend_on_what_is_recorded(method: str) -> None:
+    model = spur_pair(meshes__pair__corner_impact=IMPACT, meshes__pair__backlash="40 um")
+    how = {"time": 0.01, "discard": 0.01, "steps": 1000, "method": method, "error_estimate": False}
+    few, every = (rg.transient(model, records=n, **how) for n in (10, 500))
+    assert len(few.time) < 0.1 * len(every.time)
+    np.testing.assert_allclose(few.quantity_value, every.quantity_value, rtol=1e-9, atol=1e-12 * 3000.0)
+    forces = every.mesh_force[every.counted, 0]
+    assert few.contacts[0].largest_force_n == pytest.approx(forces.max(), rel=0.01)
+    assert few.contacts[0].mean_force_n == pytest.approx(forces.mean(), rel=1e-3)
+    assert few.contacts[0].driving_impulse_n_s == pytest.approx(0.01 * forces.mean(), rel=1e-3)
+
+
+def test_sums_and_extremes_are_those_of_the_curve_between_the_steps() -> None:
+    h = 0.3
+    t = h * np.arange(1, 4001)
+    x = 5.0 + np.sin(t + 0.1)
+    found = blank_gathered(np.array([5.0 + np.sin(0.1)]))
+    for value in x:
+        gather(found, np.array([value]), 0, False)
+    statistics = StepStatistics.of(found)
+    assert statistics.mean[0] == pytest.approx(5.0, abs=2e-3)
+    assert statistics.rms[0] == pytest.approx(np.sqrt(0.5), rel=1e-3)
+    assert [statistics.least[0], statistics.largest[0]] == pytest.approx([4.0, 6.0], abs=1e-4)
+
+
+def test_no_curve_is_laid_through_a_force_that_sets_in() -> None:
+    found = blank_gathered(np.zeros(1))
+    for value in (0.0, 0.0, 0.0, 0.0, 5.0, 7.0, 0.0, 0.0, 9.0, 0.0, 0.0):
+        gather(found, np.array([value]), 1, False)
+    assert found.extremes.tolist() == [[0.0, 9.0]]
+
+
+def test_a_pair_ten_thousand_times_stiffer_carries_its_load_and_says_what_it_misses() -> None:
+    model = rg.load("models/backlash_pair.toml").with_("meshes.pair.stiffness", "1.6e12 N/m")
+    result = rg.transient(model, time=0.025, discard=0.025, steps=1440)
+    contact = result.contacts[0]
+    assert contact.mean_force_n == pytest.approx(10.0 / 0.0564, rel=0.01)
+    assert contact.losses > 50
+    assert not any("by statics" in note for note in result.warnings)
+    begun = rg.transient(model, time=0.0002, steps=1440, error_estimate=False)
+    assert any("N by statics" in note for note in begun.warnings)
+
+
+def test_a_run_that_ends_while_it_settles_says_so_and_has_no_statistics() -> None:
+    def stop(fraction: float, step: str) -> None:
+        if "of" in step:
+            raise KeyboardInterrupt
+
+    result = rg.transient(spur_pair(), time=0.1, discard=5.0, steps=40, error_estimate=False, progress=stop)
+    assert result.status.startswith("interrupted")
+    assert np.isnan(result.contacts[0].mean_force_n)
+    assert np.isnan(result.dynamic_factor).all()
+    assert np.isnan(result.transmission_error_range).all()
+    assert any("no statistics" in note for note in result.warnings)
+    assert "nothing counts" in str(result)
