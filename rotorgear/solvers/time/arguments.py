@@ -100,14 +100,14 @@ class Gathered(NamedTuple):
     Attributes:
         recent: (g, 3) values at the last three steps, oldest first. level: (g,) that sums are taken about.
         sums: (g, 3) over the steps of x - level, of its square, and of the negative part of x.
-        extremes: (g, 2) least and largest. count: (1,) steps.
+        extremes: (g, 2) least and largest. steps: (1,) so many count.
     """
 
     recent: np.ndarray
     level: np.ndarray
     sums: np.ndarray
     extremes: np.ndarray
-    count: np.ndarray
+    steps: np.ndarray
 
 
 class Carried(NamedTuple):

@@ -31,7 +31,7 @@ class StepStatistics:
     @staticmethod
     def of(gathered: Gathered) -> StepStatistics:
         """Read what the compiled loops have summed up."""
-        steps = int(gathered.count[0])
+        steps = int(gathered.steps[0])
         if not steps:
             nothing = np.full(gathered.level.size, np.nan)
             return StepStatistics(nothing, nothing, nothing, nothing, nothing, 0)
@@ -42,5 +42,11 @@ class StepStatistics:
 
     def chosen(self, which: np.ndarray | slice) -> StepStatistics:
         """Those of some quantities."""
-        rows = (self.mean, self.rms, self.least, self.largest, self.negative)
-        return StepStatistics(*(x[which] for x in rows), self.steps)
+        return StepStatistics(
+            self.mean[which],
+            self.rms[which],
+            self.least[which],
+            self.largest[which],
+            self.negative[which],
+            self.steps,
+        )

@@ -62,7 +62,7 @@ def gather(gathered, values, forces, whole):
     sums = gathered.sums
     levels = gathered.level
     extremes = gathered.extremes
-    count = gathered.count[0]
+    count = gathered.steps[0]
     for i in range(values.size):
         x = values[i]
         a = recent[i, 0]
@@ -92,7 +92,7 @@ def gather(gathered, values, forces, whole):
         recent[i, 0] = b
         recent[i, 1] = c
         recent[i, 2] = x
-    gathered.count[0] = count + 1
+    gathered.steps[0] = count + 1
 
 
 @compiled

@@ -136,7 +136,7 @@ class State:
         self.events[:] = 0
         self.gathered.sums[:] = 0.0
         self.gathered.extremes[:] = (np.inf, -np.inf)
-        self.gathered.count[:] = 0
+        self.gathered.steps[:] = 0
 
     def copy(self) -> State:
         """Return a copy with arrays of its own."""
