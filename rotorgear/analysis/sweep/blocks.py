@@ -6,7 +6,7 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
 from threading import Event
@@ -14,15 +14,19 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from rotorgear.analysis.sweep.certify import Judge, judged
 from rotorgear.analysis.sweep.point import Point, table_of
 from rotorgear.solvers.lanes.lanes import Orbit, Plan, Start, run_block
+from rotorgear.solvers.lanes.small_system import steps_stable
 
 # Largest tables of one block, in numbers; wider ones are cut into narrower blocks.
 _MOST_TABLE = 30_000_000
 # Seconds between two words on the progress of blocks that take long.
 _EVERY = 1.0
 # What a stream keeps of an orbit beside its end.
-_OF_ORBIT = ("section", "growth", "sums", "extremes", "finite")
+_OF_ORBIT = ("section", "growth", "sums", "extremes", "finite", "doubt", "settled")
+# Least steps of the run that tells the error of exponents by half as many.
+_LEAST_HALF = 60
 
 
 @dataclass(frozen=True)
@@ -78,9 +82,59 @@ def blocks(jobs: Sequence[Job], points: Sequence[Point | None], steps: np.ndarra
 
 
 def run_jobs(
-    points: Sequence[Point], starts: Sequence[Start], plan: Plan, go_on: Callable[[], bool] | None = None
+    points: Sequence[Point],
+    starts: Sequence[Start],
+    plan: Plan,
+    judge: Judge,
+    go_on: Callable[[], bool] | None = None,
 ) -> list[Orbit]:
-    """Run the jobs of one block."""
+    """Run the jobs of one block; those whose response type does not stand settle longer, in rounds of twice the length each."""
+    orbits = _run(points, starts, plan, go_on)
+    if not plan.tangents:
+        return orbits
+    chosen = list(range(len(orbits)))
+    settled = plan.settle
+    for number in range(judge.rounds + 1):
+        _doubts(points, orbits, chosen, plan, go_on)
+        chosen = [i for i in chosen if orbits[i].finite and not judged(orbits[i], points[i], plan.steps, judge)[1]]
+        if not chosen or number == judge.rounds:
+            break
+        longer = replace(plan, settle=max(plan.settle, plan.count) * 2**number)
+        settled += longer.settle + plan.count
+        again = _run([points[i] for i in chosen], [orbits[i].end for i in chosen], longer, go_on)
+        for i, orbit in zip(chosen, again, strict=True):
+            orbits[i] = replace(orbit, settled=settled)
+    return orbits
+
+
+def _doubts(
+    points: Sequence[Point],
+    orbits: list[Orbit],
+    chosen: Sequence[int],
+    plan: Plan,
+    go_on: Callable[[], bool] | None,
+) -> None:
+    """Tell the step error of exponents where sides part: tangents see the instant of that to a step only, with first order.
+
+    The same periods follow from where a run ended, in half as many steps, or twice as many where those would be unstable.
+    """
+    from rotorgear.solvers.lanes.kernel_parts import LOSSES
+
+    parting = [i for i in chosen if orbits[i].finite and np.any(orbits[i].sums[:, LOSSES] > 0.0)]
+    if not parting:
+        return
+    half = plan.steps // 2
+    least = max(steps_stable(points[i].system) for i in parting)
+    steps = half if half >= max(least, _LEAST_HALF) else 2 * plan.steps
+    other = replace(plan, steps=steps, settle=min(plan.warm, plan.settle))
+    again = _run([points[i] for i in parting], [orbits[i].end for i in parting], other, go_on)
+    for i, orbit in zip(parting, again, strict=True):
+        change = np.abs(orbit.growth.mean(axis=0) - orbits[i].growth.mean(axis=0)) / points[i].system.turns
+        orbits[i] = replace(orbits[i], doubt=change)
+
+
+def _run(points: Sequence[Point], starts: Sequence[Start], plan: Plan, go_on: Callable[[], bool] | None) -> list[Orbit]:
+    """Run systems side by side, with tables of what depends on time."""
     tables: dict[bytes, np.ndarray] = {}
     for point in points:
         if point.shape not in tables:
@@ -128,12 +182,15 @@ class Workers:
 
     def run(
         self,
-        tasks: Sequence[tuple[list[Point], list[Start], Plan]],
+        tasks: Sequence[tuple[list[Point], list[Start], Plan, Judge]],
         heard: Callable[[float], None] = lambda share: None,
     ) -> Iterator[list[Orbit]]:
         """Yield the orbits of each block, in order; `heard` is told about which share of all is done, every second."""
         work = partial(run_jobs, go_on=self.go_on) if self._own else run_jobs
-        self._asked, total = 0, sum(plan.questions(own[0].system.turns) for own, _, plan in tasks) if self._own else 0
+        self._asked, total = (
+            0,
+            sum(plan.questions(own[0].system.turns) for own, _, plan, _ in tasks) if self._own else 0,
+        )
         rest = iter(tasks)
         waiting = self._waiting
         while True:
@@ -156,8 +213,8 @@ def packed(orbits: Sequence[Orbit]) -> dict[str, np.ndarray]:
 def unpacked(chunk: dict[str, np.ndarray]) -> list[Orbit]:
     """The orbits back."""
     return [
-        Orbit(section, growth, sums, extremes, Start(z, dz), bool(finite))
-        for section, growth, sums, extremes, finite, z, dz in zip(
+        Orbit(section, growth, sums, extremes, Start(z, dz), bool(finite), doubt, int(settled))
+        for section, growth, sums, extremes, finite, doubt, settled, z, dz in zip(
             *(chunk[name] for name in (*_OF_ORBIT, "z", "dz")), strict=True
         )
     ]

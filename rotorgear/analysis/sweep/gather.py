@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.sweep.axes import Axis
-from rotorgear.analysis.sweep.classify import FAILED, classify, exponents
+from rotorgear.analysis.sweep.certify import judged
+from rotorgear.analysis.sweep.classify import FAILED, exponents
+from rotorgear.analysis.sweep.indicators import indicators
 from rotorgear.analysis.sweep.notes import notes
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.analysis.sweep.request import Request
@@ -75,21 +77,13 @@ def gathered(
         mesh = point.system.columns.counted
         section_here = orbit.section[:, mesh]
         section[i, run] = section_here
-        measures = _indicators(orbit, mesh, int(steps[i]))
+        measures = indicators(orbit, mesh, int(steps[i]))
         for name, table in tables.items():
             table[i, run] = measures[name]
         k = orbit.growth.shape[1]
         exponent[i, run, :k], error[i, run, :k] = exponents(orbit.growth, float(point.system.turns))
-        largest = float(exponent[i, run, 0]) if k else None
-        kind = classify(
-            section_here[:, :, 0],
-            np.maximum(measures["displacement"], measures["peak_to_peak"]),
-            largest,
-            float(error[i, run, 0]) if k else 0.0,
-            request.tolerance,
-            request.chaos,
-        )
-        motion[i * r + run] = kind.kind
+        error[i, run, :k] = np.hypot(error[i, run, :k], orbit.doubt[:k])
+        motion[i * r + run] = judged(orbit, point, int(steps[i]), request.judge)[0].kind
     static = np.array(
         [q.static_force if q is not None and q.contact == contact else np.full(c, np.nan) for q in points]
     )
@@ -133,34 +127,6 @@ def _size(point: Point) -> float:
     columns = point.system.columns
     backlash = columns.clearance[columns.counted & np.isfinite(columns.clearance)]
     return float(max(np.abs(point.static_force / point.stiffness).max(), backlash.max(initial=0.0), 1e-6))
-
-
-def _indicators(orbit: Orbit, counted: np.ndarray, steps: int) -> dict[str, np.ndarray]:
-    """Indicators of the contacts, which are the local displacements `counted` (m,); watched are two displacements of each."""
-    from rotorgear.solvers.lanes import kernel_parts as k
-
-    sums = orbit.sums[counted]
-    transmission_error, approach = np.ptp(orbit.extremes, axis=1).reshape(2, -1)
-    total = np.maximum(sums[:, [k.FRONT, k.APART, k.BACK]].sum(axis=1), 1.0)
-    force = sums[:, k.F_SUM] / total
-    d = sums[:, k.D_SUM] / total
-    displacement = sums[:, k.D_MAX] - sums[:, k.D_MIN]
-    rms = np.sqrt(np.maximum(sums[:, k.D_SQUARES] / total - d**2, 0.0))
-    transverse = approach / np.where(displacement > 0.0, displacement, 1.0)
-    return {
-        "peak_to_peak": sums[:, k.X_MAX] - sums[:, k.X_MIN],
-        "displacement": displacement,
-        "peak_to_peak_transmission_error": transmission_error,
-        "peak_to_peak_approach": approach,
-        "rms_approach": rms * transverse,
-        "mean_force": force,
-        "rms_force": np.sqrt(np.maximum(sums[:, k.F_SQUARES] / total - force**2, 0.0)),
-        "largest_force": sums[:, k.F_MAX],
-        "driving": sums[:, k.FRONT] / total,
-        "apart": sums[:, k.APART] / total,
-        "back": sums[:, k.BACK] / total,
-        "losses": sums[:, k.LOSSES] / total * steps,
-    }
 
 
 def _reduction(reduction: Reduction | None, request: Request) -> tuple[str, ...]:

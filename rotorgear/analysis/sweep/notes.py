@@ -45,6 +45,22 @@ def notes(
         sentences.append(
             f"{unsettled} of {len(motion)} runs had not settled: ask for more periods (--discard, --sample)"
         )
+    longer = [orbit.settled for orbit in orbits.values() if orbit.settled > settle]
+    if longer:
+        sentences.append(
+            f"{len(longer)} of {len(motion)} runs settled for up to {max(longer)} periods, until their response type and their "
+            "exponents agreed"
+        )
+    runs = len(motion) // max(1, len(points))
+    several = sum(
+        len({kind for kind in motion[i * runs : (i + 1) * runs] if kind not in ("not settled", "failed")}) > 1
+        for i in range(len(points))
+    )
+    if several:
+        sentences.append(
+            f"different responses coexist at {several} of {len(points)} points: --initial-conditions shows what share of the "
+            "starts goes to each"
+        )
     sentences += [
         f"{axis.address} has no effect on this model: all its points are the same" for axis in idle(axes, points)
     ]

@@ -67,6 +67,8 @@ class Orbit:
         growth: (p, t) logarithm of the growth of each tangent in a common period.
         sums: (m, 14) statistics, see kernel_parts.py; forces in N.
         extremes: (p, 2) least and largest of the watched displacements.
+        doubt: (t,) what exponents per period change by in a run with other steps.
+        settled: common periods before those that count.
         end: state at the end. finite: whether everything stayed finite.
     """
 
@@ -76,6 +78,8 @@ class Orbit:
     extremes: np.ndarray
     end: Start
     finite: bool
+    doubt: np.ndarray
+    settled: int
 
 
 def run_block(
@@ -148,7 +152,7 @@ def run_block(
         run(0, plan.settle - warm, False, motion.tangents[:0])
         run(plan.settle - warm, warm, False, motion.tangents)
         growth, section = run(plan.settle, plan.count, True, motion.tangents)
-    return [_orbit(filled[i], i, growth, section, sums, extremes, motion.state) for i in range(count)]
+    return [_orbit(filled[i], i, growth, section, sums, extremes, motion.state, plan) for i in range(count)]
 
 
 def _orbit(
@@ -159,6 +163,7 @@ def _orbit(
     sums: np.ndarray,
     extremes: np.ndarray,
     state: np.ndarray,
+    plan: Plan,
 ) -> Orbit:
     """One lane, with forces in N and velocities in m/s."""
     from rotorgear.solvers.lanes.kernel_parts import F_MAX, F_MIN, F_SQUARES, F_SUM
@@ -172,7 +177,8 @@ def _orbit(
     moved[:, :, 1] *= system.w
     end = Start(state[:n, lane].copy(), state[n:, lane].copy())
     finite = bool(np.all(np.isfinite(moved)) and np.all(np.isfinite(end.z)))
-    return Orbit(moved, growth[..., lane].copy(), found, extremes[:, :, lane].T.copy(), end, finite)
+    own = growth[..., lane].copy()
+    return Orbit(moved, own, found, extremes[:, :, lane].T.copy(), end, finite, np.zeros(own.shape[1]), plan.settle)
 
 
 def blank_sums(m: int) -> np.ndarray:

@@ -1,0 +1,64 @@
+"""Whether a run of a sweep may stand: its response type and its exponents agree, and nothing still changes.
+
+    kT              the largest exponent is negative beyond its error; for k > 1 the range of the section stays what it is from
+                    its first half to its second, so that it is no shorter period to which a spiral still comes down
+    quasi-periodic  the largest exponent is zero within its error
+    chaotic         as classified: it is positive beyond its error
+
+What does not stand settles longer, in rounds of twice the length each, from where it got to. What still does not after the last
+of them is "not settled", unless it is a kT whose exponent is zero within its error, which nothing contradicts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotorgear.analysis.sweep.classify import CHAOTIC, NOT_SETTLED, QUASI_PERIODIC, Motion, classify, exponents
+from rotorgear.analysis.sweep.indicators import indicators
+from rotorgear.analysis.sweep.point import Point
+from rotorgear.solvers.lanes.lanes import Orbit
+
+# Exponents per period of the fastest mesh that count as zero whatever their error.
+_ZERO = 2e-4
+_CHANGE = 0.02
+
+
+@dataclass(frozen=True)
+class Judge:
+    """How responses are told apart (see classify.py), and how many rounds of settling a run gets at most."""
+
+    tolerance: float
+    chaos: float
+    rounds: int = 4
+
+
+def judged(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[Motion, bool]:
+    """The response type of a run, and whether it stands; where a positive exponent contradicts it, it is "not settled"."""
+    counted = point.system.columns.counted
+    x = orbit.section[:, counted, 0]
+    measures = indicators(orbit, counted, steps)
+    extent = np.maximum(measures["displacement"], measures["peak_to_peak"])
+    if not orbit.growth.shape[1]:
+        return classify(x, extent, None, 0.0, judge.tolerance, judge.chaos), True
+    means, errors = exponents(orbit.growth, float(point.system.turns))
+    largest = float(means[0])
+    # The statistical error vanishes on a periodic orbit; that of the steps does not.
+    error = float(np.hypot(np.nan_to_num(errors[0]), orbit.doubt[0] if orbit.doubt.size else 0.0))
+    motion = classify(x, extent, largest, error, judge.tolerance, judge.chaos)
+    bound = max(2.0 * error, _ZERO)
+    if motion.period:
+        if largest > bound:
+            return replace(motion, kind=NOT_SETTLED, period=0), False
+        return motion, largest < -bound and (motion.period == 1 or _stays(x))
+    if motion.kind == QUASI_PERIODIC and abs(largest) > bound:
+        return replace(motion, kind=NOT_SETTLED), False
+    return motion, motion.kind in (QUASI_PERIODIC, CHAOTIC)
+
+
+def _stays(x: np.ndarray) -> bool:
+    """Whether a section (p, c) covers the same range in its second half as in its first."""
+    half = len(x) // 2
+    first, second = np.ptp(x[:half], axis=0), np.ptp(x[half:], axis=0)
+    return bool(np.all(np.abs(first - second) <= _CHANGE * np.maximum(first, second)))

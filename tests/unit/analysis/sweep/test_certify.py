@@ -1,0 +1,62 @@
+"""Response types stand where exponents agree with them and nothing still changes; what does not settles longer by itself."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.analysis.sweep.certify import Judge, judged
+from rotorgear.solvers.lanes.lanes import Orbit
+
+JUDGE = Judge(tolerance=0.02, chaos=0.02)
+POINT: Any = SimpleNamespace(system=SimpleNamespace(turns=1, columns=SimpleNamespace(counted=np.array([True]))))
+
+
+def run(x: np.ndarray, exponent: float, doubt: float = 0.0) -> Any:
+    """A run with a section x in um of a motion 10 um from peak to peak, and an exponent that scatters by 1e-4."""
+    section = np.zeros((len(x), 1, 2))
+    section[:, 0, 0] = 1e-6 * x
+    growth = exponent + 1e-4 * np.random.default_rng(0).standard_normal((len(x), 1))
+    sums = np.zeros((1, 14))
+    sums[0, 7] = sums[0, 5] = 10e-6
+    orbit = Orbit(section, growth, sums, np.zeros((2, 2)), None, True, np.array([doubt]), 300)  # type: ignore[arg-type]
+    motion, stands = judged(orbit, POINT, 200, JUDGE)
+    return motion.kind, stands
+
+
+def test_a_period_stands_with_a_negative_exponent_and_falls_with_a_positive_one() -> None:
+    still = np.full(200, 3.0)
+    assert run(still, -0.01) == ("1T", True)
+    assert run(still, 0.012) == ("not settled", False)
+    # Nothing contradicts a period where the sign of the exponent is not known, but nothing certifies it.
+    assert run(still, 0.0) == ("1T", False)
+    assert run(still, 0.012, doubt=0.02) == ("1T", False)
+
+
+def test_a_spiral_that_still_comes_down_is_no_long_period() -> None:
+    n = np.arange(200)
+    turning = 2.0 * np.cos(2.0 * np.pi * n / 20.0)
+    assert run(turning, -0.01) == ("20T", True)
+    assert run(turning * np.exp(-0.001 * n), -0.01)[1] is False
+
+
+def test_two_frequencies_have_no_exponent_but_zero() -> None:
+    turning = 2.0 * np.cos(0.61803 * np.arange(200))
+    assert run(turning, 0.0) == ("quasi-periodic", True)
+    assert run(turning, -0.005) == ("not settled", False)
+    assert run(turning, 0.005) == ("not settled", False)
+    assert run(turning, 0.05) == ("chaotic", True)
+
+
+@pytest.mark.long
+def test_what_a_sweep_calls_settled_is_so_thirty_times_later() -> None:
+    model = rg.load("models/herringbone_pair_24dof_set2.toml")
+    over = {"operation.speed": ["3000 rpm", "8000 rpm", "11500 rpm", "13500 rpm", "20000 rpm", "30000 rpm"]}
+    first = rg.sweep(model, over)
+    later = rg.sweep(model, over, discard=30 * 300)
+    for one, other in zip(first.motion, later.motion, strict=True):
+        assert one in (other, "not settled")
