@@ -1,21 +1,22 @@
 """Whether a run of a sweep may stand: its response type and its exponents agree, and nothing still changes.
 
-    kT              the largest exponent is negative beyond its error; for k > 1 the range of the section stays what it is from
-                    its first half to its second, so that it is no shorter period to which a spiral still comes down
-    quasi-periodic  the largest exponent is zero within its error
-    chaotic         as classified: it is positive beyond its error
+    kT              the largest exponent is below zero by more than its error, or zero within it and the section repeats to 1e-4;
+                    for k > 1 the range of the section stays what it is from its first half to its second, so that it is no
+                    shorter period to which a spiral still comes down
+    quasi-periodic  the largest exponent is zero within its error, and one standard error away from chaos
+    chaotic         it is above that bound by a standard error
 
 What does not stand settles longer, in rounds of twice the length each, from where it got to. What still does not after the last
-of them is "not settled", unless it is a kT whose exponent is zero within its error, which nothing contradicts.
+of them is "not settled".
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.analysis.sweep.classify import CHAOTIC, NOT_SETTLED, QUASI_PERIODIC, Motion, classify, exponents
+from rotorgear.analysis.sweep.classify import CHAOTIC, QUASI_PERIODIC, Motion, classify, exponents, period_of
 from rotorgear.analysis.sweep.indicators import indicators
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.solvers.lanes.lanes import Orbit
@@ -23,6 +24,8 @@ from rotorgear.solvers.lanes.lanes import Orbit
 # Exponents per period of the fastest mesh that count as zero whatever their error.
 _ZERO = 2e-4
 _CHANGE = 0.02
+# Share of the tolerance within which a section repeats that is not on its way to anything else.
+_REPEATS = 5e-3
 
 
 @dataclass(frozen=True)
@@ -35,7 +38,7 @@ class Judge:
 
 
 def judged(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[Motion, bool]:
-    """The response type of a run, and whether it stands; where a positive exponent contradicts it, it is "not settled"."""
+    """The response type of a run, and whether it stands."""
     counted = point.system.columns.counted
     x = orbit.section[:, counted, 0]
     measures = indicators(orbit, counted, steps)
@@ -45,16 +48,16 @@ def judged(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[Motion
     means, errors = exponents(orbit.growth, float(point.system.turns))
     largest = float(means[0])
     # The statistical error vanishes on a periodic orbit; that of the steps does not.
-    error = float(np.hypot(np.nan_to_num(errors[0]), orbit.doubt[0] if orbit.doubt.size else 0.0))
+    error = float(np.hypot(np.nan_to_num(errors[0]), orbit.doubt[0]))
     motion = classify(x, extent, largest, error, judge.tolerance, judge.chaos)
     bound = max(2.0 * error, _ZERO)
     if motion.period:
-        if largest > bound:
-            return replace(motion, kind=NOT_SETTLED, period=0), False
-        return motion, largest < -bound and (motion.period == 1 or _stays(x))
-    if motion.kind == QUASI_PERIODIC and abs(largest) > bound:
-        return replace(motion, kind=NOT_SETTLED), False
-    return motion, motion.kind in (QUASI_PERIODIC, CHAOTIC)
+        exact = period_of(x, extent, _REPEATS * judge.tolerance) == motion.period
+        stable = largest < -bound or (largest <= bound and exact)
+        return motion, stable and (motion.period == 1 or _stays(x))
+    if motion.kind == QUASI_PERIODIC:
+        return motion, abs(largest) <= bound and abs(largest) + error <= judge.chaos
+    return motion, motion.kind == CHAOTIC and largest - error > judge.chaos
 
 
 def _stays(x: np.ndarray) -> bool:

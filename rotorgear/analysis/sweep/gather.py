@@ -9,7 +9,7 @@ import numpy as np
 
 from rotorgear.analysis.sweep.axes import Axis
 from rotorgear.analysis.sweep.certify import judged
-from rotorgear.analysis.sweep.classify import FAILED, exponents
+from rotorgear.analysis.sweep.classify import FAILED, NOT_SETTLED, exponents
 from rotorgear.analysis.sweep.indicators import indicators
 from rotorgear.analysis.sweep.notes import notes
 from rotorgear.analysis.sweep.point import Point
@@ -83,7 +83,8 @@ def gathered(
         k = orbit.growth.shape[1]
         exponent[i, run, :k], error[i, run, :k] = exponents(orbit.growth, float(point.system.turns))
         error[i, run, :k] = np.hypot(error[i, run, :k], orbit.doubt[:k])
-        motion[i * r + run] = judged(orbit, point, int(steps[i]), request.judge)[0].kind
+        kind, stands = judged(orbit, point, int(steps[i]), request.judge)
+        motion[i * r + run] = kind.kind if stands else NOT_SETTLED
     static = np.array(
         [q.static_force if q is not None and q.contact == contact else np.full(c, np.nan) for q in points]
     )
