@@ -48,6 +48,10 @@ def convergence(result: ConvergenceStudy, fig: Any = None) -> np.ndarray:
     return axes
 
 
+# Letters of a label that the margin holds.
+_SHORT = 6
+
+
 def _curves(axis: Any, reached: Sequence[Rung], key: str) -> None:
     families = dict.fromkeys(rung.family for rung in reached)
     sizes = [float(getattr(rung, key)) for rung in reached]
@@ -62,7 +66,7 @@ def _curves(axis: Any, reached: Sequence[Rung], key: str) -> None:
         axis.plot(x, [max(rung.estimate, _NONE) for rung in rungs], "x", color=colour, ms=6, alpha=0.7)
         for place, text in _labels(x, y, [rung.setting for rung in rungs]):
             # Inside the axes, and those of one family above, of the next below: different families may meet in a point.
-            to_the_left = place[0] > far_right
+            to_the_left = place[0] > far_right and len(text) > _SHORT
             axis.annotate(
                 text,
                 place,
@@ -75,6 +79,7 @@ def _curves(axis: Any, reached: Sequence[Rung], key: str) -> None:
     axis.plot([], [], "x", color="#444444", alpha=0.7, label="its own estimate")
     axis.set_xscale("log")
     axis.set_yscale("log")
+    axis.margins(x=0.12)
     if reached:
         _ticks(axis, sizes)
     axis.grid(True, which="major", alpha=0.25)
