@@ -1,6 +1,6 @@
 """Two threads against one on the commands of the docs: processor and elapsed time.
 
-Run  python -m validation.benchmarks.threads [--repetitions N] [--longest SECONDS]. Threads are those of linear algebra and of numba.
+Run  python -m validation.benchmarks.threads [--repetitions N] [--longest SECONDS]. Threads are those of linear algebra and numba.
 On a busy machine only processor time says something. Exit code 1 where two threads take more than a tenth, and more than 0.05 s,
 of processor time and of elapsed time longer.
 """
@@ -8,8 +8,11 @@ of processor time and of elapsed time longer.
 from __future__ import annotations
 
 import argparse
+import shutil
 import subprocess
 import sys
+import tempfile
+from pathlib import Path
 
 from validation.benchmarks.commands import ROOT, medians, of_the_docs, timed
 
@@ -30,13 +33,15 @@ def main() -> int:
     parser.add_argument("--longest", type=float, default=30.0, help="processor seconds of a command that is repeated")
     given = parser.parse_args()
     print("   CPU 1    CPU 2  ratio   wall 1   wall 2  ratio  rotorgear ...")
+    folder = tempfile.TemporaryDirectory()
+    shutil.copytree(ROOT / "models", Path(folder.name) / "models")
     slow = []
     for words in of_the_docs():
         rows: dict[int, list[tuple[float, float]]] = {1: [], 2: []}
         try:
             for _ in range(given.repetitions):
                 for threads in rows:
-                    rows[threads].append(timed(words, ROOT, environment(threads)))
+                    rows[threads].append(timed(words, ROOT, environment(threads), Path(folder.name)))
                 if rows[1][0][0] > given.longest:
                     break
         except subprocess.CalledProcessError:
