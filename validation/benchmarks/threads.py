@@ -1,8 +1,8 @@
 """Two threads against one on the commands of the docs: processor and elapsed time.
 
-Run  python -m validation.benchmarks.threads [--repetitions N] [--longest SECONDS]. Threads are those of linear algebra and numba.
-On a busy machine only processor time says something. Exit code 1 where two threads take more than a tenth, and more than 0.05 s,
-of processor time and of elapsed time longer.
+Run  python -m validation.benchmarks.threads [--only NAMES] [--repetitions N] [--longest SECONDS]. Threads are those of linear
+algebra and numba. On a busy machine only processor time says something. Exit code 1 where two threads take more than a tenth, and
+more than 0.05 s, of processor time and of elapsed time longer.
 """
 
 from __future__ import annotations
@@ -31,12 +31,16 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repetitions", type=int, default=5)
     parser.add_argument("--longest", type=float, default=30.0, help="processor seconds of a command that is repeated")
+    parser.add_argument("--only", default="", help="these commands, with commas between them")
     given = parser.parse_args()
+    chosen = given.only.split(",") if given.only else None
     print("   CPU 1    CPU 2  ratio   wall 1   wall 2  ratio  rotorgear ...")
     folder = tempfile.TemporaryDirectory()
     shutil.copytree(ROOT / "models", Path(folder.name) / "models")
     slow = []
     for words in of_the_docs():
+        if chosen and words[0] not in chosen:
+            continue
         rows: dict[int, list[tuple[float, float]]] = {1: [], 2: []}
         try:
             for _ in range(given.repetitions):
