@@ -131,7 +131,7 @@ def draw(file: str, refined: Rows, chains: Rows) -> None:
     """Time and memory of both over the dofs, with the slope of n log n."""
     from matplotlib import pyplot as plt
 
-    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 5.0), layout="constrained")
     for key, label in (("factor", "one factorisation"), ("modes", "24 modes"), ("arpack", "ARPACK")):
         left.loglog([row["dofs"] for row in refined], [row[key] for row in refined], "o-", label=f"refined: {label}")
     for key in STEPS[1:]:
@@ -143,7 +143,7 @@ def draw(file: str, refined: Rows, chains: Rows) -> None:
     right.loglog([row["dofs"] for row in chains], [row["MB"] for row in chains], "s--", label="chain: whole process")
     right.set(xlabel="dofs", ylabel="peak memory in MB")
     for axes in (left, right):
-        axes.legend(fontsize=8)
+        axes.legend(fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3)
         axes.grid(True, alpha=0.3)
     figure.savefig(file, dpi=110)
     print(f"wrote {file}")

@@ -32,6 +32,7 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.campbell import CampbellResult, Crossing, ExcitationOrder, Margin, Onset
+from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.system.system import System
 
 DEFAULT_MODES = 24
@@ -92,18 +93,19 @@ def campbell(
     )
     clock.lap("mesh")
     request = Request(modes, None if fmax is None else 2.0 * np.pi * fmax, tuple(only))
-    found = SpeedModes(system, min(ends), max(ends), request, progress)
-    clock.lap("basis")
-    operating = operating_speed(system.model)
-    grid = _grid(found, asked, operating)
-    chains, tracks = _chains(found, grid, asked, request, progress)
-    if not chains:
-        raise AnalysisError("no mode oscillates in this range of speeds, so there is nothing to draw")
-    clock.lap("modes over speed")
-    estimate = _error_estimate(system, found, chains, grid, error_estimate)
-    clock.lap("error estimate")
-    lines = excitation_orders(system.model, shaft_orders, mesh_orders, sidebands)
-    result = _result(system, found, (asked, grid, operating), chains, tracks, estimate, lines, clock, progress)
+    with single_thread(system.n):
+        found = SpeedModes(system, min(ends), max(ends), request, progress)
+        clock.lap("basis")
+        operating = operating_speed(system.model)
+        grid = _grid(found, asked, operating)
+        chains, tracks = _chains(found, grid, asked, request, progress)
+        if not chains:
+            raise AnalysisError("no mode oscillates in this range of speeds, so there is nothing to draw")
+        clock.lap("modes over speed")
+        estimate = _error_estimate(system, found, chains, grid, error_estimate)
+        clock.lap("error estimate")
+        lines = excitation_orders(system.model, shaft_orders, mesh_orders, sidebands)
+        result = _result(system, found, (asked, grid, operating), chains, tracks, estimate, lines, clock, progress)
     worst = float(np.max(estimate, initial=0.0, where=np.isfinite(estimate)))
     short = missed(
         accuracy, worst, "branches that rise into the range between its ends are not refined for; ask for more modes"
