@@ -2,8 +2,9 @@
 
 Elements: the same on a coarser mesh of the same kind, at some of the positions. The two differ by the error of the coarser one
 less that of the finer one; the share of it that remains on the finer mesh was measured (docs/mesh.md has both, side by side).
-In space default and fine are compared with the same coarse mesh, so that the finer one never estimates worse. The blank of a
-wheel has elements of its own: in the comparison they are twice as large.
+In space an error falls with the thickness of a layer like h^p, p = 3/2, so that 1/((h_1/h)^p - 1) of the difference remains:
+narrow faces, whose layers can't be much thinner, keep more of it. Default and fine are compared with the same coarse mesh, so
+that the finer one never estimates worse. The blank of a wheel has elements of its own: in the comparison they are twice as large.
 Slices: the same elements with half as many slices again. Positions: contact solutions between those that are kept
 (`gears/loaded/cycle_positions`). What is printed is the sum.
 
@@ -21,14 +22,16 @@ from rotorgear.analysis.teeth.helices import SolvedHelices, curves_at
 from rotorgear.analysis.teeth.request import MeshRequest
 from rotorgear.gears.loaded.tooth_contact import in_space
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.settings import coarser_size
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.mesh import MeshErrors
 
-# Share of the difference between two meshes that remains on the finer one, in the plane and in space.
-_REMAINING = {"preview": (1.5, 1.5), "default": (0.35, 0.35), "fine": (0.6, 0.1)}
+# Share of the difference between two meshes that remains on the finer one, in the plane; and p in space, as measured there.
+_REMAINING = {"preview": 1.5, "default": 0.35, "fine": 0.6}
+_ORDER = 1.5
 # The same of wheels: corners of rim, web and hub let the error of the blank's mesh fall with its side, not faster.
-_OF_WHEELS = {"preview": (1.5, 1.5), "default": (0.7, 0.7), "fine": (0.6, 0.5)}
+_OF_WHEELS = {"preview": 1.5, "default": 0.7, "fine": 0.6}
 _COARSER_BLANK = 2.0
 # The same of the largest pressure in space: it stands where contact lines end at the edge of a face, and comes to rest slowly.
 _OF_PRESSURE = {"preview": 3.0, "default": 1.5, "fine": 0.4}
@@ -73,9 +76,7 @@ def error_parts(
     compared_with = replace(fe, preset="default") if space and fe.preset == "fine" else fe
     size = coarser_size(compared_with, width, space=space)
     coarser = replace(teeth, fe=replace(fe, size=size, blank_coarseness=_COARSER_BLANK * fe.blank_coarseness))
-    on_wheels = any(fe.body_of(body.blank) == "wheel" for body in (teeth.first_body, teeth.second_body))
-    remaining = _OF_WHEELS if on_wheels else _REMAINING
-    share = 1.0 if fe.size is not None else remaining[fe.preset][space]
+    share = 1.0 if fe.size is not None else _remaining(teeth, size, space)
     of_pressure = _OF_PRESSURE[fe.preset] if space and fe.size is None else share
     elements = _apart(here, curves(coarser, part_of(progress, 0.0, 0.6)), share, of_pressure)
     slices = None
@@ -83,6 +84,17 @@ def error_parts(
         more = replace(teeth, fe=replace(fe, slices=round(_MORE_SLICES * found.problem.slices)))
         slices = _apart(here, curves(more, part_of(progress, 0.6, 1.0)))
     return ErrorParts(elements, slices, sampling, _sum(elements, slices, sampling))
+
+
+def _remaining(teeth: ToothPair, coarser: MeshSize, space: bool) -> float:
+    """Share of the difference to a coarser mesh that remains on a preset's own."""
+    fe = teeth.fe
+    on_wheels = any(fe.body_of(body.blank) == "wheel" for body in (teeth.first_body, teeth.second_body))
+    if not space or fe.preset == "preview":
+        return (_OF_WHEELS if on_wheels else _REMAINING)[fe.preset]
+    layers = fe.mesh_size(teeth.width / teeth.first.normal_module, space=True).face
+    share = 1.0 / ((layers / coarser.face) ** _ORDER - 1.0)
+    return max(share, _OF_WHEELS[fe.preset]) if on_wheels else share
 
 
 def _compared(found: SolvedHelices) -> np.ndarray:

@@ -6,16 +6,18 @@ alike: tooth k at position u stands where tooth 0 is at u + k, so that one mesh 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.teeth.helices import Cycle, solve_helices
 from rotorgear.analysis.teeth.request import mesh_request
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.outline import tooth_outline
 from rotorgear.gears.geometry.root_section import root_section
 from rotorgear.gears.loaded.contact_points import patch_loads
-from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, gear_key, in_space
 from rotorgear.gears.loaded.tooth_solution import solve_teeth, tooth_inside
@@ -62,8 +64,11 @@ def root_stress(
         raise AnalysisError(
             "The preview of a pair that changes along the face has no roots to show: take --preset default."
         )
-    u = np.arange(positions) / positions
-    problem, cycle = loaded_cycle(teeth, request.base_force, u, part_of(progress, 0.0, 0.2))
+    # Positions as for the curves of this helix: where teeth come and go, and where stiffness and pressure need them.
+    first = replace(request, senses=request.senses[:1])
+    found = solve_helices(first, request.teeth, request.base_force, Cycle(positions), part_of(progress, 0.0, 0.2))
+    problem = found.problem
+    cycle = found.cycles[0]
     clock.lap("teeth and contact")
     names = tuple(gear.name for gear in request.mesh.gears)
     # Seen from the other end of the face, z runs the other way.

@@ -290,8 +290,7 @@ def _swept(
         position=positions,
         load=load,
         deflection=np.array([state.approach for state in states]) / cosine,
-        # Without load the gears approach until the first slice touches.
-        no_load=np.array([contact.gap.min() for contact in contacts]) / cosine,
+        no_load=_no_load(problem, slices, len(positions)) / cosine,
         tangent=np.array([state.tangent for state in states]) * cosine**2,
         moment=np.array([moment for moment, _ in along]),
         along_face=np.array([tangents for _, tangents in along]),
@@ -306,6 +305,13 @@ def _swept(
         beyond=beyond,
         warnings=_notes(problem, slices, force, pressure, beyond),
     )
+
+
+def _no_load(problem: ContactProblem, slices: Slices, count: int) -> np.ndarray:
+    """Approach (p,) along the normal at which the first place of any slice touches, without load."""
+    least = np.full(count, np.inf)
+    np.minimum.at(least, slices.position, problem.gap_along(slices).min(axis=1))
+    return least
 
 
 def _opening(contact: PositionContact, state: ContactState) -> np.ndarray:

@@ -81,7 +81,11 @@ class ContactProblem:
         return sum(flank.largest for flank in self.flanks) + abs(self.misalignment)
 
     def gap(self, slices: Slices, period: int = 0) -> np.ndarray:
-        """Gap (n,) of each slice along the flank normal before loading (m), so many base pitches after position 0."""
+        """Mean gap (n,) of each slice along the flank normal before loading (m), so many base pitches after position 0."""
+        return np.asarray(np.sum(self.gap_along(slices, period) * slices.weight, axis=1))
+
+    def gap_along(self, slices: Slices, period: int = 0) -> np.ndarray:
+        """The same at the places (n, q) along each slice."""
         gap = slices.gap + self.misalignment * slices.z / self.width
         for i, flank in enumerate(self.flanks):
             form = self.line.form[i]
@@ -91,7 +95,7 @@ class ContactProblem:
             tooth = period - slices.pair
             gap = gap + flank.measured_depth(slices.roll[i], slices.z, tooth, self.teeth[i])
             gap = gap + flank.pitch_depth(tooth, self.teeth[i])[:, None]
-        return np.asarray(np.sum(gap * slices.weight, axis=1))
+        return np.asarray(gap)
 
 
 def line_of_action(teeth: ToothPair) -> LineOfAction:

@@ -53,13 +53,13 @@ def test_the_nominal_stress_is_the_product_of_the_factors_of_the_standard() -> N
 
 
 def test_teeth_at_light_load_come_near_to_the_beam_with_its_notch_and_grow_with_the_load() -> None:
-    """One pair carries all between B and D. With the default preset the tangent has 5 and 8 % less than the nominal stress."""
+    """One pair carries all between B and D, and positions stand there: tooth and beam agree within a tenth."""
     model = rg.loads(pair_file(mesh=PREVIEW))
     light = rg.root_stress(model, torque=20.0, positions=12)
     twice = rg.root_stress(model, torque=40.0, positions=12)
     for gear, more in zip(light.gears, twice.gears, strict=True):
         assert gear.nominal is not None
-        assert 0.85 < gear.worst_at_tangent / gear.nominal < 1.02
+        assert 0.9 < gear.worst_at_tangent / gear.nominal < 1.05
         assert gear.worst >= gear.worst_at_tangent
         # Shares between two pairs hardly depend on a light load, and single contact not at all.
         assert more.worst_at_tangent == pytest.approx(2.0 * gear.worst_at_tangent, rel=0.02)

@@ -10,8 +10,10 @@ import scipy.optimize as so
 
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.geometry.flank import FlankModification
+from rotorgear.gears.loaded.contact_points import contact_slices
 from rotorgear.gears.loaded.loaded_contact import PositionContact, hertz_half_width, solve_contact
 from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
+from rotorgear.gears.loaded.tooth_contact import line_of_action
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from tests.unit.gears.tooth_pairs import COARSE, LOAD, WIDTH, cycle, helical, pair, spur
@@ -222,3 +224,40 @@ def test_teeth_that_lose_contact_are_refused() -> None:
 
 def test_slices_that_do_not_feel_each_other_are_stiffer_than_the_body() -> None:
     assert cycle(pair(20.86, ToothFe("preview"))).secant.mean() > cycle(helical()).secant.mean()
+
+
+def test_slices_of_helical_lines_change_smoothly_over_the_cycle() -> None:
+    """A line that grows or ends keeps its number of slices: no step but where a line comes or goes."""
+    line = line_of_action(helical())
+    u = np.linspace(0.0, 1.0, 801)
+    slices = contact_slices(line, u, WIDTH, 8, (0.0, 0.0))
+    for k in np.unique(slices.pair):
+        of_pair = slices.pair == k
+        places = np.unique(slices.position[of_pair])
+        counts = np.bincount(slices.position[of_pair])[places]
+        assert set(counts) == {8}
+        lengths = slices.length[of_pair].reshape(len(places), 8)
+        beside = np.diff(places) == 1
+        # A contact line's end runs along the face as fast as the base pitch over tan b_b; a slice has an eighth of it.
+        fastest = line.base_pitch / np.tan(line.base_helix_angle) / 800.0
+        assert np.abs(np.diff(lengths, axis=0)[beside]).max() <= fastest / 4.0
+
+
+def test_slices_are_finer_at_the_ends_and_fill_the_line() -> None:
+    line = line_of_action(helical())
+    slices = contact_slices(line, np.zeros(1), WIDTH, 8, (0.0, 0.0))
+    length = slices.length[slices.pair == 0]
+    assert length.sum() == pytest.approx(WIDTH, rel=1e-12)
+    assert length[0] == pytest.approx(length[-1], rel=1e-12)
+    assert np.all(np.diff(length[:4]) > 0.0)
+
+
+def test_without_load_a_crowned_flank_touches_at_its_crown_whatever_the_slices() -> None:
+    """The first touch is that of places, not of means over slices: the middle of the face stands 0 deep."""
+    flank = FlankModification(crowning=30e-6)
+    for slices in (3, 8):
+        teeth = replace(helical(), first_flank=flank, fe=replace(helical().fe, slices=slices))
+        found = cycle(teeth, positions=4)
+        # An odd number of slices has a place on the crown; others are a part of a slice from it.
+        assert found.no_load.min() <= 30e-6 * (2.0 / 8.0 * 0.25) ** 2
+        assert np.all(found.no_load >= 0.0)
