@@ -220,11 +220,7 @@ class MeshResult(Result, kind="mesh"):
     @derived("mean tangent stiffness", "N/m", json="mean_tangent_stiffness_n_per_m")
     def mean_tangent_stiffness(self) -> float | None:
         """Mean of the transverse tangent stiffness (N/m)."""
-        if self.tangent is None:
-            return None
-        # It steps where pairs come and go, and cubics would swing there: straight between positions.
-        u = [*self.position, self.position[0] + self.periods]
-        return float(np.trapezoid([*self.tangent, self.tangent[0]], u)) / self.periods
+        return None if self.tangent is None else float(self._curve(self.tangent).mean_of_steps()[0])
 
     @derived("peak to peak of the transmission error", "m", json="ste_peak_to_peak_m", note=" under load")
     def ste_peak_to_peak(self) -> float | None:

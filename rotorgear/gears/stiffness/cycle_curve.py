@@ -88,6 +88,22 @@ class CycleCurve:
         pieces = 0.5 * h * (self.values + np.roll(self.values, -1, axis=0)) + h**2 * (start - end) / 12.0
         return np.asarray(pieces.sum(axis=0) / self.period)
 
+    def mean_of_steps(self) -> np.ndarray:
+        """Means (c,) of curves that step where pairs come and go, as tangents do: cubics that stay between their ends.
+
+        Slopes of up to three times the chord, of its sign, keep them there (Fritsch and Carlson); without that bound a cubic
+        beside a step swings, by more than the mean of a crowned pair forgives (1.7 %).
+        """
+        h = self.width[:, None]
+        rise = np.roll(self.values, -1, axis=0) - self.values
+        chord = rise / h
+        start, end = (
+            np.where(slope * chord > 0.0, np.sign(chord) * np.minimum(np.abs(slope), 3.0 * np.abs(chord)), 0.0)
+            for slope in self._slopes
+        )
+        pieces = h * (self.values + 0.5 * rise) + h**2 * (start - end) / 12.0
+        return np.asarray(pieces.sum(axis=0) / self.period)
+
     def harmonics(self, count: int) -> np.ndarray:
         """Complex amplitudes c_n (count, c) at the orders 1 to `count` of the mesh; whole periods only."""
         x, weight = np.polynomial.legendre.leggauss(_PLACES)

@@ -138,9 +138,8 @@ class MeshStiffness:
         """Mean of values (n,) at the positions over the mesh period."""
         if self.event is None:
             return float(np.mean(values))
-        if self.definition == "tangent":  # it steps where pairs come and go: straight between positions
-            return float(np.trapezoid([*values, values[0]], [*self.position, 1.0]))
-        return float(self._curve(values).mean()[0])
+        curve = self._curve(values)
+        return float((curve.mean_of_steps() if self.definition == "tangent" else curve.mean())[0])
 
     def evenly(self, count: int) -> np.ndarray:
         """Transverse stiffness (count,) in N/m at even positions from 0."""

@@ -106,3 +106,16 @@ def test_added_positions_are_those_of_one_solution() -> None:
     odd = both.chosen(np.arange(1, 24, 2))
     for k, share in odd.share_by_pair().items():
         assert share == pytest.approx(whole.share_by_pair()[k][1::2], abs=1e-9)
+
+
+def test_the_mean_of_a_step_is_not_swung_by_the_positions_beside_it() -> None:
+    """Two positions enclose a step of a half, and the next ones are far away: cubics through all four would swing beyond it."""
+    u = np.array([0.0, 0.2, 0.498, 0.502, 0.8, 0.9])
+    stepped = np.where(u < 0.5, 1.0, 1.5)[:, None]
+    curve = CycleCurve(u, stepped, 1.0, np.zeros(len(u), bool))
+    mean = 0.5 * 1.0 + 0.4 * 1.5 + 0.1 * 1.25  # from the last position to the first it falls back
+    assert curve.mean_of_steps()[0] == pytest.approx(mean, abs=1e-3)
+    assert abs(curve.mean()[0] - mean) > 5e-3
+    # Where nothing steps it is the integral of the cubics.
+    smooth = CycleCurve(u, np.exp(u)[:, None], 1.0, np.array([True, *(5 * [False])]))
+    assert smooth.mean_of_steps()[0] == pytest.approx(smooth.mean()[0], rel=1e-2)
