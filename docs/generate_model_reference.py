@@ -85,7 +85,7 @@ RULES: dict[type[BaseModel], str] = {
         Give `power` or `torque`, not both; then name the `output_shaft`, or list the torques under `[loads]`. Without
         `[operation]` the first shaft is the input.""",
     Material: """
-        Give `poisson_ratio` or `shear_modulus`; without either, Poisson's ratio is 0.3.""",
+        Give `poisson_ratio` or `shear_modulus`, one of them.""",
     Casing: """
         A bearing with `casing = "NAME"` stands on the seat of its name. Give `material`, or E, nu and density.
         [Casings](casings.md) tells how meshes are read, reduced and checked.""",

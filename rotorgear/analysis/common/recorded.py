@@ -1,4 +1,5 @@
-"""Every analysis marks its result in one place: with its arguments, the hash of its model, and the time it took."""
+"""Every analysis marks its result in one place: with its arguments, the hash of its model, the time it took, and warnings of
+values of the model that make no sense."""
 
 from __future__ import annotations
 
@@ -12,6 +13,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
+from rotorgear.model.checks.plausibility import implausible
 from rotorgear.model.model import Model
 from rotorgear.model.model_hash import model_hash
 from rotorgear.results.result import Result
@@ -39,7 +41,9 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
         (_, subject), *given = bound.arguments.items()
         settings = {name: setting(value) for name, value in given if name not in _NOT_SETTINGS}
         seconds = {"total": time.perf_counter() - start} | result.seconds
-        return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds)
+        doubts = tuple(implausible(subject.layout)) if isinstance(subject, Model) else ()
+        warnings = (*result.warnings, *(doubt for doubt in doubts if doubt not in result.warnings))
+        return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
 
     return run
 

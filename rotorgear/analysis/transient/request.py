@@ -147,7 +147,7 @@ def grid_of(
     if count < _LEAST_RECORDS:
         raise AnalysisError(
             f"{total:g} s gives only {count} records {spacing:.3g} s apart, at least {_LEAST_RECORDS} are needed: "
-            "ask for more time"
+            "ask for more time, or for more records in a period of the fastest mesh (records, --records)"
         )
     if count * every > MOST_STEPS:
         raise AnalysisError(

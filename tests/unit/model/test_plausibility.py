@@ -1,0 +1,106 @@
+"""Slips of units are warned about, and no shipped model is."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.model.checks.plausibility import implausible
+
+MODELS = Path(__file__).parents[3] / "models"
+# Address, the value that slipped, and what the warning asks.
+SLIPS: list[tuple[dict[str, Any], str, str]] = [
+    ({"gears.pinion.width": 44.0, "gears.wheel.width": 44.0}, "gears.pinion.width", "mm meant"),
+    (
+        {"materials.steel_2": {"youngs_modulus": 206000.0, "density": 7850.0, "poisson_ratio": 0.3}},
+        "materials.steel_2",
+        "MPa meant",
+    ),
+    (
+        {"materials.steel_2": {"youngs_modulus": 206.0, "density": 7850.0, "poisson_ratio": 0.3}},
+        "materials.steel_2",
+        "GPa meant",
+    ),
+    (
+        {"materials.steel_2": {"youngs_modulus": 206e9, "density": 7.85, "poisson_ratio": 0.3}},
+        "materials.steel_2.density",
+        "g/cm\\^3 meant",
+    ),
+    ({"meshes.stage.stiffness": 896.0}, "meshes.stage.stiffness", "N/um"),
+    ({"meshes.stage.stiffness": 14.0}, "meshes.stage.stiffness", "N/\\(mm um\\)"),
+    ({"bearings.input_left.stiffness": {"radial": 0.0}}, "bearings.input_left.stiffness", "holds nothing"),
+    ({"bearings.input_left.stiffness": {"radial": 200.0}}, "bearings.input_left.stiffness", "N/um meant"),
+    ({"bearings.input_left.stiffness": {"radial": 2e14}}, "bearings.input_left.stiffness", "unit right"),
+    ({"shafts.input.sections[0].outer_diameter": 40.0}, "shafts.input", "in mm"),
+    (
+        {
+            "disks.extra": {
+                "shaft": "input",
+                "at": "start",
+                "mass": 3.0,
+                "polar_inertia": 5400.0,
+                "diametral_inertia": 2700.0,
+            }
+        },
+        "disks.extra.polar_inertia",
+        "kg mm\\^2",
+    ),
+    ({"operation.gravity": [0.0, -9810.0, 0.0]}, "operation.gravity", "mm/s\\^2"),
+    ({"damping.modal_ratio": 2.0}, "damping.modal_ratio", "percent"),
+    (
+        {"unbalances.u": {"shaft": "input", "at": "start", "magnitude": 20.0}},
+        "unbalances.u.magnitude",
+        "g mm meant",
+    ),
+    ({"operation.speed": 30000.0}, "operation.speed", "rpm meant"),
+    ({"operation.power": 5e9}, "operation.power", "W meant"),
+    (
+        {"meshes.stage.transmission_error": [{"harmonic": 1, "amplitude": 2.0}]},
+        "meshes.stage.transmission_error",
+        "um meant",
+    ),
+    ({"meshes.stage.backlash": 0.2}, "meshes.stage.backlash", "mm meant"),
+]
+
+
+@pytest.mark.parametrize(("change", "address", "slip"), SLIPS)
+def test_a_slip_of_a_unit_is_named_with_its_remedy(change, address, slip):
+    model = rg.load(MODELS / "helical_pair.toml").with_(change)
+    found = list(implausible(model.layout))
+    assert any(sentence.startswith(address) for sentence in found), found
+    assert any(re.search(slip, sentence) and "usual is" in sentence for sentence in found), found
+
+
+@pytest.mark.parametrize("file", sorted(MODELS.glob("*.toml")), ids=lambda file: file.stem)
+def test_no_shipped_model_is_warned_about(file):
+    assert list(implausible(rg.load(file).layout)) == []
+
+
+def test_every_analysis_and_check_say_it():
+    model = rg.load(MODELS / "jeffcott.toml").with_("damping.modal_ratio", 2.0)
+    for result in (rg.check(model), rg.modal(model)):
+        assert sum(sentence.startswith("damping.modal_ratio") for sentence in result.warnings) == 1
+
+
+def test_a_train_in_torsion_alone_may_stand_anywhere_along_z():
+    gear = (
+        "kind = 'spur'\nteeth = {}\nnormal_module = '2 mm'\nwidth = '20 mm'\n"
+        "mass = 1.0\npolar_inertia = 0.01\ndiametral_inertia = 0.01\n"
+    )
+    text = (
+        "[shafts.a]\n[shafts.b]\nstart = '300 mm'\n"
+        f"[gears.one]\nshaft = 'a'\nat = 'start'\n{gear.format(20)}[gears.two]\nshaft = 'b'\nat = 'start'\n{gear.format(40)}"
+        "[meshes.m]\npinion = 'one'\ngear = 'two'\nstiffness = 1e8\n"
+    )
+    modes = rg.modal(rg.loads('motions = ["torsion"]\n' + text))
+    # m_e = J_1 J_2 / (J_1 r_2^2 + J_2 r_1^2) on the base radii.
+    r = 0.02 * np.cos(np.radians(20.0))
+    mass = 0.01 * 0.01 / (0.01 * (2.0 * r) ** 2 + 0.01 * r**2)
+    assert modes.frequency_hz[-1] == pytest.approx(np.sqrt(1e8 / mass) / 2.0 / np.pi, rel=1e-9)
+    with pytest.raises(rg.RotorgearError, match="faces that overlap"):
+        rg.loads('motions = ["bending", "torsion"]\n' + text)
