@@ -26,7 +26,7 @@ from rotorgear.system.system import System
 class ReducedFamily:
     """Dense matrices (r, r) over speed; `table_damping` and `table_stiffness` (k, r, r) at the speeds `knots` (k,).
 
-    `per_square` grows with the square of the speed: centrifugal forces in gear bodies.
+    `per_square` grows with the square of the speed, by centrifugal forces in gear bodies; None without them.
     """
 
     mass: np.ndarray
@@ -34,7 +34,7 @@ class ReducedFamily:
     gyroscopic: np.ndarray
     stiffness: np.ndarray
     per_speed: np.ndarray
-    per_square: np.ndarray
+    per_square: np.ndarray | None
     knots: np.ndarray
     table_damping: np.ndarray
     table_stiffness: np.ndarray
@@ -42,7 +42,9 @@ class ReducedFamily:
     def at(self, speed: float) -> Pencil:
         """M, D and K at a speed in rad/s."""
         D = self.damping + speed * self.gyroscopic
-        K = self.stiffness + speed * self.per_speed + speed**2 * self.per_square
+        K = self.stiffness + speed * self.per_speed
+        if self.per_square is not None:
+            K = K + speed**2 * self.per_square
         if len(self.knots):
             right = int(np.clip(np.searchsorted(self.knots, speed), 1, len(self.knots) - 1))
             left = right - 1
@@ -127,7 +129,7 @@ class SpeedFamily:
             gyroscopic=0.5 * (gyroscopic - gyroscopic.T),
             stiffness=strained.T @ (forms.modulus @ strained) + strained.T @ (forms.circulation @ strained),
             per_speed=strained.T @ (self._per_speed @ strained),
-            per_square=strained.T @ (self._per_square @ strained),
+            per_square=strained.T @ (self._per_square @ strained) if self._per_square.nnz else None,
             knots=self.knots,
             table_damping=np.array([pair[0] for pair in tables]).reshape(len(tables), r, r),
             table_stiffness=np.array([pair[1] for pair in tables]).reshape(len(tables), r, r),
