@@ -17,7 +17,14 @@ from rotorgear.analysis.transient.balance import unbalanced
 from rotorgear.analysis.transient.histories import Histories, Stream
 from rotorgear.analysis.transient.notes import transient_left_out, transient_warnings
 from rotorgear.analysis.transient.request import Grid, base_frequencies, grid_of, integrator_of, quantity, run_up
-from rotorgear.analysis.transient.statistics import Statistics, compared, of_channels, of_forces, statistics
+from rotorgear.analysis.transient.statistics import (
+    HALF_THE_STEP,
+    Statistics,
+    compared,
+    of_channels,
+    of_forces,
+    statistics,
+)
 from rotorgear.analysis.transient.task import Task, damped, fine_enough, prepare, run_task, skipping
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
@@ -223,7 +230,7 @@ def _result(
 def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> list[tuple[Histories, float]]:
     """Worse or better runs, each with the factor by which the run that counts is nearer to the truth, less 1.
 
-    Twice the step is four times worse. An explicit method chooses its own steps: there a hundred times the tolerance takes
+    Twice the step is four times worse, less a margin. An explicit method chooses its own steps: there a hundred times the tolerance takes
     their place. Where modes are cut, a run has half as many more.
     """
     if isinstance(integrator, Explicit):
@@ -231,7 +238,7 @@ def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progr
         return [(run_task(task, loose, grid, progress, text="looser tolerance"), 1.0)]
     double = replace(grid, every=grid.every // 2) if grid.every > 1 else skipping(grid)
     try:
-        found = [(run_task(task, integrator, double, progress, text="twice the step"), 3.0)]
+        found = [(run_task(task, integrator, double, progress, text="twice the step"), HALF_THE_STEP)]
     except ConvergenceError:
         return []
     if isinstance(integrator, Exponential) and integrator.modes is not None:

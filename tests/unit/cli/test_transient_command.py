@@ -63,7 +63,7 @@ def test_a_result_is_saved_read_again_and_drawn(shaken: str, tmp_path: Path) -> 
     assert data["records"] == len(result.time)
     assert result.mesh_force.shape == (len(result.time), len(data["contacts"]))
     names = {path.name for path in (tmp_path / "pictures").iterdir()}
-    assert names >= {"mesh_forces.png", "transmission_error.png", "spectra.png", "energy.png", "orbits.png"}
+    assert names >= {"mesh_forces.png", "transmission_error.png", "spectra.png", "energy.png", "shaft_orbits.png"}
 
 
 def test_a_run_up_draws_a_spectrogram(shaken: str, tmp_path: Path) -> None:
