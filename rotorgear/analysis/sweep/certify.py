@@ -1,8 +1,8 @@
 """Whether a run of a sweep may stand: its response type and its exponents agree, and nothing still changes.
 
-    kT              the largest exponent is below zero by more than its error, or zero within it and the section repeats to 1e-4;
-                    for k > 1 the range of the section stays what it is from its first half to its second, so that it is no
-                    shorter period to which a spiral still comes down
+    kT              the largest exponent is below zero by more than its error, or zero within it and the section repeats to 1e-4,
+                    unless the step hides its sign; for k > 1 the range of the section stays what it is from its first half to
+                    its second, so that it is no shorter period to which a spiral still comes down
     quasi-periodic  the largest exponent is zero within its error, and one standard error away from chaos
     chaotic         it is above that bound by a standard error
 
@@ -52,7 +52,8 @@ def judged(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[Motion
     motion = classify(x, extent, largest, error, judge.tolerance, judge.chaos)
     bound = max(2.0 * error, _ZERO)
     if motion.period:
-        exact = period_of(x, extent, _REPEATS * judge.tolerance) == motion.period
+        # Where flanks part, an unstable orbit may repeat for thousands of periods, and the step hides the sign of its exponent.
+        exact = orbit.doubt[0] <= _ZERO and period_of(x, extent, _REPEATS * judge.tolerance) == motion.period
         stable = largest < -bound or (largest <= bound and exact)
         return motion, stable and (motion.period == 1 or _stays(x))
     if motion.kind == QUASI_PERIODIC:

@@ -12,8 +12,8 @@ from rotorgear.solvers.time.gathered import StepStatistics
 
 # Contact forces that move by less than this share of their size do not move: what is left is rounding.
 _STILL = 1e-8
-# By how much half the step is better, less 1, with second order: 3, less Roache's margin of 1.25, for where sides meet and part and
-# impacts begin and end the order holds in the mean only. J. Fluids Eng. 116 (1994) 405.
+# By how much half the step is better, less 1, with second order: 3, less Roache's margin of 1.25, for where sides meet and part
+# and impacts begin and end the order holds in the mean only. J. Fluids Eng. 116 (1994) 405.
 HALF_THE_STEP = 3.0 / 1.25
 
 

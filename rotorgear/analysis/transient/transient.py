@@ -230,8 +230,8 @@ def _result(
 def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> list[tuple[Histories, float]]:
     """Worse or better runs, each with the factor by which the run that counts is nearer to the truth, less 1.
 
-    Twice the step is four times worse, less a margin. An explicit method chooses its own steps: there a hundred times the tolerance takes
-    their place. Where modes are cut, a run has half as many more.
+    Twice the step is four times worse, less a margin. An explicit method chooses its own steps: there a hundred times the
+    tolerance takes their place. Where modes are cut, a run has half as many more.
     """
     if isinstance(integrator, Explicit):
         loose = Explicit(100.0 * integrator.relative)
