@@ -50,19 +50,21 @@ def _verified(
     size = float(np.ptp(ends[contacts.column], axis=1).max(initial=0.0)) or 1.0
     k = branch.periods
     periods = _PERIODS * k
-    _, d = run_periods(system, family.order, periods, q, v, _STEPS)
+    exact = cycle.at.d[:, contacts.column]
+    # Steps so that every instant of the orbit is the end of one.
+    each = int(np.ceil(_STEPS * k / len(exact)))
+    steps = each * len(exact) // k
+    _, d = run_periods(system, family.order, periods, q, v, steps)
     push = plant.still.X @ np.ones(plant.m)
     moved = float(np.abs((plant.B.T @ push)[contacts.column]).max(initial=0.0)) or 1.0
-    _, other = run_periods(system, family.order, periods, q + push * (_PUSH * size / moved), v, _STEPS)
-    per = _STEPS * k
+    _, other = run_periods(system, family.order, periods, q + push * (_PUSH * size / moved), v, steps)
+    per = steps * k
     column = contacts.column
     # Records stand at the ends of steps: the first period is rows 0 to per - 1.
     start = (plant.B.T @ q)[column]
     after_one = d[:per][:, column]
     orbit = np.vstack([after_one[-1:], after_one[:-1]])
-    exact = orbits.cycle(node.y, node.p, None).at.d[:, column]
-    spaced = np.linspace(0, per, len(exact), endpoint=False).round().astype(int)
-    deviation = float(np.abs(orbit[spaced][1:] - exact[1:]).max() / size) if len(exact) else float("nan")
+    deviation = float(np.abs(orbit[::each][1:] - exact[1:]).max() / size)
     deviation = max(deviation, float(np.abs(after_one[-1] - start).max() / size))
     away = np.linalg.norm((other - d)[:, column].reshape(_PERIODS, per, -1), axis=(1, 2)) / np.sqrt(per) / size
     left = np.abs(d[:, column].reshape(_PERIODS, per, -1) - after_one).max(axis=(1, 2)) / size
