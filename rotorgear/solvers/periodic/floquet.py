@@ -19,7 +19,6 @@ import scipy.sparse as sp
 from rotorgear.solvers.periodic.balance import pairs
 from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.samples import Samples, answered
-from rotorgear.solvers.time.exponential import _phi
 
 # Instants whose tangents make the mean of a step.
 FINER = 4
@@ -154,7 +153,7 @@ def monodromy(plant: Plant, basis: ModalBasis, fine: Samples) -> np.ndarray:
     Y = Y[kept]
     shapes = X[:, kept] * weight
     e = np.exp(s * h)[:, None]
-    first, second = _phi(s * h)
+    first, second = _phis(s * h)
     gain = Y @ forced
     Q0 = (h * (first - second))[:, None] * gain
     Q1 = (h * second)[:, None] * gain
@@ -171,6 +170,23 @@ def monodromy(plant: Plant, basis: ModalBasis, fine: Samples) -> np.ndarray:
         z += Q1 @ u
         seen = free + lift @ u
     return np.asarray(np.real(shapes @ z))
+
+
+def _phis(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """phi_1 = (e^x - 1)/x and phi_2 = (e^x - 1 - x)/x^2, by their series where x is small."""
+    small = np.abs(x) < 0.3
+    safe = np.where(small, 1.0, x)
+    first = np.zeros_like(x)
+    second = np.zeros_like(x)
+    term = np.ones_like(x)
+    for k in range(1, 16):
+        first = first + term
+        second = second + term / (k + 1.0)
+        term = term * x / (k + 1.0)
+    return (
+        np.where(small, first, np.expm1(safe) / safe),
+        np.where(small, second, (np.expm1(safe) - safe) / safe**2),
+    )
 
 
 def _means(plant: Plant, fine: Samples, N: int) -> np.ndarray:
