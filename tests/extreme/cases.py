@@ -42,6 +42,7 @@ from tests.extreme.speed_errors import (
     tilting,
     whirls_of_tilting,
 )
+from tests.extreme.time_errors import stepped_torque, sweep_of_pair, whirl_in_time
 from tests.extreme.tooth_errors import broken_contact, contact_ratio, iso_stiffness, pair_of, undercut
 from tests.extreme.undamped_errors import (
     bar,
@@ -347,6 +348,21 @@ FORCED: list[Case] = [
     Case("mesh: ISO stiffness of a module of 1 mm and of 1 m", "similarity", 1e-9, lambda: iso_stiffness(1e3)),
 ]
 CASES += FORCED
+
+
+# Bounds: a sweep takes 200 steps in a mesh period, a transient is asked for 1e-3 by default.
+CASES += [
+    Case("sweep: a stiff mesh of 1e13 N/m", "closed form", 1e-4, lambda: sweep_of_pair(1e13, 0.03, 0.5)),
+    Case("sweep: a mesh of 1e-3 N/m", "closed form", 1e-4, lambda: sweep_of_pair(1e-3, 0.03, 0.5)),
+    Case("sweep: at resonance", "closed form", 1e-4, lambda: sweep_of_pair(1.6e8, 0.03, 1.0)),
+    Case("sweep: 100 times above the resonance", "closed form", 1e-3, lambda: sweep_of_pair(1.6e8, 0.9, 100.0)),
+    Case("sweep: a hundredth of the resonance", "closed form", 1e-3, lambda: sweep_of_pair(1.6e8, 0.03, 0.01)),
+    Case("transient: a torque that doubles, undamped", "closed form", 1e-3, lambda: stepped_torque(1e3)),
+    Case("transient: unbalance on 1e6 N/m", "closed form", 1e-3, lambda: whirl_in_time(1e6, 2e3, 300.0)),
+    Case("transient: unbalance on 1e13 N/m", "closed form", 1e-3, lambda: whirl_in_time(1e13, 1e7, 300.0)),
+    Case("transient: 1e-6 kg on 1e13 N/m", "closed form", 1e-3, lambda: whirl_in_time(1e13, 1e4, 1e3, 1e-6)),
+    Case("transient: overdamped at 1e6 rpm", "closed form", 1e-3, lambda: whirl_in_time(1e6, 2e5, 1e5)),
+]
 
 
 FLAGGED: list[Flagged] = [

@@ -258,3 +258,32 @@ def test_the_command_prints_the_same_table(tmp_path: Path) -> None:
     tables = [[line for line in text.splitlines() if " s; " not in line] for text in outputs]
     assert len(tables[0]) > 60
     assert tables[0] == tables[1]
+
+
+def test_tls_takes_the_certificates_of_dasks_settings_and_refuses_without(monkeypatch: pytest.MonkeyPatch) -> None:
+    import dask.config
+    import distributed.comm
+
+    asked = []
+
+    async def connect(address: str, **arguments: Any) -> Any:
+        asked.append((address, arguments))
+        raise OSError
+
+    with pytest.raises(AnalysisError, match=r"cluster: got 'tls://host:8786', expected .*TLS"):
+        rg.cluster("tls://host:8786", timeout=0.2)
+    made = object()
+    monkeypatch.setattr(
+        distributed.Security, "get_tls_config_for_role", lambda self, role: {"ca_file": self.tls_ca_file}
+    )
+    monkeypatch.setattr(distributed.Security, "_get_tls_context", lambda self, tls, purpose: made, raising=False)
+    monkeypatch.setattr(distributed.comm, "connect", connect)
+    with (
+        dask.config.set({"distributed.comm.tls.ca-file": "ca.pem", "distributed.comm.require-encryption": True}),
+        pytest.raises(AnalysisError, match="no dask scheduler answers at tls://host:8786"),
+    ):
+        rg.cluster("tls://host:8786", timeout=0.2)
+    ((address, arguments),) = asked
+    assert address == "tls://host:8786"
+    assert arguments["require_encryption"]
+    assert arguments["ssl_context"] is made
