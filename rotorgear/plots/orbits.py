@@ -56,8 +56,8 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
         points = [one for one in result.special_points if one.kind == kind]
         if points:
             at = [one.value / result.per_unit[0] for one in points]
-            y = [1e6 * float(np.ptp(one.approach_extremes[c])) for one in points]
-            axes[0].plot(at, y, marker, color="k", mfc="w", ms=6, ls="none", label=kind, zorder=5)
+            height = [1e6 * float(np.ptp(one.approach_extremes[c])) for one in points]
+            axes[0].plot(at, height, marker, color="k", mfc="w", ms=6, ls="none", label=kind, zorder=5)
     axes[1].axhline(1.0, color="k", lw=0.6)
     axes[0].set_ylabel("approach, peak to peak, um")
     axes[0].set_title(f"{result.contact[c]}: periodic motions", fontsize=9)

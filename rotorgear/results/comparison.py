@@ -205,8 +205,8 @@ class Comparison(Result, kind="compare"):
     )
 
     @derived(
-        "effective number of stiffnesses that the matched lines teach",
-        note=": the sum of the learnt shares; `null` where `stiffnesses` is empty",
+        "effective number of parameters that the lines teach",
+        note=": the sum of the learnt shares of `stiffnesses`; `null` where that is empty",
         form=".1f",
     )
     def learnt_parameters(self) -> float | None:

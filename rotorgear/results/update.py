@@ -48,13 +48,13 @@ class UpdateResult(ModelResult, kind="update"):
     lines: tuple[UpdatedLine, ...] = of("measured lines with a mode", "", "line", record=UpdatedLine)
     unmatched: tuple[RigLine, ...] = of("measured lines without a mode", "", "unmatched_line", record=RigLine)
     correlation: np.ndarray = of("correlation of the estimates", "", "parameter", "parameter")
-    points: tuple[str, ...] = of("points where shapes were measured", "", "point")
+    points: tuple[str, ...] = of("names of the points", "", "point", note=" where shapes were measured")
     chi_squared: float = of("weighted sum of squares at the estimate", note=": measured values and priors together")
     measured_values: int = of("number of independent measured values")
     misfit_probability: float = of("chance of so large a sum of squares if the model is right")
     modal_solutions: int = of("modal solutions that were needed")
 
-    @derived("effective number of parameters learnt", note=": the sum of the learnt shares", form=".1f")
+    @derived("effective number of parameters that the lines teach", note=": the sum of the learnt shares", form=".1f")
     def learnt_parameters(self) -> float:
         """Sum of the learnt shares."""
         return float(sum(row.learnt for row in self.parameters))
@@ -70,9 +70,9 @@ class UpdateResult(ModelResult, kind="update"):
         return self._rms([row.held_out_hz for row in self.lines])
 
     @derived("what the update is worth", "", "sentence", note=", in sentences")
-    def verdict(self) -> tuple[str, ...]:
+    def findings(self) -> tuple[str, ...]:
         """What was proven on held-out lines, whether the model can fit at all, and what stays unknown."""
-        return tuple(_verdict(self))
+        return tuple(_findings(self))
 
     def updated_model(self) -> Model:
         """The model with the most probable numbers."""
@@ -85,7 +85,7 @@ class UpdateResult(ModelResult, kind="update"):
         return float(np.sqrt(np.mean(errors**2))) if len(errors) else float("nan")
 
 
-def _verdict(result: UpdateResult) -> list[str]:
+def _findings(result: UpdateResult) -> list[str]:
     said = []
     before = 100.0 * result.error_before
     held_out = 100.0 * result.error_held_out

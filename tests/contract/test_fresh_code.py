@@ -112,8 +112,8 @@ def test_a_change_of_an_inlined_function_reaches_the_compiled_loop(copy: Path) -
     change(
         copy,
         "solvers/time/kernel_contact.py",
-        "                F[i] = trial[i]",
-        "                F[i] = 2.0 * trial[i]",
+        "                F[i] = answer.F[i]",
+        "                F[i] = 2.0 * answer.F[i]",
     )
     assert answer(copy, INTEGRATE) != pytest.approx(before, rel=1e-3)
 

@@ -33,7 +33,7 @@ def update_table(result: UpdateResult) -> RenderableType:
         alike = ("-" if value is None else f"{value:.3f}" for value in (line.mac_before, line.mac_after))
         modes.add_row(f"{f:.2f}", str(line.mode_number), *errors, *(alike if shapes else ()))
     what = "measured values" if shapes else "matched lines"
-    said = [learnt_words(result.parameters, result.measured_values, what), *result.verdict]
+    said = [learnt_words(result.parameters, result.measured_values, what), *result.findings]
     unmatched = ", ".join(f"{line.frequency_hz:.1f}" for line in result.unmatched)
     said += [f"Without a mode: {unmatched} Hz."] if unmatched else []
     said += [f"Warning: {warning}." for warning in result.warnings]

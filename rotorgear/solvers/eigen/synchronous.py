@@ -4,9 +4,9 @@ Between two speeds a and b the matrices are affine, D = D_0 + W D_1 and K = K_0 
 
     [ K_0 + s (p D_0 - i K_1) + s^2 (p^2 M - i p D_1) ] x = 0 ,       W = Im s
 
-which for D_0 = K_1 = 0 is K x = W^2 (p^2 M - i p G) x, a Hermitian but indefinite pair. A stiffness W^2 K_2, of gear bodies that
-turn, stands beside p^2 M as -K_2. It is inverted at s = i (a + b)/2, so
-that all speeds between a and b lie in the disc around it. With damping Re s is not zero, and the root of Im lambda(W) = p W is
+which for D_0 = K_1 = 0 is K x = W^2 (p^2 M - i p G) x, a Hermitian but indefinite pair. A stiffness W^2 K_2, of elastic bodies
+that turn, stands beside p^2 M as -K_2. The pencil is inverted at s = i (a + b)/2, so that all speeds between a and b lie in the
+disc around it. With damping Re s is not zero, and the root of Im lambda(W) = p W is
 found from it by a secant, each trial an eigenpair of the pencil at a real W.
 """
 

@@ -82,7 +82,7 @@ class Receptances:
 
 
 _SINGULAR = (
-    "a harmonic of the mesh frequency meets an undamped resonance to the last digit: move the range, or give damping"
+    "a harmonic of the excitation meets an undamped resonance to the last digit: move the range, or give damping"
 )
 
 

@@ -58,15 +58,15 @@ def test_lines_and_shapes_without_noise_give_back_every_number_that_is_learnt(mo
     assert result.error_held_out < result.error_before
 
 
-def test_the_verdict_names_a_model_that_no_numbers_of_it_can_save(model):
+def test_the_findings_name_a_model_that_no_numbers_of_it_can_save(model):
     rig = measured(model, np.zeros(5), 1e-3, shapes=False)
     wrong = model.with_("shafts.rotor_1.sections[1].outer_diameter", "330 mm")
     result = rg.update(wrong, rig, free="meshes.*.stiffness", prior="10 %", tolerance=0.2)
     assert result.misfit_probability < 1e-6
-    assert any("the model is wrong in more than these numbers" in sentence for sentence in result.verdict)
+    assert any("the model is wrong in more than these numbers" in sentence for sentence in result.findings)
     right = rg.update(model, rig, free=FREE)
     assert right.misfit_probability > 1e-3
-    assert any("nothing speaks against" in sentence for sentence in right.verdict)
+    assert any("nothing speaks against" in sentence for sentence in right.findings)
 
 
 def test_the_table_says_what_is_not_identified(model):
