@@ -150,14 +150,27 @@ def fine_enough(task: Task, integrator: Integrator, grid: Grid, accuracy: float,
         errors.append(error)
         # What the finer of the two was found to be good for.
         if error <= accuracy:
-            # Second order: the coarser one is four times worse.
-            return replace(grid, every=finer.every if 4.0 * error > accuracy else probe.every)
+            return replace(
+                grid,
+                every=probe.every
+                if len(errors) == 1 and _is_enough(task, integrator, probe, last, accuracy, progress)
+                else finer.every,
+            )
         if len(errors) > _FRUITLESS and min(errors[-_FRUITLESS:]) > _FALLS * errors[-1 - _FRUITLESS] < np.inf:
             # Steps four times finer give other statistics, no better ones: the motion is chaotic, or the time too short for it.
             return grid
         probe = finer
         last = now
     return replace(grid, every=probe.every)
+
+
+def _is_enough(
+    task: Task, integrator: Integrator, grid: Grid, found: Statistics | None, accuracy: float, progress: Progress
+) -> bool:
+    """Whether the statistics of a run agree with those of twice its step, as its own error will be stated."""
+    double = replace(grid, every=grid.every // 2) if grid.every > 1 else skipping(grid)
+    coarser = _probed(task, integrator, double, progress)
+    return found is not None and coarser is not None and compared(found, coarser)[1] <= accuracy
 
 
 def _probed(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> Statistics | None:

@@ -200,6 +200,7 @@ def answer_to(laws, compliance, work, F, h):
     d_free = work.d_free
     answer = work.answer
     m = F.size
+    floor = 0.0
     for i in range(m):
         x = d_free[i]
         for j in range(m):
@@ -213,7 +214,7 @@ def answer_to(laws, compliance, work, F, h):
         force_conserving(laws, work.state, d, v, work.ended)
         if not all_straight(laws, work):
             force_conserving(laws, work.state, work.middle, work.rest, work.still)
-            whole_step(laws, work, h)
+            floor = whole_step(laws, work, h)
     else:
         for i in range(m):
             y = work.v_free[i]
@@ -223,7 +224,6 @@ def answer_to(laws, compliance, work, F, h):
         force_all(laws, work.state, d, v, answer)
     size = 0.0
     worst = 0.0
-    floor = 0.0
     for i in range(m):
         work.step[i] = answer.F[i] - F[i]
         if not np.isfinite(work.step[i]):

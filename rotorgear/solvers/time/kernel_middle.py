@@ -12,6 +12,8 @@ Eng. 40 (1997) 863.
 
 from __future__ import annotations
 
+import numpy as np
+
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_gather import DISSIPATED, ENERGIES, POWER_IN, SIDE, STORED
 
@@ -39,9 +41,10 @@ def whole_step(laws, work, h):
     """Turn the answer half way into that of the whole step, for laws whose stored energy is their potential.
 
     `still` are the answers half way at rest, `begun` and `ended` those at both ends of the step in the same state; the side that
-    touches is that of the end.
+    touches is that of the end. Returns how far the rounding of the energies moves the forces.
     """
     answer = work.answer
+    uncertain = 0.0
     energy = answer.energy
     rest = work.still.energy
     begun = work.begun.energy
@@ -66,8 +69,12 @@ def whole_step(laws, work, h):
         for which in (POWER_IN, DISSIPATED):
             size += abs(energy[e + which]) + abs(rest[e + which])
         size += (abs(ended[e + STORED]) + abs(begun[e + STORED])) / h
-        if square == 0.0 or abs(lacks) <= _ROUNDING * size:
+        lost = _ROUNDING * size
+        if square == 0.0 or abs(lacks) <= lost:
             continue
+        # What rounding may have made of nothing is taken off, so that the force is continuous where the correction sets in.
+        lacks -= lost if lacks > 0.0 else -lost
+        uncertain = max(uncertain, lost / np.sqrt(square))
         for i in range(a, b):
             answer.F[i] += lacks * work.v[i] / square
         if b - a == 1:
@@ -77,3 +84,4 @@ def whole_step(laws, work, h):
             steeper = (work.ended.F[a] - answer.F[a]) / change
             steepest = max(answer.Kd[block], work.ended.Kd[block], work.begun.Kd[block])
             answer.Kd[block] = max(min(2.0 * steeper, steepest), 0.0)
+    return uncertain
