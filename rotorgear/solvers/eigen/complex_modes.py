@@ -110,7 +110,8 @@ def _real_basis(M: sp.csc_array, K: sp.csc_array, B: np.ndarray, modes: int | No
     strain = np.einsum("ij,ij->j", V, stiff @ V)
     noise = np.einsum("ij,ij->j", np.abs(V), np.abs(stiff) @ np.abs(V))
     rigid = np.abs(strain) <= 1e3 * _EPS * noise
-    rigid[noise == 0.0] = True
+    # Dofs that nothing holds carry squares of rounding of the others, which is all of their noise as well.
+    rigid |= np.abs(strain) <= (1e3 * _EPS) ** 2 * np.abs(strain).max(initial=0.0)
     lam = 1.0 / mu - sigma
     if np.any(np.abs(lam[rigid]) > sigma):
         raise ConvergenceError("stiffnesses too far apart for dense modes; use the newmark method")

@@ -165,6 +165,8 @@ class ExponentialStepper:
 
     def start(self, state: State) -> None:
         """Take displacements and velocities over into modal coordinates."""
+        if state.step == 0:
+            state.sums[:] = 0.0  # energies of whole steps have no half step before the first
         modes = self.modes
         system = self._system
         if "yr" in state.inner and state.inner["yr"].size == modes.s.size:

@@ -102,10 +102,10 @@ class LocalSystem:
 class State:
     """Where a run stands after `step` steps: displacements, velocities, accelerations (n,), local forces (m,) and sums.
 
-    `before` are the forces a step earlier; `d` (m,) the local displacements; `sums` (l, 2): energy put in and dissipated by each
-    law; `events` (l, 4): steps on the front side, without contact, on the back side, and contact losses; `gathered`: statistics
-    of local forces and displacements, watched displacements and channels at all steps so far; `inner`: what else an integrator
-    carries on.
+    `before` are the forces a step earlier; `d` (m,) the local displacements; `sums` (l, 2): energy put in and dissipated by
+    each law, with half a step before the first for those that follow the trapezoidal rule; `events` (l, 4): steps on the front
+    side, without contact, on the back side, and contact losses; `gathered`: statistics of local forces and displacements,
+    watched displacements and channels at all steps so far; `inner`: what else an integrator carries on.
     """
 
     step: int

@@ -128,7 +128,9 @@ class NewmarkStepper:
         self._tolerance = tolerance
 
     def start(self, state: State) -> None:
-        """Any consistent state will do."""
+        """Any consistent state will do; energies of whole steps have no half step before the first."""
+        if self._method.keeps_energy and state.step == 0:
+            state.sums[:] = 0.0
 
     def advance(self, state: State, steps: int, every: int) -> Records:
         """Advance a state in place by some steps and record every `every`-th."""
