@@ -14,7 +14,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from rotorgear.analysis.sweep.certify import Judge, judged
+from rotorgear.analysis.sweep.certify import Judge, bounded, judged
 from rotorgear.analysis.sweep.point import Point, table_of
 from rotorgear.solvers.lanes.lanes import Orbit, Plan, Start, run_block
 from rotorgear.solvers.lanes.small_system import steps_stable
@@ -88,41 +88,52 @@ def run_jobs(
     judge: Judge,
     go_on: Callable[[], bool] | None = None,
 ) -> list[Orbit]:
-    """Run the jobs of one block; those whose response type does not stand settle longer, in rounds of twice the length each."""
+    """Run the jobs of one block; those whose response type does not stand settle longer, in rounds of twice the length each.
+
+    One that leaves all bounds on that way stays what it was after the periods that were asked for.
+    """
     orbits = _run(points, starts, plan, go_on)
     if not plan.tangents:
         return orbits
     chosen = list(range(len(orbits)))
+    orbits = _with_doubts(points, orbits, chosen, plan, go_on)
+    asked = tuple(orbits)
     settled = plan.settle
-    for number in range(judge.rounds + 1):
-        _doubts(points, orbits, chosen, plan, go_on)
-        chosen = [i for i in chosen if orbits[i].finite and not judged(orbits[i], points[i], plan.steps, judge)[1]]
-        if not chosen or number == judge.rounds:
+    for number in range(judge.rounds):
+        chosen = [
+            i
+            for i in chosen
+            if bounded(orbits[i], points[i]) and not judged(orbits[i], points[i], plan.steps, judge)[1]
+        ]
+        if not chosen:
             break
         longer = replace(plan, settle=max(plan.settle, plan.count) * 2**number)
         settled += longer.settle + plan.count
         again = _run([points[i] for i in chosen], [orbits[i].end for i in chosen], longer, go_on)
         for i, orbit in zip(chosen, again, strict=True):
-            orbits[i] = replace(orbit, settled=settled)
+            orbits[i] = replace(orbit, settled=settled) if bounded(orbit, points[i]) else asked[i]
+        chosen = [i for i, orbit in zip(chosen, again, strict=True) if bounded(orbit, points[i])]
+        orbits = _with_doubts(points, orbits, chosen, plan, go_on)
     return orbits
 
 
-def _doubts(
+def _with_doubts(
     points: Sequence[Point],
-    orbits: list[Orbit],
+    orbits: Sequence[Orbit],
     chosen: Sequence[int],
     plan: Plan,
     go_on: Callable[[], bool] | None,
-) -> None:
-    """Tell the step error of exponents where sides part: tangents see the instant of that to a step only, with first order.
+) -> list[Orbit]:
+    """The orbits with the step error of exponents where sides part: tangents see the instant of that to a step only.
 
     The same periods follow from where a run ended, in half as many steps, or twice as many where those would be unstable.
     """
     from rotorgear.solvers.lanes.kernel_parts import LOSSES
 
+    found = list(orbits)
     parting = [i for i in chosen if orbits[i].finite and np.any(orbits[i].sums[:, LOSSES] > 0.0)]
     if not parting:
-        return
+        return found
     half = plan.steps // 2
     least = max(steps_stable(points[i].system) for i in parting)
     steps = half if half >= max(least, _LEAST_HALF) else 2 * plan.steps
@@ -130,7 +141,8 @@ def _doubts(
     again = _run([points[i] for i in parting], [orbits[i].end for i in parting], other, go_on)
     for i, orbit in zip(parting, again, strict=True):
         change = np.abs(orbit.growth.mean(axis=0) - orbits[i].growth.mean(axis=0)) / points[i].system.turns
-        orbits[i] = replace(orbits[i], doubt=change)
+        found[i] = replace(orbits[i], doubt=change)
+    return found
 
 
 def _run(points: Sequence[Point], starts: Sequence[Start], plan: Plan, go_on: Callable[[], bool] | None) -> list[Orbit]:

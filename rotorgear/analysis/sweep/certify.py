@@ -1,8 +1,9 @@
 """Whether a run of a sweep may stand: its response type and its exponents agree, and nothing still changes.
 
-    kT              the largest exponent is below zero by more than its error, or zero within it and the section repeats to 1e-4,
-                    unless the step hides its sign; for k > 1 the range of the section stays what it is from its first half to
-                    its second, so that it is no shorter period to which a spiral still comes down
+    kT              the largest exponent is below zero by more than its error; or the section repeats to 1e-4 and the exponent is
+                    not above zero, by more than its error where the step can't hide its sign; for k > 1 the range of the section
+                    stays what it is from its first half to its second, so that it is no shorter period to which a spiral still
+                    comes down
     quasi-periodic  the largest exponent is zero within its error, and one standard error away from chaos
     chaotic         it is above that bound by a standard error
 
@@ -26,6 +27,8 @@ _ZERO = 2e-4
 _CHANGE = 0.02
 # Share of the tolerance within which a section repeats that is not on its way to anything else.
 _REPEATS = 5e-3
+# Sizes of a motion beyond which it counts as one without bounds.
+_FAR = 1e4
 
 
 @dataclass(frozen=True)
@@ -52,9 +55,12 @@ def judged(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[Motion
     motion = classify(x, extent, largest, error, judge.tolerance, judge.chaos)
     bound = max(2.0 * error, _ZERO)
     if motion.period:
-        # Where flanks part, an unstable orbit may repeat for thousands of periods, and the step hides the sign of its exponent.
-        exact = orbit.doubt[0] <= _ZERO and period_of(x, extent, _REPEATS * judge.tolerance) == motion.period
-        stable = largest < -bound or (largest <= bound and exact)
+        # On an orbit that repeats, growth differs between batches only because tangents turn: that says little on its mean. What
+        # repeats need not prove its sign then. But where flanks part, an unstable orbit may repeat for thousands of periods, and
+        # the step hides the sign: an exponent above zero proves nothing there.
+        exact = period_of(x, extent, _REPEATS * judge.tolerance) == motion.period
+        most = bound if orbit.doubt[0] <= _ZERO else 0.0
+        stable = largest < -bound or (exact and largest <= most)
         return motion, stable and (motion.period == 1 or _stays(x))
     if motion.kind == QUASI_PERIODIC:
         return motion, abs(largest) <= bound and abs(largest) + error <= judge.chaos
@@ -66,3 +72,15 @@ def _stays(x: np.ndarray) -> bool:
     half = len(x) // 2
     first, second = np.ptp(x[:half], axis=0), np.ptp(x[half:], axis=0)
     return bool(np.all(np.abs(first - second) <= _CHANGE * np.maximum(first, second)))
+
+
+def bounded(orbit: Orbit, point: Point) -> bool:
+    """Whether a run stays within the sizes that its motions can have."""
+    return orbit.finite and not np.any(np.abs(orbit.section[:, point.system.columns.counted, 0]) > _FAR * _size(point))
+
+
+def _size(point: Point) -> float:
+    """Displacement in m that motions are measured by: static deflection, backlash, and the smallest that counts."""
+    columns = point.system.columns
+    backlash = columns.clearance[columns.counted & np.isfinite(columns.clearance)]
+    return float(max(np.abs(point.static_force / point.stiffness).max(), backlash.max(initial=0.0), 1e-6))

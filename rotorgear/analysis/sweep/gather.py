@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.sweep.axes import Axis
-from rotorgear.analysis.sweep.certify import judged
+from rotorgear.analysis.sweep.certify import bounded, judged
 from rotorgear.analysis.sweep.classify import FAILED, NOT_SETTLED, exponents
 from rotorgear.analysis.sweep.indicators import indicators
 from rotorgear.analysis.sweep.notes import notes
@@ -32,9 +32,6 @@ _TABLES = (
     "back",
     "losses",
 )
-
-# Sizes of a motion beyond which it counts as one without bounds.
-_FAR = 1e4
 
 
 def gathered(
@@ -68,7 +65,7 @@ def gathered(
         if point.contact != contact:
             failed[i] = "its contacts are not those of the other points"
             continue
-        if not orbit.finite or np.any(np.abs(orbit.section[:, point.system.columns.counted, 0]) > _FAR * _size(point)):
+        if not bounded(orbit, point):
             failed[i] = failed[i] or (
                 f"the run '{request.runs[run]}' left all bounds: the motion is unstable; give more damping, or a backlash that "
                 "bounds it"
@@ -121,13 +118,6 @@ def gathered(
         reduction=reduction,
         **tables,
     )
-
-
-def _size(point: Point) -> float:
-    """Displacement in m that motions are measured by: static deflection, backlash, and the smallest that counts."""
-    columns = point.system.columns
-    backlash = columns.clearance[columns.counted & np.isfinite(columns.clearance)]
-    return float(max(np.abs(point.static_force / point.stiffness).max(), backlash.max(initial=0.0), 1e-6))
 
 
 def _reduction(reduction: Reduction | None, request: Request) -> tuple[str, ...]:

@@ -64,7 +64,7 @@ def notes(
     sentences += [
         f"{axis.address} has no effect on this model: all its points are the same" for axis in idle(axes, points)
     ]
-    return (*sentences, *_slow(motion, settle, orbits, len(motion) // max(1, len(points))))
+    return (*sentences, *_slow(motion, orbits, len(motion) // max(1, len(points))))
 
 
 def coarse_shafts(model: Model, elements: int | None) -> tuple[str, ...]:
@@ -119,15 +119,15 @@ def _digest(point: Point) -> bytes:
     return hashlib.blake2b(b"".join([*(np.ascontiguousarray(part).tobytes() for part in parts), point.shape])).digest()
 
 
-def _slow(motion: Sequence[str], settle: int, orbits: dict[tuple[int, int], Orbit], runs: int) -> tuple[str, ...]:
+def _slow(motion: Sequence[str], orbits: dict[tuple[int, int], Orbit], runs: int) -> tuple[str, ...]:
     """A warning where the transient has not decayed when sampling begins, which may be why a response repeats after several T."""
     several = {
         key: o for key, o in orbits.items() if period_in(motion[key[0] * runs + key[1]]) > 1 and o.growth.shape[1]
     }
-    slow = sum(float(o.growth[:, 0].mean()) * settle > -_FORGOTTEN for o in several.values())
+    slow = sum(float(o.growth[:, 0].mean()) * o.settled > -_FORGOTTEN for o in several.values())
     if not slow:
         return ()
     return (
-        f"{slow} of {len(several)} runs with 2T or longer have a transient that outlasts the {settle} periods discarded: "
+        f"{slow} of {len(several)} runs with 2T or longer have a transient that outlasts the periods that they settled: "
         "their period may change with more --discard",
     )

@@ -16,11 +16,11 @@ JUDGE = Judge(tolerance=0.02, chaos=0.02)
 POINT: Any = SimpleNamespace(system=SimpleNamespace(turns=1, columns=SimpleNamespace(counted=np.array([True]))))
 
 
-def run(x: np.ndarray, exponent: float, doubt: float = 0.0) -> Any:
-    """A run with a section x in um of a motion 10 um from peak to peak, and an exponent that scatters by 1e-4."""
+def run(x: np.ndarray, exponent: float, doubt: float = 0.0, scatter: float = 1e-4) -> Any:
+    """A run with a section x in um of a motion 10 um from peak to peak, and an exponent that scatters."""
     section = np.zeros((len(x), 1, 2))
     section[:, 0, 0] = 1e-6 * x
-    growth = exponent + 1e-4 * np.random.default_rng(0).standard_normal((len(x), 1))
+    growth = exponent + scatter * np.random.default_rng(0).standard_normal((len(x), 1))
     sums = np.zeros((1, 14))
     sums[0, 7] = sums[0, 5] = 10e-6
     orbit = Orbit(section, growth, sums, np.zeros((2, 2)), None, True, np.array([doubt]), 300)  # type: ignore[arg-type]
@@ -36,6 +36,10 @@ def test_a_period_stands_with_a_negative_exponent_and_falls_with_a_positive_one(
     assert run(still, 0.0) == ("1T", True)
     assert run(still, 0.012, doubt=0.02) == ("1T", False)
     assert run(still + 1e-4 * np.arange(200), 0.0) == ("1T", False)
+    # What repeats stands where tangents that turn, or the step, hide how fast it comes back.
+    assert run(still, -0.05, scatter=0.5) == ("1T", True)
+    assert run(still, -0.01, doubt=0.02) == ("1T", True)
+    assert run(still + 1e-4 * np.arange(200), -0.01, doubt=0.02) == ("1T", False)
 
 
 def test_a_spiral_that_still_comes_down_is_no_long_period() -> None:

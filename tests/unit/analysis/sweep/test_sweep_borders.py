@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ import pytest
 import rotorgear as rg
 from rotorgear.analysis.sweep.axes import axis_of, number_places
 from rotorgear.analysis.sweep.classify import period_of
+from rotorgear.analysis.sweep.notes import notes
 from rotorgear.errors import AnalysisError, RotorgearError
 from tests.paths import MODELS
 
@@ -57,15 +60,27 @@ def test_damping_that_sets_in_within_a_step_needs_no_more_steps(damping: str, rp
     assert few.lyapunov == pytest.approx(many.lyapunov, abs=0.02)
 
 
-def test_runs_that_still_remember_their_start_are_warned_about() -> None:
-    marine = rg.load(PAIR.with_name("marine_dual_turbine.toml"))  # decays by 5e-4 a period
+def test_runs_that_still_remember_their_start_settle_longer() -> None:
+    marine = rg.load(PAIR.with_name("marine_dual_turbine.toml"))  # decays by 5e-4 a mesh period
     over = {"loads.lp.torque": "15.1 kN m,15.4 kN m"}
-    early = rg.sweep(marine, over, discard=400, steps=40)
+    early, settled = (rg.sweep(marine, over, discard=400, steps=40, exponents=n) for n in (0, 1))
     assert early.motion != ("2T", "2T")
-    assert any("have a transient that outlasts" in note for note in early.warnings)
-    late = rg.sweep(marine, over, discard=20000, steps=40)
-    assert late.motion == ("2T", "2T")
-    assert not any("have a transient that outlasts" in note for note in late.warnings)
+    assert settled.motion == ("2T", "2T")
+    assert any("2 of 2 runs settled for up to" in note for note in settled.warnings)
+
+
+def test_runs_whose_transient_outlasts_the_settling_are_warned_about() -> None:
+    def orbit(exponent: float, settled: int) -> Any:
+        return SimpleNamespace(growth=np.full((40, 1), exponent), settled=settled)
+
+    def warned(kind: str, exponent: float, settled: int) -> bool:
+        sentences = notes([], [None], [""], [kind], 300, {(0, 0): orbit(exponent, settled)})
+        return any("1 of 1 runs with 2T or longer have a transient that outlasts" in text for text in sentences)
+
+    # exp(-2) and exp(-4) of the initial deviation are left.
+    assert warned("2T", -0.005, 400)
+    assert not warned("2T", -0.005, 800)
+    assert not warned("1T", -0.005, 400)
 
 
 def test_scatter_is_no_period() -> None:
