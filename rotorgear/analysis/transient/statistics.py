@@ -64,4 +64,7 @@ def compared(fine: Statistics, coarse: Statistics, factor: float = HALF_THE_STEP
     errors = np.abs(fine.value - coarse.value) / factor
     known = ~(fine.scale <= 0.0)
     relative = errors[known] / fine.scale[known]
+    # The error of one statistic may pass through zero between two steps; that half of all are as good says nothing of it.
+    typical = float(np.median(relative)) if relative.size and np.all(np.isfinite(relative)) else 0.0
+    errors = np.maximum(errors, typical * np.where(known & np.isfinite(fine.scale), fine.scale, 0.0))
     return errors, float(relative.max(initial=0.0)) if np.all(np.isfinite(relative)) else float("inf")

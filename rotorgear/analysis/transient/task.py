@@ -150,12 +150,10 @@ def fine_enough(task: Task, integrator: Integrator, grid: Grid, accuracy: float,
         errors.append(error)
         # What the finer of the two was found to be good for.
         if error <= accuracy:
-            return replace(
-                grid,
-                every=probe.every
-                if len(errors) == 1 and _is_enough(task, integrator, probe, last, accuracy, progress)
-                else finer.every,
-            )
+            # The coarser one is four times worse, and no better than its own comparison with twice its step, which is stated.
+            first = len(errors) == 1 and 4.0 * error <= accuracy
+            enough = first and _is_enough(task, integrator, probe, last, accuracy, progress)
+            return replace(grid, every=probe.every if enough else finer.every)
         if len(errors) > _FRUITLESS and min(errors[-_FRUITLESS:]) > _FALLS * errors[-1 - _FRUITLESS] < np.inf:
             # Steps four times finer give other statistics, no better ones: the motion is chaotic, or the time too short for it.
             return grid
