@@ -31,7 +31,8 @@ def orbits_table(result: OrbitsResult) -> RenderableType:
     notes = [
         "",
         "|mu|: largest Floquet multiplier; p-p: approach of the flanks, peak to peak, F max, loss: of the worst contact",
-        f"{result.dofs} dofs; {result.method}; {1e3 * result.cpu_per_point:.3g} ms a point; {result.seconds['total']:.2f} s",
+        f"{result.dofs} dofs; {result.method}",
+        f"{result.cpu_per_point:.3g} s a point, {result.seconds['total']:.2f} s in all",
     ]
     if result.error_estimate == result.error_estimate:
         notes.append(f"error estimate {result.error_estimate:.1e} of the motions' coefficients")
