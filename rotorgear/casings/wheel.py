@@ -88,7 +88,8 @@ class ReducedWheel:
         c, s = np.cos(angle), np.sin(angle)
         axes = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         at, slope = axes @ local
-        shift, turn = self.rim_motion[:3], self.rim_motion[3:]
+        shift = self.rim_motion[:3]
+        turn = self.rim_motion[3:]
         at = at - shift - np.cross(turn, self.rim_radius * axes[:, 0], axisa=0).T
         slope = slope - np.array([turn[1], -turn[0], np.zeros(self.size)])
         foot = self.rim_motion.copy()

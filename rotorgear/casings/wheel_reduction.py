@@ -293,8 +293,10 @@ def _rim_waves(fe: FiniteElementBody, fields: np.ndarray, diameters: np.ndarray)
         cosine[:, :, k] = A.real
         if n:
             # The pair is Re and Im of A exp(i n θ).
-            cosine[:, :, k], cosine[:, :, k + 1] = A.real, A.imag
-            sine[:, :, k], sine[:, :, k + 1] = -A.imag, A.real
+            cosine[:, :, k] = A.real
+            cosine[:, :, k + 1] = A.imag
+            sine[:, :, k] = -A.imag
+            sine[:, :, k + 1] = A.real
         k += 2 if n else 1
     return cosine, sine
 

@@ -363,8 +363,10 @@ class JournalFilm(ForceLaw):
     def pressure(self, d: Any, v: Any = (0.0, 0.0), *, speed: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Angles (t,) in rad, places z (j,) in m from the middle, and the pressure (t, j) in Pa over half the length."""
         p = self.settled(d).parameters()
-        around, along = int(p[AROUND]), int(p[ALONG])
-        angles, found = [], []
+        around = int(p[AROUND])
+        along = int(p[ALONG])
+        angles = []
+        found = []
         for pad in range(self.lobes):
             start, extent, least = p[FIRST + 3 * pad : FIRST + 3 * pad + 3]
             field = np.zeros((around - 1, along))

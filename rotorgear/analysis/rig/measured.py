@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,8 +56,3 @@ class Measured:
         squares = np.nansum(self.shapes**2, axis=1)
         phase = np.exp(-0.5j * np.angle(squares))
         return np.real(self.shapes * phase[:, None])
-
-
-def measured(rig: Measured | Sequence[RigLine]) -> Measured:
-    """Lines alone, or with their shapes."""
-    return rig if isinstance(rig, Measured) else Measured(tuple(rig))

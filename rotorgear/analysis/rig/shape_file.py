@@ -23,7 +23,9 @@ _COLUMNS = ("point", "node", "direction")
 _DIRECTIONS = {"x": 0, "y": 1, "z": 2, "rx": 3, "ry": 4, "rz": 5}
 # Dataset 55: mode shapes, real or complex, and those of a damped system by its eigenvalue.
 _SHAPES = 55
-_NORMAL, _COMPLEX_FIRST_ORDER, _COMPLEX = 2, 3, 7
+_NORMAL = 2
+_COMPLEX_FIRST_ORDER = 3
+_COMPLEX = 7
 
 
 def read_rig_shapes(path: str | Path, points: str | Path) -> Measured:

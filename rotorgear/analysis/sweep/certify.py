@@ -70,7 +70,8 @@ def judged(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[Motion
 def _stays(x: np.ndarray) -> bool:
     """Whether a section (p, c) covers the same range in its second half as in its first."""
     half = len(x) // 2
-    first, second = np.ptp(x[:half], axis=0), np.ptp(x[half:], axis=0)
+    first = np.ptp(x[:half], axis=0)
+    second = np.ptp(x[half:], axis=0)
     return bool(np.all(np.abs(first - second) <= _CHANGE * np.maximum(first, second)))
 
 
