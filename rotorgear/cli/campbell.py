@@ -18,6 +18,7 @@ from rotorgear.cli.common import (
     console,
     parse_speed,
     progress_bar,
+    vtk_folder,
     words_of,
     write_json,
 )
@@ -64,7 +65,12 @@ def campbell(
     save: SaveOption = None,
     vtk: Annotated[
         Path | None,
-        typer.Option("--vtk", help="Write a branch over speed for ParaView to this folder.", show_default=False),
+        typer.Option(
+            "--vtk",
+            help="Write a branch over speed for ParaView to this folder.",
+            show_default=False,
+            callback=vtk_folder,
+        ),
     ] = None,
     branch: Annotated[int, typer.Option("--branch", min=1, help="The branch that --vtk writes.")] = 1,
 ) -> None:

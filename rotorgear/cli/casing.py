@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli.common import JsonOption, ModelFile, console, progress_bar, write_json
+from rotorgear.cli.common import JsonOption, ModelFile, console, progress_bar, vtk_folder, write_json
 
 
 def casing(
@@ -24,7 +24,12 @@ def casing(
     ] = None,
     vtk: Annotated[
         Path | None,
-        typer.Option("--vtk", help="Write the surface and its modes for ParaView to this folder.", show_default=False),
+        typer.Option(
+            "--vtk",
+            help="Write the surface and its modes for ParaView to this folder.",
+            show_default=False,
+            callback=vtk_folder,
+        ),
     ] = None,
     json: JsonOption = None,
 ) -> None:

@@ -17,6 +17,8 @@ from typer.core import TyperGroup
 from rotorgear.cli.old_options import with_current_options
 
 HELP = {
+    "new": "Write a model file with comments, as a copy of one that comes with rotorgear, to change freely.",
+    "models": "List the models that come with rotorgear, to look at and to start from.",
     "modal": "Natural frequencies and mode shapes; undamped at standstill, or damped and gyroscopic at a --speed.",
     "campbell": "Campbell diagram: modes over speed, excitation lines, crossings, margins, whirl and stability.",
     "critical": "Critical speeds, damped or undamped, of every shaft and mesh order; with --map over support stiffness.",

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rotorgear.errors import AnalysisError
+from rotorgear.extras import require
 from rotorgear.progress import Progress, listening, silent
 
 if TYPE_CHECKING:
@@ -27,11 +28,33 @@ SaveOption = Annotated[Path | None, typer.Option("--save", help="Save the result
 
 
 def picture_name(path: Path | None) -> Path | None:
-    """A name that no picture can be written to is refused before anything is computed."""
+    """A name that no picture can be written to, and matplotlib missing, are refused before anything is computed."""
     if path is not None:
         from rotorgear.plots.figure import require_picture_name
 
         require_picture_name(path)
+        require("matplotlib", "A plot")
+    return path
+
+
+def plot_folder(path: Path | None) -> Path | None:
+    """A folder of plots: matplotlib missing is said before anything is computed."""
+    if path is not None:
+        require("matplotlib", "A plot")
+    return path
+
+
+def render_folder(path: Path | None) -> Path | None:
+    """A folder of rendered pictures: pyvista missing is said before anything is computed."""
+    if path is not None:
+        require("pyvista", "A picture of a mode")
+    return path
+
+
+def vtk_folder(path: Path | None) -> Path | None:
+    """A folder for ParaView: pyvista missing is said before anything is computed."""
+    if path is not None:
+        require("pyvista", "VTK output")
     return path
 
 
@@ -69,7 +92,10 @@ ModalDampingOption = Annotated[
     float, typer.Option("--modal-damping", help="Damping ratio added to every elastic mode, such as 0.01.")
 ]
 DeflectionOption = Annotated[
-    Path | None, typer.Option("--vtk", help="Write deflection shapes for ParaView to this folder.", show_default=False)
+    Path | None,
+    typer.Option(
+        "--vtk", help="Write deflection shapes for ParaView to this folder.", show_default=False, callback=vtk_folder
+    ),
 ]
 ToleranceOption = Annotated[
     float, typer.Option("--tolerance", help="Largest relative difference of a match with the rig.")

@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rotorgear.cli.common import JsonOption, ModelFile, console, picture_name, progress_bar, words_of, write_json
+from rotorgear.cli.common import (
+    JsonOption,
+    ModelFile,
+    console,
+    picture_name,
+    progress_bar,
+    vtk_folder,
+    words_of,
+    write_json,
+)
 from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
@@ -136,6 +145,7 @@ def mesh(
             "--vtk",
             help="Write both tooth meshes with deflection, stress and pressure into this folder.",
             show_default=False,
+            callback=vtk_folder,
         ),
     ] = None,
     at: Annotated[float, typer.Option("--at", help="Position in mesh periods that --vtk writes.")] = 0.0,

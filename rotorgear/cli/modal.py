@@ -19,6 +19,8 @@ from rotorgear.cli.common import (
     console,
     parse_speed,
     progress_bar,
+    render_folder,
+    vtk_folder,
     words_of,
     write_json,
 )
@@ -57,10 +59,16 @@ def modal(
     json: JsonOption = None,
     save: SaveOption = None,
     vtk: Annotated[
-        Path | None, typer.Option("--vtk", help="Write mode shapes for ParaView to this folder.", show_default=False)
+        Path | None,
+        typer.Option(
+            "--vtk", help="Write mode shapes for ParaView to this folder.", show_default=False, callback=vtk_folder
+        ),
     ] = None,
     plot: Annotated[
-        Path | None, typer.Option("--plot", help="Render PNGs of the modes to this folder.", show_default=False)
+        Path | None,
+        typer.Option(
+            "--plot", help="Render PNGs of the modes to this folder.", show_default=False, callback=render_folder
+        ),
     ] = None,
     shapes: Annotated[
         str | None,

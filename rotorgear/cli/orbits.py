@@ -8,6 +8,7 @@ import typer
 
 from rotorgear.cli.common import JsonOption, ModelFile, PlotOption, SaveOption, console, progress_bar, write_json
 from rotorgear.errors import AnalysisError
+from rotorgear.extras import require
 
 
 def orbits(
@@ -58,6 +59,7 @@ def orbits(
     plot: PlotOption = None,
 ) -> None:
     """Periodic motions over a parameter: stable and unstable branches, Floquet multipliers, folds and period doublings."""
+    require("numba", "A branch of periodic motions")
     import rotorgear as rg
 
     ranges: dict[str, str] = {}

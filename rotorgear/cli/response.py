@@ -18,6 +18,7 @@ from rotorgear.cli.common import (
     SaveOption,
     console,
     parse_speed,
+    picture_name,
     progress_bar,
     write_json,
 )
@@ -52,7 +53,12 @@ def response(
     plot: PlotOption = None,
     waterfall: Annotated[
         Path | None,
-        typer.Option("--waterfall", help="Draw spectra over speed to this PNG, SVG or PDF.", show_default=False),
+        typer.Option(
+            "--waterfall",
+            help="Draw spectra over speed to this PNG, SVG or PDF.",
+            show_default=False,
+            callback=picture_name,
+        ),
     ] = None,
     at: Annotated[
         str | None,

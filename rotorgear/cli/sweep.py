@@ -8,8 +8,9 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli.common import JsonOption, ModelFile, console, progress_bar, write_json
+from rotorgear.cli.common import JsonOption, ModelFile, console, plot_folder, progress_bar, write_json
 from rotorgear.errors import AnalysisError, RotorgearError
+from rotorgear.extras import require
 
 # Points that --plot draws portraits and spectra of.
 _PORTRAITS = 9
@@ -87,10 +88,14 @@ def sweep(
         bool, typer.Option("--resume", help="Go on with an interrupted sweep of the same --save.")
     ] = False,
     plot: Annotated[
-        Path | None, typer.Option("--plot", help="Draw pictures of the result to this folder.", show_default=False)
+        Path | None,
+        typer.Option(
+            "--plot", help="Draw pictures of the result to this folder.", show_default=False, callback=plot_folder
+        ),
     ] = None,
 ) -> None:
     """Bifurcation diagram, Lyapunov exponents and response types of a model over its parameters."""
+    require("numba", "A sweep")
     import rotorgear as rg
     from rotorgear.analysis.sweep.axes import axis_of_option
 

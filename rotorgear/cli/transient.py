@@ -7,8 +7,18 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli.common import JsonOption, ModelFile, console, parse_speed, progress_bar, write_json
+from rotorgear.cli.common import (
+    JsonOption,
+    ModelFile,
+    console,
+    parse_speed,
+    plot_folder,
+    progress_bar,
+    vtk_folder,
+    write_json,
+)
 from rotorgear.errors import AnalysisError
+from rotorgear.extras import require
 
 
 def transient(
@@ -88,16 +98,25 @@ def transient(
     resume: Annotated[bool, typer.Option("--resume", help="Go on with an interrupted run of the same --save.")] = False,
     vtk: Annotated[
         Path | None,
-        typer.Option("--vtk", help="Write the motion at the end to this folder, for ParaView.", show_default=False),
+        typer.Option(
+            "--vtk",
+            help="Write the motion at the end to this folder, for ParaView.",
+            show_default=False,
+            callback=vtk_folder,
+        ),
     ] = None,
     frames: Annotated[int, typer.Option("--frames", min=2, help="Instants that --vtk writes.")] = 120,
     plot: Annotated[
-        Path | None, typer.Option("--plot", help="Draw pictures of the result to this folder.", show_default=False)
+        Path | None,
+        typer.Option(
+            "--plot", help="Draw pictures of the result to this folder.", show_default=False, callback=plot_folder
+        ),
     ] = None,
 ) -> None:
     """Time response from the static equilibrium: contact forces, transmission error, bearings, spectra."""
     import rotorgear as rg
 
+    require("numba", "A transient")
     if rig and not spectrum:
         raise AnalysisError("--rig needs --spectrum: the history whose lines are compared")
     if resume and save is None:

@@ -18,6 +18,7 @@ from rotorgear.cli.common import (
     progress_bar,
     write_json,
 )
+from rotorgear.extras import require
 
 
 def update(
@@ -54,6 +55,8 @@ def update(
     """Update numbers of a model by a rig: most probable values, what the lines teach, and held-out proof."""
     import rotorgear as rg
 
+    if output is not None:
+        require("tomlkit", "Writing a changed model file")
     loaded = rg.load(model)
     with progress_bar("update") as progress:
         result = rg.update(

@@ -23,8 +23,8 @@ def validate(
     root = Path.cwd()
     if not (root / "validation" / "runner.py").is_file():
         raise AnalysisError(
-            "the validation cases are not part of the installed package: run this in a checkout of the repository, "
-            "in the folder that holds validation/"
+            "the validation cases are not part of the installed package: they lie in the folder validation/ of the repository "
+            "and of the source archive (pip download rotorgear --no-deps --no-binary rotorgear); run this in the folder above it"
         )
     if str(root) not in sys.path:
         sys.path.insert(0, str(root))

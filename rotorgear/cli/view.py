@@ -15,6 +15,7 @@ from rotorgear.cli.common import (
     parse_speed,
     progress_bar,
 )
+from rotorgear.extras import require
 
 
 def view(
@@ -27,6 +28,8 @@ def view(
 ) -> None:
     """Open a window that shows the gearbox and animates its modes."""
     import rotorgear as rg
+
+    require("pyvista", "A window")
 
     if is_saved(source):
         result = rg.read(source)

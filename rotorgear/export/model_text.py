@@ -6,7 +6,8 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from rotorgear.errors import AnalysisError, MissingExtraError
+from rotorgear.errors import AnalysisError
+from rotorgear.extras import require
 
 _NUMBER = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 # Digits that a written number keeps; more would pretend.
@@ -27,10 +28,9 @@ def scaled_text(text: str, factors: Mapping[str, float], remarks: Mapping[str, s
         AnalysisError: an address that the file does not spell out, or a value that is no number.
         MissingExtraError: tomlkit is not installed.
     """
-    try:
-        import tomlkit
-    except ImportError:
-        raise MissingExtraError("Writing a changed model file", "tomlkit", "rig") from None
+    require("tomlkit", "Writing a changed model file")
+    import tomlkit
+
     document = tomlkit.parse(text)
     for address, factor in factors.items():
         *owners, last = re.sub(r"\[(\d+)\]", r".\1", address).split(".")

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.errors import MissingExtraError
 from rotorgear.export.solids import Solids
+from rotorgear.extras import require
 
 
 def import_pyvista(purpose: str) -> ModuleType:
@@ -19,10 +19,9 @@ def import_pyvista(purpose: str) -> ModuleType:
     Raises:
         MissingExtraError: it is not installed; `purpose` says what it was needed for.
     """
-    try:
-        import pyvista
-    except ImportError:
-        raise MissingExtraError(purpose, "pyvista", "vtk") from None
+    require("pyvista", purpose)
+    import pyvista
+
     return pyvista
 
 

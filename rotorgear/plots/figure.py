@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from rotorgear.errors import AnalysisError, MissingExtraError
+from rotorgear.errors import AnalysisError
 from rotorgear.export.files import filling, publish, replacing
+from rotorgear.extras import require
 
 FORMATS = (".png", ".svg", ".pdf")
 
@@ -20,10 +21,9 @@ def new_figure(size: tuple[float, float], title: str = "") -> Any:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtraError("A plot", "matplotlib", "plots") from None
+    require("matplotlib", "A plot")
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=size, layout="constrained")
     if title:
         figure.suptitle(title, fontsize=11)

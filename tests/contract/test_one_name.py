@@ -34,7 +34,7 @@ VERBS = {"mesh": ("mesh", "mesh_map", "optimise_flanks", "root_stress")}
 # Names that Python has no use for: `cluster` is an address in a command and an open pool (`executor`) in Python.
 OTHERWISE = {("sweep", "cluster")}
 # `--from` and `--to` are start and stop: `from` is a word of the language.
-OPTION_OF = {"start": "from", "stop": "to", "stiffness_map": "map", "shaft": "map-shaft"}
+OPTION_OF = {"start": "from", "stop": "to", "stiffness_map": "map", "shaft": "map-shaft", "source": "from"}
 
 
 def verb_of(command: str) -> inspect.Signature:

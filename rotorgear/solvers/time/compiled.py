@@ -22,7 +22,7 @@ try:
     import numba
     from numba.core.errors import NumbaExperimentalFeatureWarning
 except ImportError:
-    raise MissingExtraError("The transient analysis", "numba", "transient") from None
+    raise MissingExtraError("Integration in time", "numba", "transient") from None
 
 warnings.filterwarnings("ignore", category=NumbaExperimentalFeatureWarning)
 # Places in the package whose functions are compiled, or compiled into others.

@@ -1,0 +1,72 @@
+"""The models that come with the package: where they lie, their titles, and the files that belong to them."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rotorgear.errors import AnalysisError
+from rotorgear.quantity import nearest
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+
+
+@dataclass(frozen=True)
+class ShippedModel:
+    """A model that comes with the package.
+
+    Attributes:
+        name: by which `rotorgear new --from` takes it.
+        title: what it is.
+        path: its file.
+        companions: files that it names (meshes, measured flanks), and the lines of its rig; they lie beside it.
+    """
+
+    name: str
+    title: str
+    path: Path
+    companions: tuple[Path, ...]
+
+
+def models() -> tuple[ShippedModel, ...]:
+    """Return the models that come with the package, by name: examples to look at and to start from."""
+    return tuple(_described(path) for path in sorted(_folder().glob("*.toml")))
+
+
+def shipped_model(name: str) -> ShippedModel:
+    """Return one of `models()`.
+
+    Raises:
+        AnalysisError: none has this name.
+    """
+    known = {model.name: model for model in models()}
+    if name not in known:
+        guess = nearest(name, list(known))
+        hint = f"did you mean '{guess}'? " if guess else ""
+        raise AnalysisError(f"no model '{name}' comes with rotorgear: {hint}`rotorgear models` lists them")
+    return known[name]
+
+
+def _folder() -> Path:
+    """Folder of the models: the wheel carries a copy inside the package, a clone has them at its top."""
+    inside = _PACKAGE / "models"
+    return inside if inside.is_dir() else _PACKAGE.parent / "models"
+
+
+def _described(path: Path) -> ShippedModel:
+    data = tomllib.loads(path.read_text(encoding="utf-8"))
+    named = {path.with_name(value) for value in _texts(data) if value.endswith((".msh", ".csv", ".npz"))}
+    beside = sorted(file for file in {*named, path.with_name(f"{path.stem}_rig.csv")} if file.is_file())
+    return ShippedModel(path.stem, str(data.get("title", "")), path, tuple(beside))
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """All texts in the tables of a file, at any depth."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict | list):
+        for entry in value.values() if isinstance(value, dict) else value:
+            yield from _texts(entry)
