@@ -69,6 +69,11 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
         (("critical", ""), ("critical_map", "map.")),
     ),
     (
+        "standards",
+        "`rotorgear standards MODEL --json standards.json`. [Rules of standards](standards.md) says what is compared.",
+        (("standards", ""),),
+    ),
+    (
         "static",
         "`rotorgear static MODEL --json static.json`. Lists over the contacts of a mesh have two entries for a herringbone gear\n"
         "with two nodes, first the helix at the smaller z. Vectors are x, y, z.",

@@ -42,6 +42,7 @@ from rotorgear.analysis.campbell.critical_map import critical_map as critical_ma
 from rotorgear.analysis.static.static import static as static
 from rotorgear.analysis.response.response import response as response
 from rotorgear.analysis.response.frequency_response import frf as frf
+from rotorgear.analysis.standards.standards import standards as standards
 from rotorgear.analysis.transient.transient import transient as transient
 from rotorgear.analysis.sweep.sweep import sweep as sweep
 from rotorgear.analysis.sweep.cluster import cluster as cluster
@@ -99,6 +100,7 @@ from rotorgear.results.critical import CriticalMap as CriticalMap
 from rotorgear.results.static import StaticResult as StaticResult
 from rotorgear.results.response import ResponseResult as ResponseResult
 from rotorgear.results.frequency_response import FrequencyResponse as FrequencyResponse
+from rotorgear.results.standards import StandardsResult as StandardsResult
 from rotorgear.results.transient import TransientResult as TransientResult
 from rotorgear.results.sweep import SweepResult as SweepResult
 from rotorgear.results.sweep_convergence import SweepConvergenceStudy as SweepConvergenceStudy

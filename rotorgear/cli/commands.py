@@ -27,6 +27,7 @@ HELP = {
     "static": "Deflections, bearing and mesh forces, load sharing of branches and helices, assembly condition of loops.",
     "response": "Run-up: response to unbalances, transmission errors and stiffness variation, by order and speed.",
     "frf": "Frequency responses between points or parts: unit force in, displacement, velocity or acceleration out.",
+    "standards": "Amplification, separation margins, vibration, stability, torsion and balance against rules of standards.",
     "transient": "Time response from the static equilibrium: contact forces, transmission error, bearings, spectra.",
     "sweep": "Bifurcation diagram, Lyapunov exponents and response types of a model over its parameters.",
     "orbits": "Periodic motions over a parameter: stable and unstable branches, Floquet multipliers, folds and period doublings.",

@@ -52,6 +52,7 @@ ROOMS = {
         "teeth": {"common"},
         "rig": {"common", "modal", "static"},
         "casing": set(),
+        "standards": {"campbell", "common", "modal", "response", "static"},
         "": {"campbell", "modal", "orbits", "response", "static", "sweep", "teeth", "transient"},
     },
     "gears": {

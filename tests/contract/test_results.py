@@ -58,6 +58,7 @@ def example(kind: str) -> Result:
         "modal": lambda: rg.modal(rotor, speed="1000 rpm", modes=4, elements=1),
         "campbell": lambda: rg.campbell(rotor, points=3, elements=1),
         "critical": lambda: rg.critical(rotor, stop="3000 rpm", elements=1),
+        "standards": lambda: rg.standards(rotor),
         "critical_map": lambda: rg.critical_map(rotor, stop="3000 rpm", elements=1),
         "frf": lambda: rg.frf(
             rotor, np.linspace(1.0, 50.0, 8), inputs=[f"disks.{disk}:y"], outputs=[f"disks.{disk}:y"], elements=1

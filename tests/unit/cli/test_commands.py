@@ -39,6 +39,6 @@ def test_help_imports_no_command_and_lists_all(monkeypatch: pytest.MonkeyPatch) 
 def test_a_slip_in_a_command_is_answered_with_its_name_and_an_unknown_one_with_a_refusal() -> None:
     slip = CliRunner().invoke(app, ["modla"])
     assert slip.exit_code == 2
-    assert "Did you mean 'modal'?" in slip.output
+    assert "Did you mean 'modal', 'models'?" in slip.output
     with pytest.raises(KeyError):
         get_command(app).commands["modla"]  # type: ignore[attr-defined]

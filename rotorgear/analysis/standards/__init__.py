@@ -1,0 +1,1 @@
+"""Rules of rotor standards, applied to what the analyses say."""

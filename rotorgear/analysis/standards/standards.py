@@ -1,0 +1,327 @@
+"""Rules of rotor standards, applied to a model at its operating speed: the verb behind `rotorgear standards`.
+
+A verdict speaks of one rule as it is written in `rules.py`, with its value and limit; whether a machine meets a standard is no
+matter of six numbers, and is never said.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from rotorgear.analysis.campbell.critical import critical
+from rotorgear.analysis.common.describe_model import check
+from rotorgear.analysis.common.excitation import excitation_orders
+from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.request import speed_in_si
+from rotorgear.analysis.modal.modal import modal
+from rotorgear.analysis.response.plant import Plant
+from rotorgear.analysis.standards import rules
+from rotorgear.analysis.standards.unbalance import UnbalanceResponse, antinodes, plant_up_to
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.model.parts.supports import Bearing
+from rotorgear.progress import Progress, silent
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.critical import CriticalResult
+from rotorgear.results.modal import ModalResult
+from rotorgear.results.standards import (
+    NOT_APPLICABLE,
+    NOT_WITHIN,
+    WITHIN,
+    ResponseCritical,
+    RuleCheck,
+    StandardsResult,
+)
+
+# Critical speeds are looked for up to this multiple of the operating speed: beyond every margin that a rule asks for.
+HIGHEST = 1.5
+_CURVE = 81
+# A mode is one of torsion where so much of its kinetic energy is; damping ratios below that are none.
+_MOSTLY = 0.5
+_UNDAMPED = 1e-9
+# Whirl of a shaft, -1 to 1, up to which a mode is a backward one; a rotor without gyroscopic moments whirls in no sense.
+_BACKWARD = -0.5
+_MODES = 24
+
+
+@recorded
+def standards(
+    model: Model,
+    *,
+    stop: float | str | None = None,
+    grade: float = 2.5,
+    progress: Progress = silent,
+) -> StandardsResult:
+    """Return amplification factors, separation margins, vibration, stability, torsional interference and balance against rules.
+
+    The unbalance response of each shaft is computed with twice 6350 W/N g mm at the antinodes of each mode that its speed meets;
+    its peaks and half-power speeds are found by roots. Each rule is named with its standard and year, and says within, not within
+    or not applicable.
+
+    Args:
+        model: a model with an operating speed.
+        stop: highest speed of the input shaft at which peaks are looked for, rad/s or with its unit; None: 1.5 times the
+            operating speed.
+        grade: balance quality grade G of ISO 21940-11 in mm/s.
+        progress: callable that is told fraction and step.
+
+    Returns:
+        The rules with values, limits and verdicts.
+
+    Raises:
+        AnalysisError: no operating speed, or a grade that is not positive.
+    """
+    speed = model.operation.speed if model.operation else None
+    if not speed:
+        raise AnalysisError("rules of standards need the speed of [operation]")
+    if not (math.isfinite(grade) and grade > 0.0):
+        raise AnalysisError(f"grade: expected a balance quality grade above 0 mm/s, got {grade:g}")
+    top = abs(speed_in_si(stop) or HIGHEST * speed)
+    direction = 1 if speed > 0.0 else -1
+    operating = abs(speed)
+    progress(0.05, "critical speeds")
+    found = critical(model, stop=direction * top)
+    fastest = max(abs(model.layout.train.ratio(name)) for name in model.shafts) * top
+    plant, notes = plant_up_to(model, direction, top, fastest)
+    progress(0.4, "unbalance response")
+    lateral = _Lateral(model, plant, found, direction, operating, top)
+    progress(0.7, "stability and torsion")
+    running = modal(model, speed=speed, modes=_MODES)
+    lines = excitation_orders(model, (1.0, 2.0), (1,))
+    highest = max((line.frequency_hz(operating) for line in lines), default=0.0)
+    still = modal(model, fmax=(1.0 + 2.0 * rules.LEAST_TORSIONAL_MARGIN) * highest)
+    progress(1.0, "done")
+    return StandardsResult(
+        model=model,
+        dofs=plant.system.n,
+        operating_rpm=operating * RPM_PER_RAD_S,
+        balance_grade=grade,
+        rules=rules.RULES,
+        criticals=tuple(lateral.criticals),
+        checks=(
+            *lateral.checks,
+            *_stability(model, running),
+            *_interference(lines, operating, still),
+            *_balance(model, grade, operating),
+        ),
+        curve_speeds=lateral.curve_speeds,
+        curves=lateral.curves,
+        left_out=(
+            *dict.fromkeys([*found.left_out, *notes]),
+            "coupled rotors as one: each shaft has its own unbalance, mass and antinodes",
+            "a range of operating speeds: margins are those from the one operating speed",
+        ),
+        warnings=found.warnings,
+        method="direct sparse LU at every speed; peaks by Brent's method, half-power speeds by roots",
+    )
+
+
+def _verdict(kept: bool) -> str:
+    return WITHIN if kept else NOT_WITHIN
+
+
+class _Lateral:
+    """The unbalance response of each shaft: its peaks, and what the rules say about them."""
+
+    def __init__(
+        self, model: Model, plant: Plant, found: CriticalResult, direction: int, operating: float, top: float
+    ) -> None:
+        self.plant = plant
+        self.model = model
+        self.operating = operating
+        self.criticals: list[ResponseCritical] = []
+        self.checks: list[RuleCheck] = []
+        self.curves: dict[str, np.ndarray] = {}
+        self._responses: dict[str, list[tuple[UnbalanceResponse, float]]] = {}
+        self.curve_speeds = np.linspace(0.02, 1.0, _CURVE) * top
+        parts = {line.name: line.parts for line in found.lines}
+        for shaft in model.shafts:
+            ratio = abs(model.layout.train.ratio(shaft))
+            if ratio == 0.0:
+                continue
+            mine = [k for k, item in enumerate(found.speeds) if shaft in parts[item.line] and item.whirl]
+            before = len(self.criticals)
+            for k in mine:
+                self._peak(shaft, found, k, direction)
+            self._vibration(shaft, self._responses.get(shaft, []))
+            if len(self.criticals) == before:
+                why = "no critical speed of bending" if not mine else "no peak of its unbalance response"
+                note = f"{why} up to {ratio * top * RPM_PER_RAD_S:.6g} rpm of the shaft"
+                for rule in (rules.SEPARATION, rules.VIBRATION):
+                    self.checks.append(
+                        RuleCheck(rule.name, f"shafts.{shaft}", "-", "", None, None, NOT_APPLICABLE, note)
+                    )
+
+    def _peak(self, shaft: str, found: CriticalResult, k: int, direction: int) -> None:
+        """The peak of the response to unbalance in the shape of one critical speed; none where it makes no peak of its own."""
+        item = found.speeds[k]
+        where = antinodes(self.plant.system, shaft, found.nodes, found.shapes[:, :, k])
+        if not where.nodes.size or where.mass.sum() <= 0.0:
+            return
+        rpm = abs(self.plant.system.train.ratio(shaft)) * self.operating * RPM_PER_RAD_S
+        response = UnbalanceResponse(self.plant, shaft, direction, where, rpm)
+        near = abs(item.speed)
+        undamped = item.damping_ratio < _UNDAMPED
+        # Of an undamped resonance the place of the largest response is told beside it.
+        sizes = response.orbits(near * (1.0 + 1e-3 if undamped else 1.0), response.nodes)
+        probe = int(response.nodes[int(np.argmax(sizes))])
+        if undamped:
+            speed = near
+            below = above = math.nan
+            factor = math.inf
+        else:
+            peak = rules.response_peak(lambda s: float(response.orbits(s, [probe])[0]), near, item.damping_ratio)
+            known = [one.speed for one in self.criticals if one.shaft == shaft]
+            if peak is None or any(abs(peak.speed / speed - 1.0) < 1e-3 for speed in known):
+                return
+            speed = peak.speed
+            below = response.rpm(peak.below)
+            above = response.rpm(peak.above)
+            factor = peak.amplification_factor
+        margin = 100.0 * abs(speed - self.operating) / self.operating
+        required = None if math.isnan(factor) else rules.separation_margin(factor, speed < self.operating)
+        self.criticals.append(
+            ResponseCritical(
+                shaft=shaft,
+                description=item.description,
+                whirl=item.whirl,
+                place_z=self.plant.system.nodes.z[probe],
+                unbalance_kg_m=float(response.unbalance.sum()),
+                antinodes_z=tuple(float(z) for z in where.z),
+                speed=speed,
+                shaft_rpm=response.rpm(speed),
+                below_rpm=below,
+                above_rpm=above,
+                amplification_factor=factor,
+                required_percent=required,
+                margin_percent=margin,
+                error_estimate=item.error_estimate,
+            )
+        )
+        self._margin(shaft, response.rpm(speed), factor, required, margin)
+        self._responses.setdefault(shaft, []).append((response, speed))
+        if shaft not in self.curves:
+            self.curves[shaft] = np.array([response.orbits(s, [probe])[0] for s in self.curve_speeds])
+
+    def _margin(self, shaft: str, rpm: float, factor: float, required: float | None, margin: float) -> None:
+        part = f"shafts.{shaft}, {rpm:.5g} rpm"
+        if math.isnan(factor):
+            note = "the response does not fall to 0.707 of this peak on either side"
+        elif required is None:
+            note = f"AF {factor:.4g} is below {rules.LEAST_AMPLIFICATION}: no margin is asked for"
+        else:
+            note = "undamped: AF without bound" if math.isinf(factor) else f"AF {factor:.5g}"
+        verdict = NOT_APPLICABLE if required is None else _verdict(margin >= required)
+        self.checks.append(RuleCheck(rules.SEPARATION.name, part, "separation", "%", margin, required, verdict, note))
+
+    def _vibration(self, shaft: str, responses: list[tuple[UnbalanceResponse, float]]) -> None:
+        """The largest orbit of each bearing at the operating speed over the unbalances of all peaks, against both limits."""
+        system = self.plant.system
+        bearings = {name: part for name, part in self.model.bearings.items() if part.shaft == shaft}
+        if not bearings or not responses:
+            return
+        nodes = [system.nodes.at(*system.layout.place(f"bearings.{name}")) for name in bearings]
+        moved = np.array([response.orbits(self.operating, nodes) for response, _ in responses])
+        rpm = responses[0][0].rpm(self.operating)
+        for k, (name, bearing) in enumerate(bearings.items()):
+            response, peak = responses[int(np.argmax(moved[:, k]))]
+            size = 1e6 * float(moved[:, k].max())
+            note = (
+                f"at {rpm:.6g} rpm, {1e6 * response.unbalance.sum():.4g} g mm in the shape of the peak at "
+                f"{response.rpm(peak):.5g} rpm"
+            )
+            limits = [(rules.VIBRATION.name, "peak to peak", 1e6 * rules.vibration_limit(rpm))]
+            if (play := _diametral_clearance(bearing)) is not None:
+                limits.append((rules.CLEARANCE.name, "major axis", 1e6 * rules.CLEARANCE_SHARE * play))
+            self.checks += [
+                RuleCheck(rule, f"bearings.{name}", what, "um", size, limit, _verdict(size <= limit), note)
+                for rule, what, limit in limits
+            ]
+
+
+def _diametral_clearance(bearing: Bearing) -> float | None:
+    """Whole play of a bearing along a diameter in m; None where the model knows none."""
+    if bearing.journal is not None:
+        return 2.0 * bearing.journal.clearance
+    if bearing.rolling is not None and bearing.rolling.clearance > 0.0:
+        return bearing.rolling.clearance
+    return None
+
+
+def _stability(model: Model, running: ModalResult) -> Iterator[RuleCheck]:
+    """The logarithmic decrement of each shaft's first bending mode that does not whirl backward, and of all that grow."""
+    name = rules.STABILITY.name
+    zeta = running.damping_ratio
+    decrement = 2.0 * np.pi * zeta / np.sqrt(np.maximum(1.0 - zeta**2, 1e-300))
+    moving = ~running.rigid & (np.abs(running.eigenvalues.imag) > 0.0)
+    if not np.any(np.abs(zeta[moving]) > _UNDAMPED):
+        note = "nothing damps the model"
+        yield RuleCheck(
+            name, "all modes", "logarithmic decrement", "", None, rules.LEAST_DECREMENT, NOT_APPLICABLE, note
+        )
+        return
+    lateral = {
+        shaft: np.linalg.norm(np.abs(running.shapes[running.nodes.on_shaft(shaft), :2]), axis=1).max(axis=0)
+        for shaft in model.shafts
+    }
+    shown = set()
+    for shaft in model.shafts:
+        largest = np.all([lateral[shaft] >= other for other in lateral.values()], axis=0)
+        whirl = running.whirl_by_shaft.get(shaft, np.zeros(len(running)))
+        forward = np.flatnonzero(moving & largest & (whirl > _BACKWARD))
+        if not forward.size:
+            note = f"no forward or planar bending of this shaft among the lowest {len(running)} modes"
+            yield RuleCheck(name, f"shafts.{shaft}", "-", "", None, None, NOT_APPLICABLE, note)
+            continue
+        shown.add(int(forward[0]))
+        yield _decrement(f"shafts.{shaft}", running, int(forward[0]), float(decrement[forward[0]]))
+    for mode in np.flatnonzero(moving & (zeta < -_UNDAMPED)):
+        if int(mode) not in shown:
+            yield _decrement(f"mode {mode + 1}", running, int(mode), float(decrement[mode]))
+
+
+def _decrement(part: str, running: ModalResult, mode: int, value: float) -> RuleCheck:
+    note = f"mode {mode + 1} at {running.frequency_hz[mode]:.4f} Hz: {running.description[mode]}"
+    verdict = _verdict(value >= rules.LEAST_DECREMENT)
+    return RuleCheck(
+        rules.STABILITY.name, part, "logarithmic decrement", "", value, rules.LEAST_DECREMENT, verdict, note
+    )
+
+
+def _interference(lines: tuple[ExcitationOrder, ...], operating: float, still: ModalResult) -> Iterator[RuleCheck]:
+    """The torsional mode next to each line at the operating speed; undamped modes at standstill, as the rule asks."""
+    torsion = np.flatnonzero((still.kinetic_by_motion["torsion"] >= _MOSTLY) & ~still.rigid)
+    limit = 100.0 * rules.LEAST_TORSIONAL_MARGIN
+    for line in lines:
+        hz = line.frequency_hz(operating)
+        if not torsion.size:
+            note = f"no torsional mode up to {1.2 * hz:.5g} Hz"
+            yield RuleCheck(rules.INTERFERENCE.name, line.name, "-", "%", None, limit, NOT_APPLICABLE, note)
+            continue
+        away = np.abs(still.frequency_hz[torsion] / hz - 1.0)
+        nearest = int(torsion[int(np.argmin(away))])
+        note = f"line at {hz:.5g} Hz, mode {nearest + 1} at {still.frequency_hz[nearest]:.5g} Hz: {still.description[nearest]}"
+        margin = 100.0 * float(away.min())
+        yield RuleCheck(
+            rules.INTERFERENCE.name, line.name, "separation", "%", margin, limit, _verdict(margin >= limit), note
+        )
+
+
+def _balance(model: Model, grade: float, operating: float) -> Iterator[RuleCheck]:
+    """The sum of the unbalances of each shaft against what the grade permits for its mass and speed."""
+    for row in check(model).shafts:
+        rpm = abs(row.speed_ratio) * operating * RPM_PER_RAD_S
+        if rpm == 0.0:
+            continue
+        limit = 1e6 * rules.residual_unbalance(grade, row.shaft_mass_kg + row.body_mass_kg, rpm)
+        mine = [item.magnitude for item in model.unbalances.values() if item.shaft == row.name]
+        value = 1e6 * sum(mine) if mine else None
+        note = f"G {grade:g}, {row.shaft_mass_kg + row.body_mass_kg:.4g} kg at {rpm:.6g} rpm" + (
+            "" if mine else "; the model gives this shaft no unbalance"
+        )
+        verdict = NOT_APPLICABLE if value is None else _verdict(value <= limit)
+        yield RuleCheck(rules.RESIDUAL.name, f"shafts.{row.name}", "unbalance", "g mm", value, limit, verdict, note)

@@ -1,0 +1,120 @@
+"""Response of one rotor of a train to unbalance at the antinodes of a shape, at any speed.
+
+Each speed is factored and solved anew, so that a peak can be followed to any accuracy. The orbit of a node is the ellipse of
+Re((X, Y) e^{iwt}); its major semi-axis is (|X + iY| + |X - iY|)/2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.plant import Plant
+from rotorgear.analysis.standards.rules import trial_unbalance
+from rotorgear.analysis.static.mean_state import mean_state
+from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.model.model import Model
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.modal import NodeTable
+from rotorgear.system.contacts import contact_lines
+from rotorgear.system.loads import weight_loads
+from rotorgear.system.system import System
+
+# Where the shape is smaller than this share of its largest deflection there is no antinode.
+_SEEN = 0.1
+_TANGENTS = 9
+
+
+@dataclass(frozen=True)
+class Antinodes:
+    """Places of a shape's largest deflections on a shaft: numbers of nodes, z in m, side of the axis, and masses in kg.
+
+    Each takes the mass of the rotor that is nearer to it than to the others.
+    """
+
+    nodes: np.ndarray
+    z: np.ndarray
+    side: np.ndarray
+    mass: np.ndarray
+
+
+def plant_up_to(model: Model, direction: int, top: float, frequency: float) -> tuple[Plant, tuple[str, ...]]:
+    """The model about its mean state as a plant, meshed for a frequency, and sentences on what was left out.
+
+    Args:
+        model: the model. direction: sense of the input shaft.
+        top: highest speed of the input shaft in rad/s, positive; frequency: highest in rad/s.
+    """
+    speed = direction * top
+    linear, notes = about_equilibrium(model, [float(x) for x in np.linspace(0.1, 1.0, _TANGENTS) * speed])
+    first = mean_state(System(model, load=model.mean_load(direction).of_kind("static")), speed)
+    plan = plan_up_to(at_speed(linear, speed), MARGIN * frequency / (2.0 * np.pi), None, None)
+    system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
+    zeta = model.damping.modal_ratio
+    damping = (*damped_modes(system, DAMPED * frequency, speed), zeta) if zeta else None
+    return Plant(system, contact_lines(system), damping), (*first.notes, *notes)
+
+
+def antinodes(system: System, shaft: str, nodes: NodeTable, shape: np.ndarray) -> Antinodes:
+    """Antinodes of a shape's deflection on a shaft.
+
+    Args:
+        system: whose nodes carry the unbalance; shaft: name.
+        nodes: of the shape; shape: displacements of all of them, (p, 6) complex.
+    """
+    there = nodes.on_shaft(shaft)
+    moved = shape[there, :2]
+    size = np.linalg.norm(np.abs(moved), axis=1)
+    padded = np.concatenate([[-1.0], size, [-1.0]])
+    inner = np.flatnonzero((size >= padded[:-2]) & (size > padded[2:]) & (size >= _SEEN * size.max(initial=0.0)))
+    z = nodes.position[there[inner], 2]
+    # Deflections lie on one side or the other of the axis: the sign of the projection on the largest one.
+    largest = moved[int(np.argmax(size))]
+    side = np.where(np.real(moved[inner] @ largest.conj()) >= 0.0, 1.0, -1.0)
+    at = np.array([system.nodes.at(shaft, place) for place in z], dtype=int)
+    kept = np.unique(at, return_index=True)[1]
+    weights = weight_loads(system, (1.0, 0.0, 0.0))
+    own = system.nodes.on_shaft(shaft)
+    places = np.array([system.nodes.z[node] for node in own])
+    nearest = np.argmin(np.abs(places[:, None] - z[kept]), axis=1) if kept.size else np.zeros(0, int)
+    mass = np.array([weights[6 * own[nearest == k]].sum() for k in range(len(kept))])
+    return Antinodes(at[kept], z[kept], side[kept], mass)
+
+
+class UnbalanceResponse:
+    """Response of a plant to the unbalance of one shaft.
+
+    Args:
+        plant: of the model; shaft: name of the rotor; direction: sense of the input shaft.
+        where: antinodes that carry it; rpm: speed of the shaft that the unbalance is for.
+    """
+
+    def __init__(self, plant: Plant, shaft: str, direction: int, where: Antinodes, rpm: float) -> None:
+        system = plant.system
+        self.plant = plant
+        self.ratio = abs(system.train.ratio(shaft))
+        self.unbalance = np.array([trial_unbalance(mass, rpm) for mass in where.mass])
+        self.nodes = system.nodes.on_shaft(shaft)
+        sense = direction * system.train.sense(shaft)
+        load = np.zeros(system.dofs.transform.shape[0], complex)
+        load[6 * where.nodes] = self.unbalance * where.side
+        load[6 * where.nodes + 1] = -1j * sense * self.unbalance * where.side
+        self._load = system.dofs.transform.T @ load
+        self._direction = direction
+        self._rows = system.dofs.transform.tocsr()
+
+    def orbits(self, speed: float, nodes: Sequence[int] | np.ndarray) -> np.ndarray:
+        """Major axis of the orbit of nodes in m, peak to peak, at a speed of the input shaft in rad/s, positive."""
+        w = self.ratio * speed
+        q = self.plant.dynamics(self._direction * speed).solve(w, (w**2 * self._load)[:, None])
+        numbers = np.asarray(nodes)
+        x = (self._rows[6 * numbers, :] @ q)[:, 0]
+        y = (self._rows[6 * numbers + 1, :] @ q)[:, 0]
+        return np.asarray(np.abs(x + 1j * y) + np.abs(x - 1j * y))
+
+    def rpm(self, speed: float) -> float:
+        """Speed of the shaft in rpm at one of the input shaft in rad/s."""
+        return self.ratio * speed * RPM_PER_RAD_S

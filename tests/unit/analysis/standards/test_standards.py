@@ -1,0 +1,155 @@
+"""Rules of standards against closed forms: the Jeffcott rotor's half-power points, orbits, torsion, balance."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import rotorgear as rg
+from rotorgear.analysis.standards import rules
+from rotorgear.results.standards import StandardsResult
+from tests.paths import ROOT
+
+MASS = 10.0
+STIFFNESS = 1e5
+NATURAL = math.sqrt(STIFFNESS / MASS)
+
+
+def jeffcott(zeta: float, speed: float, more: str = "") -> rg.Model:
+    """A point mass on a spring and damper; the shaft has no length."""
+    return rg.loads(f"""
+[operation]
+input_shaft = "rotor"
+speed = {speed * NATURAL}
+[shafts.rotor]
+[disks.disk]
+shaft = "rotor"
+at = "start"
+mass = {MASS}
+polar_inertia = 0.01
+diametral_inertia = 0.01
+[bearings.spring]
+shaft = "rotor"
+at = "start"
+stiffness = {{ radial = {STIFFNESS} }}
+damping = {{ radial = {2.0 * zeta * MASS * NATURAL} }}
+[supports.hold]
+shaft = "rotor"
+at = "start"
+fixed = ["tilt_x", "tilt_y", "z"]
+{more}""")
+
+
+def whirled(r: float, zeta: float) -> float:
+    """Radius of the orbit over the eccentricity."""
+    return r * r / math.hypot(1.0 - r * r, 2.0 * zeta * r)
+
+
+def margin_of(result: StandardsResult) -> tuple[float | None, float | None, str]:
+    check = next(check for check in result.checks if check.rule == "separation margin")
+    return check.value, check.limit, check.verdict
+
+
+@pytest.mark.parametrize("zeta", [0.01, 0.15])
+@pytest.mark.parametrize(("speed", "more"), [(1.4, 0.0), (0.8, 10.0)])
+def test_factor_and_margin_are_those_of_the_closed_form(zeta: float, speed: float, more: float) -> None:
+    result = rg.standards(jeffcott(zeta, speed))
+    (peak,) = result.criticals
+    top = 1.0 / math.sqrt(1.0 - 2.0 * zeta**2)
+    level = whirled(top, zeta) / math.sqrt(2.0)
+    below = brentq(lambda r: whirled(r, zeta) - level, 0.1, top)
+    above = brentq(lambda r: whirled(r, zeta) - level, top, 5.0)
+    rpm = NATURAL * 30.0 / math.pi
+    assert [peak.shaft_rpm, peak.below_rpm, peak.above_rpm] == pytest.approx(
+        [top * rpm, below * rpm, above * rpm], rel=1e-5
+    )
+    factor = top / (above - below)
+    assert peak.amplification_factor == pytest.approx(factor, rel=1e-4)
+    asked = 17.0 * (1.0 - 1.0 / (factor - 1.5)) + more
+    separation = 100.0 * abs(speed - top) / speed
+    value, limit, verdict = margin_of(result)
+    assert (value, limit) == pytest.approx((separation, asked), rel=1e-4)
+    assert verdict == ("within" if separation >= asked else "not within")
+
+
+def test_the_printed_factors_of_a_twentieth_of_critical_damping() -> None:
+    (peak,) = rg.standards(jeffcott(0.05, 1.4)).criticals
+    ratios = np.array([peak.shaft_rpm, peak.below_rpm, peak.above_rpm]) / (NATURAL * 30.0 / math.pi)
+    assert ratios.round(5).tolist() == [1.00251, 0.95569, 1.05696]
+    assert round(peak.amplification_factor, 4) == 9.8996
+    assert [round(rules.separation_margin(peak.amplification_factor, side), 2) for side in (True, False)] == [
+        14.98,
+        24.98,
+    ]
+
+
+def test_a_well_damped_peak_asks_for_no_margin_and_an_undamped_one_for_the_largest() -> None:
+    assert margin_of(rg.standards(jeffcott(0.25, 1.3)))[1:] == (None, "not applicable")
+    value, limit, verdict = margin_of(rg.standards(jeffcott(0.0, 0.9)))
+    assert (value, limit, verdict) == (pytest.approx(100.0 / 9.0, rel=1e-6), 27.0, "not within")
+
+
+def test_a_response_that_rises_again_has_its_factor_from_the_other_side() -> None:
+    # Two peaks near each other: between them the response falls to no more than 0.8 of the lower one.
+    def response(r: float) -> float:
+        return abs(1.0 / (1.0 - r * r + 0.06j * r) + 1.0 / (1.1 - r * r + 0.06j * r))
+
+    peak = rules.response_peak(response, 1.0, 0.03)
+    assert peak is not None
+    assert math.isnan(peak.above)
+    assert peak.amplification_factor == pytest.approx(peak.speed / (2.0 * (peak.speed - peak.below)))
+
+
+def test_the_orbit_at_the_operating_speed_is_that_of_the_trial_unbalance() -> None:
+    zeta = 0.05
+    speed = 1.4
+    rpm = speed * NATURAL * 30.0 / math.pi
+    eccentricity = 2.0 * 6350.0e-6 / rpm  # of 2 x 6350 W/N g mm on W
+    check = next(c for c in rg.standards(jeffcott(zeta, speed)).checks if c.rule == "vibration limit")
+    assert check.value == pytest.approx(2e6 * eccentricity * whirled(speed, zeta), rel=1e-5)
+    assert check.limit == pytest.approx(25.4)
+    assert rules.vibration_limit(48000.0) == pytest.approx(12.7e-6)
+
+
+def test_stability_speaks_of_the_logarithmic_decrement_of_the_forward_whirl() -> None:
+    for zeta, verdict in ((0.05, "within"), (0.015, "not within")):
+        check = next(c for c in rg.standards(jeffcott(zeta, 1.4)).checks if c.rule == "stability")
+        assert check.value == pytest.approx(2.0 * math.pi * zeta / math.sqrt(1.0 - zeta**2), rel=1e-5)
+        assert check.verdict == verdict
+
+
+def test_residual_unbalance_is_compared_by_the_grade() -> None:
+    unbalance = '[unbalances.u]\nshaft = "rotor"\nat = "start"\nmagnitude = "200 g mm"'
+    model = jeffcott(0.05, 1.4, unbalance)
+    limit = 9549.0 * 2.5 * MASS / (1.4 * NATURAL * 30.0 / math.pi)
+    check = next(c for c in rg.standards(model).checks if c.rule == "residual unbalance")
+    assert (check.value, check.limit) == pytest.approx((200.0, limit), rel=1e-6)
+    assert check.verdict == "not within"
+    wider = next(c for c in rg.standards(model, grade=6.3).checks if c.rule == "residual unbalance")
+    assert wider.verdict == "within"
+
+
+def test_torsional_modes_are_held_against_the_orders_of_shafts() -> None:
+    # Two equal flywheels on a spring: w = sqrt(2 k/J).
+    natural = rg.modal(rg.load(ROOT / "models" / "torsion_chain.toml")).frequency_hz
+    first = float(natural[natural > 0.0][0])
+    text = 'operation = {{ input_shaft = "{}", speed = {} }}\n'
+    model = rg.load(ROOT / "models" / "torsion_chain.toml")
+    speed = 2.0 * math.pi * first / 2.0 * 1.05
+    source = (text.format(next(iter(model.shafts)), speed)) + (ROOT / "models" / "torsion_chain.toml").read_text(
+        encoding="utf-8"
+    )
+    checks = [c for c in rg.standards(rg.loads(source)).checks if c.rule == "torsional interference"]
+    twice = next(c for c in checks if c.part.endswith("2x"))
+    assert twice.value == pytest.approx(100.0 * (1.0 - 1.0 / 1.05), rel=1e-6)
+    assert twice.verdict == "not within"
+
+
+def test_a_model_without_a_speed_and_a_grade_without_a_size_are_refused() -> None:
+    with pytest.raises(rg.AnalysisError, match=r"speed of \[operation\]"):
+        rg.standards(rg.load(ROOT / "models" / "torsion_chain.toml"))
+    with pytest.raises(rg.AnalysisError, match="grade"):
+        rg.standards(jeffcott(0.05, 1.4), grade=0.0)
