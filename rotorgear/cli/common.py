@@ -97,6 +97,9 @@ DeflectionOption = Annotated[
         "--vtk", help="Write deflection shapes for ParaView to this folder.", show_default=False, callback=vtk_folder
     ),
 ]
+UffOption = Annotated[
+    Path | None, typer.Option("--uff", help="Write a universal file (UFF) for modal-test programs.", show_default=False)
+]
 ToleranceOption = Annotated[
     float, typer.Option("--tolerance", help="Largest relative difference of a match with the rig.")
 ]

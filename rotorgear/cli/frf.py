@@ -15,6 +15,7 @@ from rotorgear.cli.common import (
     PlotOption,
     SaveOption,
     SpeedOption,
+    UffOption,
     console,
     parse_speed,
     progress_bar,
@@ -45,6 +46,7 @@ def frf(
     json: JsonOption = None,
     save: SaveOption = None,
     plot: PlotOption = None,
+    uff: UffOption = None,
 ) -> None:
     """Frequency responses between points or parts: unit force in, displacement, velocity or acceleration out."""
     import rotorgear as rg
@@ -73,3 +75,5 @@ def frf(
         typer.echo(f"saved {rg.save(result, save)}")
     if plot:
         typer.echo(f"wrote {rg.plot.save(rg.plot.frf(result, quantity=quantity), plot)}")
+    if uff:
+        typer.echo(f"wrote {rg.write_uff(result, uff)}")

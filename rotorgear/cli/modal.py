@@ -16,6 +16,7 @@ from rotorgear.cli.common import (
     SaveOption,
     SpeedOption,
     ToleranceOption,
+    UffOption,
     console,
     parse_speed,
     progress_bar,
@@ -73,9 +74,12 @@ def modal(
     shapes: Annotated[
         str | None,
         typer.Option(
-            "--shapes", help="Modes for --vtk and --plot, such as 1,6,9-12 (default 1-24).", show_default=False
+            "--shapes",
+            help="Modes for --vtk, --plot and --uff, such as 1,6,9-12 (default 1-24).",
+            show_default=False,
         ),
     ] = None,
+    uff: UffOption = None,
 ) -> None:
     """Natural frequencies and mode shapes; undamped at standstill, or damped and gyroscopic at a --speed."""
     import rotorgear as rg
@@ -117,6 +121,8 @@ def modal(
     if beyond:
         raise AnalysisError(f"--shapes: there is no mode {beyond[0]}, the result has {len(result)}")
     _write(result, save, vtk, plot, chosen)
+    if uff:
+        typer.echo(f"wrote {rg.write_uff(result, uff, modes=chosen)}")
 
 
 def _write(result: ModalResult, save: Path | None, vtk: Path | None, plot: Path | None, chosen: list[int]) -> None:

@@ -16,6 +16,7 @@ from rotorgear.cli.common import (
     ModelFile,
     PlotOption,
     SaveOption,
+    UffOption,
     console,
     parse_speed,
     picture_name,
@@ -69,6 +70,7 @@ def response(
         ),
     ] = None,
     vtk: DeflectionOption = None,
+    uff: UffOption = None,
 ) -> None:
     """Run-up: response to unbalances, transmission errors and stiffness variation, by order and speed."""
     import rotorgear as rg
@@ -100,3 +102,5 @@ def response(
         with progress_bar("vtk") as progress:
             paths = rg.write_deflections(result, vtk, progress=progress)
         typer.echo(f"wrote {len(paths)} files to {vtk}")
+    if uff:
+        typer.echo(f"wrote {rg.write_uff(result, uff)}")

@@ -1,103 +1,167 @@
-"""Mode shapes as a universal file (UFF, ASCII), which modal-test programs read: datasets 164 (units), 15 (nodes) and 55 (shapes).
+"""Results as a universal file (UFF), which modal-test programs read: units, nodes, lines of the shafts, and what was computed.
 
-Rows and columns are those of the Structural Dynamics Research Laboratory, University of Cincinnati, "Universal File Formats".
+Modes become shapes (dataset 55), frequency responses functions (58), run-ups order functions (58) of the named points.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
+from rotorgear.analysis.common.points import coordinates
 from rotorgear.errors import AnalysisError
 from rotorgear.export.files import replacing
-from rotorgear.results.modal import ModalResult
+from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.frequency_response import FrequencyResponse
+from rotorgear.results.modal import ModalResult, NodeTable
+from rotorgear.results.response import ResponseResult
+from rotorgear.uff.datasets import (
+    ACCELERATION,
+    DISPLACEMENT,
+    FORCE,
+    FREQUENCY,
+    FREQUENCY_RESPONSE,
+    ORDER,
+    ORDER_FUNCTION,
+    RPM,
+    Function,
+    Nodes,
+    Shape,
+    TraceLine,
+    Units,
+)
+from rotorgear.uff.write import function_set, line_sets, nodes_set, shape_set, units_set, universal_bytes
 
-# Codes of dataset 55: structural model; normal modes or complex ones of the first order; six displacements of a node.
-_STRUCTURAL = 1
-_NORMAL_MODE = 2
-_COMPLEX_MODE = 3
-_SIX_DOFS = 3
-_DISPLACEMENT = 8
-_REAL = 2
-_COMPLEX = 5
-# Numbers in a row of values.
-_PER_ROW = 6
+_TRANSLATIONS = 3
 
 
-def write_uff(result: ModalResult, path: str | Path, *, modes: Sequence[int] | None = None) -> Path:
-    """Write nodes and mode shapes to a universal file.
+def write_uff(
+    result: ModalResult | FrequencyResponse | ResponseResult,
+    path: str | Path,
+    *,
+    modes: Sequence[int] | None = None,
+    rotations: bool | None = None,
+    binary: bool = False,
+) -> Path:
+    """Write nodes and shapes, frequency responses or order functions to a universal file, in SI.
 
-    Undamped modes are real, those at a speed complex; displacements in m and rotations in rad, scaled as in the result.
+    Undamped modes are real, those at a speed complex; displacements in m and rotations in rad, scaled as in the result. Nodes
+    have their number in the result, from 1; those of a frequency response are its places in their order.
 
     Args:
-        result: of `modal`.
+        result: of `modal`, `frf` or `response`.
         path: of the file, such as "modes.unv".
         modes: numbers of the modes, from 0; None: all.
+        rotations: whether shapes have rotations beside displacements; None: normal modes do, complex ones do not, since many
+            programs read three complex displacements only.
+        binary: functions as bytes (dataset 58b) in place of text.
 
     Raises:
-        AnalysisError: a mode that the result has not.
+        AnalysisError: a mode that the result has not; modes of a result without.
         WriteError: the file can't be written.
     """
+    if isinstance(result, ModalResult):
+        sets = _modes(result, modes, rotations)
+    elif modes is not None or rotations is not None:
+        raise AnalysisError("modes and rotations belong to shapes: the result has none")
+    elif isinstance(result, FrequencyResponse):
+        sets = _responses(result, binary)
+    else:
+        sets = _order_functions(result, binary)
+    with replacing(path) as scratch:
+        scratch.write_bytes(universal_bytes([units_set(Units()), *sets]))
+    return Path(path)
+
+
+def _modes(result: ModalResult, modes: Sequence[int] | None, rotations: bool | None) -> list[bytes]:
     count = len(result.eigenvalues)
     chosen = list(range(count)) if modes is None else list(modes)
     wrong = [k for k in chosen if not 0 <= k < count]
     if wrong:
         raise AnalysisError(f"modes: got {wrong[0]}, expected numbers from 0 to {count - 1}")
-    with replacing(path) as scratch:
-        ones = "".join(f"{x:25.16E}".replace("E", "D") for x in (1.0, 1.0, 1.0))
-        zero = f"{0.0:25.16E}".replace("E", "D")
-        units = _dataset(164, [f"{1:10d}{'SI: Meter (newton)':>20s}{2:10d}", ones, zero])
-        lines = [*units, *_nodes(result), *(line for k in chosen for line in _shape(result, k))]
-        scratch.write_text("\n".join(lines) + "\n", encoding="ascii", errors="replace")
-    return Path(path)
-
-
-def _dataset(number: int, lines: Iterable[str]) -> list[str]:
-    return [f"{-1:6d}", f"{number:6d}", *lines, f"{-1:6d}"]
-
-
-def _nodes(result: ModalResult) -> list[str]:
-    # Both coordinate systems of a node are the global one, 0; colours tell the shafts apart.
-    shafts = list(dict.fromkeys(result.nodes.shaft))
-    rows = zip(result.nodes.shaft, result.nodes.position, strict=True)
-    return _dataset(
-        15, [f"{k:10d}{0:10d}{0:10d}{shafts.index(s) + 1:10d}{_numbers(xyz)}" for k, (s, xyz) in enumerate(rows, 1)]
-    )
-
-
-def _shape(result: ModalResult, k: int) -> list[str]:
-    s = complex(result.eigenvalues[k])
-    shape = np.asarray(result.shapes[:, :, k])
     is_complex = result.speed is not None
-    damping_ratio = -s.real / abs(s) if abs(s) else 0.0
-    if is_complex:
-        # Poles as they are; modal A and B are left 1, as shapes are scaled by their own modal mass.
-        kind = [2, 6, 1, k + 1]
-        facts = [s.real, s.imag, 1.0, 0.0, 1.0, 0.0]
-        values = np.stack([shape.real, shape.imag], axis=2).reshape(len(shape), -1)
-    else:
-        kind = [2, 4, 1, k + 1]
-        facts = [abs(s) / (2.0 * np.pi), 1.0, damping_ratio, 0.0]
-        values = shape.real
-    codes = [_STRUCTURAL, _COMPLEX_MODE if is_complex else _NORMAL_MODE, _SIX_DOFS, _DISPLACEMENT]
-    codes += [_COMPLEX if is_complex else _REAL, 6]
-    lines = [
-        (result.model.title or "rotorgear")[:80],
-        f"mode {k + 1}, {abs(s) / (2.0 * np.pi):.6g} Hz, damping ratio {damping_ratio:.6g}",
-        result.description[k][:80],
-        "rotorgear",
-        "NONE",
-        "".join(f"{code:10d}" for code in codes),
-        "".join(f"{number:10d}" for number in kind),
-        _numbers(facts),
-    ]
-    for node, row in enumerate(values, 1):
-        lines.append(f"{node:10d}")
-        lines += [_numbers(row[first : first + _PER_ROW]) for first in range(0, len(row), _PER_ROW)]
-    return _dataset(55, lines)
+    six = not is_complex if rotations is None else rotations
+    numbers = np.arange(1, len(result.nodes.shaft) + 1)
+    sets = _geometry(result.nodes)
+    for k in chosen:
+        s = complex(result.eigenvalues[k])
+        hz = abs(s) / (2.0 * np.pi)
+        damping = -s.real / abs(s) if abs(s) else 0.0
+        values = result.shapes[:, : 6 if six else _TRANSLATIONS, k]
+        names = (
+            result.model.title or "rotorgear",
+            f"mode {k + 1}, {hz:.6g} Hz, damping ratio {damping:.6g}",
+            result.description[k],
+            "rotorgear",
+        )
+        shape = values if is_complex else np.real(values)
+        sets.append(shape_set(Shape(hz, damping, s if is_complex else None, numbers, shape, names, k + 1)))
+    return sets
 
 
-def _numbers(values: Iterable[float]) -> str:
-    return "".join(f"{float(x):13.5E}" for x in values)
+def _geometry(nodes: NodeTable) -> list[bytes]:
+    """Nodes, and a line along each shaft. Both coordinate systems of a node are the global one; colours tell shafts apart."""
+    shafts = list(dict.fromkeys(nodes.shaft))
+    count = len(nodes.shaft)
+    colours = np.array([shafts.index(name) + 1 for name in nodes.shaft])
+    sets = [nodes_set(Nodes(np.arange(1, count + 1), nodes.position, np.zeros(count, dtype=int), colours))]
+    for number, name in enumerate((name for name in shafts if name), start=1):
+        along = nodes.on_shaft(name) + 1
+        if len(along) > 1:
+            sets += line_sets(TraceLine(number, name, along))
+    return sets
+
+
+def _responses(result: FrequencyResponse, binary: bool) -> list[bytes]:
+    texts = list(dict.fromkeys((*result.inputs, *result.outputs)))
+    places = [(tuple(place.tolist()), dof) for place, dof in (coordinates(result.model, text) for text in texts)]
+    # Several directions of one place are one node.
+    spots = list(dict.fromkeys(place for place, _ in places))
+    freedom = {text: (spots.index(place) + 1, dof + 1) for text, (place, dof) in zip(texts, places, strict=True)}
+    zeros = np.zeros(len(spots), dtype=int)
+    sets = [nodes_set(Nodes(np.arange(1, len(spots) + 1), np.array(spots), zeros, zeros + 1))]
+    title = result.model.title or "rotorgear"
+    for i, reference in enumerate(result.inputs):
+        for o, response in enumerate(result.outputs):
+            function = Function(
+                FREQUENCY_RESPONSE,
+                freedom[response],
+                freedom[reference],
+                result.frequency_hz,
+                result.receptance[:, o, i],
+                FREQUENCY,
+                DISPLACEMENT,
+                FORCE,
+                names=(f"{response} over {reference}", title, "rotorgear"),
+            )
+            sets.append(function_set(function, binary=binary))
+    return sets
+
+
+def _order_functions(result: ResponseResult, binary: bool) -> list[bytes]:
+    if not result.points:
+        raise AnalysisError("order functions are those of named points, and the model has none: give it [points]")
+    sets = _geometry(result.nodes)
+    for k, name in enumerate(result.points):
+        shaft, z = result.model.layout.place(f"points.{name}")
+        direction = DOF_NAMES.index(result.model.points[name].direction) + 1
+        freedom = (result.nodes.nearest(shaft, z) + 1, direction)
+        for order, ratio in zip(result.orders, result.ratio, strict=True):
+            at = result.orders.index(order)
+            function = Function(
+                ORDER_FUNCTION,
+                freedom,
+                (0, 0),
+                result.speeds * RPM_PER_RAD_S,
+                result.acceleration[at, :, k],
+                RPM,
+                ACCELERATION,
+                z=float(ratio),
+                names=(f"{name}, {order}", result.model.title or "rotorgear", "rotorgear"),
+                z_type=ORDER,
+            )
+            sets.append(function_set(function, binary=binary))
+    return sets

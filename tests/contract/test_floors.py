@@ -24,6 +24,7 @@ FACE = 9
 ROOF = 11
 FLOORS = {
     "solvers": 1,
+    "uff": 1,
     "gears": 2,
     "casings": 2,
     "forces": 2,

@@ -26,13 +26,27 @@ def point_amplitudes(system: System, shapes: np.ndarray) -> dict[str, np.ndarray
 
 
 def point_rows(system: System, names: Sequence[str]) -> sp.csr_array:
-    """Rows R (s, n) with the displacement R q of named points along their directions, from the free dofs q (n)."""
-    dofs = [
-        6 * system.nodes.at(*system.layout.place(f"points.{name}"))
-        + DOF_NAMES.index(system.model.points[name].direction)
-        for name in names
-    ]
-    return sp.csr_array(system.dofs.transform[dofs])
+    """Rows R (s, n) with the displacement R q of places along their directions, from the free dofs q (n).
+
+    Args:
+        system: an assembled model.
+        names: of points, or places as `frf` takes them: "bearings.left:x", "casings.box(0 mm; 280 mm; 200 mm):y".
+
+    Raises:
+        AnalysisError: a place that the model has not.
+    """
+    rows = []
+    for name in names:
+        if name.startswith("casings."):
+            casing, row = casing_row(system.model, name)
+            rows.append(
+                sp.csr_array(row[None]) @ sp.csr_array(system.dofs.transform[system.nodes.of_casing(casing), :])
+            )
+            continue
+        shaft, z, direction = named_place(system.model, name)
+        dof = 6 * system.nodes.at(shaft, z) + DOF_NAMES.index(direction)
+        rows.append(sp.csr_array(system.dofs.transform[[dof]]))
+    return sp.csr_array(sp.vstack(rows)) if rows else sp.csr_array(system.dofs.transform[[]])
 
 
 def named_place(model: Model, text: str) -> tuple[str, float, str]:
@@ -54,6 +68,24 @@ def named_place(model: Model, text: str) -> tuple[str, float, str]:
     )
 
 
+def coordinates(model: Model, text: str) -> tuple[np.ndarray, int]:
+    """Coordinates (3,) in m, and number of the direction in x y z tx ty tz, of a place as `frf` takes it.
+
+    Raises:
+        AnalysisError: as `named_place` and `casing_row` do.
+    """
+    if text.startswith("casings."):
+        name, dof, seat, point = _casing_place(model, text)
+        body = model.layout.casing(name)
+        if seat:
+            return np.asarray(body.seat_points[body.seats.index(seat)]), dof
+        assert body.surface is not None
+        return np.asarray(body.surface.points[point]), dof
+    shaft, z, direction = named_place(model, text)
+    x, y = model.shafts[shaft].position or (0.0, 0.0)
+    return np.array([x, y, z]), DOF_NAMES.index(direction)
+
+
 def casing_row(model: Model, text: str) -> tuple[str, np.ndarray]:
     """Casing and row on its coordinates from 'casings.box.left:x', a seat, or 'casings.box(0 mm; 280 mm; 200 mm):y'.
 
@@ -62,6 +94,18 @@ def casing_row(model: Model, text: str) -> tuple[str, np.ndarray]:
     Raises:
         AnalysisError: no such casing, seat, direction, or a casing without a surface.
     """
+    name, dof, seat, point = _casing_place(model, text)
+    body = model.layout.casing(name)
+    if not seat:
+        assert body.surface is not None
+        return name, np.asarray(body.surface.basis[point, dof])
+    row = np.zeros(body.size)
+    row[body.seat(seat).start + dof] = 1.0
+    return name, row
+
+
+def _casing_place(model: Model, text: str) -> tuple[str, int, str, int]:
+    """Casing, number of the direction, seat ("" for none), and number of the point of the surface (-1 for a seat)."""
     address, _, direction = text.rpartition(":")
     found = re.fullmatch(r"casings\.(?P<name>[\w -]+?)(?:\.(?P<seat>[\w -]+)|\((?P<place>[^()]*)\))", address)
     if found is None or found["name"] not in model.casings or direction not in DOF_NAMES:
@@ -73,12 +117,10 @@ def casing_row(model: Model, text: str) -> tuple[str, np.ndarray]:
     name = found["name"]
     body = model.layout.casing(name)
     dof = DOF_NAMES.index(direction)
-    row = np.zeros(body.size)
     if found["seat"] is not None:
         if found["seat"] not in body.seats:
             raise AnalysisError(f"'{text}': casing '{name}' has no such seat; there is: {', '.join(body.seats)}")
-        row[body.seat(found["seat"]).start + dof] = 1.0
-        return name, row
+        return name, dof, found["seat"], -1
     if body.surface is None or dof > 2:
         why = "its surface is not known" if body.surface is None else "of a surface x, y and z are known"
         raise AnalysisError(f"'{text}': {why}")
@@ -88,5 +130,4 @@ def casing_row(model: Model, text: str) -> tuple[str, np.ndarray]:
         raise AnalysisError(f"'{text}': expected {error}, three of them with ; between") from None
     if len(place) != 3:
         raise AnalysisError(f"'{text}': got {len(place)} coordinates, expected x; y; z")
-    point = int(np.argmin(np.sum((body.surface.points - np.array(place)) ** 2, axis=1)))
-    return name, np.asarray(body.surface.basis[point, dof])
+    return name, dof, "", int(np.argmin(np.sum((body.surface.points - np.array(place)) ** 2, axis=1)))

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorgear.analysis.common.points import coordinates
+from rotorgear.analysis.rig.sensor_table import Sensor
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.results.comparison import RigLine
@@ -18,14 +20,19 @@ class Measured:
 
     Attributes:
         lines: frequencies, with uncertainty and damping where known (n).
-        points: names of the model's points where shapes were measured (s); empty without shapes.
+        points: names of the model's points where shapes were measured, or places such as "bearings.left:x" (s); empty without
+            shapes.
         shapes: displacement along the direction of each point (n, s), to any scale and phase of each mode; NaN where a mode was
             not measured at a point.
+        notes: sentences on what the file leaves open.
+        sensors: what is known of the sensor at each point (s), where the shapes come from a file.
     """
 
     lines: tuple[RigLine, ...]
     points: tuple[str, ...] = ()
     shapes: NDArray[np.complex128] | None = None
+    notes: tuple[str, ...] = ()
+    sensors: tuple[Sensor, ...] = ()
 
     def __post_init__(self) -> None:
         if self.shapes is None:
@@ -39,11 +46,12 @@ class Measured:
     def check_points(self, model: Model) -> None:
         """Raise AnalysisError where a measured point is none of the model's."""
         for name in self.points:
-            if name not in model.points:
+            if not (name in model.points or ":" in name):
                 known = ", ".join(model.points) or "none"
                 raise AnalysisError(
                     f"shapes were measured at '{name}', which is no point of the model ([points]: {known})"
                 )
+            coordinates(model, name)
 
     @property
     def real_shapes(self) -> NDArray[np.float64]:

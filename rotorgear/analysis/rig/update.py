@@ -79,7 +79,7 @@ def update(
         model: the model.
         rig: a rig file (CSV), lines, plain frequencies in Hz, or lines with measured shapes (`rg.Measured`).
         shapes: in place of it, a universal file with shapes and their frequencies, and
-        points: its table of sensors; as in `rg.read_rig_shapes`.
+        points: its table of sensors, as in `rg.read_rig_shapes`; None: each node is at the nearest place of the model.
         free: addresses of numbers, with commas between; "*" stands for all names or places there.
         prior: relative standard deviation of the free numbers before the test, of all or by address.
         shape_noise: standard deviation of a measured displacement over the root mean square of its shape.
@@ -97,7 +97,7 @@ def update(
         ModelError: addresses that lead nowhere, a rig file that can't be read.
         ConvergenceError: the steps don't come to rest.
     """
-    given = _measured(rig, shapes, points)
+    given = _measured(model, rig, shapes, points)
     given.check_points(model)
     if not 0.0 < shape_noise < 1.0:
         raise AnalysisError(f"the noise of shapes is a share between 0 and 1, such as 0.02; got {shape_noise:g}")
@@ -118,15 +118,18 @@ def update(
 
 
 def _measured(
-    rig: str | Path | Measured | Sequence[RigLine | float] | None, shapes: str | Path | None, points: str | Path | None
+    model: Model,
+    rig: str | Path | Measured | Sequence[RigLine | float] | None,
+    shapes: str | Path | None,
+    points: str | Path | None,
 ) -> Measured:
     """What was measured, from whichever of the two it is given by."""
     if (rig is None) == (shapes is None):
         raise AnalysisError("give what was measured: --rig lines.csv, or --shapes rig.uff with --points sensors.csv")
-    if (shapes is None) != (points is None):
-        raise AnalysisError("--shapes and --points belong together: the table of sensors says where each node is")
-    if shapes is not None and points is not None:
-        return read_rig_shapes(shapes, points)
+    if shapes is not None:
+        return read_rig_shapes(shapes, points, model)
+    if points is not None:
+        raise AnalysisError("--points belongs to --shapes: the table of sensors says where each node is")
     assert rig is not None
     return rig if isinstance(rig, Measured) else Measured(rig_lines_of(rig))
 
@@ -389,6 +392,7 @@ def _result(problem: _Problem, start: _State, state: _State, p: Posterior) -> Up
             "damping and rotation: lines are undamped natural frequencies at standstill",
             "the spread of lines predicted from the others is that of the linear model about the estimate",
         ),
+        warnings=problem.given.notes,
     )
 
 
