@@ -15,7 +15,7 @@ COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 # `validate` runs the cases of a checkout of the repository, which are no part of the package.
 WITHOUT_VERB = {"validate"}
 # What becomes of a result: tables, files, pictures and their settings.
-SHOWN = {"json", "save", "resume", "vtk", "plot", "csv", "output"}
+SHOWN = {"json", "save", "resume", "vtk", "plot", "csv", "output", "uff"}
 OF_A_PICTURE_OR_TABLE = {
     "modal": {"shapes", "energies", "compare", "tolerance"},
     "campbell": {"crossings", "colour", "branch"},

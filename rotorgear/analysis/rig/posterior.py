@@ -59,7 +59,8 @@ class Posterior:
         # What no line sees, 1 - sum V^2, and what each direction leaves, V^2 / (1 + s^2): no difference of nearly equal numbers
         # in a direction that is known to 1e-8.
         left = 1.0 / (1.0 + self._directions[1] ** 2)
-        unseen = np.maximum(1.0 - np.sum(self.directions**2, axis=1), 0.0)
+        whole = self.directions.shape[0] == self.directions.shape[1]
+        unseen = 0.0 if whole else np.maximum(1.0 - np.sum(self.directions**2, axis=1), 0.0)
         return self.prior * np.sqrt(unseen + self.directions**2 @ left)
 
     def spread_of(self, slopes: NDArray[np.float64]) -> NDArray[np.float64]:
