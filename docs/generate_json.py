@@ -126,6 +126,11 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
         (("gear", ""),),
     ),
     (
+        "bearing",
+        "`rotorgear bearing MODEL NAME --json bearing.json`. The [page on bearings](bearings.md) says how the numbers are found.",
+        (("bearing", ""),),
+    ),
+    (
         "casing",
         "`rotorgear casing MODEL --json casing.json`. The [page on casings](casings.md) says how the numbers are found.",
         (("casing", ""),),

@@ -48,6 +48,7 @@ from rotorgear.analysis.sweep.sweep import sweep as sweep
 from rotorgear.analysis.sweep.cluster import cluster as cluster
 from rotorgear.analysis.orbits.orbits import orbits as orbits
 from rotorgear.analysis.teeth.gear_sheet import gear as gear
+from rotorgear.analysis.bearing.bearing import bearing as bearing
 from rotorgear.analysis.casing.casing import casing as casing
 from rotorgear.analysis.teeth.mesh import mesh as mesh
 from rotorgear.analysis.teeth.mesh_map import mesh_map as mesh_map
@@ -107,6 +108,7 @@ from rotorgear.results.sweep_convergence import SweepConvergenceStudy as SweepCo
 from rotorgear.results.orbits import OrbitsResult as OrbitsResult
 from rotorgear.results.portrait import Portraits as Portraits
 from rotorgear.results.gear_sheet import GearSheet as GearSheet
+from rotorgear.results.bearing import BearingSheet as BearingSheet
 from rotorgear.results.casing import CasingSurvey as CasingSurvey
 from rotorgear.results.mesh import MeshResult as MeshResult
 from rotorgear.results.mesh_map import MeshMap as MeshMap

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rotorgear.analysis.bearing.convergence import bearing_convergence_study
 from rotorgear.analysis.campbell.convergence import campbell_convergence_study, critical_convergence_study
 from rotorgear.analysis.modal.convergence import convergence_study
 from rotorgear.analysis.response.convergence import frf_convergence_study, response_convergence_study
@@ -40,6 +41,7 @@ STUDIES = {
     "response": _Entry(response_convergence_study, ("fmax", "modal_damping")),
     "frf": _Entry(frf_convergence_study, ("fmax", "at", "modal_damping")),
     "mesh": _Entry(mesh_convergence_study, ("mesh", "torque")),
+    "bearing": _Entry(bearing_convergence_study, ("bearing", "speed")),
     "transient": _Entry(transient_convergence_study, ("speed", "time", "modal_damping")),
     "sweep": _Entry(sweep_convergence_study, ("speed",)),
 }
@@ -59,6 +61,7 @@ def accuracy(
     reference: Sequence[float] | None = None,
     mesh: str | None = None,
     torque: float | str | None = None,
+    bearing: str | None = None,
     time: float | str | None = None,
     modal_damping: float | None = None,
     progress: Progress = silent,
@@ -67,8 +70,8 @@ def accuracy(
 
     Args:
         model: a checked model.
-        analysis: "modal", "campbell", "critical", "static", "response", "frf", "mesh" (teeth in contact), "transient" or
-            "sweep".
+        analysis: "modal", "campbell", "critical", "static", "response", "frf", "mesh" (teeth in contact), "bearing" (film or
+            rolling elements), "transient" or "sweep".
         speed: of the input shaft, as in that analysis; not for a mesh.
         stop: campbell, critical: the highest speed of the range.
         modes: modal, campbell: how many modes are compared; 24 where not given.
@@ -77,6 +80,7 @@ def accuracy(
         reference: modal: natural frequencies in Hz to compare with, in place of the model's own finest.
         mesh: mesh: its name; None where there is only one.
         torque: mesh: on the pinion, in N m or as a text, in place of the model's.
+        bearing: bearing: its name; None where there is only one with a law.
         time: transient: duration; 8 periods of the slowest mesh where not given.
         modal_damping: response, frf, transient: damping ratio of every elastic mode.
         progress: callable that is told fraction and step.
@@ -101,6 +105,7 @@ def accuracy(
         "reference": reference,
         "mesh": mesh,
         "torque": torque,
+        "bearing": bearing,
         "time": time,
         "modal_damping": modal_damping,
     }

@@ -26,7 +26,8 @@ def accuracy(
         str,
         typer.Option(
             "--analysis",
-            help="What is run: modal, campbell, critical, static, response, frf, mesh (teeth in contact), transient or sweep.",
+            help="What is run: modal, campbell, critical, static, response, frf, mesh (teeth in contact), bearing, "
+            "transient or sweep.",
         ),
     ] = "modal",
     mesh: Annotated[
@@ -35,6 +36,9 @@ def accuracy(
     torque: Annotated[
         str | None,
         typer.Option("--torque", help="With --analysis mesh: torque on the pinion.", show_default=False),
+    ] = None,
+    bearing: Annotated[
+        str | None, typer.Option("--bearing", help="With --analysis bearing: name of the bearing.", show_default=False)
     ] = None,
     speed: SpeedOption = None,
     stop: Annotated[
@@ -97,6 +101,7 @@ def accuracy(
             reference=given,
             mesh=mesh,
             torque=torque,
+            bearing=bearing,
             time=time,
             modal_damping=modal_damping,
             progress=progress,

@@ -34,6 +34,7 @@ HELP = {
     "check": "Show what a model file describes: speeds, mesh frequencies, torques, contact ratios, masses, dofs, warnings.",
     "gear": "Print the gear sheet: geometry, measures, contact ratios, backlash and stiffness of all teeth.",
     "mesh": "Print stiffness, transmission error, load sharing and pressure of one mesh over its cycle.",
+    "bearing": "Sheet of one bearing at the gearbox's own loads: inside, stiffness and damping over speed, whirl threshold.",
     "casing": "Read the meshes of casings: mass, free and held modes, seats, errors of mesh and reduction, cost.",
     "accuracy": "Convergence study: error against run time and dofs over a series of discretisations, with the measured order.",
     "view": "Open a window that shows the gearbox and animates its modes.",

@@ -18,7 +18,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rotorgear.forces.hertz import point_contact
+from rotorgear.forces.hertz import point_contact, point_pressure
+from rotorgear.forces.inside import RollingLoads
 from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
@@ -146,7 +147,12 @@ class BallBearing(ForceLaw):
         """c_p in N/m^1.5, as given or by Hertz."""
         if self.contact:
             return self.contact
-        return point_contact(
+        return point_contact(*self._contacts)
+
+    @property
+    def _contacts(self) -> tuple[float, ...]:
+        """What Hertz's formulas ask of the geometry."""
+        return (
             self.ball_diameter,
             self.pitch_diameter,
             self.inner_groove * self.ball_diameter,
@@ -189,6 +195,19 @@ class BallBearing(ForceLaw):
     def cycle(self) -> float:
         """From one ball to the next."""
         return 2.0 * np.pi / (self.balls * abs(self.order)) if self.order else 0.0
+
+    def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> RollingLoads:
+        """Loads, contact angles and pressures of the balls at displacements d (5,), with the cage where it is at an angle."""
+        _, _, A, radial, axial, _, _, arm = self.parameters()
+        phi = np.mod(self.order * angle + self.phase + TURN * np.arange(self.balls) / self.balls, TURN)
+        c = np.cos(phi)
+        n = np.sin(phi)
+        u = radial + d[0] * c + d[1] * n
+        w = axial + d[2] + arm * (d[3] * n - d[4] * c)
+        delta = np.hypot(u, w) - A
+        load = self.contact_constant * np.maximum(delta, 0.0) ** 1.5
+        inner, outer = point_pressure(load, *self._contacts)
+        return RollingLoads(phi, np.where(delta > 0.0, np.arctan2(w, u), 0.0), load, delta, inner, outer)
 
     @classmethod
     def examples(cls) -> tuple[BallBearing, ...]:

@@ -27,6 +27,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from rotorgear.forces.film_flow import power_loss, side_flow
+from rotorgear.forces.inside import FilmField
 from rotorgear.forces.law import ForceLaw, parameter, refuse
 from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
 
@@ -359,6 +361,31 @@ class JournalFilm(ForceLaw):
     def left_out(self) -> tuple[str, ...]:
         """What the film leaves out."""
         return ("heat, turbulence and tilt of the journal in its film",)
+
+    def rough(self) -> JournalFilm:
+        """The same on a grid that knows the stiffness to some 10 %."""
+        return replace(self, around=min(self.around, max(36, 12 * self.lobes)), along=min(self.along, 3))
+
+    def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> FilmField:
+        """Pressure, gap, side flow and power loss with the journal at rest at displacements d (2,)."""
+        t, z, pressure = self.pressure(d, speed=speed)
+        p = self.settled(d).parameters()
+        own = self.clearance / (1.0 - self.preload)
+        omega = self.order * speed
+        across = int(p[AROUND]) - 1
+        dz = 0.5 * self.length / self.along
+        gap = np.zeros(t.size)
+        flow = 0.0
+        loss = 0.0
+        for pad in range(self.lobes):
+            rows = slice(pad * across, (pad + 1) * across)
+            _, extent, least = p[FIRST + 3 * pad : FIRST + 3 * pad + 3]
+            h = own - d[0] * np.cos(t[rows]) - d[1] * np.sin(t[rows]) - self.preload * own * np.cos(t[rows] - least)
+            step = self.radius * extent / int(p[AROUND])
+            gap[rows] = h
+            flow += side_flow(h, pressure[rows], dz, step, self.viscosity)
+            loss += power_loss(h, pressure[rows], dz, step, self.viscosity, self.radius * omega)
+        return FilmField(t, z, gap, pressure, flow, loss)
 
     def pressure(self, d: Any, v: Any = (0.0, 0.0), *, speed: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Angles (t,) in rad, places z (j,) in m from the middle, and the pressure (t, j) in Pa over half the length."""

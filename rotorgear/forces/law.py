@@ -51,13 +51,16 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import MISSING, dataclass, field, fields
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.lanes.columns import OWN_LAW, TABLE_ROWS, Column
 from rotorgear.solvers.time.local_forces import Repeats
+
+if TYPE_CHECKING:
+    from rotorgear.forces.inside import FilmField, RollingLoads
 
 __all__ = ["ForceLaw", "LawValue", "LawValues", "Linearised", "Parameter", "Repeats", "parameter", "refuse"]
 
@@ -236,15 +239,17 @@ class ForceLaw(ABC):
         """Mean stiffness (k, k) with all contacts closed: the measure of compliances at this place."""
         return self.reference_stiffness()
 
-    def linearised(self, d: Any = 0.0, v: Any = 0.0, *, speed: float = 0.0) -> Linearised:
+    def linearised(self, d: Any = 0.0, v: Any = 0.0, *, speed: float = 0.0, points: int | None = None) -> Linearised:
         """Mean force, stiffness and damping about displacements d and velocities v (k,), as linear analyses take them.
 
-        What varies in time is left out (`mean`). Rolling elements and the like that turn are averaged over a `cycle`, because an
-        analysis at speed may not depend on where one of them happens to stand; at speed 0 they stand still, at angle 0.
+        What varies in time is left out (`mean`). Rolling elements and the like that turn are averaged over a `cycle`, at so many
+        `points` (32), because an analysis at speed may not depend on where one of them happens to stand; at speed 0 they stand
+        still, at angle 0.
         """
         still = self.mean()
         k = self.components
-        angles = still.cycle() * np.arange(_CYCLE_POINTS) / _CYCLE_POINTS if still.cycle() and speed else np.zeros(1)
+        count = points or CYCLE_POINTS
+        angles = still.cycle() * np.arange(count) / count if still.cycle() and speed else np.zeros(1)
         d, v = (np.broadcast_to(np.asarray(x, float), (angles.size, k)) for x in (d, v))
         values = still.evaluate_many(d, v, angle=angles, speed=speed)
         return Linearised(
@@ -254,6 +259,14 @@ class ForceLaw(ABC):
     def settled(self, d: Any) -> ForceLaw:
         """The law as it stays for small motions about displacements d (k,): an inlet that statics place stays there then."""
         return self
+
+    def rough(self) -> ForceLaw:
+        """A law of about the same stiffness that costs less, for what no result depends on."""
+        return self
+
+    def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> RollingLoads | FilmField | None:
+        """What a bearing looks like inside at displacements d (k,); None for laws that know nothing of it."""
+        return None
 
     def beyond(self, d: Any, speed: float) -> str:
         """Why the law does not hold at displacements d (k,) in equilibrium at a speed of the reference, as a clause; or ""."""
@@ -391,7 +404,7 @@ class ForceLaw(ABC):
 
 
 # Places of a rolling element in its pitch over which a linearisation averages.
-_CYCLE_POINTS = 32
+CYCLE_POINTS = 32
 
 
 def refuse(law: ForceLaw, name: str, expected: str) -> AnalysisError:

@@ -13,7 +13,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rotorgear.forces.hertz import LINE_CONTACT
+from rotorgear.forces.hertz import LINE_CONTACT, line_pressure
+from rotorgear.forces.inside import RollingLoads
 from rotorgear.forces.law import ForceLaw, Repeats, parameter
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
@@ -80,6 +81,8 @@ class RollerBearing(ForceLaw):
     order: float = parameter("rad/rad", "turns of the cage for each turn of the reference", 0.0)
     phase: float = parameter("rad", "angle of a roller at angle 0", 0.0)
     reference: tuple[float, float] = parameter("N/m", "linear stiffness along x and y to expand about", (0.0, 0.0))
+    roller_diameter: float = parameter("m", "diameter of a roller, for its pressures; 0: not told", 0.0, least=0.0)
+    pitch_diameter: float = parameter("m", "pitch diameter, for the pressures; 0: not told", 0.0, least=0.0)
 
     @property
     def components(self) -> int:
@@ -115,6 +118,18 @@ class RollerBearing(ForceLaw):
     def cycle(self) -> float:
         """From one roller to the next."""
         return 2.0 * np.pi / (self.rollers * abs(self.order)) if self.order else 0.0
+
+    def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> RollingLoads:
+        """Loads and pressures of the rollers at displacements d (2,); pressures are NaN where the diameters are not told."""
+        _, constant, play, _, _ = self.parameters()
+        phi = np.mod(self.order * angle + self.phase + TURN * np.arange(self.rollers) / self.rollers, TURN)
+        delta = d[0] * np.cos(phi) + d[1] * np.sin(phi) - play
+        load = constant * np.maximum(delta, 0.0) ** (10.0 / 9.0)
+        inner = outer = np.full(phi.size, np.nan)
+        if self.roller_diameter and self.pitch_diameter:
+            gamma = self.roller_diameter / self.pitch_diameter
+            inner, outer = line_pressure(load, self.length, self.roller_diameter, gamma)
+        return RollingLoads(phi, np.zeros(phi.size), load, delta, inner, outer)
 
     @classmethod
     def examples(cls) -> tuple[RollerBearing, ...]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 import scipy.sparse as sp
 
+from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.system.dofs import DofMap
 from rotorgear.system.groups import ElementGroup
 
@@ -75,6 +76,20 @@ def strain_factor(groups: Iterable[ElementGroup], dofs: DofMap) -> sp.csr_array 
     triple = (np.concatenate(values), (np.concatenate(rows), np.concatenate(cols)))
     full = sp.csr_array(sp.coo_array(triple, shape=(first, size)))
     return sp.csr_array(full @ dofs.transform)
+
+
+def without_negative(matrices: ElementMatrices) -> np.ndarray | None:
+    """The stiffness B^T |D| B of elements, with the eigenvalues of each modulus without their signs; None without a modulus.
+
+    It holds what K holds, and is positive semidefinite: undamped modes of it say which motions nothing holds.
+    """
+    B = matrices.strain
+    D = matrices.modulus
+    if B is None or D is None:
+        return None
+    values, vectors = np.linalg.eigh(D)
+    size = np.einsum("eik,ek,ejk->eij", vectors, np.abs(values), vectors)
+    return np.asarray(np.einsum("esd,est,etf->edf", B, size, B))
 
 
 def _root(modulus: np.ndarray) -> np.ndarray | None:

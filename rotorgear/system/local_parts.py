@@ -90,6 +90,7 @@ def expansion_stiffness(law: ForceLaw, load: float, speed: float) -> np.ndarray:
     if np.any(given):
         return np.asarray(given)
     largest = np.zeros(law.components)
+    law = law.rough()
     for size in np.logspace(-8.0, -2.0, 25):  # metres or radians
         for side in (size, -size):
             about = law.linearised(side, speed=speed)
@@ -175,6 +176,8 @@ def _bearing_law(bearing: Bearing, ratio: float) -> ForceLaw:
             clearance=rolling.clearance,
             order=order,
             reference=(float(linear[0]), float(linear[1])),
+            roller_diameter=rolling.element_diameter,
+            pitch_diameter=rolling.pitch_diameter,
         )
     return BallBearing(
         balls=rolling.elements,

@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from rotorgear.model.layout.mean_load import MeanLoad
 from rotorgear.model.layout.train import Train
 from rotorgear.model.model import Model
-from rotorgear.system.assembly import assemble, strain_factor
+from rotorgear.system.assembly import assemble, strain_factor, without_negative
 from rotorgear.system.dofs import DofMap, map_dofs, rigid_groups
 from rotorgear.system.groups import ElementGroup, constant_groups, table_groups
 from rotorgear.system.nodes import Nodes, discretise
@@ -149,6 +149,10 @@ class System:
             C = C + given.rayleigh_beta * self.stiffness(speed)
         self._last_damping = (speed, sp.csc_array(C))
         return self._last_damping[1]
+
+    def definite_stiffness(self, speed: float = 0.0) -> sp.csc_array:
+        """The stiffness at a reference speed in rad/s with no spring below zero, sparse (n, n): see `without_negative`."""
+        return self._sum(self.groups_at(speed), lambda g: without_negative(g.matrices))
 
     def strain_factor(self, speed: float = 0.0) -> sp.csr_array | None:
         """S with K = S^T S from element strains, sparse (s, n); None where a spring's matrix is not positive."""

@@ -52,9 +52,10 @@ ROOMS = {
         "orbits": {"common", "static", "sweep", "transient"},
         "teeth": {"common"},
         "rig": {"common", "modal", "static"},
+        "bearing": {"common", "modal", "static"},
         "casing": set(),
         "standards": {"campbell", "common", "modal", "response", "static"},
-        "": {"campbell", "modal", "orbits", "response", "static", "sweep", "teeth", "transient"},
+        "": {"bearing", "campbell", "modal", "orbits", "response", "static", "sweep", "teeth", "transient"},
     },
     "gears": {
         "geometry": set(),

@@ -13,6 +13,8 @@ import pytest
 import rotorgear as rg
 from tests.paths import ROOT
 from tests.unit.analysis.geared import pair_file
+from tests.unit.analysis.static.test_bearing_states import BALLS
+from tests.unit.analysis.static.test_bearing_states import rotor as pulled_rotor
 
 pytest.importorskip("matplotlib")
 MODELS = ROOT / "models"
@@ -23,6 +25,7 @@ PICTURES = {
     "static": ("static",),
     "response": ("response", "waterfall"),
     "frf": ("frf",),
+    "bearing": ("bearing",),
     "gear": ("gear",),
     "mesh": ("mesh", "mesh_pressure", "mesh_loads"),
     "mesh_map": ("mesh_map", "mesh_quantity"),
@@ -50,6 +53,7 @@ def results() -> dict[str, Any]:
             rg.load(MODELS / "split_torque.toml"), points=3, fmax=3000.0, modal_damping=0.02, elements=1
         ),
         "frf": rg.frf(jeffcott, inputs=["disks.disk:x"], outputs=["disks.disk:x"], fmax=100.0, points=9, elements=1),
+        "bearing": rg.bearing(pulled_rotor(BALLS, '["1 kN", "0 N", "0 N"]', "3000 rpm"), stability=False),
         "gear": rg.gear(pair),
         "mesh": rg.mesh(rg.loads(pair_file()), preset="preview", positions=8, load_factors=(0.5,)),
         "root_stress": rg.root_stress(rg.loads(pair_file()), preset="preview", positions=4),

@@ -26,6 +26,8 @@ from rotorgear.results.schema import Record, of
 from rotorgear.results.spectrum import SpectralLines
 from tests.paths import ROOT
 from tests.unit.analysis.geared import pair_file
+from tests.unit.analysis.static.test_bearing_states import BALLS
+from tests.unit.analysis.static.test_bearing_states import rotor as pulled_rotor
 from tests.unit.casings.blocks import block, write_inp
 
 # Names that mean two things since 0.1: files and scripts hold them. A new one is a mistake.
@@ -66,6 +68,7 @@ def example(kind: str) -> Result:
         "static": lambda: rg.static(model("helical_pair"), elements=1),
         "response": lambda: rg.response(model("backlash_pair"), points=3),
         "check": lambda: rg.check(model("geared_pair")),
+        "bearing": lambda: rg.bearing(pulled_rotor(BALLS, '["1 kN", "0 N", "0 N"]', "3000 rpm"), stability=False),
         "casing": lambda: rg.casing(block_casing(), modes=2),
         "gear": lambda: rg.gear(model("helical_pair")),
         "mesh": lambda: rg.mesh(model("helical_pair"), stiffness="iso", positions=16),

@@ -86,8 +86,9 @@ def modal(
     if not fixed and modes is None and fmax is not None:
         check_count(system.model, fmax)
     reach = Reach(modes, None if fmax is None else 2.0 * np.pi * fmax, *((0, 1.0) if fixed else ()))
-    if not fixed and speed is not None and not system.has_tables:
+    if not fixed and speed is not None and not system.has_tables and not system.circulatory(speed).nnz:
         # Damping and spin hardly change what mesh a mode needs: undamped modes find it at less cost, and it is checked below.
+        # Films whose symmetric part alone is no stable spring have no such modes.
         system = _refined_undamped(system, reach, tuple(only), target)
         clock.lap("refinement")
     for round_number in range(_ROUNDS):

@@ -106,6 +106,12 @@ def _problem(system: System, speed: float | None) -> _Problem:
     at = speed or 0.0
     circulatory = system.circulatory(at)
     K_symmetric = system.stiffness(at)
+    K = sp.csc_array(K_symmetric + circulatory) if circulatory.nnz else K_symmetric
+    S = system.strain_factor(at)
+    if S is None and circulatory.nnz:
+        # A film at a small load: the symmetric part of its stiffness is no stable spring, while the whole and its damping may
+        # well be. Undamped modes serve to find rigid motions and the scale of frequencies only.
+        K_symmetric = system.definite_stiffness(at)
     D = system.velocity_terms(speed)
     is_plain = D is None and not circulatory.nnz
     guess = None
@@ -116,9 +122,9 @@ def _problem(system: System, speed: float | None) -> _Problem:
     return _Problem(
         M=system.mass,
         D=D,
-        K=sp.csc_array(K_symmetric + circulatory) if circulatory.nnz else K_symmetric,
+        K=K,
         K_symmetric=K_symmetric,
-        S=system.strain_factor(at),
+        S=S,
         symmetric=not circulatory.nnz,
         damped=speed is not None and bool(system.damping(at).nnz),
         inertial=None if is_plain else system.inertial_terms(at),

@@ -1,0 +1,1 @@
+"""Sheets of bearings, and how far their numbers are to be trusted."""

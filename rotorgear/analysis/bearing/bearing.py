@@ -1,0 +1,239 @@
+"""The verb `bearing`: one bearing at the loads of its gearbox, inside and from outside, and over speed."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import fields
+
+import numpy as np
+from scipy.optimize import brentq
+
+from rotorgear.analysis.bearing.state import (
+    address_of,
+    by_its_law,
+    carried,
+    change_of_tangents,
+    on_grid,
+    relative,
+    state_of,
+)
+from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.request import speed_in_si
+from rotorgear.analysis.modal.modal import modal
+from rotorgear.analysis.static.solve import LawState
+from rotorgear.errors import AnalysisError
+from rotorgear.forces.inside import FilmField, RollingLoads
+from rotorgear.forces.law import CYCLE_POINTS
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, silent
+from rotorgear.quantity import RPM_PER_RAD_S
+from rotorgear.results.bearing import BearingSheet, BearingSpeed, FilmState, RollingElementRow
+
+# Of the operating speed, where no speeds are given.
+_SHARES = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
+_MODES = 24
+# Smaller damping ratios are rounding of a mode that nothing damps.
+_UNDAMPED = 1e-9
+# The threshold is found to this share of its speed.
+_THRESHOLD = 1e-5
+
+
+@recorded
+def bearing(
+    model: Model,
+    name: str | None = None,
+    *,
+    speed: float | str | None = None,
+    speeds: Sequence[float | str] | None = None,
+    stability: bool = True,
+    progress: Progress = silent,
+) -> BearingSheet:
+    """Return the sheet of one bearing: its state at the loads of the gearbox, and stiffness, damping and stability over speed.
+
+    Args:
+        model: a model with torques, forces, weight or other loads.
+        name: of a bearing with `rolling` or `journal`, or of a nonlinear element; None where there is one alone.
+        speed: of the input shaft in rad/s or with its unit; None: the operating speed.
+        speeds: of the input shaft, over which stiffness and damping are listed; None: 0.25 to 1.5 times `speed`.
+        stability: also solve the damped modes of the gearbox at these speeds: least logarithmic decrement, and the threshold.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: no such bearing, or no equilibrium.
+    """
+    address = address_of(model, name)
+    given = speed_in_si(speed)
+    if given is None:
+        given = (model.operation.speed if model.operation else None) or 0.0
+    own = by_its_law(model, address)
+    ratio = float(model.layout.train.ratio(getattr(model, address.partition(".")[0])[address.partition(".")[2]].shaft))
+    if not given and address in _films(own):
+        raise AnalysisError(f"{address}: a film carries where its journal turns; give a speed")
+    progress(0.0, "equilibrium of the gearbox")
+    state = state_of(own, address, given)
+    law = state.part.law
+    started = time.process_time()
+    here = carried(law, state.force, state.d, given)
+    seconds = time.process_time() - started
+    consistency = relative(here.force - state.force, state.force)
+    progress(0.2, "error estimate")
+    other = carried(on_grid(law, 2.0), state.force, state.d, given, 2 * CYCLE_POINTS)
+    error = change_of_tangents(here, other)
+    inside = law.settled(here.d).inside(here.d, speed=given)
+    asked = (
+        [speed_in_si(one) for one in speeds] if speeds is not None else [share * given for share in _SHARES if given]
+    )
+    rows, notes = _over_speeds(own, address, sorted(asked, key=abs), ratio, stability, progress)
+    threshold = _threshold(own, rows, progress) if stability else None
+    progress(1.0, "done")
+    return BearingSheet(
+        model=model,
+        name=address,
+        law=law.title,
+        speed=given,
+        shaft_speed=ratio * given,
+        geometry={
+            item.name: getattr(law, item.name) for item in fields(law) if not isinstance(getattr(law, item.name), tuple)
+        },
+        load=state.force,
+        displacement=here.d,
+        stiffness=here.stiffness,
+        damping=here.damping,
+        averaged=bool(law.cycle()) and bool(given),
+        elements=_elements(inside) if isinstance(inside, RollingLoads) else (),
+        film=_film(inside, state, ratio * given) if isinstance(inside, FilmField) else None,
+        speeds=rows,
+        threshold_speed=threshold[0] if threshold else None,
+        threshold_frequency_hz=threshold[1] if threshold else None,
+        consistency=consistency,
+        error_estimate=error,
+        cpu_seconds=seconds,
+        left_out=tuple(_left_out(model, address, law, inside)),
+        warnings=tuple(notes),
+        method="equilibrium of the whole gearbox, Newton's method; tangents of the bearing's law",
+    )
+
+
+def _films(model: Model) -> set[str]:
+    """Addresses of bearings that carry by an oil film."""
+    return {f"bearings.{name}" for name, bearing in model.bearings.items() if bearing.journal is not None}
+
+
+def _elements(inside: RollingLoads) -> tuple[RollingElementRow, ...]:
+    order = np.argsort(inside.angle)
+    columns = (getattr(inside, item.name)[order] for item in fields(inside))
+    return tuple(RollingElementRow(*map(float, row)) for row in zip(*columns, strict=True))
+
+
+def _film(inside: FilmField, state: LawState, shaft_speed: float) -> FilmState:
+    law = state.part.law
+    W = float(np.hypot(*state.force[:2]))
+    # From the load to the line of centres, positive in the sense of rotation.
+    angle = np.arctan2(state.d[1], state.d[0]) - np.arctan2(state.force[1], state.force[0])
+    attitude = float(np.sign(shaft_speed) * (np.mod(angle + np.pi, 2.0 * np.pi) - np.pi))
+    size = 2.0 * law.radius * law.length  # type: ignore[attr-defined]
+    turns = abs(shaft_speed) / (2.0 * np.pi)
+    thinness = law.radius / law.clearance  # type: ignore[attr-defined]
+    return FilmState(
+        eccentricity=float(np.hypot(*state.d[:2])) / law.clearance,  # type: ignore[attr-defined]
+        attitude=attitude,
+        minimum_gap=float(inside.gap.min()),
+        sommerfeld=law.viscosity * turns * size / W * thinness**2 if W else np.inf,  # type: ignore[attr-defined]
+        largest_pressure=float(inside.pressure.max()),
+        side_flow=inside.side_flow,
+        power_loss=inside.power_loss,
+        angle=inside.angle,
+        z=inside.z,
+        gap=inside.gap,
+        pressure=inside.pressure,
+    )
+
+
+def _over_speeds(
+    model: Model, address: str, speeds: list[float], ratio: float, stability: bool, progress: Progress
+) -> tuple[tuple[BearingSpeed, ...], list[str]]:
+    """The rows over speed; a speed without an equilibrium is a warning."""
+    rows = []
+    notes = []
+    for number, speed in enumerate(speeds):
+        progress(0.3 + 0.5 * number / len(speeds), f"{speed * RPM_PER_RAD_S:.6g} rpm")
+        try:
+            state = state_of(model, address, speed)
+        except AnalysisError as error:
+            notes.append(f"{speed * RPM_PER_RAD_S:.6g} rpm is left out: {error}")
+            continue
+        mass, whirl = rigid_threshold(state.stiffness[:2, :2], state.damping[:2, :2], ratio * speed)
+        rows.append(
+            BearingSpeed(
+                speed=speed,
+                load=state.force,
+                displacement=state.d,
+                stiffness=state.stiffness,
+                damping=state.damping,
+                critical_mass=mass,
+                whirl_ratio=whirl,
+                log_decrement=_least_decrement(model, speed)[0] if stability else None,
+            )
+        )
+    return tuple(rows), notes
+
+
+def rigid_threshold(K: np.ndarray, C: np.ndarray, speed: float) -> tuple[float | None, float | None]:
+    """Mass of a rigid rotor that stands at its threshold on a bearing, and the ratio of its whirl to the speed; None without.
+
+    With m s^2 + C s + K singular at s = i w:  k = m w^2 = (Kxx Cyy + Kyy Cxx - Kxy Cyx - Kyx Cxy)/(Cxx + Cyy) and
+    w^2 = ((Kxx - k)(Kyy - k) - Kxy Kyx)/(Cxx Cyy - Cxy Cyx)  (Lund, J. Tribology 109 (1987) 37).
+
+    Args:
+        K, C: stiffness and damping across the shaft, (2, 2). speed: of the shaft in rad/s.
+    """
+    trace = C[0, 0] + C[1, 1]
+    determinant = float(np.linalg.det(C))
+    if trace <= 0.0 or determinant <= 0.0 or not speed:
+        return None, None
+    k = (K[0, 0] * C[1, 1] + K[1, 1] * C[0, 0] - K[0, 1] * C[1, 0] - K[1, 0] * C[0, 1]) / trace
+    square = ((K[0, 0] - k) * (K[1, 1] - k) - K[0, 1] * K[1, 0]) / determinant
+    if square <= 0.0 or k <= 0.0:
+        return None, None
+    return float(k / square), float(np.sqrt(square) / abs(speed))
+
+
+def _least_decrement(model: Model, speed: float) -> tuple[float | None, float]:
+    """Smallest logarithmic decrement of what oscillates and is damped in the gearbox at a speed, and its frequency in Hz."""
+    modes = modal(model, speed=speed, modes=_MODES)
+    s = modes.eigenvalues
+    s = s[(s.imag > 0.0) & ~modes.rigid & (np.abs(s.real) > _UNDAMPED * np.abs(s))]
+    if not s.size:
+        return None, 0.0
+    least = s[np.argmax(s.real / s.imag)]
+    return float(-2.0 * np.pi * least.real / least.imag), float(least.imag / (2.0 * np.pi))
+
+
+def _threshold(model: Model, rows: tuple[BearingSpeed, ...], progress: Progress) -> tuple[float, float] | None:
+    """Speed and frequency where the least logarithmic decrement falls through zero first, solved at its own equilibria."""
+    for low, high in zip(rows, rows[1:], strict=False):
+        if low.log_decrement is None or high.log_decrement is None or not low.log_decrement > 0.0 >= high.log_decrement:
+            continue
+        progress(0.85, "threshold")
+        speed = float(
+            brentq(
+                lambda one: _least_decrement(model, one)[0], low.speed, high.speed, xtol=_THRESHOLD * abs(high.speed)
+            )
+        )
+        return speed, _least_decrement(model, speed)[1]
+    return None
+
+
+def _left_out(model: Model, address: str, law: object, inside: object) -> list[str]:
+    table, _, name = address.partition(".")
+    notes = [f"{address}: {text}" for text in law.left_out()]  # type: ignore[attr-defined]
+    if table == "bearings" and model.bearings[name].stiffness is not None:
+        notes.append(f"{address}: the stiffness given beside its rolling elements, which carry here")
+    if isinstance(inside, FilmField):
+        notes.append(
+            "oil in streamers where the film has broken: friction is that of a film that is whole, the most it can be"
+        )
+    if isinstance(inside, RollingLoads):
+        notes.append(f"{address}: centrifugal force of its rolling elements, and friction")
+    return notes

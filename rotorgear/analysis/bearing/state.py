@@ -1,0 +1,118 @@
+"""One bearing of a gearbox in equilibrium: which law it has, and where it stands under a load, on any grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rotorgear.analysis.common.request import direction_of
+from rotorgear.analysis.static.cycle import over_cycle
+from rotorgear.analysis.static.solve import LawState, equilibrate
+from rotorgear.errors import AnalysisError
+from rotorgear.forces.law import CYCLE_POINTS
+from rotorgear.model.model import Model
+from rotorgear.quantity import nearest
+from rotorgear.system.system import System
+
+if TYPE_CHECKING:
+    from rotorgear.forces.law import ForceLaw
+
+_ITERATIONS = 40
+_TOLERANCE = 1e-11
+
+
+@dataclass(frozen=True)
+class Carried:
+    """Displacements d (k,) of a law under a load, and its tangents (k, k) there."""
+
+    d: np.ndarray
+    force: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+
+
+def address_of(model: Model, name: str | None) -> str:
+    """The address of a bearing, or of a nonlinear element between a shaft and the ground, that a force law describes.
+
+    Raises:
+        AnalysisError: there is none of that name, or it has no law.
+    """
+    laws = [f"bearings.{one}" for one, bearing in model.bearings.items() if bearing.has_law]
+    laws += [f"nonlinear_elements.{one}" for one in model.nonlinear_elements]
+    if name is None and len(laws) == 1:
+        return laws[0]
+    own = [address for address in laws if name in (address, address.partition(".")[2])]
+    if name is not None and own:
+        return own[0]
+    known = ", ".join(address.partition(".")[2] for address in laws) or "none"
+    if name in model.bearings:
+        raise AnalysisError(
+            f"bearings.{name}: a stiffness given by hand has no sheet; give rolling = {{...}} or journal = {{...}}"
+        )
+    guess = nearest(name or "", [address.partition(".")[2] for address in laws])
+    hint = f"did you mean '{guess}'?" if guess else f"those with a law are: {known}"
+    got = f"the model has no bearing '{name}' with a law" if name else "name one of several bearings"
+    raise AnalysisError(f"bearing: {got}; {hint}")
+
+
+def by_its_law(model: Model, address: str) -> Model:
+    """The model with one bearing held by its law alone, where the file gives it a stiffness as well."""
+    table, _, name = address.partition(".")
+    if table != "bearings" or model.bearings[name].stiffness is None:
+        return model
+    return model.with_({f"{address}.stiffness": None})
+
+
+def state_of(model: Model, address: str, speed: float) -> LawState:
+    """A bearing in the equilibrium of the whole gearbox at a speed of the input shaft in rad/s.
+
+    Raises:
+        AnalysisError: there is no equilibrium.
+    """
+    system = System(model, load=model.mean_load(direction_of(speed)).of_kind("static"))
+    equilibrium, _ = over_cycle(equilibrate(system, speed), speed)
+    return next(law for law in equilibrium.laws if law.part.part == address)
+
+
+def carried(law: ForceLaw, load: np.ndarray, start: np.ndarray, speed: float, points: int = CYCLE_POINTS) -> Carried:
+    """A law under a load (k,), from displacements near by; rolling elements are averaged over so many points of their pitch.
+
+    Raises:
+        AnalysisError: Newton's method does not find it.
+    """
+    d = start.copy()
+    size = float(np.abs(load).max(initial=0.0))
+    for _ in range(_ITERATIONS):
+        about = law.linearised(d, speed=speed, points=points)
+        rest = load - about.force
+        if float(np.abs(rest).max(initial=0.0)) <= _TOLERANCE * max(size, 1e-300):
+            tangent = law.settled(d).linearised(d, speed=speed, points=points)
+            return Carried(d, tangent.force, tangent.stiffness, tangent.damping)
+        # What nothing loads (a motion along a film) has no stiffness: least squares leaves it where it is.
+        d = d + np.linalg.lstsq(about.stiffness, rest, rcond=1e-13)[0]
+    raise AnalysisError("the bearing's own equilibrium was not found on another grid; check its load")
+
+
+def change_of_tangents(here: Carried, finer: Carried) -> float:
+    """Estimated relative error of stiffness and damping: twice what half the cells change, as for an error of first order."""
+    changes = [(finer.stiffness - here.stiffness, here.stiffness), (finer.damping - here.damping, here.damping)]
+    return 2.0 * max(relative(difference, size) for difference, size in changes)
+
+
+def relative(difference: np.ndarray, of: np.ndarray) -> float:
+    """Largest entry over that of another array; 0 where that has none."""
+    size = float(np.abs(of).max(initial=0.0))
+    return float(np.abs(difference).max(initial=0.0) / size) if size else 0.0
+
+
+def on_grid(law: ForceLaw, factor: float) -> ForceLaw:
+    """A film on a grid with so many times the cells each way, within the bounds of its law; other laws have none."""
+    if not hasattr(law, "around"):
+        return law
+    cells = {}
+    for key in ("around", "along"):
+        about = law.declared()[key]
+        cells[key] = int(np.clip(round(factor * getattr(law, key)), about.least, about.most))
+    return replace(law, **cells)

@@ -1,0 +1,45 @@
+"""What happens inside a bearing in a state of its law: loads of rolling elements, or the pressure of a film with its flow and loss."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class RollingLoads:
+    """The z rolling elements of a bearing.
+
+    Attributes:
+        angle: where each one stands, (z,) rad from +x about +z.
+        contact_angle: of its load against the plane across the shaft, (z,) rad; 0 for one that carries nothing.
+        load: (z,) N. deflection: of both contacts together, (z,) m, negative where it stands apart.
+        inner_pressure, outer_pressure: largest Hertz pressure at the inner and the outer ring, (z,) Pa.
+    """
+
+    angle: np.ndarray
+    contact_angle: np.ndarray
+    load: np.ndarray
+    deflection: np.ndarray
+    inner_pressure: np.ndarray
+    outer_pressure: np.ndarray
+
+
+@dataclass(frozen=True)
+class FilmField:
+    """The film of a bearing in steady running.
+
+    Attributes:
+        angle: (t,) rad, from +x about +z, over all pads. z: (j,) m from the middle, over one half of the length.
+        gap: (t,) m. pressure: (t, j) Pa.
+        side_flow: oil that leaves at both ends, m^3/s.
+        power_loss: torque on the journal times its speed, W.
+    """
+
+    angle: np.ndarray
+    z: np.ndarray
+    gap: np.ndarray
+    pressure: np.ndarray
+    side_flow: float
+    power_loss: float

@@ -1,0 +1,102 @@
+"""Sheet of one bearing at the loads of its gearbox: what it looks like inside, and its stiffness and damping over speed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, derived, of
+
+
+class RollingElementRow(Record):
+    """One ball or roller, with the cage at angle 0."""
+
+    angle: float = of("where it stands", "rad", json="angle_deg", note=", from +x about +z")
+    contact_angle: float = of("contact angle under load", "rad", json="contact_angle_deg", note="; 0 without load")
+    load: float = of("load", "N", json="load_n")
+    deflection: float = of("deflection of both contacts", "m", json="deflection_m", note="; negative: it stands apart")
+    inner_pressure: float = of("largest Hertz pressure at the inner ring", "Pa", json="inner_pressure_pa")
+    outer_pressure: float = of("largest Hertz pressure at the outer ring", "Pa", json="outer_pressure_pa")
+
+
+class FilmState(Record):
+    """The film under its load. Angles are from +x about +z."""
+
+    eccentricity: float = of("eccentricity over the clearance", form=".4f")
+    attitude: float = of(
+        "attitude angle",
+        "rad",
+        json="attitude_deg",
+        note=": from the load to the line of centres, in the sense of rotation",
+    )
+    minimum_gap: float = of("smallest gap of the film", "m", json="minimum_gap_m")
+    sommerfeld: float = of("Sommerfeld number", note=" mu N L D / W (R/c)^2", form=".4g")
+    largest_pressure: float = of("largest pressure", "Pa", json="largest_pressure_pa")
+    side_flow: float = of("oil that leaves at both ends", "m^3/s", json="side_flow_m3_per_s")
+    power_loss: float = of("power loss", "W", json="power_loss_w")
+    angle: np.ndarray = of("angle of the grid", "rad", "angle", json="angle_rad")
+    z: np.ndarray = of("place along the shaft from the middle of the bearing", "m", "place", json="z_m")
+    gap: np.ndarray = of("gap of the film", "m", "angle", json="gap_m")
+    pressure: np.ndarray = of(
+        "pressure", "Pa", "angle", "place", json="pressure_pa", note=", symmetric about the middle"
+    )
+
+
+class BearingSpeed(Record):
+    """The bearing at one speed of the input shaft, at the loads of the gearbox there."""
+
+    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
+    load: np.ndarray = of("force of the shaft on it", "N, N m", "component", json="load")
+    displacement: np.ndarray = of("displacement of the shaft in it", "m, rad", "component")
+    stiffness: np.ndarray = of("tangent stiffness", "SI", "component", "displacement")
+    damping: np.ndarray = of("tangent damping", "SI", "component", "velocity")
+    critical_mass: float | None = of(
+        "mass of a rigid rotor on such bearings alone at its threshold",
+        "kg",
+        json="critical_mass_kg",
+        note=", a bearing; a heavier one whirls; `null` where none does",
+    )
+    whirl_ratio: float | None = of("frequency of that whirl over the speed of the shaft", form=".4f")
+    log_decrement: float | None = of(
+        "smallest logarithmic decrement of the gearbox",
+        note=", of its 24 lowest modes that anything damps; `null` where it was not asked for",
+    )
+
+
+class BearingSheet(ModelResult, kind="bearing"):
+    """One bearing; components are x, y, z in m and N, then tilts about x and y in rad and N m, as far as its law has them."""
+
+    name: str = of("bearing", note=", its address")
+    law: str = of("what it is", note=": its force law")
+    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
+    shaft_speed: float = of("speed of its own shaft", "rad/s", json="shaft_speed_rpm")
+    geometry: dict[str, float | int | str | bool] = of("parameters of the law, in SI", "", "PARAMETER")
+    load: np.ndarray = of("force of the shaft on it", "N, N m", "component", json="load")
+    displacement: np.ndarray = of("displacement of the shaft in it", "m, rad", "component")
+    stiffness: np.ndarray = of("tangent stiffness", "SI", "component", "displacement")
+    damping: np.ndarray = of("tangent damping", "SI", "component", "velocity")
+    averaged: bool = of("whether these are means over a pitch of its rolling elements")
+    elements: tuple[RollingElementRow, ...] = of("rolling elements", "", "element", record=RollingElementRow)
+    film: FilmState | None = of("film", record=FilmState, note="; `null` in a rolling bearing")
+    speeds: tuple[BearingSpeed, ...] = of("over speed", "", "speed", record=BearingSpeed)
+    threshold_speed: float | None = of(
+        "speed at which the gearbox begins to whirl",
+        "rad/s",
+        json="threshold_rpm",
+        note=", of the input shaft, in the range of `speeds`; `null` where it does not, or was not asked for",
+    )
+    threshold_frequency_hz: float | None = of("frequency of that whirl", "Hz")
+    consistency: float = of(
+        "difference between its law at the state printed and the load of the gearbox", note=", relative", form=".0e"
+    )
+    error_estimate: float = of(
+        "estimated relative error of stiffness and damping",
+        note=": twice the change on a grid of twice the cells each way, or with twice the positions of the elements in their pitch",
+        form=".0e",
+    )
+    cpu_seconds: float = of("CPU time of the bearing at one speed and load", "s", form=".4f")
+
+    @derived("largest load of a rolling element", "N", json="largest_element_load_n")
+    def largest_element_load(self) -> float | None:
+        """Of all of them, with the cage at angle 0; None for a film."""
+        return max((row.load for row in self.elements), default=None)

@@ -1,0 +1,123 @@
+"""The sheet of a bearing: loads and pressures inside against closed forms, flow and friction against tables, and its refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.analysis.bearing.bearing import rigid_threshold
+from rotorgear.errors import AnalysisError
+from rotorgear.forces.hertz import line_pressure, point_pressure
+from rotorgear.forces.journal_film import JournalFilm
+from tests.paths import ROOT
+from tests.unit.analysis.static.test_bearing_states import BALLS, ROLLERS, rotor
+
+PULL = '["1 kN", "0 N", "0 N"]'
+FILM = 'journal = {{ diameter = "60 mm", length = "30 mm", clearance = "60 um", viscosity = "20 mPa s", around = {}, along = 4 }}'
+
+
+def journal_rotor(around: int = 60) -> rg.Model:
+    """A rigid disk on one film, pulled across."""
+    text = FILM.format(around)
+    return rg.loads(f"""
+[operation]
+input_shaft = "rotor"
+speed = "3000 rpm"
+[shafts.rotor]
+[bearings.front]
+shaft = "rotor"
+at = "start"
+{text}
+[supports.guide]
+shaft = "rotor"
+at = "start"
+fixed = ["z", "tilt_x", "tilt_y"]
+[disks.d]
+shaft = "rotor"
+at = "start"
+mass = 10
+polar_inertia = 0.1
+diametral_inertia = 0.1
+[loads.pull]
+shaft = "rotor"
+at = "start"
+force = ["300 N", "400 N", "0 N"]
+""")
+
+
+def test_a_ball_on_a_plane_and_a_roller_on_a_plane_have_hertz_pressure() -> None:
+    R, Q, L, E, nu = 5e-3, 100.0, 10e-3, 210e9, 0.3
+    reduced = 0.5 * E / (1.0 - nu**2)
+    flat = point_pressure(np.array([Q]), 2.0 * R, 1e6, 1e6, 1e6, 0.0, E, nu)[0][0]
+    assert flat == pytest.approx((6.0 * Q * reduced**2 / (np.pi**3 * R**2)) ** (1.0 / 3.0), rel=1e-6)
+    line = line_pressure(np.array([Q]), L, 2.0 * R, 0.0, E, nu)[1][0]
+    assert line == pytest.approx(np.sqrt(Q * reduced / (np.pi * L * R)), rel=1e-12)
+
+
+@pytest.mark.parametrize("rolling", [BALLS, ROLLERS])
+def test_the_loads_of_the_rolling_elements_add_up_to_that_of_the_bearing(rolling: str) -> None:
+    sheet = rg.bearing(rotor(rolling, PULL), stability=False)
+    loads = np.array([row.load for row in sheet.elements])
+    angles = np.array([row.angle for row in sheet.elements])
+    assert loads @ np.cos(angles) == pytest.approx(1000.0, rel=1e-9)
+    assert loads @ np.sin(angles) == pytest.approx(0.0, abs=1e-6)
+    assert sheet.largest_element_load == loads.max()
+    assert all((row.inner_pressure > row.outer_pressure > 0.0) is (row.load > 0.0) for row in sheet.elements)
+    assert sheet.consistency < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("ratio", "eccentricity", "friction", "flow"),
+    [(1.0, 0.2, 12.8, 3.59 * 0.280), (1.0, 0.6, 3.22, 4.33 * 0.680), (1.0, 0.8, 1.70, 4.62 * 0.842)],
+)
+def test_friction_and_side_flow_are_those_of_raimondi_and_boyd(ratio, eccentricity, friction, flow) -> None:
+    R, c, speed = 0.05, 1e-4, 100.0
+    law = JournalFilm(0.05, R, 2.0 * R * ratio, c, follows=True)
+    d = np.array([eccentricity * c, 0.0])
+    film = law.inside(d, speed=speed)
+    load = float(np.hypot(*law.settled(d).evaluate(d, speed=speed).force))
+    assert film.power_loss / (speed * load * c) == pytest.approx(friction, rel=0.015)
+    assert film.side_flow / (R * c * speed / (2.0 * np.pi) * law.length) == pytest.approx(flow, rel=0.015)
+
+
+def test_a_film_carries_the_load_of_the_gearbox_at_the_attitude_of_its_state() -> None:
+    sheet = rg.bearing(journal_rotor(), speeds=["3000 rpm"], stability=False)
+    film = sheet.film
+    assert np.hypot(*sheet.load) == pytest.approx(500.0, rel=1e-9)
+    assert 30.0 < np.degrees(film.attitude) < 90.0
+    assert film.minimum_gap == pytest.approx((1.0 - film.eccentricity) * 60e-6, rel=2e-3)
+    pressure = film.pressure.sum(axis=1)
+    across = pressure @ np.column_stack([np.cos(film.angle), np.sin(film.angle)])
+    assert across / np.linalg.norm(across) == pytest.approx([0.6, 0.8], rel=1e-6)
+    assert 0.0 < sheet.error_estimate < 0.1
+    np.testing.assert_allclose(sheet.speeds[0].stiffness, sheet.stiffness, rtol=1e-6)
+
+
+def test_the_threshold_of_a_rigid_rotor_makes_its_characteristic_polynomial_imaginary() -> None:
+    K = np.array([[8.0, 40.0], [-52.0, 4.0]]) * 1e6
+    C = np.array([[90.0, -9.0], [-9.0, 110.0]]) * 1e3
+    mass, ratio = rigid_threshold(K, C, 900.0)
+    s = 1j * ratio * 900.0
+    M = mass * s**2 * np.eye(2) + C * s + K
+    assert abs(np.linalg.det(M)) < 1e-9 * abs(K[0, 1] * K[1, 0])
+    assert rigid_threshold(np.diag([8e6, 4e6]), C, 900.0) == (None, None)
+
+
+def test_what_has_no_sheet_is_refused_with_a_remedy() -> None:
+    jeffcott = rg.load(ROOT / "models" / "jeffcott.toml")
+    with pytest.raises(AnalysisError, match="a stiffness given by hand has no sheet"):
+        rg.bearing(jeffcott, next(iter(jeffcott.bearings)))
+    with pytest.raises(AnalysisError, match="did you mean 'front'"):
+        rg.bearing(journal_rotor(), "frnt")
+    with pytest.raises(AnalysisError, match="give a speed"):
+        rg.bearing(journal_rotor(), speed=0.0)
+
+
+def test_both_kinds_have_a_convergence_study() -> None:
+    films = rg.accuracy(journal_rotor(96), "bearing", bearing="front")
+    assert films.rungs[-1].error < 0.02
+    assert all(rung.error <= 1.5 * rung.estimate for rung in films.rungs)
+    balls = rg.accuracy(rotor(BALLS, PULL, "3000 rpm"), "bearing")
+    assert balls.rungs[-1].order == pytest.approx(1.5, abs=0.1)
+    assert all(rung.error <= 1.5 * rung.estimate for rung in balls.rungs)
