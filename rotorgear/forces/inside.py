@@ -1,4 +1,4 @@
-"""What happens inside a bearing in a state of its law: loads of rolling elements, or the pressure of a film with its flow and loss."""
+"""Inside a bearing in a state of its law: loads of rolling elements, or the pressure of a film with its flow and loss."""
 
 from __future__ import annotations
 

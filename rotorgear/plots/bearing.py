@@ -1,4 +1,4 @@
-"""Draws the sheet of a bearing: the pressure of its film or the loads of its rolling elements, stiffness and damping over speed."""
+"""Draws the sheet of a bearing: pressure of its film or loads of its rolling elements, stiffness and damping over speed."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.bearing import BearingSheet, FilmState
 
 
-def bearing(sheet: BearingSheet, fig: Any = None) -> np.ndarray:
+def bearing(result: BearingSheet, fig: Any = None) -> np.ndarray:
     """Draw what carries inside the bearing, and its stiffness and damping across the shaft over speed.
 
     Args:
-        sheet: of one bearing.
+        result: sheet of one bearing.
         fig: figure to draw on; a new one for None.
 
     Returns:
@@ -25,46 +25,49 @@ def bearing(sheet: BearingSheet, fig: Any = None) -> np.ndarray:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    figure = figure_for(fig, (10.0, 7.2), f"{sheet.name}: {sheet.law} at {sheet.speed * RPM_PER_RAD_S:.6g} rpm")
+    figure = figure_for(fig, (10.0, 7.2), f"{result.bearing}: {result.law} at {result.speed * RPM_PER_RAD_S:.6g} rpm")
     inside, beside, stiffness, damping = figure.subplots(2, 2).ravel()
-    if sheet.film is not None:
-        _pressure(figure, inside, sheet.film)
-        order = np.argsort(np.degrees(sheet.film.angle) % 360.0)
-        angle = (np.degrees(sheet.film.angle) % 360.0)[order]
-        beside.plot(angle, 1e6 * sheet.film.gap[order], ".", ms=2, color=COLOURS[0])
+    if result.film is not None:
+        _pressure(figure, inside, result.film)
+        order = np.argsort(np.degrees(result.film.angle) % 360.0)
+        angle = (np.degrees(result.film.angle) % 360.0)[order]
+        beside.plot(angle, 1e6 * result.film.gap[order], ".", ms=2, color=COLOURS[0])
         beside.set_ylim(bottom=0.0)
         beside.set_ylabel("gap, um")
         beside.set_xlabel("angle from +x, deg")
-        beside.set_title(f"Film: eccentricity {sheet.film.eccentricity:.3f} of the clearance", fontsize=10)
+        beside.set_title(f"Film: eccentricity {result.film.eccentricity:.3f} of the clearance", fontsize=10)
     else:
-        angle = np.degrees([row.angle for row in sheet.elements])
+        angle = np.degrees([row.angle for row in result.rolling_elements])
         inside.bar(
-            angle, [row.load for row in sheet.elements], width=0.5 * 360.0 / max(len(angle), 1), color=COLOURS[0]
+            angle,
+            [row.load for row in result.rolling_elements],
+            width=0.5 * 360.0 / max(len(angle), 1),
+            color=COLOURS[0],
         )
         inside.set_ylabel("load, N")
         inside.set_title("Loads of the rolling elements", fontsize=10)
         for number, (key, label) in enumerate((("inner_pressure", "inner ring"), ("outer_pressure", "outer ring"))):
-            pressure = [1e-6 * getattr(row, key) for row in sheet.elements]
+            pressure = [1e-6 * getattr(row, key) for row in result.rolling_elements]
             beside.plot(angle, pressure, "o", color=COLOURS[number], label=label)
         beside.set_ylabel("largest Hertz pressure, MPa")
         beside.legend(frameon=False, fontsize=8)
         for axis in (inside, beside):
             axis.set_xlabel("angle from +x, deg")
-    rpm = [row.speed * RPM_PER_RAD_S for row in sheet.speeds]
+    rpm = [row.speed * RPM_PER_RAD_S for row in result.over_speed]
     for axis, key, factor, label in (
         (stiffness, "stiffness", 1e-6, "K, N/um"),
         (damping, "damping", 1e-3, "C, kN s/m"),
     ):
         for number, (i, j) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
-            values = [factor * float(getattr(row, key)[i, j]) for row in sheet.speeds]
+            values = [factor * float(getattr(row, key)[i, j]) for row in result.over_speed]
             axis.plot(rpm, values, "o-", ms=3, lw=1.4, color=COLOURS[number], label=f"{'xy'[i]}{'xy'[j]}")
         axis.set_xlabel("speed of the input shaft, rpm")
         axis.set_ylabel(label)
         axis.legend(frameon=False, fontsize=8, ncols=2)
-        if sheet.threshold_speed is not None:
-            axis.axvline(sheet.threshold_speed * RPM_PER_RAD_S, color="#999999", lw=0.8, ls=":")
+        if result.threshold_speed is not None:
+            axis.axvline(result.threshold_speed * RPM_PER_RAD_S, color="#999999", lw=0.8, ls=":")
     stiffness.set_title(
-        "Stiffness" + (" (dotted: whirl threshold)" if sheet.threshold_speed is not None else ""), fontsize=10
+        "Stiffness" + (" (dotted: whirl threshold)" if result.threshold_speed is not None else ""), fontsize=10
     )
     damping.set_title("Damping", fontsize=10)
     axes = np.array([inside, beside, stiffness, damping])

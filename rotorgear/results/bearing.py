@@ -66,24 +66,24 @@ class BearingSpeed(Record):
 class BearingSheet(ModelResult, kind="bearing"):
     """One bearing; components are x, y, z in m and N, then tilts about x and y in rad and N m, as far as its law has them."""
 
-    name: str = of("bearing", note=", its address")
+    bearing: str = of("bearing", note=", its address")
     law: str = of("what it is", note=": its force law")
     speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
     shaft_speed: float = of("speed of its own shaft", "rad/s", json="shaft_speed_rpm")
     geometry: dict[str, float | int | str | bool] = of("parameters of the law, in SI", "", "PARAMETER")
-    load: np.ndarray = of("force of the shaft on it", "N, N m", "component", json="load")
-    displacement: np.ndarray = of("displacement of the shaft in it", "m, rad", "component")
-    stiffness: np.ndarray = of("tangent stiffness", "SI", "component", "displacement")
-    damping: np.ndarray = of("tangent damping", "SI", "component", "velocity")
+    bearing_load: np.ndarray = of("force of the shaft on it", "N, N m", "component")
+    bearing_displacement: np.ndarray = of("displacement of the shaft in it", "m, rad", "component")
+    bearing_stiffness: np.ndarray = of("tangent stiffness", "SI", "component", "displacement")
+    bearing_damping: np.ndarray = of("tangent damping", "SI", "component", "velocity")
     averaged: bool = of("whether these are means over a pitch of its rolling elements")
-    elements: tuple[RollingElementRow, ...] = of("rolling elements", "", "element", record=RollingElementRow)
+    rolling_elements: tuple[RollingElementRow, ...] = of("rolling elements", "", "element", record=RollingElementRow)
     film: FilmState | None = of("film", record=FilmState, note="; `null` in a rolling bearing")
-    speeds: tuple[BearingSpeed, ...] = of("over speed", "", "speed", record=BearingSpeed)
+    over_speed: tuple[BearingSpeed, ...] = of("over speed", "", "speed", record=BearingSpeed)
     threshold_speed: float | None = of(
         "speed at which the gearbox begins to whirl",
         "rad/s",
         json="threshold_rpm",
-        note=", of the input shaft, in the range of `speeds`; `null` where it does not, or was not asked for",
+        note=", of the input shaft, in the range of `over_speed`; `null` where it does not, or was not asked for",
     )
     threshold_frequency_hz: float | None = of("frequency of that whirl", "Hz")
     consistency: float = of(
@@ -91,7 +91,7 @@ class BearingSheet(ModelResult, kind="bearing"):
     )
     error_estimate: float = of(
         "estimated relative error of stiffness and damping",
-        note=": twice the change on a grid of twice the cells each way, or with twice the positions of the elements in their pitch",
+        note=": twice the change on a grid of twice the cells each way, or with twice the positions of its elements",
         form=".0e",
     )
     cpu_seconds: float = of("CPU time of the bearing at one speed and load", "s", form=".4f")
@@ -99,4 +99,4 @@ class BearingSheet(ModelResult, kind="bearing"):
     @derived("largest load of a rolling element", "N", json="largest_element_load_n")
     def largest_element_load(self) -> float | None:
         """Of all of them, with the cage at angle 0; None for a film."""
-        return max((row.load for row in self.elements), default=None)
+        return max((row.load for row in self.rolling_elements), default=None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import fields
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
@@ -89,21 +90,21 @@ def bearing(
     progress(1.0, "done")
     return BearingSheet(
         model=model,
-        name=address,
+        bearing=address,
         law=law.title,
         speed=given,
         shaft_speed=ratio * given,
         geometry={
             item.name: getattr(law, item.name) for item in fields(law) if not isinstance(getattr(law, item.name), tuple)
         },
-        load=state.force,
-        displacement=here.d,
-        stiffness=here.stiffness,
-        damping=here.damping,
+        bearing_load=state.force,
+        bearing_displacement=here.d,
+        bearing_stiffness=here.stiffness,
+        bearing_damping=here.damping,
         averaged=bool(law.cycle()) and bool(given),
-        elements=_elements(inside) if isinstance(inside, RollingLoads) else (),
+        rolling_elements=_elements(inside) if isinstance(inside, RollingLoads) else (),
         film=_film(inside, state, ratio * given) if isinstance(inside, FilmField) else None,
-        speeds=rows,
+        over_speed=rows,
         threshold_speed=threshold[0] if threshold else None,
         threshold_frequency_hz=threshold[1] if threshold else None,
         consistency=consistency,
@@ -212,7 +213,7 @@ def _least_decrement(model: Model, speed: float) -> tuple[float | None, float]:
 
 def _threshold(model: Model, rows: tuple[BearingSpeed, ...], progress: Progress) -> tuple[float, float] | None:
     """Speed and frequency where the least logarithmic decrement falls through zero first, solved at its own equilibria."""
-    for low, high in zip(rows, rows[1:], strict=False):
+    for low, high in pairwise(rows):
         if low.log_decrement is None or high.log_decrement is None or not low.log_decrement > 0.0 >= high.log_decrement:
             continue
         progress(0.85, "threshold")

@@ -24,13 +24,13 @@ def bearing_table(sheet: BearingSheet) -> RenderableType:
 
     turns = f"{sheet.model.reference_shaft} at {sheet.speed * RPM_PER_RAD_S:.6g} rpm"
     own = f", its shaft at {sheet.shaft_speed * RPM_PER_RAD_S:.6g} rpm" if sheet.shaft_speed != sheet.speed else ""
-    parts: list[Any] = [heading(f"{sheet.name}: {sheet.law}", f", {turns}{own}")]
+    parts: list[Any] = [heading(f"{sheet.bearing}: {sheet.law}", f", {turns}{own}")]
     parts += ["", _state(sheet)]
     if sheet.film is not None:
         parts += ["", _film(sheet)]
-    if sheet.elements:
+    if sheet.rolling_elements:
         parts += ["", _elements(sheet)]
-    if sheet.speeds:
+    if sheet.over_speed:
         parts += ["", _speeds(sheet)]
     mean = "means over a pitch of the rolling elements; " if sheet.averaged else ""
     notes = [
@@ -55,24 +55,30 @@ def _number(value: float, size: float, digits: int = 4) -> str:
 
 
 def _state(sheet: BearingSheet) -> Any:
-    names = _COMPONENTS[: len(sheet.load)]
-    has_damping = bool(np.any(sheet.damping))
+    names = _COMPONENTS[: len(sheet.bearing_load)]
+    has_damping = bool(np.any(sheet.bearing_damping))
     out = table("", "load", "moves", *(f"K {name}" for name in names), *(f"C {n}" for n in names if has_damping))
-    force = float(np.abs(sheet.load).max(initial=0.0))
+    force = float(np.abs(sheet.bearing_load).max(initial=0.0))
     for i, name in enumerate(names):
         cells = [
-            _number(float(sheet.load[i]), force),
-            _number(1e6 * float(sheet.displacement[i]), 1e6 * _largest(sheet)),
+            _number(float(sheet.bearing_load[i]), force),
+            _number(1e6 * float(sheet.bearing_displacement[i]), 1e6 * _largest(sheet)),
         ]
-        cells += [_number(1e-6 * float(k), 1e-6 * float(np.abs(sheet.stiffness).max())) for k in sheet.stiffness[i]]
+        cells += [
+            _number(1e-6 * float(k), 1e-6 * float(np.abs(sheet.bearing_stiffness).max()))
+            for k in sheet.bearing_stiffness[i]
+        ]
         if has_damping:
-            cells += [_number(1e-3 * float(c), 1e-3 * float(np.abs(sheet.damping).max())) for c in sheet.damping[i]]
+            cells += [
+                _number(1e-3 * float(c), 1e-3 * float(np.abs(sheet.bearing_damping).max()))
+                for c in sheet.bearing_damping[i]
+            ]
         out.add_row(f"{name}, {'N' if i < 3 else 'N m'}", *cells)
     return out
 
 
 def _largest(sheet: BearingSheet) -> float:
-    return float(np.abs(sheet.displacement).max(initial=0.0))
+    return float(np.abs(sheet.bearing_displacement).max(initial=0.0))
 
 
 def _film(sheet: BearingSheet) -> Any:
@@ -82,7 +88,7 @@ def _film(sheet: BearingSheet) -> Any:
     out.show_header = False
     out.add_column("")
     out.add_column("")
-    load = float(np.hypot(*sheet.load[:2]))
+    load = float(np.hypot(*sheet.bearing_load[:2]))
     area = 2.0 * float(sheet.geometry["radius"]) * float(sheet.geometry["length"])
     rows = (
         ("load W, over L D", f"{load:.5g} N, {1e-6 * load / area:.4g} MPa"),
@@ -100,7 +106,7 @@ def _film(sheet: BearingSheet) -> Any:
 
 def _elements(sheet: BearingSheet) -> Any:
     out = table("element", "at deg", "contact deg", "load N", "press um", "p inner MPa", "p outer MPa")
-    for number, row in enumerate(sheet.elements):
+    for number, row in enumerate(sheet.rolling_elements):
         loaded = row.load > 0.0
         out.add_row(
             str(number + 1),
@@ -115,9 +121,9 @@ def _elements(sheet: BearingSheet) -> Any:
 
 def _speeds(sheet: BearingSheet) -> Any:
     """Across the shaft; all components are in the JSON."""
-    has_damping = any(np.any(row.damping) for row in sheet.speeds)
+    has_damping = any(np.any(row.damping) for row in sheet.over_speed)
     names = ("xx", "xy", "yx", "yy")
-    told = any(row.log_decrement is not None for row in sheet.speeds)
+    told = any(row.log_decrement is not None for row in sheet.over_speed)
     out = table(
         "rpm",
         "W N",
@@ -125,7 +131,7 @@ def _speeds(sheet: BearingSheet) -> Any:
         *(f"C {n}" for n in names if has_damping),
         *(["decr."] if told else []),
     )
-    for row in sheet.speeds:
+    for row in sheet.over_speed:
         K = 1e-6 * row.stiffness[:2, :2].ravel()
         C = 1e-3 * row.damping[:2, :2].ravel()
         cells = [_number(float(k), float(np.abs(K).max()), 3) for k in K]
@@ -140,7 +146,7 @@ def _speeds(sheet: BearingSheet) -> Any:
 def _stability(sheet: BearingSheet) -> list[str]:
     if sheet.film is None:
         return []
-    at = min(sheet.speeds, key=lambda row: abs(row.speed - sheet.speed), default=None)
+    at = min(sheet.over_speed, key=lambda row: abs(row.speed - sheet.speed), default=None)
     notes = []
     if at is not None and at.critical_mass is not None and at.whirl_ratio is not None:
         notes.append(
@@ -154,8 +160,8 @@ def _stability(sheet: BearingSheet) -> list[str]:
             f"whirl threshold of the gearbox: {sheet.threshold_speed * RPM_PER_RAD_S:.6g} rpm, at "
             f"{sheet.threshold_frequency_hz:.4g} Hz (decr.: least logarithmic decrement of its modes)"
         )
-    elif any(row.log_decrement is not None for row in sheet.speeds):
-        below = all((row.log_decrement or 0.0) < 0.0 for row in sheet.speeds)
+    elif any(row.log_decrement is not None for row in sheet.over_speed):
+        below = all((row.log_decrement or 0.0) < 0.0 for row in sheet.over_speed)
         whirls = "the gearbox whirls at all these speeds" if below else "no whirl threshold between these speeds"
         notes.append(f"{whirls} (decr.: least logarithmic decrement of its modes)")
     return notes

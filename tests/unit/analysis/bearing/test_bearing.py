@@ -58,12 +58,12 @@ def test_a_ball_on_a_plane_and_a_roller_on_a_plane_have_hertz_pressure() -> None
 @pytest.mark.parametrize("rolling", [BALLS, ROLLERS])
 def test_the_loads_of_the_rolling_elements_add_up_to_that_of_the_bearing(rolling: str) -> None:
     sheet = rg.bearing(rotor(rolling, PULL), stability=False)
-    loads = np.array([row.load for row in sheet.elements])
-    angles = np.array([row.angle for row in sheet.elements])
+    loads = np.array([row.load for row in sheet.rolling_elements])
+    angles = np.array([row.angle for row in sheet.rolling_elements])
     assert loads @ np.cos(angles) == pytest.approx(1000.0, rel=1e-9)
     assert loads @ np.sin(angles) == pytest.approx(0.0, abs=1e-6)
     assert sheet.largest_element_load == loads.max()
-    assert all((row.inner_pressure > row.outer_pressure > 0.0) is (row.load > 0.0) for row in sheet.elements)
+    assert all((row.inner_pressure > row.outer_pressure > 0.0) is (row.load > 0.0) for row in sheet.rolling_elements)
     assert sheet.consistency < 1e-9
 
 
@@ -84,14 +84,14 @@ def test_friction_and_side_flow_are_those_of_raimondi_and_boyd(ratio, eccentrici
 def test_a_film_carries_the_load_of_the_gearbox_at_the_attitude_of_its_state() -> None:
     sheet = rg.bearing(journal_rotor(), speeds=["3000 rpm"], stability=False)
     film = sheet.film
-    assert np.hypot(*sheet.load) == pytest.approx(500.0, rel=1e-9)
+    assert np.hypot(*sheet.bearing_load) == pytest.approx(500.0, rel=1e-9)
     assert 30.0 < np.degrees(film.attitude) < 90.0
     assert film.minimum_gap == pytest.approx((1.0 - film.eccentricity) * 60e-6, rel=2e-3)
     pressure = film.pressure.sum(axis=1)
     across = pressure @ np.column_stack([np.cos(film.angle), np.sin(film.angle)])
     assert across / np.linalg.norm(across) == pytest.approx([0.6, 0.8], rel=1e-6)
     assert 0.0 < sheet.error_estimate < 0.1
-    np.testing.assert_allclose(sheet.speeds[0].stiffness, sheet.stiffness, rtol=1e-6)
+    np.testing.assert_allclose(sheet.over_speed[0].stiffness, sheet.bearing_stiffness, rtol=1e-6)
 
 
 def test_the_threshold_of_a_rigid_rotor_makes_its_characteristic_polynomial_imaginary() -> None:
