@@ -1,0 +1,1 @@
+"""Gearboxes in REXS (Reusable Engineering EXchange Standard, rexs.info) read into model files."""

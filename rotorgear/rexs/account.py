@@ -1,0 +1,94 @@
+"""The account of an import: what was assumed, what is missing, what was left out. And values read on that account."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from rotorgear.errors import Problem
+from rotorgear.results.rexs_import import Assumption
+from rotorgear.rexs.document import Component, Value
+from rotorgear.rexs.units import FACTORS, factor_of
+
+_TRUE = ("true", "1", "yes")
+_FALSE = ("false", "0", "no")
+
+
+@dataclass
+class Account:
+    """Collects over the whole import, so that one report has it all."""
+
+    assumptions: list[Assumption] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+    def assume(self, address: str, value: str, reason: str) -> str:
+        """Note an assumption; return the comment for the model file."""
+        self.assumptions.append(Assumption(address, value, reason))
+        return f"assumed: {reason}"
+
+    def missing(self, where: Component | str, expected: str, hint: str = "") -> None:
+        """Note what the file does not say and nothing can stand in for."""
+        problem = Problem(str(where), "", expected, hint)
+        if problem not in self.problems:
+            self.problems.append(problem)
+
+    def number(self, component: Component, names: tuple[str, ...], kind: str) -> float | None:
+        """The first of some attributes that is there and a finite number, in SI; an unknown unit is a problem."""
+        for name in names:
+            value = component.attributes.get(name)
+            number = None if value is None else _as_number(value.raw)
+            if value is None or number is None:
+                if value is not None and value.raw not in (None, "", []):
+                    self.problems.append(Problem(f"{component}: {name}", f"'{value.raw}'", "a finite number"))
+                continue
+            factor = factor_of(kind, value.unit)
+            if factor is None:
+                self._unknown_unit(component, name, value, kind)
+                continue
+            return number * factor
+        return None
+
+    def numbers(self, component: Component, name: str, kind: str, count: int) -> list[float] | None:
+        """An array of so many numbers in SI; None where it is not there."""
+        value = component.attributes.get(name)
+        if value is None or value.raw in (None, "", []):
+            return None
+        found = [_as_number(entry) for entry in value.raw] if isinstance(value.raw, list) else []
+        numbers = [entry for entry in found if entry is not None]
+        if len(numbers) != count or len(found) != count:
+            self.problems.append(Problem(f"{component}: {name}", f"{value.raw}", f"{count} finite numbers"))
+            return None
+        factor = factor_of(kind, value.unit)
+        if factor is None:
+            self._unknown_unit(component, name, value, kind)
+            return None
+        return [entry * factor for entry in numbers]
+
+    def truth(self, component: Component, name: str) -> bool | None:
+        """A truth; None where it is not said."""
+        text = self.text(component, name).lower()
+        return True if text in _TRUE else False if text in _FALSE else None
+
+    def text(self, component: Component, *names: str) -> str:
+        """The first of some attributes that is not empty, as text; "" where none is."""
+        for name in names:
+            value = component.attributes.get(name)
+            if value is not None and value.raw not in (None, "", []):
+                return str(value.raw).strip()
+        return ""
+
+    def _unknown_unit(self, component: Component, name: str, value: Value, kind: str) -> None:
+        known = ", ".join(unit for unit in FACTORS[kind] if unit) or "none"
+        self.problems.append(Problem(f"{component}: {name}", f"the unit '{value.unit}'", f"one of {known}"))
+
+
+def _as_number(raw: object) -> float | None:
+    if isinstance(raw, bool):
+        return None
+    try:
+        number = float(raw)  # type: ignore[arg-type]
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return number if math.isfinite(number) else None

@@ -1,0 +1,237 @@
+"""Bearings of a REXS file, to ground or between two shafts. Placeholders for rigid and for free never become a stiffness."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from rotorgear.rexs.account import Account
+from rotorgear.rexs.bearing_estimate import BearingSize, estimated, size_of_designation
+from rotorgear.rexs.document import Component
+from rotorgear.rexs.frames import Frame, Frames
+from rotorgear.rexs.shafts import ShaftPart
+from rotorgear.rexs.structure import Structure
+from rotorgear.rexs.toml_text import Names, Table, quantity, row
+
+# A stiffness outside these stands for rigid (1e20, 1e23) or for none (0): in N/m, and in N m/rad.
+_STIFFNESS = (1e4, 1e12)
+_TILT = (1.0, 1e9)
+# Of a bearing of which nothing is known but that it is one, N/m.
+_UNKNOWN = 2e8
+# Outer diameter over bore where the shaft's diameter is all that is known.
+_SERIES_2 = 1.48
+_ROLLER_WORDS = ("roller", "needle", "barrel", "tapered", "cylindrical")
+_PLAIN_WORDS = ("plain", "journal", "sliding", "hydrodynamic")
+
+
+def is_bearing(component: Component) -> bool:
+    """Whether a component is a bearing, and not the data of one."""
+    return "bearing" in component.type and not component.type.endswith(("_row", "_data", "_ring", "_contact", "_data_set"))
+
+
+def is_coupling(component: Component) -> bool:
+    """Whether a component joins two shafts."""
+    return component.type in ("coupling", "fixed_coupling", "switchable_coupling", "feather_key_connection") or (
+        component.type.endswith(("interference_fit", "spline_connection"))
+    )
+
+
+@dataclass(frozen=True)
+class Sides:
+    """The two shafts of a bearing or a coupling, None for the casing, with z in m."""
+
+    inner: tuple[ShaftPart, float] | None
+    outer: tuple[ShaftPart, float] | None
+
+
+def _sides(part: Component, shafts: dict[str, ShaftPart], structure: Structure, frames: Frames, model: Frame) -> Sides:
+    account = structure.account
+    found: list[tuple[ShaftPart, float] | None] = []
+    for roles, names in (
+        (("inner_part", "side_1", "assembly"), ("u_coordinate_on_shaft_inner_side", "u_coordinate_on_shaft_side_1", "u_coordinate_on_shaft")),
+        (("outer_part", "side_2"), ("u_coordinate_on_shaft_outer_side", "u_coordinate_on_shaft_side_2")),
+    ):
+        owner = structure.shaft_of(part, *roles)
+        shaft = shafts.get(owner.id) if owner is not None else None
+        if shaft is None:
+            found.append(None)
+            continue
+        u = account.number(part, names, "length")
+        frame = frames.of(part)
+        if u is not None:
+            z = shaft.axis.z(u)
+        elif frame is not None:
+            z = float((model.axes @ (frame.origin - model.origin))[0])
+        else:
+            account.missing(part, f"its place on {shaft.component} is needed: {names[0]} or support_vector")
+            z = shaft.start
+        found.append((shaft, shaft.place(part, z, account)))
+    return Sides(found[0], found[1])
+
+
+def bearing_table(
+    part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure, frames: Frames, model: Frame
+) -> Table | None:
+    """Table of a bearing to ground, or of a coupling where it sits between two shafts; None where it has no shaft."""
+    account = structure.account
+    sides = _sides(part, shafts, structure, frames, model)
+    name = names.of(part.name, "bearing", part.id)
+    both = sides.inner is not None and sides.outer is not None
+    address = f"{'couplings' if both else 'bearings'}.{name}"
+    if sides.inner is None and sides.outer is None:
+        account.missing(part, "it must sit on a shaft, by a side relation with an inner_part or an outer_part")
+        return None
+    seat = sides.inner or sides.outer
+    assert seat is not None
+    remark = str(part)
+    designation = account.text(part, "catalogue_designation", "name", "designation", "bearing_designation")
+    table = Table(address, f"{remark}, {designation}" if designation and designation != part.name else remark)
+    if sides.inner is not None and sides.outer is not None:
+        _add_ends(table, sides.inner, sides.outer)
+    else:
+        table.add("shaft", f'"{seat[0].name}"')
+        table.add("at", quantity(seat[1], "length"))
+    stiffness, comment = _stiffness(part, address, seat, designation, structure)
+    if not stiffness:
+        account.left_out.append(f"{part}: it holds nothing, by radial_force_absorption and axial_force_absorption")
+        return None
+    table.add("stiffness", row(**stiffness), comment)
+    return table
+
+
+def _add_ends(table: Table, first: tuple[ShaftPart, float], second: tuple[ShaftPart, float]) -> None:
+    table.add("from_shaft", f'"{first[0].name}"')
+    table.add("from_at", quantity(first[1], "length"))
+    table.add("to_shaft", f'"{second[0].name}"')
+    table.add("to_at", quantity(second[1], "length"))
+
+
+def _stiffness(
+    part: Component, address: str, seat: tuple[ShaftPart, float], designation: str, structure: Structure
+) -> tuple[dict[str, str], str]:
+    """Stiffness by direction, and the comment that says which of it the file did not give."""
+    account = structure.account
+    radial = _plausible(account.number(part, ("radial_stiffness",), "stiffness"), _STIFFNESS)
+    axial = _plausible(account.number(part, ("axial_stiffness",), "stiffness"), _STIFFNESS)
+    tilt = _plausible(account.number(part, ("bending_stiffness", "tilting_stiffness"), "rotational_stiffness"), _TILT)
+    takes_radial = account.truth(part, "radial_force_absorption") is not False
+    takes_axial = _takes_axial(part, designation, structure)
+    values: dict[str, str] = {}
+    reasons: list[str] = []
+    if (takes_radial and radial is None) or (takes_axial and axial is None):
+        guess_radial, guess_axial, words = _guess(part, seat, designation, structure)
+        if takes_radial and radial is None:
+            radial = guess_radial
+            reasons.append(account.assume(f"{address}.stiffness.radial", f"{radial:.3g} N/m", f"none in the file: {words}"))
+        if takes_axial and axial is None:
+            axial = guess_axial
+            one_way = account.text(part, "axial_force_absorption") in ("positive", "negative")
+            why = "none in the file: 2 tan²(alpha) of the radial one" + ("; held both ways, not one" if one_way else "")
+            reasons.append(account.assume(f"{address}.stiffness.axial", f"{axial:.3g} N/m", why))
+    if takes_radial and radial is not None:
+        values["radial"] = quantity(float(f"{radial:.6g}"), "stiffness")
+    if takes_axial and axial is not None:
+        values["axial"] = quantity(float(f"{axial:.6g}"), "stiffness")
+    if tilt is not None:
+        values["tilt"] = quantity(tilt, "rotational_stiffness")
+    return values, "; ".join(reasons)
+
+
+def _plausible(value: float | None, bounds: tuple[float, float]) -> float | None:
+    return value if value is not None and bounds[0] <= value <= bounds[1] else None
+
+
+def _takes_axial(part: Component, designation: str, structure: Structure) -> bool:
+    account = structure.account
+    said = account.text(part, "axial_force_absorption").lower()
+    if said:
+        return said not in ("no_direction", "none", "false", "no")
+    rows = structure.parts_of(part, "rolling_bearing_row")
+    said = next((text for row_ in rows if (text := account.text(row_, "axial_force_absorption_of_row"))), "")
+    if said:
+        return said not in ("no_direction", "none", "false", "no")
+    # Nothing said: what the kind of bearing does. Cylindrical rollers N and NU and needles move freely along the shaft.
+    return _kind(part, designation, structure) == "ball" or "tapered" in account.text(part, "bearing_type")
+
+
+def _kind(part: Component, designation: str, structure: Structure) -> str:
+    account = structure.account
+    words = f"{account.text(part, 'bearing_type', 'type_of_bearing')} {part.type}".lower()
+    if any(word in words for word in _PLAIN_WORDS):
+        return "plain"
+    if "ball" in words:
+        return "ball"
+    if any(word in words for word in _ROLLER_WORDS):
+        return "roller"
+    letters = designation.upper().replace("NOT A CATALOGUE BEARING:", "").strip()
+    first_digit = next((letter for letter in letters if letter.isdigit()), "")
+    if letters.startswith(("N", "K", "HK", "RN")) or (letters[:1].isdigit() and first_digit in "23" and len(letters) > 4):
+        return "roller"
+    return "ball" if first_digit in ("6", "7", "1") and letters[:1].isdigit() else "unknown"
+
+
+def _guess(
+    part: Component, seat: tuple[ShaftPart, float], designation: str, structure: Structure
+) -> tuple[float, float, str]:
+    """Radial and axial stiffness in N/m and how they were come by."""
+    account = structure.account
+    kind = _kind(part, designation or part.name, structure)
+    if kind in ("plain", "unknown") and size_of_designation(designation or part.name) is None:
+        return _UNKNOWN, _UNKNOWN / 10.0, f"a placeholder of {_UNKNOWN:.0e} N/m for a bearing of unknown size and kind"
+    bore = account.number(part, ("inner_diameter", "bore_diameter"), "length")
+    outer = account.number(part, ("outer_diameter",), "length")
+    size = BearingSize(bore, outer, "dimensions in the file") if bore and outer and 0.0 < bore < outer else None
+    size = size or size_of_designation(designation or part.name) or size_of_designation(part.name)
+    if size is None:
+        d = seat[0].diameter(seat[1])
+        size = BearingSize(d, d + 1e-3 * _SERIES_2 * (1e3 * d) ** 0.9, "diameter of the shaft, series 2 of ISO 15")
+    rating = account.number(part, ("static_capacity", "static_load_rating", "radial_static_load_rating"), "force")
+    rows = structure.parts_of(part, "rolling_bearing_row")
+    angles = [angle for row_ in rows if (angle := account.number(row_, ("pressure_angle", "contact_angle"), "angle"))]
+    angle = angles[0] if angles and 0.0 < abs(angles[0]) < math.radians(60.0) else 0.0
+    found = estimated("roller" if kind == "roller" else "ball", size, rating, abs(angle))
+    return found.radial, found.axial, found.words
+
+
+def coupling_table(
+    part: Component, names: Names, shafts: dict[str, ShaftPart], structure: Structure, frames: Frames, model: Frame
+) -> Table | None:
+    """Table of a coupling between two coaxial shafts; None where it has not two, and where it is open."""
+    account = structure.account
+    sides = _sides(part, shafts, structure, frames, model)
+    if sides.inner is None or sides.outer is None:
+        account.left_out.append(f"{part}: it does not join two shafts")
+        return None
+    if account.truth(part, "is_engaged") is False or account.truth(part, "is_closed") is False:
+        account.left_out.append(f"{part}: it is open")
+        return None
+    name = names.of(part.name, "coupling", part.id)
+    address = f"couplings.{name}"
+    table = Table(address, str(part))
+    _add_ends(table, sides.inner, sides.outer)
+    keys = (
+        ("radial", "stiffness", ("radial_stiffness",), _STIFFNESS),
+        ("axial", "stiffness", ("axial_stiffness",), _STIFFNESS),
+        ("tilt", "rotational_stiffness", ("bending_stiffness",), _TILT),
+        ("torsion", "rotational_stiffness", ("rotational_stiffness", "torsional_stiffness"), _TILT),
+    )
+    # A stub of steel, as long as thick, in place of what is rigid or not said: K = G I_p / d, E I / d, E A / d, 12 E I / d^3.
+    d = min(sides.inner[0].diameter(sides.inner[1]), sides.outer[0].diameter(sides.outer[1]))
+    inertia = math.pi * d**4 / 64.0
+    stub = {
+        "radial": 12.0 * 206e9 * inertia / d**3,
+        "axial": 206e9 * math.pi * d / 4.0,
+        "tilt": 206e9 * inertia / d,
+        "torsion": 79e9 * 2.0 * inertia / d,
+    }
+    values = {}
+    notes = []
+    for key, kind, attributes, bounds in keys:
+        found = _plausible(account.number(part, attributes, kind), bounds)
+        if found is None:
+            found = float(f"{stub[key]:.4g}")
+            reason = f"none in the file: a steel stub of {1e3 * d:.4g} mm, as long as thick"
+            notes.append(account.assume(f"{address}.stiffness.{key}", f"{found:.3g}", reason))
+        values[key] = quantity(found, kind)
+    table.add("stiffness", row(**values), notes[0] if notes else "")
+    return table

@@ -1,0 +1,306 @@
+"""Cylindrical gears and their meshes: teeth, profile shifts that fit the axes, tips and roots."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from rotorgear.rexs.account import Account
+from rotorgear.rexs.document import Component
+from rotorgear.rexs.frames import Frame, Frames
+from rotorgear.rexs.shafts import ShaftPart
+from rotorgear.rexs.structure import Pair, Structure
+from rotorgear.rexs.toml_text import Table, number, quantity
+
+# Attribute names over the versions.
+_SHIFT = ("profile_shift_coefficient", "addendum_modification_coefficient")
+_SHIFT_LENGTH = ("addendum_modification", "profile_shift")
+_HELIX = ("helix_angle_reference_diameter", "helix_angle_at_reference_diameter", "helix_angle")
+# Heights over the module that a tooth can have; 1 and 1.25 are ISO 53's. Placeholders lie far outside.
+_ADDENDUM = (0.3, 2.5)
+_DEDENDUM = (0.6, 2.5)
+# Axes may be off what teeth and shifts give by a share of the module, as the model file allows; shifts are mended beyond it.
+_FIT = 0.045
+# A profile shift may be mended by so much; more is no rounding but another gear.
+_MENDED = 0.3
+# Below this an angle is zero.
+_SPUR = 1e-9
+
+
+@dataclass(frozen=True)
+class GearPart:
+    """A gear of the model. Lengths in m, angles in rad; helix_angle > 0 is a right hand. `shift` None: not given."""
+
+    component: Component
+    name: str
+    shaft: ShaftPart
+    z: float
+    teeth: int
+    module: float
+    pressure_angle: float
+    helix_angle: float
+    width: float
+    shift: float | None
+    comments: dict[str, str]
+
+    @property
+    def transverse_module(self) -> float:
+        """m_t = m_n / cos(beta)."""
+        return self.module / math.cos(self.helix_angle)
+
+    @property
+    def reference_diameter(self) -> float:
+        """d = z m_t."""
+        return self.teeth * self.transverse_module
+
+
+def read_gear(
+    gear: Component, name: str, shafts: dict[str, ShaftPart], structure: Structure, frames: Frames, version: tuple[int, int], model: Frame
+) -> GearPart | None:
+    """A gear with its data wherever the version keeps them; None, and problems on the account, where it can't be made."""
+    account = structure.account
+    owner = structure.shaft_of(gear)
+    if owner is None or owner.id not in shafts:
+        account.missing(gear, "it must stand on a shaft, by an assembly relation")
+        return None
+    shaft = shafts[owner.id]
+    data = structure.data_of(gear)
+    comments: dict[str, str] = {}
+    teeth = account.number(gear, ("number_of_teeth",), "ratio")
+    module = _first(data, ("normal_module",), "length", account)
+    width = _first(data, ("face_width",), "length", account)
+    beta = _first(data, _HELIX, "angle", account)
+    alpha = _first(data, ("normal_pressure_angle",), "angle", account)
+    if module is None:
+        transverse = _first(data, ("transverse_module",), "length", account)
+        module = None if transverse is None else transverse * math.cos(beta or 0.0)
+    if teeth is None or teeth < 1 or teeth != round(teeth):
+        account.missing(gear, "number_of_teeth is needed, a whole number of at least 1")
+    if not module or module < 0.0:
+        account.missing(gear, "normal_module is needed, above 0")
+    if not width or width < 0.0:
+        account.missing(gear, "face_width is needed, above 0")
+    if not teeth or not module or not width or teeth < 1 or module < 0.0 or width < 0.0:
+        return None
+    if beta is None:
+        beta = 0.0
+        comments["kind"] = account.assume(f"gears.{name}.kind", "spur", "the file gives no helix angle")
+    if alpha is None or not 0.0 < alpha < math.radians(45.0):
+        alpha = math.radians(20.0)
+        reason = "the file gives no normal pressure angle: that of ISO 53"
+        comments["normal_pressure_angle"] = account.assume(f"gears.{name}.normal_pressure_angle", "20 deg", reason)
+    shift = _first(data, _SHIFT, "ratio", account)
+    if shift is None:
+        length = _first(data, _SHIFT_LENGTH, "length", account)
+        shift = None if length is None else length / module
+    _tell_unlike_flanks(gear, data, comments, account)
+    z = _middle(gear, shaft, width, frames, version, model, comments, account)
+    if z is None:
+        return None
+    return GearPart(gear, name, shaft, z, round(teeth), module, alpha, beta, width, shift, comments)
+
+
+def _first(data: list[Component], names: tuple[str, ...], kind: str, account: Account) -> float | None:
+    found = (account.number(component, names, kind) for component in data)
+    return next((value for value in found if value is not None), None)
+
+
+def _tell_unlike_flanks(gear: Component, data: list[Component], comments: dict[str, str], account: Account) -> None:
+    """A gear has one pressure angle and one shift here; where its flanks differ, the first of them counts."""
+    flanks = [component for component in data if "flank" in component.type]
+    for names, kind, key in ((("normal_pressure_angle",), "angle", "normal_pressure_angle"), (_SHIFT, "ratio", "profile_shift")):
+        values = [value for flank in flanks if (value := account.number(flank, names, kind)) is not None]
+        if values and max(values) - min(values) > 1e-6:
+            comments[key] = account.assume(
+                f"{gear.name}.{key}", f"{values[0]:.6g}", f"left and right flank of {gear} differ: that of the first is taken"
+            )
+
+
+def _middle(
+    gear: Component, shaft: ShaftPart, width: float, frames: Frames, version: tuple[int, int], model: Frame,
+    comments: dict[str, str], account: Account,
+) -> float | None:  # fmt: skip
+    """z of the middle of the face.
+
+    The support vector of a gear is its middle in all versions. u_coordinate_on_shaft is the begin of the face in version 1.0
+    and its middle from 1.1 on, so the vector counts where there is one.
+    """
+    u = account.number(gear, ("u_coordinate_on_shaft",), "length")
+    by_u = None if u is None else shaft.axis.z(u + (width / 2.0 if version <= (1, 0) else 0.0))
+    frame = frames.of(gear)
+    if frame is not None:
+        along, x, y = model.axes @ (frame.origin - model.origin)
+        if math.hypot(x - shaft.axis.x, y - shaft.axis.y) < 1e-4 * max(1.0, width) + 1e-5:
+            if by_u is not None and u is not None and abs(along - by_u) > 1e-5:
+                other = shaft.axis.z(u)
+                if min(abs(along - other), abs(along - shaft.axis.z(u + width / 2.0))) > 1e-5:
+                    reason = f"u_coordinate_on_shaft would give {1e3 * by_u:.6g} mm: the support vector counts"
+                    comments["at"] = account.assume(f"{gear.name}.at", f"{1e3 * along:.6g} mm", reason)
+            return shaft.place(gear, float(along), account)
+    if by_u is None:
+        account.missing(gear, "its place is needed: support_vector or u_coordinate_on_shaft")
+        return None
+    return shaft.place(gear, by_u, account)
+
+
+def involute(angle: float) -> float:
+    """inv(alpha) = tan(alpha) - alpha."""
+    return math.tan(angle) - angle
+
+
+def shift_sum(first: GearPart, second: GearPart, distance: float) -> float | None:
+    """x_1 + x_2 that brings two gears to a centre distance without backlash, ISO 21771; None where no such gears exist.
+
+    cos(alpha_wt) = a cos(alpha_t) / a_w with a the reference centre distance, and
+    x_1 + x_2 = (z_1 + z_2) (inv(alpha_wt) - inv(alpha_t)) / (2 tan(alpha_n)).
+    """
+    transverse = math.atan(math.tan(first.pressure_angle) / math.cos(first.helix_angle))
+    cosine = (first.reference_diameter + second.reference_diameter) / 2.0 * math.cos(transverse) / distance
+    if not 0.0 < cosine < 1.0:
+        return None
+    working = math.acos(cosine)
+    teeth = first.teeth + second.teeth
+    return teeth * (involute(working) - involute(transverse)) / (2.0 * math.tan(first.pressure_angle))
+
+
+def matched(first: GearPart, second: GearPart, pair: Pair, account: Account) -> tuple[GearPart, GearPart] | None:
+    """Two gears of a stage with opposite hands and shifts that fit their axes; None where they can't mesh."""
+    if abs(first.module - second.module) > 1e-9 or abs(abs(first.helix_angle) - abs(second.helix_angle)) > 1e-6:
+        account.missing(pair.stage, "its two gears must have one normal module and one helix angle, and have not")
+        return None
+    if abs(first.pressure_angle - second.pressure_angle) > 1e-6:
+        account.missing(pair.stage, "its two gears must have one normal pressure angle, and have not")
+        return None
+    if first.helix_angle * second.helix_angle > _SPUR:
+        reason = f"both helix angles of {pair.stage} have one sign, and external gears have opposite hands"
+        note = account.assume(f"gears.{second.name}.hand", "left" if second.helix_angle > 0.0 else "right", reason)
+        second = replace(second, helix_angle=-second.helix_angle, comments={**second.comments, "hand": note})
+    axes = first.shaft.axis
+    other = second.shaft.axis
+    distance = math.hypot(axes.x - other.x, axes.y - other.y)
+    stated = account.number(pair.stage, ("center_distance", "centre_distance"), "length")
+    if stated is not None and abs(stated - distance) > 1e-5:
+        account.warnings.append(
+            f"{pair.stage} states a centre distance of {1e3 * stated:.6g} mm; its shafts stand {1e3 * distance:.6g} mm apart, "
+            "which counts"
+        )
+    needed = shift_sum(first, second, distance) if distance > 0.0 else None
+    if needed is None or abs(needed) > 3.0:
+        account.missing(pair.stage, f"its shafts stand {1e3 * distance:.6g} mm apart, where gears of this size can't mesh")
+        return None
+    return _shifted(first, second, needed, pair, account)
+
+
+def _shifted(
+    first: GearPart, second: GearPart, needed: float, pair: Pair, account: Account
+) -> tuple[GearPart, GearPart] | None:
+    """Both gears with the profile shifts that are given, or what the centre distance leaves for those that are not."""
+
+    def given(part: GearPart, value: float, reason: str) -> GearPart:
+        note = account.assume(f"gears.{part.name}.profile_shift", f"{value:.6g}", reason)
+        return replace(part, shift=value, comments={**part.comments, "profile_shift": note})
+
+    if first.shift is None and second.shift is None:
+        half = needed / 2.0
+        reason = f"the file gives none: half of what the axes of {pair.stage} need"
+        return given(first, half, reason), given(second, half, reason)
+    if first.shift is None:
+        return given(first, needed - (second.shift or 0.0), f"the file gives none: what the axes of {pair.stage} need"), second
+    if second.shift is None:
+        return first, given(second, needed - first.shift, f"the file gives none: what the axes of {pair.stage} need")
+    off = needed - first.shift - second.shift
+    # da_w is about m_n dx: near the reference distance a shift moves the axes by itself.
+    if abs(off) <= _FIT:
+        return first, second
+    if abs(off) > _MENDED:
+        account.missing(
+            pair.stage,
+            f"profile shifts {first.shift:.6g} and {second.shift:.6g} sum to {first.shift + second.shift:.4g}, "
+            f"its axes need {needed:.4g}",
+        )
+        return None
+    old = second.shift
+    reason = f"the file says {old:.6g}; with that the gears of {pair.stage} do not fit their axes"
+    account.warnings.append(f"gears.{second.name}.profile_shift: {reason}; {old + off:.6g} is written")
+    return first, given(second, old + off, reason)
+
+
+def gear_table(part: GearPart, structure: Structure, material: tuple[str, str]) -> Table:
+    """The table of a gear."""
+    account = structure.account
+    table = Table(f"gears.{part.name}", str(part.component))
+    helical = abs(part.helix_angle) > _SPUR
+    note = part.comments.get
+    table.add("shaft", f'"{part.shaft.name}"')
+    table.add("at", quantity(part.z, "length"), note("at", ""))
+    table.add("kind", '"helical"' if helical else '"spur"', note("kind", ""))
+    table.add("teeth", str(part.teeth))
+    table.add("normal_module", quantity(part.module, "length"))
+    table.add("normal_pressure_angle", quantity(part.pressure_angle, "angle"), note("normal_pressure_angle", ""))
+    if helical:
+        hand = "right" if part.helix_angle > 0.0 else "left"
+        table.add("helix_angle", quantity(abs(part.helix_angle), "angle"))
+        table.add("hand", f'"{hand}"', note("hand", "a positive helix angle is a right hand, ISO 21771"))
+    table.add("width", quantity(part.width, "length"))
+    if part.shift is None:
+        reason = "the file gives none, and no stage asks for one"
+        table.add("profile_shift", "0", account.assume(f"gears.{part.name}.profile_shift", "0", reason))
+    else:
+        table.add("profile_shift", number(part.shift), note("profile_shift", ""))
+    _add_heights(table, part, structure.data_of(part.component), account)
+    if part.shaft.diameter(part.z) >= part.reference_diameter:
+        # A pinion whose shaft is drawn with the diameter of its teeth: its mass is that of the section.
+        reason = "the section of the shaft there is as large as the reference circle and has the mass"
+        comment = account.assume(f"gears.{part.name}.mass", "0 kg", reason)
+        table.add("mass", quantity(0.0, "mass"), comment)
+        table.add("polar_inertia", quantity(0.0, "inertia"), comment)
+        table.add("diametral_inertia", quantity(0.0, "inertia"), comment)
+    if material[0]:
+        table.add("material", f'"{material[0]}"', material[1])
+    return table
+
+
+def _add_heights(table: Table, part: GearPart, data: list[Component], account: Account) -> None:
+    """Tip and root: diameters of the gear where they are plausible, else its tool's heights, else ISO 53 by default."""
+    tip = _first(data, ("tip_diameter",), "length", account)
+    d = part.reference_diameter
+    shift = part.shift or 0.0
+    if tip is not None:
+        addendum = ((tip - d) / 2.0) / part.module - shift
+        if _ADDENDUM[0] <= addendum <= _ADDENDUM[1] or _ADDENDUM[0] <= addendum + shift <= _ADDENDUM[1]:
+            table.add("tip_diameter", quantity(tip, "length"))
+        else:
+            reason = f"the file says {1e3 * tip:.6g} mm, which no tooth of this gear has: by ISO 53"
+            value = f"{1e3 * (d + 2.0 * part.module * (1.0 + shift)):.6g} mm"
+            table.add("addendum_factor", "1", account.assume(f"gears.{part.name}.tip_diameter", value, reason))
+    else:
+        reason = "the file gives no tip diameter: addendum of one module, ISO 53"
+        table.add("addendum_factor", "1", account.assume(f"gears.{part.name}.addendum_factor", "1", reason))
+    root = _first(data, ("root_diameter", "root_circle_diameter"), "length", account)
+    dedendum = None if root is None else (d - root) / (2.0 * part.module) + shift
+    comment = "from the root diameter of the file"
+    if dedendum is None or not _DEDENDUM[0] <= dedendum <= _DEDENDUM[1]:
+        dedendum = None
+        for tool in data:
+            if tool.type.endswith("tool"):
+                # What the tool's tip cuts is the gear's dedendum.
+                found = account.number(tool, ("addendum_coefficient_reference_profile",), "ratio")
+                if found is not None and _DEDENDUM[0] <= found <= _DEDENDUM[1]:
+                    dedendum = found
+                    comment = f"addendum of {tool}"
+    if dedendum is None:
+        reason = "the file gives no root diameter and no tool: dedendum of 1.25 modules, ISO 53"
+        table.add("dedendum_factor", "1.25", account.assume(f"gears.{part.name}.dedendum_factor", "1.25", reason))
+    else:
+        table.add("dedendum_factor", number(dedendum), comment)
+
+
+def mesh_table(pair: Pair, name: str, first: GearPart, second: GearPart, account: Account) -> Table:
+    """The table of a mesh; the gear with fewer teeth is its pinion."""
+    pinion, wheel = (first, second) if first.teeth <= second.teeth else (second, first)
+    table = Table(f"meshes.{name}", str(pair.stage))
+    table.add("pinion", f'"{pinion.name}"')
+    table.add("gear", f'"{wheel.name}"')
+    reason = "REXS has no mesh stiffness: c_gamma_alpha of ISO 6336-1 by the geometry"
+    table.add("stiffness", '"iso"', account.assume(f"meshes.{name}.stiffness", "iso", reason))
+    return table

@@ -1,0 +1,210 @@
+"""A REXS file as a model file: what it says, with a comment for everything that had to be assumed."""
+
+from __future__ import annotations
+
+import re
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from rotorgear.errors import AnalysisError, ModelError
+from rotorgear.model.load import loads
+from rotorgear.model.model_hash import model_hash
+from rotorgear.results.rexs_import import RexsImport
+from rotorgear.rexs.account import Account
+from rotorgear.rexs.bearings import bearing_table, coupling_table, is_bearing, is_coupling
+from rotorgear.rexs.document import Document
+from rotorgear.rexs.frames import Frames
+from rotorgear.rexs.gears import GearPart, gear_table, matched, mesh_table, read_gear
+from rotorgear.rexs.loads import load_tables
+from rotorgear.rexs.read import read_document
+from rotorgear.rexs.shafts import Materials, ShaftPart, read_pieces, shaft_axes, shaft_table
+from rotorgear.rexs.structure import GEAR, Structure, refuse_other_kinds
+from rotorgear.rexs.toml_text import Names, Table, comment_line, text
+
+_NEWEST = (1, 6)
+
+
+def import_rexs(path: str | Path, *, load_case: str | int | None = None) -> RexsImport:
+    """Read a gearbox from a REXS file, versions 1.0 to 1.6, in XML, JSON, or a zip archive of one.
+
+    External cylindrical gears on parallel shafts with their sections, materials, bearings, couplings, speeds, torques and forces.
+    What the file leaves open is assumed and said; what can't be assumed is reported, all of it at once.
+
+    Args:
+        path: of the file.
+        load_case: number of a load case of the file; None: the first, where it has some.
+
+    Returns:
+        The text of the model file with its comments, and the assumptions by address.
+
+    Raises:
+        AnalysisError: no REXS file, a planetary, worm or bevel stage, or no such load case.
+        ModelError: values are missing that nothing can stand in for, or the model would not be sound; all of them.
+    """
+    clock = time.perf_counter()
+    document = read_document(path)
+    source = Path(path).name
+    refuse_other_kinds(document, source)
+    account = Account()
+    version = _version(document, account)
+    document, case = _with_load_case(document, load_case, source, account)
+    tables, counts = _tables(document, version, account)
+    if account.problems:
+        raise ModelError(account.problems, source)
+    whole = _whole(tables, document, source, case, account)
+    try:
+        model = loads(whole, source)
+    except ModelError as error:
+        raise ModelError(error.problems, f"{source}, read as a model") from None
+    return RexsImport(
+        source=source,
+        version=document.version,
+        application=document.application,
+        load_case=case,
+        shafts=counts["shafts"],
+        gears=counts["gears"],
+        meshes=counts["meshes"],
+        bearings=counts["bearings"],
+        toml=whole,
+        assumptions=tuple(account.assumptions),
+        left_out=tuple(account.left_out),
+        warnings=tuple(account.warnings),
+        method=f"REXS {document.version}",
+        model_hash=model_hash(model),
+        seconds={"total": time.perf_counter() - clock},
+        settings={"load_case": load_case},
+    )
+
+
+def _version(document: Document, account: Account) -> tuple[int, int]:
+    found = re.match(r"\s*(\d+)\.(\d+)", document.version)
+    if found is None:
+        account.warnings.append(f"the file states no version ('{document.version}'); it is read as 1.6")
+        return _NEWEST
+    version = int(found[1]), int(found[2])
+    if not (1, 0) <= version <= _NEWEST:
+        account.warnings.append(f"REXS {document.version} is read as 1.6, the newest version that is known here")
+        return _NEWEST
+    return version
+
+
+def _with_load_case(
+    document: Document, wanted: str | int | None, source: str, account: Account
+) -> tuple[Document, str]:
+    """The document with the attributes of a load case over those of its components, and the case's number."""
+    if not document.load_cases:
+        if wanted is not None:
+            raise AnalysisError(f"{source}: load case {wanted} was asked for, and the file has none")
+        return document, ""
+    cases = dict(document.load_cases)
+    chosen = str(wanted) if wanted is not None else document.load_cases[0][0]
+    if chosen not in cases:
+        raise AnalysisError(f"{source}: there is no load case '{chosen}'; it has: {', '.join(cases)}")
+    components = dict(document.components)
+    for number, attributes in cases[chosen].items():
+        if number in components:
+            old = components[number]
+            components[number] = replace(old, attributes={**old.attributes, **attributes})
+    if wanted is None and len(cases) > 1:
+        account.warnings.append(f"load case {chosen} is taken, the first of {len(cases)}: {', '.join(cases)}")
+    return replace(document, components=components), chosen
+
+
+def _tables(document: Document, version: tuple[int, int], account: Account) -> tuple[list[Table], dict[str, int]]:
+    """All tables of the model file in its order, and how many parts of each kind there are."""
+    structure = Structure(document, account)
+    frames = Frames(document, account)
+    materials = Materials(structure, account)
+    pairs = structure.pairs()
+    axes, frame = shaft_axes(document, frames, structure, pairs, account)
+    shafts: dict[str, ShaftPart] = {}
+    names = Names()
+    for component in document.of_type("shaft"):
+        pieces = read_pieces(component, structure, account)
+        if component.id in axes and pieces:
+            name = names.of(component.name, "shaft", component.id)
+            shafts[component.id] = ShaftPart(component, name, axes[component.id], pieces)
+    if not document.of_type("shaft"):
+        account.missing("the file", "a gearbox needs at least one component of the type shaft")
+    shaft_tables = [shaft_table(part, *materials.of(part.component, f"shafts.{part.name}")) for part in shafts.values()]
+    names = Names()
+    gears: dict[str, GearPart] = {}
+    for component in document.of_type(GEAR):
+        name = names.of(component.name, "gear", component.id)
+        part = read_gear(component, name, shafts, structure, frames, version, frame)
+        if part is not None:
+            gears[component.id] = part
+    mesh_tables = []
+    names = Names()
+    meshing = []
+    for pair in pairs:
+        ends = [gears.get(gear.id) for gear in pair.gears]
+        if ends[0] is None or ends[1] is None:
+            continue
+        fitted = matched(ends[0], ends[1], pair, account)
+        if fitted is None:
+            continue
+        for part in fitted:
+            gears[part.component.id] = part
+        meshing.append(fitted)
+        mesh_tables.append(mesh_table(pair, names.of(pair.stage.name, "stage", pair.stage.id), *fitted, account))
+    gear_tables = [
+        gear_table(part, structure, materials.of(part.component, f"gears.{part.name}") if structure.referenced(part.component, "material") else ("", ""))
+        for part in gears.values()
+    ]
+    joints = {}
+    names = Names()
+    for component in document.components.values():
+        if is_bearing(component):
+            table = bearing_table(component, names, shafts, structure, frames, frame)
+        elif is_coupling(component):
+            table = coupling_table(component, names, shafts, structure, frames, frame)
+        else:
+            continue
+        joints[component.id] = table
+    by_name = {part.name: number for number, part in shafts.items()}
+    stiff = [
+        (by_name[_value(table, "from_shaft")], by_name[_value(table, "to_shaft")])
+        for number, table in joints.items()
+        if table is not None and is_coupling(document.components[number])
+    ]
+    operation, load_list = load_tables(shafts, meshing, stiff, structure)
+    structure.note_left_out({*joints, *document.components} & set(joints))
+    bearing_tables = [table for table in joints.values() if table is not None]
+    counts = {
+        "shafts": len(shafts),
+        "gears": len(gears),
+        "meshes": len(mesh_tables),
+        "bearings": sum(is_bearing(document.components[number]) for number, table in joints.items() if table is not None),
+    }
+    head = [operation] if operation is not None else []
+    tables = [*head, *materials.tables, *shaft_tables, *gear_tables, *mesh_tables, *bearing_tables, *load_list]
+    return tables, counts
+
+
+def _value(table: Table, key: str) -> str:
+    return next(value for name, value, _ in table.rows if name == key).strip('"')
+
+
+def _whole(tables: list[Table], document: Document, source: str, case: str, account: Account) -> str:
+    """The text of the file, with where it comes from at its head and what was left out at its foot."""
+    by = f" by {document.application}" if document.application else ""
+    of_case = f", load case {case}" if case else ""
+    lines = [
+        f"# Made from {comment_line(source)}, REXS {comment_line(document.version)}{comment_line(by)}{of_case}.",
+        f"# {len(account.assumptions)} values are assumed: look for 'assumed' below. z runs along u, x along v, y along w of the file.",
+        *(f"# Warning: {comment_line(note)}" for note in account.warnings),
+        *(f"# Left out: {comment_line(note)}" for note in account.left_out),
+        "schema_version = 1",
+        f"title = {text(_title(document, source))}",
+    ]
+    for table in tables:
+        lines += ["", *table.lines()]
+    return "\n".join(lines) + "\n"
+
+
+def _title(document: Document, source: str) -> str:
+    units = document.of_type("gear_unit")
+    name = units[0].name if units else ""
+    return f"{name} of {source}" if name else source

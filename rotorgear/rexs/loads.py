@@ -1,0 +1,165 @@
+"""Speed, torques and forces of a REXS file: of the components, or of one of its load cases."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from rotorgear.rexs.account import Account
+from rotorgear.rexs.document import Component
+from rotorgear.rexs.gears import GearPart
+from rotorgear.rexs.shafts import ShaftPart
+from rotorgear.rexs.structure import Structure
+from rotorgear.rexs.toml_text import Names, Table, quantity
+
+
+@dataclass(frozen=True)
+class Torque:
+    """A place where torque enters or leaves: z in m, torque about +z in N m or None where the train gives it."""
+
+    component: Component
+    shaft: ShaftPart
+    z: float
+    torque: float | None
+
+
+def ratios(
+    start: str, meshes: list[tuple[GearPart, GearPart]], joined: list[tuple[str, str]]
+) -> dict[str, float]:
+    """Speed of each shaft over that of one, by number: -z_1/z_2 over a mesh, 1 over a coupling; only what the train reaches."""
+    found = {start: 1.0}
+    steps = [(a.shaft.component.id, b.shaft.component.id, -a.teeth / b.teeth) for a, b in meshes]
+    steps += [(b, a, 1.0 / ratio) for a, b, ratio in steps]
+    steps += [(a, b, 1.0) for pair in joined for a, b in (pair, pair[::-1])]
+    grown = True
+    while grown:
+        grown = False
+        for a, b, ratio in steps:
+            if a in found and b not in found:
+                found[b] = found[a] * ratio
+                grown = True
+    return found
+
+
+def load_tables(
+    shafts: dict[str, ShaftPart],
+    meshes: list[tuple[GearPart, GearPart]],
+    joined: list[tuple[str, str]],
+    structure: Structure,
+) -> tuple[Table | None, list[Table]]:
+    """The operation (None without speed and torque) and the loads."""
+    account = structure.account
+    names = Names()
+    loads = []
+    torques = []
+    for load in structure.document.of_type("external_load"):
+        owner = structure.shaft_of(load)
+        if owner is None or owner.id not in shafts:
+            account.left_out.append(f"{load}: it stands on no shaft")
+            continue
+        shaft = shafts[owner.id]
+        u = account.number(load, ("u_coordinate_on_shaft",), "length")
+        z = shaft.place(load, shaft.start if u is None else shaft.axis.z(u), account)
+        torque = account.number(load, ("torque_around_u_axis", "torque_acting_on_shaft_u", "torque"), "torque")
+        if torque is not None and torque != 0.0:
+            torques.append(Torque(load, shaft, z, shaft.axis.sense * torque))
+        elif account.truth(load, "transmits_torque"):
+            torques.append(Torque(load, shaft, z, None))
+        force = _force_table(load, shaft, z, names, structure.account)
+        if force is not None:
+            loads.append(force)
+    speed, reference = _speed(shafts, account)
+    torques = [item for item in torques if item.torque is not None] + [item for item in torques if item.torque is None]
+    if reference is None and not torques:
+        account.assume("operation", "none", "the file gives neither speed nor torque: analyses are at standstill")
+        return None, loads
+    return _operation(speed, reference, torques, shafts, meshes, joined, names, account, loads)
+
+
+def _speed(shafts: dict[str, ShaftPart], account: Account) -> tuple[float | None, ShaftPart | None]:
+    """Speed about +z in rad/s of the shaft that defines it."""
+    found = []
+    for shaft in shafts.values():
+        speed = account.number(shaft.component, ("rotational_speed", "speed"), "speed")
+        if speed:
+            defines = account.truth(shaft.component, "defines_speed")
+            found.append((0 if defines else 1 if defines is None else 2, speed * shaft.axis.sense, shaft))
+    if not found:
+        return None, None
+    _, speed, shaft = min(found, key=lambda item: item[0])
+    return speed, shaft
+
+
+def _operation(
+    speed: float | None, reference: ShaftPart | None, torques: list[Torque], shafts: dict[str, ShaftPart],
+    meshes: list[tuple[GearPart, GearPart]], joined: list[tuple[str, str]], names: Names, account: Account, loads: list[Table],
+) -> tuple[Table | None, list[Table]]:  # fmt: skip
+    """Which torque drives follows from its power: torque times the speed of its shaft."""
+    start = reference or torques[0].shaft
+    found = ratios(start.component.id, meshes, joined)
+    if speed is None:
+        speed = 0.0
+    sense = speed or (torques[0].torque or 1.0)
+    power = {
+        item.component.id: item.torque * found[item.shaft.component.id] * sense
+        for item in torques
+        if item.torque is not None and item.shaft.component.id in found
+    }
+    drives = [item for item in torques if power.get(item.component.id, 0.0) > 0.0]
+    takes = [item for item in torques if power.get(item.component.id, 0.0) < 0.0]
+    open_ends = [item for item in torques if item.torque is None and item.shaft.component.id in found]
+    table = Table("operation")
+    if not drives and takes and open_ends:
+        # Only what is taken is known: the other end drives.
+        drives = open_ends[:1]
+        open_ends = open_ends[1:]
+    driver = drives[0].shaft if drives else start
+    table.add("input_shaft", f'"{driver.name}"')
+    own = speed * found.get(driver.component.id, 1.0)
+    if speed:
+        note = "" if driver is start else f"{start.component} defines {speed * 30.0 / math.pi:.6g} rpm"
+        table.add("speed", quantity(own, "speed"), note)
+    else:
+        account.assume("operation.speed", "none", "the file gives no rotational speed: analyses are at standstill")
+    known_ends = [*drives, *takes, *open_ends]
+    if not drives or len(known_ends) < 2 or not speed:
+        if torques:
+            account.left_out.append("torques: a speed, a torque that drives and one that takes are needed")
+        return table, loads
+    if len(open_ends) > 1:
+        reason = f"{len(open_ends)} ends have no torque: {open_ends[0].component} takes the rest"
+        account.assume("loads", "0 N m", reason)
+        open_ends = open_ends[:1]
+    for kind, items in (("input", drives), ("output", [*takes, *open_ends])):
+        for item in items:
+            entry = Table(f"loads.{names.of(item.component.name, 'load', item.component.id)}", str(item.component))
+            entry.add("shaft", f'"{item.shaft.name}"')
+            entry.add("kind", f'"{kind}"')
+            entry.add("at", quantity(item.z, "length"))
+            if item.torque is not None and not (kind == "output" and not open_ends and item is takes[-1]):
+                entry.add("torque", quantity(abs(item.torque), "torque"))
+            elif item.torque is not None:
+                given = abs(item.torque)
+                note = account.assume(f"{entry.header}.torque", "the rest", f"the file says {given:.6g} N m; torques must balance")
+                entry.rows[-1] = (*entry.rows[-1][:2], note)
+            loads.append(entry)
+    return table, loads
+
+
+def _force_table(load: Component, shaft: ShaftPart, z: float, names: Names, account: Account) -> Table | None:
+    """A force and a moment across the shaft; u w of the file are z y of the model, and v is x, against the sense of a reversed u."""
+    u, v, w = (account.number(load, (f"force_{axis}_direction",), "force") or 0.0 for axis in "uvw")
+    mv, mw = (account.number(load, (f"torque_around_{axis}_axis",), "torque") or 0.0 for axis in "vw")
+    if not any((u, v, w, mv, mw)):
+        return None
+    if shaft.axis.sense < 0:
+        account.left_out.append(f"{load}: a force on a shaft whose u runs against the others")
+        return None
+    table = Table(f"loads.{names.of(f'{load.name} force', 'force', load.id)}", str(load))
+    table.add("shaft", f'"{shaft.name}"')
+    table.add("at", quantity(z, "length"))
+    if any((u, v, w)):
+        table.add("force", "[" + ", ".join(quantity(value, "force") for value in (v, w, u)) + "]")
+    if mv or mw:
+        table.add("moment", "[" + ", ".join(quantity(value, "torque") for value in (mv, mw, 0.0)) + "]")
+    return table

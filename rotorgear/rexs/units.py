@@ -1,0 +1,46 @@
+"""Units of REXS as factors to SI. Their texts differ by version: an angle has "°" up to 1.3 and "deg" from 1.4 on."""
+
+from __future__ import annotations
+
+import math
+
+_TURN = 2.0 * math.pi
+# Factors by kind of quantity; the first unit of each is the one that the REXS database gives the attributes read here.
+FACTORS: dict[str, dict[str, float]] = {
+    "length": {"mm": 1e-3, "mum": 1e-6, "um": 1e-6, "cm": 1e-2, "dm": 0.1, "m": 1.0, "in": 0.0254, "inch": 0.0254},
+    "angle": {"deg": math.pi / 180.0, "°": math.pi / 180.0, "degree": math.pi / 180.0, "rad": 1.0, "mrad": 1e-3},
+    "speed": {
+        "1/min": _TURN / 60.0, "rpm": _TURN / 60.0, "rev/min": _TURN / 60.0, "min^-1": _TURN / 60.0,
+        "1/s": _TURN, "Hz": _TURN, "rad/s": 1.0, "deg/s": math.pi / 180.0,
+    },
+    "force": {"N": 1.0, "kN": 1e3, "MN": 1e6},
+    "torque": {"Nm": 1.0, "Nmm": 1e-3, "kNm": 1e3},
+    "power": {"kW": 1e3, "W": 1.0, "MW": 1e6},
+    "stiffness": {"N/m": 1.0, "N/mm": 1e3, "N/mum": 1e6, "N/um": 1e6, "kN/mm": 1e6},
+    "rotational_stiffness": {
+        "Nmm/rad": 1e-3, "Nm/rad": 1.0, "kNm/rad": 1e3, "Nm/deg": 180.0 / math.pi, "Nm/°": 180.0 / math.pi,
+        "Nmm/deg": 0.18 / math.pi, "Nmm/°": 0.18 / math.pi,
+    },
+    "modulus": {"N/mm^2": 1e6, "MPa": 1e6, "Pa": 1.0, "GPa": 1e9, "N/m^2": 1.0},
+    "density": {"kg/dm^3": 1e3, "kg/m^3": 1.0, "g/cm^3": 1e3, "kg/mm^3": 1e9},
+    "mass": {"kg": 1.0, "g": 1e-3, "t": 1e3},
+    "inertia": {"kgm^2": 1.0, "kgmm^2": 1e-6},
+    "acceleration": {"m/s^2": 1.0, "mm/s^2": 1e-3},
+    "ratio": {"": 1.0, "%": 1e-2},
+}  # fmt: skip
+_SPELLINGS = (("µ", "mu"), ("μ", "mu"), ("²", "^2"), ("³", "^3"), ("º", "°"), ("·", ""), ("*", ""), (" ", ""))
+_NOTHING = ("", "none", "-", "1")
+
+
+def factor_of(kind: str, unit: str) -> float | None:
+    """Factor to SI of a unit by its text; None where the text is no unit of this kind.
+
+    No unit at all means that of the REXS database: each attribute has one there, and some programs leave it out.
+    """
+    text = unit
+    for old, new in _SPELLINGS:
+        text = text.replace(old, new)
+    known = FACTORS[kind]
+    if text in _NOTHING:
+        return next(iter(known.values()))
+    return known.get(text)
