@@ -136,6 +136,11 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
         (("casing", ""),),
     ),
     (
+        "import",
+        "`rotorgear import FILE -o gearbox.toml --json import.json`. The [page on REXS](rexs.md) says what is assumed when.",
+        (("import", ""),),
+    ),
+    (
         "accuracy",
         "`rotorgear accuracy MODEL --json accuracy.json`. What is infinite or makes no sense is `null`.",
         (("convergence", ""),),

@@ -6,6 +6,7 @@ __version__: str
 from rotorgear.model.load import load as load
 from rotorgear.model.load import loads as loads
 from rotorgear.model.load import schema as schema
+from rotorgear.rexs.import_rexs import import_rexs as import_rexs
 from rotorgear.model.shipped import models as models
 from rotorgear.export.new_model import new as new
 from rotorgear.model.model import Model as Model
@@ -87,6 +88,7 @@ from rotorgear.export.hdf5 import save as save
 from rotorgear.export.hdf5 import read as read
 from rotorgear.export.stream import stream as stream
 from rotorgear.export.uff import write_uff as write_uff
+from rotorgear.export.rexs_model import write_model_file as write_model_file
 from rotorgear.export.updated_model import write_updated_model as write_updated_model
 from rotorgear.export.casing_vtk import write_casing_vtk as write_casing_vtk
 from rotorgear.export.vtk import write_vtk as write_vtk
@@ -118,6 +120,7 @@ from rotorgear.results.convergence import ConvergenceStudy as ConvergenceStudy
 from rotorgear.results.comparison import Comparison as Comparison
 from rotorgear.results.comparison import RigLine as RigLine
 from rotorgear.results.update import UpdateResult as UpdateResult
+from rotorgear.results.rexs_import import RexsImport as RexsImport
 
 # The errors.
 from rotorgear.errors import RotorgearError as RotorgearError

@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Mapping
 from importlib import import_module
+from keyword import iskeyword
 from typing import Any
 
 import typer
@@ -19,6 +20,7 @@ from rotorgear.cli.old_options import with_current_options
 HELP = {
     "new": "Write a model file with comments, as a copy of one that comes with rotorgear, to change freely.",
     "models": "List the models that come with rotorgear, to look at and to start from.",
+    "import": "Read a gearbox from a REXS file (XML, JSON or zip) into a model file, with a comment for every assumption.",
     "modal": "Natural frequencies and mode shapes; undamped at standstill, or damped and gyroscopic at a --speed.",
     "campbell": "Campbell diagram: modes over speed, excitation lines, crossings, margins, whirl and stability.",
     "critical": "Critical speeds, damped or undamped, of every shaft and mesh order; with --map over support stiffness.",
@@ -43,13 +45,19 @@ HELP = {
 }
 
 
+def function_of(name: str) -> Any:
+    """The function of a command; one whose name Python keeps for itself has an underscore behind it, as has its file."""
+    own = f"{name}_" if iskeyword(name) else name
+    return getattr(import_module(f"rotorgear.cli.{own}"), own)
+
+
 class Commands(Mapping[str, Any]):
     """Name -> command, made of its function when it is asked for."""
 
     def __getitem__(self, name: str) -> Any:
         if name not in HELP:
             raise KeyError(name)
-        function = getattr(import_module(f"rotorgear.cli.{name}"), name)
+        function = function_of(name)
         single = typer.Typer(add_completion=False, rich_markup_mode=None)
         single.command(name)(function)
         return typer.main.get_command(single)

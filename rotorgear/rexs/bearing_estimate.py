@@ -6,9 +6,9 @@ Rotating Machines (Cambridge 2010), section 5.5.4:
     balls    k = k_b Z^(2/3) D^(1/3) f^(1/3) cos^(5/3)(alpha),  k_b = 13e6 N^(2/3) m^(-4/3)
     rollers  k = k_r Z^0.9 l^0.8 f^0.1 cos^1.9(alpha),          k_r = 1.0e9 N^0.9 m^(-1.8)
 
-with Z elements of diameter D and length l, contact angle alpha and static load f. Unknown are most of these, so that the result is
-an order of size: elements of 0.3 of the section's height, and a load of a tenth of the static rating. Elements that are equally
-loaded have an axial stiffness of 2 tan^2(alpha) times the radial one.
+with Z elements of diameter D and length l, contact angle alpha and static load f. Most of these are not known, so that the result
+is an order of size: elements of 0.3 times the difference of the diameters, and a load of a tenth of the static rating. Elements
+that are equally loaded have an axial stiffness of 2 tan^2(alpha) times the radial one.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 _BALL = 13e6
 _ROLLER = 1.0e9
-# Share of the height (D - d) / 2 ... of the ring section that the elements fill, and of the circle that they occupy.
+# Diameter of the elements over the difference of outer diameter and bore, and the share of their circle that they fill.
 _ELEMENT = 0.3
 _FILLED = {"ball": 0.6, "roller": 0.8}
 # Factors of the static rating, ISO 76: C_0 = 12.3 Z D^2 for balls and 44 (1 - D/d_m) Z l D for rollers, in N and mm.
@@ -52,7 +52,7 @@ def size_of_designation(designation: str) -> BearingSize | None:
         return None
     code = digits[0][-2:]
     bore = _BORE_CODES.get(code, 5.0 * float(code))
-    series = _DIAMETER_SERIES.get(digits[0][-3], None)
+    series = _DIAMETER_SERIES.get(digits[0][-3])
     if series is None or bore <= 0.0:
         return None
     return BearingSize(1e-3 * bore, 1e-3 * (bore + series * bore**0.9), "designation, ISO 15")

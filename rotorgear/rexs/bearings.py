@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from rotorgear.rexs.account import Account
 from rotorgear.rexs.bearing_estimate import BearingSize, estimated, size_of_designation
 from rotorgear.rexs.document import Component
 from rotorgear.rexs.frames import Frame, Frames
@@ -26,7 +25,9 @@ _PLAIN_WORDS = ("plain", "journal", "sliding", "hydrodynamic")
 
 def is_bearing(component: Component) -> bool:
     """Whether a component is a bearing, and not the data of one."""
-    return "bearing" in component.type and not component.type.endswith(("_row", "_data", "_ring", "_contact", "_data_set"))
+    return "bearing" in component.type and not component.type.endswith(
+        ("_row", "_data", "_ring", "_contact", "_data_set")
+    )
 
 
 def is_coupling(component: Component) -> bool:
@@ -48,7 +49,10 @@ def _sides(part: Component, shafts: dict[str, ShaftPart], structure: Structure, 
     account = structure.account
     found: list[tuple[ShaftPart, float] | None] = []
     for roles, names in (
-        (("inner_part", "side_1", "assembly"), ("u_coordinate_on_shaft_inner_side", "u_coordinate_on_shaft_side_1", "u_coordinate_on_shaft")),
+        (
+            ("inner_part", "side_1", "assembly"),
+            ("u_coordinate_on_shaft_inner_side", "u_coordinate_on_shaft_side_1", "u_coordinate_on_shaft"),
+        ),
         (("outer_part", "side_2"), ("u_coordinate_on_shaft_outer_side", "u_coordinate_on_shaft_side_2")),
     ):
         owner = structure.shaft_of(part, *roles)
@@ -121,20 +125,22 @@ def _stiffness(
     if (takes_radial and radial is None) or (takes_axial and axial is None):
         guess_radial, guess_axial, words = _guess(part, seat, designation, structure)
         if takes_radial and radial is None:
-            radial = guess_radial
-            reasons.append(account.assume(f"{address}.stiffness.radial", f"{radial:.3g} N/m", f"none in the file: {words}"))
+            radial = float(f"{guess_radial:.3g}")
+            reasons.append(
+                account.assume(f"{address}.stiffness.radial", f"{radial:.3g} N/m", f"none in the file: {words}")
+            )
         if takes_axial and axial is None:
-            axial = guess_axial
+            axial = float(f"{guess_axial:.3g}")
             one_way = account.text(part, "axial_force_absorption") in ("positive", "negative")
             why = "none in the file: 2 tan²(alpha) of the radial one" + ("; held both ways, not one" if one_way else "")
             reasons.append(account.assume(f"{address}.stiffness.axial", f"{axial:.3g} N/m", why))
     if takes_radial and radial is not None:
-        values["radial"] = quantity(float(f"{radial:.6g}"), "stiffness")
+        values["radial"] = quantity(radial, "stiffness")
     if takes_axial and axial is not None:
-        values["axial"] = quantity(float(f"{axial:.6g}"), "stiffness")
+        values["axial"] = quantity(axial, "stiffness")
     if tilt is not None:
         values["tilt"] = quantity(tilt, "rotational_stiffness")
-    return values, "; ".join(reasons)
+    return values, "\n".join(reasons)
 
 
 def _plausible(value: float | None, bounds: tuple[float, float]) -> float | None:
@@ -165,7 +171,9 @@ def _kind(part: Component, designation: str, structure: Structure) -> str:
         return "roller"
     letters = designation.upper().replace("NOT A CATALOGUE BEARING:", "").strip()
     first_digit = next((letter for letter in letters if letter.isdigit()), "")
-    if letters.startswith(("N", "K", "HK", "RN")) or (letters[:1].isdigit() and first_digit in "23" and len(letters) > 4):
+    if letters.startswith(("N", "K", "HK", "RN")) or (
+        letters[:1].isdigit() and first_digit in "23" and len(letters) > 4
+    ):
         return "roller"
     return "ball" if first_digit in ("6", "7", "1") and letters[:1].isdigit() else "unknown"
 

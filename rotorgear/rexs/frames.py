@@ -68,12 +68,16 @@ class Frames:
 
 @dataclass(frozen=True)
 class Axis:
-    """The axis of a shaft in the frame of the model: x and y in m, z of its origin, and +1 or -1 where u runs along z."""
+    """The axis of a shaft in the frame of the model: x and y in m, z of its origin, and -1 where u runs against z.
+
+    `rotation` (3, 3) takes components along u, v, w of the shaft to those along z, x, y of the model.
+    """
 
     x: float
     y: float
     origin: float
     sense: int
+    rotation: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def z(self, u: float) -> float:
         """z of a coordinate u on the shaft, both in m."""
@@ -86,4 +90,5 @@ def axis_in(frame: Frame, model: Frame) -> Axis | None:
     if abs(abs(u[0]) - 1.0) > _PARALLEL**2 or np.hypot(u[1], u[2]) > _PARALLEL:
         return None
     along, x, y = model.axes @ (frame.origin - model.origin)
-    return Axis(float(x), float(y), float(along), 1 if u[0] > 0.0 else -1)
+    rotation = tuple(tuple(float(entry) for entry in row) for row in model.axes @ frame.axes.T)
+    return Axis(float(x), float(y), float(along), 1 if u[0] > 0.0 else -1, rotation)

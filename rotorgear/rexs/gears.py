@@ -55,7 +55,13 @@ class GearPart:
 
 
 def read_gear(
-    gear: Component, name: str, shafts: dict[str, ShaftPart], structure: Structure, frames: Frames, version: tuple[int, int], model: Frame
+    gear: Component,
+    name: str,
+    shafts: dict[str, ShaftPart],
+    structure: Structure,
+    frames: Frames,
+    version: tuple[int, int],
+    model: Frame,
 ) -> GearPart | None:
     """A gear with its data wherever the version keeps them; None, and problems on the account, where it can't be made."""
     account = structure.account
@@ -108,11 +114,16 @@ def _first(data: list[Component], names: tuple[str, ...], kind: str, account: Ac
 def _tell_unlike_flanks(gear: Component, data: list[Component], comments: dict[str, str], account: Account) -> None:
     """A gear has one pressure angle and one shift here; where its flanks differ, the first of them counts."""
     flanks = [component for component in data if "flank" in component.type]
-    for names, kind, key in ((("normal_pressure_angle",), "angle", "normal_pressure_angle"), (_SHIFT, "ratio", "profile_shift")):
+    for names, kind, key in (
+        (("normal_pressure_angle",), "angle", "normal_pressure_angle"),
+        (_SHIFT, "ratio", "profile_shift"),
+    ):
         values = [value for flank in flanks if (value := account.number(flank, names, kind)) is not None]
         if values and max(values) - min(values) > 1e-6:
             comments[key] = account.assume(
-                f"{gear.name}.{key}", f"{values[0]:.6g}", f"left and right flank of {gear} differ: that of the first is taken"
+                f"{gear.name}.{key}",
+                f"{values[0]:.6g}",
+                f"left and right flank of {gear} differ: that of the first is taken",
             )
 
 
@@ -186,7 +197,9 @@ def matched(first: GearPart, second: GearPart, pair: Pair, account: Account) -> 
         )
     needed = shift_sum(first, second, distance) if distance > 0.0 else None
     if needed is None or abs(needed) > 3.0:
-        account.missing(pair.stage, f"its shafts stand {1e3 * distance:.6g} mm apart, where gears of this size can't mesh")
+        account.missing(
+            pair.stage, f"its shafts stand {1e3 * distance:.6g} mm apart, where gears of this size can't mesh"
+        )
         return None
     return _shifted(first, second, needed, pair, account)
 
@@ -205,7 +218,9 @@ def _shifted(
         reason = f"the file gives none: half of what the axes of {pair.stage} need"
         return given(first, half, reason), given(second, half, reason)
     if first.shift is None:
-        return given(first, needed - (second.shift or 0.0), f"the file gives none: what the axes of {pair.stage} need"), second
+        return given(
+            first, needed - (second.shift or 0.0), f"the file gives none: what the axes of {pair.stage} need"
+        ), second
     if second.shift is None:
         return first, given(second, needed - first.shift, f"the file gives none: what the axes of {pair.stage} need")
     off = needed - first.shift - second.shift

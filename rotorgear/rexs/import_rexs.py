@@ -150,7 +150,13 @@ def _tables(document: Document, version: tuple[int, int], account: Account) -> t
         meshing.append(fitted)
         mesh_tables.append(mesh_table(pair, names.of(pair.stage.name, "stage", pair.stage.id), *fitted, account))
     gear_tables = [
-        gear_table(part, structure, materials.of(part.component, f"gears.{part.name}") if structure.referenced(part.component, "material") else ("", ""))
+        gear_table(
+            part,
+            structure,
+            materials.of(part.component, f"gears.{part.name}")
+            if structure.referenced(part.component, "material")
+            else ("", ""),
+        )
         for part in gears.values()
     ]
     joints = {}
@@ -170,13 +176,15 @@ def _tables(document: Document, version: tuple[int, int], account: Account) -> t
         if table is not None and is_coupling(document.components[number])
     ]
     operation, load_list = load_tables(shafts, meshing, stiff, structure)
-    structure.note_left_out({*joints, *document.components} & set(joints))
+    structure.note_left_out(set(joints))
     bearing_tables = [table for table in joints.values() if table is not None]
     counts = {
         "shafts": len(shafts),
         "gears": len(gears),
         "meshes": len(mesh_tables),
-        "bearings": sum(is_bearing(document.components[number]) for number, table in joints.items() if table is not None),
+        "bearings": sum(
+            is_bearing(document.components[number]) for number, table in joints.items() if table is not None
+        ),
     }
     head = [operation] if operation is not None else []
     tables = [*head, *materials.tables, *shaft_tables, *gear_tables, *mesh_tables, *bearing_tables, *load_list]
@@ -193,7 +201,7 @@ def _whole(tables: list[Table], document: Document, source: str, case: str, acco
     of_case = f", load case {case}" if case else ""
     lines = [
         f"# Made from {comment_line(source)}, REXS {comment_line(document.version)}{comment_line(by)}{of_case}.",
-        f"# {len(account.assumptions)} values are assumed: look for 'assumed' below. z runs along u, x along v, y along w of the file.",
+        f"# {len(account.assumptions)} values are assumed: look for 'assumed'. z is u, x is v and y is w of the file.",
         *(f"# Warning: {comment_line(note)}" for note in account.warnings),
         *(f"# Left out: {comment_line(note)}" for note in account.left_out),
         "schema_version = 1",

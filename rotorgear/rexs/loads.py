@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.document import Component
 from rotorgear.rexs.gears import GearPart
@@ -23,9 +25,7 @@ class Torque:
     torque: float | None
 
 
-def ratios(
-    start: str, meshes: list[tuple[GearPart, GearPart]], joined: list[tuple[str, str]]
-) -> dict[str, float]:
+def ratios(start: str, meshes: list[tuple[GearPart, GearPart]], joined: list[tuple[str, str]]) -> dict[str, float]:
     """Speed of each shaft over that of one, by number: -z_1/z_2 over a mesh, 1 over a coupling; only what the train reaches."""
     found = {start: 1.0}
     steps = [(a.shaft.component.id, b.shaft.component.id, -a.teeth / b.teeth) for a, b in meshes]
@@ -130,36 +130,39 @@ def _operation(
         reason = f"{len(open_ends)} ends have no torque: {open_ends[0].component} takes the rest"
         account.assume("loads", "0 N m", reason)
         open_ends = open_ends[:1]
+    all_given = not open_ends and all(item.torque is not None for item in drives)
     for kind, items in (("input", drives), ("output", [*takes, *open_ends])):
         for item in items:
             entry = Table(f"loads.{names.of(item.component.name, 'load', item.component.id)}", str(item.component))
             entry.add("shaft", f'"{item.shaft.name}"')
             entry.add("kind", f'"{kind}"')
             entry.add("at", quantity(item.z, "length"))
-            if item.torque is not None and not (kind == "output" and not open_ends and item is takes[-1]):
+            if item.torque is not None and not (all_given and kind == "output" and item is takes[-1]):
                 entry.add("torque", quantity(abs(item.torque), "torque"))
             elif item.torque is not None:
                 given = abs(item.torque)
-                note = account.assume(f"{entry.header}.torque", "the rest", f"the file says {given:.6g} N m; torques must balance")
+                note = account.assume(
+                    f"{entry.header}.torque", "the rest", f"the file says {given:.6g} N m; torques must balance"
+                )
                 entry.rows[-1] = (*entry.rows[-1][:2], note)
             loads.append(entry)
     return table, loads
 
 
 def _force_table(load: Component, shaft: ShaftPart, z: float, names: Names, account: Account) -> Table | None:
-    """A force and a moment across the shaft; u w of the file are z y of the model, and v is x, against the sense of a reversed u."""
-    u, v, w = (account.number(load, (f"force_{axis}_direction",), "force") or 0.0 for axis in "uvw")
-    mv, mw = (account.number(load, (f"torque_around_{axis}_axis",), "torque") or 0.0 for axis in "vw")
-    if not any((u, v, w, mv, mw)):
-        return None
-    if shaft.axis.sense < 0:
-        account.left_out.append(f"{load}: a force on a shaft whose u runs against the others")
+    """A force, and a moment across the shaft, which the file gives along u, v, w of the shaft."""
+    rotation = np.array(shaft.axis.rotation)
+    force = rotation @ [account.number(load, (f"force_{axis}_direction",), "force") or 0.0 for axis in "uvw"]
+    moment = rotation @ [
+        0.0,
+        *(account.number(load, (f"torque_around_{axis}_axis",), "torque") or 0.0 for axis in "vw"),
+    ]
+    if not np.any(force) and not np.any(moment):
         return None
     table = Table(f"loads.{names.of(f'{load.name} force', 'force', load.id)}", str(load))
     table.add("shaft", f'"{shaft.name}"')
     table.add("at", quantity(z, "length"))
-    if any((u, v, w)):
-        table.add("force", "[" + ", ".join(quantity(value, "force") for value in (v, w, u)) + "]")
-    if mv or mw:
-        table.add("moment", "[" + ", ".join(quantity(value, "torque") for value in (mv, mw, 0.0)) + "]")
+    for key, kind, (along, x, y) in (("force", "force", force), ("moment", "torque", moment)):
+        if any((along, x, y)):
+            table.add(key, "[" + ", ".join(quantity(value, kind) for value in (x, y, along)) + "]")
     return table

@@ -25,7 +25,7 @@ _LARGEST = 500_000_000
 _CODES = {"float32": "f", "float64": "d", "int32": "i", "int64": "q"}
 
 
-class _NotRead(Exception):
+class _UnreadableError(Exception):
     """Why a file is no REXS."""
 
 
@@ -43,11 +43,11 @@ def read_document(path: str | Path) -> Document:
             return _from_xml(data)
         if start == b"{":
             return _from_json(data)
-        raise _NotRead("it is neither XML nor JSON nor a zip archive of one of them")
+        raise _UnreadableError("it is neither XML nor JSON nor a zip archive of one of them")
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise AnalysisError(f"{path}: can't be read: {reason}") from None
-    except _NotRead as error:
+    except _UnreadableError as error:
         raise AnalysisError(f"{path}: no REXS file: {error}") from None
 
 
@@ -62,16 +62,18 @@ def _unpacked(data: bytes) -> bytes:
             members = [item for item in members if not item.filename.startswith("__MACOSX")]
             if len(members) != 1:
                 names = ", ".join(item.filename for item in members) or "none"
-                raise _NotRead(f"the archive should hold one file .rexs, .rexsj, .xml or .json; it holds: {names}")
+                raise _UnreadableError(
+                    f"the archive should hold one file .rexs, .rexsj, .xml or .json; it holds: {names}"
+                )
             if members[0].file_size > _LARGEST:
-                raise _NotRead(f"{members[0].filename} in the archive is larger than {_LARGEST // 10**6} MB")
+                raise _UnreadableError(f"{members[0].filename} in the archive is larger than {_LARGEST // 10**6} MB")
             with archive.open(members[0]) as stream:
                 found = stream.read(_LARGEST + 1)  # what the archive says of a size need not be true
             if len(found) > _LARGEST:
-                raise _NotRead(f"{members[0].filename} in the archive is larger than {_LARGEST // 10**6} MB")
+                raise _UnreadableError(f"{members[0].filename} in the archive is larger than {_LARGEST // 10**6} MB")
             return found
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError) as error:
-        raise _NotRead(f"the archive can't be unpacked: {error}") from None
+        raise _UnreadableError(f"the archive can't be unpacked: {error}") from None
 
 
 def _from_xml(data: bytes) -> Document:
@@ -79,9 +81,9 @@ def _from_xml(data: bytes) -> Document:
     try:
         root = ElementTree.fromstring(data)
     except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise _NotRead(f"not well-formed XML: {error}") from None
+        raise _UnreadableError(f"not well-formed XML: {error}") from None
     if _tag(root) != "model":
-        raise _NotRead(f"its root is <{_tag(root)}>, not <model>")
+        raise _UnreadableError(f"its root is <{_tag(root)}>, not <model>")
     components = {}
     for node in _inside(root, "components", "component"):
         components[_needed(node, "id")] = _component(node)
@@ -89,7 +91,7 @@ def _from_xml(data: bytes) -> Document:
         Relation(node.get("type", ""), tuple((ref.get("role", ""), _needed(ref, "id")) for ref in _all(node, "ref")))
         for node in _inside(root, "relations", "relation")
     ]
-    cases = []
+    cases: list[tuple[str, dict[str, dict[str, Value]]]] = []
     for node in _inside(root, "load_spectrum", "load_case"):
         parts = [*_all(node, "component"), *_inside(node, "components", "component")]
         cases.append((node.get("id", str(len(cases) + 1)), {_needed(part, "id"): _attributes(part) for part in parts}))
@@ -102,13 +104,15 @@ def _refuse_entities(data: bytes) -> None:
     parser = expat.ParserCreate()
 
     def refuse(*declared: Any) -> None:
-        raise _NotRead("it declares a document type (DOCTYPE), which REXS does not have and which is not expanded")
+        raise _UnreadableError(
+            "it declares a document type (DOCTYPE), which REXS does not have and which is not expanded"
+        )
 
     parser.StartDoctypeDeclHandler = refuse
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
-        raise _NotRead(f"not well-formed XML: {error}") from None
+        raise _UnreadableError(f"not well-formed XML: {error}") from None
 
 
 def _tag(node: ElementTree.Element) -> str:
@@ -127,7 +131,7 @@ def _inside(node: ElementTree.Element, outer: str, inner: str) -> Iterator[Eleme
 def _needed(node: ElementTree.Element, key: str) -> str:
     found = node.get(key)
     if not found:
-        raise _NotRead(f"a <{_tag(node)}> has no {key}")
+        raise _UnreadableError(f"a <{_tag(node)}> has no {key}")
     return found
 
 
@@ -158,7 +162,7 @@ def _decoded(text: str, code: str) -> list[float] | None:
         raw = base64.b64decode(text, validate=True)
         return list(struct.unpack(f"<{len(raw) // struct.calcsize(letter)}{letter}", raw))
     except (binascii.Error, struct.error):
-        raise _NotRead(f"an array coded as {code} is damaged") from None
+        raise _UnreadableError(f"an array coded as {code} is damaged") from None
 
 
 def _from_json(data: bytes) -> Document:
@@ -168,7 +172,9 @@ def _from_json(data: bytes) -> Document:
         components = {}
         for item in root.get("components", ()):
             number = str(item["id"])
-            components[number] = Component(number, str(item.get("type", "")), str(item.get("name") or ""), _entries(item))
+            components[number] = Component(
+                number, str(item.get("type", "")), str(item.get("name") or ""), _entries(item)
+            )
         relations = [
             Relation(
                 str(item.get("type", "")), tuple((str(ref.get("role", "")), str(ref["id"])) for ref in item["refs"])
@@ -181,9 +187,9 @@ def _from_json(data: bytes) -> Document:
             for k, case in enumerate(spectrum.get("load_cases", ()), 1)
         ]
     except (ValueError, UnicodeDecodeError, RecursionError) as error:
-        raise _NotRead(f"not valid JSON: {error}") from None
+        raise _UnreadableError(f"not valid JSON: {error}") from None
     except (KeyError, TypeError, AttributeError) as error:
-        raise _NotRead(f"its JSON has not the shape of a model: {error}") from None
+        raise _UnreadableError(f"its JSON has not the shape of a model: {error}") from None
     application = " ".join(str(root[key]) for key in ("applicationId", "applicationVersion") if root.get(key))
     return Document(str(root.get("version", "")), application, components, tuple(relations), tuple(cases))
 

@@ -15,6 +15,8 @@ from rotorgear.rexs.toml_text import Names, Table, number, quantity, row
 
 # Ends of neighbouring sections closer than this are one place: files write differences of rounded coordinates.
 _SAME_PLACE = 1e-6
+# Decimals of a place in m that follows from an angle: the sine of 180 deg is no length.
+_PICOMETRE = 12
 # What a material can't be, and placeholders are: E in Pa, density in kg/m^3.
 _MODULUS = (1e8, 1e12)
 _DENSITY = (100.0, 25000.0)
@@ -87,7 +89,9 @@ def read_pieces(shaft: Component, structure: Structure, account: Account) -> tup
         begin = account.number(section, ("outer_diameter_begin", "outer_diameter", "outer_diameter_end"), "length")
         if length is None or begin is None:
             what = "length and outer_diameter_begin"
-            account.missing(section, f"{what} are needed" if sections else f"a shaft needs shaft_section parts with {what}")
+            account.missing(
+                section, f"{what} are needed" if sections else f"a shaft needs shaft_section parts with {what}"
+            )
             continue
         if length <= _SAME_PLACE:
             continue
@@ -117,7 +121,9 @@ def _joined(shaft: Component, pieces: list[Piece], account: Account) -> tuple[Pi
             sizes = f"{1e3 * last.outer[1]:.6g} mm"
             remark = account.assume("shafts.sections.outer_diameter", sizes, reason)
             out.append(Piece(last.end, gap, (last.outer[1],) * 2, (last.inner[1],) * 2, remark))
-        out.append(replace(piece, u=out[-1].end, length=piece.end - out[-1].end) if out and gap >= -_SAME_PLACE else piece)
+        out.append(
+            replace(piece, u=out[-1].end, length=piece.end - out[-1].end) if out and gap >= -_SAME_PLACE else piece
+        )
     return tuple(out)
 
 
@@ -141,12 +147,14 @@ def shaft_axes(
         if shaft.id in placed:
             axis = axis_in(placed[shaft.id], model)
             if axis is None:
-                account.missing(shaft, "its axis is not parallel to that of the first shaft; all shafts must be parallel")
+                account.missing(
+                    shaft, "its axis is not parallel to that of the first shaft; all shafts must be parallel"
+                )
             axes[shaft.id] = axis or Axis(0.0, 0.0, 0.0, 1)
     if shafts and not axes:
         axes[shafts[0].id] = Axis(0.0, 0.0, 0.0, 1)
         reason = f"{shafts[0]} has no support_vector: the origin of the model"
-        account.assume(f"shafts of {shafts[0].name or shafts[0].id}", "x = y = z = 0", reason)
+        account.assume(f"shafts.{shafts[0].name or shafts[0].id}.position", "x = y = z = 0", reason)
     _by_stages(axes, structure, pairs, account)
     for shaft in shafts:
         if shaft.id not in axes:
@@ -183,10 +191,12 @@ def _by_stages(axes: dict[str, Axis], structure: Structure, pairs: list[Pair], a
             turn = 1.0 if k == 0 else -1.0
             base = axes[old.id]
             shift = _middle(pair.gears[k], account) - _middle(pair.gears[1 - k], account)
-            x = base.x + turn * a * math.sin(phi)
-            y = base.y + turn * a * math.cos(phi)
-            axes[new.id] = Axis(x, y, base.origin + base.sense * shift, base.sense)
-            account.assume(f"shafts of {new.name or new.id}", f"x = {1e3 * x:.6g} mm, y = {1e3 * y:.6g} mm", where)
+            x = round(base.x + turn * a * math.sin(phi), _PICOMETRE)
+            y = round(base.y + turn * a * math.cos(phi), _PICOMETRE)
+            axes[new.id] = Axis(x, y, base.origin + base.sense * shift, base.sense, base.rotation)
+            account.assume(
+                f"shafts.{new.name or new.id}.position", f"x = {1e3 * x:.6g} mm, y = {1e3 * y:.6g} mm", where
+            )
         if len(rest) == len(waiting):
             return
         waiting = rest
@@ -201,7 +211,9 @@ def shaft_table(part: ShaftPart, material: str, comment: str) -> Table:
     table = Table(f"shafts.{part.name}", str(part.component))
     position = f"[{quantity(part.axis.x, 'length')}, {quantity(part.axis.y, 'length')}]"
     table.add("position", position)
-    table.add("start", quantity(part.start, "length"), "" if part.axis.sense > 0 else "u of the file runs against z here")
+    table.add(
+        "start", quantity(part.start, "length"), "" if part.axis.sense > 0 else "u of the file runs against z here"
+    )
     if material:
         table.add("material", f'"{material}"', comment)
     pieces = part.pieces if part.axis.sense > 0 else tuple(piece.reversed() for piece in part.pieces[::-1])
@@ -250,7 +262,9 @@ class Materials:
         rho = account.number(material, ("density",), "density")
         if E is None or not _MODULUS[0] <= E <= _MODULUS[1]:
             E = 206e9
-            note = account.assume(f"materials.{name}.youngs_modulus", "206 GPa", f"{material} states none: that of steel")
+            note = account.assume(
+                f"materials.{name}.youngs_modulus", "206 GPa", f"{material} states none: that of steel"
+            )
             table.add("youngs_modulus", quantity(E, "modulus"), note)
         else:
             table.add("youngs_modulus", quantity(E, "modulus"))

@@ -33,9 +33,28 @@ _SILENT = {
     "tool", "general_stage_data",
 }  # fmt: skip
 # Words in the type of a component that holds contact or strength data of a part and is none itself.
-_DATA_WORDS = ("data_set", "flank", "stage_gear_data", "tool", "manufacturing", "point", "curve", "list", "notch", "groove")
+_DATA_WORDS = (
+    "data_set",
+    "flank",
+    "stage_gear_data",
+    "tool",
+    "manufacturing",
+    "point",
+    "curve",
+    "list",
+    "notch",
+    "groove",
+)
 _ON_SHAFT = ("assembly", "ordered_assembly", "side", "connection", "coupling")
-_DATA = ("flank", "stage_gear_data", "reference", "ordered_reference", "manufacturing_step", "assembly", "ordered_assembly")
+_DATA = (
+    "flank",
+    "stage_gear_data",
+    "reference",
+    "ordered_reference",
+    "manufacturing_step",
+    "assembly",
+    "ordered_assembly",
+)
 
 
 @dataclass(frozen=True)
@@ -118,11 +137,20 @@ class Structure:
             if relation.type in _DATA and gear.id in numbers:
                 for role, number in relation.refs:
                     found = self.document.components.get(number)
-                    if found is None or role in ("stage", "assembly", "origin") or found.type in ("material", "shaft", STAGE):
+                    if (
+                        found is None
+                        or role in ("stage", "assembly", "origin")
+                        or found.type in ("material", "shaft", STAGE)
+                    ):
                         continue
                     near[number] = found
         for component in list(near.values())[1:]:
-            for kind in ("rack_shaped_tool", "cylindrical_gear_tool", "gear_shaped_tool", "cylindrical_gear_manufacturing_settings"):
+            for kind in (
+                "rack_shaped_tool",
+                "cylindrical_gear_tool",
+                "gear_shaped_tool",
+                "cylindrical_gear_manufacturing_settings",
+            ):
                 tool = self.referenced(component, kind)
                 if tool is not None:
                     near[tool.id] = tool

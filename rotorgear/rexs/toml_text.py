@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 
 # Digits of a written number: those of a double that rounding in the unit does not touch.
 _DIGITS = 12
+# A longer comment stands above its line.
+_BESIDE = 70
 _UNITS = {
     "length": ("mm", 1e-3),
     "angle": ("deg", 0.017453292519943295),
@@ -68,7 +70,10 @@ class Table:
         out = [f"# {comment_line(part)}" for part in self.remark.splitlines()]
         out.append(f"[{self.header}]")
         for key, value, comment in self.rows:
-            out.append(f"{key} = {value}" + (f"  # {comment_line(comment)}" if comment else ""))
+            notes = comment.splitlines()
+            beside = notes.pop() if len(notes) == 1 and len(notes[0]) <= _BESIDE else ""
+            out += [f"# {comment_line(note)}" for note in notes]
+            out.append(f"{key} = {value}" + (f"  # {comment_line(beside)}" if beside else ""))
         return out
 
 

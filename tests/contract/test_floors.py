@@ -33,6 +33,7 @@ FLOORS = {
     "system": 5,
     "results": 6,
     "analysis": 7,
+    "rexs": 7,
     "export": 8,
     "plots": 8,
     "plot": 9,

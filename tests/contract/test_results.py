@@ -69,6 +69,7 @@ def example(kind: str) -> Result:
         "response": lambda: rg.response(model("backlash_pair"), points=3),
         "check": lambda: rg.check(model("geared_pair")),
         "bearing": lambda: rg.bearing(pulled_rotor(BALLS, '["1 kN", "0 N", "0 N"]', "3000 rpm"), stability=False),
+        "import": lambda: rg.import_rexs(ROOT / "tests" / "rexs_files" / "sew_3_stage_1.0.rexs"),
         "casing": lambda: rg.casing(block_casing(), modes=2),
         "gear": lambda: rg.gear(model("helical_pair")),
         "mesh": lambda: rg.mesh(model("helical_pair"), stiffness="iso", positions=16),

@@ -1,35 +1,47 @@
-"""An import from REXS as text for the terminal: what was made, and every assumption by its reason."""
+"""An import from REXS as text for the terminal: what was made, and every assumption with its reason."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rotorgear.results.tables.common import heading, lines, table_of
+from rotorgear.results.tables.common import heading, lines
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rich.console import RenderableType
 
-    from rotorgear.results.rexs_import import RexsImport
+    from rotorgear.results.rexs_import import Assumption, RexsImport
 
 
 def import_table(result: RexsImport) -> RenderableType:
     """Return what was read, the assumptions, and what was left out."""
     from rich.console import Group
 
-    counts = f"{result.shafts} shafts, {result.gears} gears, {result.meshes} meshes, {result.bearings} bearings"
+    made = f"REXS {result.version}" + (f" by {result.application}" if result.application else "")
     case = f", load case {result.load_case}" if result.load_case else ""
-    assumed = table_of(
-        result.assumptions,
-        ("assumed", "left", lambda row: row.address),
-        ("value", "left", lambda row: row.value),
-        ("why", "left", lambda row: row.reason),
-    )
     notes = [
+        f"{result.shafts} shafts, {result.gears} gears, {result.meshes} meshes, {result.bearings} bearings",
+        "",
+        *_assumed(result.assumptions),
+        "",
         f"{len(result.assumptions)} assumptions; each stands as a comment in the model file",
         *(f"left out: {note}" for note in result.left_out),
         *(f"Warning: {note}" for note in result.warnings),
     ]
-    made = f"REXS {result.version}" + (f" by {result.application}" if result.application else "")
-    head = heading(result.source, f": {made}{case}")
-    body = [assumed, ""] if result.assumptions else []
-    return Group(head, *lines(counts), "", *body, *lines(*notes))
+    return Group(heading(result.source, f": {made}{case}"), *lines(*notes))
+
+
+def _assumed(assumptions: tuple[Assumption, ...]) -> Iterator[str]:
+    """One sentence for each reason; parts of one table with the same reason are counted, and named in the model file."""
+    alike: dict[tuple[str, str, str], list[Assumption]] = {}
+    for item in assumptions:
+        table, _, rest = item.address.partition(".")
+        alike.setdefault((table, rest.partition(".")[2], item.reason), []).append(item)
+    for (table, key, reason), items in alike.items():
+        values = list(dict.fromkeys(item.value for item in items))
+        if len(items) == 1:
+            yield f"assumed {items[0].address} = {values[0]}: {reason}"
+        else:
+            shown = values[0] if len(values) == 1 else f"{values[0]} and others"
+            yield f"assumed {table}.*.{key} = {shown} ({len(items)} of them): {reason}"

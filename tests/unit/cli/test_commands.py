@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import sys
-from importlib import import_module
 
 import pytest
 from typer.main import get_command
 from typer.testing import CliRunner
 
-from rotorgear.cli.commands import HELP
+from rotorgear.cli.commands import HELP, function_of
 from rotorgear.cli.main import app
 from tests.paths import ROOT
 
@@ -19,12 +18,13 @@ SHARED = {"__init__", "commands", "common", "main", "old_options", "speed_option
 
 @pytest.mark.parametrize("name", HELP)
 def test_the_help_of_all_commands_says_what_each_says_of_itself(name: str) -> None:
-    function = getattr(import_module(f"rotorgear.cli.{name}"), name)
+    function = function_of(name)
     assert function.__doc__.partition("\n")[0] == HELP[name]
 
 
 def test_every_file_of_the_command_line_is_a_command_or_shared() -> None:
-    assert {file.stem for file in (ROOT / "rotorgear" / "cli").glob("*.py")} - SHARED == set(HELP)
+    files = {file.stem for file in (ROOT / "rotorgear" / "cli").glob("*.py")} - SHARED
+    assert {name.rstrip("_") for name in files} == set(HELP)
 
 
 def test_help_imports_no_command_and_lists_all(monkeypatch: pytest.MonkeyPatch) -> None:

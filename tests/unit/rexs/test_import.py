@@ -1,0 +1,259 @@
+"""Gearboxes read from REXS: the public sample, and its variants over versions, formats and gaps."""
+
+from __future__ import annotations
+
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.rexs.document import Component, Document, Relation, Value
+from tests.unit.rexs.documents import SAMPLE, changed, sample, with_component, without, write_json
+
+MM = "mm"
+
+
+def imported(document: Document, tmp_path: Path) -> rg.RexsImport:
+    return rg.import_rexs(write_json(document, tmp_path / "gearbox.rexsj"))
+
+
+def model_of(document: Document, tmp_path: Path) -> rg.Model:
+    return rg.loads(imported(document, tmp_path).toml)
+
+
+def test_the_public_sample_has_its_axes_its_ratio_and_its_torques() -> None:
+    result = rg.import_rexs(SAMPLE)
+    model = rg.loads(result.toml)
+    said = rg.check(model)
+    assert [1e3 * (row.centre_distance_m or 0.0) for row in said.meshes] == pytest.approx([53.0, 57.0, 77.0], abs=1e-9)
+    ratio = (67 / 23) * (76 / 13) * (87 / 14)
+    assert 1.0 / abs(said.shafts[-1].speed_ratio) == pytest.approx(ratio, rel=1e-12)
+    assert f"{ratio:.2f}" == "105.83"
+    assert [f"{row.torque_n_m:.4f}" for row in said.torques] == ["4.7246", "500.0000"]
+    assert (result.shafts, result.gears, result.meshes, result.bearings) == (4, 6, 3, 9)
+    assert rg.modal(model, modes=3, elements=1).frequency_hz[2] > 100.0
+
+
+def stiffnesses(model: rg.Model) -> list[float]:
+    parts = [*model.bearings.values(), *model.couplings.values()]
+    return [abs(entry) for part in parts for row in part.stiffness.as_rows() for entry in row]
+
+
+@pytest.mark.parametrize("placeholder", ["0.0", "9.999999999999999E22", "1e20", "-1", "1e-3"])
+def test_placeholders_for_rigid_and_free_never_reach_a_matrix(placeholder: str, tmp_path: Path) -> None:
+    document = sample()
+    for bearing in document.of_type("rolling_bearing_with_catalog_geometry"):
+        value = Value(placeholder, "N / m")
+        tilt = Value("1e+15", "N mm / rad")
+        document = changed(document, bearing.id, radial_stiffness=value, axial_stiffness=value, bending_stiffness=tilt)
+    found = stiffnesses(model_of(document, tmp_path))
+    assert all(entry == 0.0 or 1e6 < entry < 1e10 for entry in found)
+    assert found == stiffnesses(model_of(sample(), tmp_path))
+
+
+def test_a_stiffness_that_a_bearing_can_have_is_taken_in_any_unit(tmp_path: Path) -> None:
+    given = changed(
+        sample(), "20", radial_stiffness=Value("250", "N / mum"), bending_stiffness=Value("2e6", "N mm / rad")
+    )
+    stiffness = next(iter(model_of(given, tmp_path).bearings.values())).stiffness
+    assert stiffness.as_rows()[0][0] == pytest.approx(2.5e8)
+    assert stiffness.as_rows()[3][3] == pytest.approx(2e3)
+
+
+def test_json_and_an_archive_give_the_model_of_the_xml(tmp_path: Path) -> None:
+    whole = rg.import_rexs(SAMPLE)
+    with zipfile.ZipFile(tmp_path / "gearbox.rexsz", "w") as archive:
+        archive.write(SAMPLE, "inner/gearbox.rexs")
+    for other in (imported(sample(), tmp_path), rg.import_rexs(tmp_path / "gearbox.rexsz")):
+        assert other.toml.splitlines()[5:] == whole.toml.splitlines()[5:]
+        assert other.assumptions == whole.assumptions
+
+
+def as_later_version(document: Document) -> Document:
+    """The sample as 1.4 has it: units by new texts, flanks of another type, gears at their middle, and no support vectors."""
+    parts = {}
+    for number, part in document.components.items():
+        attributes = {
+            key: replace(value, unit={"°": "deg", "none": ""}.get(value.unit, value.unit))
+            for key, value in part.attributes.items()
+            if part.type != "cylindrical_gear" or key not in ("support_vector", "u_axis_vector", "w_axis_vector")
+        }
+        if part.type == "cylindrical_gear":
+            u = float(str(attributes["u_coordinate_on_shaft"].raw)) + 0.5 * float(str(attributes["face_width"].raw))
+            attributes["u_coordinate_on_shaft"] = Value(u, MM)
+        kind = "cylindrical_gear_flank" if part.type == "flank_geometry" else part.type
+        parts[number] = replace(part, type=kind, attributes=attributes)
+    return replace(document, version="1.4", components=parts)
+
+
+def test_a_later_version_with_other_units_and_places_gives_the_same_model(tmp_path: Path) -> None:
+    old = model_of(sample(), tmp_path)
+    new = model_of(as_later_version(sample()), tmp_path)
+    assert [gear.at for gear in new.gears.values()] == pytest.approx([gear.at for gear in old.gears.values()])
+    assert new.model_copy(update={"gears": old.gears}) == old
+
+
+def test_shafts_without_a_place_stand_where_their_stages_put_them(tmp_path: Path) -> None:
+    document = sample()
+    for number in ("5", "36", "54"):
+        document = changed(document, number, support_vector=None)
+    old = [shaft.position for shaft in model_of(sample(), tmp_path).shafts.values()]
+    new = [
+        shaft.position
+        for shaft in model_of(without(document, "cylindrical_gear", "support_vector"), tmp_path).shafts.values()
+    ]
+    assert np.array(new) == pytest.approx(np.array(old), abs=1e-12)
+
+
+def test_a_shaft_drawn_from_its_other_end_is_the_same_shaft(tmp_path: Path) -> None:
+    # u' = L - u with the axes u and v turned about: sections, places and the torque change their signs, the gearbox does not.
+    document = sample()
+    length = 220.0
+    frame = {
+        "u_axis_vector": Value([-1.0, 0.0, 0.0], MM),
+        "support_vector": Value([182.7 + length, -19.008575782311063, -1.026431327759056], MM),
+    }
+    document = changed(document, "54", **frame)
+    for number in [str(k) for k in range(407, 415)]:
+        part = document.components[number].attributes
+        u = length - float(str(part["u_coordinate_on_shaft"].raw)) - float(str(part["length"].raw))
+        document = changed(document, number, u_coordinate_on_shaft=Value(u, MM))
+    for number, key in (
+        ("66", "u_coordinate_on_shaft_inner_side"),
+        ("67", "u_coordinate_on_shaft_inner_side"),
+        ("68", "u_coordinate_on_shaft"),
+    ):
+        document = changed(
+            document, number, **{key: Value(length - float(str(document.components[number].attributes[key].raw)), MM)}
+        )
+    old = rg.modal(model_of(sample(), tmp_path), modes=6, elements=1)
+    new = rg.modal(model_of(document, tmp_path), modes=6, elements=1)
+    assert new.frequency_hz == pytest.approx(old.frequency_hz, rel=1e-6, abs=1e-3)
+
+
+def test_missing_profile_shifts_are_those_that_the_axes_need(tmp_path: Path) -> None:
+    given = model_of(sample(), tmp_path)
+    document = sample()
+    for flank in document.of_type("flank_geometry")[2:4]:  # both flanks of the second gear
+        document = changed(document, flank.id, addendum_modification_coefficient=None)
+    result = imported(document, tmp_path)
+    found = list(rg.loads(result.toml).gears.values())[1].profile_shift
+    assert found == pytest.approx(list(given.gears.values())[1].profile_shift, abs=2e-4)
+    assert any(item.address.endswith("profile_shift") for item in result.assumptions)
+
+
+def test_all_missing_values_come_in_one_report(tmp_path: Path) -> None:
+    document = changed(sample(), "23", number_of_teeth=None, normal_module=Value("x", MM))
+    document = changed(document, "34", face_width=Value("11.0", "furlong"))
+    document = changed(document, "382", length=None)
+    with pytest.raises(rg.ModelError) as caught:
+        imported(document, tmp_path)
+    said = str(caught.value)
+    for words in ("number_of_teeth", "'x'", "'furlong'", "shaft_section 'section [382]'"):
+        assert words in said
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("planetary_stage", "a planetary stage"),
+        ("ring_gear", "an internal (ring) gear"),
+        ("worm_stage", "a worm stage"),
+        ("bevel_gear", "a bevel gear"),
+        ("face_gear", "a face gear"),
+    ],
+)
+def test_other_gearing_is_refused_by_its_name(kind: str, words: str, tmp_path: Path) -> None:
+    document = with_component(sample(), Component("900", kind, "Stufe 9"))
+    with pytest.raises(rg.AnalysisError, match=f"has {words.replace('(', '.').replace(')', '.')}, {kind} 'Stufe 9'"):
+        imported(document, tmp_path)
+
+
+def test_a_document_type_is_refused_before_any_entity_expands(tmp_path: Path) -> None:
+    bomb = '<?xml version="1.0"?><!DOCTYPE m [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><model version="1.0">&b;</model>'
+    (tmp_path / "bomb.rexs").write_text(bomb, encoding="utf-8")
+    with pytest.raises(rg.AnalysisError, match="DOCTYPE"):
+        rg.import_rexs(tmp_path / "bomb.rexs")
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"[]", b"{}", b"<a/>", b"<model", b'{"model": [1]}', b"PK\x03\x04rest", b"\x00\x01"]
+)
+def test_what_is_no_rexs_is_refused_in_a_sentence(content: bytes, tmp_path: Path) -> None:
+    (tmp_path / "file.rexs").write_bytes(content)
+    with pytest.raises(rg.RotorgearError):
+        rg.import_rexs(tmp_path / "file.rexs")
+
+
+def test_a_bearing_between_two_shafts_couples_them_without_torsion(tmp_path: Path) -> None:
+    document = sample()
+    shaft = document.components["4"]
+    inner = replace(
+        shaft, id="901", name="Inner", attributes={**shaft.attributes, "rotational_speed": Value("0", "1 / min")}
+    )
+    section = Component("902", "shaft_section", "", {"length": Value(30, MM), "outer_diameter_begin": Value(10, MM)})
+    bearing = Component(
+        "903",
+        "concept_bearing",
+        "Pilot",
+        {"u_coordinate_on_shaft_inner_side": Value(15, MM), "u_coordinate_on_shaft_outer_side": Value(15, MM)},
+    )
+    for part in (inner, section, bearing):
+        document = with_component(document, part)
+    sides = (("assembly", "903"), ("inner_part", "901"), ("outer_part", "4"))
+    more = (Relation("assembly", (("assembly", "901"), ("part", "902"))), Relation("side", sides))
+    result = imported(replace(document, relations=(*document.relations, *more)), tmp_path)
+    assert "[couplings.pilot]" in result.toml
+    assert "torsion" not in result.toml
+
+
+def test_a_load_case_takes_the_place_of_the_values_of_its_components(tmp_path: Path) -> None:
+    cases = (
+        (
+            "1",
+            {
+                "4": {"rotational_speed": Value(2800.0, "1 / min")},
+                "22": {"torque_around_u_axis": Value(2000.0, "N mm")},
+            },
+        ),
+        ("7", {"22": {"torque_around_u_axis": Value(-1.0, "N m")}}),
+    )
+    path = write_json(replace(sample(), load_cases=cases), tmp_path / "cases.rexsj")
+    first = rg.check(rg.loads(rg.import_rexs(path).toml))
+    assert first.shafts[0].speed_rpm == pytest.approx(2800.0)
+    assert first.torques[0].torque_n_m == pytest.approx(2.0)
+    braked = rg.check(rg.loads(rg.import_rexs(path, load_case=7).toml))
+    # A torque against the speed takes power, so that the other end drives.
+    assert [row.shaft for row in braked.torques if (row.power_w or 0.0) < 0.0] == ["anw_4"]
+    with pytest.raises(rg.AnalysisError, match="no load case '3'; it has: 1, 7"):
+        rg.import_rexs(path, load_case=3)
+
+
+@pytest.mark.parametrize(
+    ("designation", "bore", "outer"),
+    [("6305-2Z", 25, 62), ("NUP204-E-XL-TVP2", 20, 47), ("33014", 70, 110), ("6202", 15, 35), ("K 50x58x25", 50, 58)],
+)
+def test_a_designation_says_bore_and_outer_diameter(designation: str, bore: float, outer: float) -> None:
+    from rotorgear.rexs.bearing_estimate import size_of_designation
+
+    size = size_of_designation(designation)
+    assert size is not None
+    assert 1e3 * size.bore == pytest.approx(bore)
+    assert 1e3 * size.outer == pytest.approx(outer, rel=0.12)  # the series of ISO 15, not its table
+
+
+def test_a_written_model_file_loads_and_is_not_overwritten_unasked(tmp_path: Path) -> None:
+    from typer.testing import CliRunner
+
+    from rotorgear.cli.main import app
+
+    out = tmp_path / "gearbox.toml"
+    first = CliRunner().invoke(app, ["import", str(SAMPLE), "-o", str(out)])
+    assert first.exit_code == 0
+    assert "34 assumptions" in first.output
+    assert rg.check(rg.load(out)).shafts
+    again = CliRunner().invoke(app, ["import", str(SAMPLE), "-o", str(out)])
+    assert isinstance(again.exception, rg.AnalysisError)
