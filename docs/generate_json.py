@@ -136,6 +136,11 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
         (("casing", ""),),
     ),
     (
+        "export",
+        "`rotorgear export MODEL --state-space FILE ... --json system.json`. The matrices are in the file.",
+        (("state_space", ""),),
+    ),
+    (
         "import",
         "`rotorgear import FILE -o gearbox.toml --json import.json`. The [page on REXS](rexs.md) says what is assumed when.",
         (("import", ""),),

@@ -44,6 +44,7 @@ from rotorgear.analysis.static.static import static as static
 from rotorgear.analysis.response.response import response as response
 from rotorgear.analysis.response.frequency_response import frf as frf
 from rotorgear.analysis.standards.standards import standards as standards
+from rotorgear.analysis.response.state_space import state_space as state_space
 from rotorgear.analysis.transient.transient import transient as transient
 from rotorgear.analysis.sweep.sweep import sweep as sweep
 from rotorgear.analysis.sweep.cluster import cluster as cluster
@@ -88,6 +89,9 @@ from rotorgear.export.hdf5 import save as save
 from rotorgear.export.hdf5 import read as read
 from rotorgear.export.stream import stream as stream
 from rotorgear.export.uff import write_uff as write_uff
+from rotorgear.export.state_space import write_state_space as write_state_space
+from rotorgear.export.matrices import write_matrices as write_matrices
+from rotorgear.export.matrices import read_matrices as read_matrices
 from rotorgear.export.rexs_model import write_model_file as write_model_file
 from rotorgear.export.updated_model import write_updated_model as write_updated_model
 from rotorgear.export.casing_vtk import write_casing_vtk as write_casing_vtk
@@ -121,6 +125,7 @@ from rotorgear.results.comparison import Comparison as Comparison
 from rotorgear.results.comparison import RigLine as RigLine
 from rotorgear.results.update import UpdateResult as UpdateResult
 from rotorgear.results.rexs_import import RexsImport as RexsImport
+from rotorgear.results.state_space import StateSpace as StateSpace
 
 # The errors.
 from rotorgear.errors import RotorgearError as RotorgearError

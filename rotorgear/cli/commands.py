@@ -39,6 +39,7 @@ HELP = {
     "bearing": "Sheet of one bearing at the gearbox's own loads: inside, stiffness and damping over speed, whirl threshold.",
     "casing": "Read the meshes of casings: mass, free and held modes, seats, errors of mesh and reduction, cost.",
     "accuracy": "Convergence study: error against run time and dofs over a series of discretisations, with the measured order.",
+    "export": "Write the linear system for other programs: state space (.mat, .npz), sparse matrices, geometry and modes (UFF).",
     "view": "Open a window that shows the gearbox and animates its modes.",
     "schema": "Print the JSON Schema of the model file, for completion and checks in editors.",
     "validate": "Run the validation cases: expected, got, error, dofs, seconds. Exit code 1 where one is out of tolerance.",

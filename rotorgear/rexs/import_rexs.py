@@ -139,7 +139,7 @@ def _tables(document: Document, version: tuple[int, int], account: Account) -> t
     names = Names()
     meshing = []
     for pair in pairs:
-        ends = [gears.get(gear.id) for gear in pair.gears]
+        ends = [gears.get(gear.id) for gear in pair.members]
         if ends[0] is None or ends[1] is None:
             continue
         fitted = matched(ends[0], ends[1], pair, account)

@@ -168,7 +168,7 @@ def _by_stages(axes: dict[str, Axis], structure: Structure, pairs: list[Pair], a
     while waiting:
         rest = []
         for pair in waiting:
-            owners = [structure.shaft_of(gear) for gear in pair.gears]
+            owners = [structure.shaft_of(gear) for gear in pair.members]
             known = [owner is not None and owner.id in axes for owner in owners]
             if all(known) or None in owners:
                 continue
@@ -190,7 +190,7 @@ def _by_stages(axes: dict[str, Axis], structure: Structure, pairs: list[Pair], a
                 where = f"{new} has no support_vector, {pair.stage} no angle: beside the other shaft, faces aligned"
             turn = 1.0 if k == 0 else -1.0
             base = axes[old.id]
-            shift = _middle(pair.gears[k], account) - _middle(pair.gears[1 - k], account)
+            shift = _middle(pair.members[k], account) - _middle(pair.members[1 - k], account)
             x = round(base.x + turn * a * math.sin(phi), _PICOMETRE)
             y = round(base.y + turn * a * math.cos(phi), _PICOMETRE)
             axes[new.id] = Axis(x, y, base.origin + base.sense * shift, base.sense, base.rotation)

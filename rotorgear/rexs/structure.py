@@ -62,7 +62,7 @@ class Pair:
     """A stage: two gears in mesh."""
 
     stage: Component
-    gears: tuple[Component, Component]
+    members: tuple[Component, Component]
 
 
 def refuse_other_kinds(document: Document, source: str) -> None:

@@ -25,12 +25,19 @@ OF_A_PICTURE_OR_TABLE = {
     "frf": {"quantity"},
     "transient": {"spectrum", "rig"},
     "mesh": {"harmonics", "at"},
+    "import": {"force"},
+    # Files of three verbs.
+    "export": {"state_space", "matrices", "uff"},
     # A window opens on a result; of a model the modes are found first.
     "view": {"modes", "speed", "accuracy", "elements"},
 }
 # A command that serves several verbs: options that choose among them, and the verbs whose arguments the others are.
 CHOOSES = {"mesh": {"optimise", "root_stress"}}
-VERBS = {"mesh": ("mesh", "mesh_map", "optimise_flanks", "root_stress")}
+VERBS = {
+    "mesh": ("mesh", "mesh_map", "optimise_flanks", "root_stress"),
+    "import": ("import_rexs",),
+    "export": ("state_space", "write_matrices", "modal"),
+}
 # Names that Python has no use for: `cluster` is an address in a command and an open pool (`executor`) in Python.
 OTHERWISE = {("sweep", "cluster")}
 # `--from` and `--to` are start and stop: `from` is a word of the language.

@@ -65,6 +65,9 @@ def example(kind: str) -> Result:
         "frf": lambda: rg.frf(
             rotor, np.linspace(1.0, 50.0, 8), inputs=[f"disks.{disk}:y"], outputs=[f"disks.{disk}:y"], elements=1
         ),
+        "state_space": lambda: rg.state_space(
+            rotor, inputs=[f"disks.{disk}:y"], outputs=[f"disks.{disk}:y"], fmax=50.0, modal_damping=0.02, elements=1
+        ),
         "static": lambda: rg.static(model("helical_pair"), elements=1),
         "response": lambda: rg.response(model("backlash_pair"), points=3),
         "check": lambda: rg.check(model("geared_pair")),

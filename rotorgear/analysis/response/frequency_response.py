@@ -16,18 +16,17 @@ from rotorgear.analysis.common.load_notes import load_notes
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
-from rotorgear.analysis.common.points import casing_row, named_place
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, direction_of, missed, speed_in_si
 from rotorgear.analysis.modal.refine import all_finer
 from rotorgear.analysis.response.error import highest_peaks
 from rotorgear.analysis.response.mesh import DAMPED, MARGIN, aims, at_speed, damped_modes, plan_up_to
-from rotorgear.analysis.response.plant import Plant, dof_row
+from rotorgear.analysis.response.plant import Plant
+from rotorgear.analysis.response.ports import Ports
 from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
-from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.frequency_response import FrequencyResponse
@@ -88,10 +87,7 @@ def frf(
     hz = np.sort(np.asarray(frequencies, float).ravel())
     check_request(turns, None, None, elements, accuracy)
     _check(hz, inputs, outputs, modal_damping)
-    of_casings = {text: casing_row(model, text) for text in (*inputs, *outputs) if text.startswith("casings.")}
-    places = {text: named_place(model, text) for text in (*inputs, *outputs) if text not in of_casings}
-    direction = {text: place[2] for text, place in places.items()}
-    direction |= {text: text.rpartition(":")[2] for text in of_casings}
+    ports = Ports(model, (*inputs, *outputs))
     zeta = modal_damping + model.damping.modal_ratio
     linear, notes = about_equilibrium(model, [turns or None])
     first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
@@ -100,8 +96,7 @@ def frf(
     def solve(system: System, hz: np.ndarray, progress: Progress) -> _Solved:
         modes = (*damped_modes(system, limit, turns), zeta) if zeta else None
         plant = Plant(system, contact_lines(system), modes)
-        rows = {text: _row(system, text, place) for text, place in places.items()}
-        rows |= {text: _casing_row(system, *row) for text, row in of_casings.items()}
+        rows = {text: ports.row(system, text) for text in (*inputs, *outputs)}
         return _solved(plant, turns, hz, [rows[t] for t in inputs], [rows[t] for t in outputs], progress)
 
     for aim in aims(accuracy):
@@ -128,8 +123,8 @@ def frf(
         frequency_hz=hz,
         inputs=tuple(inputs),
         outputs=tuple(outputs),
-        input_units=tuple("N m" if direction[text] in DOF_NAMES[3:] else "N" for text in inputs),
-        output_units=tuple("rad" if direction[text] in DOF_NAMES[3:] else "m" for text in outputs),
+        input_units=tuple(ports.force_unit(text) for text in inputs),
+        output_units=tuple(ports.motion_unit(text) for text in outputs),
         receptance=receptance,
         damping_ratio=zeta,
         residual=found.residual,
@@ -174,18 +169,6 @@ def _check(hz: np.ndarray, inputs: Sequence[str], outputs: Sequence[str], modal_
         raise AnalysisError("a frequency response needs at least one place of the force and one of the response")
     if not 0.0 <= modal_damping < 1.0:
         raise AnalysisError(f"modal_damping: got {modal_damping:g}, expected 0 to less than 1")
-
-
-def _row(system: System, text: str, place: tuple[str, float, str]) -> np.ndarray:
-    row = dof_row(system, *place)
-    if not row.any():
-        raise AnalysisError(f"'{text}' can't move: a support or the motions of the model hold it")
-    return row
-
-
-def _casing_row(system: System, casing: str, row: np.ndarray) -> np.ndarray:
-    """A row (n_c,) on the coordinates of a casing as one on the free dofs, (n,)."""
-    return np.asarray(system.dofs.transform[system.nodes.of_casing(casing), :].T @ row)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,287 @@
+"""A gearbox as a linear system between inputs and outputs, for control and system simulation: whole, or reduced to modes.
+
+Reduced coordinates are those of the undamped modes of the conservative part up to a multiple of the highest frequency, and of
+static shapes (K + s^2 M)^-1 [B C^T] under unit forces at inputs and outputs, which stand for the modes above (residual
+flexibility, R. R. Craig and A. J. Kurdila, Fundamentals of Structural Dynamics, 2nd ed., Wiley 2006, ch. 17); the shift s lets
+trains turn freely. Where gyroscopic moments and damping need more, whole displacements at single frequencies join them.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from rotorgear.analysis.common.gear_bodies import body_notes
+from rotorgear.analysis.common.load_notes import load_notes
+from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out
+from rotorgear.analysis.common.notes import rolling_notes
+from rotorgear.analysis.common.pieces import pieces
+from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.request import check_request, direction_of, missed, speed_in_si
+from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY
+from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.plant import Plant
+from rotorgear.analysis.response.ports import Ports
+from rotorgear.analysis.static.mean_state import mean_state
+from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, silent
+from rotorgear.results.state_space import StateSpace
+from rotorgear.solvers.frequency.harmonic import Dynamics
+from rotorgear.solvers.sparse.factor import factor_general
+from rotorgear.system.contacts import contact_lines
+from rotorgear.system.system import System
+
+# Modes are kept up to so many times the highest frequency; the static shapes stand for the rest.
+_KEPT = 1.5
+ACCURACY = 1e-4
+_UNDAMPED = "nothing damps the model: responses are infinite at its natural frequencies"
+# The shift of the static shapes over the highest frequency: above zero, where a free train has none.
+_SHIFT = 0.5
+# Dense matrices of the whole system: beyond this they would not fit into what opens them.
+_LARGEST = 3000
+# Where a reduction is judged: between modes, and about each peak at its half-power points.
+_BETWEEN = 61
+# Poles below this share of the highest frequency are rigid motions, where no response is finite.
+_LOWEST = 1e-5
+# A response below this share of what the displacements there could add up to is none.
+_FORBIDDEN = 1e-9
+# Static shapes that are no more than this share of what the basis already holds add nothing.
+_NEW = 1e-9
+
+
+@recorded
+def state_space(
+    model: Model,
+    *,
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    fmax: float,
+    speed: float | str | None = None,
+    modal_damping: float = 0.0,
+    elements: int | None = None,
+    accuracy: float = ACCURACY,
+    full: bool = False,
+    progress: Progress = silent,
+) -> StateSpace:
+    """Return the linear system between places, M x'' + D x' + K x = B u and y = C x, with the model's damping at a speed.
+
+    Args:
+        model: any model; contacts are closed, on the flanks that its loads choose.
+        inputs, outputs: names of places as in `frf`: points, "bearings.left:x", seats and surfaces of casings.
+        fmax: highest frequency in Hz that the system is meant for; the mesh is refined for it as that of `frf`.
+        speed: of the input shaft in rad/s or with its unit; None: standstill.
+        modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
+        elements: basic elements in each shaft segment. None: refined for modes up to the highest frequency.
+        accuracy: reduce no further than to this share of the largest size of each response.
+        full: all degrees of freedom in place of modes and static shapes.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: a place that the model has not, or a full system of more than 3000 degrees of freedom.
+    """
+    clock = time.perf_counter()
+    turns = speed_in_si(speed) or 0.0
+    check_request(turns, None, None, elements, None)
+    if not 0.0 < fmax < float("inf"):
+        raise AnalysisError(f"fmax: got {fmax:g}, expected a positive frequency in Hz")
+    if not inputs or not outputs:
+        raise AnalysisError("a state space needs at least one input and one output")
+    if not 0.0 <= modal_damping < 1.0:
+        raise AnalysisError(f"modal_damping: got {modal_damping:g}, expected 0 to less than 1")
+    ports = Ports(model, (*inputs, *outputs))
+    zeta = modal_damping + model.damping.modal_ratio
+    progress(0.02, "discretisation")
+    system, notes = linear_system(model, turns, fmax, elements)
+    if full and system.n > _LARGEST:
+        raise AnalysisError(
+            f"a full state space of {system.n} degrees of freedom is dense in {2 * system.n} states; leave 'full' out for a "
+            "reduced one, or write sparse matrices"
+        )
+    limit = 2.0 * np.pi * fmax
+    modes = (*damped_modes(system, DAMPED * limit, turns), zeta) if zeta else None
+    plant = Plant(system, contact_lines(system), modes)
+    dynamics = plant.dynamics(turns)
+    B = np.array([ports.row(system, text) for text in inputs]).T
+    C = np.array([ports.row(system, text) for text in outputs])
+    progress(0.4, "matrices")
+    damped = bool(zeta) or bool(system.damping(turns).nnz)
+    if full:
+        made = _Matrices.whole(dynamics, B, C)
+        error = 0.0
+        kept = 0
+    else:
+        kept_modes, w = damped_modes(system, _KEPT * limit, turns)
+        kept = len(w)
+        basis = _basis(dynamics, kept_modes, np.hstack([B, C.T]), _SHIFT * limit)
+        progress(0.6, "error of the reduction")
+        made, error = _reduced(dynamics, B, C, basis, limit, damped, accuracy)
+    progress(1.0, "done")
+    short = missed(accuracy, error, "write the full system, or ask for less")
+    return StateSpace(
+        model=model,
+        speed=turns,
+        fmax=fmax,
+        inputs=tuple(inputs),
+        outputs=tuple(outputs),
+        input_units=tuple(ports.force_unit(text) for text in inputs),
+        output_units=tuple(ports.motion_unit(text) for text in outputs),
+        mass=made.M,
+        velocity_terms=made.D,
+        stiffness=made.K,
+        input_matrix=made.B,
+        output_matrix=made.C,
+        reduced=not full,
+        modes=kept,
+        reduction_error=error,
+        error_estimate=0.0 if elements is not None else DEFAULT_ACCURACY,
+        dofs=system.n,
+        discretisation=pieces(system),
+        seconds={"total": time.perf_counter() - clock},
+        left_out=(
+            *notes,
+            *body_notes(system),
+            *rolling_notes(model, rolls=False),
+            *load_notes(system, "frf"),
+            *mesh_stiffness_left_out(system),
+        ),
+        warnings=(*(() if damped else (_UNDAMPED,)), *((short,) if short else ())),
+        status=short or "success",
+        method="all degrees of freedom" if full else "modes and static shapes",
+    )
+
+
+def linear_system(model: Model, turns: float, fmax: float, elements: int | None) -> tuple[System, tuple[str, ...]]:
+    """The system about its equilibrium at a speed in rad/s, meshed as `frf` meshes it up to a frequency in Hz; and notes."""
+    linear, notes = about_equilibrium(model, [turns or None])
+    first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
+    plan = plan_up_to(at_speed(linear, turns), MARGIN * fmax, elements, None)
+    return System(linear, plan=plan, load=first.system.load.of_kind("dynamic")), (*first.notes, *notes)
+
+
+@dataclass(frozen=True)
+class _Matrices:
+    """Dense M, D, K (s, s), B (s, i) and C (o, s)."""
+
+    M: np.ndarray
+    D: np.ndarray
+    K: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+
+    @classmethod
+    def whole(cls, dynamics: Dynamics, B: np.ndarray, C: np.ndarray) -> _Matrices:
+        """All degrees of freedom."""
+        D = dynamics.D.toarray()
+        if dynamics.low_rank is not None:
+            P = dynamics.low_rank.vectors
+            D = D + (P * dynamics.low_rank.sizes) @ P.T
+        return cls(dynamics.M.toarray(), D, dynamics.K.toarray(), B, C)
+
+    @classmethod
+    def in_basis(cls, dynamics: Dynamics, B: np.ndarray, C: np.ndarray, V: np.ndarray) -> _Matrices:
+        """The coordinates of a basis V (n, s): V^T M V and so on."""
+        D = V.T @ (dynamics.D @ V)
+        if dynamics.low_rank is not None:
+            P = V.T @ dynamics.low_rank.vectors
+            D = D + (P * dynamics.low_rank.sizes) @ P.T
+        M = V.T @ (dynamics.M @ V)
+        return cls(0.5 * (M + M.T), D, V.T @ (dynamics.K @ V), V.T @ B, C @ V)
+
+    def receptance(self, w: float) -> np.ndarray:
+        """C Z^-1 B at a frequency in rad/s, (o, i)."""
+        Z = self.K + 1j * w * self.D - w**2 * self.M
+        return np.asarray(self.C @ la.solve(Z, self.B.astype(complex)))
+
+
+def _basis(dynamics: Dynamics, modes: np.ndarray, forces: np.ndarray, shift: float) -> np.ndarray:
+    """Modes (n, m) and the static shapes under forces (n, p) beside them, orthonormal in M, (n, m + r)."""
+    symmetric = sp.csc_array(0.5 * (dynamics.K + dynamics.K.T))
+    factor = factor_general(sp.csc_array(symmetric + shift**2 * dynamics.M, dtype=complex))
+    return _joined(modes, np.real(factor.solve(forces.astype(complex))), dynamics.M)
+
+
+def _joined(basis: np.ndarray, shapes: np.ndarray, M: sp.csc_array) -> np.ndarray:
+    """A basis that is orthonormal in M, and shapes made so beside it; what it holds already is left out."""
+    columns = list(basis.T)
+    for shape in shapes.T:
+        before = np.sqrt(max(float(shape @ (M @ shape)), 0.0))
+        if not before:
+            continue
+        new = shape / before
+        for _ in range(2):  # once more, for what rounding left
+            for column in columns:
+                new = new - column * float(column @ (M @ new))
+        left = np.sqrt(max(float(new @ (M @ new)), 0.0))
+        if left > _NEW:
+            columns.append(new / left)
+    return np.array(columns).T
+
+
+@dataclass(frozen=True)
+class _Samples:
+    """Frequencies in rad/s (f,) and the whole displacements there (f, n, i)."""
+
+    w: np.ndarray
+    q: np.ndarray
+
+    @classmethod
+    def of(cls, dynamics: Dynamics, B: np.ndarray, w: np.ndarray) -> _Samples:
+        """Solve at some frequencies."""
+        return cls(w, np.array([dynamics.solve(float(value), B) for value in w]))
+
+    def differences(self, made: _Matrices, C: np.ndarray) -> np.ndarray:
+        """Largest difference of reduced and whole responses at each frequency, over the largest size of each response, (f,)."""
+        whole = C @ self.q
+        reduced = np.array([made.receptance(float(value)) for value in self.w])
+        # A response that symmetry forbids is rounding of what moves there.
+        forbidden = _FORBIDDEN * np.max(abs(C) @ np.abs(self.q), axis=0)
+        size = np.maximum(np.abs(whole).max(axis=0), forbidden)
+        relative = np.abs(whole - reduced) / np.where(size > 0.0, size, 1.0)
+        return np.asarray(relative.reshape(len(self.w), -1).max(axis=1))
+
+
+def _reduced(
+    dynamics: Dynamics, B: np.ndarray, C: np.ndarray, basis: np.ndarray, limit: float, damped: bool, accuracy: float
+) -> tuple[_Matrices, float]:
+    """The reduced matrices, and twice the largest difference that was found where the basis was not made.
+
+    As long as the worst of some frequencies is above the accuracy, the whole displacement there joins the basis (greedy reduced
+    basis: J. S. Hesthaven, G. Rozza, B. Stamm, Certified Reduced Basis Methods, Springer 2016, ch. 3). Judged is between these
+    frequencies, and on the tops and flanks of the peaks of the reduced system.
+    """
+    made = _Matrices.in_basis(dynamics, B, C, basis)
+    even = limit * np.arange(1, _BETWEEN + 1) / _BETWEEN
+    # Golden parts of the steps: no even grid, and half-way between the others.
+    judged = limit * (np.arange(_BETWEEN) + 0.381966) / _BETWEEN
+    peaks = _peaks(made, limit) if damped else np.zeros((0, 2))
+    learnt = _Samples.of(dynamics, B, np.unique([*even, *peaks[:, 0]]))
+    flanks = np.array([w + k * half for w, half in peaks for k in (-1.5, -0.7, 0.3, 0.7, 1.5)])
+    flanks = flanks[(flanks > _LOWEST * limit) & (flanks <= limit)]
+    held_out = _Samples.of(dynamics, B, np.unique([*judged, *flanks]))
+    while True:
+        error = 2.0 * float(held_out.differences(made, C).max())
+        worst = learnt.differences(made, C)
+        if error <= accuracy or not worst.max() > 0.1 * accuracy:
+            return made, error
+        shapes = learnt.q[int(np.argmax(worst))]
+        larger = _joined(basis, np.hstack([shapes.real, shapes.imag]), dynamics.M)
+        if larger.shape[1] == basis.shape[1]:
+            return made, error
+        basis = larger
+        made = _Matrices.in_basis(dynamics, B, C, basis)
+
+
+def _peaks(made: _Matrices, limit: float) -> np.ndarray:
+    """Damped natural frequencies up to a limit and their half-power half-widths in rad/s, (p, 2)."""
+    n = made.M.shape[0]
+    state = np.block([[np.zeros((n, n)), np.eye(n)], [-la.solve(made.M, made.K), -la.solve(made.M, made.D)]])
+    poles = la.eigvals(state)
+    near = poles[(poles.imag > _LOWEST * limit) & (poles.imag <= limit)]
+    return np.stack([near.imag, np.abs(near.real)], axis=1)

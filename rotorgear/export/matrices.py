@@ -1,0 +1,136 @@
+"""Sparse matrices of a model with the names and units of its degrees of freedom, in one file of numpy (.npz)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.analysis.common.request import check_request, speed_in_si
+from rotorgear.analysis.response.state_space import linear_system
+from rotorgear.errors import AnalysisError, RotorgearError
+from rotorgear.export.files import reason_of, replacing
+from rotorgear.export.state_space import require_matrix_name
+from rotorgear.model.model import Model
+from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.system.system import System
+
+# Name in the file, and what it is in M q'' + (C + W G) q' + K q = f.
+MATRICES = ("mass", "damping", "gyroscopic", "stiffness", "transform")
+
+
+def write_matrices(
+    model: Model,
+    path: str | Path,
+    *,
+    fmax: float | None = None,
+    speed: float | str | None = None,
+    elements: int | None = None,
+) -> Path:
+    """Write M, C, G and K of a model, M q'' + (C + W G) q' + K q = f with W the speed of the input shaft.
+
+    K holds cross-coupled and circulatory terms at the speed. `transform` T gives all displacements of the nodes, x y z tx ty tz
+    of each, from the free ones, T q; its rows are named too. C is without modal damping ratios, which belong to modes.
+
+    Args:
+        model: any model; contacts are closed, on the flanks that its loads choose.
+        path: of the file, with the ending .npz.
+        fmax: frequency in Hz that the mesh is refined for; needed without `elements`.
+        speed: of the input shaft in rad/s or with its unit; None: standstill.
+        elements: basic elements in each shaft segment, in place of `fmax`.
+
+    Raises:
+        AnalysisError: another ending, neither `fmax` nor `elements`. WriteError: the file can't be written.
+    """
+    target = require_matrix_name(path, (".npz",))
+    turns = speed_in_si(speed) or 0.0
+    check_request(turns, None, None, elements, None)
+    if fmax is None and elements is None:
+        raise AnalysisError(
+            "matrices need fmax (--fmax), the frequency in Hz that the mesh is refined for, or elements"
+        )
+    if fmax is not None and not 0.0 < fmax < float("inf"):
+        raise AnalysisError(f"fmax: got {fmax:g}, expected a positive frequency in Hz")
+    system, _ = linear_system(model, turns, fmax or 1.0, elements)
+    found = system.matrices(turns)
+    parts = {
+        "mass": system.mass,
+        "damping": found.damping,
+        "gyroscopic": system.gyroscopic,
+        "stiffness": found.stiffness,
+        "transform": sp.csc_array(system.dofs.transform[: 6 * len(system.nodes)]),
+    }
+    values: dict[str, Any] = {"speed_rad_s": turns, "title": model.title or ""}
+    for name, matrix in parts.items():
+        compressed = sp.csc_array(matrix)
+        values |= {
+            f"{name}_data": compressed.data,
+            f"{name}_indices": compressed.indices,
+            f"{name}_indptr": compressed.indptr,
+            f"{name}_shape": np.array(compressed.shape),
+        }
+    names, units = _dofs(system)
+    values |= {"dofs": np.array(names), "units": np.array(units), "node_dofs": np.array(_node_dofs(system))}
+    with replacing(target) as scratch, open(scratch, "wb") as stream:
+        np.savez_compressed(stream, allow_pickle=False, **values)
+    return target
+
+
+def read_matrices(path: str | Path) -> dict[str, Any]:
+    """Read a file of `write_matrices`.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        "mass", "damping", "gyroscopic", "stiffness" and "transform" as `scipy.sparse.csc_array`; "dofs" and "units" of the
+        columns, "node_dofs" of the rows of `transform`, as lists of texts; "speed_rad_s" and "title".
+
+    Raises:
+        RotorgearError: no such file, or another one.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            found: dict[str, Any] = {
+                name: sp.csc_array(
+                    tuple(stored[f"{name}_{part}"] for part in ("data", "indices", "indptr")),
+                    shape=tuple(int(count) for count in stored[f"{name}_shape"]),
+                )
+                for name in MATRICES
+            }
+            found |= {name: [str(text) for text in stored[name]] for name in ("dofs", "units", "node_dofs")}
+            return {**found, "speed_rad_s": float(stored["speed_rad_s"]), "title": str(stored["title"])}
+    except (OSError, ValueError, KeyError, EOFError) as error:
+        raise RotorgearError(f"{path}: no file of matrices: {reason_of(error)}") from None
+
+
+def _node_dofs(system: System) -> list[str]:
+    nodes = system.nodes
+    places = [f"shafts.{shaft}({1e3 * z:.9g} mm)" for shaft, z in zip(nodes.shaft, nodes.z, strict=True)]
+    counts: dict[str, int] = {}
+    named = []
+    for place in places:  # a gear with teeth apart, or two parts at one place, have nodes of one place
+        counts[place] = counts.get(place, 0) + 1
+        named.append(place if counts[place] == 1 else f"{place}#{counts[place]}")
+    return [f"{place}:{direction}" for place in named for direction in DOF_NAMES]
+
+
+def _dofs(system: System) -> tuple[list[str], list[str]]:
+    """Name and unit of each free degree of freedom: of the first node that it moves by one, else what the map says of it."""
+    of_nodes = _node_dofs(system)
+    T = sp.csc_array(system.dofs.transform)
+    names = []
+    units = []
+    for k in range(system.n):
+        rows = T.indices[T.indptr[k] : T.indptr[k + 1]]
+        entries = T.data[T.indptr[k] : T.indptr[k + 1]]
+        own = [int(row) for row, entry in zip(rows, entries, strict=True) if row < len(of_nodes) and entry == 1.0]
+        if own:
+            names.append(of_nodes[min(own)])
+            units.append("rad" if min(own) % 6 > 2 else "m")
+        else:
+            names.append(f"{system.dofs.describe(k, system.nodes)} [{k}]")
+            units.append("")
+    return names, units
