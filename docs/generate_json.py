@@ -116,6 +116,11 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
         (("orbits", ""),),
     ),
     (
+        "scatter",
+        "`rotorgear scatter MODEL --free ADDRESS --json scatter.json`. The samples themselves are in the HDF5 file of `--save`.",
+        (("scatter", ""),),
+    ),
+    (
         "sweep accuracy",
         "`rotorgear accuracy MODEL --analysis sweep --json accuracy.json`.",
         (("sweep_convergence", ""),),

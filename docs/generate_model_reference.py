@@ -23,6 +23,7 @@ from rotorgear.model.parts.load import Load, LoadHistory
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.model.parts.nonlinear_element import NonlinearElement
 from rotorgear.model.parts.operation import ModelDamping, Operation, Point
+from rotorgear.model.parts.scatter import Scatter
 from rotorgear.model.parts.shaft import LIBRARY, Material, Section, Shaft
 from rotorgear.model.parts.supports import (
     Bearing,
@@ -75,6 +76,7 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("history = { ... } of a load, in place of a file", LoadHistory),
     ("[unbalances.NAME]", Unbalance),
     ("[points.NAME]", Point),
+    ("[scatter] by address", Scatter),
 ]
 
 # What single fields can't say: rules that tie keys together.
@@ -168,6 +170,10 @@ RULES: dict[type[BaseModel], str] = {
         A `history` is a CSV file with a column `time` or `angle` and others `force_x` to `moment_z`, each with its unit in the
         header (`angle_deg,force_y_kN`), linear between its rows; angles are those of the shaft and begin again after 360 deg.
         [Forces and moments](static.md#forces-and-moments) says which analysis takes what.""",
+    Scatter: """
+The key is an address in quotes, such as `"bearings.*.stiffness" = { sigma = "10 %" }`; of two that name one number the later
+counts. Give one of `sigma`, `tolerance` and `grade`. [Scatter](scatter.md) says what is made of it.
+""",
     Point: """
         Give `on`, or `shaft` and `at`. The modal result lists each mode's amplitude there.""",
 }
@@ -258,8 +264,11 @@ def _value(kind: dict[str, Any]) -> str:
         if not kind["x-unit"]:
             return "number"
         return ", ".join(f'`"{text}"`' for text in [example, *kind.get("words", [])])
-    if {option.get("type") for option in kind.get("anyOf", [])} == {"string", "object"}:
+    options = {option.get("type") for option in kind.get("anyOf", [])} - {"null"}
+    if options == {"string", "object"}:
         return "text or table"
+    if options == {"string", "number"}:
+        return "share or size"
     if "enum" in kind or "const" in kind:
         choices = kind.get("enum", [kind.get("const")])
         return " ".join(f'`"{choice}"`' if isinstance(choice, str) else f"`{choice}`" for choice in choices)

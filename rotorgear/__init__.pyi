@@ -32,6 +32,7 @@ from rotorgear.model.parts.supports import DampingMatrix as DampingMatrix
 from rotorgear.model.parts.excitation import ErrorHarmonic as ErrorHarmonic
 from rotorgear.model.parts.excitation import StiffnessHarmonic as StiffnessHarmonic
 from rotorgear.model.parts.excitation import Unbalance as Unbalance
+from rotorgear.model.parts.scatter import Scatter as Scatter
 from rotorgear.system.system import System as System
 
 # The verbs: a model in, a result out.
@@ -49,6 +50,7 @@ from rotorgear.analysis.transient.transient import transient as transient
 from rotorgear.analysis.sweep.sweep import sweep as sweep
 from rotorgear.analysis.sweep.cluster import cluster as cluster
 from rotorgear.analysis.orbits.orbits import orbits as orbits
+from rotorgear.analysis.scatter.scatter import scatter as scatter
 from rotorgear.analysis.teeth.gear_sheet import gear as gear
 from rotorgear.analysis.bearing.bearing import bearing as bearing
 from rotorgear.analysis.casing.casing import casing as casing
@@ -112,6 +114,7 @@ from rotorgear.results.transient import TransientResult as TransientResult
 from rotorgear.results.sweep import SweepResult as SweepResult
 from rotorgear.results.sweep_convergence import SweepConvergenceStudy as SweepConvergenceStudy
 from rotorgear.results.orbits import OrbitsResult as OrbitsResult
+from rotorgear.results.scatter import ScatterResult as ScatterResult
 from rotorgear.results.portrait import Portraits as Portraits
 from rotorgear.results.gear_sheet import GearSheet as GearSheet
 from rotorgear.results.bearing import BearingSheet as BearingSheet

@@ -33,6 +33,7 @@ HELP = {
     "transient": "Time response from the static equilibrium: contact forces, transmission error, bearings, spectra.",
     "sweep": "Bifurcation diagram, Lyapunov exponents and response types of a model over its parameters.",
     "orbits": "Periodic motions over a parameter: stable and unstable branches, Floquet multipliers, folds and period doublings.",
+    "scatter": "Scatter of uncertain numbers: bands of frequencies, margins and load shares, and which number makes them.",
     "check": "Show what a model file describes: speeds, mesh frequencies, torques, contact ratios, masses, dofs, warnings.",
     "gear": "Print the gear sheet: geometry, measures, contact ratios, backlash and stiffness of all teeth.",
     "mesh": "Print stiffness, transmission error, load sharing and pressure of one mesh over its cycle.",

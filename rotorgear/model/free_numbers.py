@@ -52,13 +52,13 @@ class FreeNumbers:
         copy: dict[str, Any] = json.loads(json.dumps(self._tables))
         for place, factor in zip(self._places, np.exp(x), strict=True):
             owner = value_at(copy, place[:-1])
-            owner[place[-1]] = _times(owner[place[-1]], float(factor))
+            owner[place[-1]] = times(owner[place[-1]], float(factor))
         return Model(**copy)
 
     def values(self, x: NDArray[np.float64]) -> tuple[Any, ...]:
         """Each value in SI, as the tables of a model hold it, times exp(x_j)."""
         pairs = zip(self._places, np.exp(x), strict=True)
-        return tuple(_times(value_at(self._tables, place), float(factor)) for place, factor in pairs)
+        return tuple(times(value_at(self._tables, place), float(factor)) for place, factor in pairs)
 
 
 def free_numbers(
@@ -87,7 +87,7 @@ def free_numbers(
             raise ModelError([Problem(pattern, "", "the address of a number that the file gives")])
         for place in places:
             address = address_of(place)
-            if not _is_number(value_at(tables, place)):
+            if not is_number(value_at(tables, place)):
                 got = json.dumps(value_at(tables, place))
                 hint = "only numbers have a spread; leave it out, or give a number in its place"
                 raise ModelError([Problem(address, got, "a number other than 0, or several", hint)])
@@ -124,19 +124,19 @@ def _has(tables: dict[str, Any], place: Place) -> bool:
     return place[-1] in owner if isinstance(owner, dict) else True
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """Whether a value is a number other than 0, or several that are not all 0."""
     if isinstance(value, dict):
-        return (
-            bool(value) and all(_is_number(entry) or entry == 0.0 for entry in value.values()) and any(value.values())
-        )
+        return bool(value) and all(is_number(entry) or entry == 0.0 for entry in value.values()) and any(value.values())
     if isinstance(value, list):
-        return bool(value) and all(_is_number(entry) or entry == 0.0 for entry in value)
+        return bool(value) and all(is_number(entry) or entry == 0.0 for entry in value)
     return isinstance(value, int | float) and not isinstance(value, bool) and value != 0.0
 
 
-def _times(value: Any, factor: float) -> Any:
+def times(value: Any, factor: float) -> Any:
+    """A number, or all numbers of a table or list, times a factor."""
     if isinstance(value, dict):
-        return {key: _times(entry, factor) for key, entry in value.items()}
+        return {key: times(entry, factor) for key, entry in value.items()}
     if isinstance(value, list):
-        return [_times(entry, factor) for entry in value]
+        return [times(entry, factor) for entry in value]
     return value * factor

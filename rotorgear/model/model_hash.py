@@ -34,6 +34,8 @@ def model_hash(model: Model) -> str:
             gear["body"] = {key: value for key, value in body.items() if key not in _OF_MESHES}
     if not fields["casings"]:
         del fields["casings"]  # a model without them keeps the name that it had before there were any
+    if not fields["scatter"]:
+        del fields["scatter"]
     text = json.dumps(fields, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 

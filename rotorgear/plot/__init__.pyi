@@ -10,6 +10,7 @@ from rotorgear.plots.transient import transient as transient
 from rotorgear.plots.sweep import sweep as sweep
 from rotorgear.plots.orbits import orbits as orbits
 from rotorgear.plots.bearing import bearing as bearing
+from rotorgear.plots.scatter import scatter as scatter
 from rotorgear.plots.gear_mesh import gear as gear
 from rotorgear.plots.mesh_cycle import mesh as mesh
 from rotorgear.plots.mesh_map import mesh_map as mesh_map

@@ -54,6 +54,7 @@ ROOMS = {
         "teeth": {"common"},
         "rig": {"common", "modal", "static"},
         "bearing": {"common", "modal", "static"},
+        "scatter": {"common", "modal", "static", "transient"},
         "casing": set(),
         "standards": {"campbell", "common", "modal", "response", "static"},
         "": {"bearing", "campbell", "modal", "orbits", "response", "static", "sweep", "teeth", "transient"},
@@ -68,6 +69,7 @@ ROOMS = {
     "model": {"parts": set(), "layout": {"parts"}, "checks": {"layout", "parts"}, "": {"checks", "layout", "parts"}},
     "results": {"": set(), "tables": {""}},
     "solvers": {
+        "sampling": set(),
         "sparse": set(),
         "eigen": {"sparse"},
         "time": {"eigen", "sparse"},

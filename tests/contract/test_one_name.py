@@ -39,7 +39,7 @@ VERBS = {
     "export": ("state_space", "write_matrices", "modal"),
 }
 # Names that Python has no use for: `cluster` is an address in a command and an open pool (`executor`) in Python.
-OTHERWISE = {("sweep", "cluster")}
+OTHERWISE = {("sweep", "cluster"), ("scatter", "cluster")}
 # `--from` and `--to` are start and stop: `from` is a word of the language.
 OPTION_OF = {"start": "from", "stop": "to", "stiffness_map": "map", "shaft": "map-shaft", "source": "from"}
 

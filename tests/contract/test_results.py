@@ -102,6 +102,9 @@ def example(kind: str) -> Result:
         "tooth_field": lambda: tooth_fields(rg.loads(pair_file()), preset="preview"),
         "compare": lambda: rg.compare(example("modal"), [rg.RigLine(101.0)]),
         "update": lambda: rg.update(model("jeffcott"), [20.0, 126.0], free="bearings.*.stiffness"),
+        "scatter": lambda: rg.scatter(
+            model("jeffcott"), "bearings.*.stiffness", samples=8, modes=4, elements=1, sobol=8
+        ),
         "rig_spectrum": lambda: rg.compare_spectrum(
             example("transient"), example("spectral_lines"), [rg.RigLine(2000.0)]
         ),

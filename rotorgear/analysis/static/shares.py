@@ -69,3 +69,14 @@ def helix_shares(equilibrium: Equilibrated) -> np.ndarray:
     names = np.array(equilibrium.lines.names)
     total = np.array([equilibrium.force[names == name].sum() for name in names])
     return np.where(total > 0.0, equilibrium.force / np.where(total > 0.0, total, 1.0), 0.0)
+
+
+def load_shares(equilibrium: Equilibrated) -> dict[tuple[str, str], float]:
+    """Share of each mesh in the load of a gear that it shares: (gear, mesh) -> share."""
+    names = np.array(equilibrium.lines.names)
+    found: dict[tuple[str, str], float] = {}
+    for gear, meshes in _groups(equilibrium).items():
+        force = np.array([equilibrium.force[names == mesh].sum() for mesh in meshes])
+        if force.sum():
+            found |= {(gear, mesh): float(f / force.sum()) for mesh, f in zip(meshes, force, strict=True)}
+    return found

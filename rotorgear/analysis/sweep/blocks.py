@@ -10,10 +10,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
 from threading import Event
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
+from rotorgear.analysis.common.pool import Pool
 from rotorgear.analysis.sweep.certify import Judge, bounded, judged
 from rotorgear.analysis.sweep.point import Point, table_of
 from rotorgear.solvers.lanes.lanes import Orbit, Plan, Start, run_block
@@ -155,16 +156,6 @@ def _run(points: Sequence[Point], starts: Sequence[Start], plan: Plan, go_on: Ca
     return run_block(
         [p.system for p in points], starts, wide[:1] if len(tables) == 1 else wide, plan, go_on or (lambda: True)
     )
-
-
-class Pool(Protocol):
-    """Where blocks may go: `submit` returns an object with `result()` and `cancel()`, as `concurrent.futures` have it.
-
-    Where it has a number `ahead`, no more blocks than that are handed over before the first of them is done.
-    """
-
-    def submit(self, function: Callable[..., Any], /, *arguments: Any) -> Any:
-        """Take a call."""
 
 
 class Workers:

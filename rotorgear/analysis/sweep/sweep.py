@@ -8,9 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.common.pool import Pool
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.sweep.axes import Axis, Family, axis_of, points_of
-from rotorgear.analysis.sweep.blocks import Pool, Workers, blocks, packed, unpacked, waves
+from rotorgear.analysis.sweep.blocks import Workers, blocks, packed, unpacked, waves
 from rotorgear.analysis.sweep.classify import CHAOS, TOLERANCE
 from rotorgear.analysis.sweep.gather import gathered
 from rotorgear.analysis.sweep.notes import coarse_shafts, left_out_of

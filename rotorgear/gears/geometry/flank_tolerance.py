@@ -1,7 +1,8 @@
-"""Flank tolerances of ISO 1328-1:2013 by class A, which the dynamic factor needs.
+"""Flank tolerances of ISO 1328-1:2013 by class A, which the dynamic factor and the scatter of index errors need.
 
-f_pT = (0.001 d + 0.4 m_n + 5) sqrt(2)^(A - 5),  f_f_alphaT = (0.55 m_n + 5) sqrt(2)^(A - 5), in um with d and m_n in mm;
-the base pitch deviation is f_pb = f_pT cos a_t. The standard rounds them; here they are not rounded. Lengths in m.
+f_pT = (0.001 d + 0.4 m_n + 5) sqrt(2)^(A - 5),  f_f_alphaT = (0.55 m_n + 5) sqrt(2)^(A - 5),
+F_pT = (0.002 d + 0.55 sqrt(d) + 0.7 m_n + 12) sqrt(2)^(A - 5), in um with d and m_n in mm; the base pitch
+deviation is f_pb = f_pT cos a_t. The standard rounds them; here they are not rounded. Lengths in m.
 """
 
 from __future__ import annotations
@@ -21,6 +22,12 @@ def base_pitch_deviation(g: GearGeometry, grade: int) -> float:
 def profile_form_deviation(g: GearGeometry, grade: int) -> float:
     """f_f_alpha (m) of a gear in a tolerance class."""
     return 1e-6 * (0.55 * 1e3 * g.normal_module + 5.0) * _step(grade)
+
+
+def cumulative_pitch_tolerance(g: GearGeometry, grade: int) -> float:
+    """F_pT (m) of a gear in a tolerance class: total cumulative pitch deviation, along the reference circle."""
+    d = 1e3 * g.reference_diameter
+    return 1e-6 * (0.002 * d + 0.55 * math.sqrt(d) + 0.7 * 1e3 * g.normal_module + 12.0) * _step(grade)
 
 
 def _step(grade: int) -> float:

@@ -15,6 +15,7 @@ from rotorgear.model.parts.load import Load
 from rotorgear.model.parts.mesh import Mesh
 from rotorgear.model.parts.nonlinear_element import NonlinearElement
 from rotorgear.model.parts.operation import ModelDamping, Operation, Point
+from rotorgear.model.parts.scatter import Scatter
 from rotorgear.model.parts.shaft import LIBRARY, Material, Section, Shaft
 from rotorgear.model.parts.supports import Bearing, Coupling, Support
 
@@ -51,6 +52,9 @@ class Tables(Part):
     loads: dict[Name, Load] = Field(default_factory=dict, description="torques, for several inputs or outputs")
     unbalances: dict[Name, Unbalance] = Field(default_factory=dict, description="unbalances of shafts")
     points: dict[Name, Point] = Field(default_factory=dict, description="named points with a direction")
+    scatter: dict[str, Scatter] = Field(
+        default_factory=dict, description="how far numbers scatter, by address; * stands for all names or places there"
+    )
 
     def material_of(self, shaft: str, section: Section | None = None, name: str | None = None) -> Material:
         """Return the material of a shaft, of one of its sections, or of a body on it with its own material name."""

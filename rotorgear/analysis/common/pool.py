@@ -1,0 +1,43 @@
+"""Work that goes to threads here, or to an executor of the caller's, and comes back in its own order."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from itertools import islice
+from typing import Any, Protocol
+
+
+class Pool(Protocol):
+    """Where blocks may go: `submit` returns an object with `result()` and `cancel()`, as `concurrent.futures` have it.
+
+    Where it has a number `ahead`, no more blocks than that are handed over before the first of them is done.
+    """
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any) -> Any:
+        """Take a call."""
+
+
+def in_order(
+    function: Callable[..., Any], tasks: Iterable[tuple[Any, ...]], workers: int | None, executor: Pool | None
+) -> Iterator[Any]:
+    """Yield function(*task) of every task, in order; what waits is given up where nobody asks on."""
+    own = None if executor else ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1)
+    pool: Any = executor or own
+    waiting: deque[Any] = deque()
+    rest = iter(tasks)
+    try:
+        while True:
+            room = getattr(pool, "ahead", 2 * (workers or os.cpu_count() or 1)) - len(waiting)
+            waiting.extend(pool.submit(function, *task) for task in islice(rest, max(0, room)))
+            if not waiting:
+                return
+            yield waiting[0].result()
+            waiting.popleft()
+    finally:
+        for future in waiting:
+            future.cancel()
+        if own:
+            own.shutdown(wait=True, cancel_futures=True)

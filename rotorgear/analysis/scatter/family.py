@@ -1,0 +1,148 @@
+"""The forms of a model over one basis as functions of its scattering numbers.
+
+A number changes the forms of its own parts, so that F(z) = F(0) + sum_j [F_j(z_j) - F(0)] as long as no two numbers meet in one
+element. Each F_j is interpolated at Chebyshev points, which is exact for the powers 1 (stiffness) to 4 (diameter) in which
+numbers enter. Both are checked by whole systems at points of their own; where it does not hold, every sample is assembled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rotorgear.analysis.common.request import direction_of
+from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS, forms_of
+from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.model.spreads import Spreads
+from rotorgear.progress import Progress, silent
+from rotorgear.system.plan import Plan
+from rotorgear.system.system import System
+
+# Points at which each number is looked at, and the largest error of the sum that is still rounding beside a basis.
+_POINTS = 7
+_TRIALS = 3
+_SUM_ERROR = 1e-8
+# Terms that are rounding are left out.
+_NOTHING = 1e-13
+
+
+def system_at(model: Model, speed: float | None, plan: Plan) -> System:
+    """The linear system of a model at a speed of the reference shaft, about its equilibrium, on the mesh of a plan."""
+    linear, _ = about_equilibrium(model, [speed])
+    return System(linear, plan=plan, load=linear.mean_load(direction_of(speed)))
+
+
+@dataclass(frozen=True)
+class Family:
+    """Forms over one basis at any z.
+
+    Attributes:
+        spreads: the numbers.
+        speed: of the reference shaft in rad/s; None at standstill.
+        plan: the mesh.
+        V: the basis over the free dofs (n, r).
+        nominal: forms at z = 0 (a, r, r).
+        terms: of each number (number of the form, powers' coefficients (k, r, r)) of Chebyshev polynomials over its reach;
+            None where every sample is assembled.
+    """
+
+    spreads: Spreads
+    speed: float | None
+    plan: Plan
+    V: NDArray[np.float64]
+    nominal: NDArray[np.float64]
+    terms: tuple[tuple[tuple[int, NDArray[np.float64]], ...], ...] | None
+
+    def system(self, z: NDArray[np.float64]) -> System:
+        """The whole system at z (p,).
+
+        Raises:
+            AnalysisError: a number moves a place past another one.
+        """
+        system = system_at(self.spreads.at(z), self.speed, self.plan)
+        if system.n != self.V.shape[0]:
+            names = ", ".join(
+                name for name in self.spreads.numbers.addresses if name.endswith((".at", ".start", ".length"))
+            )
+            raise AnalysisError(
+                f"the scatter of {names or 'these numbers'} moves a place past another one that it coincides with, so that the "
+                "shafts are cut otherwise: move one of them by more than the scatter, or leave it out"
+            )
+        return system
+
+    def assembled(self, z: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The forms at z from the whole system."""
+        return forms_of(self.system(z), self.speed or 0.0, self.V)
+
+    def at(self, z: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The forms at z (p,), each (r, r)."""
+        if self.terms is None:
+            return self.assembled(z)
+        found = self.nominal.copy()
+        for own, x in zip(self.terms, z / self.spreads.reach, strict=True):
+            angle = np.arccos(np.clip(x, -1.0, 1.0))
+            for form, coefficients in own:
+                found[form] += np.tensordot(np.cos(angle * np.arange(len(coefficients))), coefficients, axes=1)
+        return found
+
+
+def family_of(
+    spreads: Spreads, speed: float | None, plan: Plan, V: NDArray[np.float64], progress: Progress = silent
+) -> Family:
+    """Return the family over a basis V (n, r)."""
+    nominal = forms_of(system_at(spreads.numbers.model, speed, plan), speed or 0.0, V)
+    bare = Family(spreads, speed, plan, V, nominal, None)
+    k = np.arange(_POINTS)
+    angles = np.pi * (k + 0.5) / _POINTS
+    # c = (2 / n) sum f(x_i) cos(k t_i), half of it for k = 0.
+    fit = np.cos(np.outer(k, angles)) * (2.0 / _POINTS)
+    fit[0] *= 0.5
+    terms = []
+    for j, reach in enumerate(spreads.reach):
+        progress(j / len(spreads), f"number {j + 1} of {len(spreads)}")
+        seen = []
+        for x in np.cos(angles):
+            z = np.zeros(len(spreads))
+            z[j] = reach * x
+            seen.append(bare.assembled(z) - nominal)
+        terms.append(tuple(_kept(fit, np.array(seen), nominal)))
+    whole = Family(spreads, speed, plan, V, nominal, tuple(terms))
+    trials = np.random.default_rng(0).uniform(-0.7, 0.7, (_TRIALS, len(spreads))) * spreads.reach
+    if all(_error(whole.at(z), bare.assembled(z)) < _SUM_ERROR for z in trials):
+        return whole
+    return bare
+
+
+def _kept(
+    fit: NDArray[np.float64], seen: NDArray[np.float64], nominal: NDArray[np.float64]
+) -> list[tuple[int, NDArray[np.float64]]]:
+    """Coefficients of the forms that change, up to the last that is no rounding."""
+    found = []
+    for form in range(len(nominal)):
+        change = seen[:, form]
+        size = np.sqrt(np.outer(np.abs(np.diag(nominal[form])), np.abs(np.diag(nominal[form]))))
+        least = _NOTHING * max(float(size.max(initial=0.0)), float(np.abs(nominal[form]).max(initial=0.0)))
+        if np.abs(change).max(initial=0.0) <= least:
+            continue
+        coefficients = np.tensordot(fit, change, axes=1)
+        large = np.flatnonzero(np.abs(coefficients).max(axis=(1, 2)) > least)
+        found.append((form, coefficients[: large[-1] + 1]))
+    return found
+
+
+def _error(found: NDArray[np.float64], exact: NDArray[np.float64]) -> float:
+    """Largest error of K, M and W G in units of the energies of the shapes."""
+    k = np.sqrt(np.maximum(np.diag(exact[STIFFNESS]), 1e-300))
+    m = np.sqrt(np.maximum(np.diag(exact[MASS]), 1e-300))
+    difference = np.abs(found - exact)
+    # A free motion has no strain energy of its own to be measured by.
+    k = np.maximum(k, 1e-6 * float(k.max()))
+    return max(
+        float((difference[STIFFNESS] / np.outer(k, k)).max()),
+        float((difference[MASS] / np.outer(m, m)).max()),
+        float((difference[GYROSCOPIC] / np.outer(k, m)).max()),
+    )

@@ -1,0 +1,198 @@
+"""The result of a scatter from its samples: means, standard deviations, quantiles and ranks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rotorgear.analysis.scatter.samples import Study, nearest_margin, participations, signs
+from rotorgear.results.scatter import (
+    HIGH,
+    LOW,
+    FrequencyBand,
+    GroupBand,
+    MarginBand,
+    ScatteredNumber,
+    ScatterResult,
+    ShareBand,
+)
+from rotorgear.solvers.sampling.sobol_indices import SobolIndices, sobol_indices
+
+Values = dict[str, NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """Samples and slopes.
+
+    Attributes:
+        Z: points (N, p): first those of the bands, then those of the Sobol indices.
+        values: of each point: see `run_samples`.
+        samples: how many points are of the bands.
+        slopes: d ln w / dz (m, p).
+        share_slopes: d share / dz (s, p).
+        seed: of the bootstrap.
+    """
+
+    Z: NDArray[np.float64]
+    values: Values
+    samples: int
+    slopes: NDArray[np.float64]
+    share_slopes: NDArray[np.float64]
+    seed: int
+
+
+def gathered(study: Study, sampled: Sampled, least_margin: float, error: float) -> ScatterResult:
+    """Return the result, without what the verb alone knows."""
+    spreads = study.family.spreads
+    of_bands = {name: value[: sampled.samples] for name, value in sampled.values.items()}
+    shares = _variance_shares(np.vstack([sampled.slopes, sampled.share_slopes]))
+    ranks = _ranks(sampled, len(spreads))
+    rows = zip(
+        spreads.numbers.addresses,
+        spreads.numbers.start,
+        spreads.numbers.unit,
+        spreads.size,
+        spreads.distribution,
+        strict=True,
+    )
+    numbers = tuple(
+        ScatteredNumber(address, float(value), unit, float(size), kind) for address, value, unit, size, kind in rows
+    )
+    return ScatterResult(
+        model=spreads.numbers.model,
+        speed=study.family.speed,
+        numbers=numbers,
+        bands=_bands(study, of_bands, sampled.slopes, shares, numbers),
+        groups=_group_bands(study, of_bands),
+        margins=_margin_bands(study, of_bands, least_margin),
+        shares=_share_bands(study, of_bands, sampled.share_slopes, shares[study.count :], numbers),
+        least_margin=least_margin,
+        sampling="",
+        z=sampled.Z[: sampled.samples],
+        sample_hz=of_bands["followed_hz"],
+        sample_margin=of_bands["margin"],
+        sample_share=of_bands["shares"],
+        first_order_share=shares,
+        sobol_first=ranks.first,
+        sobol_total=ranks.total,
+        sobol_first_error=ranks.first_error,
+        sobol_total_error=ranks.total_error,
+        basis_size=study.family.V.shape[1],
+        reduction_error=error,
+        checked_samples=0,
+        failed=int(np.sum(np.all(np.isnan(of_bands["hz"]), axis=1))),
+        dofs=study.family.V.shape[0],
+        method=_method(study),
+    )
+
+
+def _method(study: Study) -> str:
+    how = "each sample assembled" if study.family.terms is None else "forms summed over the numbers"
+    return f"modes in a basis of nominal modes and their derivatives, {how}"
+
+
+def _variance_shares(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+    square = slopes**2
+    total = square.sum(axis=1, keepdims=True)
+    return np.asarray(np.where(total > 0.0, square / np.where(total > 0.0, total, 1.0), 0.0))
+
+
+def _leading(shares: NDArray[np.float64], numbers: tuple[ScatteredNumber, ...]) -> tuple[str, float]:
+    j = int(np.argmax(shares))
+    return (numbers[j].address, float(shares[j])) if shares[j] > 0.0 else ("", 0.0)
+
+
+def _bands(
+    study: Study,
+    values: Values,
+    slopes: NDArray[np.float64],
+    shares: NDArray[np.float64],
+    numbers: tuple[ScatteredNumber, ...],
+) -> tuple[FrequencyBand, ...]:
+    rows = []
+    for i in range(study.count):
+        hz = values["followed_hz"][:, i]
+        there = hz[np.isfinite(hz)]
+        spread = float(np.std(np.log(there), ddof=1)) if len(there) > 1 else float("nan")
+        low, high = np.quantile(there, [LOW, HIGH]) if len(there) else (np.nan, np.nan)
+        rows.append(
+            FrequencyBand(
+                i + 1,
+                float(study.nominal.omega[i] / (2.0 * np.pi)),
+                next(k for k, group in enumerate(study.groups, 1) if i in group),
+                float(np.sqrt(np.sum(slopes[i] ** 2))),
+                spread,
+                float(there.mean()) if len(there) else float("nan"),
+                float(low),
+                float(high),
+                len(there) / len(hz),
+                *_leading(shares[i], numbers),
+            )
+        )
+    return tuple(rows)
+
+
+def _group_bands(study: Study, values: Values) -> tuple[GroupBand, ...]:
+    found = []
+    for number, group in enumerate(study.groups, 1):
+        own = [i for i in group if i < study.count]
+        if len(own) < 2:
+            continue
+        hz = values["hz"][:, own]
+        there = hz[np.isfinite(hz).all(axis=1)]
+        if len(there):
+            low = float(np.quantile(there.min(axis=1), LOW))
+            high = float(np.quantile(there.max(axis=1), HIGH))
+            found.append(GroupBand(number, tuple(i + 1 for i in own), low, high))
+    return tuple(found)
+
+
+def _margin_bands(study: Study, values: Values, least: float) -> tuple[MarginBand, ...]:
+    speed = study.family.speed or 0.0
+    taken = participations(study.names, study.lines, speed, study.family.nominal, study.nominal, signs(study.family))
+    found = []
+    for k, (line, hz) in enumerate(zip(study.lines, study.hz, strict=True)):
+        nominal = nearest_margin(study.nominal.omega / (2.0 * np.pi), taken[k] >= study.share, float(hz))
+        size = np.abs(values["margin"][:, k])
+        there = size[np.isfinite(size)]
+        low, median = np.quantile(there, [LOW, 0.5]) if len(there) else (np.nan, np.nan)
+        below = float(np.mean(there < least)) if len(there) else 0.0
+        found.append(MarginBand(line.name, float(hz), nominal, float(low), float(median), below))
+    return tuple(found)
+
+
+def _share_bands(
+    study: Study,
+    values: Values,
+    slopes: NDArray[np.float64],
+    shares: NDArray[np.float64],
+    numbers: tuple[ScatteredNumber, ...],
+) -> tuple[ShareBand, ...]:
+    from rotorgear.analysis.scatter.samples import shares_at
+
+    if not study.shared:
+        return ()
+    nominal = shares_at(study.family.spreads.numbers.model, study.family.speed, study.shared)
+    found = []
+    for k, (gear, mesh) in enumerate(study.shared):
+        seen = values["shares"][:, k]
+        there = seen[np.isfinite(seen)]
+        low, high = np.quantile(there, [LOW, HIGH])
+        first = float(np.sqrt(np.sum(slopes[k] ** 2)))
+        spread = float(np.std(there, ddof=1))
+        leading = _leading(shares[k], numbers)
+        found.append(ShareBand(gear, mesh, float(nominal[k]), first, spread, float(low), float(high), *leading))
+    return tuple(found)
+
+
+def _ranks(sampled: Sampled, numbers: int) -> SobolIndices:
+    """Sobol indices of ln f and of the shares; a mode that is not found at some point has none."""
+    at = slice(sampled.samples, None)
+    values = np.hstack([np.log(sampled.values["followed_hz"][at]), sampled.values["shares"][at]])
+    if not len(values):
+        nothing = np.zeros((0, numbers))
+        return SobolIndices(nothing, nothing, nothing, nothing)
+    return sobol_indices(values, numbers, sampled.seed)

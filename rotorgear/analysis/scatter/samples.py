@@ -1,0 +1,208 @@
+"""One sample of a scattering model: modes beside the nominal ones, margins of excitations, load shares.
+
+A mode is known again by its shape, never by its number: nominal and sampled modes are assigned one to one by most common energy.
+Nominal modes that the scatter turns into each other, as at a veering, form a group, and the group is compared as the space that
+its modes span: with W the unitary part of the overlaps between both (polar decomposition), the diagonal of W diag(w) W^H holds
+the frequencies that belong to the nominal shapes. They pass through a veering smoothly, and their slopes are those of energies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+from numpy.typing import NDArray
+
+from rotorgear.analysis.scatter.family import Family
+from rotorgear.analysis.scatter.forms import MASS, STIFFNESS, FormNames
+from rotorgear.analysis.scatter.modes import FormModes, modes_of, overlaps
+from rotorgear.analysis.static.shares import load_shares
+from rotorgear.analysis.static.static import solved
+from rotorgear.errors import RotorgearError
+from rotorgear.model.model import Model
+from rotorgear.progress import silent
+from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.system.plan import Plan
+
+# Modes beside those that are wanted, so that the last ones find themselves again.
+SPARE = 6
+# A nominal mode that a sample holds less of than this is lost there.
+LEAST_HELD = 0.5
+# Two modes of which one sample holds this share of one in the other turn into each other.
+_TURNED = 0.2
+
+
+@dataclass(frozen=True)
+class Study:
+    """What every sample is asked.
+
+    Attributes:
+        family: the forms of the model.
+        count: number of wanted modes m.
+        wide, least: of `modes_of`.
+        nominal: the nominal modes, m and some spare ones.
+        groups: modes that are compared as one space, each a tuple of numbers from 0; every nominal mode is in one.
+        lines: excitations, and
+        hz: their frequencies (l,).
+        share: least participation that counts.
+        names: which form is whose.
+        shared: (gear, mesh) of the s load shares; empty without statics.
+    """
+
+    family: Family
+    count: int
+    wide: int
+    least: float
+    nominal: FormModes
+    groups: tuple[tuple[int, ...], ...]
+    lines: tuple[ExcitationOrder, ...]
+    hz: NDArray[np.float64]
+    share: float
+    names: FormNames
+    shared: tuple[tuple[str, str], ...]
+
+
+def run_samples(study: Study, Z: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """Values of each sample z of a block Z (b, p): see `_sample`; NaN where a sample has no modes."""
+    rows = [_sample(study, z) for z in Z]
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def _sample(study: Study, z: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """followed_hz (m,): the frequency of each nominal shape; hz (m,): of the mode assigned to it; margin (l,); shares (s,)."""
+    m = study.count
+    nothing = {
+        "followed_hz": np.full(m, np.nan),
+        "hz": np.full(m, np.nan),
+        "margin": np.full(len(study.hz), np.nan),
+        "shares": np.full(len(study.shared), np.nan),
+    }
+    try:
+        forms = study.family.at(z)
+        modes = modes_of(forms, len(study.nominal.omega) + SPARE, study.least, study.wide)
+        followed, own, held = _followed(study, modes)
+        taken = participations(study.names, study.lines, study.family.speed or 0.0, forms, modes, signs(study.family))
+        shares = _shares(study, z)
+    except (RotorgearError, np.linalg.LinAlgError):
+        # A sample beyond what the model can be: counted and said, not hidden.
+        return nothing
+    margin = np.array(
+        [
+            nearest_margin(modes.omega / (2.0 * np.pi), row >= study.share, f)
+            for row, f in zip(taken, study.hz, strict=True)
+        ]
+    ).reshape(len(study.hz))
+    two_pi = 2.0 * np.pi
+    return {
+        "followed_hz": np.where(held >= LEAST_HELD, followed / two_pi, np.nan)[:m],
+        "hz": (own / two_pi)[:m],
+        "margin": margin,
+        "shares": shares,
+    }
+
+
+def groups_of(study: Study, Z: NDArray[np.float64]) -> tuple[tuple[int, ...], ...]:
+    """Nominal modes that turn into each other at some of the samples Z (b, p), as groups; every mode is in one."""
+    tied = np.zeros((len(study.nominal.omega),) * 2, dtype=bool)
+    for z in Z:
+        try:
+            modes = modes_of(study.family.at(z), len(study.nominal.omega) + SPARE, study.least, study.wide)
+        except (RotorgearError, np.linalg.LinAlgError):
+            continue  # counted where the sample itself is run
+        common, at = _assigned(study, modes)
+        tied |= np.abs(common[:, at]) ** 2 > _TURNED
+    groups: list[set[int]] = []
+    for a, row in enumerate(tied):
+        linked = {int(b) for b in np.flatnonzero(row)} | {a}
+        joined = [group for group in groups if group & linked]
+        groups = [group for group in groups if not group & linked] + [linked.union(*joined)]
+    return tuple(sorted(tuple(sorted(group)) for group in groups))
+
+
+def _assigned(study: Study, modes: FormModes) -> tuple[NDArray[np.complex128] | NDArray[np.float64], NDArray[np.intp]]:
+    """Overlaps of nominal and sampled modes (k, k'), and the sampled mode of each nominal one."""
+    from scipy.optimize import linear_sum_assignment
+
+    common = overlaps(study.family.nominal[STIFFNESS], study.family.nominal[MASS], study.nominal, modes)
+    return common, linear_sum_assignment(-(np.abs(common) ** 2))[1]
+
+
+def _followed(study: Study, modes: FormModes) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Frequencies of the nominal shapes and of the modes assigned to them in rad/s, how much of each shape its group holds."""
+    common, at = _assigned(study, modes)
+    own = modes.omega[at]
+    followed = own.copy()
+    held = np.zeros(len(at))
+    for group in study.groups:
+        rows = list(group)
+        inside = common[rows][:, at[rows]]
+        held[rows] = np.sum(np.abs(inside) ** 2, axis=1)
+        if len(rows) > 1:
+            W = la.polar(inside)[0]
+            followed[rows] = np.real(np.sum(np.abs(W) ** 2 * own[rows], axis=1))
+    return followed, own, held
+
+
+def signs(family: Family) -> dict[str, float]:
+    """Sense of each shaft's spin about +z, 0 at rest."""
+    model = family.spreads.numbers.model
+    return spin_signs(model, family.speed)
+
+
+def spin_signs(model: Model, speed: float | None) -> dict[str, float]:
+    """Sense of each shaft's spin about +z at a speed of the reference shaft, 0 at rest."""
+    return {name: float(np.sign(model.layout.train.ratio(name) * (speed or 0.0))) for name in model.shafts}
+
+
+def participations(
+    names: FormNames,
+    lines: tuple[ExcitationOrder, ...],
+    speed: float,
+    forms: NDArray[np.float64],
+    modes: FormModes,
+    senses: dict[str, float],
+) -> NDArray[np.float64]:
+    """Share of what a line shakes in each mode, (l, m).
+
+    Meshes in the strain energy; shafts in the kinetic energy, of their first order (unbalance) the forward whirl of bending:
+    q^H (M + i sign(W) M J) q / 2, half of it where nothing turns.
+    """
+    Q = modes.q
+
+    def energy(number: int) -> NDArray[np.float64]:
+        return np.real(np.sum(Q.conj() * (forms[number] @ Q), axis=0))
+
+    strain = energy(STIFFNESS)
+    kinetic = energy(MASS)
+    found = np.zeros((len(lines), len(modes.omega)))
+    for row, line in enumerate(lines):
+        for part in line.parts:
+            if line.kind != "shaft":
+                found[row] += energy(names.mesh(part)) / strain
+            elif line.name.endswith(" 1x"):
+                swept = np.real(1j * np.sum(Q.conj() * (forms[names.swept(part)] @ Q), axis=0))
+                found[row] += 0.5 * (energy(names.bending(part)) + senses[part] * swept) / kinetic
+            else:
+                found[row] += energy(names.kinetic(part)) / kinetic
+    return found
+
+
+def nearest_margin(hz: NDArray[np.float64], able: NDArray[np.bool_], line_hz: float) -> float:
+    """f / f_line - 1 of the nearest mode that takes part; NaN without one."""
+    if not able.any():
+        return float("nan")
+    ratio = hz[able] / line_hz - 1.0
+    return float(ratio[np.argmin(np.abs(ratio))])
+
+
+def _shares(study: Study, z: NDArray[np.float64]) -> NDArray[np.float64]:
+    if not study.shared:
+        return np.zeros(0)
+    return shares_at(study.family.spreads.at(z), study.family.speed, study.shared)
+
+
+def shares_at(model: Model, speed: float | None, wanted: tuple[tuple[str, str], ...]) -> NDArray[np.float64]:
+    """Load shares of a model, (s,); NaN of one that it has not."""
+    found = load_shares(solved(model, Plan(1), speed, silent).equilibrium)
+    return np.array([found.get(key, np.nan) for key in wanted])

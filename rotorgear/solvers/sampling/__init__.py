@@ -1,0 +1,1 @@
+"""Points of the unit cube, and variances from them."""
