@@ -28,7 +28,7 @@ def scatter(result: ScatterResult, fig: Any = None) -> Any:
         MissingExtraError: matplotlib is not installed.
     """
     at = "at standstill" if result.speed_rpm is None else f"at {result.speed_rpm:.6g} rpm"
-    title = f"{result.model.title or 'Scatter'}\nfrequencies {at}, {result.samples} samples"
+    title = f"{result.model.title or 'Scatter'}\nfrequencies {at}, {result.sample_count} samples"
     figure = figure_for(fig, (9.0, 7.5), title)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     numbers = np.arange(1, len(result.bands) + 1)

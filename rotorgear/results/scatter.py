@@ -117,6 +117,6 @@ class ScatterResult(ModelResult, kind="scatter"):
         return None if self.speed is None else self.speed * RPM_PER_RAD_S
 
     @derived("number of samples")
-    def samples(self) -> int:
+    def sample_count(self) -> int:
         """n."""
         return len(self.z)

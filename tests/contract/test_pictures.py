@@ -33,6 +33,7 @@ PICTURES = {
     "convergence": ("convergence",),
     "transient": ("transient", "mesh_forces", "transmission_error", "spectra", "shaft_orbits", "energy", "spectrogram"),
     "orbits": ("orbits",),
+    "scatter": ("scatter",),
     "sweep": ("sweep", "bifurcation", "sections", "portraits", "portrait_spectra"),
 }
 # Of a stage of pyvista, of a map over two parameters, and of minutes of contact analyses: each has its own test or a long one.
@@ -72,6 +73,7 @@ def results() -> dict[str, Any]:
             steps=40,
             error_estimate=False,
         ),
+        "scatter": rg.scatter(jeffcott, "bearings.*.stiffness", samples=8, modes=4, elements=1),
         "orbits": rg.orbits(loose, {"operation.speed": "4000 rpm:4200 rpm"}, step=0.5),
         "sweep": rg.sweep(
             loose, {"operation.speed": ["3000 rpm", "3250 rpm"]}, steps=80, discard=20, sample=20, portraits=2

@@ -151,8 +151,7 @@ def _group_bands(study: Study, values: Values) -> tuple[GroupBand, ...]:
 
 
 def _margin_bands(study: Study, values: Values, least: float) -> tuple[MarginBand, ...]:
-    speed = study.family.speed or 0.0
-    taken = participations(study.names, study.lines, speed, study.family.nominal, study.nominal, signs(study.family))
+    taken = participations(study.names, study.lines, study.family.nominal, study.nominal, signs(study.family))
     found = []
     for k, (line, hz) in enumerate(zip(study.lines, study.hz, strict=True)):
         nominal = nearest_margin(study.nominal.omega / (2.0 * np.pi), taken[k] >= study.share, float(hz))

@@ -82,7 +82,7 @@ def _sample(study: Study, z: NDArray[np.float64]) -> dict[str, NDArray[np.float6
         forms = study.family.at(z)
         modes = modes_of(forms, len(study.nominal.omega) + SPARE, study.least, study.wide)
         followed, own, held = _followed(study, modes)
-        taken = participations(study.names, study.lines, study.family.speed or 0.0, forms, modes, signs(study.family))
+        taken = participations(study.names, study.lines, forms, modes, signs(study.family))
         shares = _shares(study, z)
     except (RotorgearError, np.linalg.LinAlgError):
         # A sample beyond what the model can be: counted and said, not hidden.
@@ -158,7 +158,6 @@ def spin_signs(model: Model, speed: float | None) -> dict[str, float]:
 def participations(
     names: FormNames,
     lines: tuple[ExcitationOrder, ...],
-    speed: float,
     forms: NDArray[np.float64],
     modes: FormModes,
     senses: dict[str, float],
@@ -168,24 +167,30 @@ def participations(
     Meshes in the strain energy; shafts in the kinetic energy, of their first order (unbalance) the forward whirl of bending:
     q^H (M + i sign(W) M J) q / 2, half of it where nothing turns.
     """
-    Q = modes.q
-
-    def energy(number: int) -> NDArray[np.float64]:
-        return np.real(np.sum(Q.conj() * (forms[number] @ Q), axis=0))
-
-    strain = energy(STIFFNESS)
-    kinetic = energy(MASS)
     found = np.zeros((len(lines), len(modes.omega)))
     for row, line in enumerate(lines):
-        for part in line.parts:
-            if line.kind != "shaft":
-                found[row] += energy(names.mesh(part)) / strain
-            elif line.name.endswith(" 1x"):
-                swept = np.real(1j * np.sum(Q.conj() * (forms[names.swept(part)] @ Q), axis=0))
-                found[row] += 0.5 * (energy(names.bending(part)) + senses[part] * swept) / kinetic
-            else:
-                found[row] += energy(names.kinetic(part)) / kinetic
+        part, whole = exciting_forms(names, line, forms, senses)
+        found[row] = diagonal(part, modes.q) / diagonal(whole, modes.q)
     return found
+
+
+def exciting_forms(
+    names: FormNames, line: ExcitationOrder, forms: NDArray[np.float64], senses: dict[str, float]
+) -> tuple[NDArray[np.complex128] | NDArray[np.float64], NDArray[np.float64]]:
+    """Hermitian forms (r, r) of what a line shakes and of the whole: their ratio in a mode is its participation."""
+    if line.kind != "shaft":
+        return np.sum([forms[names.mesh(part)] for part in line.parts], axis=0), forms[STIFFNESS]
+    if not line.name.endswith(" 1x"):
+        return np.sum([forms[names.kinetic(part)] for part in line.parts], axis=0), forms[MASS]
+    halves = [0.5 * (forms[names.bending(p)] + 1j * senses[p] * forms[names.swept(p)]) for p in line.parts]
+    return np.sum(halves, axis=0), forms[MASS]
+
+
+def diagonal(
+    form: NDArray[np.complex128] | NDArray[np.float64], Q: NDArray[np.complex128] | NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """q^H A q of the columns of Q (r, m), A Hermitian."""
+    return np.real(np.sum(Q.conj() * (form @ Q), axis=0))
 
 
 def nearest_margin(hz: NDArray[np.float64], able: NDArray[np.bool_], line_hz: float) -> float:

@@ -39,7 +39,7 @@ def scatter_table(result: ScatterResult) -> RenderableType:
             leading,
         )
     title = result.title or "Scatter"
-    parts: list[Any] = [heading(title, f": scatter {at}, {result.samples} samples"), bands]
+    parts: list[Any] = [heading(title, f": scatter {at}, {result.sample_count} samples"), bands]
     if result.groups:
         parts += lines("", "Modes of a group turn into each other; a row of theirs follows one shape.")
     for one in result.groups:

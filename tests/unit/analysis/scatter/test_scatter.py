@@ -101,7 +101,7 @@ def test_forward_and_backward_whirl_take_part_in_unbalance_as_their_sense_says()
         forms = forms_of(system, speed, np.eye(system.n))
         found = modes_of(forms, 8, 1.0, system.n)
         lines = tuple(line for line in excitation_orders(rotor) if line.name == "shaft rotor 1x")
-        taken = participations(FormNames.of(rotor), lines, speed, forms, found, spin_signs(rotor, speed))[0]
+        taken = participations(FormNames.of(rotor), lines, forms, found, spin_signs(rotor, speed))[0]
         whirl = list(rg.modal(rotor, speed=speed, modes=10, elements=2).whirl)
         assert taken.max() == pytest.approx(1.0, abs=0.05)
         assert "forward" in whirl
