@@ -2,7 +2,7 @@
 
 It keeps a virtual environment of its own (`.venv-check`, or the directory named by ROTORGEAR_VENV) with the project and its
 test tools, and runs in it, on one thread each: ruff format, ruff check, mypy, and all tests, those of the docs among them, on two
-cores.
+cores. With --oldest it runs the quick tests in a second environment, with the oldest version of every dependency.
 Needs Python 3.11 with venv, no more.
 """
 
@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -49,6 +50,8 @@ LONG_TESTS = Step("long", (*PYTEST, "tests", "-m", "long"))
 
 USUAL = (FORMAT, LINT, TYPES, TESTS)
 FAST = (FORMAT, LINT, TYPES, FAST_TESTS)
+# With the oldest versions of all dependencies that pyproject.toml allows, in an environment of its own.
+OLDEST_TESTS = Step("oldest", (*PYTEST, "tests/unit", "tests/contract", "-n", "2", "--dist", "loadfile"))
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -58,8 +61,10 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"check.py: this is Python {sys.version.split()[0]}; start it with Python 3.11 or newer", file=sys.stderr)
         return 2
     venv = Path(os.environ.get("ROTORGEAR_VENV") or ROOT / ".venv-check").absolute()
+    if options.oldest:
+        venv = venv.with_name(f"{venv.name}-oldest")
     try:
-        prepare(venv)
+        prepare(venv, oldest=options.oldest)
     except SetupError as error:
         print(f"check.py: {error}", file=sys.stderr)
         return 2
@@ -78,6 +83,11 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
         "--only", metavar="NAME", choices=names, action="append", help=f"one check of: {', '.join(names)}"
     )
     which.add_argument("--fast", action="store_true", help="leave out the docs and the convergence tests")
+    which.add_argument(
+        "--oldest",
+        action="store_true",
+        help="only the quick tests, with the oldest versions that pyproject.toml allows",
+    )
     parser.add_argument("--long", action="store_true", help="run the long validations too, after all else")
     parser.add_argument("--fix", action="store_true", help="mend format and lint instead of only complaining")
     parser.add_argument("--keep-going", action="store_true", help="run all checks even when one fails")
@@ -86,6 +96,8 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
 
 def chosen(options: argparse.Namespace) -> tuple[Step, ...]:
     """Return the steps to run, in order."""
+    if options.oldest:
+        return (OLDEST_TESTS,)
     if options.only:
         steps = tuple(step for step in (*USUAL, DOCS, LONG_TESTS) if step.name in options.only)
     else:
@@ -110,7 +122,24 @@ def is_current(venv: Path) -> bool:
     return python_of(venv).exists() and stamp.exists() and stamp.read_text(encoding="utf-8") == fingerprint()
 
 
-def prepare(venv: Path) -> None:
+def oldest_versions() -> list[str]:
+    """The lower bound of every dependency in pyproject.toml, those of the extras too, as requirements such as numpy==1.26."""
+    import tomllib  # here, so that an older Python gets as far as to be told that it is too old
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    found = set()
+    for text in [
+        *project["dependencies"],
+        *(text for group in project["optional-dependencies"].values() for text in group),
+    ]:
+        requirement, _, marker = text.partition(";")
+        match = re.match(r"(?P<name>[A-Za-z0-9_.-]+)\s*>=\s*(?P<least>[0-9.]+)", requirement)
+        if match:
+            found.add(f"{match['name']}=={match['least']}" + (f"; {marker.strip()}" if marker else ""))
+    return sorted(found)
+
+
+def prepare(venv: Path, oldest: bool = False) -> None:
     """Make the environment, or bring it up to date; the stamp is written last, so a broken attempt is repeated."""
     if is_current(venv):
         return
@@ -129,6 +158,8 @@ def prepare(venv: Path) -> None:
                 "this Python can't make a virtual environment; on Debian or Ubuntu: apt install python3-venv"
             )
     install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--editable", ".[test]"]
+    if oldest:
+        install += oldest_versions()
     if subprocess.run([str(python_of(venv)), *install], check=False, cwd=ROOT).returncode != 0:
         raise SetupError(
             "pip could not install rotorgear and its test tools (its reason stands above); "
