@@ -36,6 +36,8 @@ from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.system.system import System
 
 DEFAULT_MODES = 24
+# Share of the range by which two speeds are one but for rounding.
+_SAME_SPEED = 1e-9
 
 
 @recorded
@@ -129,7 +131,7 @@ def _grid(found: SpeedModes, asked: np.ndarray, operating: float | None) -> np.n
     low = float(asked.min())
     high = float(asked.max())
     extra = [*found.family.knots] + ([operating] if operating is not None and low < operating < high else [])
-    new = [speed for speed in extra if np.min(np.abs(asked - speed)) > 1e-9 * max(high - low, 1e-300)]
+    new = [speed for speed in extra if np.min(np.abs(asked - speed)) > _SAME_SPEED * max(high - low, 1e-300)]
     grid = merged(sorted([*map(float, asked), *map(float, new)]), high - low)
     return grid if abs(asked[-1]) >= abs(asked[0]) and asked[-1] >= 0.0 else grid[::-1]
 
@@ -327,15 +329,20 @@ def _margins(
     met: tuple[Crossing, ...],
     operating: float | None,
 ) -> tuple[Margin, ...]:
-    if operating is None or operating not in grid:
+    if operating is None or (place := _place_of(operating, grid)) is None:
         return ()
-    place = int(np.flatnonzero(grid == operating)[0])
     known = [chain for chain in chains if np.isfinite(chain.s[place])]
     if not known:
         return ()
     columns = np.hstack([shapes.coordinates(chain.group, chain.q[place][:, None]) for chain in known])
     seen = shapes.portraits(columns, np.full(len(known), operating))
     return margins(lines, met, operating, s[place], seen)
+
+
+def _place_of(speed: float, grid: np.ndarray) -> int | None:
+    """Number of a speed in the grid; None where it lies outside. A range that is cut evenly meets it to rounding only."""
+    place = int(np.argmin(np.abs(grid - speed)))
+    return place if abs(grid[place] - speed) <= _SAME_SPEED * max(float(np.ptp(grid)), 1e-300) else None
 
 
 def _left_out(system: System, found: SpeedModes, grid: np.ndarray, operating: float | None) -> tuple[str, ...]:
@@ -348,7 +355,7 @@ def _left_out(system: System, found: SpeedModes, grid: np.ndarray, operating: fl
         notes.append("motions that do not oscillate (overdamped): they have no frequency to draw")
     if operating is None:
         notes.append("margins: the model has no operating speed")
-    elif operating not in grid:
+    elif _place_of(operating, grid) is None:
         notes.append("margins: the operating speed lies outside of the range")
     return (*notes, *found.notes)
 

@@ -216,7 +216,7 @@ def _result(
         motion=shapes,
         status=found.status,
         left_out=(
-            *left_out(system, float(local.rotation.speeds[0]), rolls=True),
+            *left_out(system, task.largest, rolls=True),
             *transient_left_out(task.local),
             *mean_torsion_notes(task.local.system, task.largest),
         ),

@@ -104,6 +104,8 @@ def solved_map(
     """The map at some positions for groups of rising multiples of a working load (N)."""
     of_period = _errors_by_period(problem)
     kinds = list(dict.fromkeys(of_period))
+    # Patches are those of the commonest period: where an odd tooth carries they are wider, and would move all the others.
+    common = of_period.index(max(kinds, key=of_period.count))
     solved: list[list[_Column]] = [[] for _ in kinds]
     touch: list[np.ndarray] = []
     notes: list[str] = []
@@ -111,8 +113,8 @@ def solved_map(
     for number, group in enumerate(groups):
         told = part_of(progress, number / len(groups), (number + 1) / len(groups))
         try:
-            known = positions.cycle if group[-1] == 1.0 else None
-            cycle = known or mesh_cycle(problem, group[-1] * load * _cosine(problem), positions.position, told)
+            known = positions.cycle if group[-1] == 1.0 and not common else None
+            cycle = known or mesh_cycle(problem, group[-1] * load * _cosine(problem), common + positions.position, told)
         except WideContactError:
             if not factors:
                 raise
@@ -122,7 +124,7 @@ def solved_map(
             break
         bound = factors[-1:]
         for kind, errors in enumerate(kinds):
-            columns, gaps = _columns(problem, cycle, [load * f for f in (*bound, *group)], of_period.index(errors))
+            columns, gaps = _columns(problem, cycle, [load * f for f in (*bound, *group)], of_period.index(errors) - common)
             if bound:
                 columns = _faded(columns, solved[kind][-1], [*bound, *group])
             else:
@@ -199,7 +201,7 @@ def _errors_by_period(problem: ContactProblem) -> list[tuple[float, ...]]:
 def _columns(
     problem: ContactProblem, cycle: MeshCycle, loads: list[float], period: int
 ) -> tuple[list[_Column], np.ndarray]:
-    """Approaches at normal forces that rise to that of the cycle, in one period; and the approach (p,) of first touch."""
+    """Approaches at normal forces that rise to that of the cycle, so many periods after it; and that of first touch, (p,)."""
     gap = problem.gap(cycle.slices, period)
     contacts = list(cycle.contacts)
     if any(flank.single_teeth for flank in problem.flanks):

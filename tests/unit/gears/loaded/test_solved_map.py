@@ -162,3 +162,13 @@ def test_a_kept_map_is_read_again_and_another_key_is_not(tmp_path: Path, monkeyp
         file.write_bytes(b"broken")
     kept_map((pair(), 1.0, long), solve)
     assert len(calls) == 4
+
+
+def test_periods_without_the_odd_tooth_are_solved_on_patches_of_their_own() -> None:
+    """An odd tooth carries more, on wider patches, and the load of the others stays on those that it asks for."""
+    teeth = helical(first_flank=FlankModification(pitch_error=((0, 20e-6),)))
+    found = contact_map(teeth, LOAD, 8, near=True)
+    far = found.periods // 2 + np.arange(8) / 8
+    problem, exact = loaded_cycle(teeth, LOAD * np.cos(contact_problem(teeth).line.base_helix_angle), far)
+    along_normal = exact.deflection * np.cos(problem.line.base_helix_angle)
+    assert found.approach_at(np.full(8, LOAD), far) == pytest.approx(along_normal, rel=1e-6)

@@ -1,0 +1,139 @@
+"""What responses, gear sheets, maps, orbits and films say that they left out is true."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.forces.journal_film import JournalFilm
+from tests.unit.analysis.left_out.sentences import numbers, pair, says, sentence
+from tests.unit.analysis.spur_pair import spur_pair
+
+SPEED = "1500 rpm"
+
+
+def answer(model: rg.Model, **more: Any) -> rg.ResponseResult:
+    return rg.response(model, **{"speeds": [SPEED], "elements": 1, "method": "direct", **more})
+
+
+def varied(share: float, **changes: Any) -> rg.Model:
+    return pair({"stiffness_variation": [{"harmonic": 1, "amplitude": share}]}.items(), **changes)
+
+
+def test_varying_stiffness_acts_to_first_order() -> None:
+    one, two = (answer(varied(share)) for share in (0.01, 0.02))
+    assert says(one, "the product of its varying stiffness and the vibration; it acts to first order, as a force")
+    assert two.mesh_force == pytest.approx(2.0 * one.mesh_force, rel=1e-9)
+
+
+UNBALANCED = {"unbalances": {"u": {"shaft": "two", "at": 0.06, "magnitude": 1e-4}}}
+
+
+def test_without_torque_varying_stiffness_excites_nothing() -> None:
+    still, varies = (
+        answer(pair(mesh, operation__torque=None, **UNBALANCED))
+        for mesh in ((), {"stiffness_variation": [{"harmonic": 1, "amplitude": 0.1}]}.items())
+    )
+    assert says(varies, "stiffness variation of pair: no torque, so no mean force that it acts on")
+    assert (still.orders, varies.orders) == (("shaft two 1x",), ("shaft two 1x", "mesh pair 1x"))
+    assert varies.bearing_force[0] == pytest.approx(still.bearing_force[0], rel=1e-12)
+    assert not varies.bearing_force[1].any()
+
+
+def test_orders_above_the_limit_are_left_out_and_no_others() -> None:
+    whole = answer(spur_pair())
+    limit = 0.5 * (whole.frequency_hz[0, 0] + whole.frequency_hz[1, 0])
+    some = answer(spur_pair(), fmax=limit)
+    assert sentence(some, "above") == f"mesh pair 2x: above {limit:g} Hz at the highest speed"
+    assert some.orders == whole.orders[:1]
+    assert some.mesh_force[0] == pytest.approx(whole.mesh_force[0], rel=1e-9)
+
+
+LIST = [float(k) for k in 3e8 * (1.0 + 0.2 * np.array([0.0, 1.0, 0.4, -0.5, -1.0, 0.6]))]
+
+
+@pytest.mark.parametrize(
+    ("what", "mesh"),
+    [("stiffness", {"stiffness": LIST}), ("corner impact", {"corner_impact": {"force": 40.0, "duration": 0.3, "at": 0.2}})],
+)
+def test_harmonics_that_are_left_out_are_as_weak_as_is_said(what: str, mesh: dict[str, Any]) -> None:
+    found = answer(pair(mesh.items()))
+    (share,) = numbers(sentence(found, f"harmonics of its {what} of up to").split(" % ")[0])
+    kept = {int(name.rpartition(" ")[2].removesuffix("x")) for name in found.orders}
+    u = np.arange(60000) / 60000
+    if what == "stiffness":
+        x = np.interp(u, np.arange(7) / 6, [*LIST, LIST[0]])
+    else:
+        late = (u - 0.2) % 1.0
+        x = np.where(late < 0.3, np.sin(np.pi * late / 0.3), 0.0)
+    size = np.abs(np.fft.rfft(x))[1:2000]
+    left = [size[n - 1] for n in range(1, 2000) if n not in kept]
+    assert 100.0 * max(left) / size.max() == pytest.approx(share, rel=0.05)
+
+
+def test_torques_that_change_with_speed_or_step_do_so_in_time_only() -> None:
+    def run(**brake: Any) -> rg.ResponseResult:
+        shafts = {"one": {"kind": "input", "torque": 200.0}, "two": {"kind": "output", **brake}}
+        loads = {f"on_{name}": {"shaft": name, **load} for name, load in shafts.items()}
+        return answer(spur_pair(operation__torque=None, operation__output_shaft=None, loads=loads))
+
+    plain, bent, step = run(), run(speed_power=2.0), run(step_at="0.1 s", step_to=0.5)
+    assert says(bent, "loads.on_two: how its torque changes with the speed, which transients take")
+    assert bent.mesh_force == pytest.approx(plain.mesh_force, rel=1e-12)
+    assert says(step, "loads.on_two: its step in time, which transients take")
+    assert step.mesh_force == pytest.approx(plain.mesh_force, rel=1e-12)
+
+
+def test_springs_to_ground_carry_no_mean_torque_in_a_response() -> None:
+    def held(k: float) -> rg.ResponseResult:
+        return answer(spur_pair(supports={"brake": {"shaft": "two", "at": "0 mm", "stiffness": {"torsion": k}}}))
+
+    soft, stiff = held(1e3), held(1e6)
+    assert says(soft, "mean torque in the torsional stiffness to ground of supports.brake")
+    assert stiff.mean_force == pytest.approx(soft.mean_force, rel=1e-9)
+    assert not np.allclose(stiff.mesh_force, soft.mesh_force, rtol=1e-3)
+
+
+def test_a_gear_sheet_leaves_out_gears_without_teeth_and_stiffness_without_torque() -> None:
+    without = rg.gear(pair({"stiffness": "tooth_fe"}.items(), operation__torque=None))
+    assert says(without, "is that of loaded teeth, and no torque flows")
+    assert [row.stiffness_n_per_m for row in without.meshes] == [None]
+    lumped = rg.Model(
+        shafts={"one": {}, "two": {}, "three": {}},
+        gears={
+            **{
+                name: {"shaft": shaft, "at": "start", "kind": "spur", "teeth": 20, "normal_module": 0.004, "width": 0.03}
+                for name, shaft in (("a", "one"), ("b", "two"))
+            },
+            "c": {"shaft": "three", "at": "start", "kind": "spur", "base_radius": 0.05, "mass": 1.0, "polar_inertia": 0.01,
+                  "diametral_inertia": 0.01},
+        },
+    )  # fmt: skip
+    sheet = rg.gear(lumped)
+    assert sentence(sheet, "gears.c") == "gears.c: given by its base radius, without teeth"
+    assert [row.name for row in sheet.gears] == ["a", "b"]
+
+
+TEETH = {"meshes__pair__stiffness": "tooth_fe", "meshes__pair__transmission_error": []}
+
+
+def test_a_map_over_torques_has_no_estimate_and_the_first_period_only() -> None:
+    plain, odd = (
+        rg.mesh_map(spur_pair(**TEETH, gears__pinion__flank=flank), over={"torque": [200.0]}, positions=32)
+        for flank in ({}, {"pitch_errors": {"12": "8 um"}})
+    )
+    assert says(odd, "error estimates: `rotorgear mesh` without --over gives them for one point")
+    assert not [name for name in vars(odd) if "estimate" in name]
+    assert says(odd, "errors of single teeth beyond the first mesh period")
+    # The odd tooth comes twelve periods later: the first one is that of a pair without it.
+    assert odd.ste_peak_to_peak == pytest.approx(plain.ste_peak_to_peak, rel=1e-9)
+
+
+def test_a_film_knows_no_tilt_of_its_journal() -> None:
+    law = JournalFilm.examples()[0]
+    assert law.left_out() == ("heat, turbulence and tilt of the journal in its film",)
+    assert law.components == 2  # forces across its axis, no moments
+    assert not {"temperature", "specific_heat", "reynolds"} & set(law.declared())
