@@ -9,7 +9,7 @@ Re(f e^{i w t}) with w = |W_i| that is f_x = U W_i^2 e^{i s a}, f_y = -i s U W_i
 A transmission error e(t) and a stiffness k (1 + a(t)) turn the force of a contact under the mean force F_0 into
 F = k (v.q - e) + c (v.q' - e') + F_0 a to first order; a may follow from a model of the teeth, and an impact adds to the last
 term. Of loaded teeth the last term is f of their joint state, F_i - k_i delta_i, which holds all of their ripple
-(analysis/static/cycle.py), and e what the approach is at first touch. Mesh phases: model/layout/mean_load.py.
+(analysis/static/joint_state.py), and e what the approach is at first touch. Mesh phases: model/layout/mean_load.py.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from rotorgear.analysis.response.cycle_harmonics import (
     strong,
     that_matter,
 )
-from rotorgear.analysis.static.cycle import Cycle
+from rotorgear.analysis.static.joint_state import Cycle
 from rotorgear.analysis.static.mean_state import Setup
 from rotorgear.model.parts.load import COMPONENTS, LoadHistory
 from rotorgear.model.parts.mesh import Mesh

@@ -23,7 +23,7 @@ import numpy as np
 from rotorgear.analysis.response.orders import Order
 from rotorgear.analysis.response.plant import Plant, Readings
 from rotorgear.analysis.response.run_up import solve_orders
-from rotorgear.analysis.static.cycle import Cycle, JointState
+from rotorgear.analysis.static.joint_state import Cycle, JointState
 from rotorgear.analysis.static.mean_state import Setup
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.response import Peak

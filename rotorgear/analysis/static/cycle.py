@@ -14,14 +14,7 @@ moment M about the middle, from its face map. Contacts of one mesh frequency run
 there is no short common period: each cycle is taken for itself, with the other contacts on the mean of their curves,
 delta_mean(F) over u.
 
-Linear analyses are about the mean of this state. With k_i the mean tangent of contact i, what shakes it is
-
-    f_i(u) = F_i(u) - k_i delta_i(u),
-
-because k_i v_i . q + f_i then gives F_i(u) wherever the rest follows without inertia: exactly this state at a crawl. Along a
-face, with the mean tangent k at the place e and k_t against a tilt about it, delta_i is the approach at that place, and the
-couple m_i(u) = M_i - e F_i - k_t tilt_i shakes it too.
-H. N. Ozguven and D. R. Houser, Journal of Sound and Vibration 125 (1988) 71, for one mesh.
+What that state is and how it shakes a linear model: `joint_state.py`.
 """
 
 from __future__ import annotations
@@ -34,6 +27,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rotorgear.analysis.static.contact_curves import Curve, FaceCurve, FaceTable, MapTable
+from rotorgear.analysis.static.joint_state import Cycle, JointState
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.layout.mean_load import MeshForce
@@ -49,8 +44,6 @@ if TYPE_CHECKING:
 
 # Positions in a base pitch at least; a map that knows more is followed.
 _POSITIONS = 128
-# A curve F(delta) at one position is straight between so many points to each step of load of its map.
-_FINER = 8
 # Positions whose curves are made together.
 _TOGETHER = 512
 # Cycles of several pitches whose rows of the map agree to this share are solved once.
@@ -58,118 +51,6 @@ _ALIKE = 1e-10
 # Mean state and tangents of nonlinear bearings agree when no mean force changes by more than this share of the largest.
 _AGREED = 1e-9
 _PASSES = 30
-
-
-@dataclass(frozen=True)
-class Cycle:
-    """The joint state over the cycle of the contacts of one mesh frequency.
-
-    Attributes:
-        meshes: names of these meshes.
-        ratio: mesh frequency in rad/s over the size of the reference speed.
-        periods: base pitches after which it repeats.
-        position: (p,) in base pitches from the time 0 on, evenly spaced over `periods`.
-        approach: (p, c) delta of all contacts along the flank normal in m; in the middle of a face that feels its tilt.
-        force: (p, c) along the flank normal in N.
-        tilt: (p, c) of the flanks in m/m, 0 of contacts without a face map; moment: (p, c) about the middle of the face in N m.
-    """
-
-    meshes: tuple[str, ...]
-    ratio: float
-    periods: int
-    position: np.ndarray
-    approach: np.ndarray
-    force: np.ndarray
-    tilt: np.ndarray
-    moment: np.ndarray
-
-
-@dataclass(frozen=True)
-class JointState:
-    """The joint quasi-static state of all contacts.
-
-    Attributes:
-        cycles: one for each mesh frequency of loaded teeth.
-        own: (c,) number of the cycle that a contact runs through; -1 of one without a contact map.
-        force, approach: (c,) means over its own cycle, N and m along the flank normal; of a contact without map over the first.
-        stiffness: (c,) mean tangent over its own cycle in N/m; of a contact without map its own.
-        gap: (c,) index error of each contact in m.
-        maps: (c,) contact maps, None without one; face_maps: (c,) of teeth that feel the tilt of their shafts, in place of those.
-        faces: (c,) how it carries along its face about its mean, None without a face map.
-        compliance: (c, c) approach of the contacts in m under a constant force of each mapped one in N, all being springs of
-            these stiffnesses.
-        pitch: (c,) base pitches past the pitch point of each contact at time 0; sense: (c,) +1 where it then runs up its map.
-    """
-
-    cycles: tuple[Cycle, ...]
-    own: np.ndarray
-    force: np.ndarray
-    approach: np.ndarray
-    stiffness: np.ndarray
-    gap: np.ndarray
-    maps: tuple[ContactMap | None, ...]
-    face_maps: tuple[FaceMap | None, ...]
-    faces: tuple[FaceState | None, ...]
-    compliance: np.ndarray
-    pitch: np.ndarray
-    sense: np.ndarray
-
-    @property
-    def start(self) -> list[float | None]:
-        """In N: about its mean a contact with a map is F = start + k (delta - gap)."""
-        F_0 = self.force - self.stiffness * (self.approach - self.gap)
-        return [float(F) if own >= 0 else None for F, own in zip(F_0, self.own, strict=True)]
-
-    def excitation(self, cycle: Cycle) -> np.ndarray:
-        """f_i = F_i - k_i delta_i over a cycle, (p, c) in N, without its mean; 0 for contacts without a map."""
-        f = cycle.force - self.stiffness * self.pressed(cycle)
-        return np.where(self.own >= 0, f - f.mean(axis=0), 0.0)
-
-    def couple(self, cycle: Cycle) -> np.ndarray:
-        """m_i = M_i - e F_i - k_t tilt_i over a cycle, (p, c) in N m, without its mean; 0 for contacts without a face map."""
-        against = np.array([face.tilt_stiffness if face else 0.0 for face in self.faces])
-        m = cycle.moment - self._places * cycle.force - against * cycle.tilt
-        return np.asarray(m - m.mean(axis=0))
-
-    def pressed(self, cycle: Cycle) -> np.ndarray:
-        """Approach (p, c) over a cycle at the places of contact, in m; of contacts without a face map that of the cycle."""
-        return np.asarray(cycle.approach + self._places * cycle.tilt)
-
-    def pressed_force(self, contact: int, cycle: Cycle, delta: np.ndarray) -> np.ndarray:
-        """Force (p,) in N at approaches (p,) at the place of a contact over its cycle, the tilt being that of the cycle."""
-        u = self.on_map(contact, cycle.position)
-        contact_map = self.maps[contact]
-        face_map = self.face_maps[contact]
-        if contact_map is not None:
-            return contact_map.force(delta - self.gap[contact], u)
-        assert face_map is not None
-        law = face_law(face_map, float(self.stiffness[contact]), float(self.gap[contact]))
-        tilt = cycle.tilt[:, contact]
-        d = np.stack([delta - self._places[contact] * tilt, tilt], axis=1)
-        return law.evaluate_many(d, 0.0 * d, angle=2.0 * math.pi * u).force[:, 0]
-
-    @property
-    def _places(self) -> np.ndarray:
-        """e (c,) in m; 0 without a face map."""
-        return np.array([face.place if face else 0.0 for face in self.faces])
-
-    def no_load(self, cycle: Cycle) -> np.ndarray:
-        """Approach (p, c) at first touch of the contacts that run through a cycle, in m without its mean; 0 for the others."""
-        found = np.zeros_like(cycle.approach)
-        for i, contact_map in enumerate(self.maps):
-            face_map = self.face_maps[i]
-            if self.own[i] < 0 or self.cycles[self.own[i]] is not cycle:
-                continue
-            u = self.on_map(i, cycle.position)
-            if contact_map is not None:
-                found[:, i] = contact_map.no_load(u)
-            elif face_map is not None:
-                found[:, i] = face_map.no_load(float(cycle.tilt[:, i].mean()), u)
-        return np.asarray(found - found.mean(axis=0))
-
-    def on_map(self, contact: int, position: np.ndarray) -> np.ndarray:
-        """Place u on its map of a contact at positions of its cycle."""
-        return np.asarray(self.sense[contact] * (self.pitch[contact] + position))
 
 
 def over_cycle(equilibrium: Equilibrated, speed: float) -> tuple[Equilibrated, JointState | None]:
@@ -405,7 +286,7 @@ class _Problem:
         again = which.ravel()
         return Cycle(tuple(meshes), ratio, periods, position, approach[again], force[again], tilt[again], moment[again])
 
-    def _at(self, curves: list[_Curve | _FaceCurve]) -> Settled:
+    def _at(self, curves: list[Curve | FaceCurve]) -> Settled:
         """Equilibrium of the mapped contacts on the curves of one position."""
         mapped = len(self.mapped)
         # Places of the displacements of each curve among the moving ones.
@@ -441,16 +322,16 @@ class _Problem:
         assert face_map is not None
         return face_law(face_map, float(self.equilibrium.lines.stiffness[contact]), float(self.gap[contact]))
 
-    def _table(self, contact: int, position: np.ndarray, runs: bool) -> _Table | _FaceTable:
+    def _table(self, contact: int, position: np.ndarray, runs: bool) -> MapTable | FaceTable:
         """The map of a contact at the positions of a cycle, or its mean over the map."""
         u = self.sense[contact] * (self.pitch[contact] + position) if runs else None
         face_map = self.face_maps[contact]
         if face_map is not None:
             law = self._law_of(contact)
             if u is None:
-                return _FaceTable(law.mean(), np.zeros(len(position)), np.ones((len(position), 1)))
+                return FaceTable(law.mean(), np.zeros(len(position)), np.ones((len(position), 1)))
             rows = np.moveaxis(face_map.approaches(u), 1, 0).reshape(len(position), -1)
-            return _FaceTable(law, u, rows)
+            return FaceTable(law, u, rows)
         contact_map = self.maps[contact]
         assert contact_map is not None
         loads = np.append(contact_map.load, 10.0 * contact_map.largest_load)
@@ -459,80 +340,4 @@ class _Problem:
         else:
             mean = contact_map.approach_at(loads, contact_map.position[:, None]).mean(axis=0)
             rows = np.broadcast_to(mean, (len(position), len(loads)))
-        return _Table(contact_map, u, rows, float(self.gap[contact]))
-
-
-@dataclass(frozen=True)
-class _Table:
-    """A contact over the p positions of a cycle.
-
-    Attributes:
-        contact_map: its map.
-        place: (p,) places u on it; None where the mean of the map holds.
-        approach: (p, l) at the loads of the map and one far above.
-        gap: index error in m.
-    """
-
-    contact_map: ContactMap
-    place: np.ndarray | None
-    approach: np.ndarray
-    gap: float
-
-    def curves(self, positions: np.ndarray) -> list[_Curve]:
-        """F(delta) at some positions (r,), given by their numbers."""
-        steps = np.arange(_FINER) / _FINER
-        load = self.contact_map.load
-        fine = np.append((load[:-1, None] + np.diff(load)[:, None] * steps).ravel(), load[-1])
-        far = 10.0 * load[-1]
-        if self.place is None:
-            everywhere = self.contact_map.position
-            approach = self.contact_map.curves(fine, everywhere).mean(axis=0)
-            beyond = self.contact_map.approach_at(far, everywhere).mean()
-            return [_Curve(self.gap + np.append(approach, beyond), np.append(fine, far))] * len(positions)
-        u = self.place[positions]
-        beyond = self.contact_map.approach_at(far, u)
-        approach = np.column_stack([self.contact_map.curves(fine, u), beyond])
-        return [_Curve(self.gap + row, np.append(fine, far)) for row in approach]
-
-
-@dataclass(frozen=True)
-class _FaceTable:
-    """A contact along its face over a cycle: its law, places u (p,) on it, and approaches (p, a) that tell positions apart."""
-
-    law: ForceLaw
-    place: np.ndarray
-    approach: np.ndarray
-
-    def curves(self, positions: np.ndarray) -> list[_FaceCurve]:
-        """(F, M)(delta, tilt) at some positions (r,), given by their numbers."""
-        return [_FaceCurve(self.law, float(u)) for u in self.place[positions]]
-
-
-@dataclass(frozen=True)
-class _FaceCurve:
-    """(F, M)(delta, tilt) of a contact at a place u on its map."""
-
-    law: ForceLaw
-    place: float
-
-    def force(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Force in N and moment in N m, and their tangents (2, 2), at an approach and a tilt (2,)."""
-        found = self.law.evaluate(d, angle=2.0 * math.pi * self.place)
-        return found.force, found.in_displacement
-
-
-@dataclass(frozen=True)
-class _Curve:
-    """F(delta) of a contact at one position, straight between points: approach (n,) in m, rising, and load (n,) in N."""
-
-    approach: np.ndarray
-    load: np.ndarray
-
-    def force(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Force (1,) in N and tangent (1, 1) in N/m at an approach (1,)."""
-        delta = float(d[0])
-        if delta <= self.approach[0]:
-            return np.zeros(1), np.zeros((1, 1))
-        i = min(int(np.searchsorted(self.approach, delta)), len(self.load) - 1)
-        slope = float((self.load[i] - self.load[i - 1]) / (self.approach[i] - self.approach[i - 1]))
-        return np.array([self.load[i - 1] + slope * (delta - self.approach[i - 1])]), np.array([[slope]])
+        return MapTable(contact_map, u, rows, float(self.gap[contact]))

@@ -8,8 +8,9 @@ import numpy as np
 
 from rotorgear.analysis.common.mesh_notes import unlike_teeth_left_out
 from rotorgear.analysis.static.along_faces import about_faces
-from rotorgear.analysis.static.cycle import JointState, over_cycle
+from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.ground import torsion_sentence
+from rotorgear.analysis.static.joint_state import JointState
 from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.errors import AnalysisError
 from rotorgear.system.contacts import ContactLines, contact_lines

@@ -124,7 +124,9 @@ def solved_map(
             break
         bound = factors[-1:]
         for kind, errors in enumerate(kinds):
-            columns, gaps = _columns(problem, cycle, [load * f for f in (*bound, *group)], of_period.index(errors) - common)
+            columns, gaps = _columns(
+                problem, cycle, [load * f for f in (*bound, *group)], of_period.index(errors) - common
+            )
             if bound:
                 columns = _faded(columns, solved[kind][-1], [*bound, *group])
             else:

@@ -74,6 +74,14 @@ def test_at_standstill_there_are_no_gyroscopic_terms() -> None:
     assert bending[1][1] > 1.02 * bending[1][0]
 
 
+def test_a_run_up_from_standstill_has_gyroscopic_terms() -> None:
+    run = {"time": 0.001, "steps": 20, "elements": 1, "method": "newmark", "error_estimate": False}
+    rising = rg.transient(spur_pair(), speed="0 rpm", speed_to="1500 rpm", **run)
+    still = rg.transient(spur_pair(), speed=0.0, **run)
+    assert says(still, "gyroscopic matrix: standstill")
+    assert not says(rising, "gyroscopic")
+
+
 def test_without_tilt_nothing_is_gyroscopic() -> None:
     model = pair(motions=["torsion"])
     turning = rg.modal(model, speed=150.0, modes=4, elements=1, error_estimate=False)

@@ -57,7 +57,10 @@ LIST = [float(k) for k in 3e8 * (1.0 + 0.2 * np.array([0.0, 1.0, 0.4, -0.5, -1.0
 
 @pytest.mark.parametrize(
     ("what", "mesh"),
-    [("stiffness", {"stiffness": LIST}), ("corner impact", {"corner_impact": {"force": 40.0, "duration": 0.3, "at": 0.2}})],
+    [
+        ("stiffness", {"stiffness": LIST}),
+        ("corner impact", {"corner_impact": {"force": 40.0, "duration": 0.3, "at": 0.2}}),
+    ],
 )
 def test_harmonics_that_are_left_out_are_as_weak_as_is_said(what: str, mesh: dict[str, Any]) -> None:
     found = answer(pair(mesh.items()))

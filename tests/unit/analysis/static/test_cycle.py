@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.static.cycle import JointState, over_cycle
+from rotorgear.analysis.static.cycle import over_cycle
+from rotorgear.analysis.static.joint_state import JointState
 from rotorgear.analysis.static.solve import Equilibrated, equilibrate
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.system.system import System
