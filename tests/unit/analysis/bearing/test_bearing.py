@@ -10,6 +10,7 @@ from rotorgear.analysis.bearing.bearing import rigid_threshold
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.hertz import line_pressure, point_pressure
 from rotorgear.forces.journal_film import JournalFilm
+from rotorgear.system.local_parts import journal_law
 from tests.paths import ROOT
 from tests.unit.analysis.static.test_bearing_states import BALLS, ROLLERS, rotor
 
@@ -121,3 +122,23 @@ def test_both_kinds_have_a_convergence_study() -> None:
     balls = rg.accuracy(rotor(BALLS, PULL, "3000 rpm"), "bearing")
     assert balls.rungs[-1].order == pytest.approx(1.5, abs=0.1)
     assert all(rung.error <= 1.5 * rung.estimate for rung in balls.rungs)
+
+
+def test_a_split_torque_gearbox_stands_in_its_films_at_its_own_loads_and_runs_stably() -> None:
+    model = rg.load(ROOT / "models" / "split_torque_journals.toml")
+    speed = model.operation.speed
+    found = rg.static(model, elements=1)
+    assert found.imbalance < 1e-9
+    for row in found.laws:
+        name = row.part.removeprefix("bearings.")
+        assert found.bearing_force[name][:2] == pytest.approx(-row.force, rel=1e-6)
+        law = journal_law(model.bearings[name].journal, float(model.layout.train.ratio(model.bearings[name].shaft)))
+        there = law.settled(row.displacement).evaluate(row.displacement, speed=speed)
+        np.testing.assert_allclose(there.force, row.force, rtol=0.0, atol=1e-6 * np.abs(row.force).max())
+        np.testing.assert_allclose(there.in_displacement, row.stiffness, rtol=1e-12)
+    # What weighs and what the meshes push stands in the bearings: all forces on the gearbox from outside.
+    weight = 9.81 * sum(shaft.shaft_mass_kg + shaft.body_mass_kg for shaft in rg.check(model).shafts)
+    assert sum(force[1] for force in found.bearing_force.values()) == pytest.approx(weight, rel=1e-6)
+    modes = rg.modal(model, speed=speed, modes=12, elements=2)
+    assert modes.eigenvalues.real.max() < 0.0
+    assert any("2.528e+04 N" in note for note in modes.left_out)
