@@ -162,7 +162,7 @@ def _forces(result: ResponseResult) -> np.ndarray:
 
 
 def _place(model: Model) -> str:
-    direction = "y" if model.has("bending") else "tz"
+    direction = "y" if model.has("bending") else "torsion"
     for table in ("disks", "gears", "bearings"):
         for name in getattr(model, table):
             return f"{table}.{name}:{direction}"

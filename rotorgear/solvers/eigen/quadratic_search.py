@@ -114,11 +114,23 @@ def solve(search: Search, rows: int | None, below: float | None, dense: bool = F
         inside = int(np.count_nonzero(np.abs(pairs.values) <= pairs.reach))
         if (rows is not None and inside >= rows) or pairs.reach >= limit:
             shown = slice(0, inside if rows is None else rows)
+            _mend(search, pairs, shown)
             if _sound(quadratic, pairs.values[shown], pairs.vectors[:, shown]):
                 return pairs
             break
         wanted += max(8, wanted // 4)
     return _dense(search, rows)
+
+
+def _mend(search: Search, pairs: Pairs, shown: slice) -> None:
+    """Refine in place, on the pencil itself, the pairs shown that rounding in the Krylov basis has blurred too much."""
+    quadratic = search.inverse.quadratic
+    residuals = quadratic.residuals(pairs.values[shown], pairs.vectors[:, shown])
+    for i in np.flatnonzero(residuals > _SOUND):
+        value, vector, spent = newton(quadratic, pairs.values[i], pairs.vectors[:, i])
+        search.factorisations += spent
+        pairs.values[i] = value
+        pairs.vectors[:, i] = vector
 
 
 def _sound(quadratic: Quadratic, values: np.ndarray, V: np.ndarray) -> bool:

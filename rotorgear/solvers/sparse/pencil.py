@@ -19,6 +19,7 @@ EPS = float(np.finfo(float).eps)
 _SYMMETRY = 1e-9  # an entry may differ from its mirror image by this share of sqrt(a_ii a_jj)
 _LIFT = 4.0 * EPS  # added to diagonals, relative to them, so that an exactly zero pivot shows as a tiny one
 _ZERO_PIVOT = 100.0 * EPS  # pivots below this share of the diagonal are rounding
+_DENSE_UP_TO = 250  # unknowns up to which all eigenvalues of one matrix cost milliseconds
 _ACCURATE = 1e-9  # backward error of a solve up to which the pivots' signs are believed
 Strain = Callable[[np.ndarray], np.ndarray]
 
@@ -86,6 +87,9 @@ def backward_errors(M: sp.csr_array, K: sp.csr_array, values: np.ndarray, V: np.
 def count_below(M: sp.csc_array, K: sp.csc_array, shift: float) -> int:
     """Number of eigenvalues of K x = lambda M x below the shift, from the signs of the pivots of K - shift M.
 
+    Two equal bodies on one spring have a zero diagonal halfway between their two eigenvalues: no pivot on the diagonal then
+    exists, however far the shift is from both. A small pencil then falls back on the eigenvalues of K - shift M itself.
+
     Raises:
         ConvergenceError: the factors stay inaccurate when the shift is moved by a billionth or so: it lies in a cluster of
             eigenvalues.
@@ -99,4 +103,8 @@ def count_below(M: sp.csc_array, K: sp.csc_array, shift: float) -> int:
             continue
         if solve_error(A, factor) < _ACCURATE:
             return factor.negative_count()
+    if K.shape[0] <= _DENSE_UP_TO:
+        inertia = np.linalg.eigvalsh((K - shift * M).toarray())
+        if np.abs(inertia).min() > _ACCURATE * np.abs(inertia).max():
+            return int(np.count_nonzero(inertia < 0.0))
     raise ConvergenceError(f"No accurate factors of K - {shift:.6g} M: the shift lies in a cluster of eigenvalues.")
