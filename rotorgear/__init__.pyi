@@ -77,6 +77,11 @@ from rotorgear.solvers.time.kernel_contact import no_schedule as no_schedule
 
 # A rig beside them.
 from rotorgear.analysis.rig.compare_result import compare as compare
+from rotorgear.analysis.rig.compare_shapes import compare_shapes as compare_shapes
+from rotorgear.analysis.rig.compare_frf import compare_frf as compare_frf
+from rotorgear.analysis.rig.compare_frf import read_rig_frf as read_rig_frf
+from rotorgear.analysis.rig.compare_orders import compare_orders as compare_orders
+from rotorgear.analysis.rig.compare_orders import read_order_cuts as read_order_cuts
 from rotorgear.analysis.rig.rig_file import read_rig_lines as read_rig_lines
 from rotorgear.analysis.rig.rig_spectrum import compare_spectrum as compare_spectrum
 from rotorgear.analysis.rig.update import update as update
@@ -126,6 +131,9 @@ from rotorgear.results.mesh_optimum import MeshOptimum as MeshOptimum
 from rotorgear.results.convergence import ConvergenceStudy as ConvergenceStudy
 from rotorgear.results.comparison import Comparison as Comparison
 from rotorgear.results.comparison import RigLine as RigLine
+from rotorgear.results.correlation import ShapeComparison as ShapeComparison
+from rotorgear.results.frf_comparison import FrfComparison as FrfComparison
+from rotorgear.results.frf_comparison import OrderComparison as OrderComparison
 from rotorgear.results.update import UpdateResult as UpdateResult
 from rotorgear.results.rexs_import import RexsImport as RexsImport
 from rotorgear.results.state_space import StateSpace as StateSpace

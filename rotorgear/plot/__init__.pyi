@@ -18,6 +18,7 @@ from rotorgear.plots.root_stress import root_stress as root_stress
 from rotorgear.plots.convergence import convergence as convergence
 from rotorgear.plots.mesh_convergence import mesh_convergence as mesh_convergence
 from rotorgear.plots.mode_pictures import modal as modal
+from rotorgear.plots.correlation import compare_shapes as compare_shapes
 
 # More of one result.
 from rotorgear.plots.waterfall import waterfall as waterfall

@@ -37,6 +37,7 @@ VERBS = {
     "mesh": ("mesh", "mesh_map", "optimise_flanks", "root_stress"),
     "import": ("import_rexs",),
     "export": ("state_space", "write_matrices", "modal"),
+    "compare": ("compare", "compare_shapes", "compare_frf", "compare_orders"),
 }
 # Names that Python has no use for: `cluster` is an address in a command and an open pool (`executor`) in Python.
 OTHERWISE = {("sweep", "cluster"), ("scatter", "cluster")}

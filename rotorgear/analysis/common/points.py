@@ -75,7 +75,7 @@ def coordinates(model: Model, text: str) -> tuple[np.ndarray, int]:
         AnalysisError: as `named_place` and `casing_row` do.
     """
     if text.startswith("casings."):
-        name, dof, seat, point = _casing_place(model, text)
+        name, dof, seat, point = casing_place(model, text)
         body = model.layout.casing(name)
         if seat:
             return np.asarray(body.seat_points[body.seats.index(seat)]), dof
@@ -94,7 +94,7 @@ def casing_row(model: Model, text: str) -> tuple[str, np.ndarray]:
     Raises:
         AnalysisError: no such casing, seat, direction, or a casing without a surface.
     """
-    name, dof, seat, point = _casing_place(model, text)
+    name, dof, seat, point = casing_place(model, text)
     body = model.layout.casing(name)
     if not seat:
         assert body.surface is not None
@@ -104,7 +104,7 @@ def casing_row(model: Model, text: str) -> tuple[str, np.ndarray]:
     return name, row
 
 
-def _casing_place(model: Model, text: str) -> tuple[str, int, str, int]:
+def casing_place(model: Model, text: str) -> tuple[str, int, str, int]:
     """Casing, number of the direction, seat ("" for none), and number of the point of the surface (-1 for a seat)."""
     address, _, direction = text.rpartition(":")
     found = re.fullmatch(r"casings\.(?P<name>[\w -]+?)(?:\.(?P<seat>[\w -]+)|\((?P<place>[^()]*)\))", address)

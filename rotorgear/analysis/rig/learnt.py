@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from rotorgear.analysis.rig.posterior import Posterior
 from rotorgear.results.comparison import RigLine
@@ -32,10 +32,10 @@ def learnt_stiffnesses(
         modes: index of the mode of each matched line (n).
         lines: the matched lines (n).
     """
-    springs = [part for part in strain_energy if part.partition(".")[0] in SPRINGS]
+    springs = _springs(strain_energy)
     if not springs or not lines:
         return ()
-    shares = np.array([np.asarray(strain_energy[part], dtype=float)[list(modes)] for part in springs])
+    shares = spring_shares(strain_energy, np.array(modes))
     posterior = Posterior(
         jacobian=0.5 * shares.T,
         noise=np.array([line_noise(line) for line in lines]),
@@ -46,6 +46,16 @@ def learnt_stiffnesses(
         LearntParameter(f"{part}.stiffness", STIFFNESS_PRIOR, float(sigma), float(learnt))
         for part, sigma, learnt in rows
     )
+
+
+def spring_shares(strain_energy: Mapping[str, ArrayLike], modes: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Share of each spring in the strain energy of some modes, (springs, modes)."""
+    rows = [np.asarray(strain_energy[part], dtype=float)[modes] for part in _springs(strain_energy)]
+    return np.array(rows).reshape(-1, len(modes))
+
+
+def _springs(strain_energy: Mapping[str, ArrayLike]) -> list[str]:
+    return [part for part in strain_energy if part.partition(".")[0] in SPRINGS]
 
 
 def line_noise(line: RigLine) -> float:

@@ -205,14 +205,14 @@ def places_of(model: Model) -> tuple[list[str], NDArray[np.float64]]:
     for casing in model.casings:
         surface = model.layout.casing(casing).surface
         if surface is not None:
-            names += [casing_place(casing, point) for point in surface.points]
+            names += [casing_text(casing, point) for point in surface.points]
             positions += list(surface.points)
     if not names:
         raise AnalysisError("the model has no part on a shaft where a sensor could be: give it [points]")
     return names, np.array(positions)
 
 
-def casing_place(casing: str, point: Iterable[float]) -> str:
+def casing_text(casing: str, point: Iterable[float]) -> str:
     """A point on the surface of a casing as `frf` takes it."""
     return f"casings.{casing}({'; '.join(f'{1e3 * x:.6g} mm' for x in point)})"
 

@@ -1,0 +1,342 @@
+"""Compare measured mode shapes with those of a model: one assignment by frequency and shape, beside what chance gives.
+
+Modes closer to each other than the model knows their frequencies turn into each other at the slightest change. A measured shape
+is compared with the plane that they span, and several of them by principal angles (Bjorck and Golub 1973), never one by one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rotorgear.analysis.common.excitation import excitation_lines
+from rotorgear.analysis.common.points import casing_place, named_place
+from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.modal.modal import modal
+from rotorgear.analysis.rig.compare_result import ABOVE_RIG
+from rotorgear.analysis.rig.learnt import LINE_NOISE, STIFFNESS_PRIOR, learnt_stiffnesses, spring_shares
+from rotorgear.analysis.rig.mac import mac
+from rotorgear.analysis.rig.measured import Measured
+from rotorgear.analysis.rig.pairing import UNPAIRED, costs, pairs_by_both
+from rotorgear.analysis.rig.sensor_errors import sensor_doubts
+from rotorgear.analysis.rig.shape_file import read_rig_shapes
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.model.parts.fields import DOF_NAMES
+from rotorgear.progress import Progress, silent
+from rotorgear.results.comparison import RigLine
+from rotorgear.results.correlation import ALIKE, ShapeChance, ShapeComparison, ShapeMatch, Subspace
+from rotorgear.results.modal import ModalResult
+
+# A pair lies within four standard deviations, so that a model without uncertain springs reaches as far as the tolerance.
+_DEVIATIONS = 4.0
+_EXCITED = 0.005
+
+
+@recorded
+def compare_shapes(
+    source: Model | ModalResult,
+    shapes: str | Path | Measured,
+    *,
+    points: str | Path | None = None,
+    tolerance: float = 0.05,
+    speed: float | str | None = None,
+    accuracy: float | None = None,
+    elements: int | None = None,
+    samples: int = 500,
+    seed: int = 0,
+    progress: Progress = silent,
+) -> ShapeComparison:
+    """Pair measured shapes with modes and say what the agreement is worth, and what the sensors can tell.
+
+    Args:
+        source: modes of a model, or a model, whose modes are then found up to 1.15 times the highest line.
+        shapes: a universal file with shapes (dataset 55), or what it holds.
+        points: its table of sensors (CSV); None: each node is at the nearest place of the model.
+        tolerance: largest |f_mode / f_rig - 1| of a good match.
+        speed, accuracy, elements: of a model, as in `modal`.
+        samples, seed: of the random lists.
+        progress: callable that is told fraction and step.
+
+    Returns:
+        Matches with MAC, tables of MAC among rig and model, COMAC, groups of close modes, sensors in doubt, and chance.
+
+    Raises:
+        AnalysisError: no shapes, places that the model has not, a tolerance that makes no sense.
+        ModelError: a file that can't be read.
+    """
+    model = source if isinstance(source, Model) else source.model
+    given = shapes if isinstance(shapes, Measured) else read_rig_shapes(shapes, points, model)
+    if given.shapes is None or not given.lines or not given.points:
+        raise AnalysisError("there are no measured shapes to compare with")
+    if not 0.0 < tolerance < 1.0 or samples < 1:
+        raise AnalysisError("the tolerance lies between 0 and 1 (0.05 is 5 %), and there is at least one random list")
+    given.check_points(model)
+    if isinstance(source, Model):
+        fmax = ABOVE_RIG * max(line.frequency_hz for line in given.lines)
+        result = modal(source, speed=speed, fmax=fmax, accuracy=accuracy, elements=elements, progress=progress)
+    elif speed is not None or accuracy is not None or elements is not None:
+        raise AnalysisError("--speed, --accuracy and --elements belong to a model; a result has its own")
+    else:
+        result = source
+    modes = _Modes.of(result, given.points)
+    alike = modes.likeness(given.shapes)
+    rig_hz = np.array([line.frequency_hz for line in given.lines])
+    spread = np.hypot(tolerance / _DEVIATIONS, modes.spread)
+    pairs = pairs_by_both(rig_hz, modes.hz, spread, alike)
+    chance = _chance(modes, rig_hz, alike, spread, tolerance, samples, seed)
+    operation = model.operation
+    turning = result.speed if result.speed is not None else (operation.speed if operation else None)
+    excitations = excitation_lines(model, turning) if turning else ()
+    matches = []
+    for line, mode in pairs:
+        rig = given.lines[line]
+        shape = given.shapes[line]
+        reach = max(_EXCITED * rig.frequency_hz, rig.uncertainty_hz or 0.0)
+        matches.append(
+            ShapeMatch(
+                rig=rig,
+                mode_number=int(modes.number[mode]),
+                mode_frequency_hz=float(modes.hz[mode]),
+                error_percent=float(100.0 * (modes.hz[mode] / rig.frequency_hz - 1.0)),
+                mac=float(alike[line, mode]),
+                scale=_scale(shape, modes.at_points[mode]),
+                phase_collinearity=phase_collinearity(shape),
+                close_to=tuple(int(modes.number[k]) for k in modes.group[mode] if k != mode),
+                excitations=tuple(e for e in excitations if abs(e.frequency_hz - rig.frequency_hz) <= reach),
+            )
+        )
+    paired = {line for line, _ in pairs}
+    matched = [given.shapes[line] for line, _ in pairs]
+    planes = [modes.everywhere[list(modes.group[mode])] for _, mode in pairs]
+    progress(0.95, "sensors")
+    distances = [sensor.distance for sensor in given.sensors] or [None] * len(given.points)
+    return ShapeComparison(
+        model=model,
+        points=given.points,
+        distance=np.array([np.nan if distance is None else distance for distance in distances]),
+        rig_hz=rig_hz,
+        mode_number=modes.number,
+        mode_hz=modes.hz,
+        mac=alike,
+        auto_mac=mac(given.shapes, given.shapes),
+        model_auto_mac=mac(modes.at_points, modes.at_points),
+        comac=_comac(matched, [modes.at_points[list(modes.group[mode])] for _, mode in pairs], len(given.points)),
+        matches=tuple(matches),
+        unmatched=tuple(line for k, line in enumerate(given.lines) if k not in paired),
+        subspaces=_subspaces(modes, pairs, given.lines, given.shapes),
+        doubts=sensor_doubts(given.points, modes.axes, np.array(matched), planes),
+        tolerance=tolerance,
+        chance=chance,
+        stiffnesses=learnt_stiffnesses(
+            result.strain_energy, [int(modes.number[mode]) - 1 for _, mode in pairs], [given.lines[k] for k, _ in pairs]
+        ),
+        dofs=result.dofs,
+        left_out=result.left_out,
+        warnings=(*given.notes, *result.warnings),
+        method="one assignment by ln f and MAC",
+    )
+
+
+@dataclass(frozen=True)
+class _Modes:
+    """Elastic modes at s sensors.
+
+    Attributes:
+        number: in the result, from 1 (m,).
+        hz: frequencies (m,).
+        spread: relative standard deviation of each, by springs that are known to 30 % and reading (m,).
+        at_points: along the sensors (m, s).
+        everywhere: all six motions at the places of the sensors (m, s, 6).
+        axes: direction of each sensor, 0 to 5 (s,).
+        group: of each mode, the modes that are too close to be told from it, itself among them.
+    """
+
+    number: NDArray[np.intp]
+    hz: NDArray[np.float64]
+    spread: NDArray[np.float64]
+    at_points: NDArray[np.complex128]
+    everywhere: NDArray[np.complex128]
+    axes: NDArray[np.intp]
+    group: tuple[tuple[int, ...], ...]
+
+    @classmethod
+    def of(cls, result: ModalResult, points: tuple[str, ...]) -> _Modes:
+        elastic = np.flatnonzero(~result.rigid & (result.natural_frequency_hz > 0.0))
+        if not elastic.size:
+            raise AnalysisError("there are no elastic modes to compare with")
+        elastic = elastic[np.argsort(result.natural_frequency_hz[elastic], kind="stable")]
+        hz = result.natural_frequency_hz[elastic]
+        where = [_node_of(result, name) for name in points]
+        nodes = np.array([node for node, _ in where])
+        axes = np.array([axis for _, axis in where])
+        everywhere = np.moveaxis(result.shapes[nodes][:, :, elastic], 2, 0)
+        error = np.nan_to_num(result.error_estimate[elastic], nan=0.0)
+        springs = spring_shares(result.strain_energy, elastic)
+        spread = np.hypot(LINE_NOISE, 0.5 * STIFFNESS_PRIOR * np.sqrt(np.sum(springs**2, axis=0)))
+        at_points = everywhere[:, np.arange(len(points)), axes]
+        return cls(elastic + 1, hz, spread, at_points, everywhere, axes, _groups(hz, error))
+
+    def likeness(self, shapes: NDArray[np.complex128]) -> NDArray[np.float64]:
+        """MAC of shapes (n, s) and modes, (n, m); of close modes the share of the shape in their plane."""
+        found = mac(shapes, self.at_points)
+        whole = bool(np.isfinite(shapes).all())
+        for group in dict.fromkeys(self.group):
+            if len(group) < 2:
+                continue
+            plane = self.at_points[list(group)]
+            if whole:
+                inside = np.sum(np.abs(shapes @ _basis(plane).conj()) ** 2, axis=1)
+                share = inside / np.maximum(np.sum(np.abs(shapes) ** 2, axis=1), 1e-300)
+            else:
+                share = np.array([_share(shape, plane) for shape in shapes])
+            found[:, list(group)] = share[:, None]
+        return found
+
+
+def _groups(hz: NDArray[np.float64], error: NDArray[np.float64]) -> tuple[tuple[int, ...], ...]:
+    """Chains of modes, ascending, whose neighbours are closer than their errors, or than a line can be read."""
+    near = np.diff(np.log(hz)) <= np.maximum(error[1:] + error[:-1], LINE_NOISE)
+    chain = np.concatenate([[0], np.cumsum(~near)])
+    return tuple(tuple(int(i) for i in np.flatnonzero(chain == chain[k])) for k in range(len(hz)))
+
+
+def _node_of(result: ModalResult, name: str) -> tuple[int, int]:
+    """Number of the node and of the direction of a place."""
+    model = result.model
+    if name.startswith("casings."):
+        casing, axis, seat, point = casing_place(model, name)
+        if seat:
+            raise AnalysisError(
+                f"'{name}': shapes are known on the surface of a casing; name a place on it in place of a seat"
+            )
+        return int(result.nodes.of_casing(casing)[point]), axis
+    shaft, z, direction = named_place(model, name)
+    return result.nodes.nearest(shaft, z), DOF_NAMES.index(direction)
+
+
+def _share(shape: NDArray[np.complex128], plane: NDArray[np.complex128]) -> float:
+    """|P y|^2 / |y|^2 of the projection on the plane of modes (c, s), where both are known."""
+    known = np.isfinite(shape)
+    size = float(np.sum(np.abs(shape[known]) ** 2))
+    if size == 0.0:
+        return float("nan")
+    Q = _basis(plane[:, known])
+    return float(np.sum(np.abs(Q.conj().T @ shape[known]) ** 2) / size)
+
+
+def _basis(plane: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Orthonormal columns (s, r) of what modes (c, s) span; modes that are the same at the sensors count once."""
+    left, singular, _ = np.linalg.svd(plane.T, full_matrices=False)
+    return np.asarray(left[:, singular > 1e-9 * singular[0]])
+
+
+def _scale(shape: NDArray[np.complex128], mode: NDArray[np.complex128]) -> float:
+    known = np.isfinite(shape)
+    size = np.sum(np.abs(mode[known]) ** 2)
+    return float(np.abs(np.vdot(mode[known], shape[known])) / size) if size > 0.0 else float("nan")
+
+
+def phase_collinearity(shape: NDArray[np.complex128]) -> float:
+    """Modal phase collinearity of a shape (s,) (Pappa, Elliott and Schenk 1993): 1 where all parts are in phase, 0 on a circle.
+
+    The share by which the larger principal axis of (Re, Im) exceeds the smaller one, squared.
+    """
+    known = shape[np.isfinite(shape)]
+    if known.size < 2 or not np.abs(known).any():
+        return 1.0
+    x = known.real
+    y = known.imag
+    xx, yy, xy = float(x @ x), float(y @ y), float(x @ y)
+    return ((xx - yy) ** 2 + 4.0 * xy**2) / (xx + yy) ** 2
+
+
+def _comac(
+    shapes: list[NDArray[np.complex128]], planes: list[NDArray[np.complex128]], count: int
+) -> NDArray[np.float64]:
+    """COMAC (s,) (Lieven and Ewins 1988) of matched shapes and what of their modes fits them best, all of one size."""
+    cross = np.zeros(count)
+    rig = np.zeros(count)
+    computed = np.zeros(count)
+    for shape, plane in zip(shapes, planes, strict=True):
+        known = np.isfinite(shape)
+        y = shape[known] / np.sqrt(np.mean(np.abs(shape[known]) ** 2))
+        Q = _basis(plane[:, known])
+        fit = Q @ (Q.conj().T @ y)
+        cross[known] += np.real(np.conj(y) * fit)
+        rig[known] += np.abs(y) ** 2
+        computed[known] += np.abs(fit) ** 2
+    size = rig * computed
+    return np.where(size > 0.0, cross**2 / np.where(size > 0.0, size, 1.0), np.nan)
+
+
+def _subspaces(
+    modes: _Modes, pairs: list[tuple[int, int]], lines: tuple[RigLine, ...], shapes: NDArray[np.complex128]
+) -> tuple[Subspace, ...]:
+    """Groups of close modes that measured shapes belong to, with the principal angles between both."""
+    found = []
+    for group in dict.fromkeys(modes.group[mode] for _, mode in pairs):
+        if len(group) < 2:
+            continue
+        members = [line for line, mode in pairs if mode in group]
+        known = np.isfinite(shapes[members]).all(axis=0)
+        cosines = np.linalg.svd(
+            _basis(shapes[members][:, known]).conj().T @ _basis(modes.at_points[list(group)][:, known]),
+            compute_uv=False,
+        )
+        angles = np.arccos(np.clip(cosines[: len(members)], 0.0, 1.0))
+        found.append(
+            Subspace(
+                tuple(int(modes.number[k]) for k in group),
+                tuple(float(modes.hz[k]) for k in group),
+                tuple(lines[k].frequency_hz for k in members),
+                tuple(float(angle) for angle in angles),
+            )
+        )
+    return tuple(found)
+
+
+def _chance(
+    modes: _Modes,
+    rig_hz: NDArray[np.float64],
+    alike: NDArray[np.float64],
+    spread: NDArray[np.float64],
+    tolerance: float,
+    samples: int,
+    seed: int,
+) -> ShapeChance:
+    """What random lists do, assigned in the same way.
+
+    Shapes are mixed at random from those of the model, each of one size: so they move as this structure can, which is harder to
+    beat than any direction in space.
+    """
+    random = np.random.default_rng(seed)
+    low = rig_hz.min() / (1.0 + tolerance)
+    high = rig_hz.max() * (1.0 + tolerance)
+    size = np.sqrt(np.sum(np.abs(modes.at_points) ** 2, axis=1, keepdims=True))
+    unit = modes.at_points / np.where(size > 0.0, size, 1.0)
+
+    def score(hz: NDArray[np.float64], likeness: NDArray[np.float64]) -> tuple[int, float]:
+        pairs = pairs_by_both(hz, modes.hz, spread, likeness)
+        cost, _ = costs(hz, modes.hz, spread, likeness)
+        good = sum(1 for i, k in pairs if abs(modes.hz[k] / hz[i] - 1.0) <= tolerance and likeness[i, k] >= ALIKE)
+        return good, float(sum(cost[i, k] for i, k in pairs)) + UNPAIRED * (len(hz) - len(pairs))
+
+    many, distance = score(rig_hz, alike)
+    scores = []
+    for _ in range(samples):
+        hz = low * (high / low) ** random.random(len(rig_hz))
+        shapes = random.standard_normal((len(rig_hz), len(unit))) @ unit
+        scores.append(score(hz, modes.likeness(shapes)))
+    counts = np.array([good for good, _ in scores])
+    distances = np.array([value for _, value in scores])
+    return ShapeChance(
+        float(counts.mean()),
+        float((1 + np.count_nonzero(counts >= many)) / (1 + samples)),
+        float((1 + np.count_nonzero(distances <= distance)) / (1 + samples)),
+        samples,
+        seed,
+    )
