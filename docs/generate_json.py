@@ -25,6 +25,22 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
     ),
     ("compare", "`rotorgear compare MODEL RIG --json compare.json` writes these keys.", (("compare", ""),)),
     (
+        "compare shapes",
+        "`rotorgear compare MODEL --shapes FILE --json compare.json`. [The rig](rig.md) says what the numbers mean.",
+        (("compare_shapes", ""),),
+    ),
+    (
+        "compare frequency responses",
+        "`rotorgear compare MODEL --frf FILE --json compare.json`.",
+        (("compare_frf", ""),),
+    ),
+    (
+        "compare order cuts",
+        "`rotorgear compare MODEL --orders FILE --json compare.json`.",
+        (("compare_orders", ""),),
+    ),
+    ("sensors", "`rotorgear sensors MODEL --json sensors.json`.", (("sensors", ""),)),
+    (
         "update",
         "`rotorgear update MODEL --rig FILE --json update.json`. [Updating by a rig](rig.md) says what the numbers mean.",
         (("update", ""),),

@@ -85,6 +85,7 @@ from rotorgear.analysis.rig.compare_orders import read_order_cuts as read_order_
 from rotorgear.analysis.rig.rig_file import read_rig_lines as read_rig_lines
 from rotorgear.analysis.rig.rig_spectrum import compare_spectrum as compare_spectrum
 from rotorgear.analysis.rig.update import update as update
+from rotorgear.analysis.rig.sensors import sensors as sensors
 from rotorgear.analysis.rig.measured import Measured as Measured
 from rotorgear.analysis.rig.shape_file import read_rig_shapes as read_rig_shapes
 from rotorgear.analysis.rig.mac import mac as mac
@@ -100,6 +101,7 @@ from rotorgear.export.state_space import write_state_space as write_state_space
 from rotorgear.export.matrices import write_matrices as write_matrices
 from rotorgear.export.matrices import read_matrices as read_matrices
 from rotorgear.export.rexs_model import write_model_file as write_model_file
+from rotorgear.export.sensor_table import write_sensors as write_sensors
 from rotorgear.export.updated_model import write_updated_model as write_updated_model
 from rotorgear.export.casing_vtk import write_casing_vtk as write_casing_vtk
 from rotorgear.export.vtk import write_vtk as write_vtk
@@ -131,6 +133,7 @@ from rotorgear.results.mesh_optimum import MeshOptimum as MeshOptimum
 from rotorgear.results.convergence import ConvergenceStudy as ConvergenceStudy
 from rotorgear.results.comparison import Comparison as Comparison
 from rotorgear.results.comparison import RigLine as RigLine
+from rotorgear.results.sensors import SensorPlan as SensorPlan
 from rotorgear.results.correlation import ShapeComparison as ShapeComparison
 from rotorgear.results.frf_comparison import FrfComparison as FrfComparison
 from rotorgear.results.frf_comparison import OrderComparison as OrderComparison

@@ -52,7 +52,7 @@ def compare(
     json: JsonOption = None,
     plot: PlotOption = None,
 ) -> None:
-    """Compare modes with rig frequencies, and with the matches of random frequencies."""
+    """Compare modes with rig frequencies, shapes, responses or order cuts, and with what chance gives."""
     import rotorgear as rg
 
     given = {"lines": rig or lines, "shapes": shapes, "frf": frf, "orders": orders}

@@ -44,10 +44,10 @@ def compare_shapes(result: ShapeComparison, fig: Any = None) -> np.ndarray:
         axis.set_title(title, fontsize=10)
         axis.set_xlabel(along, fontsize=9)
         axis.set_ylabel(up, fontsize=9)
-        for labels, ticks, count in ((columns, axis.set_xticks, len(columns)), (rows, axis.set_yticks, len(rows))):
-            step = max(1, count // 24)
-            turned = {"rotation": 90} if labels is columns else {}
-            ticks(range(0, count, step), labels[::step], fontsize=7, **turned)
+        every = max(1, len(columns) // 24)
+        axis.set_xticks(range(0, len(columns), every), columns[::every], fontsize=7, rotation=90)
+        every = max(1, len(rows) // 24)
+        axis.set_yticks(range(0, len(rows), every), rows[::every], fontsize=7)
     for match, k in zip(result.matches, paired, strict=True):
         row = int(np.flatnonzero(result.rig_hz == match.rig.frequency_hz)[0])
         axes[0].plot(k - first, row, "s", mfc="none", mec="#c2571a", ms=9, mew=1.4)

@@ -45,7 +45,7 @@ class Subspace(Record):
     """Modes too close to each other to be compared one by one, and the measured shapes among them."""
 
     mode_numbers: tuple[int, ...] = of("numbers of the modes", "", "close_mode")
-    frequency_hz: tuple[float, ...] = of("frequencies of the modes", "Hz", "close_mode")
+    mode_hz: tuple[float, ...] = of("frequencies of the modes", "Hz", "close_mode")
     rig_hz: tuple[float, ...] = of("measured frequencies", "Hz", "rig_shape")
     angles: tuple[float, ...] = of(
         "principal angles", "rad", "rig_shape", note=" between the measured shapes and the modes' plane"
@@ -74,11 +74,11 @@ class ShapeChance(Record):
 class ShapeComparison(ModelResult, kind="compare_shapes"):
     """Measured shapes beside the modes of a model."""
 
-    points: tuple[str, ...] = of("places of the sensors", "", "point")
+    points: tuple[str, ...] = of("names of the points", "", "point", note=", or places, of the sensors")
     distance: np.ndarray = of(
         "distance from the node of the rig to the place", "m", "point", note="; `null` where a table names the place"
     )
-    rig_hz: np.ndarray = of("measured frequency", "Hz", "rig_shape")
+    rig_hz: np.ndarray = of("frequency of the rig line", "Hz", "rig_shape")
     mode_number: np.ndarray = of("number of the mode", "", "mode")
     mode_hz: np.ndarray = of("frequency of the mode", "Hz", "mode")
     mac: np.ndarray = of(
@@ -124,7 +124,7 @@ class ShapeComparison(ModelResult, kind="compare_shapes"):
         return sum(1 for m in self.matches if abs(m.error_percent) <= 100.0 * self.tolerance and m.mac >= ALIKE)
 
     @derived("what the agreement is worth", "", "sentence", note=", in sentences")
-    def findings(self) -> tuple[str, ...]:
+    def verdicts(self) -> tuple[str, ...]:
         """Agreement against chance, modes that the sensors can't tell apart, sensors in doubt."""
         return tuple(_findings(self))
 
@@ -141,8 +141,8 @@ def _findings(result: ShapeComparison) -> list[str]:
         f"{100 * chance.probability_as_close:.2g} % come as close in both: {worth}."
     ]
     close = {group.mode_numbers for group in result.subspaces}
-    said += _alike(result.model_auto_mac, [f"{number}" for number in result.mode_number], "modes", close)
-    said += _alike(result.auto_mac, [f"{hz:.1f} Hz" for hz in result.rig_hz], "measured shapes", set())
+    said += pairs_alike(result.model_auto_mac, [f"{number}" for number in result.mode_number], "modes", close)
+    said += pairs_alike(result.auto_mac, [f"{hz:.1f} Hz" for hz in result.rig_hz], "measured shapes", set())
     for doubt in result.doubts:
         said.append(
             f"Sensor {doubt.point}: {doubt.what}? The mean MAC would be {doubt.mac_after:.3f} in place of "
@@ -158,8 +158,8 @@ def _findings(result: ShapeComparison) -> list[str]:
     return said
 
 
-def _alike(table: np.ndarray, names: list[str], what: str, close: set[tuple[int, ...]]) -> list[str]:
-    """Pairs that are one shape at the sensors; close modes are left to their subspace."""
+def pairs_alike(table: np.ndarray, names: list[str], what: str, close: set[tuple[int, ...]]) -> list[str]:
+    """A sentence on pairs that are one shape at the sensors, if there are any; close modes are left to their subspace."""
     rows, columns = np.nonzero(np.triu(table > SAME, 1))
     pairs = [
         (float(table[i, j]), int(i), int(j))

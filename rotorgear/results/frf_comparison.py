@@ -34,8 +34,8 @@ class FrfComparison(ModelResult, kind="compare_frf"):
         """Mean FRAC."""
         return float(np.mean([pair.frac for pair in self.pairs]))
 
-    @derived("what the agreement shows", "", "sentence", note=", in sentences")
-    def findings(self) -> tuple[str, ...]:
+    @derived("what the agreement is worth", "", "sentence", note=", in sentences")
+    def verdicts(self) -> tuple[str, ...]:
         """Signs that are swapped, and sizes that a unit would explain."""
         said = []
         for pair, rig, model in zip(self.pairs, self.measured, self.computed, strict=True):
@@ -68,6 +68,6 @@ class OrderComparison(ModelResult, kind="compare_orders"):
 
     speed_rpm: np.ndarray = of("speed of the input shaft", "rpm", "speed")
     cuts: tuple[OrderMatch, ...] = of("cuts", "", "cut", record=OrderMatch)
-    measured: np.ndarray = of("measured acceleration", "m/s^2, rad/s^2", "cut", "speed")
-    computed: np.ndarray = of("acceleration of the model", "m/s^2, rad/s^2", "cut", "speed")
+    measured_acceleration: np.ndarray = of("measured acceleration", "m/s^2, rad/s^2", "cut", "speed")
+    computed_acceleration: np.ndarray = of("acceleration of the model", "m/s^2, rad/s^2", "cut", "speed")
     without: tuple[str, ...] = of("measured cuts without an order of the model", "", "left_cut")

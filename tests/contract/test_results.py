@@ -16,6 +16,8 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.analysis.rig.compare_frf import MeasuredFrf
+from rotorgear.analysis.rig.compare_orders import OrderCut
 from rotorgear.analysis.teeth.tooth_field import tooth_fields
 from rotorgear.export.hdf5 import read, save
 from rotorgear.model.model_hash import model_hash
@@ -49,6 +51,11 @@ def block_casing() -> rg.Model:
     bearing = 'shaft = "a"\nat = "start"\nstiffness = { radial = 1e8 }\ncasing = "box"'
     text = f"[shafts.a]\n{shaft}\n[casings.box]\n{casing}\n[bearings.left]\n{bearing}\n"
     return rg.loads(text, folder=folder)
+
+
+def measured_frf(place: str) -> MeasuredFrf:
+    """A response that stands for a measured one."""
+    return MeasuredFrf(np.linspace(1.0, 50.0, 8), (place,), (place,), np.ones((1, 8), dtype=complex))
 
 
 @cache
@@ -101,6 +108,21 @@ def example(kind: str) -> Result:
         ),
         "tooth_field": lambda: tooth_fields(rg.loads(pair_file()), preset="preview"),
         "compare": lambda: rg.compare(example("modal"), [rg.RigLine(101.0)]),
+        "compare_shapes": lambda: rg.compare_shapes(
+            example("modal"),
+            rg.Measured(
+                (rg.RigLine(101.0), rg.RigLine(20.0)), (f"disks.{disk}:x", f"disks.{disk}:y"), np.eye(2) + 0.1j
+            ),
+            samples=5,
+        ),
+        "compare_frf": lambda: rg.compare_frf(rotor, measured_frf(f"disks.{disk}:y"), elements=1),
+        "compare_orders": lambda: rg.compare_orders(
+            model("backlash_pair").with_(
+                "points", {"p": {"on": f"gears.{next(iter(model('backlash_pair').gears))}", "direction": "torsion"}}
+            ),
+            [OrderCut("p", float(example("response").ratio[0]), np.array([4000.0, 6000.0]), np.array([0.1, 0.2]))],
+        ),
+        "sensors": lambda: rg.sensors(model("geared_pair"), count=4, elements=1),
         "update": lambda: rg.update(model("jeffcott"), [20.0, 126.0], free="bearings.*.stiffness"),
         "scatter": lambda: rg.scatter(
             model("jeffcott"), "bearings.*.stiffness", samples=8, modes=4, elements=1, sobol=8

@@ -21,11 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.rig.compare_result import ABOVE_RIG, rig_lines_of
 from rotorgear.analysis.rig.learnt import line_noise
 from rotorgear.analysis.rig.mac import mac
 from rotorgear.analysis.rig.measured import Measured
+from rotorgear.analysis.rig.mesh_of_model import plan_of
 from rotorgear.analysis.rig.pairing import pairs_of
 from rotorgear.analysis.rig.posterior import Posterior
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes
@@ -107,7 +107,7 @@ def update(
     fmax = reach * max(line.frequency_hz for line in given.lines)
     progress(0.05, "mesh")
     least = min(line_noise(line) for line in given.lines)
-    plan = Plan(elements) if elements else _plan_of(model, fmax, accuracy or float(np.clip(0.1 * least, *_MESH_ERROR)))
+    plan = Plan(elements) if elements else plan_of(model, fmax, accuracy or float(np.clip(0.1 * least, *_MESH_ERROR)))
     problem = _Problem(RigModel(numbers, plan, fmax, given.points), given, shape_noise, tolerance)
     start = problem.start()
     if not start.pairs:
@@ -132,18 +132,6 @@ def _measured(
         raise AnalysisError("--points belongs to --shapes: the table of sensors says where each node is")
     assert rig is not None
     return rig if isinstance(rig, Measured) else Measured(rig_lines_of(rig))
-
-
-def _plan_of(model: Model, fmax: float, accuracy: float) -> Plan:
-    """The mesh on which all modes up to `fmax` are within an accuracy."""
-    pieces = modal(model, fmax=fmax, accuracy=accuracy).discretisation
-    cut = {}
-    counted: dict[str, int] = {}
-    for piece in pieces:
-        number = counted.get(piece.shaft, 0)
-        counted[piece.shaft] = number + 1
-        cut[piece.shaft, number] = (piece.elements, piece.order)
-    return Plan(cut=cut)
 
 
 @dataclass(frozen=True)

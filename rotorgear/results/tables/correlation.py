@@ -28,7 +28,7 @@ def compare_shapes_table(result: ShapeComparison) -> RenderableType:
             f"{match.phase_collinearity:.2f}",
             close,
         )
-    said = list(result.findings)
+    said = list(result.verdicts)
     for group in result.subspaces:
         numbers = " and ".join(str(k) for k in group.mode_numbers)
         angles = ", ".join(f"{57.29577951308232 * angle:.1f}" for angle in group.angles)

@@ -21,7 +21,7 @@ def compare_frf_table(result: FrfComparison) -> RenderableType:
     hz = result.frequency_hz
     said = [
         f"Mean FRAC {result.mean_frac:.3f} over {len(hz)} frequencies, {hz[0]:.5g} to {hz[-1]:.5g} Hz.",
-        *result.findings,
+        *result.verdicts,
     ]
     said += [f"Warning: {warning}." for warning in result.warnings]
     parts: list[Any] = [heading(result.title)] if result.title else []

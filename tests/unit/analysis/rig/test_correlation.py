@@ -105,7 +105,7 @@ def test_sensors_that_are_wired_or_turned_otherwise_are_named(model, modes, meas
 def test_too_few_sensors_are_said_with_the_modes_that_they_confuse(modes, measured):
     few = rg.Measured(measured.lines, measured.points[:2], measured.shapes[:, :2])
     result = rg.compare_shapes(modes, few, samples=5)
-    assert any("Too few sensors to tell modes" in sentence for sentence in result.findings)
+    assert any("Too few sensors to tell modes" in sentence for sentence in result.verdicts)
 
 
 def test_phase_collinearity_is_one_in_phase_and_nothing_on_a_circle():
@@ -139,7 +139,7 @@ def test_responses_of_the_model_itself_have_a_frac_of_one_and_swapped_signs_are_
     table = tmp_path / "sensors.csv"
     table.write_text("point,node,direction\ngears.pinion,1,x\ngears.wheel,2,-y\n")
     signs = rg.compare_frf(model, file, points=table, elements=1, modal_damping=0.02)
-    assert any("opposite sign" in sentence and "gears.wheel:y" in sentence for sentence in signs.findings)
+    assert any("opposite sign" in sentence and "gears.wheel:y" in sentence for sentence in signs.verdicts)
 
 
 def test_order_cuts_come_back_from_csv_and_from_a_universal_file(tmp_path):
