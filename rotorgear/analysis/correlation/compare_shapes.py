@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from rotorgear.analysis.common.excitation import excitation_lines
 from rotorgear.analysis.common.points import casing_place, named_place
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.correlation.sensor_errors import sensor_doubts
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.rig.compare_result import ABOVE_RIG
 from rotorgear.analysis.rig.learnt import LINE_NOISE, STIFFNESS_PRIOR, learnt_stiffnesses, spring_shares
 from rotorgear.analysis.rig.mac import mac
 from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.pairing import UNPAIRED, costs, pairs_by_both
-from rotorgear.analysis.rig.sensor_errors import sensor_doubts
 from rotorgear.analysis.rig.shape_file import read_rig_shapes
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
