@@ -46,6 +46,9 @@ DOCS = Step("docs", (*PYTEST, "tests/docs"))
 # The tests of a file stay together: they share models and compiled code, and the blocks of a page share variables.
 TESTS = Step("tests", (*PYTEST, "tests", "-n", "2", "--dist", "loadfile"))
 FAST_TESTS = Step("tests", (*PYTEST, "tests/unit", "tests/contract"))
+# On their own: they want an index of packages, or a browser.
+WHEEL = Step("wheel", (*PYTEST, "tests/installed", "-m", "long"))
+BROWSER = Step("browser", (*PYTEST, "tests/browser", "-m", "long"))
 LONG_TESTS = Step("long", (*PYTEST, "tests", "-m", "long"))
 
 USUAL = (FORMAT, LINT, TYPES, TESTS)
@@ -77,7 +80,7 @@ def main(arguments: list[str] | None = None) -> int:
 def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="check.py", description="Run what CI runs: format, lint, types, docs, tests.")
-    names = [step.name for step in (*USUAL, DOCS, LONG_TESTS)]
+    names = [step.name for step in (*USUAL, DOCS, WHEEL, BROWSER, LONG_TESTS)]
     which = parser.add_mutually_exclusive_group()
     which.add_argument(
         "--only", metavar="NAME", choices=names, action="append", help=f"one check of: {', '.join(names)}"
@@ -99,7 +102,7 @@ def chosen(options: argparse.Namespace) -> tuple[Step, ...]:
     if options.oldest:
         return (OLDEST_TESTS,)
     if options.only:
-        steps = tuple(step for step in (*USUAL, DOCS, LONG_TESTS) if step.name in options.only)
+        steps = tuple(step for step in (*USUAL, DOCS, WHEEL, BROWSER, LONG_TESTS) if step.name in options.only)
     else:
         steps = FAST if options.fast else USUAL
     return (*steps, LONG_TESTS) if options.long and LONG_TESTS not in steps else steps

@@ -60,6 +60,7 @@ from rotorgear.analysis.teeth.root_stress import root_stress as root_stress
 from rotorgear.analysis.teeth.optimise import optimise_flanks as optimise_flanks
 from rotorgear.plots.view import view as view
 from rotorgear import plot as plot
+from rotorgear.page.report import report as report
 from rotorgear.analysis.accuracy import accuracy as accuracy
 from rotorgear.analysis.modal.convergence import convergence_study as convergence_study
 from rotorgear.analysis.transient.convergence import transient_convergence_study as transient_convergence_study

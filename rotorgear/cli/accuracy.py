@@ -11,6 +11,7 @@ from rotorgear.cli.common import (
     JsonOption,
     ModelFile,
     PlotOption,
+    SaveOption,
     SpeedOption,
     console,
     parse_speed,
@@ -82,6 +83,7 @@ def accuracy(
     ] = None,
     plot: PlotOption = None,
     json: JsonOption = None,
+    save: SaveOption = None,
 ) -> None:
     """Convergence study: error against run time and dofs over a series of discretisations, with the measured order."""
     import rotorgear as rg
@@ -108,5 +110,7 @@ def accuracy(
         )
     console().print(study.table())
     write_json(study.to_dict(), json)
+    if save:
+        typer.echo(f"saved {rg.save(study, save)}")
     if plot:
         typer.echo(f"wrote {rg.plot.save(study.plot(), plot)}")

@@ -40,6 +40,7 @@ HELP = {
     "mesh": "Print stiffness, transmission error, load sharing and pressure of one mesh over its cycle.",
     "bearing": "Sheet of one bearing at the gearbox's own loads: inside, stiffness and damping over speed, whirl threshold.",
     "casing": "Read the meshes of casings: mass, free and held modes, seats, errors of mesh and reduction, cost.",
+    "report": "Write one page about a model: drawing, statics, modes, Campbell, rules of standards, teeth, rig, errors, costs.",
     "accuracy": "Convergence study: error against run time and dofs over a series of discretisations, with the measured order.",
     "export": "Write the linear system for other programs: state space (.mat, .npz), sparse matrices, geometry and modes (UFF).",
     "view": "Open a window that shows the gearbox and animates its modes.",

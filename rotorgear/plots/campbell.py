@@ -14,7 +14,13 @@ from rotorgear.results.campbell import CampbellResult, Crossing, ExcitationOrder
 from rotorgear.results.whirl_words import WHIRL_WORDS
 
 COLOURS = ("motion", "mesh", "damping")
-_MOTION = {"bending": (0.12, 0.37, 0.66), "axial": (0.18, 0.60, 0.25), "torsion": (0.80, 0.23, 0.13)}
+_MOTION = {
+    "bending": (0.12, 0.37, 0.66),
+    "axial": (0.18, 0.60, 0.25),
+    "torsion": (0.80, 0.23, 0.13),
+    "casing": (0.45, 0.45, 0.45),
+    "gear body": (0.62, 0.42, 0.10),
+}
 _MARKERS = {"forward": "^", "backward": "v", "mixed": "D", "planar": "_"}
 _LINES = {"shaft": "#555555", "mesh": "#7a3f9d", "sideband": "#b58ccb"}
 _MOST_LABELS = 14

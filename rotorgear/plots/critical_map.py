@@ -50,7 +50,8 @@ def critical_map(result: CriticalMap, ax: Any = None) -> Any:
     axis.set_ylabel(f"critical speed of {result.model.reference_shaft}, rpm")
     axis.set_xlim(result.stiffness[0], result.stiffness[-1])
     axis.grid(True, which="both", alpha=0.2)
-    axis.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=5)  # curves fill the axes
+    if axis.get_legend_handles_labels()[0]:
+        axis.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=5)  # curves fill the axes
     return axis
 
 

@@ -37,7 +37,7 @@ FLOORS = {
     "export": 8,
     "plots": 8,
     "plot": 9,
-    "report": 9,
+    "page": 9,
     "cli": 10,
 }
 # Which room of a floor may import which other one: the plan of docs/architecture.md. A new arrow is a decision, made here.

@@ -55,4 +55,15 @@ def test_the_main_command_of_the_readme_works_from_the_wheel_alone(programs: Pat
         cwd=tmp_path,
     )
     assert "4 of 4 rig lines are within 5 %" in said
+    run(
+        programs / "rotorgear",
+        "report",
+        "split_torque.toml",
+        "--rig",
+        "split_torque_rig.csv",
+        "-o",
+        "a.html",
+        cwd=tmp_path,
+    )
+    assert "</html>" in (tmp_path / "a.html").read_text(encoding="utf-8")
     assert len(json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))["frequency_hz"]) == 63

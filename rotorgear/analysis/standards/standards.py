@@ -40,6 +40,8 @@ from rotorgear.results.standards import (
 # Critical speeds are looked for up to this multiple of the operating speed: beyond every margin that a rule asks for.
 HIGHEST = 1.5
 _CURVE = 81
+# Speeds of the curves about each damped peak, relative to it.
+_NEAR_PEAKS = (-0.03, -0.015, -0.008, -0.004, 0.0, 0.004, 0.008, 0.015, 0.03)
 # A mode is one of torsion where so much of its kinetic energy is; damping ratios below that are none.
 _MOSTLY = 0.5
 _UNDAMPED = 1e-9
@@ -135,26 +137,39 @@ class _Lateral:
         self.operating = operating
         self.criticals: list[ResponseCritical] = []
         self.checks: list[RuleCheck] = []
-        self.curves: dict[str, np.ndarray] = {}
         self._responses: dict[str, list[tuple[UnbalanceResponse, float]]] = {}
-        self.curve_speeds = np.linspace(0.02, 1.0, _CURVE) * top
+        self._first: dict[str, tuple[UnbalanceResponse, int]] = {}
         parts = {line.name: line.parts for line in found.lines}
         for shaft in model.shafts:
             ratio = abs(model.layout.train.ratio(shaft))
             if ratio == 0.0:
                 continue
-            mine = [k for k, item in enumerate(found.speeds) if shaft in parts[item.line] and item.whirl]
+            mine = [
+                k for k, item in enumerate(found.speeds) if shaft in parts[item.line] and item.whirl and item.excited
+            ]
             before = len(self.criticals)
             for k in mine:
                 self._peak(shaft, found, k, direction)
             self._vibration(shaft, self._responses.get(shaft, []))
             if len(self.criticals) == before:
-                why = "no critical speed of bending" if not mine else "no peak of its unbalance response"
+                why = (
+                    "no critical speed of bending that its unbalance drives"
+                    if not mine
+                    else "no peak of its unbalance response"
+                )
                 note = f"{why} up to {ratio * top * RPM_PER_RAD_S:.6g} rpm of the shaft"
                 for rule in (rules.SEPARATION, rules.VIBRATION):
                     self.checks.append(
                         RuleCheck(rule.name, f"shafts.{shaft}", "-", "", None, None, NOT_APPLICABLE, note)
                     )
+
+        damped = [one.speed for one in self.criticals if math.isfinite(one.amplification_factor)]
+        near = np.multiply.outer(damped, 1.0 + np.array(_NEAR_PEAKS)).ravel()
+        self.curve_speeds = np.unique(np.concatenate([np.linspace(0.02, 1.0, _CURVE) * top, near[near < top]]))
+        self.curves = {
+            shaft: np.array([response.orbits(speed, [probe])[0] for speed in self.curve_speeds])
+            for shaft, (response, probe) in self._first.items()
+        }
 
     def _peak(self, shaft: str, found: CriticalResult, k: int, direction: int) -> None:
         """The peak of the response to unbalance in the shape of one critical speed; none where it makes no peak of its own."""
@@ -204,8 +219,7 @@ class _Lateral:
         )
         self._margin(shaft, response.rpm(speed), factor, required, margin)
         self._responses.setdefault(shaft, []).append((response, speed))
-        if shaft not in self.curves:
-            self.curves[shaft] = np.array([response.orbits(s, [probe])[0] for s in self.curve_speeds])
+        self._first.setdefault(shaft, (response, probe))
 
     def _margin(self, shaft: str, rpm: float, factor: float, required: float | None, margin: float) -> None:
         part = f"shafts.{shaft}, {rpm:.5g} rpm"

@@ -1,0 +1,146 @@
+"""What a report computes: the analyses that a model has the parts for, their CPU seconds, and why others are not there."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from rotorgear.analysis.campbell.campbell import campbell
+from rotorgear.analysis.campbell.critical import critical
+from rotorgear.analysis.campbell.critical_map import critical_map
+from rotorgear.analysis.casing.casing import casing
+from rotorgear.analysis.common.describe_model import check
+from rotorgear.analysis.modal.modal import modal
+from rotorgear.analysis.response.response import response
+from rotorgear.analysis.rig.compare_result import compare
+from rotorgear.analysis.standards.standards import standards
+from rotorgear.analysis.static.static import static
+from rotorgear.analysis.teeth.gear_sheet import gear
+from rotorgear.analysis.teeth.mesh import mesh
+from rotorgear.errors import RotorgearError
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress
+
+# Modes of the table where no rig asks for more, speeds of diagrams and run-ups, stiffnesses of the map.
+MODES = 24
+CAMPBELL_SPEEDS = 31
+RUN_UP_SPEEDS = 33
+MAP_STIFFNESSES = 9
+_ABOVE_RIG = 1.15
+_LOADED = "tooth_fe"
+_NO_SPEED = "the model has no operating speed"
+
+
+@dataclass
+class Contents:
+    """Results by the name they have in the page's numbers, CPU seconds by the same names, and what was not computed and why."""
+
+    model: Model
+    results: dict[str, Any] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
+    missing: dict[str, str] = field(default_factory=dict)
+
+    def run(self, name: str, analysis: Callable[[], Any]) -> Any:
+        """Run an analysis; what the model lacks for it is kept as the reason why its section is not there."""
+        start = time.process_time()
+        try:
+            self.results[name] = analysis()
+        except RotorgearError as error:
+            self.missing[name] = str(error)
+            return None
+        self.seconds[name] = time.process_time() - start
+        return self.results[name]
+
+
+def computed(model: Model, rig: Any, grade: float, progress: Progress) -> Contents:
+    """Run all analyses of a report.
+
+    Args:
+        model: a checked model. rig: measured lines, or none.
+        grade: balance quality grade in mm/s.
+        progress: callable that is told fraction and step.
+    """
+    found = Contents(model)
+    speed = model.operation.speed if model.operation else None
+    progress(0.02, "model")
+    found.run("check", lambda: check(model))
+    if model.meshes:
+        found.run("gear", lambda: gear(model))
+    found.run("static", lambda: static(model))
+    progress(0.1, "modes")
+    highest = max((line.frequency_hz for line in rig), default=0.0)
+    wanted = {"fmax": _ABOVE_RIG * highest} if highest else {"modes": MODES}
+    modes = found.run("modal", lambda: modal(model, **wanted))
+    if rig and modes is not None:
+        found.run("rig", lambda: compare(modes, rig, known_to_hz=wanted.get("fmax")))
+    if speed:
+        _over_speed(found, model, speed, grade, progress)
+    else:
+        for name in ("campbell", "critical", "critical_map", "standards"):
+            found.missing[name] = _NO_SPEED
+    progress(0.8, "teeth")
+    for name in loaded_meshes(model):
+        found.run(f"mesh {name}", lambda name=name: mesh(model, name))  # type: ignore[misc]
+    for name in model.casings:
+        found.run(f"casing {name}", lambda name=name: casing(model, name))  # type: ignore[misc]
+    return found
+
+
+def _over_speed(found: Contents, model: Model, speed: float, grade: float, progress: Progress) -> None:
+    """The analyses over a range of speeds."""
+    progress(0.2, "Campbell diagram")
+    found.run("campbell", lambda: campbell(model, points=CAMPBELL_SPEEDS, mesh_orders=(1,)))
+    progress(0.45, "critical speeds")
+    found.run("critical", lambda: critical(model))
+    if model.bearings:
+        found.run("critical_map", lambda: critical_map(model, stiffness=_stiffnesses(model)))
+    else:
+        found.missing["critical_map"] = "the model has no bearings"
+    progress(0.55, "rules of standards")
+    found.run("standards", lambda: standards(model, grade=grade))
+    progress(0.65, "run-up")
+    found.run("response", lambda: response(model, points=RUN_UP_SPEEDS, method="direct"))
+
+
+def _stiffnesses(model: Model) -> list[float]:
+    """Radial stiffnesses of a map: a decade and a half to both sides of what the model's bearings have."""
+    known = [
+        float(value)
+        for bearing in model.bearings.values()
+        if bearing.stiffness is not None
+        for value in np.diag(np.array(bearing.stiffness.as_rows()))[:2]
+        if value > 0.0
+    ]
+    middle = float(np.sqrt(min(known) * max(known))) if known else 1e8
+    return [float(k) for k in middle * np.logspace(-1.5, 1.5, MAP_STIFFNESSES)]
+
+
+def loaded_meshes(model: Model) -> list[str]:
+    """Meshes whose stiffness is that of loaded finite-element teeth, one of those between gears that are alike."""
+    place = {"shaft", "at"}
+    teeth = {name: repr(gear.model_dump(exclude=place)) for name, gear in model.gears.items()}
+    chosen: dict[tuple[str, str, str], str] = {}
+    for name, part in model.meshes.items():
+        if part.stiffness == _LOADED:
+            chosen.setdefault((teeth[part.pinion], teeth[part.gear], repr(part.tooth_fe)), name)
+    return list(chosen.values())
+
+
+def error_of(result: Any) -> float | None:
+    """The largest error estimate that a result has, relative; None where it states none."""
+    error = getattr(result, "error_estimate", None)
+    if error is None and getattr(result, "errors", None) is not None:
+        error = result.errors.worst
+    if error is None and hasattr(result, "criticals"):
+        error = [item.error_estimate for item in result.criticals]
+    if error is None and hasattr(result, "worst_residual"):
+        error = [item.error_estimate for item in result.speeds]
+    if error is None:
+        return None
+    values = np.atleast_1d(np.asarray(error, float))
+    values = values[np.isfinite(values)]
+    return float(values.max()) if values.size else None

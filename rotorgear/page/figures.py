@@ -1,0 +1,132 @@
+"""Pictures inside the page: curves as SVG, solids drawn by matplotlib, which needs no graphics driver.
+
+Solids are seen along an isometric direction, their faces painted from the farthest to the nearest with the light of their slope.
+"""
+
+from __future__ import annotations
+
+import base64
+import re
+from html import escape
+from io import BytesIO, StringIO
+from typing import Any
+
+import numpy as np
+
+from rotorgear.export.solids import Solids
+from rotorgear.plots.figure import new_figure
+
+# Seen from the side of +x, +y and +z: columns are the picture's right, up, and towards the eye.
+_EYE = np.array([-0.85, 0.45, 0.75])
+_LIGHT = np.array([0.2, 0.8, 0.55])
+_COLOURS = {
+    "shaft": "#8d99a6",
+    "stripe": "#6f7b88",
+    "gear": "#c9a25b",
+    "disk": "#a7b5a0",
+    "point mass": "#a7b5a0",
+    "bearing": "#4f7fb5",
+    "support": "#7a6fa8",
+    "coupling": "#7a6fa8",
+    "casing": "#c8cdd3",
+}
+_SHADE = 0.42
+_THROUGH = 0.16  # how much of a casing is seen
+_LINKS = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
+
+
+def svg_of(picture: Any, label: str) -> str:
+    """Axes, or an array of them, as SVG whose letters are text: it can be read aloud, searched, and is small."""
+    import matplotlib
+
+    one = np.asarray(picture, dtype=object).flat[0]
+    out = StringIO()
+    # Ids of clip paths begin with the salt, so that no two pictures of the page share one.
+    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": label, "font.family": "DejaVu Sans"}):
+        one.figure.figure.savefig(
+            out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None}
+        )
+    text = out.getvalue()
+    text = text[text.index("<svg") :]
+    text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+    text = re.sub(r"(\d+\.\d\d)\d+", r"\1", text)
+    prefix = re.sub(r"\W+", "_", label)
+    text = re.sub(r'\bid="', f'id="{prefix}-', text)
+    text = re.sub(r'(xlink:href="|url\()#', rf"\1#{prefix}-", text)
+    head = f'role="img" aria-label="{escape(label)}" {_LINKS}'
+    return re.sub(
+        r'<svg [^>]*?viewBox="([^"]+)"[^>]*>', lambda found: f'<svg viewBox="{found[1]}" {head}>', text, count=1
+    )
+
+
+class Painter:
+    """Draws solids, at rest or displaced, into one kind of picture."""
+
+    def __init__(self, solids: Solids, size: tuple[float, float]) -> None:
+        self.solids = solids
+        self.size = size
+        towards = _EYE / np.linalg.norm(_EYE)
+        right = np.cross([0.0, 1.0, 0.0], towards)
+        right /= np.linalg.norm(right)
+        self.axes = np.array([right, np.cross(towards, right), towards]).T
+        self.light = self.axes.T @ (_LIGHT / np.linalg.norm(_LIGHT))
+        flat = solids.points @ self.axes
+        self.middle = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
+        self.span = np.ptp(flat, axis=0)
+
+    def image(self, label: str, moved: np.ndarray | None = None, level: np.ndarray | None = None) -> str:
+        """An image element.
+
+        Args:
+            label: what it shows, for those who don't see it.
+            moved: displacements (P, 3); none for the gearbox at rest.
+            level: (P,) from 0 to 1, shown by colour in place of the kinds of parts.
+        """
+        from matplotlib import colormaps
+        from matplotlib.collections import PolyCollection
+        from matplotlib.colors import to_rgb
+
+        solids = self.solids
+        points = (solids.points if moved is None else solids.points + moved) @ self.axes - self.middle
+        faces = [points[solids.quads], points[solids.triangles]]
+        corners = [face[:, :, :2] for face in faces]
+        depth = np.concatenate([face[:, :, 2].mean(axis=1) for face in faces])
+        normals = np.concatenate([np.cross(face[:, 1] - face[:, 0], face[:, 2] - face[:, 0]) for face in faces])
+        lengths = np.linalg.norm(normals, axis=1)
+        slope = np.abs(normals @ self.light) / np.where(lengths > 0.0, lengths, 1.0)
+        if level is None:
+            table = np.array([to_rgb(_COLOURS.get(name, "#999999")) for name in solids.kind_names])
+            colour = table[solids.kind]
+        else:
+            shown = np.concatenate([level[solids.quads].mean(axis=1), level[solids.triangles].mean(axis=1)])
+            colour = colormaps["viridis"](shown)[:, :3]
+        colour = colour * (_SHADE + (1.0 - _SHADE) * slope)[:, None]
+        casing = "casing" in solids.kind_names and solids.kind == solids.kind_names.index("casing")
+        alpha = np.where(casing, _THROUGH, 1.0)
+        order = np.argsort(depth)
+        polygons = [*corners[0], *corners[1]]
+        figure = new_figure(self.size)
+        figure.set_layout_engine("none")
+        axis = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        colours = np.column_stack([colour, np.broadcast_to(alpha, len(colour))])[order]
+        axis.add_collection(
+            PolyCollection([polygons[k] for k in order], facecolors=colours, edgecolors=colours, linewidths=0.25)
+        )
+        reach = 0.56 * max(self.span[0], self.span[1] * self.size[0] / self.size[1])
+        axis.set_xlim(-reach, reach)
+        axis.set_ylim(-reach * self.size[1] / self.size[0], reach * self.size[1] / self.size[0])
+        axis.axis("off")
+        out = BytesIO()
+        figure.savefig(out, format="png", dpi=96, pil_kwargs={"optimize": True})
+        data = base64.b64encode(out.getvalue()).decode("ascii")
+        return f'<img alt="{escape(label)}" src="data:image/png;base64,{data}">'
+
+    def mode(self, label: str, shape: np.ndarray) -> str:
+        """A mode at phase 0: deformed, coloured by displacement over the largest.
+
+        Args:
+            label: what it shows. shape: displacements of the nodes (p, 6).
+        """
+        moved, _ = self.solids.scaled(shape)
+        size = np.linalg.norm(np.abs(moved), axis=1)
+        return self.image(label, np.real(moved), size / (size.max(initial=0.0) or 1.0))

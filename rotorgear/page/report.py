@@ -1,0 +1,152 @@
+"""One page about a model in one file: the verb behind `rotorgear report`."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from rotorgear.analysis.common.recorded import setting
+from rotorgear.analysis.rig.rig_file import read_rig_lines
+from rotorgear.errors import AnalysisError
+from rotorgear.export.files import replacing
+from rotorgear.export.hdf5 import read
+from rotorgear.extras import require
+from rotorgear.model.load import load
+from rotorgear.model.model import Model
+from rotorgear.model.model_hash import model_hash
+from rotorgear.page.cells import Numbers
+from rotorgear.page.contents import computed, error_of
+from rotorgear.page.sections import sections
+from rotorgear.progress import Progress, silent
+from rotorgear.results.modal import ModalResult
+from rotorgear.results.result import Result
+from rotorgear.version import VERSION
+
+_ENDINGS = (".html", ".htm")
+
+
+@dataclass(frozen=True)
+class Report:
+    """A report that was written.
+
+    Attributes:
+        path: of the page.
+        results: by the name that they have in the page's numbers, such as "modal" or "mesh stage_1".
+        missing: sections that are not there, and why.
+        numbers: all numbers of the page and many more, as `--json` writes them.
+    """
+
+    path: Path
+    results: dict[str, Result]
+    missing: dict[str, str]
+    numbers: dict[str, Any]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values for JSON: results by name under `results`, each with its keys of docs/json.md."""
+        return self.numbers
+
+
+def report(
+    model: Model | str | Path,
+    output: str | Path,
+    *,
+    rig: str | Path | Sequence[Any] = (),
+    study: Sequence[str | Path] = (),
+    grade: float = 2.5,
+    turntable: bool = False,
+    progress: Progress = silent,
+) -> Report:
+    """Compute what a model has the parts for, and write it as one page: no network, readable without script, prints on A4.
+
+    Args:
+        model: a model, or the path of its file, which the page then names.
+        output: the page to write, .html.
+        rig: measured lines, or their file (CSV).
+        study: files of convergence studies (`rotorgear accuracy --save`), whose curves are shown; none is run for a page.
+        grade: balance quality grade G of ISO 21940-11 in mm/s.
+        turntable: whether the page also holds the modes as solids that turn and move where a browser runs its script.
+        progress: callable that is told fraction and step.
+
+    Returns:
+        The report, with its results and numbers.
+
+    Raises:
+        MissingExtraError: jinja2 or matplotlib is not installed. AnalysisError: another ending, or a file that is no study.
+        ModelError: what is wrong with the model. WriteError: the page can't be written.
+    """
+    require("jinja2", "A report")
+    require("matplotlib", "A report")
+    target = Path(output)
+    if target.suffix.lower() not in _ENDINGS:
+        raise AnalysisError(f"a report is a page: its name ends in .html; got '{target.name}'")
+    if not target.resolve().parent.is_dir():
+        raise AnalysisError(f"{target}: there is no folder {target.resolve().parent}; make it first")
+    source = "" if isinstance(model, Model) else Path(model).name
+    built = model if isinstance(model, Model) else load(model)
+    lines = read_rig_lines(rig) if isinstance(rig, str | Path) else tuple(rig)
+    studies = [_study(path) for path in study]
+    start = time.process_time()
+    found = computed(built, lines, grade, progress)
+    numbers = {
+        "analysis": "report",
+        "title": built.title,
+        "file": source,
+        "rotorgear_version": VERSION,
+        "model_hash": model_hash(built),
+        "settings": {
+            "grade": grade,
+            "rig": setting(rig if isinstance(rig, str | Path) else [str(line) for line in lines]),
+        },
+        "cpu_seconds": dict(found.seconds),
+        "cpu_seconds_of_all": time.process_time() - start,
+        "largest_error_estimate": {name: error_of(result) for name, result in found.results.items()},
+        "missing": dict(found.missing),
+        "results": {name: result.to_dict() for name, result in found.results.items()},
+    }
+    progress(0.9, "page")
+    text = _page(built, numbers, list(sections(found, Numbers(numbers), studies)), _turntable(found.results, turntable))
+    with replacing(target) as scratch:
+        scratch.write_text(text, encoding="utf-8")
+    progress(1.0, "done")
+    return Report(target, dict(found.results), dict(found.missing), numbers)
+
+
+def _study(path: str | Path) -> Any:
+    stored = read(path)
+    if "convergence" not in stored.kind:
+        raise AnalysisError(
+            f"{path}: a convergence study was expected (rotorgear accuracy --save), this is a {stored.kind} result"
+        )
+    return stored
+
+
+def _turntable(results: dict[str, Result], wanted: bool) -> str:
+    """The scene of the turntable as JSON, or nothing."""
+    modes = results.get("modal")
+    if not wanted or not isinstance(modes, ModalResult):
+        return ""
+    from rotorgear.page.turntable import scene
+
+    return scene(modes)
+
+
+def _page(model: Model, numbers: dict[str, Any], parts: list[Any], turntable: str) -> str:
+    """The template filled; what comes from the model is escaped."""
+    from jinja2 import Environment, StrictUndefined
+
+    folder = files("rotorgear.page")
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    template = environment.from_string((folder / "page.html").read_text(encoding="utf-8"))
+    return template.render(
+        title=model.title or numbers["file"] or "A model",
+        numbers=numbers,
+        sections=parts,
+        turntable=turntable,
+        script=(folder / "turntable.js").read_text(encoding="utf-8") if turntable else "",
+        made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+    )
