@@ -137,6 +137,11 @@ SECTIONS: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
         (("scatter", ""),),
     ),
     (
+        "optimise",
+        "`rotorgear optimise MODEL --free ADDRESS --json optimise.json`. [Layout](layout.md) says what is done.",
+        (("optimise", ""),),
+    ),
+    (
         "sweep accuracy",
         "`rotorgear accuracy MODEL --analysis sweep --json accuracy.json`.",
         (("sweep_convergence", ""),),

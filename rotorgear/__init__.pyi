@@ -51,6 +51,7 @@ from rotorgear.analysis.sweep.sweep import sweep as sweep
 from rotorgear.analysis.sweep.cluster import cluster as cluster
 from rotorgear.analysis.orbits.orbits import orbits as orbits
 from rotorgear.analysis.scatter.scatter import scatter as scatter
+from rotorgear.analysis.layout.optimise import optimise as optimise
 from rotorgear.analysis.teeth.gear_sheet import gear as gear
 from rotorgear.analysis.bearing.bearing import bearing as bearing
 from rotorgear.analysis.casing.casing import casing as casing
@@ -104,6 +105,7 @@ from rotorgear.export.matrices import read_matrices as read_matrices
 from rotorgear.export.rexs_model import write_model_file as write_model_file
 from rotorgear.export.sensor_table import write_sensors as write_sensors
 from rotorgear.export.updated_model import write_updated_model as write_updated_model
+from rotorgear.export.optimised_model import write_optimised_model as write_optimised_model
 from rotorgear.export.casing_vtk import write_casing_vtk as write_casing_vtk
 from rotorgear.export.vtk import write_vtk as write_vtk
 from rotorgear.export.vtk_motion import write_motion as write_motion
@@ -123,6 +125,7 @@ from rotorgear.results.sweep import SweepResult as SweepResult
 from rotorgear.results.sweep_convergence import SweepConvergenceStudy as SweepConvergenceStudy
 from rotorgear.results.orbits import OrbitsResult as OrbitsResult
 from rotorgear.results.scatter import ScatterResult as ScatterResult
+from rotorgear.results.optimise import OptimiseResult as OptimiseResult
 from rotorgear.results.portrait import Portraits as Portraits
 from rotorgear.results.gear_sheet import GearSheet as GearSheet
 from rotorgear.results.bearing import BearingSheet as BearingSheet

@@ -35,6 +35,7 @@ HELP = {
     "sweep": "Bifurcation diagram, Lyapunov exponents and response types of a model over its parameters.",
     "orbits": "Periodic motions over a parameter: stable and unstable branches, Floquet multipliers, folds and period doublings.",
     "scatter": "Scatter of uncertain numbers: bands of frequencies, margins and load shares, and which number makes them.",
+    "optimise": "Keep excitations away from modes that they excite: numbers of a model within bounds, gradients exact.",
     "check": "Show what a model file describes: speeds, mesh frequencies, torques, contact ratios, masses, dofs, warnings.",
     "gear": "Print the gear sheet: geometry, measures, contact ratios, backlash and stiffness of all teeth.",
     "mesh": "Print stiffness, transmission error, load sharing and pressure of one mesh over its cycle.",

@@ -16,12 +16,18 @@ _DIGITS = 6
 _MEAN = "mean"
 
 
-def scaled_text(text: str, factors: Mapping[str, float], remarks: Mapping[str, str] | None = None) -> str:
+def scaled_text(
+    text: str,
+    factors: Mapping[str, float],
+    remarks: Mapping[str, str] | None = None,
+    texts: Mapping[str, str] | None = None,
+) -> str:
     """Return the text of a model file with the values at some addresses times a factor.
 
     Args:
         text: of the file (TOML).
         factors: address, such as "bearings.left.stiffness" or "shafts.rotor.sections[0].length", -> factor.
+        texts: address -> what is written in place of a value that is 0 or a word such as "start", which no factor moves.
         remarks: address -> comment to put behind the new value, before the old comment.
 
     Raises:
@@ -32,7 +38,7 @@ def scaled_text(text: str, factors: Mapping[str, float], remarks: Mapping[str, s
     import tomlkit
 
     document = tomlkit.parse(text)
-    for address, factor in factors.items():
+    for address in [*factors, *(name for name in texts or {} if name not in factors)]:
         *owners, last = re.sub(r"\[(\d+)\]", r".\1", address).split(".")
         owner: Any = document
         for key in owners:
@@ -40,11 +46,20 @@ def scaled_text(text: str, factors: Mapping[str, float], remarks: Mapping[str, s
         old = _below(owner, last, address)
         place: Any = int(last) if isinstance(owner, list) else last
         comment = old.trivia.comment.lstrip("# ") if hasattr(old, "trivia") else ""
-        owner[place] = _times(old, factor, address)
+        fixed = (texts or {}).get(address)
+        owner[place] = fixed if fixed is not None and _stays(old) else _times(old, factors[address], address)
         remark = "; ".join(part for part in ((remarks or {}).get(address, ""), comment) if part)
         if remark and not isinstance(owner, list | tomlkit.items.InlineTable):
             owner[place].comment(remark)
     return tomlkit.dumps(document)
+
+
+def _stays(value: Any) -> bool:
+    """Whether no factor moves a value: a word, or 0."""
+    if not isinstance(value, str):
+        return not isinstance(value, dict | list) and float(value) == 0.0
+    number = _NUMBER.match(value)
+    return number is None or float(number[0]) == 0.0
 
 
 def _below(owner: Any, key: str, address: str) -> Any:

@@ -11,6 +11,7 @@ from rotorgear.plots.sweep import sweep as sweep
 from rotorgear.plots.orbits import orbits as orbits
 from rotorgear.plots.bearing import bearing as bearing
 from rotorgear.plots.scatter import scatter as scatter
+from rotorgear.plots.optimise import optimise as optimise
 from rotorgear.plots.gear_mesh import gear as gear
 from rotorgear.plots.mesh_cycle import mesh as mesh
 from rotorgear.plots.mesh_map import mesh_map as mesh_map

@@ -56,6 +56,7 @@ ROOMS = {
         "scatter": {"common", "modal", "static", "transient"},
         "rig": {"common", "modal", "static"},
         "correlation": {"common", "modal", "response", "rig", "static"},
+        "layout": {"common", "scatter"},
         "casing": set(),
         "standards": {"campbell", "common", "modal", "response", "static"},
         "": {"bearing", "campbell", "modal", "orbits", "response", "static", "sweep", "teeth", "transient"},

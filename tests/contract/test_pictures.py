@@ -34,6 +34,7 @@ PICTURES = {
     "transient": ("transient", "mesh_forces", "transmission_error", "spectra", "shaft_orbits", "energy", "spectrogram"),
     "orbits": ("orbits",),
     "scatter": ("scatter",),
+    "optimise": ("optimise",),
     "sweep": ("sweep", "bifurcation", "sections", "portraits", "portrait_spectra"),
 }
 # Of a stage of pyvista, of a map over two parameters, and of minutes of contact analyses: each has its own test or a long one.
@@ -73,6 +74,7 @@ def results() -> dict[str, Any]:
             steps=40,
             error_estimate=False,
         ),
+        "optimise": rg.optimise(jeffcott, "shafts.*.sections.*.outer_diameter", searches=1, elements=2),
         "scatter": rg.scatter(jeffcott, "bearings.*.stiffness", samples=8, modes=4, elements=1),
         "orbits": rg.orbits(loose, {"operation.speed": "4000 rpm:4200 rpm"}, step=0.5),
         "sweep": rg.sweep(

@@ -127,6 +127,9 @@ def example(kind: str) -> Result:
         "scatter": lambda: rg.scatter(
             model("jeffcott"), "bearings.*.stiffness", samples=8, modes=4, elements=1, sobol=8
         ),
+        "optimise": lambda: rg.optimise(
+            model("jeffcott"), "shafts.*.sections.*.outer_diameter", searches=1, elements=2
+        ),
         "rig_spectrum": lambda: rg.compare_spectrum(
             example("transient"), example("spectral_lines"), [rg.RigLine(2000.0)]
         ),

@@ -175,8 +175,11 @@ def participations(
 
 
 def exciting_forms(
-    names: FormNames, line: ExcitationOrder, forms: NDArray[np.float64], senses: dict[str, float]
-) -> tuple[NDArray[np.complex128] | NDArray[np.float64], NDArray[np.float64]]:
+    names: FormNames,
+    line: ExcitationOrder,
+    forms: NDArray[np.float64] | NDArray[np.complex128],
+    senses: dict[str, float],
+) -> tuple[NDArray[np.complex128] | NDArray[np.float64], NDArray[np.complex128] | NDArray[np.float64]]:
     """Hermitian forms (r, r) of what a line shakes and of the whole: their ratio in a mode is its participation."""
     if line.kind != "shaft":
         return np.sum([forms[names.mesh(part)] for part in line.parts], axis=0), forms[STIFFNESS]

@@ -1,0 +1,340 @@
+"""The verb behind `rotorgear optimise`: numbers of a model, within bounds, that keep excitations away from the modes they excite.
+
+Which modes count is decided by participation: the share of an exciting mesh in the strain energy of a mode, or of the forward
+whirl of a shaft in its kinetic energy. Modes that nobody excites may lie where they like. Sequential quadratic programming (Kraft
+1988, A software package for sequential quadratic programming, DFVLR-FB 88-28) with exact gradients goes down the penalty of
+`penalty.py` from the file and from points strewn over the bounds; of the layouts that keep the margin the one with the least
+change, or the least mass, is taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rotorgear.analysis.common.excitation import excitation_orders
+from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.request import check_request, speed_in_si
+from rotorgear.analysis.layout.bounds import bounds_of
+from rotorgear.analysis.layout.problem import Problem
+from rotorgear.analysis.layout.state import State, total_mass
+from rotorgear.errors import AnalysisError
+from rotorgear.model.model import Model
+from rotorgear.model.numbers import numbers_of
+from rotorgear.progress import Progress, silent
+from rotorgear.quantity import QuantityError, parse_quantity
+from rotorgear.results.optimise import LayoutMargin, LayoutMode, LayoutNumber, OptimiseResult
+from rotorgear.solvers.sampling.points import unit_points
+from rotorgear.solvers.sparse.factor import single_thread
+from rotorgear.system.plan import Plan
+
+OBJECTIVES = ("change", "mass")
+# Order of the elements where none is asked for; the table's own mesh is one order higher, and its margins are compared.
+_ORDER = 4
+# The penalty asks for so much more than the margin, since it is flat at its own edge.
+_MORE = 1.01
+# Modes that are looked at reach this far beyond the highest line and its margin.
+_BEYOND = 1.1
+_ITERATIONS = 60
+_BISECTIONS = 7
+# Weight of the penalty beside the mass over that of the file.
+_WEIGHT = 30.0
+# A number this near to a bound, as a share of their distance, stands at it.
+_AT_BOUND = 1e-4
+_ROUNDING = 1e-5
+# Modes that take part by less than this are in no list.
+_NOTHING = 1e-5
+
+
+class _ReachedError(Exception):
+    """The margin is kept: the search may end here."""
+
+    def __init__(self, t: NDArray[np.float64]) -> None:
+        super().__init__()
+        self.t = t
+
+
+@dataclass(frozen=True)
+class _End:
+    """Where a start led: t (p,), penalty, and whether the margin is kept."""
+
+    t: NDArray[np.float64]
+    penalty: float
+    reached: bool
+
+
+@recorded
+def optimise(
+    model: Model,
+    free: str | Iterable[str],
+    *,
+    margin: float | str = 0.15,
+    bounds: Mapping[str, str] | None = None,
+    objective: str = "change",
+    speeds: Sequence[float | str] | None = None,
+    mesh_orders: Sequence[int] = (1,),
+    shaft_orders: Sequence[float] = (1,),
+    participation: float = 1e-2,
+    searches: int = 4,
+    seed: int = 1,
+    elements: int | None = None,
+    progress: Progress = silent,
+) -> OptimiseResult:
+    """Return numbers of a model so that no excitation has a mode that it excites within a margin.
+
+    Args:
+        model: the model.
+        free: addresses of the free numbers, with commas between; "*" for all names or places there.
+        margin: least |f_mode / f_line - 1|, such as 0.15 or "15 %".
+        bounds: pattern of addresses -> "LOW:HIGH", shares added to the value ("-20 %:20 %", the default) or values with units.
+            Places move by a tenth of their shaft where nothing is said, and never past gears, disks or bearings.
+        objective: change: the margin with small changes of the numbers; mass: with the least mass.
+        speeds: of the input shaft, in rad/s or with units; the operating speed where not given.
+        mesh_orders, shaft_orders: the excitations.
+        participation: least share of the exciting part in the energy of a mode from which on it counts.
+        searches: how many searches: the first from the file, the others from points within the bounds.
+        seed: of those points.
+        elements: basic elements in each shaft segment; one of order 4 where not given.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: a request that makes no sense, no speed, no excitation. ModelError: addresses that lead nowhere.
+    """
+    asked = _share(margin)
+    if objective not in OBJECTIVES:
+        raise AnalysisError(f"objective: got '{objective}', expected {' or '.join(OBJECTIVES)}")
+    if not 0.0 < participation < 1.0:
+        raise AnalysisError(f"participation: got {participation:g}, expected a share between 0 and 1, such as 0.01")
+    if searches < 1:
+        raise AnalysisError(f"searches: got {searches}, expected 1 or more")
+    at = _speeds(model, speeds)
+    check_request(at[0], None, None, elements, None)
+    lines = excitation_orders(model, shaft_orders, mesh_orders)
+    if not lines:
+        raise AnalysisError("no excitation: the shafts stand still, or no orders are given")
+    numbers = numbers_of(model, free)
+    low, high, notes = bounds_of(numbers, bounds or {})
+    top = max(line.frequency_hz(speed) for line in lines for speed in at)
+    plan = Plan(elements) if elements else Plan(1, _ORDER)
+    problem = Problem(
+        numbers, low, high, at, lines, plan, top * (1.0 + asked) * _BEYOND, _MORE * asked, asked, participation
+    )
+    with single_thread(0):
+        ends = _searched(problem, searches, seed, progress)
+        best = min(ends, key=lambda end: (not end.reached, _cost(problem, objective, end)))
+        if best.reached:
+            best = _lightened(problem, best, progress) if objective == "mass" else _nearer(problem, best)
+        result = _result(problem, best, objective)
+    reached = sum(end.reached for end in ends)
+    progress(1.0, "done")
+    left = ("damping: frequencies are those of the undamped rotating system", *notes)
+    return replace(result, searches=searches, searches_reached=reached, left_out=left)
+
+
+def _share(margin: float | str) -> float:
+    try:
+        share = parse_quantity(margin, "ratio")
+    except QuantityError:
+        share = -1.0
+    if not 0.0 < share < 1.0:
+        raise AnalysisError(f"margin: got '{margin}', expected a share between 0 and 1, such as '15 %'")
+    return share
+
+
+def _speeds(model: Model, speeds: Sequence[float | str] | None) -> tuple[float, ...]:
+    if speeds is None:
+        own = model.operation.speed if model.operation else None
+        if not own:
+            raise AnalysisError("no speed: give --speeds, or [operation] speed in the model file")
+        return (own,)
+    found = tuple(float(value) for value in map(speed_in_si, speeds) if value)
+    if not found:
+        raise AnalysisError("speeds: expected at least one other than 0")
+    return found
+
+
+def _searched(problem: Problem, searches: int, seed: int, progress: Progress) -> list[_End]:
+    """Where the searches lead: the file, then Sobol points of the bounds."""
+    others = unit_points("sobol", max(searches - 1, 1), len(problem.low), seed)
+    points = [problem.start, *others][:searches]
+    ends = []
+    for number, t in enumerate(points):
+        progress(0.05 + 0.7 * number / searches, f"start {number + 1} of {searches}")
+        ends.append(_descended(problem, t))
+    return ends
+
+
+def _descended(problem: Problem, t: NDArray[np.float64]) -> _End:
+    """Down the penalty until the margin is kept or nothing gets better."""
+    from scipy.optimize import minimize
+
+    best = _End(t, np.inf, False)
+
+    def fun(point: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+        nonlocal best
+        inside = np.clip(point, 0.0, 1.0)
+        states = problem.states(inside)
+        value = problem.penalty(states)
+        if problem.margins_kept(states):
+            raise _ReachedError(inside)
+        if value < best.penalty:
+            best = _End(inside, value, False)
+        return value, problem.slopes(inside, states)
+
+    try:
+        minimize(
+            fun,
+            t,
+            jac=True,
+            method="SLSQP",
+            bounds=[(0.0, 1.0)] * len(t),
+            options={"maxiter": _ITERATIONS, "ftol": 1e-7},
+        )
+    except _ReachedError as reached:
+        return _End(reached.t, 0.0, True)
+    return best
+
+
+def _cost(problem: Problem, objective: str, end: _End) -> float:
+    if not end.reached:
+        return end.penalty
+    if objective == "mass":
+        return total_mass(problem.states(end.t)[0].system)
+    return float(np.sum((end.t - problem.start) ** 2))
+
+
+def _nearer(problem: Problem, end: _End) -> _End:
+    """Back towards the file as far as the margin is kept."""
+    good = 1.0
+    bad = 0.0
+    for _ in range(_BISECTIONS):
+        share = 0.5 * (good + bad)
+        t = problem.start + share * (end.t - problem.start)
+        if problem.margins_kept(problem.states(t)):
+            good = share
+        else:
+            bad = share
+    return _End(problem.start + good * (end.t - problem.start), 0.0, True)
+
+
+def _lightened(problem: Problem, end: _End, progress: Progress) -> _End:
+    """The lightest layout near one that keeps the margin, with the penalty beside the mass."""
+    from scipy.optimize import minimize
+
+    scale, _ = problem.mass(problem.start)
+    best = end
+    lightest = total_mass(problem.states(end.t)[0].system)
+
+    def fun(point: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+        nonlocal best, lightest
+        inside = np.clip(point, 0.0, 1.0)
+        states = problem.states(inside)
+        mass, slope = problem.mass(inside)
+        if mass < lightest and problem.margins_kept(states):
+            best = _End(inside, 0.0, True)
+            lightest = mass
+        total = mass / scale + _WEIGHT * problem.penalty(states)
+        return total, slope / scale + _WEIGHT * problem.slopes(inside, states)
+
+    progress(0.8, "mass")
+    minimize(
+        fun,
+        end.t,
+        jac=True,
+        method="SLSQP",
+        bounds=[(0.0, 1.0)] * len(end.t),
+        options={"maxiter": _ITERATIONS, "ftol": 1e-8},
+    )
+    return best
+
+
+def _result(problem: Problem, end: _End, objective: str) -> OptimiseResult:
+    numbers = problem.numbers
+    finer = _on_finer_mesh(problem)
+    before = finer.states(problem.start)
+    after = finer.states(end.t)
+    pull = np.zeros(len(end.t)) if end.reached else problem.slopes(end.t, problem.states(end.t))
+    # What moved by rounding alone stays as the file has it, word or number.
+    t = np.where(np.abs(end.t - problem.start) < _ROUNDING, problem.start, end.t)
+    values = np.where(t == problem.start, numbers.start, problem.values(t))
+    rows = []
+    for j, address in enumerate(numbers.addresses):
+        bound = "low" if t[j] < _AT_BOUND else "high" if t[j] > 1.0 - _AT_BOUND else ""
+        rows.append(
+            LayoutNumber(
+                address,
+                numbers.unit[j],
+                float(numbers.start[j]),
+                float(values[j]),
+                float(problem.low[j]),
+                float(problem.high[j]),
+                bound,
+                float(pull[j]),
+            )
+        )
+    return OptimiseResult(
+        model=numbers.model,
+        numbers=tuple(rows),
+        lines=tuple(_margin_rows(problem, before, after)),
+        modes_before=tuple(_near_rows(problem, before)),
+        modes_after=tuple(_near_rows(problem, after)),
+        least_margin=problem.asked,
+        participation=problem.least,
+        objective=objective,
+        penalty_before=problem.penalty(before),
+        penalty_after=problem.penalty(after),
+        mass_before_kg=total_mass(before[0].system),
+        mass_after_kg=total_mass(after[0].system),
+        solutions=problem.solutions + finer.solutions,
+        gradients=problem.gradients,
+        searches_reached=0,
+        searches=0,
+        dofs=after[0].system.n,
+        method="sequential quadratic programming on a penalty with exact gradients",
+    )
+
+
+def _on_finer_mesh(problem: Problem) -> Problem:
+    """The problem on a finer mesh, by which it is judged."""
+    plan = problem.plan
+    finer = Plan(2 * plan.elements, plan.order) if plan.order == 1 else Plan(plan.elements, plan.order + 1)
+    return replace(problem, plan=finer, solutions=0, gradients=0)
+
+
+def _margin_rows(problem: Problem, before: list[State], after: list[State]) -> list[LayoutMargin]:
+    rows = []
+    for first, second in zip(before, after, strict=True):
+        for k, line in enumerate(problem.lines):
+            one = _nearest(first, k, problem)
+            other = _nearest(second, k, problem)
+            rows.append(LayoutMargin(line.name, first.speed, float(first.line_hz[k]), *one, *other))
+    return rows
+
+
+def _near_rows(problem: Problem, states: list[State]) -> list[LayoutMode]:
+    """Modes within three margins of each line that take part at all."""
+    rows: list[LayoutMode] = []
+    for state in states:
+        for line, F, taken in zip(problem.lines, state.line_hz, state.taken, strict=True):
+            margins = state.hz / F - 1.0
+            near = np.flatnonzero((np.abs(margins) < 3.0 * problem.asked) & (taken > _NOTHING))
+            rows += [
+                LayoutMode(line.name, state.speed, float(state.hz[k]), float(margins[k]), float(taken[k])) for k in near
+            ]
+    return rows
+
+
+def _nearest(state: State, line: int, problem: Problem) -> tuple[float, float, float, float]:
+    """Frequency, margin and participation of the mode nearest to a line among those that count, NaN without one; and the largest
+    participation within the margin of those that don't."""
+    margins = state.hz / state.line_hz[line] - 1.0
+    taken = state.taken[line]
+    counts = taken >= problem.least
+    inside = float(taken[~counts & (np.abs(margins) < problem.asked)].max(initial=0.0))
+    if not counts.any():
+        return float("nan"), float("nan"), 0.0, inside
+    best = int(np.argmin(np.where(counts, np.abs(margins), np.inf)))
+    return float(state.hz[best]), float(margins[best]), float(taken[best]), inside

@@ -1,0 +1,143 @@
+"""The layout as a problem of optimisation: free numbers in units of their bounds, penalty, gradient, margins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rotorgear.analysis.layout.penalty import near_modes, penalty, penalty_slopes
+from rotorgear.analysis.layout.state import State, state_of, total_mass
+from rotorgear.analysis.scatter.family import system_at
+from rotorgear.errors import AnalysisError
+from rotorgear.model.numbers import Numbers
+from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.system.plan import Plan
+from rotorgear.system.system import System
+
+# Half width of the differences of matrices, as a share of the bounds: their error is its square.
+_STEP = 1e-5
+# A place that coincides with another one is differentiated a hair beside it, where the shaft is cut alike on both sides.
+_HAIR = 2e-3
+# The search asks for a hair more than the margin: its mesh and the finer one that judges it differ by less.
+_EDGE = 1.001
+
+
+@dataclass
+class Problem:
+    """Free numbers x = low + t (high - low).
+
+    Attributes:
+        numbers, low, high: the numbers and their bounds (p,).
+        speeds: of the reference shaft in rad/s.
+        lines: excitations.
+        plan: the mesh.
+        below_hz: modes up to so many Hz.
+        margin: that the penalty asks for, a little more than
+        asked: the margin itself.
+        least: least participation that counts.
+        solutions, gradients: how many were needed so far.
+    """
+
+    numbers: Numbers
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    speeds: tuple[float, ...]
+    lines: tuple[ExcitationOrder, ...]
+    plan: Plan
+    below_hz: float
+    margin: float
+    asked: float
+    least: float
+    solutions: int = field(default=0)
+    gradients: int = field(default=0)
+
+    def values(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The numbers at t (p,)."""
+        return self.low + np.clip(t, 0.0, 1.0) * (self.high - self.low)
+
+    @property
+    def start(self) -> NDArray[np.float64]:
+        """t of the file (p,)."""
+        return np.asarray((self.numbers.start - self.low) / (self.high - self.low))
+
+    def states(self, t: NDArray[np.float64]) -> list[State]:
+        """The modes at every speed."""
+        model = self.numbers.at(self.values(t))
+        self.solutions += len(self.speeds)
+        return [
+            state_of(model, speed, self.plan, self.lines, self.below_hz, margin=self.margin, least=self.least)
+            for speed in self.speeds
+        ]
+
+    def penalty(self, states: list[State]) -> float:
+        """J of all speeds."""
+        return sum(penalty(near_modes(state, self.margin, self.least)) for state in states)
+
+    def slopes(self, t: NDArray[np.float64], states: list[State]) -> NDArray[np.float64]:
+        """dJ/dt (p,)."""
+        self.gradients += 1
+        # Differences need room on both sides: a bound may be where the model ends.
+        inside = self._apart(np.clip(t, 2.0 * _STEP, 1.0 - 2.0 * _STEP))
+        if not np.array_equal(inside, t):
+            t = inside
+            states = self.states(t)
+        total = np.zeros(len(t))
+        for state in states:
+
+            def beside(j: int, state: State = state) -> tuple[System, System, float]:
+                return self._beside(t, j, state)
+
+            near = near_modes(state, self.margin, self.least)
+            total += penalty_slopes(state, near, self.lines, beside, len(t))
+        return total
+
+    def mass(self, t: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+        """Mass of the rotors in kg and its derivatives (p,)."""
+
+        def at(point: NDArray[np.float64]) -> float:
+            return total_mass(
+                system_at(self.numbers.at(self.low + point * (self.high - self.low)), self.speeds[0], self.plan)
+            )
+
+        # Masses are polynomials of low degree: wide central differences are as good as exact.
+        steps = 1e-3 * np.eye(len(t))
+        return at(t), np.array([(at(t + step) - at(t - step)) / 2e-3 for step in steps])
+
+    def margins_kept(self, states: list[State]) -> bool:
+        """Whether no mode that counts is within the margin that was asked for."""
+        return all(
+            not np.any((np.abs(state.hz / F - 1.0) < _EDGE * self.asked) & (taken >= self.least))
+            for state in states
+            for F, taken in zip(state.line_hz, state.taken, strict=True)
+        )
+
+    def _beside(self, t: NDArray[np.float64], j: int, state: State) -> tuple[System, System, float]:
+        step = np.zeros(len(t))
+        step[j] = _STEP
+        above, below = (
+            system_at(self.numbers.at(self.low + (t + side * step) * (self.high - self.low)), state.speed, self.plan)
+            for side in (1.0, -1.0)
+        )
+        if not above.n == below.n == state.system.n:
+            raise AnalysisError(
+                f"{self.numbers.addresses[j]}: its place is too near to another one to be differentiated"
+            )
+        return above, below, 2.0 * _STEP
+
+    def _apart(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
+        """t with places moved a hair from others that they coincide with."""
+        places = [j for j, name in enumerate(self.numbers.addresses) if name.endswith((".at", ".start", ".length"))]
+        moved = t.copy()
+        for j in places:
+            step = np.zeros(len(t))
+            step[j] = _STEP
+            sizes = {self._size(moved + side * step) for side in (-1.0, 0.0, 1.0)}
+            if len(sizes) > 1:
+                moved[j] += _HAIR if t[j] < 0.5 else -_HAIR
+        return moved
+
+    def _size(self, t: NDArray[np.float64]) -> int:
+        """Number of dofs at t: it changes where places part or come together."""
+        return system_at(self.numbers.at(self.values(t)), self.speeds[0], self.plan).n

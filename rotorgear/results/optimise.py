@@ -1,0 +1,114 @@
+"""A layout that keeps its excitations away from the modes that they excite: numbers and margins before and after."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.model.model import Model
+from rotorgear.model.numbers import numbers_of
+from rotorgear.results.result import ModelResult
+from rotorgear.results.schema import Record, derived, of
+
+
+class LayoutNumber(Record):
+    """A number of the model that was free."""
+
+    address: str = of("address in the model file")
+    unit: str = of("SI unit", note=" of the values; empty for a factor or ratio")
+    before: float = of("value in the file", note="; 1 where several numbers have one factor")
+    after: float = of("value found")
+    low: float = of("lower bound")
+    high: float = of("upper bound")
+    at_bound: str = of("bound that the value stands at", note=': `"low"`, `"high"` or `""`')
+    pull: float = of(
+        "derivative of the penalty by the share of the bounds",
+        note=": where the value would go on to, against its sign",
+        form=".2e",
+    )
+
+
+class LayoutMargin(Record):
+    """One excitation at one speed, and the mode next to it among those that count, before and after."""
+
+    line: str = of("excitation line")
+    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
+    frequency_hz: float = of("frequency", "Hz", note=" of the line", form=".2f")
+    before_hz: float = of("frequency of the nearest mode before", "Hz", note="; `null`: none", form=".2f")
+    before_margin: float = of("margin before", note=": f_mode / f_line - 1", form="+.4f")
+    before_participation: float = of("participation of that mode", form=".2%")
+    before_inside: float = of("largest participation of a mode within the margin that does not count", form=".2%")
+    after_hz: float = of("frequency of the nearest mode after", "Hz", note="; `null`: none", form=".2f")
+    after_margin: float = of("margin after", form="+.4f")
+    after_participation: float = of("participation of that mode", note=" after", form=".2%")
+    after_inside: float = of(
+        "largest participation of a mode within the margin that does not count", note=", after", form=".2%"
+    )
+
+
+class LayoutMode(Record):
+    """A mode near an excitation."""
+
+    line: str = of("excitation line")
+    speed: float = of("speed of the input shaft", "rad/s", json="speed_rpm")
+    frequency_hz: float = of("frequency", "Hz", note=" of the mode", form=".2f")
+    margin: float = of("margin", note=": f_mode / f_line - 1", form="+.4f")
+    participation: float = of("participation of the mode", form=".2%")
+
+
+class OptimiseResult(ModelResult, kind="optimise"):
+    """The layout found; `model` is the one before, `optimised` the one after."""
+
+    numbers: tuple[LayoutNumber, ...] = of("free numbers", "", "number", record=LayoutNumber)
+    lines: tuple[LayoutMargin, ...] = of("excitations", "", "line", record=LayoutMargin)
+    modes_before: tuple[LayoutMode, ...] = of(
+        "modes within three margins of a line, before", "", "near_mode", record=LayoutMode
+    )
+    modes_after: tuple[LayoutMode, ...] = of(
+        "modes within three margins of a line, after", "", "near_mode_after", record=LayoutMode
+    )
+    least_margin: float = of("margin that is asked for")
+    participation: float = of("least participation that counts")
+    objective: str = of("objective", note=': `"change"` or `"mass"`')
+    penalty_before: float = of("penalty before", note=": 0 where all margins are kept", form=".3g")
+    penalty_after: float = of("penalty after", form=".3g")
+    mass_before_kg: float = of("mass of the rotors before", "kg", form=".3f")
+    mass_after_kg: float = of("mass of the rotors after", "kg", form=".3f")
+    solutions: int = of("modal solutions that were needed")
+    gradients: int = of("gradients that were needed")
+    searches_reached: int = of("number of searches that reached the margin")
+    searches: int = of("number of searches")
+
+    @property
+    def optimised(self) -> Model:
+        """The model with the numbers found."""
+        numbers = numbers_of(self.model, [row.address for row in self.numbers])
+        return numbers.at(np.array([row.after for row in self.numbers]))
+
+    @derived("whether every excitation keeps the margin")
+    def reached(self) -> bool:
+        """On the mesh of the table, which is refined for the model before and for that after."""
+        return all(not abs(row.after_margin) < self.least_margin for row in self.lines)
+
+    @derived("which bounds forbid the margin", "", "sentence", note="; empty where it is reached")
+    def forbidden_by(self) -> tuple[str, ...]:
+        """Numbers at a bound beyond which the penalty would go on to fall, strongest first."""
+        if self.reached:
+            return ()
+        held = [row for row in self.numbers if row.at_bound and abs(row.pull) > 0.0]
+        held = [row for row in held if (row.pull > 0.0) == (row.at_bound == "low")]
+        held.sort(key=lambda row: -abs(row.pull))
+        return tuple(
+            f"{row.address} at its {'lower' if row.at_bound == 'low' else 'upper'} bound of {_value(row, row.after)}"
+            for row in held
+        )
+
+
+def _value(row: LayoutNumber, value: float) -> str:
+    if row.unit == "m":
+        return f"{1e3 * value:.4g} mm"
+    return f"{value:.4g} {row.unit}".strip()
+
+
+def value_words(row: LayoutNumber, value: float) -> str:
+    """A value of a number with its unit, lengths in mm; a factor as a factor."""
+    return _value(row, value) if row.unit else f"x {value:.4f}"

@@ -1,0 +1,231 @@
+"""Layouts: gradients against difference quotients, margins against other analyses, bounds, files."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.analysis.common.excitation import excitation_orders
+from rotorgear.analysis.layout.bounds import bounds_of
+from rotorgear.analysis.layout.penalty import frequency_slopes
+from rotorgear.analysis.layout.problem import Problem
+from rotorgear.analysis.layout.state import State, total_mass
+from rotorgear.analysis.scatter.family import system_at
+from rotorgear.analysis.scatter.forms import forms_of
+from rotorgear.analysis.scatter.modes import modes_of
+from rotorgear.model.numbers import numbers_of
+from rotorgear.solvers.eigen.eigen import lowest_modes
+from rotorgear.system.plan import Plan
+from tests.paths import ROOT
+
+PLAN = Plan(1, 2)
+
+
+@cache
+def model(name: str) -> rg.Model:
+    return rg.load(ROOT / "models" / f"{name}.toml")
+
+
+def problem_of(rotor: rg.Model, free: str, *, margin: float, least: float, below_hz: float) -> Problem:
+    numbers = numbers_of(rotor, free)
+    low, high, _ = bounds_of(numbers, {})
+    lines = excitation_orders(rotor, (1, 2), (1,))
+    return Problem(numbers, low, high, (rotor.operation.speed,), lines, PLAN, below_hz, margin, margin, least)
+
+
+def slopes_of(rotor: rg.Model, address: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """f, and df / f over dx / |x| by energies and by difference quotients of order four, of the first eight modes at speed."""
+    numbers = numbers_of(rotor, [address])
+    x = float(numbers.start[0])
+    speed = rotor.operation.speed
+
+    def state(value: float) -> State:
+        system = system_at(numbers.at(np.array([value])), speed, PLAN)
+        # Strains keep the digits that K of all dofs would lose.
+        S = system.strain_factor(speed)
+        V = lowest_modes(system.mass, system.stiffness(speed), strain=lambda Y: S @ Y).vectors
+        forms = forms_of(system, speed, V)
+        modes = modes_of(forms, 8, 1.0, V.shape[1])
+        return State(system, speed, V, forms, modes, np.zeros((0, 8)), np.zeros(0))
+
+    def quotient(h: float) -> np.ndarray:
+        return (state(x + h).hz - state(x - h).hz) / (2.0 * h)
+
+    h = 1e-3 * abs(x)
+    by_quotient = (4.0 * quotient(h) - quotient(2.0 * h)) / 3.0
+    here = state(x)
+    shapes = here.V @ here.modes.q
+    X = np.hstack([shapes.real, shapes.imag])
+    narrow = 0.01 * h
+    above, below = (
+        forms_of(system_at(numbers.at(np.array([x + side])), speed, PLAN), speed, X) for side in (narrow, -narrow)
+    )
+    C = np.vstack([np.eye(8), 1j * np.eye(8)])
+    change = C.conj().T @ ((above - below)[:3] / (2.0 * narrow)) @ C
+    by_energies = frequency_slopes(here, list(range(8)), change) / (2.0 * np.pi)
+    return here.hz, by_energies / here.hz * abs(x), by_quotient / here.hz * abs(x)
+
+
+ROTOR = """
+[operation]
+input_shaft = "rotor"
+speed = "9000 rpm"
+[shafts.rotor]
+material = "steel"
+sections = [{ length = "300 mm", outer_diameter = "60 mm" }, { length = "500 mm", outer_diameter = "80 mm" }]
+[disks.disk]
+shaft = "rotor"
+at = "520 mm"
+mass = "40 kg"
+polar_inertia = "0.8 kg m^2"
+diametral_inertia = "0.45 kg m^2"
+[bearings.left]
+shaft = "rotor"
+at = "70 mm"
+stiffness = { x = "3e8 N/m", y = "2.4e8 N/m", axial = "1e7 N/m" }
+[bearings.right]
+shaft = "rotor"
+at = "700 mm"
+stiffness = { x = "2e8 N/m", y = "2.2e8 N/m" }
+[unbalances.disk]
+shaft = "rotor"
+at = "400 mm"
+magnitude = "100 g mm"
+"""
+
+
+@pytest.mark.parametrize(
+    "address",
+    ["bearings.left.at", "shafts.rotor.sections[1].outer_diameter", "bearings.right.stiffness", "bearings.right.at"],
+)
+def test_slopes_of_frequencies_are_difference_quotients_with_rotation(address):
+    _, energies, quotients = slopes_of(rg.loads(ROTOR), address)
+    assert np.abs(energies).max() > 1e-2
+    assert energies == pytest.approx(quotients, abs=1e-6 * np.abs(quotients).max())
+
+
+def test_the_mean_slope_at_a_veering_is_that_of_the_space():
+    """An almost symmetric rotor: pairs of modes closer than 1e-3, turned into each other by spin."""
+    changes = {
+        "bearings.left.stiffness": {"x": 3e8, "y": 2.999e8, "axial": 1e7},
+        "bearings.right.stiffness": {"radial": 2e8},
+        "operation.speed": "1 rpm",
+    }
+    near = rg.loads(ROTOR).with_(changes)
+    hz, energies, quotients = slopes_of(near, "bearings.left.at")
+    pair = int(np.argmin(np.diff(hz[:6])))
+    assert hz[pair + 1] / hz[pair] - 1.0 < 1e-3
+    pairs = slice(pair, pair + 2)
+    assert energies[pairs].mean() == pytest.approx(quotients[pairs].mean(), rel=1e-6)
+
+
+def test_the_slope_of_the_penalty_is_its_difference_quotient_where_participation_begins_to_count():
+    rotor = rg.loads(ROTOR)
+    problem = problem_of(
+        rotor, "bearings.*.at, shafts.*.sections.*.outer_diameter", margin=0.6, least=0.3, below_hz=900.0
+    )
+    t = problem.start + 0.03 * np.sin(1.0 + np.arange(len(problem.low)))
+    taken = problem.states(t)[0].taken
+    # A share that stands on the ramp, so that its slope takes part.
+    share = float(np.sort(taken[taken < 0.9])[-1])
+    problem.least = share / 0.85
+    slopes = problem.slopes(t, problem.states(t))
+
+    def value(j: int, h: float) -> float:
+        step = np.zeros(len(t))
+        step[j] = h
+        return problem.penalty(problem.states(t + step))
+
+    quotients = np.array([(value(j, 2e-4) - value(j, -2e-4)) / 4e-4 for j in range(len(t))])
+    assert np.abs(quotients).max() > 1e-3
+    assert slopes == pytest.approx(quotients, abs=2e-5 * np.abs(quotients).max())
+
+
+def test_a_rotor_is_led_away_from_its_unbalance_and_other_analyses_agree(tmp_path):
+    rotor = rg.loads(ROTOR)
+    # At 9000 rpm, 150 Hz, a forward mode stands at 185 Hz.
+    free = "bearings.*.at, shafts.*.sections.*.outer_diameter"
+    result = rg.optimise(rotor, free, margin="30 %", shaft_orders=[1], searches=1)
+    assert not all(abs(row.before_margin) >= 0.3 for row in result.lines)
+    assert result.reached
+    assert result.forbidden_by == ()
+    diagram = rg.campbell(result.optimised, shaft_orders=[1.0], accuracy=1e-4)
+    (line,) = [row for row in diagram.margins if row.line == "shaft rotor 1x"]
+    driven = [row for row in result.modes_after if abs(row.margin) < 0.3]
+    assert all(row.participation < result.participation for row in driven)
+    assert abs(line.margin) > 0.3 or line.participation < result.participation
+    source = tmp_path / "rotor.toml"
+    source.write_text(ROTOR.replace('at = "70 mm"', 'at = "70 mm"   # the cold end'))
+    written = rg.load(rg.write_optimised_model(result, source, tmp_path / "new.toml"))
+    assert "the cold end" in (tmp_path / "new.toml").read_text()
+    for row in result.numbers:
+        own = numbers_of(written, [row.address])
+        assert own.start[0] == pytest.approx(row.after, rel=1e-5)
+
+
+def test_a_margin_out_of_reach_names_the_bounds_that_forbid_it():
+    result = rg.optimise(
+        rg.loads(ROTOR),
+        "shafts.*.sections.*.outer_diameter",
+        margin="30 %",
+        bounds={"shafts.*.sections.*.outer_diameter": "-1 %:1 %"},
+        searches=1,
+    )
+    assert not result.reached
+    assert result.forbidden_by
+    assert "bound of" in result.forbidden_by[0]
+    assert "NOT reached" in result.text()
+    assert result.penalty_after < result.penalty_before
+
+
+def test_the_least_mass_is_lighter_than_the_least_change_and_keeps_the_margin():
+    free = "shafts.*.sections.*.outer_diameter, bearings.left.at"
+    change = rg.optimise(rg.loads(ROTOR), free, margin="30 %", searches=1)
+    mass = rg.optimise(rg.loads(ROTOR), free, margin="30 %", searches=1, objective="mass")
+    assert change.reached
+    assert mass.reached
+    assert mass.mass_after_kg <= change.mass_after_kg
+
+
+def test_the_mass_of_the_rotors_is_that_of_the_check():
+    pair = model("geared_pair")
+    assert total_mass(system_at(pair, None, Plan(1))) == pytest.approx(rg.check(pair).total_mass_kg, rel=1e-12)
+
+
+def test_places_stay_on_their_side_of_what_is_beside_them():
+    rotor = rg.loads(ROTOR)
+    low, high, _ = bounds_of(numbers_of(rotor, "bearings.*.at"), {"bearings.*.at": "-400 mm:1000 mm"})
+    assert low[0] == pytest.approx(0.0)
+    assert high[0] == pytest.approx(0.52 - 0.008)
+    assert (low[1], high[1]) == pytest.approx((0.528, 0.8))
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"free": "bearings.nobody.at"}, "no 'nobody'"),
+        ({"free": "bearings.*.at", "margin": "0 %"}, "margin"),
+        ({"free": "bearings.*.at", "objective": "beauty"}, "change or mass"),
+        ({"free": "bearings.*.at", "bounds": {"disks.*.at": "-1 mm:1 mm"}}, "none of the free numbers"),
+        ({"free": "bearings.*.at", "bounds": {"bearings.left.at": "5 mm"}}, "LOW:HIGH"),
+        ({"free": "bearings.*.at", "bounds": {"bearings.left.at": "100 mm:200 mm"}}, "do not hold"),
+        ({"free": "bearings.*.at", "searches": 0}, "searches"),
+        ({"free": "bearings.*.at", "participation": 2.0}, "participation"),
+        ({"free": "bearings.*.at", "mesh_orders": [], "shaft_orders": []}, "no excitation"),
+    ],
+)
+def test_what_cannot_be_optimised_is_refused_in_a_sentence(given, words):
+    with pytest.raises(rg.RotorgearError, match=words):
+        rg.optimise(rg.loads(ROTOR), **given)
+
+
+@pytest.mark.long
+def test_a_split_torque_gearbox_gets_its_margin_at_every_first_mesh_order():
+    split = model("split_torque")
+    result = rg.optimise(split, "bearings.*.at, shafts.*.sections.*.outer_diameter", margin=0.15, searches=1)
+    meshes = [row for row in result.lines if row.line.startswith("mesh")]
+    assert any(abs(row.before_margin) < 0.15 for row in meshes)
+    assert result.reached
