@@ -5,18 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
+import scipy.sparse as sp
 
+from rotorgear.analysis.orbits.between import Between, between
 from rotorgear.analysis.sweep.axes import number_places
-from rotorgear.analysis.sweep.period import common_period, orders_of
+from rotorgear.analysis.sweep.period import orders_of, shared_period
 from rotorgear.analysis.transient.task import prepare
-from rotorgear.errors import AnalysisError, RotorgearError
+from rotorgear.errors import AnalysisError
 from rotorgear.model.address import changed, tables_of, value_at
 from rotorgear.model.model import Model
 from rotorgear.model.parts.old_names import current_address
+from rotorgear.solvers.lanes.columns import PRESCRIBED
 from rotorgear.solvers.periodic.plant import Plant, Plants
-from rotorgear.solvers.time.local_forces import gather
+from rotorgear.solvers.time.local_forces import LocalLaw, gather
 from rotorgear.solvers.time.local_system import LocalSystem
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.local import LocalModel
@@ -90,6 +94,8 @@ class SystemFamily:
         self._plants = Plants()
         self._known: dict[tuple[float, ...], Plant] = {}
         self._systems: dict[tuple[float, ...], LocalSystem] = {}
+        self._through: Between | None = None
+        self._asked_between = False
         first = self.model_at([0.0] * len(ranges))
         if not first.operation or not first.operation.speed:
             raise AnalysisError("the model gives no speed of operation: set operation.speed, or follow over it")
@@ -97,6 +103,9 @@ class SystemFamily:
         self.local, self.rest, self.static_force, _ = self._built([0.0] * len(ranges))
         self.order, self.excited, self.notes = _excitation(self.local, excite)
         self._varied = [i for i, part in enumerate(self.local.parts) if _keeps(part.law, self.order)]
+        # A force that neither varies nor depends on the motion is a load.
+        self._acting = [i for i, part in enumerate(self.local.parts) if not _given(part.law) or self._varies(i)]
+        self.parts = tuple(self.local.parts[i] for i in self._acting)
 
     @property
     def label(self) -> str:
@@ -126,8 +135,7 @@ class SystemFamily:
             key[self._speed_axis] = 0.0
         own = self._systems.get(tuple(key))
         if own is None:
-            built = self.local if not any(key) else self._built(key)[0]
-            own = self._with_means(built.local)
+            own = self._between(key) or self._exact(key)
             if len(self._systems) > _KEPT:
                 self._systems.clear()
             self._systems[tuple(key)] = own
@@ -139,14 +147,40 @@ class SystemFamily:
             turned.__dict__[name] = getattr(own, name)
         return turned
 
+    def _exact(self, shares: Sequence[float]) -> LocalSystem:
+        """The system assembled at shares of the ranges."""
+        return self._with_means((self._built(shares)[0] if any(shares) else self.local).local)
+
+    def _between(self, shares: Sequence[float]) -> LocalSystem | None:
+        """The system between exact ones where a single range, besides a speed that only turns, leads there smoothly."""
+        moving = [i for i in range(len(shares)) if not (self._free_speed and i == self._speed_axis)]
+        if len(moving) != 1 or not 0.0 < shares[moving[0]] < 1.0:
+            return None
+        own = moving[0]
+        if not self._asked_between:
+            self._asked_between = True
+            base = [0.0] * len(shares)
+            self._through = between(lambda share: self._exact([*base[:own], share, *base[own + 1 :]]))
+        return self._through.at(shares[own]) if self._through else None
+
+    def _varies(self, i: int) -> bool:
+        return i in self._varied and not self.local.parts[i].law.steady
+
     def _with_means(self, local: LocalSystem) -> LocalSystem:
-        laws = tuple(law if i in self._varied else law.mean() for i, law in enumerate(local.forces.laws))
-        forces = replace(
-            gather(laws),
-            reference_stiffness=local.forces.reference_stiffness,
-            reference_damping=local.forces.reference_damping,
+        """The system with what does not excite at its mean, constant forces as loads."""
+        forces = local.forces
+        laws = tuple(law if i in self._varied else law.mean() for i, law in enumerate(forces.laws))
+        columns = [np.arange(a, b) for a, b in pairwise(forces.first)]
+        load = local.load.copy()
+        for i in set(range(len(laws))) - set(self._acting):
+            load -= local.B[:, columns[i]] @ laws[i].evaluate(0.0).force  # type: ignore[attr-defined]
+        kept = np.concatenate([*(columns[i] for i in self._acting), np.zeros(0, int)])
+        acting = replace(
+            gather(tuple(laws[i] for i in self._acting)),
+            reference_stiffness=forces.reference_stiffness[np.ix_(kept, kept)],
+            reference_damping=forces.reference_damping[np.ix_(kept, kept)],
         )
-        return replace(local, forces=forces)
+        return replace(local, B=sp.csc_array(local.B[:, kept]), forces=acting, load=load, observed=None)
 
     def shares_at(self, p: float) -> list[float]:
         """Shares of all ranges with the first one at p."""
@@ -172,10 +206,15 @@ def _only_turns(model: Model) -> bool:
     return all(power is None for power in powers) and not (over_speed or tables or inner or model.nonlinear_elements)
 
 
-def _keeps(law: object, order: float) -> bool:
+def _keeps(law: LocalLaw, order: float) -> bool:
     """Whether a law stays as it is: it repeats with the base period, or nothing of it varies."""
-    own = law.repeats()  # type: ignore[attr-defined]
+    own = law.repeats()
     return all(_whole(each.order / order) for each in own)
+
+
+def _given(law: LocalLaw) -> bool:
+    """Whether the force of a law does not depend on the motion."""
+    return all(column.kind == PRESCRIBED for column in law.columns())
 
 
 def _whole(ratio: float) -> bool:
@@ -216,18 +255,15 @@ def _excitation(local: LocalModel, excite: str | None) -> tuple[float, tuple[str
         raise AnalysisError(
             "nothing excites: no transmission error, stiffness variation, unbalance or torque ripple repeats as the shafts turn"
         )
-    try:
-        fastest, turns = common_period(orders)
-        long = turns > MOST_TURNS
-        said = f"{turns} periods of the fastest mesh"
-    except RotorgearError as error:
-        long = True
-        said = str(error)
-    if long:
-        parts = sorted({p.part.rpartition(".")[2] for p in chosen})
+    fastest, turns = shared_period(orders)
+    if turns > MOST_TURNS:
+        meshes = [p.part for p in chosen if p.is_mesh] or [p.part for p in chosen]
+        parts = list(dict.fromkeys(name.rpartition(".")[2] for name in meshes))
+        period = 2.0 * np.pi * turns / (float(fastest) * abs(float(local.local.rotation.speeds[0])))
         raise AnalysisError(
-            f"what excites repeats together after {said} (at most {MOST_TURNS}): excite one stage at a time, the others at their "
-            f"mean, as by --excite {parts[0]}; there are {', '.join(parts)}"
+            f"what excites repeats together only after {turns} periods of the fastest mesh, {period:.4g} s at the first speed (at "
+            f"most {MOST_TURNS} periods): excite one stage at a time, the others at their mean, as by --excite {parts[0]}; there "
+            f"are {', '.join(parts)}"
         )
     base = float(fastest / turns)
     labels = tuple(dict.fromkeys(p.part for p in varying if _keeps(p.law, base)))
@@ -243,7 +279,6 @@ def with_modal_damping(local: LocalSystem, ratio: float) -> LocalSystem:
         AnalysisError: too many dofs for all modes.
     """
     import scipy.linalg as la
-    import scipy.sparse as sp
 
     if local.n > _MOST_DENSE:
         raise AnalysisError(

@@ -28,10 +28,10 @@ class Contacts:
 
 def contacts_of(family: SystemFamily) -> Contacts:
     """The mesh contacts of a family."""
-    parts = family.local.parts
+    parts = family.parts
     law = np.array([i for i, part in enumerate(parts) if part.is_mesh], int)
     return Contacts(
-        family.local.local.forces.first[law],
+        family.plant(0.0).forces.first[law],
         law,
         np.array([parts[i].transverse for i in law]),
         tuple(parts[i].label for i in law),

@@ -16,23 +16,32 @@ MOST_TURNS = 1000
 _WHOLE = 1e-9  # relative error of a fraction that stands for a ratio of speeds
 
 
+def shared_period(orders: list[Fraction]) -> tuple[Fraction, int]:
+    """The highest order, and how many of its periods everything that varies has in common, however many.
+
+    Raises:
+        AnalysisError: nothing varies.
+    """
+    if not orders:
+        raise AnalysisError("nothing repeats: a sweep needs a mesh with teeth, or an unbalance, that turns")
+    fastest = max(orders)
+    base = Fraction(gcd(*(o.numerator for o in orders)), lcm(*(o.denominator for o in orders)))
+    return fastest, int(fastest / base)
+
+
 def common_period(orders: list[Fraction]) -> tuple[Fraction, int]:
     """The highest order, and how many of its periods everything that varies has in common.
 
     Raises:
         AnalysisError: nothing varies, or the common period is too long.
     """
-    if not orders:
-        raise AnalysisError("nothing repeats: a sweep needs a mesh with teeth, or an unbalance, that turns")
-    fastest = max(orders)
-    base = Fraction(gcd(*(o.numerator for o in orders)), lcm(*(o.denominator for o in orders)))
-    turns = fastest / base
+    fastest, turns = shared_period(orders)
     if turns > MOST_TURNS:
         raise AnalysisError(
-            f"the meshes repeat together after {int(turns)} periods of the fastest only (at most {MOST_TURNS}); choose "
+            f"the meshes repeat together after {turns} periods of the fastest only (at most {MOST_TURNS}); choose "
             "numbers of teeth with common factors"
         )
-    return fastest, int(turns)
+    return fastest, turns
 
 
 def refuse_long(meshes: list[Fraction], orders: list[Fraction]) -> None:

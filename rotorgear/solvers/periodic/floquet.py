@@ -161,15 +161,29 @@ def monodromy(plant: Plant, basis: ModalBasis, fine: Samples) -> np.ndarray:
     S = _means(plant, fine, N)
     lift = np.real(rows @ Q1)
     implicit = np.linalg.solve(np.eye(m) - S @ lift, S)
-    z = Y.astype(complex)
-    seen = np.real(rows @ z)
+    # Real parts over imaginary ones: what pushes the modes is real, and so is what the laws see of them.
+    push = np.hstack([_parts(e * Q1), _parts(Q0)])
+    look = np.hstack([rows.real, -rows.imag])
+    half = len(s)
+    c = e.real
+    d = e.imag
+    z = _parts(Y)
+    seen = look @ z
+    u = np.zeros((m, 2 * r))
     for k in range(N):
-        z = e * z + Q0 @ (S[k] @ seen)
-        free = np.real(rows @ z)
+        # z is what it was at the end of the step before, but for the rest Q1 u of that step.
+        pushed = push @ np.vstack([u, S[k] @ seen])
+        pushed[:half] += c * z[:half] - d * z[half:]
+        pushed[half:] += d * z[:half] + c * z[half:]
+        z = pushed
+        free = look @ z
         u = implicit[k] @ free
-        z += Q1 @ u
         seen = free + lift @ u
-    return np.asarray(np.real(shapes @ z))
+    return np.asarray(np.real(shapes @ (z[:half] + 1j * z[half:] + Q1 @ u)))
+
+
+def _parts(z: np.ndarray) -> np.ndarray:
+    return np.vstack([z.real, z.imag])
 
 
 def _phis(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

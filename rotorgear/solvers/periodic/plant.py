@@ -25,13 +25,15 @@ _FREE = 1e-9
 
 @dataclass(frozen=True)
 class Plant:
-    """One value of a parameter: M, D, K sparse (n, n), B (n, m), load f (n,), laws, speed in rad/s, watched W (n, p).
+    """One value of a parameter: M, C, K, G sparse (n, n), B (n, m), load f (n,), laws, speed in rad/s, watched W (n, p).
 
-    `free`: (n, r), M-orthonormal motions without strain.
+    `C` and `gyroscopic` make D = C + speed G; G is None where nothing gyrates. `free`: (n, r), M-orthonormal motions without
+    strain.
     """
 
     M: sp.csc_array
-    D: sp.csc_array
+    C: sp.csc_array
+    gyroscopic: sp.csc_array | None
     K: sp.csc_array
     B: np.ndarray
     load: np.ndarray
@@ -46,21 +48,42 @@ class Plant:
         return self.forces.m
 
     @cached_property
-    def still(self) -> Still:
-        """What follows from stiffness and load alone."""
+    def D(self) -> sp.csc_array:
+        """All velocity terms at the plant's speed."""
+        return self.C if self.gyroscopic is None else sp.csc_array(self.C + self.speed * self.gyroscopic)
+
+    @cached_property
+    def elastic(self) -> Elastic:
+        """What follows from stiffness and places of the laws alone."""
         solver = SupportedSolver(
             self.K,
             self.free * np.sqrt(np.maximum(self.K.diagonal(), 1e-300))[:, None],
             left_null_space(self.K, self.M, self.free),
         )
+        return Elastic(self.M, self.free, solver, _settled(self.M, self.free, solver, self.B))
 
-        def settled(f: np.ndarray) -> np.ndarray:
-            q = solver.solve(f - self.M @ (self.free @ (self.free.T @ f)))
-            return np.asarray(q - self.free @ (self.free.T @ (self.M @ q)))
+    @cached_property
+    def still(self) -> Still:
+        """What follows from stiffness and load."""
+        own = self.elastic
+        q = _settled(own.M, own.free, own.solver, self.load)
+        return Still(own.X, q, self.B.T @ own.X, self.B.T @ q)
 
-        X = settled(self.B)
-        q = settled(self.load)
-        return Still(X, q, self.B.T @ X, self.B.T @ q)
+
+def _settled(M: sp.csc_array, free: np.ndarray, solver: SupportedSolver, f: np.ndarray) -> np.ndarray:
+    """Static displacements of forces f without the motions `free`."""
+    q = solver.solve(f - M @ (free @ (free.T @ f)))
+    return np.asarray(q - free @ (free.T @ (M @ q)))
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """The factors of K, and static displacements X (n, m) of unit local forces."""
+
+    M: sp.csc_array
+    free: np.ndarray
+    solver: SupportedSolver
+    X: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -84,22 +107,32 @@ class Plants:
 
     def __init__(self) -> None:
         self._last: Plant | None = None
+        self._places = sp.csc_array((0, 0))
 
     def of(self, system: LocalSystem) -> Plant:
         """The plant of a system at the (constant) speed of its rotation."""
         speed = float(system.rotation.speeds[0])
         K = system.stiffness_about
-        D = system.damping_about if system.G is None else sp.csc_array(system.damping_about + speed * system.G)
+        C = system.damping_about
         old = self._last
-        B = system.B.toarray()
-        same = old is not None and _alike(old.K, K) and _alike(old.M, system.M) and np.array_equal(old.B, B)
-        if old is not None and same:
-            plant = Plant(old.M, D, old.K, old.B, system.load, system.forces, speed, system.watched_vectors, old.free)
-            if np.array_equal(old.load, system.load):
-                plant.__dict__["still"] = old.still  # a cached property of the same arguments
-        else:
+        if old is None or not (_alike(old.K, K) and _alike(old.M, system.M) and _alike(self._places, system.B)):
+            B = system.B.toarray()
             free = old.free if old is not None and _unstrained(K, old.free) else free_motions(system.M, K)
-            plant = Plant(system.M, D, K, B, system.load, system.forces, speed, system.watched_vectors, free)
+            plant = Plant(
+                system.M, C, system.G, K, B, system.load, system.forces, speed, system.watched_vectors, free
+            )
+            self._places = system.B
+        else:
+            C = old.C if _alike(old.C, C) else C
+            G = system.G
+            G = old.gyroscopic if G is not None and old.gyroscopic is not None and _alike(old.gyroscopic, G) else G
+            plant = Plant(
+                old.M, C, G, old.K, old.B, system.load, system.forces, speed, system.watched_vectors, old.free
+            )
+            # Cached properties of the same arguments.
+            plant.__dict__["elastic"] = old.elastic
+            if np.array_equal(old.load, system.load):
+                plant.__dict__["still"] = old.still
         self._last = plant
         return plant
 

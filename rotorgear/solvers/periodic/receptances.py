@@ -9,6 +9,8 @@ Interpolatory Methods for Model Reduction (SIAM 2020).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import scipy.sparse as sp
 
@@ -22,6 +24,18 @@ _DENSE = 60
 _KEPT = 2
 
 
+@dataclass(frozen=True)
+class Projected:
+    """Y^T A V of K, C, M and G (H, p, p), B^T V (H, m, p) and Y^T B (H, p, m)."""
+
+    K: np.ndarray
+    C: np.ndarray
+    M: np.ndarray
+    G: np.ndarray | None
+    seen: np.ndarray
+    pushed: np.ndarray
+
+
 class Receptances:
     """Receptances of harmonics h w, h = 0 ... H, with w = order |speed|."""
 
@@ -29,6 +43,8 @@ class Receptances:
         self._h = np.arange(1, harmonics + 1)
         self._order = order
         self._known: list[tuple[np.ndarray, np.ndarray]] = []
+        self._bases: tuple[np.ndarray, np.ndarray] | None = None
+        self._small: tuple[Plant, Projected] | None = None
         self.exact_solutions = 0
 
     def frequencies(self, plant: Plant) -> np.ndarray:
@@ -61,24 +77,55 @@ class Receptances:
         if not np.all(np.isfinite(X)):
             raise ConvergenceError(_SINGULAR)
         self._known = [*self._known, (X, Y)][-_KEPT:]
+        self._bases = None
+        self._small = None
         return self._with_static(plant, plant.B.T @ X), X
 
     def near(self, plant: Plant) -> np.ndarray:
         """R (H + 1, m, m) by the rational form; exact solutions have to be there."""
-        V, Y = (np.concatenate([pair[side] for pair in self._known], axis=2) for side in (0, 1))
-        # Columns of one size, orthonormal: two values next to each other give nearly the same ones.
-        V = np.linalg.qr(V / np.linalg.norm(V, axis=1, keepdims=True))[0]
-        Y = np.linalg.qr(Y / np.linalg.norm(Y, axis=1, keepdims=True))[0]
+        own = self._projected(plant)
+        w = self.frequencies(plant)[:, None, None]
+        inner = own.K + 1j * w * own.C - w**2 * own.M
+        if own.G is not None:
+            inner = inner + 1j * w * plant.speed * own.G
+        return self._with_static(plant, own.seen @ np.linalg.solve(inner, own.pushed))
+
+    def _projected(self, plant: Plant) -> Projected:
+        """The plant in both bases: anew where more than its speed and load has changed."""
+        if self._small is not None and _same_matrices(self._small[0], plant):
+            return self._small[1]
+        if self._bases is None:
+            # Columns of one size, orthonormal: two values next to each other give nearly the same ones.
+            V, Y = (np.concatenate([pair[side] for pair in self._known], axis=2) for side in (0, 1))
+            self._bases = (_orthonormal(V), _orthonormal(Y).transpose(0, 2, 1))
+        V, left = self._bases
         h, n, p = V.shape
-        w = np.repeat(self.frequencies(plant), p)
         flat = V.transpose(1, 0, 2).reshape(n, h * p)
-        moved = plant.K @ flat + (plant.D @ flat) * (1j * w) - (plant.M @ flat) * w**2
-        left = Y.transpose(0, 2, 1)
-        inner = left @ moved.reshape(n, h, p).transpose(1, 0, 2)
-        return self._with_static(plant, (plant.B.T @ V) @ np.linalg.solve(inner, left @ plant.B))
+
+        def seen_by_both(A: sp.csc_array) -> np.ndarray:
+            return np.asarray(left @ (A @ flat).reshape(n, h, p).transpose(1, 0, 2))
+
+        own = Projected(
+            seen_by_both(plant.K),
+            seen_by_both(plant.C),
+            seen_by_both(plant.M),
+            None if plant.gyroscopic is None else seen_by_both(plant.gyroscopic),
+            plant.B.T @ V,
+            left @ plant.B,
+        )
+        self._small = (plant, own)
+        return own
 
     def _with_static(self, plant: Plant, R: np.ndarray) -> np.ndarray:
         return np.concatenate([plant.still.R[None].astype(complex), R])
+
+
+def _orthonormal(V: np.ndarray) -> np.ndarray:
+    return np.linalg.qr(V / np.linalg.norm(V, axis=1, keepdims=True))[0]
+
+
+def _same_matrices(a: Plant, b: Plant) -> bool:
+    return a.K is b.K and a.C is b.C and a.M is b.M and a.gyroscopic is b.gyroscopic and a.B is b.B
 
 
 _SINGULAR = (

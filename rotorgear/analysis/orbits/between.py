@@ -1,0 +1,169 @@
+"""Systems between exact ones: their numbers as polynomials of a parameter, where these hold to rounding.
+
+A model is read, checked and assembled for each value of a parameter, which takes longer than to solve for a motion there. Loads,
+matrices and parameters of laws are mostly smooth in it: the interpolant through Chebyshev points then converges geometrically
+(Trefethen, Approximation Theory and Approximation Practice, SIAM 2013, ch. 8), and values at the new points of twice as many
+tell its error. What is not smooth is assembled at each value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.solvers.time.local_system import LocalSystem
+
+# Error of the interpolant, of the largest value that a number takes, that is rounding of the assembly.
+_ROUNDING = 1e-11
+_MOST = 32
+_MATRICES = ("M", "D", "K", "G", "B")
+_ABOUT = {
+    "stiffness_about": ("K", "B", "reference_stiffness"),
+    "damping_about": ("D", "B", "reference_damping"),
+}
+
+
+@dataclass(frozen=True)
+class Between:
+    """Polynomials through systems at k shares of a range: barycentric weights (k,), numbers by name (k, ...)."""
+
+    shares: np.ndarray
+    weights: np.ndarray
+    first: LocalSystem
+    varying: dict[str, np.ndarray]
+
+    def at(self, share: float) -> LocalSystem:
+        """The system at a share."""
+        own = _mixed(self.shares, self.weights, self.varying, share)
+        first = self.first
+        changed: dict[str, object] = {}
+        for name in _MATRICES:
+            if name in own:
+                A = getattr(first, name)
+                changed[name] = sp.csc_array((own[name], A.indices, A.indptr), shape=A.shape)
+        for name in ("load", "watched"):
+            if name in own:
+                changed[name] = own[name]
+        inner = {key: own[key] for key in ("parameters", "reference_stiffness", "reference_damping") if key in own}
+        if inner:
+            changed["forces"] = replace(first.forces, **inner)
+        if "speeds" in own:
+            changed["rotation"] = replace(first.rotation, speeds=own["speeds"])
+        made = replace(first, **changed)  # type: ignore[arg-type]
+        for name, parts in _ABOUT.items():
+            if not any(part in own for part in parts):
+                made.__dict__[name] = getattr(first, name)  # a cached property of the same arguments
+        return made
+
+
+def between(system_at: Callable[[float], LocalSystem]) -> Between | None:
+    """Polynomials of the systems over shares from 0 to 1; None where they do not converge."""
+    known: dict[float, dict[str, np.ndarray]] = {}
+    systems: dict[float, LocalSystem] = {}
+
+    def numbers_at(share: float) -> dict[str, np.ndarray]:
+        if share not in known:
+            systems[share] = system_at(share)
+            known[share] = _numbers(systems[share])
+        return known[share]
+
+    degree = 2
+    while degree < _MOST:
+        coarse = _points(degree)
+        fine = _points(2 * degree)
+        rows = [numbers_at(share) for share in coarse]
+        if not _alike(systems[0.0], [systems[share] for share in coarse]):
+            return None
+        varying = _varying(rows)
+        sizes = {name: np.abs(values).max(axis=0) for name, values in varying.items()}
+        worst = 0.0
+        for share in fine[1::2]:
+            exact = numbers_at(share)
+            if not _alike(systems[0.0], [systems[share]]):
+                return None
+            guess = _mixed(coarse, _weights(degree), varying, share)
+            for name, values in exact.items():
+                if name in varying:
+                    size = np.maximum(sizes[name], 1e-6 * sizes[name].max())
+                    worst = max(worst, float((np.abs(guess[name] - values) / size).max()))
+                elif not np.array_equal(values, rows[0][name]):
+                    return None
+        if worst <= _ROUNDING:
+            return Between(coarse, _weights(degree), systems[0.0], varying)
+        degree *= 2
+    return None
+
+
+def _points(degree: int) -> np.ndarray:
+    """Chebyshev points from 0 to 1; those of half the degree are among them to the last bit."""
+    all_points = 0.5 - 0.5 * np.cos(np.pi * np.arange(_MOST + 1) / _MOST)
+    all_points[-1] = 1.0
+    return all_points[:: _MOST // degree]
+
+
+def _weights(degree: int) -> np.ndarray:
+    """Barycentric weights of Chebyshev points."""
+    weights = (-1.0) ** np.arange(degree + 1)
+    weights[[0, -1]] *= 0.5
+    return weights
+
+
+def _mixed(
+    shares: np.ndarray, weights: np.ndarray, varying: dict[str, np.ndarray], share: float
+) -> dict[str, np.ndarray]:
+    off = share - shares
+    at = np.flatnonzero(off == 0.0)
+    if at.size:
+        return {name: values[at[0]] for name, values in varying.items()}
+    parts = weights / off
+    parts /= parts.sum()
+    # About the first of them, so that numbers that stay the same stay so to the last bit: a count is no 2.9999.
+    return {
+        name: values[0] + np.tensordot(parts, values - values[0], axes=1) for name, values in varying.items()
+    }
+
+
+def _numbers(system: LocalSystem) -> dict[str, np.ndarray]:
+    own = {name: getattr(system, name).data for name in _MATRICES if getattr(system, name) is not None}
+    if system.watched is not None:
+        own["watched"] = system.watched
+    forces = system.forces
+    return own | {
+        "load": system.load,
+        "parameters": forces.parameters,
+        "reference_stiffness": forces.reference_stiffness,
+        "reference_damping": forces.reference_damping,
+        "speeds": system.rotation.speeds,
+    }
+
+
+def _varying(rows: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
+    """What is not the same in all rows, (k, ...)."""
+    return {
+        name: np.array([row[name] for row in rows])
+        for name, values in rows[0].items()
+        if not all(np.array_equal(values, row[name]) for row in rows)
+    }
+
+
+def _alike(first: LocalSystem, others: list[LocalSystem]) -> bool:
+    """Whether systems differ in numbers alone."""
+    for other in others:
+        for name in _MATRICES:
+            A = getattr(first, name)
+            B = getattr(other, name)
+            if (A is None) != (B is None):
+                return False
+            if A is not None and not (
+                A.nnz == B.nnz and np.array_equal(A.indices, B.indices) and np.array_equal(A.indptr, B.indptr)
+            ):
+                return False
+        a = first.forces
+        b = other.forces
+        same = np.array_equal(a.kind, b.kind) and np.array_equal(a.parameters_first, b.parameters_first)
+        if not same or a.forces != b.forces or first.rotation.speeds.shape != other.rotation.speeds.shape:
+            return False
+    return True

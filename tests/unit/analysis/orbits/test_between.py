@@ -1,0 +1,49 @@
+"""Systems between exact ones: polynomials where numbers are smooth, assembly where they are not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.analysis.orbits.between import between
+from rotorgear.analysis.orbits.family import SystemFamily, range_of
+from tests.paths import MODELS
+
+
+def _family(name: str, address: str, ends: str, excite: str | None = None) -> SystemFamily:
+    model = rg.load(MODELS / name)
+    return SystemFamily(model, [range_of(model, address, ends)], excite, None)
+
+
+def test_constant_power_over_speed_is_a_polynomial_to_rounding() -> None:
+    family = _family("split_torque.toml", "operation.speed", "9000 rpm:16350 rpm", "stage_2a")
+    share = 0.371
+    near = family.system([share])
+    exact = family._exact([share])
+    assert family._through is not None
+    assert near.load == pytest.approx(exact.load, rel=1e-10, abs=1e-10 * np.abs(exact.load).max())
+    assert near.forces.parameters == pytest.approx(exact.forces.parameters, rel=1e-10)
+    assert near.rotation.speeds == pytest.approx(exact.rotation.speeds, rel=1e-13)
+    # What does not change is the same object, so that plants share factors.
+    assert near.K is family._through.first.K
+
+
+def test_a_constant_force_is_a_load_and_no_unknown() -> None:
+    family = _family("split_torque.toml", "operation.speed", "9000 rpm:9500 rpm", "stage_1a")
+    assert len(family.local.parts) == 12
+    assert [part.is_mesh for part in family.parts] == [True] * 8
+    turning = _family("split_torque.toml", "operation.speed", "9000 rpm:9500 rpm", "unbalances.input")
+    assert [part.part for part in turning.parts if not part.is_mesh] == ["unbalances.input"]
+
+
+def test_a_kink_is_no_polynomial() -> None:
+    family = _family("backlash_pair.toml", "operation.torque", "100 N m:200 N m")
+    first = family.system([0.0])
+
+    def kinked(share: float) -> object:
+        from dataclasses import replace
+
+        return replace(first, load=first.load * (1.0 + abs(share - 0.4)))
+
+    assert between(kinked) is None  # type: ignore[arg-type]
