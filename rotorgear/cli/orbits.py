@@ -16,7 +16,10 @@ def orbits(
     over: Annotated[
         list[str],
         typer.Option(
-            "--over", help="ADDRESS=FROM:TO, such as 'operation.speed=3000 rpm:6000 rpm'.", show_default=False
+            "--over",
+            help="ADDRESS=FROM:TO, such as 'operation.speed=3000 rpm:6000 rpm'; a second one follows folds and period doublings "
+            "over both.",
+            show_default=False,
         ),
     ],
     harmonics: Annotated[

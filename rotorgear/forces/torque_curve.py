@@ -9,7 +9,7 @@ positive sense.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -87,6 +87,10 @@ class TorqueCurve(ForceLaw):
     def repeats(self) -> tuple[Repeats, ...]:
         """The ripple."""
         return (Repeats(abs(self.order)),) if self.ripple and self.order else ()
+
+    def mean(self) -> TorqueCurve:
+        """The curve over speed, without ripple and step."""
+        return replace(self, ripple=0.0, step=1.0)
 
     def unsettled(self) -> str:
         """A step in time."""

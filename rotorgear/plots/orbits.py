@@ -26,7 +26,7 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
         contact: its number, counted from 0; the one that moves most where not given.
 
     Returns:
-        The axes: peak to peak, and the largest Floquet multiplier below it.
+        The axes: peak to peak, the largest Floquet multiplier below it, and the curves of special points where there are any.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
@@ -34,7 +34,9 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
     if isinstance(result, TransientResult):
         warn_old("picture of a transient", "orbits", "shaft_orbits")
         return shaft_orbits(result, fig)
-    axes = figure_for(fig, _SIZE, "").subplots(2, 1, sharex=True, height_ratios=(3, 1))
+    rows = 3 if result.curves else 2
+    size = (_SIZE[0], _SIZE[1] * (1.4 if result.curves else 1.0))
+    axes = figure_for(fig, size, "").subplots(rows, 1, sharex=True, height_ratios=(3, 1, 2)[:rows])
     sizes = 1e6 * result.peak_to_peak_approach
     c = int(np.argmax(sizes.max(axis=0))) if contact is None else contact
     x = result.value / result.per_unit[0]
@@ -63,8 +65,20 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
     axes[0].set_title(f"{result.contact[c]}: periodic motions", fontsize=9)
     axes[0].legend(fontsize=7)
     axes[1].set_ylabel("largest |mu|")
-    unit = f", {result.unit[0]}" if result.unit[0] else ""
-    axes[1].set_xlabel(f"{result.address[0]}{unit}")
+    for curve in result.curves:
+        marker = _MARKERS[curve.kind]
+        label = f"{curve.kind}, {result.branches[curve.branch].name}"
+        second = curve.second / result.per_unit[1]
+        axes[2].plot(curve.value / result.per_unit[0], second, "-" + marker, ms=3, mfc="w", lw=1.2, label=label)
+    if result.curves:
+        axes[2].set_ylabel(_name(result, 1))
+        axes[2].legend(fontsize=7)
+    axes[-1].set_xlabel(_name(result, 0))
     for one in axes:
         one.grid(alpha=0.25)
     return np.asarray(axes)
+
+
+def _name(result: OrbitsResult, parameter: int) -> str:
+    unit = result.unit[parameter]
+    return f"{result.address[parameter]}, {unit}" if unit else result.address[parameter]

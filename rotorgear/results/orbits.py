@@ -30,6 +30,25 @@ class OrbitBranch(Record):
     ended: str = of("why the branch ended")
 
 
+class SpecialCurve(Record):
+    """Where a special point goes as a second parameter changes."""
+
+    kind: str = of("kind", note=': `"fold"` or `"period doubling"`')
+    branch: int = of("branch", note=", counted from 0, that it begins on")
+    value: np.ndarray = of("value of the first parameter", "", "curve_point", note=", in SI")
+    second: np.ndarray = of("value of the second parameter", "", "curve_point", note=", in SI")
+    period: np.ndarray = of("period", "s", "curve_point", json="period_s")
+    approach_extremes: np.ndarray = of(
+        "least and largest approach of the flanks",
+        "m",
+        "curve_point",
+        "contact",
+        "extreme",
+        json="approach_extremes_m",
+    )
+    ended: str = of("why the curve ended")
+
+
 class OrbitVerification(Record):
     """What a transient that was started on an orbit did."""
 
@@ -89,6 +108,9 @@ class OrbitsResult(ModelResult, kind="orbits"):
         json=None,
     )
     special_points: tuple[SpecialPoint, ...] = of("special points", "", "special_point", record=SpecialPoint)
+    curves: tuple[SpecialCurve, ...] = of(
+        "curves of special points over two parameters", "", "curve", record=SpecialCurve, default=()
+    )
     verifications: tuple[OrbitVerification, ...] = of(
         "transients started on orbits", "", "verification", record=OrbitVerification, default=()
     )

@@ -49,7 +49,7 @@ class Between:
                 changed[name] = own[name]
         inner = {key: own[key] for key in ("parameters", "reference_stiffness", "reference_damping") if key in own}
         if inner:
-            changed["forces"] = replace(first.forces, **inner)
+            changed["forces"] = replace(first.forces, **inner)  # type: ignore[arg-type]
         if "speeds" in own:
             changed["rotation"] = replace(first.rotation, speeds=own["speeds"])
         made = replace(first, **changed)  # type: ignore[arg-type]
@@ -121,9 +121,7 @@ def _mixed(
     parts = weights / off
     parts /= parts.sum()
     # About the first of them, so that numbers that stay the same stay so to the last bit: a count is no 2.9999.
-    return {
-        name: values[0] + np.tensordot(parts, values - values[0], axes=1) for name, values in varying.items()
-    }
+    return {name: values[0] + np.tensordot(parts, values - values[0], axes=1) for name, values in varying.items()}
 
 
 def _numbers(system: LocalSystem) -> dict[str, np.ndarray]:

@@ -187,7 +187,8 @@ class SystemFamily:
         return [p, *[0.0] * (len(self._ranges) - 1)]
 
     def plant(self, *shares: float) -> Plant:
-        """The plant at shares of the ranges."""
+        """The plant at shares of the ranges, those not given 0."""
+        shares = (*shares, *[0.0] * (len(self._ranges) - len(shares)))
         if shares not in self._known:
             if len(self._known) > _KEPT:
                 self._known.clear()
@@ -261,9 +262,9 @@ def _excitation(local: LocalModel, excite: str | None) -> tuple[float, tuple[str
         parts = list(dict.fromkeys(name.rpartition(".")[2] for name in meshes))
         period = 2.0 * np.pi * turns / (float(fastest) * abs(float(local.local.rotation.speeds[0])))
         raise AnalysisError(
-            f"what excites repeats together only after {turns} periods of the fastest mesh, {period:.4g} s at the first speed (at "
-            f"most {MOST_TURNS} periods): excite one stage at a time, the others at their mean, as by --excite {parts[0]}; there "
-            f"are {', '.join(parts)}"
+            f"what excites repeats together only after {turns} periods of the fastest mesh, {period:.4g} s at the first speed "
+            f"(at most {MOST_TURNS} periods): excite one stage at a time, the others at their mean, as by --excite {parts[0]}; "
+            f"there are {', '.join(parts)}"
         )
     base = float(fastest / turns)
     labels = tuple(dict.fromkeys(p.part for p in varying if _keeps(p.law, base)))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.analysis.orbits.curves import Curve
 from rotorgear.analysis.orbits.family import Range, SystemFamily
 from rotorgear.analysis.orbits.follow import Branch
-from rotorgear.results.orbits import OrbitBranch, SpecialPoint
+from rotorgear.results.orbits import OrbitBranch, SpecialCurve, SpecialPoint
 from rotorgear.solvers.periodic.cycle import Cycle
 from rotorgear.solvers.periodic.special import Certified
 
@@ -89,6 +91,24 @@ def gathered(
             )
     fields: dict[str, object] = {name: np.array(values) for name, values in rows.items()}
     return fields | {"branches": tuple(listed), "special_points": tuple(special)}
+
+
+def gathered_curves(curves: list[Curve], contacts: Contacts, ranges: Sequence[Range]) -> tuple[SpecialCurve, ...]:
+    """The curves of special points as a result has them."""
+    return tuple(
+        SpecialCurve(
+            curve.kind,
+            curve.branch,
+            np.array([ranges[0].at(point.p) for point in curve.points]),
+            np.array([ranges[1].at(point.q) for point in curve.points]),
+            np.array([point.cycle.period for point in curve.points]),
+            np.array(
+                [point.cycle.extremes()[contacts.column] / contacts.transverse[:, None] for point in curve.points]
+            ),
+            curve.ended,
+        )
+        for curve in curves
+    )
 
 
 def read(cycle: Cycle, contacts: Contacts, harmonics: int, periods: int) -> dict[str, object]:

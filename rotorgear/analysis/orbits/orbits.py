@@ -10,9 +10,10 @@ import numpy as np
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole, missed
+from rotorgear.analysis.orbits.curves import Curve, special_curves
 from rotorgear.analysis.orbits.family import SystemFamily, range_of
 from rotorgear.analysis.orbits.follow import AnyOrbits, Branch, doubled_branches, main_branches
-from rotorgear.analysis.orbits.gather import contacts_of, gathered
+from rotorgear.analysis.orbits.gather import contacts_of, gathered, gathered_curves
 from rotorgear.analysis.orbits.refined import largest_error
 from rotorgear.analysis.orbits.start import first_node
 from rotorgear.analysis.orbits.verify import verified
@@ -58,7 +59,9 @@ def orbits(
 
     Args:
         model: the model.
-        over: {"operation.speed": "3000 rpm:6000 rpm"}: an address and both ends of its range, as a text or two values.
+        over: {"operation.speed": "3000 rpm:6000 rpm"}: an address and both ends of its range, as a text or two values. With a
+            second one branches are followed over the first at the begin of the second, and the folds and period doublings on
+            them over both.
         harmonics: of the base period; 30 where not given.
         instants: at which laws are evaluated in a base period; 16 for each harmonic where not given.
         method: harmonic balance, shooting (small systems), or auto, which takes shooting where it serves.
@@ -77,11 +80,11 @@ def orbits(
     """
     begun = clock.perf_counter()
     _check(over, harmonics, instants, method, accuracy, step, points)
-    ((address, ends),) = over.items()
-    along = range_of(model, address, ends)
+    ranges = [range_of(model, address, ends) for address, ends in over.items()]
+    along = ranges[0]
     with single_thread(0):
         progress(0.0, "model")
-        family = SystemFamily(model, [along], excite, elements)
+        family = SystemFamily(model, ranges, excite, elements)
         contacts = contacts_of(family)
         scale = _scale(family.plant(0.0))
         H = harmonics or HARMONICS
@@ -103,6 +106,7 @@ def orbits(
                 break
             doublings += 1
             H *= 2
+        curves = special_curves(branches, family, Walk(longest=step, most=points), progress) if len(ranges) > 1 else []
         laps["branches"] = clock.perf_counter() - begun - laps["model"]
         fields = gathered(branches, contacts, family, along, H)
         checks = verified(branches, family, contacts, along) if verify else ()
@@ -112,13 +116,14 @@ def orbits(
     count = sum(len(branch.nodes) for branch in branches)
     return OrbitsResult(
         model=model,
-        address=(along.address,),
-        unit=(along.unit,),
-        per_unit=np.array([along.per_unit]),
+        address=tuple(one.address for one in ranges),
+        unit=tuple(one.unit for one in ranges),
+        per_unit=np.array([one.per_unit for one in ranges]),
         excited=family.label,
         order=family.order,
         contact=contacts.label,
         **fields,  # type: ignore[arg-type]
+        curves=gathered_curves(curves, contacts, ranges),
         verifications=checks,
         harmonics=H,
         instants=N,
@@ -135,7 +140,7 @@ def orbits(
             *family.notes,
             *_modes_left_out(problem),
         ),
-        warnings=(*_warnings(branches), *((short,) if short else ())),
+        warnings=(*_warnings(branches, curves), *((short,) if short else ())),
     )
 
 
@@ -148,8 +153,8 @@ def _check(
     step: float,
     points: int,
 ) -> None:
-    if len(over) != 1:
-        raise AnalysisError(f"over: got {len(over)} parameters, expected one")
+    if len(over) not in (1, 2):
+        raise AnalysisError(f"over: got {len(over)} parameters, expected one or two")
     for name, count in (("harmonics", harmonics), ("instants", instants), ("points", points)):
         if count is not None:
             check_whole(f"the number of {name}", count)
@@ -218,11 +223,17 @@ def _modes_left_out(problem: AnyOrbits) -> tuple[str, ...]:
     )
 
 
-def _warnings(branches: list[Branch]) -> list[str]:
+def _warnings(branches: list[Branch], curves: list[Curve]) -> list[str]:
     notes = [
         f"branch {branch.name} ended early, at {len(branch.nodes)} points: {branch.ended}"
         for branch in branches
         if branch.ended not in ("the end of the range", "the branch closed")
+    ]
+    planned = ("the end of the second range", "the end of the first range", "the curve closed")
+    notes += [
+        f"curve of the {curve.kind} ended early, at {len(curve.points)} points: {curve.ended}"
+        for curve in curves
+        if curve.ended not in planned
     ]
     if not any(one.stable for branch in branches for one in branch.nodes):
         notes.append("no motion of the range is stable: a transient settles on none of them")

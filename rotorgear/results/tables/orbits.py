@@ -11,7 +11,7 @@ from rotorgear.results.tables.common import heading, lines, table
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from rotorgear.results.orbits import OrbitsResult
+    from rotorgear.results.orbits import OrbitsResult, SpecialCurve
 
 # Points of a branch that are shown; all are in the files.
 _SHOWN = 12
@@ -26,6 +26,8 @@ def orbits_table(result: OrbitsResult) -> RenderableType:
     parts += lines("", "Special points") + ([_special(result)] if result.special_points else lines("none"))
     for number in range(len(result.branches)):
         parts += [*lines(""), _branch(result, number)]
+    for curve in result.curves:
+        parts += [*lines(""), _curve(result, curve)]
     if result.verifications:
         parts += [*lines("", "Transients started on orbits"), _verifications(result)]
     notes = [
@@ -41,12 +43,12 @@ def orbits_table(result: OrbitsResult) -> RenderableType:
     return Group(*parts, *lines(*notes, ""))
 
 
-def _value(result: OrbitsResult, si: float) -> str:
-    return f"{si / result.per_unit[0]:.8g}"
+def _value(result: OrbitsResult, si: float, parameter: int = 0) -> str:
+    return f"{si / result.per_unit[parameter]:.8g}"
 
 
-def _column(result: OrbitsResult) -> str:
-    return f"{result.address[0].rpartition('.')[2]} {result.unit[0]}".strip()
+def _column(result: OrbitsResult, parameter: int = 0) -> str:
+    return f"{result.address[parameter].rpartition('.')[2]} {result.unit[parameter]}".strip()
 
 
 def _special(result: OrbitsResult) -> Any:
@@ -87,6 +89,19 @@ def _branch(result: OrbitsResult, number: int) -> Any:
             ]
         size = float(np.nanmax(np.abs(result.multipliers[i])))
         out.add_row(_value(result, float(result.value[i])), "yes" if result.stable[i] else "no", f"{size:.4f}", *cells)
+    return Group(*lines(text), out)
+
+
+def _curve(result: OrbitsResult, curve: SpecialCurve) -> Any:
+    from rich.console import Group
+
+    name = result.branches[curve.branch].name
+    text = f"Curve of the {curve.kind} of branch {name}: {len(curve.value)} points, to {curve.ended}"
+    out = table(_column(result), _column(result, 1), "period\nms", "p-p\num", left=0)
+    for i in np.unique(np.linspace(0, len(curve.value) - 1, min(_SHOWN, len(curve.value))).round().astype(int)):
+        sizes = np.ptp(curve.approach_extremes[i], axis=1)
+        cells = [f"{1e3 * curve.period[i]:.4g}", f"{1e6 * sizes.max():.4g}" if sizes.size else "-"]
+        out.add_row(_value(result, float(curve.value[i])), _value(result, float(curve.second[i]), 1), *cells)
     return Group(*lines(text), out)
 
 

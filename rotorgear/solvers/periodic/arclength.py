@@ -156,7 +156,10 @@ def at_value(equations: Equations, y: np.ndarray, p: float, sense: float = 1.0) 
 
 @dataclass(frozen=True)
 class Walk:
-    """How far a walk goes: longest step as a share of the range, most points, and the ends of the parameter."""
+    """How far a walk goes: most points, the ends of the parameter, and the longest step.
+
+    It is a share of the range, or of the size of the unknowns where these are larger than 1.
+    """
 
     longest: float = 0.04
     most: int = 600
@@ -180,6 +183,7 @@ def walk(
     here = start
     length = min(step, plan.longest)
     while len(nodes) < plan.most:
+        longest = plan.longest * max(1.0, float(np.linalg.norm(here.y)))
         guess = here.z + length * here.tangent
         try:
             found = corrected(equations, guess, here.tangent, here.tangent)
@@ -217,7 +221,7 @@ def walk(
         if back:
             return nodes, "closed"
         if found.iterations <= _FEW and turned > 0.97:
-            length = min(_LONGER * length, plan.longest)
+            length = min(_LONGER * length, longest)
         elif found.iterations >= _MANY:
             length *= _SHORTER
         here = found

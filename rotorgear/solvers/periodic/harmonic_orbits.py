@@ -25,16 +25,18 @@ class HarmonicOrbits:
 
     Args:
         plant_at: the plant at a value of the parameter. grid: harmonics and instants.
-        scale: displacements (m,) that count as 1.
+        scale: displacements (m,) that count as 1. receptances: of plants of the same structure, to go on with.
     """
 
     method = "harmonic balance"
 
-    def __init__(self, plant_at: PlantAt, grid: Grid, scale: np.ndarray) -> None:
+    def __init__(
+        self, plant_at: PlantAt, grid: Grid, scale: np.ndarray, receptances: Receptances | None = None
+    ) -> None:
         self._plant_at = plant_at
         self.grid = grid
         self.scale = scale
-        self._receptances = Receptances(grid.harmonics, grid.order)
+        self._receptances = receptances or Receptances(grid.harmonics, grid.order)
         self._exact: tuple[float, np.ndarray, np.ndarray] | None = None
         self._last: tuple[bytes, float, np.ndarray] | None = None
         self._basis: ModalBasis | None = None
@@ -54,11 +56,15 @@ class HarmonicOrbits:
     def _receptance(self, p: float) -> np.ndarray:
         if self._exact is not None and self._exact[0] == p:
             return self._exact[1]
-        if self._exact is None:
+        if not self._receptances.begun:
             self.settle_on(p)
             assert self._exact is not None
             return self._exact[1]
         return self._receptances.near(self._plant_at(p))
+
+    def along(self, plant_at: PlantAt) -> HarmonicOrbits:
+        """The same for other plants of the same structure: receptances between exact ones serve both."""
+        return HarmonicOrbits(plant_at, self.grid, self.scale, self._receptances)
 
     def coefficients(self, y: np.ndarray) -> np.ndarray:
         """c (H + 1, m) in m or rad from unknowns."""
@@ -102,20 +108,34 @@ class HarmonicOrbits:
         R = self._receptance(p)
         found = balance(c, plant, self.grid)
         rest = self._rest(c, plant, R, found.u)
+        # Between exact solutions the rational form is smooth: both ends of the difference come from it.
+        ends = [self._smooth_rest(c, value) for value in (p - _DIFFERENCE, p + _DIFFERENCE)]
+        return Linear(rest, self._derivative(R, found.tangent), (ends[1] - ends[0]) / (2.0 * _DIFFERENCE))
+
+    def _smooth_rest(self, c: np.ndarray, p: float) -> np.ndarray:
+        plant = self._plant_at(p)
+        u = balance(c, plant, self.grid, tangents=False).u
+        return self._rest(c, plant, self._receptances.near(plant), u)
+
+    def smooth_residual(self, y: np.ndarray, p: float) -> np.ndarray:
+        """The residual by receptances between exact ones, for differences in a parameter."""
+        return self._smooth_rest(self.coefficients(y), p)
+
+    def jacobian(self, y: np.ndarray, p: float) -> np.ndarray:
+        """Derivative of the residual by the unknowns, by receptances between exact ones."""
+        plant = self._plant_at(p)
+        tangent = balance(self.coefficients(y), plant, self.grid).tangent
+        return self._derivative(self._receptances.near(plant), tangent)
+
+    def _derivative(self, R: np.ndarray, tangent: np.ndarray) -> np.ndarray:
         H = self.grid.harmonics
-        m = plant.m
-        moved = (R @ found.tangent.reshape(H + 1, m, -1)).reshape(H + 1, m, 2 * H + 1, m)
+        m = self.scale.size
+        moved = (R @ tangent.reshape(H + 1, m, -1)).reshape(H + 1, m, 2 * H + 1, m)
         moved = moved * self.scale / self.scale[None, :, None, None]
         J = np.eye(self.size)
         J[: (H + 1) * m] -= moved.real.reshape((H + 1) * m, -1)
         J[(H + 1) * m :] -= moved[1:].imag.reshape(H * m, -1)
-        # Between exact solutions the rational form is smooth: both ends of the difference come from it.
-        ends = []
-        for value in (p - _DIFFERENCE, p + _DIFFERENCE):
-            other = self._plant_at(value)
-            u = balance(c, other, self.grid, tangents=False).u
-            ends.append(self._rest(c, other, self._receptances.near(other), u))
-        return Linear(rest, J, (ends[1] - ends[0]) / (2.0 * _DIFFERENCE))
+        return J
 
     def _modes(self, plant: Plant) -> ModalBasis:
         """The basis of the map over a period: that of the last plant where inertia and stiffness are the same."""
@@ -180,7 +200,9 @@ class HarmonicOrbits:
             instants=2 * self.grid.instants,
             order=0.5 * self.grid.order,
         )
-        return HarmonicOrbits(self._plant_at, grid, self.scale)
+        if self._receptances.twice is None:
+            self._receptances.twice = Receptances(grid.harmonics, grid.order)
+        return HarmonicOrbits(self._plant_at, grid, self.scale, self._receptances.twice)
 
     def twice(self, y: np.ndarray, other: HarmonicOrbits) -> np.ndarray:
         """The unknowns of one motion in the equations of twice its period."""

@@ -48,7 +48,7 @@ class Plant:
         return self.forces.m
 
     @cached_property
-    def D(self) -> sp.csc_array:
+    def D(self) -> sp.csc_array:  # noqa: N802  the equation's own symbol
         """All velocity terms at the plant's speed."""
         return self.C if self.gyroscopic is None else sp.csc_array(self.C + self.speed * self.gyroscopic)
 
@@ -118,9 +118,7 @@ class Plants:
         if old is None or not (_alike(old.K, K) and _alike(old.M, system.M) and _alike(self._places, system.B)):
             B = system.B.toarray()
             free = old.free if old is not None and _unstrained(K, old.free) else free_motions(system.M, K)
-            plant = Plant(
-                system.M, C, system.G, K, B, system.load, system.forces, speed, system.watched_vectors, free
-            )
+            plant = Plant(system.M, C, system.G, K, B, system.load, system.forces, speed, system.watched_vectors, free)
             self._places = system.B
         else:
             C = old.C if _alike(old.C, C) else C

@@ -46,6 +46,13 @@ class Receptances:
         self._bases: tuple[np.ndarray, np.ndarray] | None = None
         self._small: tuple[Plant, Projected] | None = None
         self.exact_solutions = 0
+        # Those of half the frequencies, where a motion of twice the period asked for them.
+        self.twice: Receptances | None = None
+
+    @property
+    def begun(self) -> bool:
+        """Whether there is an exact solution."""
+        return bool(self._known)
 
     def frequencies(self, plant: Plant) -> np.ndarray:
         """Of the harmonics from the first on, rad/s."""

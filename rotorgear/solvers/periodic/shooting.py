@@ -175,6 +175,21 @@ class ShootingOrbits:
         slope = (ends[1] - ends[0]) / (2.0 * _DIFFERENCE)
         return Linear(here[:, 0] - y, here[:, 1:] - np.eye(self.size), slope)
 
+    def along(self, plant_at: PlantAt) -> ShootingOrbits:
+        """The same for other plants of the same structure."""
+        other = ShootingOrbits(plant_at, self.order, self.scale, self.harmonics, self.instants, self.periods)
+        other._V = self._V
+        other._size = self._size
+        return other
+
+    def smooth_residual(self, y: np.ndarray, p: float) -> np.ndarray:
+        """The residual, for differences in a parameter."""
+        return self._run(y, p, 0, np.array([0.0, 2.0 * np.pi * self.periods]))[0][:, 0] - y
+
+    def jacobian(self, y: np.ndarray, p: float) -> np.ndarray:
+        """Derivative of the residual by the unknowns."""
+        return self.monodromy(y, p) - np.eye(self.size)
+
     def monodromy(self, y: np.ndarray, p: float) -> np.ndarray:
         """Derivative of the map over a period, (2 n, 2 n)."""
         return np.asarray(self._mapped(y, p, self.size)[:, 1:])

@@ -9,6 +9,7 @@ import rotorgear as rg
 from rotorgear.analysis.orbits.between import between
 from rotorgear.analysis.orbits.family import SystemFamily, range_of
 from tests.paths import MODELS
+from validation.dead_zone import HALF_BACKLASH, STIFFNESS, TEETH, DeadZone
 
 
 def _family(name: str, address: str, ends: str, excite: str | None = None) -> SystemFamily:
@@ -17,7 +18,7 @@ def _family(name: str, address: str, ends: str, excite: str | None = None) -> Sy
 
 
 def test_constant_power_over_speed_is_a_polynomial_to_rounding() -> None:
-    family = _family("split_torque.toml", "operation.speed", "9000 rpm:16350 rpm", "stage_2a")
+    family = _family("split_torque.toml", "operation.speed", "15000 rpm:16350 rpm", "stage_2a")
     share = 0.371
     near = family.system([share])
     exact = family._exact([share])
@@ -47,3 +48,16 @@ def test_a_kink_is_no_polynomial() -> None:
         return replace(first, load=first.load * (1.0 + abs(share - 0.4)))
 
     assert between(kinked) is None  # type: ignore[arg-type]
+
+
+def test_a_load_at_its_mean_still_loads_the_mesh_and_its_ripple_is_gone() -> None:
+    case = DeadZone(amplitude=0.05)
+    text = case.text(1.2).replace(f"ripple_order = {TEETH}", "ripple_order = 7")
+    error = f"backlash = {2.0 * HALF_BACKLASH!r}\ntransmission_error = [{{ harmonic = 1, amplitude = 1e-7 }}]"
+    model = rg.loads(text.replace(f"backlash = {2.0 * HALF_BACKLASH!r}", error))
+    ends = [case.speed(1.2), case.speed(1.25)]
+    found = rg.orbits(model, {"operation.speed": ends}, excite="pair", step=0.5, method="harmonic balance")
+    assert found.mean_force[:, 0] == pytest.approx(case.mean * STIFFNESS * HALF_BACKLASH, rel=1e-10)
+    quiet = rg.loads(text.replace(f"backlash = {2.0 * HALF_BACKLASH!r}", error).replace("ripple = 1.0", "ripple = 0.0"))
+    same = rg.orbits(quiet, {"operation.speed": ends}, step=0.5, method="harmonic balance")
+    assert found.first_harmonic[0] == pytest.approx(same.first_harmonic[0], rel=1e-9)

@@ -53,7 +53,10 @@ def test_orbits_of_a_linear_model_are_its_forced_response() -> None:
 
 def test_stages_without_a_short_common_period_are_refused_with_the_remedy() -> None:
     model = rg.load(MODELS / "split_torque.toml")
-    with pytest.raises(AnalysisError, match=r"repeats together only after 409625 periods .* s at the first speed .* excite one stage at a time"):
+    with pytest.raises(
+        AnalysisError,
+        match=r"only after 409625 periods .* s at the first speed .* excite one stage at a time",
+    ):
         rg.orbits(model, {"operation.speed": "9000 rpm:9100 rpm"})
 
 
