@@ -142,7 +142,8 @@ RULES: dict[type[BaseModel], str] = {
     JournalGeometry: """
         The film carries across; what holds the shaft along z is a support or a bearing of its own. Statics, transients and
         sweeps solve its pressure, linear analyses take its stiffness and damping at the static equilibrium, over speed.
-        [Journal bearings](static.md#journal-bearings) tells more. Refused: turbulent films, eccentricities above 0.95, lengths
+        With `pads` it is one of tilting pads, whose stiffness and damping are those of pads that follow at `whirl_ratio`.
+        [Bearings](bearings.md) tells more. Refused: turbulent films, eccentricities above 0.95, lengths
         above two diameters.""",
     NonlinearElement: """
         A force law of the package, such as `journal_bearing` or `plain_spring`, or one registered from Python before the file

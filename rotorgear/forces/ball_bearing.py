@@ -202,12 +202,12 @@ class BallBearing(ForceLaw):
         phi = np.mod(self.order * angle + self.phase + TURN * np.arange(self.balls) / self.balls, TURN)
         c = np.cos(phi)
         n = np.sin(phi)
-        u = radial + d[0] * c + d[1] * n
-        w = axial + d[2] + arm * (d[3] * n - d[4] * c)
-        delta = np.hypot(u, w) - A
+        across = radial + d[0] * c + d[1] * n
+        along = axial + d[2] + arm * (n * d[3] - c * d[4])
+        delta = np.hypot(across, along) - A
         load = self.contact_constant * np.maximum(delta, 0.0) ** 1.5
         inner, outer = point_pressure(load, *self._contacts)
-        return RollingLoads(phi, np.where(delta > 0.0, np.arctan2(w, u), 0.0), load, delta, inner, outer)
+        return RollingLoads(phi, np.where(delta > 0.0, np.arctan2(along, across), 0.0), load, delta, inner, outer)
 
     @classmethod
     def examples(cls) -> tuple[BallBearing, ...]:

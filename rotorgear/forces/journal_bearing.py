@@ -22,6 +22,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.law import ForceLaw, parameter
+from rotorgear.forces.shell import add_wall, place_in_shell
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 VISCOSITY, RADIUS, LENGTH, CLEARANCE, ORDER, CONTACT, WALL = range(7)  # of the parameters
@@ -44,21 +45,10 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     ux = v[0] + half * d[1]
     uy = v[1] - half * d[0]
     squeeze = np.hypot(ux, uy)
-    # Beyond the limit the film stays as it is there, and the wall takes the rest: x - x_film, and d x_film / dx.
-    limit = p[CONTACT] * c
-    radius = np.hypot(d[0], d[1])
-    x = d[0]
-    y = d[1]
-    pxx = 1.0
-    pxy = 0.0
-    pyy = 1.0
-    if radius > limit:
-        share = limit / radius
-        x = share * d[0]
-        y = share * d[1]
-        pxx = share * (1.0 - d[0] * d[0] / radius**2)
-        pxy = -share * d[0] * d[1] / radius**2
-        pyy = share * (1.0 - d[1] * d[1] / radius**2)
+    place = np.zeros(5)
+    touches = place_in_shell(d, p[CONTACT] * c, place)
+    x = place[0]
+    y = place[1]
     size = p[VISCOSITY] * p[RADIUS] * p[LENGTH] ** 3
     middle = np.arctan2(uy, ux)
     axx = 0.0
@@ -82,23 +72,21 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
             bxx += slope * nx * nx
             bxy += slope * nx * ny
             byy += slope * ny * ny
-    wall = p[WALL]
-    F[0] = axx * ux + axy * uy + wall * (d[0] - x)
-    F[1] = axy * ux + ayy * uy + wall * (d[1] - y)
+    film = np.array([axx * ux + axy * uy, axy * ux + ayy * uy])
+    # B of the clamped place, and A du/dd of the journal itself, which turns on however far it is pressed.
+    k = np.array([bxx, bxy, bxy, byy])
+    energy[0] = add_wall(d, place, p[WALL], film, k, F, Kd)
+    Kd[0] -= half * axy
+    Kd[1] += half * axx
+    Kd[2] -= half * ayy
+    Kd[3] += half * axy
     Kv[0] = axx
     Kv[1] = axy
     Kv[2] = axy
     Kv[3] = ayy
-    Kd[0] = bxx * pxx + bxy * pxy - half * axy + wall * (1.0 - pxx)
-    Kd[1] = bxx * pxy + bxy * pyy + half * axx - wall * pxy
-    Kd[2] = bxy * pxx + byy * pxy - half * ayy - wall * pxy
-    Kd[3] = bxy * pxy + byy * pyy + half * axy + wall * (1.0 - pyy)
-    film_x = axx * ux + axy * uy
-    film_y = axy * ux + ayy * uy
-    energy[0] = 0.5 * wall * ((d[0] - x) ** 2 + (d[1] - y) ** 2)
-    energy[1] = half * (film_x * d[1] - film_y * d[0])
-    energy[2] = film_x * ux + film_y * uy
-    energy[3] = 1.0 if radius > limit else 0.0
+    energy[1] = half * (film[0] * d[1] - film[1] * d[0])
+    energy[2] = film[0] * ux + film[1] * uy
+    energy[3] = 1.0 if touches else 0.0
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ import numpy as np
 from rotorgear.forces.film_flow import power_loss, side_flow
 from rotorgear.forces.inside import FilmField
 from rotorgear.forces.law import ForceLaw, parameter, refuse
+from rotorgear.forces.shell import add_wall, place_in_shell
 from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
 
 # Of the parameters; then start, extent, place of the least gap of each pad.
@@ -219,26 +220,16 @@ def pad_film(p, omega, x, y, vx, vy, start, extent, least, F, Kd, Kv, pressure):
 @force_function
 def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     """Force of the journal on the film and the shell, along x and y."""
-    limit = p[CONTACT] * p[CLEARANCE]
-    radius = np.hypot(d[0], d[1])
-    x = d[0]
-    y = d[1]
-    pxx = 1.0
-    pxy = 0.0
-    pyy = 1.0
-    if radius > limit:
-        share = limit / radius
-        x = share * d[0]
-        y = share * d[1]
-        pxx = share * (1.0 - d[0] * d[0] / radius**2)
-        pxy = -share * d[0] * d[1] / radius**2
-        pyy = share * (1.0 - d[1] * d[1] / radius**2)
+    place = np.zeros(5)
+    touches = place_in_shell(d, p[CONTACT] * p[CLEARANCE], place)
+    x = place[0]
+    y = place[1]
     omega = s[SPEED]
     film = np.zeros(2)
     k = np.zeros(4)
     c = np.zeros(4)
     pressure = np.zeros((int(p[AROUND]) - 1, int(p[ALONG])))
-    follows = p[FOLLOWS] > 0.0 and radius > 0.0
+    follows = p[FOLLOWS] > 0.0 and np.hypot(x, y) > 0.0
     for pad in range(int(p[PADS])):
         at = FIRST + 3 * pad
         start = np.arctan2(-y, -x) if follows else p[at]
@@ -252,21 +243,33 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         k[1] += turned_x * x / size
         k[2] += turned_y * -y / size
         k[3] += turned_y * x / size
-    wall = p[WALL]
-    F[0] = film[0] + wall * (d[0] - x)
-    F[1] = film[1] + wall * (d[1] - y)
-    Kd[0] = k[0] * pxx + k[1] * pxy + wall * (1.0 - pxx)
-    Kd[1] = k[0] * pxy + k[1] * pyy - wall * pxy
-    Kd[2] = k[2] * pxx + k[3] * pxy - wall * pxy
-    Kd[3] = k[2] * pxy + k[3] * pyy + wall * (1.0 - pyy)
+    energy[0] = add_wall(d, place, p[WALL], film, k, F, Kd)
     for i in range(4):
         Kv[i] = c[i]
     # What the film takes up: the journal turns it in at omega/2 beside the motion of its centre.
     turning = 0.5 * omega * (film[0] * y - film[1] * x)
-    energy[0] = 0.5 * wall * ((d[0] - x) ** 2 + (d[1] - y) ** 2)
     energy[1] = turning
     energy[2] = film[0] * v[0] + film[1] * v[1] + turning
-    energy[3] = 1.0 if radius > limit else 0.0
+    energy[3] = 1.0 if touches else 0.0
+
+
+def beyond_film(law: Any, d: Any, speed: float) -> str:
+    """Why a film does not hold at displacements d (2,): turbulence by Taylor's number, or an eccentricity near the shell."""
+    omega = abs(law.order * speed)
+    reynolds = law.density * omega * law.radius * law.clearance / law.viscosity
+    most = _TAYLOR * np.sqrt(law.radius / law.clearance)
+    if reynolds > most:
+        return (
+            f"the film is turbulent (Reynolds' number {reynolds:.4g}, laminar up to {most:.4g}), which is not modelled; "
+            "check viscosity and clearance"
+        )
+    eccentricity = float(np.hypot(*d)) / law.clearance
+    if eccentricity > _DEEPEST:
+        return (
+            f"the journal runs at {eccentricity:.3g} of the clearance, where the film is too thin for this model (at most "
+            f"{_DEEPEST:g}); check load, viscosity, clearance and speed"
+        )
+    return ""
 
 
 @dataclass(frozen=True)
@@ -342,21 +345,7 @@ class JournalFilm(ForceLaw):
 
     def beyond(self, d: Any, speed: float) -> str:
         """Turbulence by Taylor's number, and an eccentricity near the shell."""
-        omega = abs(self.order * speed)
-        reynolds = self.density * omega * self.radius * self.clearance / self.viscosity
-        most = _TAYLOR * np.sqrt(self.radius / self.clearance)
-        if reynolds > most:
-            return (
-                f"the film is turbulent (Reynolds' number {reynolds:.4g}, laminar up to {most:.4g}), which is not modelled; "
-                "check viscosity and clearance"
-            )
-        eccentricity = float(np.hypot(*d)) / self.clearance
-        if eccentricity > _DEEPEST:
-            return (
-                f"the journal runs at {eccentricity:.3g} of the clearance, where the film is too thin for this model (at most "
-                f"{_DEEPEST:g}); check load, viscosity, clearance and speed"
-            )
-        return ""
+        return beyond_film(self, d, speed)
 
     def left_out(self) -> tuple[str, ...]:
         """What the film leaves out."""

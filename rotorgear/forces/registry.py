@@ -25,6 +25,7 @@ _SHIPPED = {
     "mesh_friction": "MeshFriction",
     "journal_bearing": "JournalBearing",
     "journal_film": "JournalFilm",
+    "tilting_pads": "TiltingPads",
     "ball_bearing": "BallBearing",
     "roller_bearing": "RollerBearing",
     "rotating_force": "RotatingForce",

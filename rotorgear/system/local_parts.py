@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rotorgear.forces.journal_film import JournalFilm
     from rotorgear.forces.law import ForceLaw
     from rotorgear.forces.mesh_contact import MeshContact
+    from rotorgear.forces.tilting_pads import TiltingPads
 
 
 @dataclass(frozen=True)
@@ -132,8 +133,28 @@ def bearing_parts(system: System) -> Iterator[LocalPart]:
         yield LocalPart(f"bearings.{name}", name, law, columns_at(system, dofs, rows))
 
 
-def journal_law(journal: JournalGeometry, ratio: float) -> JournalFilm:
+def journal_law(journal: JournalGeometry, ratio: float) -> JournalFilm | TiltingPads:
     """The film of a journal bearing on a shaft that turns at so many times the speed of the reference."""
+    if journal.pads:
+        from rotorgear.forces.tilting_pads import TiltingPads
+
+        return TiltingPads(
+            viscosity=journal.viscosity,
+            radius=0.5 * journal.diameter,
+            length=journal.length,
+            clearance=journal.clearance,
+            pads=journal.pads,
+            arc=journal.pad_arc or 0.8 * 2.0 * np.pi / journal.pads,
+            at=journal.pad_at,
+            pivot=journal.pivot,
+            preload=journal.preload,
+            order=ratio,
+            whirl_ratio=journal.whirl_ratio,
+            cavitation=journal.cavitation,
+            density=journal.density,
+            around=journal.around,
+            along=journal.along,
+        )
     from rotorgear.forces.journal_film import JournalFilm
 
     return JournalFilm(

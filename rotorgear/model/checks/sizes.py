@@ -132,8 +132,12 @@ def _journal(address: str, bearing: Bearing, journal: JournalGeometry) -> Iterat
     for key, least in (("around", 24), ("along", 2)):
         if getattr(journal, key) < least:
             yield Problem(f"{here}.{key}", f"{getattr(journal, key)}", f"at least {least} cells")
+    yield from _pads(here, journal)
     if journal.lobes == 1 and (
-        journal.preload or journal.lobe_arc is not None or journal.lobe_at or journal.offset != 0.5
+        (journal.preload and not journal.pads)
+        or journal.lobe_arc is not None
+        or journal.lobe_at
+        or journal.offset != 0.5
     ):
         yield Problem(f"{here}.lobes", "keys of lobes in a plain bearing", "2 lobes or more beside them")
     if journal.lobes > 1 and journal.inlet is not None:
@@ -146,6 +150,27 @@ def _journal(address: str, bearing: Bearing, journal: JournalGeometry) -> Iterat
     if not 0.0 <= journal.lobes * arc <= 2.0 * math.pi * (1.0 + 1e-9) or (journal.lobe_arc is not None and not arc):
         got = f"{journal.lobes} of {math.degrees(arc):.6g} deg"
         yield Problem(f"{here}.lobe_arc", got, "lobes that fit on 360 deg")
+
+
+def _pads(here: str, journal: JournalGeometry) -> Iterator[Problem]:
+    """Tilting pads that fit, with their keys beside them and none of fixed bearings."""
+    if not journal.pads:
+        if journal.pads == 0:
+            yield Problem(f"{here}.pads", "0", "2 pads or more, or none of this key in a fixed bearing")
+        elif journal.pad_arc is not None or journal.pad_at or journal.pivot != 0.5 or journal.whirl_ratio != 1.0:
+            yield Problem(f"{here}.pads", "keys of pads in a fixed bearing", "the number of pads beside them")
+        return
+    if not 2 <= journal.pads <= 12:
+        yield Problem(f"{here}.pads", str(journal.pads), "2 to 12 pads")
+    if journal.lobes > 1 or journal.inlet is not None:
+        yield Problem(f"{here}.pads", "pads beside lobes or an inlet", "one of them: oil comes in between pads")
+    if journal.pad_arc is not None and not 0.0 < journal.pads * journal.pad_arc <= 2.0 * math.pi * (1.0 + 1e-9):
+        got = f"{journal.pads} of {math.degrees(journal.pad_arc):.6g} deg"
+        yield Problem(f"{here}.pad_arc", got, "pads that fit on 360 deg")
+    if not 0.0 < journal.pivot < 1.0:
+        yield Problem(f"{here}.pivot", f"{journal.pivot:g}", "a share of the arc between 0 and 1")
+    if not journal.whirl_ratio:
+        yield Problem(f"{here}.whirl_ratio", "0", "a ratio above 0; 1 is synchronous")
 
 
 def _table(address: str, table: tuple[TableRow, ...]) -> Iterator[Problem]:

@@ -126,7 +126,7 @@ class RollingElements(Part):
 
 
 class JournalGeometry(Part):
-    """A journal bearing with its oil film: plain, or with lobes."""
+    """A journal bearing with its oil film: plain, with lobes, or of tilting pads."""
 
     diameter: PositiveLength = Field(description="diameter of the journal")
     length: PositiveLength = Field(description="length of the bearing, up to two diameters")
@@ -147,11 +147,22 @@ class JournalGeometry(Part):
     lobes: Whole = Field(1, description="number of lobes; 1: a plain bearing")
     lobe_arc: Angle | None = Field(None, description="extent of a lobe; default: its share of the circle")
     lobe_at: Angle = Field(0.0, description="angle of the middle of the first lobe, from +x about +z")
-    preload: Ratio = Field(0.0, description="preload of the lobes: 1 - clearance over (lobe radius - journal radius)")
+    preload: Ratio = Field(
+        0.0, description="preload of lobes or pads: 1 - clearance over (radius of lobe or pad - journal radius)"
+    )
     offset: Ratio = Field(
         0.5,
         description="where in a lobe the gap of the centred journal is least, as a share of its arc in the sense of rotation; "
         "0.5: symmetric; 1 with two lobes: offset halves",
+    )
+    pads: Whole | None = Field(None, description="number of tilting pads; default: none, a bearing that is fixed")
+    pad_arc: Angle | None = Field(None, description="extent of a tilting pad; default: 0.8 of its share of the circle")
+    pad_at: Angle = Field(0.0, description="angle of the pivot of the first pad, from +x about +z")
+    pivot: Ratio = Field(0.5, description="where in a pad its pivot is, as a share of its arc in the sense of rotation")
+    whirl_ratio: Ratio = Field(
+        1.0,
+        description="frequency over the speed of the journal at which stiffness and damping of tilting pads are taken; 1: "
+        "synchronous",
     )
     around: Whole = Field(240, description="cells of the grid around the circle")
     along: Whole = Field(12, description="cells of the grid over half the length")

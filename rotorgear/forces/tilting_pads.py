@@ -1,0 +1,285 @@
+"""Journal bearing of tilting pads: each pad turns about its pivot until the film has no moment about it.
+
+With the pivot of a pad at the angle q, e_r = (cos q, sin q) and e_t = (-sin q, cos q), a tilt opens the gap by R tilt sin(t - q).
+That is what the journal does when it moves along e_t, so that the film of a pad knows its tilt and the place of the journal by
+
+    h = c_p - xi cos(t - q) - eta sin(t - q) - m c_p cos(t - q),   xi = d . e_r,   eta = d . e_t - R tilt
+
+and the moment about the pivot is R F_t: pads stand where F_t(xi, eta) = 0, and push the journal along e_r alone. Small motions
+exp(i w t) of a pad without inertia keep F_t = 0, so with Z = K + i w C in xi, eta (Lund, ASLE Trans. 7 (1964) 408)
+
+    Z_red = Z_rr - Z_rt Z_tr / Z_tt,   K = sum Re Z_red e_r e_r^T,   C = sum Im Z_red / w e_r e_r^T
+
+at w = `whirl_ratio` times the speed of the journal; 1: synchronous. The film of a pad is that of journal_film.py.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from rotorgear.forces.film_flow import power_loss, side_flow
+from rotorgear.forces.inside import FilmField
+from rotorgear.forces.journal_film import (
+    ALONG,
+    AROUND,
+    CLEARANCE,
+    CONTACT,
+    FIRST,
+    PADS,
+    PRELOAD,
+    SPEED,
+    TURN,
+    WALL,
+    beyond_film,
+    pad_film,
+    schedule,
+)
+from rotorgear.forces.law import ForceLaw, Linearised, parameter, refuse
+from rotorgear.forces.shell import add_wall, place_in_shell
+from rotorgear.solvers.time.compiled import compiled, force_function
+
+_ITERATIONS = 60
+# Of the clearance: the least gap that a tilt leaves at an edge.
+_EDGE = 0.02
+# Of the pad's force: a moment about the pivot over R that is none.
+_LEVEL = 1e-12
+
+
+@compiled
+def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope):  # type: ignore[no-untyped-def]
+    """Tilt a pad until F_t = 0; fill its force and tangents in (e_r, e_t) and its pressure, and return eta.
+
+    F (2,), K and C (4,), slope (2,): change of eta with xi and its velocity. A pad whose edge comes down to the least gap before
+    F_t = 0 lies on that edge; one that nothing presses has no force.
+    """
+    around = int(p[AROUND])
+    own = p[CLEARANCE] / (1.0 - p[PRELOAD])
+    low = -1e3 * own
+    high = 1e3 * own
+    low_slope = 0.0
+    high_slope = 0.0
+    for i in range(around + 1):
+        t = start + extent * i / around - pivot
+        room = own - (xi + p[PRELOAD] * own) * np.cos(t) - _EDGE * p[CLEARANCE]
+        if np.sin(t) > 1e-12 and room / np.sin(t) < high:
+            high = room / np.sin(t)
+            high_slope = -np.cos(t) / np.sin(t)
+        elif np.sin(t) < -1e-12 and room / np.sin(t) > low:
+            low = room / np.sin(t)
+            low_slope = -np.cos(t) / np.sin(t)
+    most = high
+    least = low
+    eta = 0.0 if low < 0.0 < high else 0.5 * (low + high)
+    sense = 1.0 if omega >= 0.0 else -1.0
+    for _ in range(_ITERATIONS):
+        F[:] = 0.0
+        K[:] = 0.0
+        C[:] = 0.0
+        pad_film(p, omega, xi, eta, v_xi, 0.0, start - pivot, extent, 0.0, F, K, C, pressure)
+        if abs(F[1]) <= _LEVEL * abs(F[0]) or high - low < 1e-14 * own:
+            break
+        # More tilt presses the trailing edge, which lies at larger angles where the journal turns about +z.
+        if F[1] > 0.0:
+            high = eta
+        elif F[1] < 0.0 or sense > 0.0:
+            low = eta
+        else:
+            high = eta
+        step = eta - F[1] / K[3] if K[3] != 0.0 else low
+        eta = step if low < step < high else 0.5 * (low + high)
+    slope[1] = 0.0
+    if most - eta < 1e-9 * own:
+        slope[0] = high_slope
+    elif eta - least < 1e-9 * own:
+        slope[0] = low_slope
+    else:
+        slope[0] = -K[2] / K[3] if K[3] != 0.0 else 0.0
+        slope[1] = -C[2] / K[3] if K[3] != 0.0 else 0.0
+    return eta
+
+
+@force_function
+def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
+    """Force of the journal on its pads and the shell; pads follow its place, and do not squeeze oil by their own turning."""
+    place = np.zeros(5)
+    touches = place_in_shell(d, p[CONTACT] * p[CLEARANCE], place)
+    omega = s[SPEED]
+    film = np.zeros(2)
+    k = np.zeros(4)
+    for i in range(4):
+        Kv[i] = 0.0
+    own_f = np.zeros(2)
+    own_k = np.zeros(4)
+    own_c = np.zeros(4)
+    slope = np.zeros(2)
+    pressure = np.zeros((int(p[AROUND]) - 1, int(p[ALONG])))
+    for pad in range(int(p[PADS])):
+        at = FIRST + 3 * pad
+        c = np.cos(p[at + 2])
+        n = np.sin(p[at + 2])
+        xi = place[0] * c + place[1] * n
+        v_xi = v[0] * c + v[1] * n
+        tilted(p, omega, xi, v_xi, p[at], p[at + 1], p[at + 2], own_f, own_k, own_c, pressure, slope)
+        if own_f[0] <= 0.0:
+            continue
+        stiff = own_k[0] + own_k[1] * slope[0]
+        damp = own_c[0] + own_k[1] * slope[1]
+        film[0] += own_f[0] * c
+        film[1] += own_f[0] * n
+        k[0] += stiff * c * c
+        k[1] += stiff * c * n
+        k[2] += stiff * c * n
+        k[3] += stiff * n * n
+        Kv[0] += damp * c * c
+        Kv[1] += damp * c * n
+        Kv[2] += damp * c * n
+        Kv[3] += damp * n * n
+    energy[0] = add_wall(d, place, p[WALL], film, k, F, Kd)
+    energy[1] = 0.0
+    energy[2] = film[0] * v[0] + film[1] * v[1]
+    energy[3] = 1.0 if touches else 0.0
+
+
+@dataclass(frozen=True)
+class TiltingPads(ForceLaw):
+    """Journal bearing of tilting pads without inertia, by Reynolds' equation on a grid."""
+
+    title: ClassVar[str] = "tilting-pad journal bearing"
+    passive: ClassVar[bool] = False
+    shaft_ratio: ClassVar[str] = "order"
+
+    viscosity: float = parameter("Pa s", "dynamic viscosity mu", above=0.0)
+    radius: float = parameter("m", "radius R of the journal", above=0.0)
+    length: float = parameter("m", "length L of the bearing", above=0.0)
+    clearance: float = parameter("m", "radial clearance c at the pivots", above=0.0)
+    pads: int = parameter("", "number of pads", 5, least=2, most=12)
+    arc: float = parameter("rad", "extent of a pad", np.radians(60.0), above=0.0)
+    at: float = parameter("rad", "angle of the first pivot, from +x about +z", 0.0)
+    pivot: float = parameter("", "place of the pivot in the arc, in the sense of rotation", 0.5, above=0.0, below=1.0)
+    preload: float = parameter("", "preload m of the pads", 0.0, least=0.0, below=1.0)
+    order: float = parameter("rad/rad", "turns of the journal for each turn of the reference", 1.0)
+    whirl_ratio: float = parameter("", "frequency of small motions over the speed of the journal", 1.0, above=0.0)
+    cavitation: str = parameter("", "how the film cavitates", "reynolds", choices=("reynolds", "half_sommerfeld"))
+    density: float = parameter("kg/m^3", "of the oil, for Reynolds' number", 870.0, above=0.0)
+    around: int = parameter("", "cells of the grid around the circle, over all pads", 240, least=24, most=2000)
+    along: int = parameter("", "cells over half the length", 8, least=2, most=200)
+    contact: float = parameter("", "displacement over c at which the journal lies on a pad", 0.95, above=0.0, below=1.0)
+    wall: float = parameter("N/m", "stiffness of the shell", 1e9, least=0.0)
+    moves: bool = parameter("", "whether tangents are those of small motions, not of slow ones", False)
+
+    def check(self) -> None:
+        """Pads fit around the journal, and the bearing is not longer than the grid serves."""
+        if self.length > 4.0 * self.radius:
+            raise refuse(self, "length", "at most 2 diameters, beyond which shafts bend in their bearing")
+        if self.pads * self.arc > TURN * (1.0 + 1e-9):
+            raise refuse(self, "arc", "pads that fit around the journal")
+
+    @property
+    def components(self) -> int:
+        """Two."""
+        return 2
+
+    def functions(self) -> tuple[Any, Any]:
+        """Return the compiled functions schedule and force."""
+        return schedule, force
+
+    def state_size(self) -> int:
+        """Speed of the journal."""
+        return 1
+
+    def parameters(self) -> np.ndarray:
+        """In the order of journal_film.py: what the grid needs, then start, extent and pivot of each pad."""
+        place = self.pivot if self.order >= 0.0 else 1.0 - self.pivot
+        pivots = self.at + TURN * np.arange(self.pads) / self.pads
+        own = [self.viscosity, self.radius, self.length, self.clearance, self.order, self.contact, self.wall]
+        cut = float(self.cavitation == "half_sommerfeld")
+        each = [value for q in pivots for value in (q - place * self.arc, self.arc, q)]
+        return np.array([*own, self.preload, max(self.around // self.pads, 12), self.along, cut, 0.0, self.pads, *each])
+
+    def rough(self) -> TiltingPads:
+        """The same on a grid that knows the stiffness to some 10 %."""
+        return replace(self, around=min(self.around, 12 * self.pads), along=min(self.along, 3))
+
+    def settled(self, d: Any) -> TiltingPads:
+        """The bearing for small motions, whose pads follow at their frequency."""
+        return replace(self, moves=True)
+
+    def beyond(self, d: Any, speed: float) -> str:
+        """Turbulence by Taylor's number, and an eccentricity near the shell."""
+        return beyond_film(self, d, speed)
+
+    def left_out(self) -> tuple[str, ...]:
+        """What the pads and their film leave out."""
+        return (
+            "inertia, friction and elasticity of pads and pivots",
+            f"small motions at other than {self.whirl_ratio:g} times the speed: K and C are those of this whirl ratio",
+            "in time: the oil that pads squeeze as they turn",
+            "heat, turbulence and tilt of the journal in its film",
+        )
+
+    def _each_pad(self, d: Any, speed: float) -> list[tuple[np.ndarray, ...]]:
+        """Of each pad e_r (2,), force (2,), K and C (2, 2) in (e_r, e_t), eta, and pressure."""
+        p = self.parameters()
+        found: list[tuple[np.ndarray, ...]] = []
+        for pad in range(self.pads):
+            start, extent, q = p[FIRST + 3 * pad : FIRST + 3 * pad + 3]
+            e_r = np.array([np.cos(q), np.sin(q)])
+            F = np.zeros(2)
+            K = np.zeros(4)
+            C = np.zeros(4)
+            pressure = np.zeros((int(p[AROUND]) - 1, self.along))
+            eta = tilted(p, self.order * speed, float(e_r @ d), 0.0, start, extent, q, F, K, C, pressure, np.zeros(2))
+            found.append((e_r, F, K.reshape(2, 2), C.reshape(2, 2), np.array(eta), pressure))
+        return found
+
+    def linearised(self, d: Any = 0.0, v: Any = 0.0, *, speed: float = 0.0, points: int | None = None) -> Linearised:
+        """Force and tangents; of the settled bearing those of motions at the whirl ratio, pads following."""
+        omega = abs(self.whirl_ratio * self.order * speed)
+        d = np.broadcast_to(np.asarray(d, float), 2)
+        if not self.moves or omega == 0.0 or np.hypot(*d) > self.contact * self.clearance:
+            return super().linearised(d, v, speed=speed, points=points)
+        total = np.zeros(2)
+        Z = np.zeros((2, 2), dtype=complex)
+        for e_r, F, K, C, _, _ in self._each_pad(d, speed):
+            if F[0] <= 0.0:
+                continue
+            z = K + 1j * omega * C
+            reduced = z[0, 0] - z[0, 1] * z[1, 0] / z[1, 1] if z[1, 1] else z[0, 0]
+            total += F[0] * e_r
+            Z += reduced * np.outer(e_r, e_r)
+        return Linearised(total, Z.real.copy(), Z.imag / omega)
+
+    def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> FilmField:
+        """Pressure, gap, side flow and power loss with the journal at rest at displacements d (2,)."""
+        p = self.parameters()
+        around = int(p[AROUND])
+        own = self.clearance / (1.0 - self.preload)
+        step = self.radius * self.arc / around
+        dz = 0.5 * self.length / self.along
+        angles = []
+        gaps = []
+        fields = []
+        flow = 0.0
+        loss = 0.0
+        for pad, (e_r, _, _, _, eta, pressure) in enumerate(self._each_pad(np.asarray(d, float), speed)):
+            start, extent, q = p[FIRST + 3 * pad : FIRST + 3 * pad + 3]
+            t = start + extent * np.arange(1, around) / around
+            h = own - (float(e_r @ d) + self.preload * own) * np.cos(t - q) - float(eta) * np.sin(t - q)
+            angles.append(t)
+            gaps.append(h)
+            fields.append(pressure)
+            flow += side_flow(h, pressure, dz, step, self.viscosity)
+            loss += power_loss(h, pressure, dz, step, self.viscosity, self.radius * self.order * speed)
+        z = 0.5 * self.length * (np.arange(self.along) + 0.5) / self.along
+        return FilmField(np.concatenate(angles), z, np.concatenate(gaps), np.concatenate(fields), flow, loss)
+
+    @classmethod
+    def examples(cls) -> tuple[TiltingPads, ...]:
+        """Five pads with offset pivots, and four with preload."""
+        return (
+            cls(0.02, 25e-3, 25e-3, 50e-6, pivot=0.6, preload=0.2, around=60, along=3),
+            cls(0.02, 25e-3, 25e-3, 50e-6, pads=4, arc=1.3, at=0.7, preload=0.4, around=60, along=3),
+        )
