@@ -49,6 +49,7 @@ FAST_TESTS = Step("tests", (*PYTEST, "tests/unit", "tests/contract"))
 # On their own: they want an index of packages, or a browser.
 WHEEL = Step("wheel", (*PYTEST, "tests/installed", "-m", "long"))
 BROWSER = Step("browser", (*PYTEST, "tests/browser", "-m", "long"))
+SITE = Step("site", ("docs/build_site.py",))
 LONG_TESTS = Step("long", (*PYTEST, "tests", "-m", "long"))
 
 USUAL = (FORMAT, LINT, TYPES, TESTS)
@@ -81,6 +82,7 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="check.py", description="Run what CI runs: format, lint, types, docs, tests.")
     names = [step.name for step in (*USUAL, DOCS, WHEEL, BROWSER, LONG_TESTS)]
+    names = [step.name for step in (*USUAL, DOCS, SITE, LONG_TESTS)]
     which = parser.add_mutually_exclusive_group()
     which.add_argument(
         "--only", metavar="NAME", choices=names, action="append", help=f"one check of: {', '.join(names)}"
@@ -103,6 +105,7 @@ def chosen(options: argparse.Namespace) -> tuple[Step, ...]:
         return (OLDEST_TESTS,)
     if options.only:
         steps = tuple(step for step in (*USUAL, DOCS, WHEEL, BROWSER, LONG_TESTS) if step.name in options.only)
+        steps = tuple(step for step in (*USUAL, DOCS, SITE, LONG_TESTS) if step.name in options.only)
     else:
         steps = FAST if options.fast else USUAL
     return (*steps, LONG_TESTS) if options.long and LONG_TESTS not in steps else steps

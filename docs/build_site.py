@@ -1,0 +1,196 @@
+"""Build the site from these pages:  python docs/build_site.py [FOLDER]
+
+mkdocs-material (extra `site`) makes it; formulas become MathML, which browsers show by themselves: the site needs no network.
+Links to files of the repository outside of docs/ lead to copies of them. Every warning is an error.
+"""
+
+from __future__ import annotations
+
+import argparse
+import html
+import logging
+import re
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCS = ROOT / "docs"
+# The pages by what a reader wants; a page that is not listed here is a mistake, which the test of the site finds.
+NAVIGATION: dict[str, tuple[str, ...]] = {
+    "Start": ("index", "first_gearbox", "gallery"),
+    "How to": (
+        "modal", "campbell", "static", "response", "transient", "sweep", "orbits", "gears", "mesh", "bearings", "casings",
+        "gear_bodies", "standards", "rig", "scatter", "report", "rexs", "export", "python",
+    ),
+    "Theory": ("theory", "conventions", "glossary"),
+    "Reference": ("commands", "model_file", "api", "json", "errors", "stability"),
+    "Validation": (
+        "validation", "seeds", "accuracy", "error_vs_runtime", "effectivity", "extreme", "run_time",
+    ),
+    "Development": ("architecture",),
+}  # fmt: skip
+# Files beside docs/ that pages link to, as the pages of the site that show them.
+BESIDE = ("CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "README.md", "LICENSE")
+# mkdocs takes a README.md for a second index.
+_ABOUT = "about.md"
+_BLOCK = re.compile(r"^\$\$(.+?)\$\$", re.MULTILINE | re.DOTALL)
+_INLINE = re.compile(r"(?<![\w$\\])\$(?![\s\d$(])([^$\n]+?)(?<!\s)\$(?![\w$])")
+_CODE = re.compile(r"^ *(`{3,}).*?^ *\1[^\n]*$|`[^`\n]+`", re.MULTILINE | re.DOTALL)
+_LINK = re.compile(r"\]\((?P<target>\.\./[^)#\s]+)(?P<anchor>#[^)\s]*)?\)")
+
+
+def staged(text: str) -> str:
+    """A page as the site takes it: formulas as MathML, links to files outside of docs/ to their copies."""
+
+    def outside(link: re.Match[str]) -> str:
+        target = link["target"].removeprefix("../")
+        anchor = link["anchor"] or ""
+        if target in BESIDE:
+            shown = _ABOUT if target == "README.md" else target
+            return f"]({shown}{anchor})" if target.endswith(".md") else f"](files/{target}.txt)"
+        return (
+            f"](files/{target.rstrip('/').replace('/', '_')}.md)"
+            if (ROOT / target).is_dir()
+            else f"](files/{target}.txt)"
+        )
+
+    return _LINK.sub(outside, with_formulas(text))
+
+
+def with_formulas(text: str) -> str:
+    """Formulas between dollars as MathML; code stays as it is."""
+    from latex2mathml.converter import convert
+
+    kept: list[str] = []
+
+    def keep(code: re.Match[str]) -> str:
+        kept.append(code[0])
+        return f"\0{len(kept) - 1}\0"
+
+    text = _CODE.sub(keep, text)
+    text = _BLOCK.sub(lambda found: "\n" + convert(" ".join(found[1].split()), display="block") + "\n", text)
+    # In a span: at the begin of a line Markdown takes <math> for a block of its own.
+    text = _INLINE.sub(lambda found: f"<span>{convert(found[1])}</span>", text)
+    return re.sub(r"\0(\d+)\0", lambda number: kept[int(number[1])], text)
+
+
+def stage(folder: Path) -> None:
+    """Put the pages and what they link to into a folder."""
+    shutil.copytree(DOCS / "pictures", folder / "pictures")
+    pages = {page.name: page.read_text(encoding="utf-8") for page in DOCS.glob("*.md")}
+    linked = {link["target"].removeprefix("../") for text in pages.values() for link in _LINK.finditer(text)}
+    for name in BESIDE:
+        source = (ROOT / name).read_text(encoding="utf-8")
+        if name.endswith(".md"):
+            inside = re.sub(r"\]\((?!https?:|#|docs/)([^)\s]+)\)", r"](../\1)", source)
+            shown = _ABOUT if name == "README.md" else name
+            pages[shown] = inside.replace("](docs/", "](").replace("](../../", "](../")
+            linked |= {link["target"].removeprefix("../") for link in _LINK.finditer(pages[shown])}
+    for target in sorted(linked | {name for name in BESIDE if not name.endswith(".md")}):
+        path = ROOT / target
+        if path.is_dir():
+            place = folder / "files" / f"{target.rstrip('/').replace('/', '_')}.md"
+            listed = "\n".join(f"* `{file.relative_to(ROOT)}`" for file in sorted(path.rglob("*")) if _shown(file))
+            _write(place, f"# {target.rstrip('/')}\n\nIn the repository:\n\n{listed}\n")
+        elif path.exists() and not (target in BESIDE and target.endswith(".md")):
+            place = folder / "files" / f"{target}.txt"
+            place.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(path, place)
+    for name, text in pages.items():
+        _write(folder / name, staged(text))
+
+
+def _shown(file: Path) -> bool:
+    return file.is_file() and not any(part.startswith((".", "__pycache__")) for part in file.parts)
+
+
+def _write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+
+
+def settings(source: Path, target: Path) -> dict[str, object]:
+    """What mkdocs is told."""
+    from pymdownx.slugs import slugify
+
+    nav = [
+        {title: [f"{page}.md" for page in names if (source / f"{page}.md").exists()]}
+        for title, names in NAVIGATION.items()
+    ]
+    nav[-1]["Development"] += [_ABOUT if name == "README.md" else name for name in BESIDE if name.endswith(".md")]
+    return {
+        "site_name": "rotorgear",
+        "site_description": "Finite-element rotor-gear analysis",
+        "docs_dir": str(source),
+        "site_dir": str(target),
+        "use_directory_urls": False,  # pages open from a disk, too
+        # No fonts from elsewhere: the site works without a network.
+        "theme": {
+            "name": "material",
+            "font": False,
+            "features": ["navigation.tabs", "navigation.top", "content.code.copy"],
+        },
+        "plugins": ["search"],
+        # Anchors as the forge makes them, which the links of the pages are written for.
+        "markdown_extensions": [
+            {"toc": {"slugify": slugify(case="lower"), "permalink": True}},
+            "tables",
+            "admonition",
+            "pymdownx.superfences",
+            "pymdownx.highlight",
+        ],
+        "nav": nav,
+        "strict": True,
+        "validation": {"nav": {"omitted_files": "ignore"}, "links": {"anchors": "warn", "not_found": "warn"}},
+    }
+
+
+def unlisted() -> list[str]:
+    """Pages that the navigation does not lead to."""
+    listed = {page for names in NAVIGATION.values() for page in names}
+    return sorted(page.stem for page in DOCS.glob("*.md") if page.stem not in listed)
+
+
+def build(target: Path) -> None:
+    """Build the site in a folder.
+
+    Raises:
+        RuntimeError: a page that no menu leads to. mkdocs.exceptions.Abort: a warning.
+    """
+    from mkdocs.commands.build import build as make
+    from mkdocs.config import load_config
+
+    logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
+
+    if unlisted():
+        raise RuntimeError(f"pages without a place in NAVIGATION of docs/build_site.py: {', '.join(unlisted())}")
+    with tempfile.TemporaryDirectory() as scratch:
+        source = Path(scratch) / "docs"
+        source.mkdir()
+        stage(source)
+        config = Path(scratch) / "mkdocs.yml"
+        config.write_text("site_name: rotorgear\n", encoding="utf-8")
+        made = load_config(str(config), **settings(source, target))
+        make(made)
+
+
+def main() -> int:
+    """Read the command line and build."""
+    parser = argparse.ArgumentParser(description="Build the site from the pages of docs/.")
+    parser.add_argument("folder", nargs="?", type=Path, default=ROOT / "site", help="where to (default: site)")
+    folder = parser.parse_args().folder.resolve()
+    try:
+        import latex2mathml  # noqa: F401
+        import mkdocs  # noqa: F401
+    except ImportError:
+        print("docs/build_site.py needs mkdocs-material and latex2mathml: pip install -e '.[site]'", file=sys.stderr)
+        return 2
+    build(folder)
+    print(f"wrote {html.escape(str(folder / 'index.html'))}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
