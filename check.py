@@ -81,8 +81,7 @@ def main(arguments: list[str] | None = None) -> int:
 def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="check.py", description="Run what CI runs: format, lint, types, docs, tests.")
-    names = [step.name for step in (*USUAL, DOCS, WHEEL, BROWSER, LONG_TESTS)]
-    names = [step.name for step in (*USUAL, DOCS, SITE, LONG_TESTS)]
+    names = [step.name for step in (*USUAL, DOCS, SITE, WHEEL, BROWSER, LONG_TESTS)]
     which = parser.add_mutually_exclusive_group()
     which.add_argument(
         "--only", metavar="NAME", choices=names, action="append", help=f"one check of: {', '.join(names)}"
@@ -104,8 +103,7 @@ def chosen(options: argparse.Namespace) -> tuple[Step, ...]:
     if options.oldest:
         return (OLDEST_TESTS,)
     if options.only:
-        steps = tuple(step for step in (*USUAL, DOCS, WHEEL, BROWSER, LONG_TESTS) if step.name in options.only)
-        steps = tuple(step for step in (*USUAL, DOCS, SITE, LONG_TESTS) if step.name in options.only)
+        steps = tuple(step for step in (*USUAL, DOCS, SITE, WHEEL, BROWSER, LONG_TESTS) if step.name in options.only)
     else:
         steps = FAST if options.fast else USUAL
     return (*steps, LONG_TESTS) if options.long and LONG_TESTS not in steps else steps

@@ -29,8 +29,8 @@ two meshes.
 
 Times are for one thread on the machine that made this page. Lines of one model share its solution, and its time.
 
-**What is not judged here.** The second half of B4, a forced response, is not among the cases; [forced response](response.md) is compared
-with closed forms in the tests.
+**What is not judged here.** The second half of B4, a forced response, is not among the cases;
+[forced response](response.md) is compared with closed forms in the tests.
 """
 
 

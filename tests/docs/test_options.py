@@ -37,13 +37,13 @@ _CALL = re.compile(r"rotorgear (?P<command>[a-z]+)(?P<rest>[^\n`]*)")
 
 @pytest.mark.parametrize("page", PAGES)
 def test_every_option_of_a_command_line_on_a_page_is_one_of_that_command(page: str) -> None:
-    wrong = []
-    for code in _CODE.findall(PAGES[page]):
-        for call in _CALL.finditer(code):
-            command = call["command"]
-            for option in _OPTION.findall(call["rest"].partition("#")[0]):
-                if command in OPTIONS and with_current_options(command, [option])[0] not in OPTIONS[command]:
-                    wrong.append(f"rotorgear {command} {option}")
+    calls = [call for code in _CODE.findall(PAGES[page]) for call in _CALL.finditer(code) if call["command"] in OPTIONS]
+    wrong = [
+        f"rotorgear {call['command']} {option}"
+        for call in calls
+        for option in _OPTION.findall(call["rest"].partition("#")[0])
+        if with_current_options(call["command"], [option])[0] not in OPTIONS[call["command"]]
+    ]
     assert wrong == []
 
 
