@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
-from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.layout.bounds import bounds_of
-from rotorgear.analysis.layout.penalty import frequency_slopes
+from rotorgear.analysis.layout.penalty import frequency_slopes, near_modes
 from rotorgear.analysis.layout.problem import Problem
 from rotorgear.analysis.layout.state import State, total_mass
 from rotorgear.analysis.scatter.family import system_at
 from rotorgear.analysis.scatter.forms import forms_of
 from rotorgear.analysis.scatter.modes import modes_of
 from rotorgear.model.numbers import numbers_of
+from rotorgear.results.campbell import ExcitationOrder
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.system.plan import Plan
 from tests.paths import ROOT
@@ -27,13 +27,6 @@ PLAN = Plan(1, 2)
 @cache
 def model(name: str) -> rg.Model:
     return rg.load(ROOT / "models" / f"{name}.toml")
-
-
-def problem_of(rotor: rg.Model, free: str, *, margin: float, least: float, below_hz: float) -> Problem:
-    numbers = numbers_of(rotor, free)
-    low, high, _ = bounds_of(numbers, {})
-    lines = excitation_orders(rotor, (1, 2), (1,))
-    return Problem(numbers, low, high, (rotor.operation.speed,), lines, PLAN, below_hz, margin, margin, least)
 
 
 def slopes_of(rotor: rg.Model, address: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -123,15 +116,19 @@ def test_the_mean_slope_at_a_veering_is_that_of_the_space():
 
 
 def test_the_slope_of_the_penalty_is_its_difference_quotient_where_participation_begins_to_count():
-    rotor = rg.loads(ROTOR)
-    problem = problem_of(
-        rotor, "bearings.*.at, shafts.*.sections.*.outer_diameter", margin=0.6, least=0.3, below_hz=900.0
-    )
-    t = problem.start + 0.03 * np.sin(1.0 + np.arange(len(problem.low)))
-    taken = problem.states(t)[0].taken
-    # A share that stands on the ramp, so that its slope takes part.
-    share = float(np.sort(taken[taken < 0.9])[-1])
-    problem.least = share / 0.85
+    pair = model("geared_pair")
+    numbers = numbers_of(pair, "bearings.*.stiffness, meshes.*.stiffness, shafts.rotor_1.sections.*.outer_diameter")
+    low, high, _ = bounds_of(numbers, {})
+    # An order of the mesh that lies among the modes, at 55 Hz.
+    lines = (ExcitationOrder("mesh pair", "mesh", ("pair",), 2.2),)
+    problem = Problem(numbers, low, high, (pair.operation.speed,), lines, PLAN, 150.0, 0.4, 0.4, 1e-3)
+    t = problem.start + 0.03 * np.sin(1.0 + np.arange(len(low)))
+    state = problem.states(t)[0]
+    inside = np.abs(state.hz / state.line_hz[0] - 1.0) < 0.35
+    # The participation that most depends on the numbers stands on the ramp, so that its slope takes part.
+    problem.least = float(np.sort(state.taken[0, inside])[-2]) / 0.85
+    (turning, *_) = [one for one in near_modes(state, 0.4, problem.least) if one.weight_slope > 0.0]
+    assert turning.height > 1e-2
     slopes = problem.slopes(t, problem.states(t))
 
     def value(j: int, h: float) -> float:
@@ -140,8 +137,8 @@ def test_the_slope_of_the_penalty_is_its_difference_quotient_where_participation
         return problem.penalty(problem.states(t + step))
 
     quotients = np.array([(value(j, 2e-4) - value(j, -2e-4)) / 4e-4 for j in range(len(t))])
-    assert np.abs(quotients).max() > 1e-3
-    assert slopes == pytest.approx(quotients, abs=2e-5 * np.abs(quotients).max())
+    assert np.abs(quotients).max() > 1e-2
+    assert slopes == pytest.approx(quotients, abs=1e-4 * np.abs(quotients).max())
 
 
 def test_a_rotor_is_led_away_from_its_unbalance_and_other_analyses_agree(tmp_path):
