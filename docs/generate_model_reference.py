@@ -136,7 +136,9 @@ RULES: dict[type[BaseModel], str] = {
     CornerImpact: """
         The force of each helix, beside the contact force.""",
     RollingElements: """
-        A transient and a sweep take them. With a `stiffness` beside them (along x, y, axial and tilt), statics and linear
+        A `clearance_class` with its `bore` stands for a clearance; angular contact bearings take a preload as displacement or
+        as force, O arrangement: `contact_angle` positive at the smaller z, negative at the larger, X the other way round. A
+        transient and a sweep take them. With a `stiffness` beside them (along x, y, axial and tilt), statics and linear
         analyses keep that and say so; without one, statics solves for their contacts, and linear analyses take the tangent at
         that equilibrium, the mean over a pitch of the elements.""",
     JournalGeometry: """

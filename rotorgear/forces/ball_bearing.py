@@ -13,10 +13,11 @@ J. Tribology 111 (1989) 142.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
+from scipy.optimize import brentq
 
 from rotorgear.forces.hertz import point_contact, point_pressure
 from rotorgear.forces.inside import RollingLoads
@@ -121,6 +122,9 @@ class BallBearing(ForceLaw):
         0.0,
         least=0.0,
     )
+    preload: float = parameter(
+        "m", "displacement along z by which the rings are pressed together when the shaft is at 0; with a sign", 0.0
+    )
     reference: tuple[float, ...] = parameter(
         "N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * _COMPONENTS
     )
@@ -182,7 +186,22 @@ class BallBearing(ForceLaw):
         radial = A * np.cos(a0) - 0.5 * self.clearance
         axial = A * np.sin(a0)
         arm = 0.5 * self.pitch_diameter + (self.inner_groove - 0.5) * self.ball_diameter * radial / A
-        return np.array([self.balls, self.contact_constant, A, radial, axial, self.order, self.phase, arm])
+        return np.array(
+            [self.balls, self.contact_constant, A, radial, axial + self.preload, self.order, self.phase, arm]
+        )
+
+    def pressed_by(self, force: float) -> BallBearing:
+        """The bearing with the preload that a force in N along its contact angle gives."""
+        A = self.distance
+        radial, axial = self.parameters()[3], A * np.sin(self.contact_angle)
+        side = -1.0 if self.contact_angle < 0.0 else 1.0
+
+        def rest(z: float) -> float:
+            length = np.hypot(radial, axial + side * z)
+            load = self.balls * self.contact_constant * max(length - A, 0.0) ** 1.5
+            return float(load * abs(axial + side * z) / length - force)
+
+        return replace(self, preload=side * float(brentq(rest, 0.0, 2.0 * A, xtol=1e-16)))
 
     def reference_stiffness(self) -> np.ndarray:
         """The linear stiffness that is given with the bearing."""

@@ -181,6 +181,7 @@ def _bearing_law(bearing: Bearing, ratio: float) -> ForceLaw:
     if bearing.journal is not None:
         return journal_law(bearing.journal, ratio)
     from rotorgear.forces.ball_bearing import BallBearing
+    from rotorgear.forces.clearance_classes import class_clearance
     from rotorgear.forces.roller_bearing import RollerBearing
 
     rolling = bearing.rolling
@@ -200,17 +201,23 @@ def _bearing_law(bearing: Bearing, ratio: float) -> ForceLaw:
             roller_diameter=rolling.element_diameter,
             pitch_diameter=rolling.pitch_diameter,
         )
-    return BallBearing(
+    clearance = rolling.clearance
+    if rolling.clearance_class is not None and rolling.bore is not None:
+        clearance = 0.5 * sum(class_clearance(rolling.bore, rolling.clearance_class) or (0.0, 0.0))
+    side = -1.0 if rolling.contact_angle < 0.0 else 1.0
+    law = BallBearing(
         balls=rolling.elements,
         ball_diameter=rolling.element_diameter,
         pitch_diameter=rolling.pitch_diameter,
         inner_groove=rolling.inner_groove,
         outer_groove=rolling.outer_groove,
-        clearance=rolling.clearance,
+        clearance=clearance,
         contact_angle=rolling.contact_angle,
         order=order,
+        preload=side * rolling.preload_displacement,
         reference=tuple(map(float, linear[:5])),
     )
+    return law.pressed_by(rolling.preload_force) if rolling.preload_force else law
 
 
 def friction_part(

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from rotorgear.errors import Problem
+from rotorgear.forces.clearance_classes import class_clearance
 from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import (
@@ -200,6 +201,7 @@ def _rolling(address: str, bearing: Bearing, rolling: RollingElements) -> Iterat
         yield Problem(f"{here}.length", got, "a length for rollers, none for balls")
     if rolling.kind == "roller" and rolling.contact_angle:
         yield Problem(f"{here}.contact_angle", "an angle", "0 for cylindrical rollers")
+    yield from _fit(here, rolling)
     for key in ("inner_groove", "outer_groove"):
         if getattr(rolling, key) <= 0.5:
             wanted = "more than 0.5: a groove is wider than its ball"
@@ -211,6 +213,23 @@ def _rolling(address: str, bearing: Bearing, rolling: RollingElements) -> Iterat
     if rolling.kind == "ball" and reach > 0.0 and rolling.clearance >= reach * math.cos(rolling.contact_angle):
         wanted = f"less than {millimetres(reach)}: the balls would fall out"
         yield Problem(f"{here}.clearance", millimetres(rolling.clearance), wanted)
+
+
+def _fit(here: str, rolling: RollingElements) -> Iterator[Problem]:
+    """A clearance class with its bore, and a preload of a bearing that can take one."""
+    if rolling.clearance_class is not None:
+        if rolling.kind != "ball" or rolling.contact_angle or rolling.clearance:
+            wanted = "the class of a deep groove ball bearing alone, or a clearance"
+            yield Problem(f"{here}.clearance_class", rolling.clearance_class, wanted)
+        if rolling.bore is None or class_clearance(rolling.bore, rolling.clearance_class) is None:
+            got = "no bore" if rolling.bore is None else millimetres(rolling.bore)
+            yield Problem(f"{here}.bore", got, "a bore above 10 to 120 mm, which the table of classes has")
+    elif rolling.bore is not None:
+        yield Problem(f"{here}.bore", millimetres(rolling.bore), "a clearance_class beside it, which it is for")
+    if (rolling.preload_displacement or rolling.preload_force) and not rolling.contact_angle:
+        yield Problem(here, "a preload without a contact angle", "a contact_angle, along which it presses")
+    if rolling.preload_displacement and rolling.preload_force:
+        yield Problem(here, "preload_displacement and preload_force", "one of the two")
 
 
 def _pedestal(address: str, pedestal: Pedestal) -> Iterator[Problem]:

@@ -10,6 +10,7 @@ from rotorgear.model.parts.fields import (
     Angle,
     Damping,
     Density,
+    Force,
     Mass,
     Matrix6,
     NonNegativeLength,
@@ -117,6 +118,17 @@ class RollingElements(Part):
     pitch_diameter: PositiveLength = Field(description="diameter of the circle of their centres")
     length: PositiveLength | None = Field(None, description="effective length of a roller")
     clearance: NonNegativeLength = Field(0.0, description="radial internal clearance: the whole play along a diameter")
+    clearance_class: Literal["C2", "CN", "C3", "C4", "C5"] | None = Field(
+        None,
+        description="class of ISO 5753-1 of a deep groove ball bearing, in place of the clearance: the middle of its range, "
+        "before fits and temperature take from it",
+    )
+    bore: PositiveLength | None = Field(None, description="bore of the inner ring, above 10 to 120 mm, for the class")
+    preload_displacement: NonNegativeLength = Field(
+        0.0,
+        description="how far an angular contact bearing is pressed together along its contact angle at assembly",
+    )
+    preload_force: Force = Field(0.0, description="axial force that presses it together, in place of that displacement")
     contact_angle: Angle = Field(
         0.0,
         description="free contact angle of an angular contact ball bearing; positive where it takes a push towards +z",
