@@ -24,6 +24,8 @@ _MOTION = {
 _MARKERS = {"forward": "^", "backward": "v", "mixed": "D", "planar": "_"}
 _LINES = {"shaft": "#555555", "mesh": "#7a3f9d", "sideband": "#b58ccb"}
 _MOST_LABELS = 14
+# More sidebands than that are drawn without names.
+_MOST_SIDEBANDS = 8
 
 
 def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") -> Any:
@@ -115,9 +117,12 @@ def _lines(axis: Any, result: CampbellResult, ends: tuple[float, float], top: fl
     side: list[tuple[float, ExcitationOrder]] = []
     above: list[tuple[float, ExcitationOrder]] = []
     far = max(ends, key=abs)
+    sidebands = sum(line.kind == "sideband" for line in result.lines)
     for line in result.lines:
         axis.plot(ends, [line.order * abs(v) / 60.0 for v in ends], "--", color=_LINES[line.kind], lw=0.7, zorder=2)
         height = line.order * abs(far) / 60.0
+        if line.kind == "sideband" and sidebands > _MOST_SIDEBANDS:
+            continue  # the legend says what they are; names would cover each other
         if height <= top:
             side.append((height / top, line))
         else:
@@ -153,9 +158,10 @@ def _lines(axis: Any, result: CampbellResult, ends: tuple[float, float], top: fl
 
 
 def _short(line: ExcitationOrder) -> str:
-    """A line's name for the edge of the picture: the first of several parts."""
-    rest = f" +{len(line.parts) - 1}" if len(line.parts) > 1 else ""
-    return f"{line.parts[0]}{rest} {line.name.rpartition(', ')[2].partition(' ')[2] if rest else line.name.split(' ', 2)[2]}"
+    """A line's name for the edge of the picture: up to two parts by name, of more the first and how many others."""
+    parts = ", ".join(line.parts) if len(line.parts) <= 2 else f"{line.parts[0]} and {len(line.parts) - 1} others"
+    last = line.name.rpartition(", ")[2]
+    return f"{parts} {last.partition(' ')[2] if len(line.parts) > 1 else line.name.split(' ', 2)[2]}"
 
 
 def _crossings(axis: Any, result: CampbellResult, top: float) -> None:

@@ -16,13 +16,17 @@ _SPECTRA = 45
 # The largest line is so many steps between two spectra high; a line is a peak of this share of the width.
 _STEPS_HIGH = 7.0
 _PEAK_WIDTH = 0.0035
-# Orders below this share of the highest peak are left out; labels stand so far apart.
-_SHOWN = 0.01
+# Heights are logarithmic over so many decades below the highest peak: orders that stay below are left out.
+_DECADES = 3.0
+_SHOWN = 10.0**-_DECADES
+# Labels stand so far apart.
 _LABELS_APART = 0.03
 
 
 def waterfall(result: ResponseResult, ax: Any = None, *, at: str | None = None) -> Any:
     """Draw the spectra of one quantity over speed, one above the other.
+
+    Heights are logarithmic over three decades: weak orders are seen beside the strongest.
 
     Args:
         result: a run-up.
@@ -46,8 +50,8 @@ def waterfall(result: ResponseResult, ax: Any = None, *, at: str | None = None) 
     shown = [o for o in range(len(result.orders)) if size[o].max() >= _SHOWN * top]
     widest = 1.03 * float(result.frequency_hz[shown].max())
     weak = len(result.orders) - len(shown)
-    left_out = f" ({weak} order{'s'[: weak != 1]} below {100.0 * _SHOWN:g} % of it left out)" if weak else ""
-    peak = f"{title}: highest peak {top:.4g} {unit}{left_out}"
+    left_out = f", {weak} weaker order{'s'[: weak != 1]} left out" if weak else ""
+    peak = f"{title}: highest peak {top:.4g} {unit}, logarithmic over {_DECADES:g} decades{left_out}"
     axis = axes_for(ax, (10.0, 7.0), f"{result.model.title}\n{peak}")
     labelled = -widest
     for order in shown:  # the way of each order, lowest first
@@ -68,7 +72,7 @@ def waterfall(result: ResponseResult, ax: Any = None, *, at: str | None = None) 
             zorder=200,
         )
     for number, s in enumerate(chosen[::-1]):
-        hz, height = _spectrum(result.frequency_hz[shown, s], size[shown, s] / top, widest)
+        hz, height = _spectrum(result.frequency_hz[shown, s], _height(size[shown, s] / top), widest)
         line = rpm[s] + _STEPS_HIGH * step * height
         axis.fill_between(hz, rpm[s], line, where=line > rpm[s], color="white", zorder=2 * number + 1, lw=0)
         axis.plot(hz, line, color=COLOURS[0], lw=0.8, zorder=2 * number + 2)
@@ -102,6 +106,11 @@ def waterfall_of(result: ResponseResult, at: str | None) -> tuple[str, str, np.n
     raise AnalysisError(
         f"'{at}' is no mesh, bearing or point of the model: expected one of {', '.join(known) or 'none'}"
     )
+
+
+def _height(share: np.ndarray) -> np.ndarray:
+    """Heights from 0 to 1 of shares of the highest peak, logarithmic."""
+    return np.asarray(1.0 + np.log10(np.maximum(share, _SHOWN)) / _DECADES)
 
 
 def _spectrum(at: np.ndarray, height: np.ndarray, widest: float) -> tuple[np.ndarray, np.ndarray]:

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
     from rotorgear.results.campbell import CampbellResult
 
+# So many crossings are printed; sidebands of a gearbox give thousands.
+_MOST_CROSSINGS = 100
+
 
 def campbell_table(result: CampbellResult, *, crossings: bool = False) -> RenderableType:
     """Return branches, margins and, where asked for, crossings as one rich renderable that fits 80 columns."""
@@ -55,8 +58,11 @@ def campbell_table(result: CampbellResult, *, crossings: bool = False) -> Render
         )
         parts.append(margins)
     if crossings:
+        # The most telling ones of a long list, in its order.
+        by_share = sorted(result.crossings, key=lambda item: -item.participation)[:_MOST_CROSSINGS]
+        kept = {id(item) for item in by_share}
         met = table_of(
-            result.crossings,
+            [item for item in result.crossings if id(item) in kept],
             ("rpm", "right", lambda item: f"{item.speed * RPM_PER_RAD_S:.2f}"),
             ("Hz", "right", lambda item: f"{item.frequency_hz:.3f}"),
             ("branch", "right", lambda item: str(item.branch)),
@@ -72,6 +78,9 @@ def campbell_table(result: CampbellResult, *, crossings: bool = False) -> Render
         )
         parts.append(met)
     notes = [""]
+    if crossings and len(result.crossings) > _MOST_CROSSINGS:
+        rest = len(result.crossings) - _MOST_CROSSINGS
+        notes.append(f"{rest} more crossings take part less than these: --json has them all")
     if any(not item.branch for item in result.margins):
         notes.append("-: the line lies above all branches (--fmax follows more), or can't excite any")
     if not crossings:
