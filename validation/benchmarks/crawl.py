@@ -8,10 +8,11 @@ The force of a lone mesh is given by the torque, so that its transmission error 
 this force ("contact"): solved here at 1024 positions of a base pitch, without any map. Where its shafts tilt its flanks
 ("overhung"), the contact is solved at five misalignments, and at each position tilt and moment agree ("coupled"). Where helices
 and branches share the load, the reference is the joint state of all contacts ("joint"), with maps of `--positions` in a base
-pitch; the approach is compared there, for a joint state knows its contacts, and of those the ones of loaded teeth. Errors of
-harmonics, of the mesh and with a pitch error of the shaft of the odd tooth too, are relative to themselves, or to half the
-largest one of their kind where that is more: 1 % of that is the measure. Peak to peak is that of the sum of all orders of the
-response, and of all steps of the transient. "mean" is the largest difference of a mean force from that of `static`.
+pitch and the loads of a transient; the approach is compared there, for a joint state knows its contacts, and of those the ones
+of loaded teeth. Errors of harmonics, of the mesh and with a pitch error of the shaft of the odd tooth too, are relative to
+themselves, or to half the largest one of their kind where that is more: 1 % of that is the measure. Peak to peak is that of the
+sum of all orders of the response, and of all steps of the transient. "mean" is the largest difference of a mean force from that
+of `static`.
 """
 
 from __future__ import annotations
@@ -217,7 +218,7 @@ def reference(model: rg.Model, positions: int) -> Curves:
     def fine(mesh: MeshLayout, helix: int, force: float, sense: int = 1, near: bool = False) -> ContactMap | None:
         if mesh.part.stiffness != "tooth_fe" or not force:
             return None
-        return contact_map(mesh.helix_teeth(helix, sense), float(f"{force:.12g}"), positions, near)
+        return contact_map(mesh.helix_teeth(helix, sense), float(f"{force:.12g}"), positions)
 
     assert model.operation is not None
     with patch.object(MeshLayout, "contact_map", fine):

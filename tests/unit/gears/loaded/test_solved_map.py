@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -13,11 +14,13 @@ from rotorgear.gears.geometry.flank import FlankGrid, FlankModification
 from rotorgear.gears.loaded.contact_map import ContactMap
 from rotorgear.gears.loaded.loaded_contact import PositionContact, solve_contact, solve_many
 from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
+from rotorgear.gears.loaded.map_positions import even_positions
 from rotorgear.gears.loaded.map_store import kept_map
-from rotorgear.gears.loaded.solved_map import contact_map
+from rotorgear.gears.loaded.solved_map import contact_map, solved_map
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import ToothFe
+from rotorgear.progress import silent
 from tests.unit.gears.tooth_pairs import LOAD, cycle, helical, pair, spur
 
 POSITIONS = 8
@@ -61,7 +64,7 @@ def test_force_rises_with_approach_and_its_tangent_is_the_slope(teeth: ToothPair
 def test_slices_that_do_not_feel_each_other_take_the_loads_of_space() -> None:
     teeth = pair(20.86, ToothFe("preview"))
     found = contact_map(teeth, LOAD, POSITIONS, near=True)
-    assert len(found.load) == 8
+    assert found.load[-1] == pytest.approx(2.0 * LOAD)  # up to five times it in the plane
     assert found.approach_at(LOAD, found.position) == pytest.approx(normal(teeth, found, 1.0), rel=1e-9)
 
 
@@ -172,3 +175,20 @@ def test_periods_without_the_odd_tooth_are_solved_on_patches_of_their_own() -> N
     problem, exact = loaded_cycle(teeth, LOAD * np.cos(contact_problem(teeth).line.base_helix_angle), far)
     along_normal = exact.deflection * np.cos(problem.line.base_helix_angle)
     assert found.approach_at(np.full(8, LOAD), far) == pytest.approx(along_normal, rel=1e-6)
+
+
+@pytest.mark.parametrize("near", [True, False])
+@pytest.mark.parametrize("share", [0.3, 0.54, 1.3])
+def test_a_helix_that_carries_another_load_than_its_mesh_has_its_own_curve(share: float, near: bool) -> None:
+    """Misaligned flanks touch on a part of their face that grows with the load: between the loads of the map, too."""
+    teeth = replace(helical(), misalignment=20e-6)
+    found, dense = (contact_map(teeth, LOAD, 8, near), _dense(teeth))
+    u = np.arange(8) / 8
+    curve, exact = (one.approach_at(np.full(8, share * LOAD), u) for one in (found, dense))
+    assert curve - curve.mean() == pytest.approx(exact - exact.mean(), abs=0.025 * np.ptp(exact))
+
+
+@lru_cache
+def _dense(teeth: ToothPair) -> ContactMap:
+    loads = (tuple(np.geomspace(0.1, 1.0, 60)), tuple(np.geomspace(1.02, 2.2, 30)))
+    return solved_map(contact_problem(teeth), LOAD, even_positions(8), loads, silent)
