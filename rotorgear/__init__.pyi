@@ -64,6 +64,7 @@ from rotorgear import plot as plot
 from rotorgear.page.report import report as report
 from rotorgear.analysis.accuracy import accuracy as accuracy
 from rotorgear.analysis.modal.convergence import convergence_study as convergence_study
+from rotorgear.analysis.casing.convergence import casing_convergence_study as casing_convergence_study
 from rotorgear.analysis.transient.convergence import transient_convergence_study as transient_convergence_study
 from rotorgear.analysis.sweep.convergence import sweep_convergence_study as sweep_convergence_study
 from rotorgear.analysis.teeth.convergence import mesh_convergence_study as mesh_convergence_study

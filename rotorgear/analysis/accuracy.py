@@ -8,6 +8,7 @@ from typing import Any
 
 from rotorgear.analysis.bearing.convergence import bearing_convergence_study
 from rotorgear.analysis.campbell.convergence import campbell_convergence_study, critical_convergence_study
+from rotorgear.analysis.casing.convergence import casing_convergence_study
 from rotorgear.analysis.modal.convergence import convergence_study
 from rotorgear.analysis.response.convergence import frf_convergence_study, response_convergence_study
 from rotorgear.analysis.static.convergence import static_convergence_study
@@ -44,6 +45,7 @@ STUDIES = {
     "bearing": _Entry(bearing_convergence_study, ("bearing", "speed")),
     "transient": _Entry(transient_convergence_study, ("speed", "time", "modal_damping")),
     "sweep": _Entry(sweep_convergence_study, ("speed",)),
+    "casing": _Entry(casing_convergence_study, ("modes", "casing", "coupled", "finest")),
 }
 # Arguments that the command spells otherwise.
 _SPELLED = {"stop": "to"}
@@ -64,6 +66,9 @@ def accuracy(
     bearing: str | None = None,
     time: float | str | None = None,
     modal_damping: float | None = None,
+    casing: str | None = None,
+    coupled: bool | None = None,
+    finest: int | None = None,
     progress: Progress = silent,
 ) -> AnyStudy:
     """Run an analysis of a model over a series of discretisations, each with its error and run time.
@@ -71,10 +76,10 @@ def accuracy(
     Args:
         model: a checked model.
         analysis: "modal", "campbell", "critical", "static", "response", "frf", "mesh" (teeth in contact), "bearing" (film or
-            rolling elements), "transient" or "sweep".
+            rolling elements), "transient", "sweep" or "casing" (its mesh and its reduction).
         speed: of the input shaft, as in that analysis; not for a mesh.
         stop: campbell, critical: the highest speed of the range.
-        modes: modal, campbell: how many modes are compared; 24 where not given.
+        modes: modal, campbell, casing: how many modes are compared; 24 where not given, of a casing 8.
         fmax: response, frf: highest frequency in Hz.
         at: frf: where force and response are; the first disk, gear or bearing where not given.
         reference: modal: natural frequencies in Hz to compare with, in place of the model's own finest.
@@ -83,6 +88,9 @@ def accuracy(
         bearing: bearing: its name; None where there is only one with a law.
         time: transient: duration; 8 periods of the slowest mesh where not given.
         modal_damping: response, frf, transient: damping ratio of every elastic mode.
+        casing: casing: its name; None where there is only one.
+        coupled: casing: whether the modes are those of the gearbox with it, not its own.
+        finest: casing: most unknowns of the mesh to compare with; 300 000 where not given.
         progress: callable that is told fraction and step.
 
     Returns:
@@ -108,6 +116,9 @@ def accuracy(
         "bearing": bearing,
         "time": time,
         "modal_damping": modal_damping,
+        "casing": casing,
+        "coupled": coupled,
+        "finest": finest,
     }
     given = {name: value for name, value in arguments.items() if value is not None}
     for name in given:

@@ -43,7 +43,11 @@ def read_abaqus(path: Path) -> FileMesh:
         if keyword == "NODE":
             for line in lines:
                 number, *xyz = line.rstrip(",").split(",")
-                coordinates[int(number)] = [float(x) for x in xyz[:3]]
+                if len(xyz) < 3:
+                    raise ValueError(f"node {number.strip()} has {len(xyz)} coordinates, not three")
+                place = [float(x) for x in xyz[:3]]
+                if coordinates.setdefault(int(number), place) != place:
+                    raise ValueError(f"node {number.strip()} is given twice, at two places")
             if "NSET" in options:
                 node_sets.setdefault(options["NSET"], []).extend(int(line.split(",")[0]) for line in lines)
         elif keyword == "ELEMENT":
@@ -70,7 +74,9 @@ def read_abaqus(path: Path) -> FileMesh:
     try:
         cells = [(kind, np.array([[order[node] for node in row] for row in rows])) for kind, rows, _ in blocks]
         named = {
-            name: NamedSet(np.unique([order[node] for node in nodes])) for name, nodes in node_sets.items() if nodes
+            name: NamedSet(np.unique([order[node] for node in nodes]))
+            for name, nodes in node_sets.items()
+            if nodes and name
         }
     except KeyError as error:
         raise ValueError(f"node {error.args[0]} is named but not given") from None
@@ -83,7 +89,7 @@ def read_abaqus(path: Path) -> FileMesh:
         ]
         found = set_of(chosen)
         # A deck often has one name for the nodes and for the faces of a place; then the faces say more.
-        if name not in named or (found.faces and np.array_equal(found.nodes, named[name].nodes)):
+        if name and (name not in named or (found.faces and np.array_equal(found.nodes, named[name].nodes))):
             named[name] = found
     return FileMesh(np.array(list(coordinates.values())), gathered(cells), named)
 

@@ -57,6 +57,11 @@ def reduced_gear_body(settings: CasingSettings, progress: Progress = silent) -> 
     return _kept(settings, settings.modes_to, (read_wheel, write_wheel), computed, progress)
 
 
+def keep(settings: CasingSettings, body: ReducedBody) -> None:
+    """Keep in memory, for `reduced_casing`, the body of settings that was computed already."""
+    _KEPT[key_of(settings, settings.modes_to)] = body
+
+
 def _kept(
     settings: CasingSettings,
     modes_to: float | None,

@@ -86,15 +86,15 @@ def _matched(nodes: np.ndarray, finite: Any) -> np.ndarray:
     return np.asarray(np.argmin(distance, axis=1))
 
 
-def _face(corners: np.ndarray, middle: bool, finite: Any) -> Reference:
-    edges = [0.5 * (corners[i] + corners[(i + 1) % len(corners)]) for i in range(len(corners))]
+def _face(corners: np.ndarray, on_edges: bool, middle: bool, finite: Any) -> Reference:
+    edges = [0.5 * (corners[i] + corners[(i + 1) % len(corners)]) for i in range(len(corners)) if on_edges]
     nodes = np.array([*corners, *edges, *([corners.mean(axis=0)] if middle else [])])
     return Reference(nodes, finite, _matched(nodes, finite))
 
 
 @cache
 def element(kind: str) -> Element:
-    """The element of a kind: tetra10, hexahedron20 or hexahedron27.
+    """The element of a kind: tetra10, hexahedron20 or hexahedron27; tetra and hexahedron for comparison only.
 
     Raises:
         MissingExtraError: scikit-fem is not installed.
@@ -103,9 +103,11 @@ def element(kind: str) -> Element:
         import skfem
     except ImportError:
         raise MissingExtraError("A casing from a mesh file", "scikit-fem", "casing") from None
-    tet = kind == "tetra10"
+    tet = kind.startswith("tetra")
     corners = _TET_CORNERS if tet else _HEX_CORNERS
-    edges = _TET_EDGES if tet else _HEX_EDGES
+    edges: tuple[tuple[int, int], ...] = _TET_EDGES if tet else _HEX_EDGES
+    if kind in ("tetra", "hexahedron"):
+        edges = ()
     faces = _TET_FACES if tet else _HEX_FACES
     nodes = [*corners, *(corners[list(edge)].mean(axis=0) for edge in edges)]
     if kind == "hexahedron27":
@@ -115,15 +117,18 @@ def element(kind: str) -> Element:
     on_edge = {frozenset(edge): len(corners) + number for number, edge in enumerate(edges)}
     face_nodes = []
     for number, face in enumerate(faces):
-        rim = [on_edge[frozenset((face[i], face[(i + 1) % len(face)]))] for i in range(len(face))]
+        sides = [frozenset((face[i], face[(i + 1) % len(face)])) for i in range(len(face))]
+        rim = [on_edge[side] for side in sides if edges]
         middle = [len(corners) + len(edges) + number] if kind == "hexahedron27" else []
         face_nodes.append([*face, *rim, *middle])
-    finite = {"tetra10": skfem.ElementTetP2, "hexahedron20": skfem.ElementHexS2, "hexahedron27": skfem.ElementHex2}[
-        kind
-    ]()
-    on_face = {"tetra10": skfem.ElementTriP2, "hexahedron20": skfem.ElementQuadS2, "hexahedron27": skfem.ElementQuad2}[
-        kind
-    ]()
+    inside, on_face = {
+        "tetra": (skfem.ElementTetP1, skfem.ElementTriP1),
+        "tetra10": (skfem.ElementTetP2, skfem.ElementTriP2),
+        "hexahedron": (skfem.ElementHex1, skfem.ElementQuad1),
+        "hexahedron20": (skfem.ElementHexS2, skfem.ElementQuadS2),
+        "hexahedron27": (skfem.ElementHex2, skfem.ElementQuad2),
+    }[kind]
+    finite = inside()
     rim_corners = np.array([[0, 0], [1, 0], [0, 1]] if tet else [[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
     return Element(
         nodes=places,
@@ -134,7 +139,7 @@ def element(kind: str) -> Element:
         edges=edges,
         faces=faces,
         face_nodes=np.array(face_nodes),
-        face=_face(rim_corners, kind == "hexahedron27", on_face),
+        face=_face(rim_corners, bool(edges), kind == "hexahedron27", on_face()),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -10,11 +10,13 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from rotorgear.casings.assembly import Assembled, assemble, rigid_motions
+from rotorgear.casings.file_mesh import NamedSet
 from rotorgear.casings.joins import Joined, join
 from rotorgear.casings.mesh_file import read_mesh
-from rotorgear.casings.patches import Patch, by_cylinder, by_set
+from rotorgear.casings.patches import Patch, by_cylinder, by_set, cylinder_faces
 from rotorgear.casings.settings import CasingSettings
 from rotorgear.casings.solid_mesh import SolidMesh, merged, solid_mesh
+from rotorgear.casings.split import split
 from rotorgear.errors import AnalysisError
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import millimetres
@@ -174,7 +176,8 @@ def finite_element_body(settings: CasingSettings, progress: Progress = silent) -
     for part, path in settings.files:
         where = f"{address}.mesh" if len(settings.files) == 1 else f"{address}.mesh.{part}"
         meshes[part] = solid_mesh(read_mesh(path, where), settings.unit, where)
-    joined = join(merged(meshes, f"{address}.mesh"), settings.joins, address)
+    whole = merged(meshes, f"{address}.mesh")
+    joined = join(_split(whole, settings) if settings.splits else whole, settings.joins, address)
     mesh = joined.mesh
     _believable_size(mesh, address)
     _one_body(joined, settings)
@@ -198,6 +201,21 @@ def finite_element_body(settings: CasingSettings, progress: Progress = silent) -
     _no_mechanism(body)
     progress(1.0, f"{address}: assembled")
     return body
+
+
+def _split(mesh: SolidMesh, settings: CasingSettings) -> SolidMesh:
+    """The mesh split as often as asked for; bores are found before, on the corners that the file has."""
+    sets = dict(mesh.sets)
+    for name, place in settings.seats:
+        if not isinstance(place, str):
+            address = f"{settings.address}.seats.{name}"
+            faces = cylinder_faces(mesh, place, address)
+            sets[address] = NamedSet(np.unique(faces), [faces[:, : len(mesh.element.faces[0])]])
+    mesh = replace(mesh, sets=sets)
+    for _ in range(settings.splits):
+        mesh = split(mesh)
+    note = f"Every element was split in eight, {settings.splits} time{'s'[: settings.splits != 1]}."
+    return replace(mesh, notes=(*mesh.notes, note))
 
 
 def _believable_size(mesh: SolidMesh, address: str) -> None:

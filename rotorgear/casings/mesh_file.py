@@ -52,6 +52,12 @@ def read_mesh(path: Path, address: str) -> FileMesh:
         ) from None
     if mesh.points.ndim != 2 or mesh.points.shape[1] != 3 or not np.all(np.isfinite(mesh.points)):
         raise AnalysisError(f"{address}: the points of '{path.name}' are not three finite coordinates each.")
+    for kind, cells in mesh.cells.items():
+        if not np.issubdtype(cells.dtype, np.integer) or cells.min() < 0 or cells.max() >= len(mesh.points):
+            raise AnalysisError(
+                f"{address}: {kind} cells of '{path.name}' have nodes that the file does not give; it has "
+                f"{len(mesh.points)}. Export the mesh anew."
+            )
     return mesh
 
 

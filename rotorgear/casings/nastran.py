@@ -24,6 +24,7 @@ _ELEMENTS = {
     "CQUAD4": {4: "quad"},
     "CQUAD8": {8: "quad8", 4: "quad"},
 }
+_SOLIDS = ("CTETRA", "CHEXA", "CPENTA", "CPYRAM")
 # Nastran counts the upright edges of a hexahedron before those of its top.
 _HEXA = [*range(12), *range(16, 20), *range(12, 16)]
 
@@ -39,10 +40,14 @@ def read_nastran(path: Path) -> FileMesh:
                 raise ValueError(
                     f"GRID {fields[1]} stands in a coordinate system of its own: export global coordinates"
                 )
-            points[int(fields[1])] = [_number(text) for text in (*fields[3:6], "", "", "")[:3]]
+            place = [_number(text) for text in (*fields[3:6], "", "", "")[:3]]
+            if points.setdefault(int(fields[1]), place) != place:
+                raise ValueError(f"GRID {fields[1]} is given twice, at two places")
         elif name in _ELEMENTS:
             nodes = [int(text) for text in fields[3:] if re.fullmatch(r"\d+", text)]
             kinds = _ELEMENTS[name]
+            if name in _SOLIDS and (len(nodes) not in kinds or any(fields[3 + len(nodes) :])):
+                raise ValueError(f"{name} {fields[1]} has {len(nodes)} nodes, not {' or '.join(map(str, kinds))}")
             count = next((count for count in sorted(kinds, reverse=True) if len(nodes) >= count), 0)
             if not count:
                 raise ValueError(f"{name} {fields[1]} has {len(nodes)} nodes")

@@ -9,7 +9,7 @@ with the rigid motions R about the point of the patch. Where a set of nodes make
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -102,8 +102,8 @@ def by_set(mesh: SolidMesh, set_name: str, address: str) -> Patch:
     return patch_of(mesh, boundary[chosen], one.nodes, f"{address} ('{set_name}')")
 
 
-def by_cylinder(mesh: SolidMesh, cylinder: Cylinder, address: str) -> Patch:
-    """The patch of a bore: faces with their corners on the cylinder and their middle within its range.
+def cylinder_faces(mesh: SolidMesh, cylinder: Cylinder, address: str) -> np.ndarray:
+    """Outer faces (f, m) of a bore: with their corners on the cylinder and their middle within its range.
 
     Raises:
         AnalysisError: nothing there; the text says what is near.
@@ -129,12 +129,25 @@ def by_cylinder(mesh: SolidMesh, cylinder: Cylinder, address: str) -> Patch:
             f"{address}: no face of the mesh lies on this cylinder (radius {millimetres(cylinder.radius)}){near}. The mesh "
             f"reaches over {box}."
         )
-    nodes = np.unique(boundary[chosen])
-    patch = patch_of(mesh, boundary[chosen], nodes, address)
+    return np.asarray(boundary[chosen])
+
+
+def by_cylinder(mesh: SolidMesh, cylinder: Cylinder, address: str) -> Patch:
+    """The patch of a bore, which turns about its middle; a set of the name `address` has its faces, where there is one.
+
+    Raises:
+        AnalysisError: as of `cylinder_faces`.
+    """
+    if address in mesh.sets:
+        patch = by_set(mesh, address, address)
+    else:
+        faces = cylinder_faces(mesh, cylinder, address)
+        patch = patch_of(mesh, faces, np.unique(faces), address)
+    across = [axis for axis in range(3) if axis != cylinder.axis]
     point = np.empty(3)
     point[across] = cylinder.center
     point[cylinder.axis] = 0.5 * (cylinder.begin + cylinder.end)
-    return Patch(patch.name, patch.nodes, patch.surface_mass, point, patch.area)
+    return replace(patch, name=address, point=point)
 
 
 def patch_of(mesh: SolidMesh, faces: np.ndarray, nodes: np.ndarray, name: str) -> Patch:

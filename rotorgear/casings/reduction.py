@@ -42,6 +42,13 @@ _COLUMNS = 16
 def reduce(
     fe: FiniteElementBody, modes_to: float | None, progress: Progress = silent
 ) -> tuple[ReducedBody, ElasticBody]:
+    """Reduce a body, as `reduce_in_basis`: the reduced body, and the factored stiffness that it was found with."""
+    return reduce_in_basis(fe, modes_to, progress)[:2]
+
+
+def reduce_in_basis(
+    fe: FiniteElementBody, modes_to: float | None, progress: Progress = silent
+) -> tuple[ReducedBody, ElasticBody, np.ndarray]:
     """Reduce a body.
 
     Args:
@@ -50,7 +57,7 @@ def reduce(
         progress: of the steps.
 
     Returns:
-        The reduced body, and the factored stiffness that it was found with.
+        The reduced body, the factored stiffness that it was found with, and its basis Φ (3p, n).
 
     Raises:
         AnalysisError: more memory than there is. ConvergenceError: a factorisation or an iteration that failed.
@@ -124,7 +131,7 @@ def reduce(
     damping = modal_damping(M, K, fe.settings.damping_ratio) if fe.settings.damping_ratio else np.zeros_like(M)
     damping = damping + _mount_damping(fe, basis)
     progress(1.0, f"{name}: reduced to {len(M)} coordinates")
-    return ReducedBody(
+    reduced = ReducedBody(
         name=fe.settings.name,
         seats=tuple(seat for seat, _ in fe.settings.seats),
         seat_points=np.array([patch.point for patch in fe.seats]).reshape(-1, 3),
@@ -143,7 +150,8 @@ def reduce(
         held=bool(len(fe.held) or len(flexibility)),
         notes=fe.mesh.notes,
         seconds=seconds,
-    ), body
+    )
+    return reduced, body, basis
 
 
 def _static_shapes(fe: FiniteElementBody, space: FreeSpace, system: Constrained, springs: np.ndarray) -> np.ndarray:

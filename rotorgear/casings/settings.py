@@ -48,6 +48,7 @@ class CasingSettings:
         damping_ratio: of every elastic mode.
         mass: as stated, in kg; or None.
         mass_tolerance: as a share.
+        splits: how often every element is split in eight.
         table: of the model file that it stands in.
     """
 
@@ -64,6 +65,7 @@ class CasingSettings:
     damping_ratio: float = 0.0
     mass: float | None = None
     mass_tolerance: float = 0.05
+    splits: int = 0
     table: str = "casings"
 
     @property

@@ -107,9 +107,9 @@ def solid_mesh(found: FileMesh, unit: float, address: str) -> SolidMesh:
             notes.append(
                 "The nodes on the edges were numbered in another order than the format's; they were put right."
             )
-    mesh = SolidMesh(
-        points, _right_handed(points, cells, shape, address), shape.kind, sets, tuple(notes), raised=raised
-    )
+    cells = _right_handed(points, cells, shape, address)
+    _apart(cells, shape, address)
+    mesh = SolidMesh(points, cells, shape.kind, sets, tuple(notes), raised=raised)
     return _unfolded(mesh, address)
 
 
@@ -240,6 +240,23 @@ def _right_handed(points: np.ndarray, cells: np.ndarray, shape: Element, address
     mirrored = shape.nodes[:, [1, 0, 2]]
     swap = np.argmin(np.linalg.norm(mirrored[:, None, :] - shape.nodes[None, :, :], axis=2), axis=1)
     return np.where((volume < 0.0)[:, None], cells[:, swap], cells)
+
+
+def _apart(cells: np.ndarray, shape: Element, address: str) -> None:
+    """Two elements on a face see it from its two sides; else they lie in one another."""
+    faces = cells[:, np.array(shape.faces)].reshape(-1, len(shape.faces[0]))
+    first = np.argmin(faces, axis=1)
+    turned = np.take_along_axis(faces, (first[:, None] + np.arange(faces.shape[1])) % faces.shape[1], axis=1)
+    side = np.where(turned[:, 1] < turned[:, -1], 1, -1)
+    _, number, counts = np.unique(np.sort(faces, axis=1), axis=0, return_inverse=True, return_counts=True)
+    sides = np.bincount(number.ravel(), side)
+    wrong = (counts > 2) | ((counts == 2) & (sides != 0))
+    if wrong.any():
+        elements = np.unique(np.flatnonzero(wrong[number.ravel()]) // len(shape.faces))
+        raise AnalysisError(
+            f"{address}: {_elements(elements)} lie in one another: elements that stand twice in the file, or that are turned "
+            "inside out by a node in the wrong place. Mesh the body anew, or delete the copies."
+        )
 
 
 def jacobians(points: np.ndarray, cells: np.ndarray, shape: Element) -> np.ndarray:

@@ -28,7 +28,7 @@ def accuracy(
         typer.Option(
             "--analysis",
             help="What is run: modal, campbell, critical, static, response, frf, mesh (teeth in contact), bearing, "
-            "transient or sweep.",
+            "transient, sweep or casing.",
         ),
     ] = "modal",
     mesh: Annotated[
@@ -60,7 +60,7 @@ def accuracy(
         typer.Option(
             "--modes",
             min=1,
-            help="Modal, campbell: number of modes that are compared (default 24).",
+            help="Modal, campbell, casing: number of modes that are compared (default 24; of a casing 8).",
             show_default=False,
         ),
     ] = None,
@@ -79,6 +79,22 @@ def accuracy(
         float | None,
         typer.Option(
             "--modal-damping", help="Response, frf, transient: damping ratio of every elastic mode.", show_default=False
+        ),
+    ] = None,
+    casing: Annotated[
+        str | None,
+        typer.Option("--casing", help="With --analysis casing: its name, where there are several.", show_default=False),
+    ] = None,
+    coupled: Annotated[
+        bool, typer.Option("--coupled", help="With --analysis casing: modes of the gearbox with it, not its own.")
+    ] = False,
+    finest: Annotated[
+        int | None,
+        typer.Option(
+            "--finest",
+            min=1,
+            help="With --analysis casing: most unknowns of the mesh to compare with (default 300000).",
+            show_default=False,
         ),
     ] = None,
     plot: PlotOption = None,
@@ -106,6 +122,9 @@ def accuracy(
             bearing=bearing,
             time=time,
             modal_damping=modal_damping,
+            casing=casing,
+            coupled=coupled or None,
+            finest=finest,
             progress=progress,
         )
     console().print(study.table())

@@ -12,7 +12,8 @@ class Rung(Record):
     method: str = of("what was asked for", note=", in words")
     family: str = of(
         "family of rungs that form a curve",
-        note=': `"elements"` or `"accuracy"`; the method of a transient; `"steps"` or `"periods"` of a sweep',
+        note=': `"elements"` or `"accuracy"`; the method of a transient; `"steps"` or `"periods"` of a sweep; `"order"`, '
+        '`"elements"` or `"fixed modes"` of a casing',
     )
     setting: float = of("the number that was asked for")
     dofs: int = of("degrees of freedom", note=" of the last solution")

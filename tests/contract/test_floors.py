@@ -57,9 +57,9 @@ ROOMS = {
         "rig": {"common", "modal", "static"},
         "correlation": {"common", "modal", "response", "rig", "static"},
         "layout": {"common", "scatter"},
-        "casing": set(),
+        "casing": {"common"},
         "standards": {"campbell", "common", "modal", "response", "static"},
-        "": {"bearing", "campbell", "modal", "orbits", "response", "static", "sweep", "teeth", "transient"},
+        "": {"bearing", "campbell", "casing", "modal", "orbits", "response", "static", "sweep", "teeth", "transient"},
     },
     "gears": {
         "geometry": set(),

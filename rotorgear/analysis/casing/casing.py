@@ -57,13 +57,7 @@ def casing(
         highest = None if fmax is None else parse_quantity(fmax, "frequency")
     except QuantityError as error:
         raise AnalysisError(f"fmax: got '{fmax}', expected {error}") from None
-    names = [name] if name is not None else [one for one, part in model.casings.items() if part.mesh]
-    if not model.casings or (name is not None and name not in model.casings):
-        guess = nearest(name or "", list(model.casings))
-        hint = f"did you mean '{guess}'?" if guess else "the model has: " + (", ".join(model.casings) or "none")
-        raise AnalysisError(f"casing: the model has no casing{f' {name!r}' if name else ''}; {hint}")
-    if not names or not model.casings[names[0]].mesh:
-        raise AnalysisError("casing: this casing has no mesh; its matrices come from elsewhere")
+    names = casing_names(model, name)
     rows = {
         one: _row(model, one, modes, highest, part_of(tell, number / len(names), (number + 1) / len(names)))
         for number, one in enumerate(names)
@@ -76,6 +70,22 @@ def casing(
         model_hash=model_hash(model),
         settings={"name": name, "modes": modes, "fmax": highest},
     )
+
+
+def casing_names(model: Model, name: str | None) -> list[str]:
+    """Names of all casings from meshes, or the one that is asked for.
+
+    Raises:
+        AnalysisError: there is none, or it was reduced elsewhere.
+    """
+    names = [name] if name is not None else [one for one, part in model.casings.items() if part.mesh]
+    if not model.casings or (name is not None and name not in model.casings):
+        guess = nearest(name or "", list(model.casings))
+        hint = f"did you mean '{guess}'?" if guess else "the model has: " + (", ".join(model.casings) or "none")
+        raise AnalysisError(f"casing: the model has no casing{f' {name!r}' if name else ''}; {hint}")
+    if not names or not model.casings[names[0]].mesh:
+        raise AnalysisError("casing: this casing has no mesh; its matrices come from elsewhere")
+    return names
 
 
 def _row(model: Model, name: str, count: int, fmax: float | None, tell: Progress) -> CasingRow:

@@ -35,6 +35,7 @@ def casing_settings(model: Tables, name: str) -> CasingSettings:
         damping_ratio=casing.damping_ratio,
         mass=casing.mass,
         mass_tolerance=casing.mass_tolerance,
+        splits=casing.splits,
     )
 
 

@@ -142,6 +142,9 @@ class Casing(Part):
         description="how a seat takes the motion of its bearing: as its mean, free to deform (RBE3), or as a rigid body (RBE2)",
     )
     joins: tuple[Join, ...] = Field((), description="faces that hold parts of the mesh together")
+    splits: Annotated[int, Field(ge=0, le=4, strict=True)] = Field(
+        0, description="how often every element is split in eight: the same body in a finer mesh"
+    )
     modes_to: Frequency | None = Field(
         None, description="highest frequency of the fixed-interface modes that are kept; default: the lowest 20"
     )

@@ -29,7 +29,7 @@ def convergence_table(study: ConvergenceStudy) -> RenderableType:
             f"{100.0 * rung.spread:.0f}%" if finite and rung.timed > 1 else "",
             f"{rung.memory / 1e6:.1f}" if rung.memory else "",
             f"{rung.error:.1e}",
-            f"{rung.estimate:.1e}",
+            "" if math.isnan(rung.estimate) else f"{rung.estimate:.1e}",
             "" if rung.effectivity is None else f"{rung.effectivity:.2f}",
             "" if rung.order is None else f"{rung.order:.2f}",
         )

@@ -1,0 +1,228 @@
+"""Error against run time of a casing: over the order of its elements, their number, and fixed-interface modes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from rotorgear.analysis.casing.casing import casing_names
+from rotorgear.analysis.casing.coupled import CoupledModes, reduced_modes, whole_frequencies
+from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
+from rotorgear.casings.assembly import assemble
+from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
+from rotorgear.casings.mesh_error import eigenvalue_errors
+from rotorgear.casings.reduction import reduce
+from rotorgear.casings.split import without_middles
+from rotorgear.casings.survey import MeshModes, free_modes, held_modes
+from rotorgear.errors import AnalysisError
+from rotorgear.model.layout.casings import casing_settings
+from rotorgear.model.model import Model
+from rotorgear.progress import Progress, part_of, silent
+from rotorgear.results.convergence import ConvergenceStudy, Rung
+
+MODES = 8
+# The reference has no more unknowns than this, about: half a minute and 4 GB for its factor.
+FINEST = 300_000
+# Fixed-interface modes of the rungs.
+FIXED = (5, 10, 20, 40)
+# Splitting an element in eight makes so many times as many unknowns, about.
+_EIGHT = 8.0
+# What Lanczos leaves of the frequencies of a whole mesh.
+_RESOLVED = 1e-9
+# What is left of a reference's estimated error when it is taken off.
+_LEFT = 0.5
+
+
+@recorded
+def casing_convergence_study(
+    model: Model,
+    *,
+    casing: str | None = None,
+    coupled: bool = False,
+    modes: int = MODES,
+    finest: int = FINEST,
+    fixed: tuple[int, ...] = FIXED,
+    repeat: int = REPEAT,
+    progress: Progress = silent,
+) -> ConvergenceStudy:
+    """Frequencies of a casing, or of the whole gearbox with it, on a series of meshes and of reductions.
+
+    Meshes are compared with the same body in the finest mesh that is affordable, every element split in eight once or more, whose
+    own estimated error is taken off; reductions with the whole mesh, not reduced.
+
+    Args:
+        model: with a casing from a mesh.
+        casing: its name; None where there is only one.
+        coupled: whether the modes are those of the gearbox with the casing, undamped at standstill; else of the casing, held as
+            it is with its seats free, or floating.
+        modes: how many elastic modes are compared.
+        finest: most unknowns of the mesh to compare with, about.
+        fixed: numbers of fixed-interface modes.
+        repeat: runs of each rung that are timed at least.
+        progress: callable that is told fraction and step.
+
+    Raises:
+        AnalysisError: no such casing, or one that was reduced elsewhere; a mesh too large for a finer reference.
+    """
+    names = casing_names(model, casing)
+    if len(names) > 1:
+        raise AnalysisError(f"--casing: the model has {len(names)} casings; name one of {', '.join(names)}")
+    if modes < 1:
+        raise AnalysisError(f"modes: got {modes}, expected 1 or more")
+    name = names[0]
+    settings = casing_settings(model, name)
+    fe = finite_element_body(settings)
+    finer = int(np.floor(np.log(max(finest, 1) / fe.dofs) / np.log(_EIGHT)))
+    if finer < 1:
+        raise AnalysisError(
+            f"casings.{name}: its mesh has {fe.dofs} unknowns, and one split in eight to compare with has more than "
+            f"{finest}. Study a coarser mesh of the same body, or raise finest."
+        )
+    kept = _fixed_limits(fe, fixed)
+    if coupled:
+        rungs, reference = _of_gearbox(model, name, modes, finer, kept, repeat, progress)
+        compared = "frequencies of the gearbox"
+    else:
+        rungs, reference = _of_casing(fe, modes, finer, kept, repeat, progress)
+        compared = "frequencies of the casing"
+    words, resolution = reference
+    return ConvergenceStudy(
+        model.title or "model", "casing", words, modes, rungs, compared=compared, resolution=resolution
+    )
+
+
+def _of_casing(
+    fe: FiniteElementBody,
+    count: int,
+    finer: int,
+    kept: list[tuple[int, float]],
+    repeat: int,
+    progress: Progress,
+) -> tuple[tuple[Rung, ...], tuple[str, float]]:
+    """Rungs of a casing by itself, and what the meshes are compared with."""
+    settings = fe.settings
+
+    def solved(body: FiniteElementBody) -> tuple[FiniteElementBody, MeshModes]:
+        held = len(settings.held) or len(settings.mounts)
+        return body, (held_modes if held else free_modes)(body, count)
+
+    def run(options: dict[str, Any]) -> tuple[FiniteElementBody, MeshModes]:
+        body = finite_element_body(replace(settings, splits=settings.splits + options["splits"]))
+        return solved(_linear(body) if options.get("linear") else body)
+
+    progress(0.0, "reference")
+    finest, reference = run({"splits": finer})
+    truth, words, resolution = _reference(reference.frequency, _relative(finest, reference), finest.dofs)
+
+    def judge(found: tuple[FiniteElementBody, MeshModes]) -> Judged:
+        body, modes = found
+        linear = body.mesh.kind in ("tetra", "hexahedron")
+        estimate = np.full(count, np.nan) if linear else _relative(body, modes)
+        return Judged(body.dofs, np.abs(modes.frequency / truth - 1.0), estimate)
+
+    meshes = Study(run, judge, resolution, repeat=repeat)
+    # Joins and mounts are on nodes in the middle of edges too.
+    plain = not settings.joins and not settings.mounts
+    order = [Setting("linear elements", "order", 1.0, {"splits": 0, "linear": True})] if plain else []
+    rungs = meshes.rungs([*order, *_splits(finer)], part_of(progress, 0.3, 0.7))
+    whole = solved(fe)[1].frequency
+
+    def reduced(options: dict[str, Any]) -> Judged:
+        body, _ = reduce(fe, options["modes_to"])
+        frequency, shapes = body.modes()
+        own = np.flatnonzero(np.arange(body.size) >= (0 if body.held else 6))[:count]
+        stated = [body.eigenvalue_error((2.0 * np.pi * frequency[k]) ** 2, shapes[:, k]) or 0.0 for k in own]
+        return Judged(body.size, np.abs(frequency[own] / whole - 1.0), 0.5 * np.array(stated))
+
+    reductions = Study(reduced, _itself, _RESOLVED, rising=(), repeat=repeat)
+    return rungs + reductions.rungs(_fixed(kept), part_of(progress, 0.7, 1.0)), (words, resolution)
+
+
+def _of_gearbox(
+    model: Model,
+    name: str,
+    count: int,
+    finer: int,
+    kept: list[tuple[int, float]],
+    repeat: int,
+    progress: Progress,
+) -> tuple[tuple[Rung, ...], tuple[str, float]]:
+    """Rungs of a gearbox with its casing, and what the meshes are compared with."""
+    at = f"casings.{name}"
+    own = casing_settings(model, name)
+    whole = whole_frequencies(model, name, count)
+    # Reductions of the meshes to compare are so good that what differs is the mesh.
+    limit = max(4.0 * float(whole[-1]), own.modes_to or 0.0)
+
+    def run(options: dict[str, Any]) -> CoupledModes:
+        return reduced_modes(model.with_({f"{at}.{key}": value for key, value in options.items()}), name, count)
+
+    progress(0.0, "reference")
+    finest = run({"splits": own.splits + finer, "modes_to": limit})
+    truth, words, resolution = _reference(finest.frequency, finest.mesh_error + finest.reduction_error, finest.dofs)
+
+    def judge(found: CoupledModes) -> Judged:
+        return Judged(found.dofs, np.abs(found.frequency / truth - 1.0), found.mesh_error + found.reduction_error)
+
+    settings = [
+        replace(one, options={"splits": own.splits + one.options["splits"], "modes_to": limit})
+        for one in _splits(finer)
+    ]
+    rungs = Study(run, judge, resolution, repeat=repeat).rungs(settings, part_of(progress, 0.4, 0.7))
+
+    def reduced(found: CoupledModes) -> Judged:
+        return Judged(found.dofs, np.abs(found.frequency / whole - 1.0), found.reduction_error)
+
+    reductions = Study(run, reduced, _RESOLVED, rising=(), repeat=repeat)
+    return rungs + reductions.rungs(_fixed(kept), part_of(progress, 0.7, 1.0)), (words, resolution)
+
+
+def _reference(frequency: np.ndarray, error: np.ndarray, dofs: int) -> tuple[np.ndarray, str, float]:
+    """Frequencies (k,) in Hz that stand for the truth, in words, and what they resolve."""
+    largest = float(error.max())
+    words = (
+        f"the same body in a mesh of {dofs} dofs, its own estimated error of {largest:.1e} taken off; fixed modes: against "
+        "the whole mesh, not reduced"
+    )
+    return frequency * (1.0 - error), words, _LEFT * largest
+
+
+def _splits(finer: int) -> list[Setting]:
+    """Meshes coarser than the reference."""
+    names = ("the file's mesh", "elements split once", "split twice", "split three times")
+    return [Setting(names[k], "elements", float(2**k), {"splits": k}) for k in range(min(finer, len(names)))]
+
+
+def _fixed(kept: list[tuple[int, float]]) -> list[Setting]:
+    return [Setting(f"{n} fixed modes", "fixed modes", float(n), {"modes_to": limit}) for n, limit in kept]
+
+
+def _fixed_limits(fe: FiniteElementBody, fixed: tuple[int, ...]) -> list[tuple[int, float]]:
+    """Numbers of fixed-interface modes that can be kept, each with the limit in Hz that keeps them: between two modes."""
+    frequency = reduce(fe, None)[0].fixed_frequency
+    while max(fixed) >= len(frequency):
+        more = reduce(fe, 1.5 * float(frequency[-1]))[0].fixed_frequency
+        if len(more) == len(frequency):  # a mesh of few unknowns has no more
+            break
+        frequency = more
+    return [(n, 0.5 * float(frequency[n - 1] + frequency[n])) for n in fixed if n < len(frequency)]
+
+
+def _linear(fe: FiniteElementBody) -> FiniteElementBody:
+    """The body in linear elements on the same corners, its seats and held nodes those of them that are corners."""
+    mesh = without_middles(fe.mesh)
+    corners = np.unique(fe.mesh.cells[:, : fe.mesh.element.corners])
+    held = np.flatnonzero(np.isin(corners, fe.held))
+    joined = replace(fe.joined, mesh=mesh)
+    return FiniteElementBody(fe.settings, mesh, assemble(mesh, fe.settings.material), joined, (), (), held)
+
+
+def _relative(fe: FiniteElementBody, modes: MeshModes) -> np.ndarray:
+    return np.asarray(0.5 * eigenvalue_errors(fe, modes.eigenvalues, modes.shapes) / modes.eigenvalues)
+
+
+def _itself(found: Judged) -> Judged:
+    return found

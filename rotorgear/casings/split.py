@@ -1,0 +1,160 @@
+"""A mesh with every element split in eight: the same body, for what a finer mesh would find.
+
+The elements are mapped to space by their quadratic shape functions, and so are the places of the new nodes: the body keeps its
+shape to the last digit, curved faces too. A new node is known by the old nodes that it stands between, so that parts that touch
+without common nodes stay apart. Tetrahedra are cut along their shortest diagonal, which keeps their shapes from getting worse
+with every split (Zhang, Houston J. Math. 21, 1995).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rotorgear.casings.elements import Element, element
+from rotorgear.casings.file_mesh import NamedSet
+from rotorgear.casings.solid_mesh import SolidMesh
+
+# Four tetrahedra at the corners; the octahedron between them is cut along one of its diagonals, around which the other four
+# nodes stand in a ring. Nodes in VTK's order.
+_CORNER_TETS = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3))
+_DIAGONALS = ((4, 9), (5, 7), (6, 8))
+_RINGS = ((5, 6, 7, 8), (6, 4, 8, 9), (4, 5, 9, 7))
+_TRIANGLES = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))
+_QUADS = ((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3))
+
+
+def split(mesh: SolidMesh) -> SolidMesh:
+    """Split every element of a mesh in eight; sets keep their nodes and faces, and get those between them."""
+    shape = mesh.element
+    # Corners of the parts may stand on all nodes of a tetrahedron, and on the 27 places of a brick.
+    whole = shape if shape.corners == 4 else element("hexahedron27")
+    vertices, points = _with_middles(mesh, whole)
+    parts = _tetrahedra(mesh) if shape.corners == 4 else np.broadcast_to(_eighths(whole), (len(vertices), 8, 8))
+    corners = np.take_along_axis(vertices, parts.reshape(len(vertices), -1), axis=1).reshape(-1, shape.corners)
+    local = parts.reshape(corners.shape)
+    columns = [corners]
+    places = [points]
+    count = len(points)
+    of_sets = {name: _member(one, len(points), mesh, vertices, whole) for name, one in mesh.sets.items()}
+    members = {name: [flags] for name, flags in of_sets.items()}
+    entities: list[np.ndarray] = [np.array(shape.edges)]
+    if shape.kind == "hexahedron27":
+        entities += [np.array(shape.faces), np.arange(8)[None, :]]
+    for between in entities:
+        keys = np.sort(corners[:, between], axis=2).reshape(-1, between.shape[1])
+        names, first, number = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+        columns.append(count + number.reshape(len(corners), -1))
+        cell, entity = np.divmod(first, len(between))
+        reference = whole.nodes[np.take_along_axis(local[cell], between[entity], axis=1)].mean(axis=1)
+        places.append(_mapped(mesh, shape, cell // 8, reference))
+        for name, flags in of_sets.items():
+            members[name].append(flags[names].all(axis=1))
+        count += len(names)
+    sets = {
+        name: NamedSet(np.flatnonzero(np.concatenate(members[name])), _split_faces(mesh, one, vertices, whole))
+        for name, one in mesh.sets.items()
+    }
+    return replace(mesh, points=np.vstack(places), cells=np.hstack(columns), sets=sets, straightened=(), _faces=[])
+
+
+def without_middles(mesh: SolidMesh) -> SolidMesh:
+    """The mesh with linear elements on the same corners, to show how much too stiff these are."""
+    shape = mesh.element
+    kind = "tetra" if shape.corners == 4 else "hexahedron"
+    used, cells = np.unique(mesh.cells[:, : shape.corners], return_inverse=True)
+    place = np.full(len(mesh.points), -1, dtype=np.int64)
+    place[used] = np.arange(len(used))
+    sets = {}
+    for name, one in mesh.sets.items():
+        nodes = place[one.nodes]
+        sets[name] = NamedSet(nodes[nodes >= 0], [place[faces] for faces in one.faces])
+    corners = cells.reshape(-1, shape.corners)
+    return replace(mesh, points=mesh.points[used], cells=corners, kind=kind, sets=sets, _faces=[])
+
+
+def _with_middles(mesh: SolidMesh, whole: Element) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (e, k) of the elements with those in the middle of faces and elements, and all places (p, 3)."""
+    if mesh.kind == whole.kind:
+        return mesh.cells, mesh.points
+    faces = np.sort(mesh.cells[:, np.array(whole.faces)], axis=2).reshape(-1, 4)
+    _, first, number = np.unique(faces, axis=0, return_index=True, return_inverse=True)
+    cell, face = np.divmod(first, len(whole.faces))
+    on_faces = _mapped(mesh, mesh.element, cell, whole.nodes[20:26][face])
+    inside = _mapped(mesh, mesh.element, np.arange(len(mesh.cells)), np.full((len(mesh.cells), 3), 0.5))
+    start = len(mesh.points)
+    middles = start + len(on_faces) + np.arange(len(mesh.cells))
+    vertices = np.hstack([mesh.cells, start + number.reshape(len(mesh.cells), -1), middles[:, None]])
+    return vertices, np.vstack([mesh.points, on_faces, inside])
+
+
+def _tetrahedra(mesh: SolidMesh) -> np.ndarray:
+    """Corners (e, 8, 4) of the eighths of each tetrahedron among its 10 nodes, by the shortest of its three diagonals."""
+    octahedra = np.array(
+        [[(ring[i], ring[i - 3], *pair) for i in range(4)] for pair, ring in zip(_DIAGONALS, _RINGS, strict=True)]
+    )
+    nodes = mesh.element.nodes
+    edges = nodes[octahedra[..., 1:]] - nodes[octahedra[..., :1]]
+    mirrored = np.linalg.det(edges) < 0.0
+    octahedra[mirrored] = octahedra[mirrored][:, [1, 0, 2, 3]]
+    ends = mesh.points[mesh.cells[:, np.array(_DIAGONALS)]]
+    shortest = np.argmin(np.linalg.norm(ends[:, :, 0] - ends[:, :, 1], axis=2), axis=1)
+    corner = np.broadcast_to(np.array(_CORNER_TETS), (len(mesh.cells), 4, 4))
+    return np.concatenate([corner, octahedra[shortest]], axis=1)
+
+
+def _eighths(whole: Element) -> np.ndarray:
+    """Corners (8, 8) of the eighths of a brick among its 27 nodes."""
+    corners = whole.nodes[:8]
+    places = 0.5 * (corners[:, None] + corners[None, :])
+    return np.asarray(np.argmin(np.linalg.norm(places[:, :, None] - whole.nodes, axis=3), axis=2))
+
+
+def _mapped(mesh: SolidMesh, shape: Element, cells: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    """Places (n, 3) in space of reference places (n, 3) of elements (n,)."""
+    found = np.empty((len(cells), 3))
+    known, which = np.unique(np.round(reference, 9), axis=0, return_inverse=True)
+    values = shape.shapes(known.T)[0]
+    for number in range(len(known)):
+        here = np.flatnonzero(which.ravel() == number)
+        found[here] = np.einsum("k,nki->ni", values[:, number], mesh.points[mesh.cells[cells[here]]])
+    return found
+
+
+def _boundary_vertices(mesh: SolidMesh, vertices: np.ndarray, whole: Element) -> np.ndarray:
+    """Nodes (f, m) of the outer faces among those with middles: corners, edges, for a brick the middle."""
+    faces = vertices[:, whole.face_nodes].reshape(-1, whole.face_nodes.shape[1])
+    keys = np.sort(faces[:, : len(whole.faces[0])], axis=1)
+    _, first, counts = np.unique(keys, axis=0, return_index=True, return_counts=True)
+    return np.asarray(faces[np.sort(first[counts == 1])])
+
+
+def _chosen_faces(mesh: SolidMesh, one: NamedSet, vertices: np.ndarray, whole: Element) -> np.ndarray:
+    """The outer faces of a set, by its faces or by its nodes."""
+    faces = _boundary_vertices(mesh, vertices, whole)
+    corners = len(whole.faces[0])
+    if one.faces:
+        own = {tuple(row) for listed in one.faces for row in np.sort(listed[:, :corners], axis=1).tolist()}
+        return faces[[tuple(row) in own for row in np.sort(faces[:, :corners], axis=1).tolist()]]
+    member = np.zeros(len(mesh.points), dtype=bool)
+    member[one.nodes] = True
+    own_nodes = mesh.element.face_nodes.shape[1]
+    return faces[member[faces[:, :own_nodes]].all(axis=1)]
+
+
+def _member(one: NamedSet, size: int, mesh: SolidMesh, vertices: np.ndarray, whole: Element) -> np.ndarray:
+    """Which nodes (size,) of those with middles are in a set."""
+    flags = np.zeros(size, dtype=bool)
+    flags[one.nodes] = True
+    flags[np.unique(_chosen_faces(mesh, one, vertices, whole))] = True
+    return flags
+
+
+def _split_faces(mesh: SolidMesh, one: NamedSet, vertices: np.ndarray, whole: Element) -> list[np.ndarray]:
+    """Corners of the parts of a set's faces, where it has faces."""
+    if not one.faces:
+        return []
+    faces = _chosen_faces(mesh, one, vertices, whole)
+    parts = _TRIANGLES if len(whole.faces[0]) == 3 else _QUADS
+    return [faces[:, np.array(parts)].reshape(-1, len(parts[0]))]
