@@ -54,8 +54,7 @@ def read_body(path: Path, key: str) -> ReducedBody | None:
     values = _read(path, key)
     try:
         if values is not None:
-            surface = Surface(*(values.pop(f"{_SURFACE}{one.name}") for one in fields(Surface)))
-            return ReducedBody(**{"rigid": None, **values}, surface=surface)  # a body that is held has no rigid motions
+            return ReducedBody(**{"rigid": None, **values})  # a body that is held has no rigid motions
     except (KeyError, TypeError):
         pass  # of another kind: computed anew
     return None
@@ -63,10 +62,7 @@ def read_body(path: Path, key: str) -> ReducedBody | None:
 
 def write_body(path: Path, key: str, body: ReducedBody) -> None:
     """Write a casing; a full disk or a folder that can't be written costs time only."""
-    assert body.surface is not None, "a body of a mesh has a surface"
-    surface = {f"{_SURFACE}{one.name}": getattr(body.surface, one.name) for one in fields(Surface)}
-    own = {one.name: getattr(body, one.name) for one in fields(body) if one.name not in ("surface", "seconds")}
-    _write(path, key, own | surface)
+    _write(path, key, {one.name: getattr(body, one.name) for one in fields(body) if one.name != "seconds"})
 
 
 def read_wheel(path: Path, key: str) -> ReducedWheel | None:
@@ -92,6 +88,7 @@ def _read(path: Path, key: str) -> dict[str, Any] | None:
             if file.attrs["key"] != key or file.attrs["checksum"] != _checksum(values):
                 return None
             plain: dict[str, Any] = {name: value.item() if value.ndim == 0 else value for name, value in values.items()}
+            plain["surface"] = Surface(*(plain.pop(f"{_SURFACE}{one.name}") for one in fields(Surface)))
             for name in _TEXTS:
                 if name in file.attrs:
                     text = file.attrs[name]
@@ -104,6 +101,9 @@ def _read(path: Path, key: str) -> dict[str, Any] | None:
 def _write(path: Path, key: str, record: dict[str, Any]) -> None:
     import h5py
 
+    surface = record.pop("surface")
+    assert surface is not None, "a body of a mesh has a surface"
+    record |= {f"{_SURFACE}{one.name}": getattr(surface, one.name) for one in fields(Surface)}
     values = {name: np.asarray(value) for name, value in record.items() if name not in _TEXTS and value is not None}
     texts = {name: value for name, value in record.items() if name in _TEXTS}
     scratch = path.with_name(f".{path.stem}.{uuid.uuid4().hex}")

@@ -48,6 +48,8 @@ def eigenvalue_errors(fe: FiniteElementBody, eigenvalues: np.ndarray, shapes: np
         eigenvalues: λ_h (k,).
         shapes: (3p, k), of modal mass 1 of the whole structure.
     """
+    if not shapes.shape[1]:
+        return np.zeros(0)
     system = _system(fe, eigenvalues, shapes)
     free = system.free
     r = system.residual * free[:, None, None]

@@ -146,7 +146,7 @@ def reduce_in_basis(
         fixed_frequency=np.sqrt(squares[:kept]) / (2.0 * np.pi),
         left_frequency=left,
         error=error,
-        surface=_surface(fe, basis),
+        surface=surface_of(fe, basis),
         held=bool(len(fe.held) or len(flexibility)),
         notes=fe.mesh.notes,
         seconds=seconds,
@@ -209,7 +209,7 @@ def _mount_damping(fe: FiniteElementBody, basis: np.ndarray) -> np.ndarray:
     return C
 
 
-def _surface(fe: FiniteElementBody, basis: np.ndarray) -> Surface:
+def surface_of(fe: FiniteElementBody, basis: np.ndarray) -> Surface:
     """The outer faces in flat triangles on all their nodes, so that curved shapes of quadratic elements are seen."""
     faces = fe.mesh.boundary
     if len(fe.mesh.element.faces[0]) == 3:

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.casings.reduced_body import Surface
+
 
 @dataclass(frozen=True)
 class ReducedWheel:
@@ -36,6 +38,8 @@ class ReducedWheel:
         left_frequency: Hz, the least frequency of the mesh on its bore that is not kept.
         averaged: largest relative change of the kept modes' frequencies because the body is taken for one of revolution.
         notes: sentences on what was done with the mesh.
+        mesh_error: largest estimated relative error, by the mesh, of the frequencies of its modes.
+        surface: in the axes of the gear, with the displacements for unit coordinates p.
     """
 
     mass: np.ndarray
@@ -57,6 +61,8 @@ class ReducedWheel:
     left_frequency: float
     averaged: float
     notes: tuple[str, ...] = ()
+    mesh_error: float = 0.0
+    surface: Surface | None = None
 
     @property
     def size(self) -> int:

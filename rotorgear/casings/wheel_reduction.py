@@ -28,8 +28,9 @@ import scipy.sparse as sp
 from rotorgear.casings.assembly import rigid_motions
 from rotorgear.casings.constrained import Constrained, ElasticBody
 from rotorgear.casings.fe_body import FiniteElementBody
+from rotorgear.casings.mesh_error import eigenvalue_errors
 from rotorgear.casings.modes import modes_up_to
-from rotorgear.casings.reduction import independent, symmetric
+from rotorgear.casings.reduction import independent, surface_of, symmetric
 from rotorgear.casings.spin import spin_integrals
 from rotorgear.casings.wheel import ReducedWheel
 from rotorgear.errors import AnalysisError
@@ -84,6 +85,7 @@ def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progre
     modes = space.shapes @ modes[:, :kept]
     rim_weights = fe.mean_weights((rim,))
     static = space.shapes @ system.solve(space.forces(np.hstack([rim_weights, fe.matrices.times_mass(R)])))
+    error = 0.5 * eigenvalue_errors(clamped, squares[:kept], modes) / squares[:kept]
     mass_modes = fe.matrices.times_mass(modes)
     for _ in range(2):
         static -= modes @ (mass_modes.T @ static)
@@ -137,6 +139,8 @@ def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progre
         left_frequency=left,
         averaged=averaged,
         notes=fe.mesh.notes,
+        mesh_error=float(error.max(initial=0.0)),
+        surface=surface_of(fe, E),
     )
 
 

@@ -23,7 +23,7 @@ from scipy.spatial import cKDTree
 from rotorgear.elements.shaft import cowper
 from rotorgear.model.model import Model
 from rotorgear.model.parts.shaft import Section
-from rotorgear.results.modal import NodeTable
+from rotorgear.results.modal import NodeTable, body_name
 
 
 @dataclass(frozen=True)
@@ -104,13 +104,18 @@ class Skeleton:
         self._shear = {name: self._shear_numbers(name) for name in model.shafts}
 
     def positions(self) -> np.ndarray:
-        """Where the nodes are shown, (p, 3) in m; casings, which have no axis, where they are."""
-        return np.array(
+        """Where the nodes are shown, (p, 3) in m; casings, which have no axis, where they are; gear bodies on their shaft."""
+        shown = np.array(
             [
                 [*self.axes[shaft], place[2]] if shaft else place
                 for shaft, place in zip(self.nodes.shaft, self.nodes.position, strict=True)
             ]
         )
+        for gear in self.model.layout.elastic_bodies:
+            numbers = self.nodes.of_casing(body_name(gear))
+            shaft = self.model.layout.gear(gear).shaft
+            shown[numbers, :2] += np.array(self.axes[shaft]) - np.array(self.model.shafts[shaft].position or (0.0, 0.0))
+        return shown
 
     def along(self, shaft: str, points: np.ndarray) -> Attachment:
         """Each point rides on the cross-section at its own z; beyond the ends on that of the end."""
@@ -130,7 +135,7 @@ class Skeleton:
         numbers = self.nodes.of_casing(casing)
         if not len(numbers):
             return self.on_ground(points)
-        nearest = cKDTree(self.nodes.position[numbers]).query(points)[1]
+        nearest = cKDTree(self.positions()[numbers]).query(points)[1]
         return self._fixed_to(numbers[nearest], np.zeros_like(points))
 
     def on_ground(self, points: np.ndarray) -> Attachment:

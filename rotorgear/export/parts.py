@@ -14,6 +14,7 @@ from rotorgear.export.surface import Surface, ball, hollow_cylinder, join, make_
 from rotorgear.export.teeth import DISK_GROOVES, contour_of, grooved_contour, tooth_phases, twist_rates
 from rotorgear.model.model import Model
 from rotorgear.model.parts.shaft import Shaft
+from rotorgear.results.modal import body_name
 
 # Stripes along a shaft, by which its twist is seen: how many, half their width in rad, and their height relative to the radius.
 _STRIPES = 4
@@ -112,7 +113,16 @@ def gear_pieces(model: Model, skeleton: Skeleton, detail: Detail) -> Iterator[Pi
             surface = _helix(model, gear.name, plane, rate, phases[gear.name], detail)
             placed = surface.moved((*skeleton.axes[gear.shaft], 0.0))
             place = gear.places[number if len(gear.places) == 2 else 0]
-            attachment = skeleton.rigid(*place, placed.points)
+            wheel = gear.wheel
+            if wheel is None or wheel.surface is None:
+                attachment = skeleton.rigid(*place, placed.points)
+            else:
+                # Its teeth ride on its rim.
+                body = body_name(gear.name)
+                attachment = skeleton.on_casing(body, placed.points)
+                shown = make_surface(wheel.surface.points, [], [wheel.surface.triangles])
+                shown = shown.moved((*skeleton.axes[gear.shaft], place.z))
+                yield Piece(f"gears.{gear.name}", "gear", gear.shaft, shown, skeleton.on_casing(body, shown.points))
             yield Piece(f"gears.{gear.name}", "gear", gear.shaft, placed, attachment)
 
 
@@ -126,6 +136,9 @@ def _helix(model: Model, name: str, plane: float, rate: float, phase: float, det
     hole = _hole(model, gear.shaft, plane - half, plane + half, gear.body.bore, float(radii.min()))
     geometry = gear.geometry
     body = gear.body
+    wheel = model.layout.gear(name).wheel
+    if wheel is not None:
+        hole = min(wheel.rim_radius, _LARGEST_HOLE * float(radii.min()))
     if geometry is None or body.rim_thickness is None:
         return twisted_prism(angles + phase, radii, z, rate * (z - plane), hole)
 

@@ -16,7 +16,7 @@ from rotorgear.model.model import Model
 from rotorgear.plots.camera import best_direction, look
 from rotorgear.plots.offscreen import RenderError, can_render
 from rotorgear.plots.scene import INK, Scene, add_headline
-from rotorgear.results.modal import ModalResult, NodeTable
+from rotorgear.results.modal import ModalResult, NodeTable, body_name
 
 _MILLISECONDS = 40
 _FRAMES = 50
@@ -129,7 +129,7 @@ def _require_display() -> None:
 
 
 def _nodes(model: Model) -> NodeTable:
-    """As many nodes as it takes to show a model at rest: the ends of its shafts, its pedestals, the surfaces of its casings."""
+    """As many nodes as it takes to show a model at rest: ends of shafts, pedestals, surfaces of casings and gear bodies."""
     rows = [(name, z, "") for name, shaft in model.shafts.items() for z in dict.fromkeys((shaft.start, shaft.end))]
     for name, bearing in model.bearings.items():
         if bearing.pedestal is not None:
@@ -137,11 +137,17 @@ def _nodes(model: Model) -> NodeTable:
     shafts, z, pedestals = zip(*rows, strict=True)
     position = np.column_stack([np.zeros((len(rows), 2)), z])
     surfaces = {name: surface for name in model.casings if (surface := model.layout.casing(name).surface) is not None}
-    casings = [name for name, surface in surfaces.items() for _ in surface.points]
+    points = {name: surface.points for name, surface in surfaces.items()}
+    for gear, wheel in model.layout.elastic_bodies.items():
+        if wheel.surface is not None:
+            place = model.layout.gear(gear).places[0]
+            x, y = model.shafts[place.shaft].position or (0.0, 0.0)
+            points[body_name(gear)] = wheel.surface.points + np.array([x, y, place.z])
+    casings = [name for name, those in points.items() for _ in those]
     nothing = ("",) * len(casings)
     return NodeTable(
         (*shafts, *nothing),
-        np.vstack([position, *(surface.points for surface in surfaces.values())]),
+        np.vstack([position, *points.values()]),
         (*pedestals, *nothing),
         (*(("",) * len(rows) if casings else ()), *casings),
     )

@@ -8,18 +8,27 @@ from rotorgear.results.result import ModelResult
 from rotorgear.results.schema import Record, Written, derived, of
 
 
+def body_name(gear: str) -> str:
+    """What the points on the surface of a gear's elastic body are called among those of casings."""
+    return f"gears.{gear}.body"
+
+
 class NodeTable(Record):
     """Where the p nodes are.
 
     The nodes of the model come first, then stations inside elements of higher order, where the shape is known as well, then the
-    points on the surfaces of casings, which only displace.
+    points on the surfaces of casings and elastic gear bodies, which only displace.
     """
 
     shaft: tuple[str, ...] = of("shaft", "", "node")
     position: np.ndarray = of("position", "m", "node", "xyz")
     pedestal: tuple[str, ...] = of("bearing whose pedestal the node is", "", "node", note=', else `""`')
     casing: tuple[str, ...] = of(
-        "casing whose surface the node is on", "", "node", note=', else `""`; empty without casings', default=()
+        "casing or gear body whose surface the node is on",
+        "",
+        "node",
+        note=', gear bodies as `"gears.NAME.body"`, else `""`; empty without them',
+        default=(),
     )
 
     def of_casing(self, casing: str) -> np.ndarray:

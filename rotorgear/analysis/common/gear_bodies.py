@@ -23,8 +23,9 @@ def _gear_body_notes(system: System) -> Iterator[str]:
         address = f"gears.{name}.body"
         yield (
             f"{address}: all but {wheel.modes} modes of its mesh on its bore below {wheel.left_frequency:.4g} Hz and its static "
-            "answers to forces on the rim; the error of its mesh; its growth by centrifugal forces, whose stiffness is there"
+            "answers to forces on the rim; its growth by centrifugal forces, whose stiffness is there"
         )
+        yield f"{address}: the error of its mesh, up to {wheel.mesh_error:.1e} in the frequencies of its modes on the bore"
         yield f"{address}: what differs around its axis, by a mean over all angles; {wheel.averaged:.1e} in frequency"
         yield from (f"{address}: {note}" for note in wheel.notes)
 

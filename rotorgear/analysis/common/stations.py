@@ -1,17 +1,20 @@
-"""Where a result knows its shapes: nodes, stations inside shaft elements with polynomials of their own, surfaces of casings."""
+"""Where a result knows its shapes: nodes, stations inside shaft elements of higher order, surfaces of casings and gear bodies."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
+from rotorgear.casings.assembly import rigid_motions
 from rotorgear.elements.shaft import inner_fields
-from rotorgear.results.modal import NodeTable
+from rotorgear.results.modal import NodeTable, body_name
 from rotorgear.system.groups import alike, element_data, shaft_dofs
 from rotorgear.system.system import System
 
 
 def shapes_at_stations(system: System, q: np.ndarray) -> tuple[NodeTable, np.ndarray]:
-    """Return nodes, then inner stations, then points on casings, and the displacements (p, 6, m) there, from all dofs q (a, m).
+    """Return nodes, inner stations and points on casings and gear bodies, and the displacements (p, 6, m) there of dofs q (a, m).
 
     Between the nodes of a basic element the exact static shape is all there is, so it gets no stations.
     """
@@ -37,14 +40,26 @@ def shapes_at_stations(system: System, q: np.ndarray) -> tuple[NodeTable, np.nda
             shafts += [name] * len(z)
             pedestals += [""] * len(z)
     casings: list[str] = []
-    for name in system.model.casings:
-        surface = system.layout.casing(name).surface
-        if surface is None:
-            continue
-        casings += [""] * (len(shafts) - len(casings)) + [name] * len(surface.points)
-        shafts += [""] * len(surface.points)
-        pedestals += [""] * len(surface.points)
-        positions.append(surface.points)
-        displaced = surface.basis @ q[system.nodes.of_casing(name)]
+    for name, points, displaced in _surfaces(system, q):
+        casings += [""] * (len(shafts) - len(casings)) + [name] * len(points)
+        shafts += [""] * len(points)
+        pedestals += [""] * len(points)
+        positions.append(points)
         shapes.append(np.concatenate([displaced, np.zeros_like(displaced)], axis=1))
     return NodeTable(tuple(shafts), np.vstack(positions), tuple(pedestals), tuple(casings)), np.vstack(shapes)
+
+
+def _surfaces(system: System, q: np.ndarray) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+    """Yield name, points (p, 3) and displacements (p, 3, m) of the surface of each casing and elastic gear body."""
+    for name in system.model.casings:
+        surface = system.layout.casing(name).surface
+        if surface is not None:
+            yield name, surface.points, surface.basis @ q[system.nodes.of_casing(name)]
+    for name, wheel in system.layout.elastic_bodies.items():
+        if wheel.surface is None:
+            continue
+        place = system.layout.gear(name).places[0]
+        node = system.nodes.at(*place)
+        rigid = rigid_motions(wheel.surface.points).reshape(-1, 3, 6) @ q[6 * node : 6 * node + 6]
+        elastic = wheel.surface.basis @ q[system.nodes.of_body(name)]
+        yield body_name(name), wheel.surface.points + system.positions()[node], rigid + elastic

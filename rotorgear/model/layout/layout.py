@@ -65,7 +65,13 @@ class Layout:
     @cached_property
     def elastic_bodies(self) -> dict[str, ReducedWheel]:
         """The bodies of all gears that have a mesh."""
-        return {gear.name: gear.wheel for gear in self.gears if gear.wheel is not None}
+        found = {gear.name: gear.wheel for gear in self.gears if gear.wheel is not None}
+        if found:
+            from rotorgear.model.layout.feet import teeth_end_on_rim
+
+            for mesh in self.meshes:
+                teeth_end_on_rim(mesh, found)
+        return found
 
     def casing(self, name: str) -> ReducedBody:
         """The reduced body of a casing, made once and kept; whoever is `listening` hears of its progress.

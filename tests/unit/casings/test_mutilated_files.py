@@ -161,7 +161,7 @@ MESHES: dict[str, tuple[Callable[[], FileMesh], str]] = {
     "a point that is no number": (_points(_set((3, 1), np.nan)), "finite"),
     "a point at infinity": (_points(_set((3, 1), np.inf)), "finite"),
     "a point far away": (_points(_set((0, 0), 1e12)), ""),
-    "a point moved into the next element": (_points(_set(0, [0.09, 0.05, 0.19])), ""),
+    "a point moved into the next element": (_points(_set(0, [0.09, 0.05, 0.19])), "lie in one another"),
     "flat": (_points(_set((slice(None), 2), 0.0)), "no volume"),
     "all points the same": (_points(_set(slice(None), 1.0)), "no volume"),
     "points that no element uses": (

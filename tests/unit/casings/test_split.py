@@ -66,6 +66,19 @@ def test_curved_faces_stay_where_they_are_and_shapes_get_no_worse(kind: str) -> 
     assert len(finer.boundary) == 16 * len(mesh.boundary)
 
 
+def test_tetrahedra_do_not_get_flatter_with_every_split() -> None:
+    mesh = solid_mesh(block((0.1, 0.06, 0.2), (1, 1, 1), "tetra10"), 1.0, "mesh")
+
+    def worst(one: SolidMesh) -> float:
+        corners = one.points[one.cells[:, :4]]
+        sides = corners[:, [0, 0, 0, 1, 1, 2]] - corners[:, [1, 2, 3, 2, 3, 3]]
+        volume = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1]))
+        return float((volume / np.linalg.norm(sides, axis=2).max(axis=1) ** 3).min())
+
+    assert worst(split(split(mesh))) > 0.6 * worst(mesh)
+    assert worst(split(split(mesh))) == pytest.approx(worst(split(mesh)), rel=1e-9)
+
+
 def test_linear_elements_on_the_same_corners_are_stiffer(tmp_path: Path) -> None:
     body = finite_element_body(settings(tmp_path, (1, 1, 2), "tetra10"))
     linear = without_middles(body.mesh)

@@ -13,11 +13,13 @@ from scipy.special import iv, ivp, jv, jvp, kv, kvp, yv, yvp
 
 import rotorgear as rg
 from rotorgear.casings.assembly import Elastic
+from rotorgear.casings.casing import forget
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.settings import CasingSettings
 from rotorgear.casings.wheel import ReducedWheel
 from rotorgear.casings.wheel_reduction import reduce_wheel
 from rotorgear.errors import AnalysisError
+from tests.paths import ROOT
 from tests.unit.casings.blocks import write_inp
 from tests.unit.casings.rings import ring
 
@@ -361,3 +363,48 @@ def test_a_sweep_takes_a_small_gearbox_with_an_elastic_body_in_a_basis(folder: P
     summary = reducer.summary
     assert summary is not None
     assert max(summary.closed, summary.apart) <= 0.01
+
+
+def test_loaded_teeth_are_held_where_the_rim_of_the_mesh_is() -> None:
+    # The nodes of the set are within the mesh, three modules below the roots: what lies outside rides on them.
+    model = rg.load(ROOT / "models" / "elastic_wheel.toml")
+    assert model.layout.elastic_bodies["wheel"].rim_radius == pytest.approx(0.0875, rel=1e-6)
+    for thickness, what in ((2.0, "would be in neither"), (4.0, "would count twice")):
+        other = model.with_("meshes.pair.tooth_fe.rim_thickness", thickness)
+        with pytest.raises(rg.AnalysisError, match=rf"{what}.*tooth_fe\.rim_thickness = 3\."):
+            _ = other.layout.elastic_bodies
+
+
+def test_the_surface_of_a_body_moves_with_its_shaft_and_its_waves(folder: Path) -> None:
+    model = pair(folder)
+    found = rg.modal(model, modes=14)
+    own = found.nodes.of_casing("gears.wheel.body")
+    points = found.nodes.position[own] - [0.15, 0.0, 0.08]
+    radius = np.hypot(points[:, 0], points[:, 1])
+    assert radius.max() == pytest.approx(0.1)
+    node = found.nodes.nearest("b", 0.08)
+    bore = np.flatnonzero(radius < 0.0151)
+    for k in range(14):
+        centre = found.shapes[node, :, k]
+        rigid = centre[:3] + np.cross(centre[3:], points)
+        # The bore is held by the shaft; the rim is not.
+        moved = found.shapes[own, :3, k]
+        assert np.abs(moved[bore] - rigid[bore]).max() < 1e-6 * np.abs(found.shapes[:, :3, k]).max() + 1e-12
+    waves = [k for k, words in enumerate(found.description) if "2 nodal diameters" in words]
+    rim = np.flatnonzero(radius > 0.099)
+    angle = np.arctan2(points[rim, 1], points[rim, 0])
+    axial = found.shapes[own[rim], 2, waves[0]]
+    share = [abs(np.sum(axial * np.exp(-1j * n * angle))) for n in range(5)]
+    assert np.argmax(share) == 2
+
+
+def test_kept_bodies_keep_their_surface_and_their_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROTORGEAR_CACHE", str(tmp_path / "cache"))
+    forget()
+    first = pair(tmp_path).layout.elastic_bodies["wheel"]
+    forget()
+    again = pair(tmp_path).layout.elastic_bodies["wheel"]
+    assert first.surface is not None
+    assert again.surface is not None
+    np.testing.assert_array_equal(again.surface.basis, first.surface.basis)
+    assert again.mesh_error == first.mesh_error > 0.0
