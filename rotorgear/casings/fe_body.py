@@ -14,7 +14,7 @@ from rotorgear.casings.file_mesh import NamedSet
 from rotorgear.casings.joins import Joined, join
 from rotorgear.casings.mesh_file import read_mesh
 from rotorgear.casings.patches import Patch, by_cylinder, by_set, cylinder_faces
-from rotorgear.casings.settings import CasingSettings
+from rotorgear.casings.settings import CasingSettings, MountSettings
 from rotorgear.casings.solid_mesh import SolidMesh, merged, solid_mesh
 from rotorgear.casings.split import split
 from rotorgear.errors import AnalysisError
@@ -58,6 +58,7 @@ class FiniteElementBody:
         seats: patches in the order of the settings.
         mounts: patches in the order of the settings.
         held: nodes that are fixed.
+        held_sets: the same by sets, in the order of the settings; a node of two is in the first.
     """
 
     settings: CasingSettings
@@ -67,6 +68,7 @@ class FiniteElementBody:
     seats: tuple[Patch, ...]
     mounts: tuple[Patch, ...]
     held: np.ndarray
+    held_sets: tuple[np.ndarray, ...] = ()
 
     @property
     def dofs(self) -> int:
@@ -140,17 +142,29 @@ class FiniteElementBody:
             W[dofs, 6 * number : 6 * number + 6] = patch.weights(self.mesh.points)
         return W
 
+    @property
+    def mount_of_spring(self) -> np.ndarray:
+        """Number (m,) of the mount that each of the `springs` belongs to."""
+        counts = [len(_strong(mount)[0]) for mount in self.settings.mounts]
+        return np.repeat(np.arange(len(counts)), counts)
+
     def springs(self) -> tuple[np.ndarray, np.ndarray]:
         """Directions (3p, m) of the springs of all mounts, W V, and their flexibilities (m,): D = V diag(1/C) Vᵀ."""
         W = self.mean_weights(self.mounts)
         columns = []
         flexibility: list[float] = []
         for number, mount in enumerate(self.settings.mounts):
-            values, directions = np.linalg.eigh(np.array(mount.stiffness))
-            strong = values > 1e-12 * max(values.max(), 1e-300)
-            columns.append(W[:, 6 * number : 6 * number + 6] @ directions[:, strong])
-            flexibility += (1.0 / values[strong]).tolist()
+            values, directions = _strong(mount)
+            columns.append(W[:, 6 * number : 6 * number + 6] @ directions)
+            flexibility += (1.0 / values).tolist()
         return (np.hstack(columns) if columns else np.zeros((self.dofs, 0))), np.array(flexibility)
+
+
+def _strong(mount: MountSettings) -> tuple[np.ndarray, np.ndarray]:
+    """Stiffness (k,) of a mount along the directions (6, k) that it resists."""
+    values, directions = np.linalg.eigh(np.array(mount.stiffness))
+    strong = values > 1e-12 * max(values.max(), 1e-300)
+    return values[strong], directions[:, strong]
 
 
 def mass_properties(rigid_mass: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
@@ -189,12 +203,15 @@ def finite_element_body(settings: CasingSettings, progress: Progress = silent) -
     )
     mounts = tuple(by_set(mesh, mount.set, f"{address}.mounts.{mount.set}") for mount in settings.mounts)
     held_patches = [by_set(mesh, name, f"{address}.held[{number}]") for number, name in enumerate(settings.held)]
-    held = (
-        np.unique(np.concatenate([patch.nodes for patch in held_patches])) if held_patches else np.zeros(0, dtype=int)
-    )
+    held = np.zeros(0, dtype=int)
+    held_sets = []
+    for patch in held_patches:
+        held_sets.append(np.setdiff1d(patch.nodes, held))
+        held = np.union1d(held, patch.nodes)
     _apart(settings, seats, held, joined.tied)
     progress(0.3, f"{address}: assembling {3 * len(mesh.points)} unknowns")
-    body = FiniteElementBody(settings, mesh, assemble(mesh, settings.material), joined, seats, mounts, held)
+    matrices = assemble(mesh, settings.material)
+    body = FiniteElementBody(settings, mesh, matrices, joined, seats, mounts, held, tuple(held_sets))
     for patch in (*seats, *mounts):
         patch.weights(mesh.points)
     _believable_mass(body)

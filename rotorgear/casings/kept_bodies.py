@@ -26,7 +26,7 @@ from rotorgear.fingerprint import fingerprint
 _MAKERS = ("casings",)
 _SURFACE = "surface."
 # Fields that are texts, or lists of them.
-_TEXTS = ("name", "seats", "notes")
+_TEXTS = ("name", "seats", "notes", "ground_sets")
 
 
 def cache_folder() -> Path:
@@ -54,7 +54,9 @@ def read_body(path: Path, key: str) -> ReducedBody | None:
     values = _read(path, key)
     try:
         if values is not None:
-            return ReducedBody(**{"rigid": None, **values})  # a body that is held has no rigid motions
+            return ReducedBody(
+                **{"rigid": None, "ground_force": None, "ground_weight": None, **values}
+            )  # a body that is held has no rigid motions
     except (KeyError, TypeError):
         pass  # of another kind: computed anew
     return None

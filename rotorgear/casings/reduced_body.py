@@ -67,6 +67,9 @@ class ReducedBody:
         error: (n, n) symmetric: λ² qᵀ error q is what a mode's λ = ω² is too large by reduction, for qᵀ M q = 1 over the whole
             structure; see `eigenvalue_error`. None where it is not known.
         surface: None for a body without a mesh.
+        ground_sets: names of held sets and mounts.
+        ground_force: (6 g, n) force, and moment about the origin, of the ground on the body at each of them for unit coordinates.
+        ground_weight: (6 g, 3) what gravity of 1 m/s^2 adds to it.
         held: whether held faces or mounts carry it; else it floats, and K has the six rigid motions.
         notes: sentences on what was done with the mesh, such as an order that was raised.
         seconds: wall time by step.
@@ -87,6 +90,9 @@ class ReducedBody:
     left_frequency: float = float("inf")
     error: np.ndarray | None = None
     surface: Surface | None = None
+    ground_sets: tuple[str, ...] = ()
+    ground_force: np.ndarray | None = None
+    ground_weight: np.ndarray | None = None
     held: bool = False
     notes: tuple[str, ...] = ()
     seconds: dict[str, float] = field(default_factory=dict, compare=False)

@@ -128,6 +128,7 @@ def reduce_in_basis(
     seconds["residual shapes"] = time.perf_counter() - started
 
     body_mass, centre, inertia = fe.mass_properties
+    ground = _ground(fe, space, system, basis)
     damping = modal_damping(M, K, fe.settings.damping_ratio) if fe.settings.damping_ratio else np.zeros_like(M)
     damping = damping + _mount_damping(fe, basis)
     progress(1.0, f"{name}: reduced to {len(M)} coordinates")
@@ -147,6 +148,9 @@ def reduce_in_basis(
         left_frequency=left,
         error=error,
         surface=surface_of(fe, basis),
+        ground_sets=(*fe.settings.held, *(mount.set for mount in fe.settings.mounts)),
+        ground_force=ground[0],
+        ground_weight=ground[1],
         held=bool(len(fe.held) or len(flexibility)),
         notes=fe.mesh.notes,
         seconds=seconds,
@@ -207,6 +211,41 @@ def _mount_damping(fe: FiniteElementBody, basis: np.ndarray) -> np.ndarray:
         part = motions[6 * number : 6 * number + 6]
         C += part.T @ np.array(mount.damping) @ part
     return C
+
+
+def _ground(
+    fe: FiniteElementBody, space: FreeSpace, system: Constrained, basis: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Wrenches (6 g, n) of the ground about the origin for unit coordinates, and (6 g, 3) for gravity: held sets, then mounts.
+
+    By the principle of virtual work f = Ψᵀ (K u - M g), with the static shapes Ψ of the body for unit motions of the ground at
+    one place, the seats at rest. Ψᵀ K Φ has no part of the modes of the inside, so that statics is exact however few they are.
+    """
+    R = rigid_motions(fe.mesh.points)
+    springs, flexibility = fe.springs()
+    seats = fe.mean_weights(fe.seats) if fe.settings.connection == "mean" else np.zeros((fe.dofs, 0))
+    forces = [np.zeros((0, basis.shape[1]))]
+    weights = [np.zeros((0, 3))]
+
+    def add(moved: np.ndarray, drawn: np.ndarray) -> None:
+        """Of nodes that are moved (3p, 6), and the far ends of springs that are drawn (m, 6)."""
+        motions = np.vstack([-seats.T @ moved, drawn - springs.T @ moved])
+        shapes = moved + space.shapes @ system.solve(-space.forces(fe.stiffness_times(moved)), motions)
+        stretched = (springs.T @ shapes - drawn) / flexibility[:, None]
+        forces.append((fe.stiffness_times(shapes) + springs @ stretched).T @ basis)
+        weights.append(-shapes.T @ fe.matrices.times_mass(R[:, :3]))
+
+    for nodes in fe.held_sets:
+        moved = np.zeros_like(R)
+        dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
+        moved[dofs] = R[dofs]
+        if fe.joined.interpolation is not None:
+            moved = np.asarray(fe.joined.interpolation @ moved.reshape(len(fe.mesh.points), -1)).reshape(moved.shape)
+        add(moved, np.zeros((len(flexibility), 6)))
+    for number in range(len(fe.mounts)):
+        own = fe.mount_of_spring == number
+        add(np.zeros_like(R), own[:, None] * (springs.T @ R))
+    return np.vstack(forces), np.vstack(weights)
 
 
 def surface_of(fe: FiniteElementBody, basis: np.ndarray) -> Surface:

@@ -257,6 +257,26 @@ class StaticResult(ModelResult, kind="static"):
         default_factory=dict,
         kw_only=True,
     )
+    casing_ground_force: dict[str, np.ndarray] = of(
+        "force and moment of the ground on a casing at one held set or mount",
+        "N, N m",
+        "CASING.SET",
+        "component",
+        json=_forces("CASING.SET", "casing_ground", "the casing"),
+        note="; the moment about the origin of the model",
+        default_factory=dict,
+        kw_only=True,
+    )
+    casing_seat_force: dict[str, np.ndarray] = of(
+        "force and moment on a seat of a casing",
+        "N, N m",
+        "CASING.SEAT",
+        "component",
+        json=_forces("CASING.SEAT", "casing_seat", "the casing"),
+        note="; the moment about the point of the seat",
+        default_factory=dict,
+        kw_only=True,
+    )
     nodes: NodeTable = of("nodes", record=NodeTable, json=NODE_COUNT)
     displacement: np.ndarray = of("displacements x y z tx ty tz", "m, rad", "node", "component", json=None)
     point_displacement: dict[str, float] = of(

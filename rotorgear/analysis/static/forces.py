@@ -78,6 +78,39 @@ def casing_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     return found
 
 
+def ground_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
+    """The same by held sets and mounts, "box.feet" -> (6,); of casings from meshes."""
+    system = equilibrium.system
+    gravity = np.array(system.model.operation.gravity or np.zeros(3)) if system.model.operation else np.zeros(3)
+    q = system.dofs.expand(equilibrium.q)
+    found = {}
+    for name in system.model.casings:
+        body = system.layout.casing(name)
+        if body.ground_force is None or body.ground_weight is None:
+            continue
+        wrenches = body.ground_force @ q[system.nodes.of_casing(name)] + body.ground_weight @ gravity
+        for place, wrench in zip(body.ground_sets, wrenches.reshape(-1, 6), strict=True):
+            found[f"{name}.{place}"] = wrench
+    return found
+
+
+def seat_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
+    """Force, and moment about its point, of what stands in a seat on the casing: "box.left" -> (6,)."""
+    system = equilibrium.system
+    bearings = bearing_forces(equilibrium)
+    found: dict[str, np.ndarray] = {}
+    for table in ("bearings", "nonlinear_elements"):
+        for part in getattr(system.model, table):
+            seat = system.layout.seat(f"{table}.{part}")
+            on_shaft = bearings.get(part if table == "bearings" else f"nonlinear_elements.{part}")
+            if seat is None or on_shaft is None:
+                continue
+            name = f"{seat.casing}.{system.layout.casing(seat.casing).seats[seat.number]}"
+            moment = on_shaft[3:] + np.cross(seat.arm, on_shaft[:3])
+            found[name] = found.get(name, np.zeros(6)) - np.concatenate([on_shaft[:3], moment])
+    return found
+
+
 def support_forces(equilibrium: Equilibrated) -> dict[str, np.ndarray]:
     """Force and moment of each support on its shaft, (6,): of its springs, and what it holds fixed."""
     system = equilibrium.system

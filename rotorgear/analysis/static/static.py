@@ -18,7 +18,15 @@ from rotorgear.analysis.common.request import check_request, direction_of, misse
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.along_faces import AlongFaces, decided_by_loads, equilibrate_along_faces, misalignments
 from rotorgear.analysis.static.cycle import over_cycle
-from rotorgear.analysis.static.forces import bearing_forces, casing_forces, forces_on_gears, imbalance, support_forces
+from rotorgear.analysis.static.forces import (
+    bearing_forces,
+    casing_forces,
+    forces_on_gears,
+    ground_forces,
+    imbalance,
+    seat_forces,
+    support_forces,
+)
 from rotorgear.analysis.static.law_states import law_rows
 from rotorgear.analysis.static.sensitivity import Sensitivity, sensitivities
 from rotorgear.analysis.static.shares import helix_shares, share_rows
@@ -170,6 +178,8 @@ def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimat
         bearing_force=bearing_forces(equilibrium),
         support_force=support_forces(equilibrium),
         casing_force=casing_forces(equilibrium),
+        casing_ground_force=ground_forces(equilibrium),
+        casing_seat_force=seat_forces(equilibrium),
         shares=shares,
         helix_share=helix_shares(equilibrium),
         parameter=change.name,

@@ -62,6 +62,8 @@ def static_table(result: StaticResult, *, sensitivity: bool = False) -> Renderab
             parts += lines(f"Loop: {loop.mesh} closes a loop with the clockings given: {missing}")
     if result.bearing_force or result.support_force:
         parts += ["", _supports(result)]
+    if result.casing_seat_force:
+        parts += ["", _on_casings(result)]
     moves = table("moves", "x um", "y um", "z um", "tilt_x", "tilt_y", "twist")
     for place, value in result.place_displacement.items():
         moves.add_row(
@@ -84,6 +86,18 @@ def static_table(result: StaticResult, *, sensitivity: bool = False) -> Renderab
         *(f"Warning: {note}" for note in result.warnings),
     ]
     return Group(*parts, "", moves, "", *lines(*notes), "")
+
+
+def _on_casings(result: StaticResult) -> Any:
+    """Forces on casings: of what stands in their seats, and of the ground at their held sets and mounts."""
+    out = table("on casing", "of", "Fx N", "Fy N", "Fz N", "Mx Nm", "My Nm", "Mz Nm", left=2)
+    rows = [(address, "seat", load) for address, load in result.casing_seat_force.items()]
+    rows += [(address, "ground", load) for address, load in result.casing_ground_force.items()]
+    for address, what, load in rows:
+        # What is rounding of the largest is shown as 0.
+        least = 1e-9 * float(np.abs(load).max())
+        out.add_row(address, what, *(f"{_rounded(x, max(least, 0.05)):.1f}" for x in load))
+    return out
 
 
 def _meshes(result: StaticResult) -> Any:

@@ -183,3 +183,36 @@ def test_a_seat_may_be_a_bore_of_its_place(folder: Path) -> None:
     place = "{ left = { axis = 'z', center = [0, 0], from = '50 mm', to = '100 mm', radius = '40 mm' } }"
     body = rg.loads(MODEL.replace('{ left = "high" }', place), folder=folder).layout.casing("box")
     np.testing.assert_allclose(body.seat_points, [[0.0, 0.0, 0.075]])
+
+
+SPRINGS = "radial = '1e8 N/m', axial = '2e8 N/m', tilt = '1e5 N m/rad', torsion = '1e5 N m/rad'"
+
+
+@pytest.mark.parametrize(
+    "stands",
+    [
+        'held = ["low"]',
+        'held = ["foot", "low"]',
+        f"mounts = {{ low = {{ {SPRINGS} }}, foot = {{ {SPRINGS} }} }}",
+        f'held = ["foot"]\nmounts = {{ low = {{ {SPRINGS} }} }}',
+    ],
+)
+def test_held_sets_and_mounts_carry_together_what_bearings_and_weight_put_on_a_casing(
+    folder: Path, stands: str
+) -> None:
+    mesh = block((0.1, 0.06, 0.2), (2, 1, 2))
+    low = mesh.sets["low"].nodes
+    mesh.sets["foot"] = NamedSet(low[mesh.points[low, 0] < 0.051])
+    write_inp(folder / "box.inp", mesh)
+    text = "operation = { input_shaft = 'rotor', gravity = ['1 m/s^2', '-9.81 m/s^2', '0.5 m/s^2'] }\n"
+    text += MODEL.replace('held = ["low"]', stands).replace(
+        'axial = "1e8 N/m"', 'axial = "1e8 N/m", tilt = "1e5 N m/rad"'
+    )
+    found = rg.static(rg.loads(text, folder=folder))
+    assert len(found.casing_ground_force) == stands.count("low") + stands.count("foot")
+    total = sum(found.casing_ground_force.values())
+    np.testing.assert_allclose(total, found.casing_force["box"], rtol=1e-6, atol=1e-6 * np.abs(total).max())
+    # What the bearing puts on its seat is the opposite of its force on the shaft, at the point of the seat.
+    on_seat = found.casing_seat_force["box.left"]
+    np.testing.assert_allclose(on_seat[:3], -found.bearing_force["left"][:3], rtol=1e-12)
+    assert "box.low" in found.text()
