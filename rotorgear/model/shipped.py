@@ -58,7 +58,7 @@ def _folder() -> Path:
 
 def _described(path: Path) -> ShippedModel:
     data = tomllib.loads(path.read_text(encoding="utf-8"))
-    named = {path.with_name(value) for value in _texts(data) if value.endswith((".msh", ".csv", ".npz"))}
+    named = {path.with_name(value) for value in _texts(data) if value.endswith((".msh", ".inp", ".csv", ".npz"))}
     beside = sorted(file for file in {*named, path.with_name(f"{path.stem}_rig.csv")} if file.is_file())
     return ShippedModel(path.stem, str(data.get("title", "")), path, tuple(beside))
 

@@ -42,6 +42,10 @@ def test_meshes_and_rig_lines_are_written_beside_the_model(tmp_path: Path) -> No
     ]
 
 
+def test_the_mesh_of_a_gear_body_comes_along(tmp_path: Path) -> None:
+    assert [file.name for file in rg.new(tmp_path / "b.toml", "elastic_wheel")] == ["b.toml", "elastic_wheel.inp"]
+
+
 def test_a_file_of_no_model_s_name_begins_as_the_plain_stage(tmp_path: Path) -> None:
     assert rg.load(rg.new(tmp_path / "mine.toml")[0]).title == "Helical stage on two shafts"
 
