@@ -22,7 +22,8 @@ _BEATS = 5.0
 # Fewer sensors are all scale and sign.
 _FEWEST = 4
 _MOST_CHANGES = 6
-# Only the worst of many sensors are tried in each other's place.
+# Only the worst of many sensors are tried otherwise, and fewer in each other's place.
+_TURNED = 64
 _EXCHANGED = 16
 
 
@@ -73,8 +74,10 @@ def sensor_doubts(
 
 
 def _changes(now: Wiring, points: tuple[str, ...], share: NDArray[np.float64]) -> Iterator[tuple[Wiring, str, str]]:
-    """All single changes of a wiring: wiring, sensor, words."""
-    for s, point in enumerate(points):
+    """All single changes of a wiring, of the sensors that fit worst: wiring, sensor, words."""
+    order = np.argsort(-share, kind="stable")
+    for s in sorted(order[:_TURNED]):
+        point = points[s]
         turned = now.sign.copy()
         turned[s] = -turned[s]
         yield replace(now, sign=turned), point, "does it look the other way"
@@ -87,7 +90,7 @@ def _changes(now: Wiring, points: tuple[str, ...], share: NDArray[np.float64]) -
             name = ("" if family == 0 else "r") + _AXES[axis - family]
             yield replace(now, axis=other), point, f"does it look along {name}"
             yield replace(now, axis=other, sign=turned), point, f"does it look along -{name}"
-    worst = np.argsort(-share, kind="stable")[:_EXCHANGED]
+    worst = order[:_EXCHANGED]
     for first in worst:
         for second in worst:
             if first < second:
