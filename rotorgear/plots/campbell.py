@@ -94,6 +94,8 @@ def _branches(axis: Any, result: CampbellResult, colour: str) -> None:
     if colour == "motion":
         shares = np.stack([_mean(result.kinetic_by_motion[name]) for name in result.kinetic_by_motion], axis=-1)
         colours = np.clip(shares @ np.array([_MOTION[name] for name in result.kinetic_by_motion]), 0.0, 1.0)
+        # A motion without energy, as of a branch that stands still, has no shares: grey.
+        colours = np.where(np.isfinite(colours), colours, 0.5)
         axis.add_collection(LineCollection(segments[there], colors=colours.reshape(-1, 3)[there], lw=1.5, zorder=3))
         return
     if colour == "mesh":
