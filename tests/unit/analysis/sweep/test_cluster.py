@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -19,6 +20,7 @@ from rotorgear.analysis.sweep import cluster as clusters
 from rotorgear.analysis.sweep.blocks import Workers
 from rotorgear.cli.main import app
 from rotorgear.errors import AnalysisError, MissingExtraError
+from rotorgear.version import VERSION
 from tests.unit.analysis.sweep.test_sweep import PAIR, ROOT, SHORT, same
 
 distributed = pytest.importorskip("distributed")
@@ -90,7 +92,7 @@ def test_workers_with_another_version_are_refused_at_the_door_and_later(client: 
     own = clusters.versions()
     assert own["rotorgear"] == rg.__version__
     assert len(own["rotorgear with the source"]) == 8
-    with pytest.raises(AnalysisError, match=r"runs rotorgear 0\.1\.0, and this computer 9\.0"):
+    with pytest.raises(AnalysisError, match=rf"runs rotorgear {re.escape(VERSION)}, and this computer 9\.0"):
         client.submit(clusters._on_worker, {**own, "rotorgear": "9.0"}, abs, -1).result()
     monkeypatch.setattr(clusters, "versions", lambda: {**own, "numba": "0.1"})
     with pytest.raises(
