@@ -22,7 +22,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
     "Start": ("index", "first_gearbox", "gallery"),
     "How to": (
         "modal", "campbell", "static", "response", "transient", "sweep", "orbits", "gears", "mesh", "bearings", "casings",
-        "gear_bodies", "standards", "rig", "scatter", "report", "rexs", "export", "python",
+        "gear_bodies", "layout", "standards", "rig", "scatter", "report", "rexs", "export", "python",
     ),
     "Theory": ("theory", "conventions", "glossary"),
     "Reference": ("commands", "model_file", "api", "json", "errors", "stability"),
