@@ -5,10 +5,15 @@ one gear carries a ripple, damping is proportional to inertia. Exact values by s
 z .05 Fm .1 Fa .05 folds at W .7481043, z .05 Fm .1 Fa .2 doubles its period at W 1.6076657.
 
     python -m validation.dead_zone
+    python -m validation.dead_zone family 0.05,0.1,0.05 0.1,0.1,0.15
+
+The second prints the special points between W .3 and 1.8 of oscillators z,Fm,Fa by both methods, side by side: what one finds and
+the other does not is spurious or missed.
 """
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 
 import numpy as np
@@ -119,5 +124,19 @@ def main() -> None:
                 print(f"  {point.kind} at W {W:.7f}, x {low:.6f} to {high:.6f}, multipliers {sizes}")
 
 
+def family(cases: list[str]) -> None:
+    """Print the special points of oscillators "z,Fm,Fa" by shooting and by harmonic balance."""
+    for text in cases:
+        case = DeadZone(*(float(value) for value in text.split(",")))
+        for method in ("shooting", "harmonic balance"):
+            found = case.orbits((0.3, 1.8), method=method)
+            points = ", ".join(f"{point.kind} {case.ratio_of(point.value):.6f}" for point in found.special_points)
+            ends = "; ".join(branch.ended for branch in found.branches)
+            print(f"{text} {method}: {points or 'none'} ({len(found.value)} points, {ends})", flush=True)
+
+
 if __name__ == "__main__":
-    main()
+    if sys.argv[1:2] == ["family"]:
+        family(sys.argv[2:])
+    else:
+        main()

@@ -27,7 +27,7 @@ class OrbitBranch(Record):
 
     name: str = of("name", note=': `"1T"`, or `"2T"` of the branch behind a period doubling')
     periods: int = of("base periods in a period of the motion")
-    ended: str = of("why the branch ended")
+    ended: str = of("why it ended")
 
 
 class SpecialCurve(Record):
@@ -35,7 +35,7 @@ class SpecialCurve(Record):
 
     kind: str = of("kind", note=': `"fold"` or `"period doubling"`')
     branch: int = of("branch", note=", counted from 0, that it begins on")
-    value: np.ndarray = of("value of the first parameter", "", "curve_point", note=", in SI")
+    value: np.ndarray = of("value of the parameter", "", "curve_point", note=", the first one, in SI")
     second: np.ndarray = of("value of the second parameter", "", "curve_point", note=", in SI")
     period: np.ndarray = of("period", "s", "curve_point", json="period_s")
     approach_extremes: np.ndarray = of(
@@ -46,7 +46,7 @@ class SpecialCurve(Record):
         "extreme",
         json="approach_extremes_m",
     )
-    ended: str = of("why the curve ended")
+    ended: str = of("why it ended")
 
 
 class OrbitVerification(Record):
