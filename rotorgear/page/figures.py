@@ -31,6 +31,8 @@ _COLOURS = {
     "casing": "#c8cdd3",
 }
 _SHADE = 0.42
+# Letters of an SVG above which a picture is an image.
+_LARGEST = 600_000
 _THROUGH = 0.16  # how much of a casing is seen
 _LINKS = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
 
@@ -47,6 +49,8 @@ def svg_of(picture: Any, label: str) -> str:
             out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None}
         )
     text = out.getvalue()
+    if len(text) > _LARGEST:
+        return _png_of(one.figure.figure, label)
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
     text = re.sub(r"(\d+\.\d\d)\d+", r"\1", text)
@@ -57,6 +61,14 @@ def svg_of(picture: Any, label: str) -> str:
     return re.sub(
         r'<svg [^>]*?viewBox="([^"]+)"[^>]*>', lambda found: f'<svg viewBox="{found[1]}" {head}>', text, count=1
     )
+
+
+def _png_of(figure: Any, label: str) -> str:
+    """A picture of very many lines as an image element: as SVG it would make the page heavy."""
+    out = BytesIO()
+    figure.savefig(out, format="png", dpi=150)
+    data = base64.b64encode(out.getvalue()).decode("ascii")
+    return f'<img alt="{escape(label)}" src="data:image/png;base64,{data}">'
 
 
 class Painter:

@@ -15,6 +15,7 @@ from rotorgear.export.solids import LIGHT, build_solids
 from rotorgear.results.modal import ModalResult
 
 _MODES = 6
+_LARGEST = 900_000  # letters of all shapes together: fewer modes of a large model
 _STEPS = 32767
 
 
@@ -26,7 +27,7 @@ def scene(result: ModalResult) -> str:
     middle = 0.5 * (solids.points.min(axis=0) + solids.points.max(axis=0))
     points, size = _packed((solids.points - middle) / solids.size)
     modes = []
-    for k in [k for k in range(len(result)) if not result.rigid[k]][:_MODES]:
+    for k in [k for k in range(len(result)) if not result.rigid[k]][: max(1, min(_MODES, _LARGEST // len(points)))]:
         moved, _ = solids.scaled(np.real(result.shapes[:, :, k]))
         shape, scale = _packed(np.real(moved) / solids.size)
         name = f"{k + 1}: {result.frequency_hz[k]:.2f} Hz, {result.description[k]}"
