@@ -17,6 +17,9 @@ MODELS = sorted(paths.MODELS.glob("*.toml"))
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
 def test_pruned_and_full_models_have_the_same_eigenvalues(path: Path, speed: float | None) -> None:
     model = rg.load(path)
+    if speed is not None and any(bearing.journal for bearing in model.bearings.values()):
+        # Oil films carry a gearbox where its journals turn.
+        speed = model.operation.speed
     pruned = rg.modal(model, speed=speed, modes=16, elements=2)
     full = rg.modal(model, speed=speed, modes=16, elements=2, pruning=False)
     scale = np.abs(full.eigenvalues[~full.rigid]).min(initial=np.inf)
