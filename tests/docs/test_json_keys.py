@@ -111,6 +111,8 @@ def test_the_keys_of_orbits_are_documented(tmp_path: Path) -> None:
     data = written(tmp_path, "orbits", pair, "--over", "operation.speed=4000 rpm:4200 rpm", "--step", "0.5", "--verify")
     point = {"kind": "fold", "value": 1.0, "branch": 0, "period_s": 1.0, "multiplier_real": [1.0]}
     data["special_points"] = [point | {"multiplier_imaginary": [0.0], "approach_extremes_m": [[0.0, 1.0]]}]
+    curve = {"kind": "fold", "branch": 0, "value": [1.0], "second": [1.0], "period_s": [1.0], "ended": "the end"}
+    data["curves"] = [curve | {"approach_extremes_m": [[[0.0, 1.0]]]}]  # of two parameters
     data["warnings"] = ["one"]  # these motions have none, or one
     assert differences(data, documented("orbits")) == NONE
 
