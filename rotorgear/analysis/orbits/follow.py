@@ -67,7 +67,8 @@ def followed(
     if plan.low < start.p < plan.high and both:
         # From the middle of the range first back to where the branch comes in.
         walk(orbits, Node(start.z, -start.tangent, start.iterations), step, plan, heard)
-        nodes = [_turned(one) for one in nodes[::-1]]
+        # The start has the tangent of the way forward already.
+        nodes = [_turned(one) for one in nodes[:0:-1]] + nodes[:1]
     _, ended = walk(orbits, start, step, plan, heard)
     special = []
     for i, (a, b) in enumerate(pairwise(nodes)):

@@ -2,7 +2,7 @@
 
 Between two solutions a test function changes its sign: at a fold the parameter's part of the tangent; at a period doubling
 prod (1 + mu), the determinant of the monodromy matrix plus one; at a Neimark-Sacker point |mu| - 1 of the complex pair. The root
-is found along the chord, each time on the branch itself. Seydel (2010), ch. 5 and 7.
+is bracketed along the chord (Brent), each time on the branch itself. Seydel (2010), ch. 5 and 7.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from scipy.optimize import brentq
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.periodic.arclength import Equations, Node, corrected
@@ -20,7 +21,9 @@ DOUBLING = "period doubling"
 NEIMARK_SACKER = "Neimark-Sacker"
 # Root of the test function along the chord, as a share of it.
 _TOLERANCE = 1e-8
-_EVALUATIONS = 40
+_EVALUATIONS = 60
+# What is left of the test function at its root, as a share of its values at both ends.
+_JUMP = 0.01
 _REAL = 1e-9
 # Multipliers nearer to zero are rounding.
 _NOTHING = 1e-6
@@ -71,7 +74,11 @@ def kinds_between(a: Certified, b: Certified) -> list[str]:
 
 
 def located(orbits: Orbits, a: Certified, b: Certified, kind: str) -> Certified | None:
-    """The special point of a kind between two neighbours; None where the branch can't be solved there."""
+    """The special point of a kind between two neighbours.
+
+    Returns:
+        The point; None where its test function does not cross zero, or the branch can't be solved there.
+    """
     chord = b.node.z - a.node.z
     length = float(np.linalg.norm(chord))
     normal = chord / length
@@ -86,41 +93,18 @@ def located(orbits: Orbits, a: Certified, b: Certified, kind: str) -> Certified 
             return float(one.node.tangent[-1] * np.sign(one.node.tangent @ normal))
         return _doubling(one.multipliers) if kind == DOUBLING else _ring(one.multipliers)
 
+    ends = (test(0.0), test(1.0))
+    if not ends[0] * ends[1] < 0.0:
+        return None
     try:
-        root = _root(test, _TOLERANCE)
+        root = float(brentq(test, 0.0, 1.0, xtol=_TOLERANCE, maxiter=_EVALUATIONS, disp=False))
+        left = abs(test(root))
     except ConvergenceError:
         return None
+    # Where a pair comes into being outside the circle, none has crossed it.
+    if kind == NEIMARK_SACKER and left > _JUMP * max(abs(one) for one in ends):
+        return None
     return known[root]
-
-
-def _root(test: object, tolerance: float) -> float:
-    """Root of a function between 0 and 1 by the Illinois form of the rule of false position."""
-    assert callable(test)
-    low = 0.0
-    high = 1.0
-    at_low = test(low)
-    at_high = test(high)
-    best = (abs(at_low), low) if abs(at_low) < abs(at_high) else (abs(at_high), high)
-    for _ in range(_EVALUATIONS):
-        middle = (low * at_high - high * at_low) / (at_high - at_low)
-        inside = 0.01 * abs(high - low)
-        middle = min(max(middle, min(low, high) + inside), max(low, high) - inside)
-        value = test(middle)
-        if abs(value) < best[0]:
-            best = (abs(value), middle)
-        if value == 0.0:
-            return float(middle)
-        if value * at_high < 0.0:
-            low = high
-            at_low = at_high
-        else:
-            at_low *= 0.5
-        moved = abs(middle - high)
-        high = middle
-        at_high = value
-        if moved < tolerance or abs(high - low) < tolerance:
-            break
-    return float(best[1])
 
 
 def _outside(multipliers: np.ndarray) -> int:
