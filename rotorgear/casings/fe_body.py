@@ -327,7 +327,9 @@ def _no_mechanism(body: FiniteElementBody) -> None:
         # Only which motions are held counts, not how stiffly.
         held = springs.T @ R
         rows.append(held / np.linalg.norm(held, axis=1)[:, None].clip(min=1e-300))
-    _, singular, motions = np.linalg.svd(np.vstack(rows), full_matrices=True)
+    # Of the triangle: a held face has thousands of rows, and the whole left factor of their decomposition has their square.
+    triangle = np.linalg.qr(np.vstack(rows), mode="r")
+    _, singular, motions = np.linalg.svd(triangle, full_matrices=True)
     free = [motions[i] for i in range(6) if i >= len(singular) or singular[i] < 1e-6 * singular[0]]
     if free:
         named = "; ".join(_MOTIONS[int(np.argmax(np.abs(motion)))] for motion in free)

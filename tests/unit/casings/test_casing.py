@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import tracemalloc
 from pathlib import Path
 
 import h5py
@@ -12,9 +13,12 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.casings.assembly import Elastic
 from rotorgear.casings.casing import forget
+from rotorgear.casings.fe_body import finite_element_body
 from rotorgear.casings.file_mesh import FileMesh, NamedSet
 from rotorgear.casings.reduced_body import ReducedBody
+from rotorgear.casings.settings import CasingSettings
 from tests.paths import ROOT
 from tests.unit.casings.blocks import block, write_inp
 
@@ -114,6 +118,17 @@ def test_bodies_that_do_not_hang_together_and_sets_that_hold_too_little_are_name
     )
     assert "a mechanism: rotation about y" in problem(folder, '["low"]', '["edge"]')
     assert "the set 'nowhere' touches no node" in problem(folder, '{ left = "high" }', '{ left = "nowhere" }')
+
+
+def test_memory_grows_with_the_held_nodes_and_not_with_their_square(folder: Path) -> None:
+    path = write_inp(folder / "plate.inp", block((0.4, 0.4, 0.02), (16, 16, 1), "hexahedron20"))
+    plate = CasingSettings("plate", (("mesh", path),), 1.0, Elastic(206e9, 0.3, 7850.0), held=("low",))
+    finite_element_body(plate)  # what is imported and kept on the way counts for nothing
+    tracemalloc.start()
+    body = finite_element_body(plate)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 8 * (3 * len(body.held)) ** 2
 
 
 def test_the_command_writes_the_names_of_the_design_and_ends_with_2_where_the_mesh_is_wrong(folder: Path) -> None:
