@@ -38,6 +38,8 @@ _ENOUGH = 1e-2  # of the estimate itself
 _MOST_STEPS = 60
 # The slowest decay of energies over the order that there is in an elastic body: beside the tip of a crack.
 _CRACK = 2.0
+# Values (q,) and gradient (3, q) of a function on the reference cell.
+_Factor = tuple[np.ndarray, np.ndarray]
 
 
 def eigenvalue_errors(fe: FiniteElementBody, eigenvalues: np.ndarray, shapes: np.ndarray) -> np.ndarray:
@@ -225,48 +227,57 @@ def _functions(fe: FiniteElementBody) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 def _missing(shape: Element, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Values (m, q) and gradients (m, 3, q) of the functions of the next order on the reference cell, as `_functions`."""
-    values: list[np.ndarray] = []
-    gradients: list[np.ndarray] = []
+    products = _of_tetrahedron(shape, places) if shape.corners == 4 else _of_hexahedron(shape, places)
+    multiplied = [_product(factors) for factors in products]
+    return np.array([value for value, _ in multiplied]), np.array([gradient for _, gradient in multiplied])
 
-    def product(*factors: tuple[np.ndarray, np.ndarray]) -> None:
-        value = np.prod([factor[0] for factor in factors], axis=0)
-        gradient = np.zeros((3, places.shape[1]))
-        for i, (_, slope) in enumerate(factors):
-            rest = np.prod([factor[0] for j, factor in enumerate(factors) if j != i], axis=0)
-            gradient += slope * rest
-        values.append(value)
-        gradients.append(gradient)
 
-    def linear(constant: float, slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return constant + slope @ places, np.broadcast_to(slope[:, None], places.shape)
-
+def _of_tetrahedron(shape: Element, places: np.ndarray) -> list[list[_Factor]]:
+    """A function of each edge, L_i L_j (L_i - L_j), and of each face, L_i L_j L_k, in the coordinates L of the corners."""
     unit = np.eye(3)
-    if shape.corners == 4:
-        barycentric = [linear(1.0, -np.ones(3)), *(linear(0.0, unit[i]) for i in range(3))]
-        for i, j in shape.edges:
-            a, b = barycentric[i], barycentric[j]
-            product(a, b, (a[0] - b[0], a[1] - b[1]))
-        for face in shape.faces:
-            product(*(barycentric[i] for i in face))
-        return np.array(values), np.array(gradients)
+    L = [_linear(1.0, -np.ones(3), places), *(_linear(0.0, unit[axis], places) for axis in range(3))]
+    edges = [[L[i], L[j], (L[i][0] - L[j][0], L[i][1] - L[j][1])] for i, j in shape.edges]
+    faces = [[L[i] for i in face] for face in shape.faces]
+    return edges + faces
 
-    def towards(axis: int, side: float) -> tuple[np.ndarray, np.ndarray]:
-        """1 on one side of the cube, 0 on the other."""
-        return linear(0.0, unit[axis]) if side else linear(1.0, -unit[axis])
 
+def _of_hexahedron(shape: Element, places: np.ndarray) -> list[list[_Factor]]:
+    """Functions of each edge (odd along it), of each face (one towards each of its corners), and of the inside."""
+    unit = np.eye(3)
     corners = shape.nodes[:8]
+
+    def towards(axis: int, side: float) -> _Factor:
+        """1 on one side of the cube, 0 on the other."""
+        return _linear(0.0, unit[axis], places) if side else _linear(1.0, -unit[axis], places)
+
+    products = []
     for i, j in shape.edges:
         along = int(np.argmax(np.abs(corners[j] - corners[i])))
         rising = corners[j, along] - corners[i, along]
-        across = [towards(axis, corners[i, axis]) for axis in range(3) if axis != along]
-        middle = linear(rising, -2.0 * rising * unit[along])
-        product(towards(along, 0.0), towards(along, 1.0), middle, *across)
+        ends = [towards(axis, corners[i, axis]) for axis in range(3) if axis != along]
+        middle = _linear(rising, -2.0 * rising * unit[along], places)
+        products.append([towards(along, 0.0), towards(along, 1.0), middle, *ends])
     for face in shape.faces:
         normal = int(np.argmin(np.ptp(corners[list(face)], axis=0)))
         across = [axis for axis in range(3) if axis != normal]
         bubble = [towards(axis, side) for axis in across for side in (0.0, 1.0)]
         for corner in face:
             own = [towards(axis, corners[corner, axis]) for axis in across]
-            product(towards(normal, corners[face[0], normal]), *bubble, *own)
-    product(*(towards(axis, side) for axis in range(3) for side in (0.0, 1.0)))
-    return np.array(values), np.array(gradients)
+            products.append([towards(normal, corners[face[0], normal]), *bubble, *own])
+    products.append([towards(axis, side) for axis in range(3) for side in (0.0, 1.0)])
+    return products
+
+
+def _linear(constant: float, slope: np.ndarray, places: np.ndarray) -> _Factor:
+    """A linear function and its gradient at all places."""
+    return constant + slope @ places, np.broadcast_to(slope[:, None], places.shape)
+
+
+def _product(factors: list[_Factor]) -> _Factor:
+    """The product of functions, and its gradient by the product rule."""
+    value = np.prod([factor[0] for factor in factors], axis=0)
+    gradient = np.zeros_like(factors[0][1])
+    for i, (_, slope) in enumerate(factors):
+        rest = np.prod([factor[0] for j, factor in enumerate(factors) if j != i], axis=0)
+        gradient += slope * rest
+    return value, gradient
