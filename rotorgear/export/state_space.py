@@ -42,7 +42,7 @@ def write_state_space(result: StateSpace, path: str | Path) -> Path:
     A, B, C, D = result.first_order()
     values: dict[str, Any] = {
         "A": A, "B": B, "C": C, "D": D,
-        "M": result.mass, "D_v": result.velocity_terms, "K": result.stiffness,
+        "M": result.mass_matrix, "D_v": result.velocity_terms, "K": result.stiffness_matrix,
         "F": result.input_matrix, "P": result.output_matrix,
         "speed_rad_s": result.speed, "fmax_hz": result.fmax, "reduction_error": result.reduction_error,
     }  # fmt: skip

@@ -17,7 +17,7 @@ class Assumption(Record):
 class RexsImport(Result, kind="import"):
     """A model file made of a REXS file."""
 
-    source: str = of("REXS file")
+    file: str = of("REXS file")
     version: str = of("version of REXS")
     application: str = of("program that wrote the file")
     load_case: str = of("load case that was taken", note="; empty: the file has none")

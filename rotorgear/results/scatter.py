@@ -103,7 +103,7 @@ class ScatterResult(ModelResult, kind="scatter"):
     sobol_first_error: np.ndarray = of("standard error of the first-order index", "", "quantity", "number")
     sobol_total_error: np.ndarray = of("standard error of the total index", "", "quantity", "number")
     basis_size: int = of("number of shapes that carry the samples")
-    reduction_error: float = of(
+    frequency_basis_error: float = of(
         "largest relative error of a frequency by the basis",
         note=", at samples followed to the whole system",
         form=".1e",

@@ -58,7 +58,7 @@ def import_rexs(path: str | Path, *, load_case: str | int | None = None) -> Rexs
     except ModelError as error:
         raise ModelError(error.problems, f"{source}, read as a model") from None
     return RexsImport(
-        source=source,
+        file=source,
         version=document.version,
         application=document.application,
         load_case=case,

@@ -35,10 +35,20 @@ PICTURES = {
     "orbits": ("orbits",),
     "scatter": ("scatter",),
     "optimise": ("optimise",),
+    "compare_shapes": ("compare_shapes",),
     "sweep": ("sweep", "bifurcation", "sections", "portraits", "portrait_spectra"),
 }
 # Of a stage of pyvista, of a map over two parameters, and of minutes of contact analyses: each has its own test or a long one.
 ELSEWHERE = {"modal", "sweep_map", "mesh_convergence", "save"}
+
+
+def shapes_of_a_jeffcott_rotor() -> rg.ShapeComparison:
+    """Its own frequencies, with any shapes at two places."""
+    modes = rg.modal(rg.load(MODELS / "jeffcott.toml"), modes=6, elements=2)
+    elastic = modes.frequency_hz[~modes.rigid]
+    lines = tuple(rg.RigLine(float(f)) for f in elastic)
+    shapes = np.random.default_rng(1).standard_normal((len(lines), 2))
+    return rg.compare_shapes(modes, rg.Measured(lines, ("disks.disk:x", "disks.disk:y"), shapes), samples=20)
 
 
 @pytest.fixture(scope="module")
@@ -75,6 +85,7 @@ def results() -> dict[str, Any]:
             error_estimate=False,
         ),
         "optimise": rg.optimise(jeffcott, "shafts.*.sections.*.outer_diameter", searches=1, elements=2),
+        "compare_shapes": shapes_of_a_jeffcott_rotor(),
         "scatter": rg.scatter(jeffcott, "bearings.*.stiffness", samples=8, modes=4, elements=1),
         "orbits": rg.orbits(loose, {"operation.speed": "4000 rpm:4200 rpm"}, step=0.5),
         "sweep": rg.sweep(

@@ -188,6 +188,8 @@ def test_the_keys_of_static_are_documented(tmp_path: Path) -> None:
     data["warnings"] = ["one"]  # this model has none
     data["faces"] = written(tmp_path, "static", str(ROOT / "models" / "overhung_pinion.toml"))["faces"]  # nor any
     data["casing_force_n"] = data["casing_moment_n_m"] = {"box": [0.0, 0.0, 0.0]}  # nor a casing
+    for part, place in (("casing_ground", "feet"), ("casing_seat", "left")):
+        data[f"{part}_force_n"] = data[f"{part}_moment_n_m"] = {"box": {place: [0.0, 0.0, 0.0]}}
     bearing = rotor('kind = "ball", elements = 7, element_diameter = 0.01, pitch_diameter = 0.04', "[9.0, 0.0, 0.0]")
     data |= {key: static(bearing).to_dict()[key] for key in ("laws", "load_force_n", "load_moment_n_m")}  # nor these
     assert differences(data, documented("static")) == NONE

@@ -109,9 +109,9 @@ def run_seed(
     return findings, ends
 
 
-def mutant(seed: int) -> tuple[str, str]:
-    """The model that a seed begins with, and the text of its mutant."""
-    origin = MODELS[seed % 997 % len(MODELS)]
+def mutant(seed: int, name: str = "") -> tuple[str, str]:
+    """The model that a seed begins with (or the one of this name), and the text of its mutant."""
+    origin = ROOT / "models" / f"{name}.toml" if name else MODELS[seed % 997 % len(MODELS)]
     return origin.stem, toml_text(model_mutations(tomllib.loads(origin.read_text(encoding="utf-8")), seed))
 
 

@@ -13,19 +13,19 @@ from tests.fuzz.runner import mutant
 from tests.paths import ROOT
 
 
-def model_of(seed: int, folder: Path) -> rg.Model:
+def model_of(name: str, seed: int, folder: Path) -> rg.Model:
     path = folder / "mutant.toml"
-    path.write_text(mutant(seed)[1], encoding="utf-8")
+    path.write_text(mutant(seed, name)[1], encoding="utf-8")
     return rg.load(path)
 
 
 def test_inertias_of_26_decades_leave_any_basis_of_the_rigid_motions(tmp_path: Path) -> None:
-    found = rg.modal(model_of(10025, tmp_path), modes=12)
+    found = rg.modal(model_of("flexible_pair", 10025, tmp_path), modes=12)
     assert found.rigid.sum() >= 9
 
 
 def test_places_on_a_shaft_without_length_are_one(tmp_path: Path) -> None:
-    found = rg.check(model_of(10934, tmp_path))
+    found = rg.check(model_of("marine_double_reduction", 10934, tmp_path))
     assert any("gears.hp_pinion at 9.99988867e-321 m taken to" in warning for warning in found.warnings)
 
 

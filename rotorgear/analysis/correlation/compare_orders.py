@@ -43,6 +43,10 @@ class OrderCut:
 def read_order_cuts(path: str | Path, points: str | Path | None = None) -> tuple[OrderCut, ...]:
     """Return the order cuts of a CSV file, or of a universal file with its table of sensors.
 
+    Args:
+        path: of the file; `.csv` and `.txt` are tables, others universal files (dataset 58 over rpm).
+        points: table of sensors (CSV) that names the nodes of a universal file.
+
     Raises:
         ModelError: mistakes of the file, with line and column. AnalysisError: no cuts in it, or no table beside a universal file.
     """

@@ -81,7 +81,7 @@ def gathered(study: Study, sampled: Sampled, least_margin: float, error: float) 
         sobol_first_error=ranks.first_error,
         sobol_total_error=ranks.total_error,
         basis_size=study.family.V.shape[1],
-        reduction_error=error,
+        frequency_basis_error=error,
         checked_samples=0,
         failed=int(np.sum(np.all(np.isnan(of_bands["hz"]), axis=1))),
         dofs=study.family.V.shape[0],

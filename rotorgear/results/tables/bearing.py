@@ -37,7 +37,7 @@ def bearing_table(sheet: BearingSheet) -> RenderableType:
         f"{mean}x, y, z in um, tilts in urad; K and C in N/um, N/urad, N m/urad and kN s/m",
         f"error: K and C {error_words(sheet.error_estimate)}, twice their change {_finer(sheet)}; the law at the state printed "
         f"differs from the load of the gearbox by {error_words(sheet.consistency)}",
-        f"{1e3 * sheet.cpu_seconds:.2f} ms of CPU for the bearing at one speed and load, {sheet.seconds['total']:.2f} s in all",
+        f"{sheet.cpu_seconds:.5f} s of CPU for the bearing at one speed and load, {sheet.seconds['total']:.2f} s in all",
         *_stability(sheet),
         *(f"left out: {note}" for note in sheet.left_out),
         *(f"Warning: {note}" for note in sheet.warnings),

@@ -29,7 +29,7 @@ def import_table(result: RexsImport) -> RenderableType:
         *(f"left out: {note}" for note in result.left_out),
         *(f"Warning: {note}" for note in result.warnings),
     ]
-    return Group(heading(result.source, f": {made}{case}"), *lines(*notes))
+    return Group(heading(result.file, f": {made}{case}"), *lines(*notes))
 
 
 def _assumed(assumptions: tuple[Assumption, ...]) -> Iterator[str]:

@@ -102,7 +102,7 @@ def _ranks(result: ScatterResult) -> Any:
 
 def _said(result: ScatterResult) -> list[str]:
     said = [
-        f"basis of {result.basis_size} shapes: frequencies within {result.reduction_error:.0e} of the whole system's at "
+        f"basis of {result.basis_size} shapes: frequencies within {result.frequency_basis_error:.0e} of the whole system's at "
         f"{result.checked_samples} samples that it was not made from"
     ]
     lost = [row for row in result.bands if row.found < 0.95]

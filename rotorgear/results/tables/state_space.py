@@ -28,7 +28,7 @@ def state_space_table(result: StateSpace) -> RenderableType:
             out.add_row(kind, place, unit)
     size = f"{2 * result.size} states"
     if result.reduced:
-        size += f": {result.modes} modes and {result.size - result.modes} other shapes of {result.dofs} dofs"
+        size += f": {result.kept_modes} modes and {result.size - result.kept_modes} other shapes of {result.dofs} dofs"
         changed = error_words(result.reduction_error)
         error = f"the reduction changes responses up to {result.fmax:.6g} Hz by {changed} of their largest (estimated)"
     else:

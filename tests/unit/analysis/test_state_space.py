@@ -57,7 +57,7 @@ def test_a_reduced_state_space_is_within_its_stated_error(speed: str | None, acc
 
 
 def frequencies(system: rg.StateSpace) -> np.ndarray:
-    w2 = eigh(system.stiffness, system.mass, eigvals_only=True)
+    w2 = eigh(system.stiffness_matrix, system.mass_matrix, eigvals_only=True)
     return np.sqrt(np.maximum(w2, 0.0)) / (2.0 * np.pi)
 
 
