@@ -15,6 +15,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from machinery.notebooks import notebooks, write_page
+
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
 # The pages by what a reader wants; a page that is not listed here is a mistake, which the test of the site finds.
@@ -24,6 +26,7 @@ NAVIGATION: dict[str, tuple[str, ...]] = {
         "modal", "campbell", "static", "response", "transient", "sweep", "orbits", "gears", "mesh", "bearings", "casings",
         "gear_bodies", "layout", "standards", "rig", "scatter", "report", "rexs", "export", "python",
     ),
+    "Notebooks": ("rotordynamicist", "gear_engineer"),
     "Theory": ("theory", "conventions", "glossary"),
     "Reference": ("commands", "model_file", "api", "json", "errors", "stability"),
     "Validation": (
@@ -39,10 +42,11 @@ _BLOCK = re.compile(r"^\$\$(.+?)\$\$", re.MULTILINE | re.DOTALL)
 _INLINE = re.compile(r"(?<![\w$\\])\$(?![\s\d$(])([^$\n]+?)(?<!\s)\$(?![\w$])")
 _CODE = re.compile(r"^ *(`{3,}).*?^ *\1[^\n]*$|`[^`\n]+`", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"\]\((?P<target>\.\./[^)#\s]+)(?P<anchor>#[^)\s]*)?\)")
+_NOTEBOOK = re.compile(r"\]\(notebooks/(\w+)\.ipynb\)")
 
 
 def staged(text: str) -> str:
-    """A page as the site takes it: formulas as MathML, links to files outside of docs/ to their copies."""
+    """A page as the site takes it: formulas as MathML, links to notebooks to their pages, links out of docs/ to copies."""
 
     def outside(link: re.Match[str]) -> str:
         target = link["target"].removeprefix("../")
@@ -56,7 +60,7 @@ def staged(text: str) -> str:
             else f"](files/{target}.txt)"
         )
 
-    return _LINK.sub(outside, with_formulas(text))
+    return _LINK.sub(outside, with_formulas(_NOTEBOOK.sub(r"](\1.md)", text)))
 
 
 def with_formulas(text: str) -> str:
@@ -80,6 +84,7 @@ def stage(folder: Path) -> None:
     """Put the pages and what they link to into a folder."""
     shutil.copytree(DOCS / "pictures", folder / "pictures")
     pages = {page.name: page.read_text(encoding="utf-8") for page in DOCS.glob("*.md")}
+    pages |= {f"{file.stem}.md": write_page(file, folder) for file in notebooks()}
     linked = {link["target"].removeprefix("../") for text in pages.values() for link in _LINK.finditer(text)}
     for name in BESIDE:
         source = (ROOT / name).read_text(encoding="utf-8")
@@ -150,7 +155,7 @@ def settings(source: Path, target: Path) -> dict[str, object]:
 def unlisted() -> list[str]:
     """Pages that the navigation does not lead to."""
     listed = {page for names in NAVIGATION.values() for page in names}
-    return sorted(page.stem for page in DOCS.glob("*.md") if page.stem not in listed)
+    return sorted(page.stem for page in [*DOCS.glob("*.md"), *notebooks()] if page.stem not in listed)
 
 
 def build(target: Path) -> None:

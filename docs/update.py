@@ -6,7 +6,7 @@ With --check it changes nothing, and fails where something but seconds would cha
 Every number on a page is printed by a command beside it. This runs the marked blocks of all pages (the marks stand in
 `machinery/snippets.py`), puts in what they print now, and writes the generated pages. A generator is a file
 `docs/generate_*.py` with a function `pages() -> dict[str, str]`: the text of each page by its path from the top of the
-repository. With `LONG = True` at its top it only runs with --long.
+repository. With `LONG = True` at its top it only runs with --long. So do the notebooks, where they are not named.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from pathlib import Path
 from types import ModuleType
 
 from machinery.comparison import difference, texts_agree
+from machinery.notebooks import notebooks, run_notebook
 from machinery.snippets import ROOT, SnippetError, pages, rewritten, run_page
 
 DOCS = Path(__file__).resolve().parent
@@ -72,6 +73,15 @@ def snippet_changes(page: Path) -> Iterator[tuple[Path, str, str]]:
         yield page, old, new
 
 
+def notebook_changes(file: Path) -> Iterator[tuple[Path, str, str]]:
+    """Yield (file, old text, new text) if a notebook shows anything else than is kept in it, seconds and pixels apart."""
+    with tempfile.TemporaryDirectory() as directory:
+        new = run_notebook(file, Path(directory))
+    old = file.read_text(encoding="utf-8")
+    if new != old:
+        yield file, old, new
+
+
 def write(page: Path, text: str) -> None:
     """Write a page beside its place and move it there."""
     page.parent.mkdir(parents=True, exist_ok=True)
@@ -86,6 +96,7 @@ def update(check: bool, long: bool, names: Collection[str] = ()) -> tuple[int, i
     jobs: list[tuple[Callable[[Path], Iterator[tuple[Path, str, str]]], Path]]
     jobs = [(generated_changes, file) for file in generators() if long or not is_long(file)]
     jobs += [(snippet_changes, page) for page in pages()]
+    jobs += [(notebook_changes, file) for file in notebooks() if long or file.stem in names]
     for changes, source in jobs:
         if names and source.stem.removeprefix("generate_") not in names:
             continue

@@ -3,7 +3,7 @@
 The words must be equal; runs of blanks and of line-drawing characters may differ in length. Numbers must agree to 1e-6
 relative or show the same digits; from five printed digits up the last one may differ by one, because it may round
 either way on another machine. Seconds are never compared: a number before `s` or `seconds`, or after the word
-`seconds`, as in "in 0.42 s" and `"seconds": 0.42`.
+`seconds`, as in "in 0.42 s" and `"seconds": 0.42`, and a number before `ms of CPU`.
 On a page, `...` within a line stands for any text, and a line that is only `...` for any lines.
 """
 
@@ -17,7 +17,7 @@ ELLIPSIS = "..."
 _NUMBER = r"(?<![A-Za-z_0-9.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
 _TOKEN = re.compile(
     rf"(?P<after>\bseconds\b[\"']?\s*[:=|]?\s*)(?P<late>{_NUMBER})"
-    rf"|(?P<early>{_NUMBER})(?=\s*(?:s|seconds)\b(?!\s*[/^*]))"
+    rf"|(?P<early>{_NUMBER})(?=\s*(?:(?:s|seconds)\b(?!\s*[/^*])|ms of CPU\b))"
     rf"|(?P<number>{_NUMBER})|(?P<any>\.\.\.)|(?P<rule>[-─━═]{{3,}})|(?P<blank>\s+)"
 )
 

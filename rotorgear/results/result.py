@@ -117,7 +117,9 @@ class Result(Record):
         from rich.console import Console
 
         out = StringIO()
-        Console(file=out, width=width, highlight=False, color_system=None).print(self.table(**options))
+        # In a notebook rich would show the table there and leave the text empty.
+        console = Console(file=out, width=width, highlight=False, color_system=None, force_jupyter=False)
+        console.print(self.table(**options))
         return "\n".join(line.rstrip() for line in out.getvalue().splitlines()).rstrip("\n")
 
     def __repr__(self) -> str:

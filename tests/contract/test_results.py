@@ -173,6 +173,16 @@ def test_markup_in_names_is_shown_as_it_is() -> None:
     assert "&lt;b&gt;[red]x&lt;/b&gt;" in named._repr_html_()
 
 
+def test_a_result_shows_its_table_in_a_notebook_and_nothing_beside_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("rich.console._is_jupyter", lambda: True)
+    result = rg.check(model("jeffcott"))
+    assert "input shaft 'rotor' at 1500 rpm" in result.text()
+    assert "input shaft &#x27;rotor&#x27; at 1500 rpm" in result._repr_html_()
+    assert capsys.readouterr().out == ""
+
+
 @each_kind
 def test_a_pickled_and_a_saved_copy_are_equal_and_a_changed_one_is_not(kind: str, tmp_path: Any) -> None:
     result = example(kind)
