@@ -38,6 +38,10 @@ def test_both_methods_find_the_period_doubling_and_shooting_the_branch_behind_it
     balance = case.orbits((1.63, 1.59), step=0.2, method="harmonic balance")
     assert [point.kind for point in balance.special_points] == ["period doubling"]
     assert case.ratio_of(balance.special_points[0].value) == pytest.approx(1.6076657, abs=1e-3)
+    # Each step's map is exact for a constant tangent: the product of multipliers is nearly that of the damping.
+    mu = np.where(np.isnan(balance.multipliers), 1.0, balance.multipliers)
+    damped = np.exp(-2.0 * case.ratio * case.frequency * balance.period)
+    assert mu.prod(axis=1).real == pytest.approx(damped, rel=1e-5)
 
 
 def test_orbits_of_a_linear_model_are_its_forced_response() -> None:
