@@ -202,6 +202,7 @@ def test_update_rewrites_what_is_out_of_date_and_then_finds_nothing_more(
     monkeypatch.setattr(update, "ROOT", tmp_path)
     monkeypatch.setattr(update, "generators", lambda: generators(tmp_path))
     monkeypatch.setattr(update, "pages", lambda: pages(tmp_path))
+    monkeypatch.setattr(update, "notebooks", list)
 
     assert update.update(check=True, long=False) == (2, 0)
     assert not (tmp_path / "docs" / "list.md").exists()
