@@ -41,15 +41,25 @@ def write_state_space(result: StateSpace, path: str | Path) -> Path:
     target = require_matrix_name(path)
     A, B, C, D = result.first_order()
     values: dict[str, Any] = {
-        "A": A, "B": B, "C": C, "D": D,
-        "M": result.mass_matrix, "D_v": result.velocity_terms, "K": result.stiffness_matrix,
-        "F": result.input_matrix, "P": result.output_matrix,
-        "speed_rad_s": result.speed, "fmax_hz": result.fmax, "reduction_error": result.reduction_error,
-    }  # fmt: skip
+        "A": A,
+        "B": B,
+        "C": C,
+        "D": D,
+        "M": result.mass_matrix,
+        "D_v": result.velocity_terms,
+        "K": result.stiffness_matrix,
+        "F": result.input_matrix,
+        "P": result.output_matrix,
+        "speed_rad_s": result.speed,
+        "fmax_hz": result.fmax,
+        "reduction_error": result.reduction_error,
+    }
     names = {
-        "inputs": result.inputs, "outputs": result.outputs,
-        "input_units": result.input_units, "output_units": result.output_units,
-    }  # fmt: skip
+        "inputs": result.inputs,
+        "outputs": result.outputs,
+        "input_units": result.input_units,
+        "output_units": result.output_units,
+    }
     with replacing(target) as scratch:
         if target.suffix.lower() == ".mat":
             from scipy.io import savemat

@@ -193,7 +193,8 @@ class BallBearing(ForceLaw):
     def pressed_by(self, force: float) -> BallBearing:
         """The bearing with the preload that a force in N along its contact angle gives."""
         A = self.distance
-        radial, axial = self.parameters()[3], A * np.sin(self.contact_angle)
+        radial = self.parameters()[3]
+        axial = A * np.sin(self.contact_angle)
         side = -1.0 if self.contact_angle < 0.0 else 1.0
 
         def rest(z: float) -> float:

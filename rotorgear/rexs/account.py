@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from rotorgear.errors import Problem
 from rotorgear.results.rexs_import import Assumption
 from rotorgear.rexs.document import Component, Value
-from rotorgear.rexs.units import FACTORS, factor_of
+from rotorgear.rexs.units import FACTORS, LARGEST, factor_of
 
 _TRUE = ("true", "1", "yes")
 _FALSE = ("false", "0", "no")
@@ -30,25 +30,36 @@ class Account:
 
     def missing(self, where: Component | str, expected: str, hint: str = "") -> None:
         """Note what the file does not say and nothing can stand in for."""
+        if isinstance(where, Component) and not hint:
+            hint = _elsewhere(where)
         problem = Problem(str(where), "", expected, hint)
         if problem not in self.problems:
             self.problems.append(problem)
 
     def number(self, component: Component, names: tuple[str, ...], kind: str) -> float | None:
-        """The first of some attributes that is there and a finite number, in SI; an unknown unit is a problem."""
+        """The first of some attributes that is there, in SI; placeholders are not taken, and an unknown unit is a problem."""
         for name in names:
             value = component.attributes.get(name)
-            number = None if value is None else _as_number(value.raw)
-            if value is None or number is None:
-                if value is not None and value.raw not in (None, "", []):
-                    self.problems.append(Problem(f"{component}: {name}", f"'{value.raw}'", "a finite number"))
+            if value is None or value.raw in (None, "", []):
+                continue
+            number = _as_number(value.raw)
+            if number is None:
+                self.problems.append(Problem(f"{component}: {name}", f"'{value.raw}'", "a number"))
                 continue
             factor = factor_of(kind, value.unit)
             if factor is None:
                 self._unknown_unit(component, name, value, kind)
                 continue
-            return number * factor
+            # NaN and infinity are what programs write for "not set".
+            if math.isfinite(number) and abs(number * factor) <= LARGEST.get(kind, math.inf):
+                return number * factor
+            self._placeholder(component, name, value)
         return None
+
+    def plain_number(self, component: Component, name: str) -> float | None:
+        """An attribute as it is written, in the unit of the file."""
+        value = component.attributes.get(name)
+        return None if value is None else _as_number(value.raw)
 
     def numbers(self, component: Component, name: str, kind: str, count: int) -> list[float] | None:
         """An array of so many numbers in SI; None where it is not there."""
@@ -58,11 +69,14 @@ class Account:
         found = [_as_number(entry) for entry in value.raw] if isinstance(value.raw, list) else []
         numbers = [entry for entry in found if entry is not None]
         if len(numbers) != count or len(found) != count:
-            self.problems.append(Problem(f"{component}: {name}", f"{value.raw}", f"{count} finite numbers"))
+            self.problems.append(Problem(f"{component}: {name}", f"{value.raw}", f"{count} numbers"))
             return None
         factor = factor_of(kind, value.unit)
         if factor is None:
             self._unknown_unit(component, name, value, kind)
+            return None
+        if not all(math.isfinite(entry) and abs(entry * factor) <= LARGEST.get(kind, math.inf) for entry in numbers):
+            self._placeholder(component, name, value)
             return None
         return [entry * factor for entry in numbers]
 
@@ -79,16 +93,28 @@ class Account:
                 return str(value.raw).strip()
         return ""
 
+    def _placeholder(self, component: Component, name: str, value: Value) -> None:
+        note = f"{component}: {name} = {value.raw} {value.unit}".rstrip() + " stands for no value and is not taken"
+        if note not in self.warnings:
+            self.warnings.append(note)
+
     def _unknown_unit(self, component: Component, name: str, value: Value, kind: str) -> None:
         known = ", ".join(unit for unit in FACTORS[kind] if unit) or "none"
         self.problems.append(Problem(f"{component}: {name}", f"the unit '{value.unit}'", f"one of {known}"))
+
+
+def _elsewhere(component: Component) -> str:
+    """Where a component's values stand if not in this file: from 1.5 on a file may refer to a data base beside it."""
+    source = component.attributes.get("data_source")
+    if source is None or not source.raw:
+        return ""
+    return f"its values stand in '{source.raw}', which is not read: write a file that holds them itself"
 
 
 def _as_number(raw: object) -> float | None:
     if isinstance(raw, bool):
         return None
     try:
-        number = float(raw)  # type: ignore[arg-type]
+        return float(raw)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         return None
-    return number if math.isfinite(number) else None

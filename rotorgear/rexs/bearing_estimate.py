@@ -45,7 +45,8 @@ def size_of_designation(designation: str) -> BearingSize | None:
     """Bore and outer diameter by a designation such as 6305-2Z, NUP204E, 33014 or K 50x58x25; None where it says none."""
     sizes = re.search(r"(\d+(?:\.\d+)?)\s*[xX*]\s*(\d+(?:\.\d+)?)", designation)
     if sizes:
-        bore, outer = float(sizes[1]), float(sizes[2])
+        bore = float(sizes[1])
+        outer = float(sizes[2])
         return BearingSize(1e-3 * bore, 1e-3 * outer, "designation") if 0.0 < bore < outer else None
     digits = re.search(r"\d{3,6}", designation)
     if digits is None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from rotorgear.rexs.account import Account
 from rotorgear.rexs.bearing_estimate import BearingSize, estimated, size_of_designation
 from rotorgear.rexs.document import Component
 from rotorgear.rexs.frames import Frame, Frames
@@ -13,14 +14,22 @@ from rotorgear.rexs.structure import Structure
 from rotorgear.rexs.toml_text import Names, Table, quantity, row
 
 # A stiffness outside these stands for rigid (1e20, 1e23) or for none (0): in N/m, and in N m/rad.
-_STIFFNESS = (1e4, 1e12)
+_STIFFNESS = (1e4, 1e11)
 _TILT = (1.0, 1e9)
+# So does a power of ten from here on, in the unit of the file: nobody computes or measures exactly that.
+_ROUND = 1e10
+# Two statements of one place differ by no more, in m.
+_ONE_PLACE = 1e-5
+# A bore that differs more from the shaft on which it sits is not that of the bearing.
+_FITS = 0.35
 # Of a bearing of which nothing is known but that it is one, N/m.
 _UNKNOWN = 2e8
 # Outer diameter over bore where the shaft's diameter is all that is known.
 _SERIES_2 = 1.48
 _ROLLER_WORDS = ("roller", "needle", "barrel", "tapered", "cylindrical")
-_PLAIN_WORDS = ("plain", "journal", "sliding", "hydrodynamic")
+_PLAIN_WORDS = ("plain", "journal", "slide", "sliding", "hydrodynamic")
+_HELD_WORDS = ("both_directions", "positive", "negative", "true")
+_FREE_WORDS = ("no_direction", "none", "false", "no")
 
 
 def is_bearing(component: Component) -> bool:
@@ -64,6 +73,8 @@ def _sides(part: Component, shafts: dict[str, ShaftPart], structure: Structure, 
         frame = frames.of(part)
         if u is not None:
             z = shaft.axis.z(u)
+            if frame is not None and not found:
+                _tell_other_place(part, z, float((model.axes @ (frame.origin - model.origin))[0]), account)
         elif frame is not None:
             z = float((model.axes @ (frame.origin - model.origin))[0])
         else:
@@ -71,6 +82,14 @@ def _sides(part: Component, shafts: dict[str, ShaftPart], structure: Structure, 
             z = shaft.start
         found.append((shaft, shaft.place(part, z, account)))
     return Sides(found[0], found[1])
+
+
+def _tell_other_place(part: Component, z: float, by_vector: float, account: Account) -> None:
+    if abs(z - by_vector) > _ONE_PLACE:
+        account.warnings.append(
+            f"{part}: its support_vector stands at {1e3 * by_vector:.6g} mm along the gear unit, its coordinate on the shaft at "
+            f"{1e3 * z:.6g} mm, which counts"
+        )
 
 
 def bearing_table(
@@ -115,9 +134,9 @@ def _stiffness(
 ) -> tuple[dict[str, str], str]:
     """Stiffness by direction, and the comment that says which of it the file did not give."""
     account = structure.account
-    radial = _plausible(account.number(part, ("radial_stiffness",), "stiffness"), _STIFFNESS)
-    axial = _plausible(account.number(part, ("axial_stiffness",), "stiffness"), _STIFFNESS)
-    tilt = _plausible(account.number(part, ("bending_stiffness", "tilting_stiffness"), "rotational_stiffness"), _TILT)
+    radial = _given(part, ("radial_stiffness",), "stiffness", account)
+    axial = _given(part, ("axial_stiffness",), "stiffness", account)
+    tilt = _given(part, ("bending_stiffness", "tilting_stiffness"), "rotational_stiffness", account)
     takes_radial = account.truth(part, "radial_force_absorption") is not False
     takes_axial = _takes_axial(part, designation, structure)
     values: dict[str, str] = {}
@@ -143,19 +162,34 @@ def _stiffness(
     return values, "\n".join(reasons)
 
 
-def _plausible(value: float | None, bounds: tuple[float, float]) -> float | None:
-    return value if value is not None and bounds[0] <= value <= bounds[1] else None
+def _given(part: Component, names: tuple[str, ...], kind: str, account: Account) -> float | None:
+    """A stiffness that the file gives; None where it gives none, or one that stands for rigid or for free."""
+    value = account.number(part, names, kind)
+    bounds = _STIFFNESS if kind == "stiffness" else _TILT
+    if value is None or not bounds[0] <= value <= bounds[1]:
+        return None
+    for name in names:
+        written = account.plain_number(part, name)
+        if written is not None and written >= _ROUND and _is_power_of_ten(written):
+            return None
+    return value
+
+
+def _is_power_of_ten(value: float) -> bool:
+    exponent = math.log10(value)
+    return abs(exponent - round(exponent)) < 1e-9
 
 
 def _takes_axial(part: Component, designation: str, structure: Structure) -> bool:
     account = structure.account
-    said = account.text(part, "axial_force_absorption").lower()
-    if said:
-        return said not in ("no_direction", "none", "false", "no")
     rows = structure.parts_of(part, "rolling_bearing_row")
-    said = next((text for row_ in rows if (text := account.text(row_, "axial_force_absorption_of_row"))), "")
-    if said:
-        return said not in ("no_direction", "none", "false", "no")
+    words = [account.text(part, "axial_force_absorption")]
+    words += [account.text(row_, "axial_force_absorption_of_row") for row_ in rows]
+    for said in words:
+        if said.lower() in _FREE_WORDS:
+            return False
+        if said.lower() in _HELD_WORDS:
+            return True
     # Nothing said: what the kind of bearing does. Cylindrical rollers N and NU and needles move freely along the shaft.
     return _kind(part, designation, structure) == "ball" or "tapered" in account.text(part, "bearing_type")
 
@@ -188,12 +222,16 @@ def _guess(
         return _UNKNOWN, _UNKNOWN / 10.0, f"a placeholder of {_UNKNOWN:.0e} N/m for a bearing of unknown size and kind"
     bore = account.number(part, ("inner_diameter", "bore_diameter"), "length")
     outer = account.number(part, ("outer_diameter",), "length")
-    size = BearingSize(bore, outer, "dimensions in the file") if bore and outer and 0.0 < bore < outer else None
-    size = size or size_of_designation(designation or part.name) or size_of_designation(part.name)
+    sizes = [
+        BearingSize(bore, outer, "dimensions in the file") if bore and outer and 0.0 < bore < outer else None,
+        size_of_designation(designation or part.name),
+        size_of_designation(part.name),
+    ]
+    d = seat[0].diameter(seat[1])
+    size = next((item for item in sizes if item is not None and abs(item.bore - d) <= _FITS * d), None)
     if size is None:
-        d = seat[0].diameter(seat[1])
         size = BearingSize(d, d + 1e-3 * _SERIES_2 * (1e3 * d) ** 0.9, "diameter of the shaft, series 2 of ISO 15")
-    rating = account.number(part, ("static_capacity", "static_load_rating", "radial_static_load_rating"), "force")
+    rating = account.number(part, ("static_capacity", "static_load_rating", "radial_static_load_rating"), "rating")
     rows = structure.parts_of(part, "rolling_bearing_row")
     angles = [angle for row_ in rows if (angle := account.number(row_, ("pressure_angle", "contact_angle"), "angle"))]
     angle = angles[0] if angles and 0.0 < abs(angles[0]) < math.radians(60.0) else 0.0
@@ -218,10 +256,10 @@ def coupling_table(
     table = Table(address, str(part))
     _add_ends(table, sides.inner, sides.outer)
     keys = (
-        ("radial", "stiffness", ("radial_stiffness",), _STIFFNESS),
-        ("axial", "stiffness", ("axial_stiffness",), _STIFFNESS),
-        ("tilt", "rotational_stiffness", ("bending_stiffness",), _TILT),
-        ("torsion", "rotational_stiffness", ("rotational_stiffness", "torsional_stiffness"), _TILT),
+        ("radial", "stiffness", ("radial_stiffness",)),
+        ("axial", "stiffness", ("axial_stiffness",)),
+        ("tilt", "rotational_stiffness", ("bending_stiffness",)),
+        ("torsion", "rotational_stiffness", ("rotational_stiffness", "torsional_stiffness")),
     )
     # A stub of steel, as long as thick, in place of what is rigid or not said: K = G I_p / d, E I / d, E A / d, 12 E I / d^3.
     d = min(sides.inner[0].diameter(sides.inner[1]), sides.outer[0].diameter(sides.outer[1]))
@@ -234,8 +272,8 @@ def coupling_table(
     }
     values = {}
     notes = []
-    for key, kind, attributes, bounds in keys:
-        found = _plausible(account.number(part, attributes, kind), bounds)
+    for key, kind, attributes in keys:
+        found = _given(part, attributes, kind, account)
         if found is None:
             found = float(f"{stub[key]:.4g}")
             reason = f"none in the file: a steel stub of {1e3 * d:.4g} mm, as long as thick"

@@ -128,9 +128,15 @@ def _tell_unlike_flanks(gear: Component, data: list[Component], comments: dict[s
 
 
 def _middle(
-    gear: Component, shaft: ShaftPart, width: float, frames: Frames, version: tuple[int, int], model: Frame,
-    comments: dict[str, str], account: Account,
-) -> float | None:  # fmt: skip
+    gear: Component,
+    shaft: ShaftPart,
+    width: float,
+    frames: Frames,
+    version: tuple[int, int],
+    model: Frame,
+    comments: dict[str, str],
+    account: Account,
+) -> float | None:
     """z of the middle of the face.
 
     The support vector of a gear is its middle in all versions. u_coordinate_on_shaft is the begin of the face in version 1.0

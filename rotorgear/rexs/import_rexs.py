@@ -14,12 +14,13 @@ from rotorgear.results.rexs_import import RexsImport
 from rotorgear.rexs.account import Account
 from rotorgear.rexs.bearings import bearing_table, coupling_table, is_bearing, is_coupling
 from rotorgear.rexs.document import Document
-from rotorgear.rexs.frames import Frames
+from rotorgear.rexs.frames import Frame, Frames
 from rotorgear.rexs.gears import GearPart, gear_table, matched, mesh_table, read_gear
 from rotorgear.rexs.loads import load_tables
+from rotorgear.rexs.masses import MASS, mass_tables
 from rotorgear.rexs.read import read_document
 from rotorgear.rexs.shafts import Materials, ShaftPart, read_pieces, shaft_axes, shaft_table
-from rotorgear.rexs.structure import GEAR, Structure, refuse_other_kinds
+from rotorgear.rexs.structure import GEAR, Pair, Structure, refuse_other_kinds
 from rotorgear.rexs.toml_text import Names, Table, comment_line, text
 
 _NEWEST = (1, 6)
@@ -128,67 +129,80 @@ def _tables(document: Document, version: tuple[int, int], account: Account) -> t
     if not document.of_type("shaft"):
         account.missing("the file", "a gearbox needs at least one component of the type shaft")
     shaft_tables = [shaft_table(part, *materials.of(part.component, f"shafts.{part.name}")) for part in shafts.values()]
+    gears, meshing, mesh_tables = _gears(pairs, version, shafts, structure, frames, frame)
+    gear_tables = [gear_table(part, structure, _material(part, structure, materials)) for part in gears]
     names = Names()
+    masses = document.of_type(MASS)
+    mass_list = [table for part in masses for table in mass_tables(part, names, shafts, structure, frames, frame)]
+    bearings, couplings = _joints(shafts, structure, frames, frame)
+    by_name = {part.name: number for number, part in shafts.items()}
+    stiff = [(by_name[_value(table, "from_shaft")], by_name[_value(table, "to_shaft")]) for table in couplings.values()]
+    operation, load_list = load_tables(shafts, meshing, stiff, structure)
+    taken = [part for part in document.components.values() if is_bearing(part) or is_coupling(part)]
+    structure.note_left_out({part.id for part in [*taken, *masses]})
+    counts = {"shafts": len(shafts), "gears": len(gears), "meshes": len(mesh_tables), "bearings": len(bearings)}
+    head = [operation] if operation is not None else []
+    bodies = [*shaft_tables, *gear_tables, *mass_list]
+    joints = [*bearings.values(), *couplings.values()]
+    return [*head, *materials.tables, *bodies, *mesh_tables, *joints, *load_list], counts
+
+
+def _gears(
+    pairs: list[Pair],
+    version: tuple[int, int],
+    shafts: dict[str, ShaftPart],
+    structure: Structure,
+    frames: Frames,
+    frame: Frame,
+) -> tuple[list[GearPart], list[tuple[GearPart, GearPart]], list[Table]]:
+    """Gears with shifts that fit their axes, those that mesh, and the tables of the meshes."""
     gears: dict[str, GearPart] = {}
-    for component in document.of_type(GEAR):
+    names = Names()
+    for component in structure.document.of_type(GEAR):
         name = names.of(component.name, "gear", component.id)
         part = read_gear(component, name, shafts, structure, frames, version, frame)
         if part is not None:
             gears[component.id] = part
-    mesh_tables = []
+    meshing: list[tuple[GearPart, GearPart]] = []
+    tables = []
     names = Names()
-    meshing = []
     for pair in pairs:
-        ends = [gears.get(gear.id) for gear in pair.members]
-        if ends[0] is None or ends[1] is None:
-            continue
-        fitted = matched(ends[0], ends[1], pair, account)
+        first, second = (gears.get(gear.id) for gear in pair.members)
+        fitted = matched(first, second, pair, structure.account) if first is not None and second is not None else None
         if fitted is None:
             continue
         for part in fitted:
             gears[part.component.id] = part
         meshing.append(fitted)
-        mesh_tables.append(mesh_table(pair, names.of(pair.stage.name, "stage", pair.stage.id), *fitted, account))
-    gear_tables = [
-        gear_table(
-            part,
-            structure,
-            materials.of(part.component, f"gears.{part.name}")
-            if structure.referenced(part.component, "material")
-            else ("", ""),
-        )
-        for part in gears.values()
-    ]
-    joints = {}
+        name = names.of(pair.stage.name, "stage", pair.stage.id)
+        tables.append(mesh_table(pair, name, *fitted, structure.account))
+    return list(gears.values()), meshing, tables
+
+
+def _material(part: GearPart, structure: Structure, materials: Materials) -> tuple[str, str]:
+    """Name of a gear's own material and a comment; nothing where it is that of its shaft."""
+    if structure.referenced(part.component, "material") is None:
+        return "", ""
+    return materials.of(part.component, f"gears.{part.name}")
+
+
+def _joints(
+    shafts: dict[str, ShaftPart], structure: Structure, frames: Frames, frame: Frame
+) -> tuple[dict[str, Table], dict[str, Table]]:
+    """Tables of bearings, those between two shafts among them, and of couplings, by number."""
+    bearings: dict[str, Table] = {}
+    couplings: dict[str, Table] = {}
     names = Names()
-    for component in document.components.values():
+    for component in structure.document.components.values():
         if is_bearing(component):
             table = bearing_table(component, names, shafts, structure, frames, frame)
+            if table is not None:
+                bearings[component.id] = table
         elif is_coupling(component):
             table = coupling_table(component, names, shafts, structure, frames, frame)
-        else:
-            continue
-        joints[component.id] = table
-    by_name = {part.name: number for number, part in shafts.items()}
-    stiff = [
-        (by_name[_value(table, "from_shaft")], by_name[_value(table, "to_shaft")])
-        for number, table in joints.items()
-        if table is not None and is_coupling(document.components[number])
-    ]
-    operation, load_list = load_tables(shafts, meshing, stiff, structure)
-    structure.note_left_out(set(joints))
-    bearing_tables = [table for table in joints.values() if table is not None]
-    counts = {
-        "shafts": len(shafts),
-        "gears": len(gears),
-        "meshes": len(mesh_tables),
-        "bearings": sum(
-            is_bearing(document.components[number]) for number, table in joints.items() if table is not None
-        ),
-    }
-    head = [operation] if operation is not None else []
-    tables = [*head, *materials.tables, *shaft_tables, *gear_tables, *mesh_tables, *bearing_tables, *load_list]
-    return tables, counts
+            if table is not None:
+                couplings[component.id] = table
+    return bearings, couplings
 
 
 def _value(table: Table, key: str) -> str:

@@ -14,6 +14,8 @@ from rotorgear.rexs.shafts import ShaftPart
 from rotorgear.rexs.structure import Structure
 from rotorgear.rexs.toml_text import Names, Table, quantity
 
+_ROUNDING = 1e-12
+
 
 @dataclass(frozen=True)
 class Torque:
@@ -73,7 +75,7 @@ def load_tables(
     if reference is None and not torques:
         account.assume("operation", "none", "the file gives neither speed nor torque: analyses are at standstill")
         return None, loads
-    return _operation(speed, reference, torques, shafts, meshes, joined, names, account, loads)
+    return _operation(speed, reference, torques, meshes, joined, names, account, loads)
 
 
 def _speed(shafts: dict[str, ShaftPart], account: Account) -> tuple[float | None, ShaftPart | None]:
@@ -91,9 +93,15 @@ def _speed(shafts: dict[str, ShaftPart], account: Account) -> tuple[float | None
 
 
 def _operation(
-    speed: float | None, reference: ShaftPart | None, torques: list[Torque], shafts: dict[str, ShaftPart],
-    meshes: list[tuple[GearPart, GearPart]], joined: list[tuple[str, str]], names: Names, account: Account, loads: list[Table],
-) -> tuple[Table | None, list[Table]]:  # fmt: skip
+    speed: float | None,
+    reference: ShaftPart | None,
+    torques: list[Torque],
+    meshes: list[tuple[GearPart, GearPart]],
+    joined: list[tuple[str, str]],
+    names: Names,
+    account: Account,
+    loads: list[Table],
+) -> tuple[Table | None, list[Table]]:
     """Which torque drives follows from its power: torque times the speed of its shaft."""
     start = reference or torques[0].shaft
     found = ratios(start.component.id, meshes, joined)
@@ -159,6 +167,9 @@ def _force_table(load: Component, shaft: ShaftPart, z: float, names: Names, acco
     ]
     if not np.any(force) and not np.any(moment):
         return None
+    # What the turning of axes leaves of a zero is none.
+    force = np.where(np.abs(force) < _ROUNDING * np.abs(force).max(), 0.0, force)
+    moment = np.where(np.abs(moment) < _ROUNDING * np.abs(moment).max(), 0.0, moment)
     table = Table(f"loads.{names.of(f'{load.name} force', 'force', load.id)}", str(load))
     table.add("shaft", f'"{shaft.name}"')
     table.add("at", quantity(z, "length"))

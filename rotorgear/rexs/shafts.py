@@ -93,6 +93,8 @@ def read_pieces(shaft: Component, structure: Structure, account: Account) -> tup
                 section, f"{what} are needed" if sections else f"a shaft needs shaft_section parts with {what}"
             )
             continue
+        if length < -_SAME_PLACE:
+            account.missing(section, "its length must not be negative")
         if length <= _SAME_PLACE:
             continue
         u = account.number(section, ("u_coordinate_on_shaft",), "length") if sections else 0.0
@@ -115,7 +117,12 @@ def _joined(shaft: Component, pieces: list[Piece], account: Account) -> tuple[Pi
         gap = piece.u - out[-1].end if out else 0.0
         if gap < -_SAME_PLACE:
             account.missing(shaft, f"its sections overlap at u = {1e3 * piece.u:.6g} mm; they must follow one another")
-        if gap > _SAME_PLACE:
+        if gap > sum(item.length for item in pieces):
+            account.missing(
+                shaft,
+                f"its sections must follow one another; there is none from u = {1e3 * out[-1].end:.6g} to {1e3 * piece.u:.6g} mm",
+            )
+        elif gap > _SAME_PLACE:
             last = out[-1]
             reason = f"no section of {shaft} from u = {1e3 * last.end:.6g} to {1e3 * piece.u:.6g} mm: as the one before"
             sizes = f"{1e3 * last.outer[1]:.6g} mm"
@@ -181,7 +188,7 @@ def _by_stages(axes: dict[str, Axis], structure: Structure, pairs: list[Pair], a
             assert old is not None
             assert new is not None
             a = account.number(pair.stage, ("center_distance", "centre_distance"), "length")
-            if not a:
+            if not a or a < 0.0:
                 continue
             phi = account.number(pair.stage, ("rotating_angle_around_neg_u_axis",), "angle")
             where = f"{new} has no support_vector: by centre distance and angle of {pair.stage}"

@@ -26,12 +26,32 @@ _REFUSED = {
 }
 # Parts that carry no stiffness or mass of their own here: data of other parts, results, lubrication, strength.
 _SILENT = {
-    "gear_unit", "gear_casing", "lubricant", "material", "assembly_group", "shaft_section", "rolling_bearing_row",
-    "rolling_element", "rolling_element_contact", "external_load", "shaft", GEAR, STAGE, "root", "load_spectrum",
-    "flank_geometry", "cylindrical_gear_flank", "stage_gear_data", "cylindrical_stage_gear_data",
-    "cylindrical_gear_manufacturing_settings", "rack_shaped_tool", "gear_shaped_tool", "cylindrical_gear_tool",
-    "tool", "general_stage_data",
-}  # fmt: skip
+    "gear_unit",
+    "gear_casing",
+    "lubricant",
+    "material",
+    "assembly_group",
+    "shaft_section",
+    "rolling_bearing_row",
+    "rolling_element",
+    "rolling_element_contact",
+    "external_load",
+    "shaft",
+    GEAR,
+    STAGE,
+    "root",
+    "load_spectrum",
+    "flank_geometry",
+    "cylindrical_gear_flank",
+    "stage_gear_data",
+    "cylindrical_stage_gear_data",
+    "cylindrical_gear_manufacturing_settings",
+    "rack_shaped_tool",
+    "gear_shaped_tool",
+    "cylindrical_gear_tool",
+    "tool",
+    "general_stage_data",
+}
 # Words in the type of a component that holds contact or strength data of a part and is none itself.
 _DATA_WORDS = (
     "data_set",

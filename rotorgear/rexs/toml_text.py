@@ -22,7 +22,7 @@ _UNITS = {
     "density": ("kg/m^3", 1.0),
     "mass": ("kg", 1.0),
     "inertia": ("kg m^2", 1.0),
-    "acceleration": ("m/s^2", 1.0),
+    "unbalance": ("g mm", 1e-6),
 }
 
 

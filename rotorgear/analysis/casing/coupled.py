@@ -85,13 +85,11 @@ def whole_frequencies(model: Model, name: str, count: int, progress: Progress = 
     springs, flexibility = fe.springs()
     spring = sp.csr_array(shapes.T @ springs)
     empty = sp.csr_array((len(others), len(others)))
-    K = sp.block_diag([fe.stiffness_in(shapes) + (spring / flexibility) @ spring.T, empty]) + P.T @ (
-        assemble(groups, system.dofs, lambda g: g.matrices.stiffness) @ P
-    )
-    M = sp.block_diag([shapes.T @ mass @ shapes, empty]) + P.T @ (
-        assemble(groups, system.dofs, lambda g: g.matrices.mass) @ P
-    )
-    K, M = sp.csr_array(K), sp.csr_array(M)
+    rotor_stiffness = assemble(groups, system.dofs, lambda g: g.matrices.stiffness)
+    rotor_mass = assemble(groups, system.dofs, lambda g: g.matrices.mass)
+    casing_stiffness = fe.stiffness_in(shapes) + (spring / flexibility) @ spring.T
+    K = sp.csr_array(sp.block_diag([casing_stiffness, empty]) + P.T @ (rotor_stiffness @ P))
+    M = sp.csr_array(sp.block_diag([shapes.T @ mass @ shapes, empty]) + P.T @ (rotor_mass @ P))
     # Rotors may turn freely: a shift below the elastic modes makes the matrix one that is positive.
     shift = float(K.diagonal().sum() / M.diagonal().sum()) * 1e-8
     factor = factor_positive(sp.csr_array(K + shift * M), 1, f"casings.{name} with the rotors", progress)

@@ -250,7 +250,9 @@ def phase_collinearity(shape: NDArray[np.complex128]) -> float:
         return 1.0
     x = known.real
     y = known.imag
-    xx, yy, xy = float(x @ x), float(y @ y), float(x @ y)
+    xx = float(x @ x)
+    yy = float(y @ y)
+    xy = float(x @ y)
     return ((xx - yy) ** 2 + 4.0 * xy**2) / (xx + yy) ** 2
 
 

@@ -50,7 +50,8 @@ def bounds_of(
             low[j], high[j] = _parsed(numbers, j, texts.get(j, DEFAULT_BOUNDS))
         else:
             reach = _OF_SHAFT * _length(numbers.model, address)
-            low[j], high[j] = numbers.start[j] - reach, numbers.start[j] + reach
+            low[j] = numbers.start[j] - reach
+            high[j] = numbers.start[j] + reach
         if not low[j] <= numbers.start[j] <= high[j] or low[j] == high[j]:
             raise AnalysisError(
                 f"bounds of {address}: {low[j]:g} to {high[j]:g} do not hold its value {numbers.start[j]:g}"

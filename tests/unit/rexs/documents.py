@@ -14,12 +14,19 @@ from rotorgear.rexs.read import read_document
 from tests.paths import ROOT
 
 SAMPLE = ROOT / "tests" / "rexs_files" / "sew_3_stage_1.0.rexs"
+BEARINX = ROOT / "tests" / "rexs_files" / "fva_2_stage_1.4.rexs"
 
 
 @cache
 def sample() -> Document:
     """The public sample: three stages, nine bearings with placeholders."""
     return read_document(SAMPLE)
+
+
+@cache
+def bearinx() -> Document:
+    """The public two-stage gearbox of version 1.4: a shaft borne in another one, four load cases."""
+    return read_document(BEARINX)
 
 
 def changed(document: Document, number: str, **attributes: Value | None) -> Document:
