@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -20,7 +21,12 @@ NATURAL = math.sqrt(STIFFNESS / MASS)
 
 def jeffcott(zeta: float, speed: float, more: str = "") -> rg.Model:
     """A point mass on a spring and damper; the shaft has no length."""
-    return rg.loads(f"""
+    return rg.loads(jeffcott_text(zeta, speed) + more)
+
+
+def jeffcott_text(zeta: float, speed: float) -> str:
+    """Its model file."""
+    return f"""
 [operation]
 input_shaft = "rotor"
 speed = {speed * NATURAL}
@@ -40,7 +46,7 @@ damping = {{ radial = {2.0 * zeta * MASS * NATURAL} }}
 shaft = "rotor"
 at = "start"
 fixed = ["tilt_x", "tilt_y", "z"]
-{more}""")
+"""
 
 
 def whirled(r: float, zeta: float) -> float:
@@ -153,3 +159,96 @@ def test_a_model_without_a_speed_and_a_grade_without_a_size_are_refused() -> Non
         rg.standards(rg.load(ROOT / "models" / "torsion_chain.toml"))
     with pytest.raises(rg.AnalysisError, match="grade"):
         rg.standards(jeffcott(0.05, 1.4), grade=0.0)
+
+
+def half_power(amplitude: Callable[[float], float], near: float) -> tuple[float, float, float, float]:
+    """Place of a peak, the places where it has fallen to 0.707 of itself, and N_c/(N_2 - N_1), from the formula of a response."""
+    top = near
+    for width in (1e-1, 1e-3, 1e-5, 1e-7):
+        there = top * (1.0 + width * np.linspace(-1.0, 1.0, 401))
+        top = float(there[int(np.argmax([amplitude(w) for w in there]))])
+    level = amplitude(top) / math.sqrt(2.0)
+    low = brentq(lambda w: amplitude(w) - level, 0.85 * top, top)
+    high = brentq(lambda w: amplitude(w) - level, top, 1.15 * top)
+    return top, low, high, top / (high - low)
+
+
+def test_a_rotor_on_unlike_springs_has_two_peaks_of_the_major_axis_of_its_orbit() -> None:
+    # X = e w^2/(w_x^2 - w^2 + i c w/m), Y = -i e w^2/(w_y^2 - w^2 + i c w/m); the orbit is an ellipse between the peaks.
+    across = 1.44 * STIFFNESS
+    damping = 2.0 * 0.02 * MASS * NATURAL
+    source = jeffcott_text(0.02, 2.0).replace(f"radial = {STIFFNESS}", f"x = {STIFFNESS}, y = {across}")
+    result = rg.standards(rg.loads(source))
+
+    def major(w: float) -> float:
+        x, y = (w * w / (k / MASS - w * w + 1j * damping * w / MASS) for k in (STIFFNESS, across))
+        return abs(x + y) + abs(x - y)  # Y = -i y: |X + iY| = |x + y|
+
+    assert len(result.criticals) == 2
+    for peak, near in zip(result.criticals, (NATURAL, 1.2 * NATURAL), strict=True):
+        top, low, high, factor = half_power(major, near)
+        rpm = 30.0 / math.pi
+        assert [peak.shaft_rpm, peak.below_rpm, peak.above_rpm] == pytest.approx(
+            [top * rpm, low * rpm, high * rpm], rel=1e-5
+        )
+        assert peak.amplification_factor == pytest.approx(factor, rel=1e-3)
+    # The curve of the page is the same formula at every speed, between the peaks too, where the minor axis turns its sign.
+    curve = result.curves["rotor"]
+    expected = np.array([major(w) for w in result.curve_speeds])
+    assert curve == pytest.approx(expected * curve.max() / expected.max(), rel=1e-4)
+
+
+def test_an_overhung_disk_has_the_factor_of_its_two_equations() -> None:
+    # A disk at the end of a massless cantilever, damped at the disk. In forward whirl at the speed of the shaft J_d - J_p stands
+    # in place of J_d; K = E I [[12/L^3, -6/L^2], [-6/L^2, 4/L]].
+    length = 0.5
+    d = 0.02
+    E = 206e9
+    mass = 5.0
+    polar = 0.04
+    diametral = 0.021
+    c = 60.0
+    model = rg.loads(f"""
+[operation]
+input_shaft = "rotor"
+speed = "6000 rpm"
+[materials.light]
+youngs_modulus = {E}
+poisson_ratio = 0.3
+density = 1e-3
+[shafts.rotor]
+material = "light"
+sections = [{{ length = {length}, outer_diameter = {d} }}]
+[disks.disk]
+shaft = "rotor"
+at = "end"
+mass = {mass}
+polar_inertia = {polar}
+diametral_inertia = {diametral}
+[bearings.damper]
+shaft = "rotor"
+at = "end"
+stiffness = {{ radial = 1.0 }}
+damping = {{ radial = {c} }}
+[supports.clamp]
+shaft = "rotor"
+at = "start"
+fixed = ["x", "y", "z", "tilt_x", "tilt_y"]
+""")
+    EI = E * math.pi * d**4 / 64.0
+    K = EI * np.array([[12.0 / length**3, -6.0 / length**2], [-6.0 / length**2, 4.0 / length]])
+
+    def radius(w: float) -> float:
+        D = K - w**2 * np.diag([mass, diametral - polar]) + 1j * w * np.diag([c, 0.0])
+        return float(abs(np.linalg.solve(D, [w**2, 0.0])[0]))
+
+    (peak,) = rg.standards(model).criticals
+    near = peak.shaft_rpm * math.pi / 30.0
+    top, low, high, factor = half_power(radius, near)
+    rpm = 30.0 / math.pi
+    # Of the shear of a shaft 25 diameters long there is 1e-3.
+    assert [peak.shaft_rpm, peak.below_rpm, peak.above_rpm] == pytest.approx(
+        [top * rpm, low * rpm, high * rpm], rel=2e-3
+    )
+    assert peak.amplification_factor == pytest.approx(factor, rel=5e-3)
+    assert peak.whirl == "forward"
