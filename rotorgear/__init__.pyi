@@ -67,6 +67,7 @@ from rotorgear.analysis.modal.convergence import convergence_study as convergenc
 from rotorgear.analysis.casing.convergence import casing_convergence_study as casing_convergence_study
 from rotorgear.analysis.transient.convergence import transient_convergence_study as transient_convergence_study
 from rotorgear.analysis.sweep.convergence import sweep_convergence_study as sweep_convergence_study
+from rotorgear.analysis.orbits.convergence import orbits_convergence_study as orbits_convergence_study
 from rotorgear.analysis.teeth.convergence import mesh_convergence_study as mesh_convergence_study
 from rotorgear.solvers.lanes.flow_exponents import flow_exponents as flow_exponents
 

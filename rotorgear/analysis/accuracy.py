@@ -10,6 +10,7 @@ from rotorgear.analysis.bearing.convergence import bearing_convergence_study
 from rotorgear.analysis.campbell.convergence import campbell_convergence_study, critical_convergence_study
 from rotorgear.analysis.casing.convergence import casing_convergence_study
 from rotorgear.analysis.modal.convergence import convergence_study
+from rotorgear.analysis.orbits.convergence import orbits_convergence_study
 from rotorgear.analysis.response.convergence import frf_convergence_study, response_convergence_study
 from rotorgear.analysis.static.convergence import static_convergence_study
 from rotorgear.analysis.sweep.convergence import sweep_convergence_study
@@ -45,7 +46,18 @@ STUDIES = {
     "bearing": _Entry(bearing_convergence_study, ("bearing", "speed")),
     "transient": _Entry(transient_convergence_study, ("speed", "time", "modal_damping")),
     "sweep": _Entry(sweep_convergence_study, ("speed",)),
+    "orbits": _Entry(orbits_convergence_study, ("speed", "excite")),
     "casing": _Entry(casing_convergence_study, ("modes", "casing", "coupled", "finest")),
+}
+# Verbs that have no discretisation of their own, and where the errors of their numbers stand.
+_ELSEWHERE = {
+    "scatter": "its samples share the modes of --analysis modal, and it states the errors of their basis and of its indices",
+    "update": "it fits the modes of --analysis modal, and its intervals are those of the measurement",
+    "optimise": "it moves the modes of --analysis modal",
+    "compare": "it pairs the modes of --analysis modal with measured ones",
+    "sensors": "it reads the modes of --analysis modal",
+    "standards": "it reads --analysis response and --analysis critical",
+    "gear": "it is closed formulas",
 }
 # Arguments that the command spells otherwise.
 _SPELLED = {"stop": "to"}
@@ -69,6 +81,7 @@ def accuracy(
     casing: str | None = None,
     coupled: bool | None = None,
     finest: int | None = None,
+    excite: str | None = None,
     progress: Progress = silent,
 ) -> AnyStudy:
     """Run an analysis of a model over a series of discretisations, each with its error and run time.
@@ -76,7 +89,7 @@ def accuracy(
     Args:
         model: a checked model.
         analysis: "modal", "campbell", "critical", "static", "response", "frf", "mesh" (teeth in contact), "bearing" (film or
-            rolling elements), "transient", "sweep" or "casing" (its mesh and its reduction).
+            rolling elements), "transient", "sweep", "orbits" (one periodic motion) or "casing" (its mesh and its reduction).
         speed: of the input shaft, as in that analysis; not for a mesh.
         stop: campbell, critical: the highest speed of the range.
         modes: modal, campbell, casing: how many modes are compared; 24 where not given, of a casing 8.
@@ -91,6 +104,7 @@ def accuracy(
         casing: casing: its name; None where there is only one.
         coupled: casing: whether the modes are those of the gearbox with it, not its own.
         finest: casing: most unknowns of the mesh to compare with; 300 000 where not given.
+        excite: orbits: name of the mesh whose stage excites alone.
         progress: callable that is told fraction and step.
 
     Returns:
@@ -100,6 +114,8 @@ def accuracy(
     Raises:
         AnalysisError: no such analysis, or an argument that belongs to another one.
     """
+    if analysis in _ELSEWHERE:
+        raise AnalysisError(f"--analysis: {analysis} has no study of its own: {_ELSEWHERE[analysis]}")
     if analysis not in STUDIES:
         names = list(STUDIES)
         raise AnalysisError(f"--analysis: got '{analysis}', expected {', '.join(names[:-1])} or {names[-1]}")
@@ -119,6 +135,7 @@ def accuracy(
         "casing": casing,
         "coupled": coupled,
         "finest": finest,
+        "excite": excite,
     }
     given = {name: value for name, value in arguments.items() if value is not None}
     for name in given:

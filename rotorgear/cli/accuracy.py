@@ -28,7 +28,7 @@ def accuracy(
         typer.Option(
             "--analysis",
             help="What is run: modal, campbell, critical, static, response, frf, mesh (teeth in contact), bearing, "
-            "transient, sweep or casing.",
+            "transient, sweep, orbits or casing.",
         ),
     ] = "modal",
     mesh: Annotated[
@@ -97,6 +97,10 @@ def accuracy(
             show_default=False,
         ),
     ] = None,
+    excite: Annotated[
+        str | None,
+        typer.Option("--excite", help="With --analysis orbits: mesh whose stage excites alone.", show_default=False),
+    ] = None,
     plot: PlotOption = None,
     json: JsonOption = None,
     save: SaveOption = None,
@@ -125,6 +129,7 @@ def accuracy(
             casing=casing,
             coupled=coupled or None,
             finest=finest,
+            excite=excite,
             progress=progress,
         )
     console().print(study.table())

@@ -86,13 +86,13 @@ def orbits(
         progress(0.0, "model")
         family = SystemFamily(model, ranges, excite, elements)
         contacts = contacts_of(family)
-        scale = _scale(family.plant(0.0))
+        scale = scale_of(family.plant(0.0))
         H = harmonics or HARMONICS
         laps = {"model": clock.perf_counter() - begun}
         doublings = 0
         while True:
             N = _even(instants * 2**doublings if instants else INSTANTS * H)
-            problem, why = _equations(method, family, Grid(H, N, family.order), scale)
+            problem, why = equations_of(method, family, Grid(H, N, family.order), scale)
             used = clock.process_time()
             first = first_node(problem, family, from_transient=from_transient, progress=progress)
             branches = main_branches(problem, first, Walk(longest=step, most=points), progress)
@@ -175,7 +175,7 @@ def _even(count: int) -> int:
     return count + count % 2
 
 
-def _scale(plant: Plant) -> np.ndarray:
+def scale_of(plant: Plant) -> np.ndarray:
     """Sizes of the local displacements: their static ones, at least a micrometre's share where there are none."""
     d = np.abs(static_displacements(plant) if plant.m else np.zeros(0))
     k = np.diag(plant.forces.reference_stiffness)
@@ -184,7 +184,7 @@ def _scale(plant: Plant) -> np.ndarray:
     return np.maximum(np.where(k > 0.0, d, largest), least)
 
 
-def _equations(method: str, family: SystemFamily, grid: Grid, scale: np.ndarray) -> tuple[AnyOrbits, str]:
+def equations_of(method: str, family: SystemFamily, grid: Grid, scale: np.ndarray) -> tuple[AnyOrbits, str]:
     """The equations and what they are, in words.
 
     Raises:

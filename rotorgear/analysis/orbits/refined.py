@@ -41,9 +41,17 @@ def largest_error(branch: Branch, columns: np.ndarray) -> float:
         except ConvergenceError:
             found.append(np.nan)
             continue
-        size = np.abs(better[1:, columns]).max(axis=0)
-        found.append(float((np.abs(better - c)[:, columns].max(axis=0) / size).max()))
+        found.append(float(change(coarse, better, columns).max()))
     return float(max(found, default=float("nan")))
+
+
+def change(coarse: np.ndarray, better: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Largest difference of coefficients (h + 1, m) in each column, over the largest harmonic of the better ones."""
+    both = np.zeros((2, max(len(coarse), len(better)), len(columns)), complex)
+    both[0, : len(coarse)] = coarse[:, columns]
+    both[1, : len(better)] = better[:, columns]
+    size = np.abs(both[1, 1:]).max(axis=0)
+    return np.asarray(np.abs(both[0] - both[1]).max(axis=0) / size)
 
 
 def finer_of(orbits: object) -> HarmonicOrbits:

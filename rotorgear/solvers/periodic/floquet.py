@@ -25,6 +25,8 @@ FINER = 4
 # Systems up to this size keep all modes; larger ones those below some multiple of what excites, and static shapes.
 _ALL = 60
 _LEAST = 24
+# Share of a vector left without the motions R that is rounding.
+_ROUNDING = 1e-6
 _MOST = 120
 
 
@@ -52,7 +54,7 @@ def basis_of(plant: Plant, up_to: float) -> ModalBasis:
         dense = M.toarray()
         stiff = K.toarray()
         w2, V = la.eigh(stiff, dense)
-        V = _free_of(V, R, M)[:, : n - R.shape[1]] if R.shape[1] else V
+        V = _free_of(V, R, M) if R.shape[1] else V
         count = n - R.shape[1]
         highest = float(np.sqrt(max(w2[-1], 0.0)))
         complete = True
@@ -78,13 +80,20 @@ def basis_of(plant: Plant, up_to: float) -> ModalBasis:
 
 def _free_of(V: np.ndarray, R: np.ndarray, M: sp.csc_array) -> np.ndarray:
     """M-orthonormal vectors that span those given without the motions R."""
+    V = V / _sizes(V, M)
     for _ in range(2):
         V = V - R @ (R.T @ (M @ V))
-    size = np.sqrt(np.maximum(np.einsum("ij,ij->j", V, M @ V), 1e-300))
-    V = V / size
+    # A vector of R leaves rounding, whose direction says nothing.
+    size = _sizes(V, M)
+    own = size > _ROUNDING
+    V = V[:, own] / size[own]
     w, U = la.eigh(V.T @ (M @ V))
     kept = w > 1e-10 * w[-1]
     return np.asarray(V @ (U[:, kept] / np.sqrt(w[kept]))[:, ::-1])
+
+
+def _sizes(V: np.ndarray, M: sp.csc_array) -> np.ndarray:
+    return np.sqrt(np.maximum(np.einsum("ij,ij->j", V, M @ V), 1e-300))
 
 
 def _tied(plant: Plant, R: np.ndarray) -> bool:

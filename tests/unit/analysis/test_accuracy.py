@@ -142,6 +142,31 @@ def test_lumped_mass_is_measured_against_consistent_mass() -> None:
     falls_with_order(study, 1.8)
 
 
+def test_periodic_motions_of_harmonics_are_held_to_shooting_and_their_estimates_are_those_of_the_errors() -> None:
+    model = rg.load(ROOT / "models" / "backlash_pair.toml")
+    study = rg.orbits_convergence_study(model, speed="4000 rpm", harmonics=(10, 40), densities=(8,), repeat=0)
+    assert "shooting" in study.reference
+    assert study.resolution < 1e-5
+    within(study, 0.5, 3.0)
+    falls_with_order(study, 1.5)
+
+
+def test_a_motion_too_large_for_shooting_is_checked_by_a_transient() -> None:
+    study = rg.orbits_convergence_study(
+        rg.load(ROOT / "models" / "flexible_pair.toml"), harmonics=(5, 10), densities=(), repeat=0
+    )
+    assert "a transient that starts there comes back to" in study.reference
+    returned = float(study.reference.split("comes back to ")[1].split()[0])
+    assert returned < 1e-5
+    assert study.rungs[-1].error < 1e-9
+
+
+@pytest.mark.parametrize("analysis", ["scatter", "update", "optimise", "compare", "sensors", "standards", "gear"])
+def test_a_verb_without_a_discretisation_says_where_its_errors_stand(analysis: str) -> None:
+    with pytest.raises(AnalysisError, match=f"{analysis} has no study of its own: it"):
+        rg.accuracy(overhung(), analysis)
+
+
 def test_an_accuracy_of_amplitudes_is_reached_or_said_to_be_missed() -> None:
     points = {"inputs": ["disks.d:y"], "outputs": ["disks.d:y"], "fmax": 300.0, "points": 60}
     reached = rg.frf(overhung(), **points, modal_damping=0.001, accuracy=1e-5)

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.analysis.orbits.family import SystemFamily, range_of
 from rotorgear.errors import AnalysisError
+from rotorgear.solvers.periodic.floquet import basis_of
 from tests.paths import MODELS
 from validation.dead_zone import HALF_BACKLASH, DeadZone
 
@@ -42,6 +44,16 @@ def test_both_methods_find_the_period_doubling_and_shooting_the_branch_behind_it
     mu = np.where(np.isnan(balance.multipliers), 1.0, balance.multipliers)
     damped = np.exp(-2.0 * case.ratio * case.frequency * balance.period)
     assert mu.prod(axis=1).real == pytest.approx(damped, rel=1e-5)
+
+
+def test_the_modes_of_a_free_pair_hold_nothing_of_its_rotation() -> None:
+    model = rg.load(MODELS / "backlash_pair.toml")
+    plant = SystemFamily(model, [range_of(model, "operation.speed", "4000 rpm:4100 rpm")], None, None).plant(0.0)
+    V = basis_of(plant, np.inf).V
+    assert V.shape == (2, 1)
+    assert np.abs(V.T @ (plant.M @ plant.free)).max() < 1e-12
+    # Both gears are the same: they move towards each other by the same angle.
+    assert V[0] == pytest.approx(V[1], rel=1e-12)
 
 
 def test_orbits_of_a_linear_model_are_its_forced_response() -> None:
