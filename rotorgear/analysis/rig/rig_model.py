@@ -68,7 +68,7 @@ class RigModel:
         """d ln f / dx (k, p) and d phi / dx at the points (k, s, p) of k chosen modes; the latter zero unless asked for."""
         X = modes.vectors[:, chosen]
         values = modes.eigenvalues[chosen]
-        changes = changes_of(self.numbers, x, self.plan, X, shapes=shapes)
+        changes = changes_of(self.numbers, x, modes.system, self.plan, X, shapes=shapes)
         slopes = frequency_derivatives(changes, values)
         if not shapes:
             return slopes, np.zeros((len(chosen), len(self.points), len(x)))

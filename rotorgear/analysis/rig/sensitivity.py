@@ -7,8 +7,8 @@ With (K - w^2 M) phi = 0 and phi^T M phi = 1 (Fox and Kapoor 1968, Rates of chan
 
 where strain' and kinetic' are the changes of phi^T K phi and phi^T M phi with phi held. They are central differences of
 energies summed element by element: no eigenproblem is solved again, and nothing cancels as it would in K' phi of a stiff shaft.
-A stiffness enters linearly, a diameter to the fourth power, a place by the lengths beside it: the same few lines serve any
-number of the file.
+A diameter enters to the fourth power, a place by the lengths beside it: the same few lines serve any number of the file. The
+stiffness k of a spring enters as k dK/dk = K_spring, whose energy needs neither differences nor another assembly.
 
 Shapes follow from Nelson's method (1976, Simplified calculation of eigenvector derivatives, AIAA Journal 14): the bordered system
 
@@ -26,10 +26,13 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from rotorgear.analysis.rig.learnt import SPRINGS
 from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.errors import AnalysisError
 from rotorgear.model.free_numbers import FreeNumbers
 from rotorgear.model.model import Model
+from rotorgear.system.assembly import assemble
+from rotorgear.system.groups import ElementGroup
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
@@ -56,15 +59,26 @@ class Changes:
 
 
 def changes_of(
-    numbers: FreeNumbers, x: NDArray[np.float64], plan: Plan, X: NDArray[np.float64], *, shapes: bool = False
+    numbers: FreeNumbers,
+    x: NDArray[np.float64],
+    system: System,
+    plan: Plan,
+    X: NDArray[np.float64],
+    *,
+    shapes: bool = False,
 ) -> list[Changes]:
-    """Return what each number changes about x (p,), on the mesh of a plan, at shapes X (n, m) of the free dofs.
+    """Return what each number changes about x (p,), where the model has a system on the mesh of a plan, at shapes X (n, m).
 
     Raises:
         AnalysisError: a number that moves a place away from another one that it coincides with.
     """
     found = []
-    for j in range(len(x)):
+    springs = _springs_of(numbers.model, system)
+    for j, address in enumerate(numbers.addresses):
+        part, _, name = address.rpartition(".")
+        if name == "stiffness" and part in springs:
+            found.append(_of_spring(system, springs[part], X, shapes))
+            continue
         step = np.zeros(len(x))
         step[j] = STEP
         above = system_of(numbers.at(x + step), plan)
@@ -82,6 +96,32 @@ def changes_of(
         M = (above.mass @ X - below.mass @ X) / (2.0 * STEP) if shapes else None
         found.append(Changes(strain, kinetic, K, M))
     return found
+
+
+def _springs_of(model: Model, system: System) -> dict[str, list[ElementGroup]]:
+    """Springs whose stiffness matrix is in proportion to the number that the file gives, by address.
+
+    Where a law is linearised about an equilibrium, or a mesh has the stiffness of its load, any number may change any spring.
+    """
+    if about_equilibrium(model, [None])[0] is not model:
+        return {}
+    if any(isinstance(mesh.stiffness, str) for mesh in model.meshes.values()):
+        return {}
+    groups: dict[str, list[ElementGroup]] = {}
+    for group in system.groups:
+        if group.part.partition(".")[0] in SPRINGS and group.matrices.strain is not None:
+            groups.setdefault(group.part, []).append(group)
+    return groups
+
+
+def _of_spring(system: System, groups: list[ElementGroup], X: NDArray[np.float64], shapes: bool) -> Changes:
+    """What the log of a spring's stiffness changes: its own energy and forces."""
+    strain, _ = group_energies(groups, system.dofs.expand(X))
+    nothing = np.zeros(X.shape[1])
+    if not shapes:
+        return Changes(strain, nothing, None, None)
+    K = assemble(groups, system.dofs, lambda group: group.matrices.stiffness)
+    return Changes(strain, nothing, K @ X, np.zeros_like(X))
 
 
 def system_of(model: Model, plan: Plan) -> System:
@@ -120,10 +160,16 @@ def shape_derivatives(
 
 def energies(system: System, X: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return phi^T K phi and phi^T M phi, (m,) each, summed element by element from strains, for shapes X (n, m)."""
-    q = system.dofs.expand(X)
-    strain = np.zeros(X.shape[1])
-    kinetic = np.zeros(X.shape[1])
-    for group in system.groups_at(0.0):
+    return group_energies(system.groups_at(0.0), system.dofs.expand(X))
+
+
+def group_energies(
+    groups: list[ElementGroup], q: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The same of some groups, for shapes q (a, m) of all dofs."""
+    strain = np.zeros(q.shape[1])
+    kinetic = np.zeros(q.shape[1])
+    for group in groups:
         local = q[group.dofs]  # (e, d, m)
         m = group.matrices
         if m.mass is not None:
