@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from rotorgear.errors import ModelError, Problem
 from rotorgear.model.address import Place, places_of, tables_of, value_at
 from rotorgear.model.model import Model
-from rotorgear.quantity import QuantityError, parse_quantity
+from rotorgear.model.parts.problems import shown
+from rotorgear.quantity import QuantityError, nearest, parse_quantity
 
 # What is known of a number before a test where nobody says.
 DEFAULT_PRIOR = 0.30
@@ -82,13 +83,10 @@ def free_numbers(
         raise ModelError([Problem("free", "", "addresses of numbers, such as 'bearings.*.stiffness'")])
     addresses: list[str] = []
     for pattern in patterns:
-        places = [place for place in places_of(tables, pattern) if _has(tables, place)]
-        if not places:
-            raise ModelError([Problem(pattern, "", "the address of a number that the file gives")])
-        for place in places:
+        for place in given_places(tables, pattern):
             address = address_of(place)
             if not is_number(value_at(tables, place)):
-                got = json.dumps(value_at(tables, place))
+                got = shown(value_at(tables, place))
                 hint = "only numbers have a spread; leave it out, or give a number in its place"
                 raise ModelError([Problem(address, got, "a number other than 0, or several", hint)])
             if address not in addresses:
@@ -118,10 +116,23 @@ def _prior_of(address: str, prior: float | str | Mapping[str, float | str]) -> f
     return spread
 
 
-def _has(tables: dict[str, Any], place: Place) -> bool:
-    """Whether the last key of a place is there: `places_of` lets it be missing."""
-    owner = value_at(tables, place[:-1])
-    return place[-1] in owner if isinstance(owner, dict) else True
+def given_places(tables: dict[str, Any], pattern: str) -> list[Place]:
+    """Where an address leads to something that the file gives; `places_of` lets its last key be missing.
+
+    Raises:
+        ModelError: nowhere, with the nearest name.
+    """
+    places = places_of(tables, pattern)
+    owners = [value_at(tables, place[:-1]) for place in places]
+    found = [
+        place for place, owner in zip(places, owners, strict=True) if not isinstance(owner, dict) or place[-1] in owner
+    ]
+    if not found:
+        name = str(places[0][-1])
+        guess = nearest(name, [key for owner in owners for key in owner])
+        hint = f"did you mean '{guess}'?" if guess else ""
+        raise ModelError([Problem(pattern, f"'{name}'", "a number that the file gives there", hint)])
+    return found
 
 
 def is_number(value: Any) -> bool:

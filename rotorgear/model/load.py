@@ -10,6 +10,7 @@ from typing import Any
 from rotorgear.errors import ModelError, Problem
 from rotorgear.model.model import SCHEMA_VERSION, Model
 from rotorgear.model.parts.problems import shown
+from rotorgear.model.spreads import scatter_problems
 from rotorgear.quantity import nearest
 
 
@@ -66,9 +67,13 @@ def loads(text: str, source: str = "model", folder: str | Path = ".") -> Model:
     _find_meshes(data, Path(folder))
     _find_histories(data, Path(folder))
     try:
-        return Model(**data)
+        model = Model(**data)
     except ModelError as error:
         raise ModelError(error.problems, source) from None
+    problems = scatter_problems(model) if model.scatter else []
+    if problems:
+        raise ModelError(problems, source)
+    return model
 
 
 def _find_topographies(data: dict[str, Any], folder: Path) -> None:

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 
 from rotorgear.errors import ModelError, Problem
 from rotorgear.model.address import Place, places_of, tables_of, value_at
-from rotorgear.model.free_numbers import address_of, is_number, times
+from rotorgear.model.free_numbers import address_of, given_places, is_number, times
 from rotorgear.model.model import Model
+from rotorgear.model.parts.problems import shown
 from rotorgear.quantity import DIMENSIONS, QuantityError, parse_quantity
 
 
@@ -81,10 +82,7 @@ def numbers_of(model: Model, free: str | Iterable[str]) -> Numbers:
     tables = tables_of(model)
     places: dict[str, Place] = {}
     for pattern in patterns:
-        found = [place for place in places_of(tables, pattern) if _has(tables, place)]
-        if not found:
-            raise ModelError([Problem(pattern, "", "the address of a number that the file gives")])
-        places |= {address_of(place): place for place in found}
+        places |= {address_of(place): place for place in given_places(tables, pattern)}
     start = []
     factor = []
     for address, place in places.items():
@@ -92,7 +90,7 @@ def numbers_of(model: Model, free: str | Iterable[str]) -> Numbers:
         several = isinstance(value, dict | list)
         if not (several and is_number(value)) and (not isinstance(value, int | float) or isinstance(value, bool)):
             hint = "leave it out, or give a number in its place"
-            raise ModelError([Problem(address, json.dumps(value), "a number, or several", hint)])
+            raise ModelError([Problem(address, shown(value), "a number, or several", hint)])
         start.append(1.0 if several else float(value))
         factor.append(several)
     units = ("" if many else _unit(model, places[address]) for address, many in zip(places, factor, strict=True))
@@ -145,11 +143,6 @@ def _station(model: Model, tables: Mapping[str, Any], place: Place) -> Any:
         return value
     part = model.shafts[shaft]
     return part.start if value == "start" else part.start + sum(section.length for section in part.sections)
-
-
-def _has(tables: dict[str, Any], place: Place) -> bool:
-    owner = value_at(tables, place[:-1])
-    return place[-1] in owner if isinstance(owner, dict) else True
 
 
 def _unit(model: Model, place: Place) -> str:

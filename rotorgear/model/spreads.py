@@ -81,6 +81,13 @@ def spreads_of(model: Model, given: Mapping[str, Scatter]) -> Spreads:
     Raises:
         ModelError: addresses that lead nowhere, sizes that the number can't have, a class of ISO 1328 where there is none.
     """
+    spreads = _spreads(model, given)
+    if not np.any(spreads.size > 0.0):
+        raise ModelError([Problem("scatter", "", "at least one number that scatters")])
+    return spreads
+
+
+def _spreads(model: Model, given: Mapping[str, Scatter]) -> Spreads:
     numbers = numbers_of(model, list(given))
     size = np.zeros(len(numbers.addresses))
     kinds = ["normal"] * len(size)
@@ -88,11 +95,34 @@ def spreads_of(model: Model, given: Mapping[str, Scatter]) -> Spreads:
         for j in matching(numbers, pattern):
             size[j] = _size(numbers, j, entry)
             kinds[j] = entry.distribution
-    if not np.any(size > 0.0):
-        raise ModelError([Problem("scatter", "", "at least one number that scatters")])
     for j, address in enumerate(numbers.addresses):
         _check(numbers, j, float(size[j]), kinds[j], address)
     return Spreads(numbers, size, tuple(kinds))
+
+
+def scatter_problems(model: Model) -> list[Problem]:
+    """Mistakes in the table [scatter] of a model: the first one of each of its rows."""
+    found = []
+    right: dict[str, Scatter] = {}
+    for pattern, entry in model.scatter.items():
+        try:
+            numbers = numbers_of(model, [pattern])
+            for j in range(len(numbers.addresses)):
+                _size(numbers, j, entry)
+            right[pattern] = entry
+        except ModelError as error:
+            problem = error.problems[0]
+            at = f'scatter."{pattern}"'
+            # What is wrong with one of the numbers that a "*" names is said with its own address.
+            where = "" if problem.address in (pattern, "") else f"{problem.address}: "
+            found.append(Problem(at, problem.value, f"{where}{problem.expected}", problem.hint))
+    try:
+        # Of two rows for one number the later counts, so that spreads through 0 are looked for in all rows together.
+        if right:
+            _spreads(model, right)
+    except ModelError as error:
+        found += error.problems
+    return found
 
 
 def graded_errors(model: Model) -> dict[str, Scatter]:

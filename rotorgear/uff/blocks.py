@@ -14,6 +14,7 @@ from rotorgear.errors import ModelError, Problem
 
 _BINARY = re.compile(r"\s*58\s*[bB]")
 _HEADER_LINES = 11
+_MOST_HEADER_LINES = 40
 # The line that closes binary data; some programs write a line end before it, which the format doesn't have.
 _CLOSES = re.compile(rb"[\r\n]{0,2} {0,4}-1 *(?:[\r\n]|\Z)")
 # What programs write before or after the sets; nothing is lost with it.
@@ -105,12 +106,13 @@ def _binary(cursor: _Cursor, identifier: str, name: str) -> Block:
     fields = identifier[identifier.lower().index("b") + 1 :].split()
     numbers = [int(field) if field.isdigit() else 0 for field in fields]
     stated = numbers[3] if len(numbers) > 3 else 0
-    count = numbers[2] if len(numbers) > 2 and numbers[2] > 0 else _HEADER_LINES
+    # Fields that have run together say any number.
+    count = numbers[2] if len(numbers) > 2 and 0 < numbers[2] <= _MOST_HEADER_LINES else _HEADER_LINES
     lines = tuple(cursor.next_line() for _ in range(count))
     start = cursor.at
     for size in (stated, *sizes_of(lines)):
-        closing = _CLOSES.match(cursor.data, start + size)
-        if size > 0 and closing:
+        closing = _CLOSES.match(cursor.data, start + size) if 0 < size < len(cursor.data) else None
+        if closing:
             break
     else:
         closing = _CLOSES.search(cursor.data, start)

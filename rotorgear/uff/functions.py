@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rotorgear.uff.blocks import Block, sizes_of
 from rotorgear.uff.datasets import ACCELERATION, DISPLACEMENT, FORCE, FREQUENCY, REACTION, VELOCITY, Function, Units
-from rotorgear.uff.rows import Where, columns, numbers_in, numbers_of
+from rotorgear.uff.rows import Where, columns, is_whole, numbers_in, numbers_of
 
 _REAL_SINGLE = 2
 _REAL_DOUBLE = 4
@@ -59,7 +59,7 @@ def read_function(block: Block, units: Units, file: str) -> tuple[Function, list
         raise where.problem(0, f"eleven header lines of a function, {len(lines)} are there")
     kind, response, reference = _freedoms(lines[5], where)
     form = numbers_in(lines[6], where, 7)
-    if len(form) < 3 or form[0] not in _KINDS or form[1] < 0:
+    if len(form) < 3 or form[0] not in _KINDS or form[1] < 0 or not is_whole(form[1]):
         expected = "ordinate type 2, 4, 5 or 6, number of values and spacing"
         raise where.problem(7, expected, repr(lines[6].strip()[:60]))
     count = int(form[1])
@@ -180,6 +180,8 @@ def _from_bytes(
     length = next((size_ for size_ in sizes if len(data.rstrip(b"\r\n")) <= size_ <= len(data)), None)
     length = length or next((size_ for size_ in sizes if size_ <= len(data)), None)
     if length is None:
+        if not sizes:
+            raise where.problem(7, "ordinate type, number of values and spacing as whole numbers")
         raise where.problem(11, f"{min(sizes)} bytes by the header, but only {len(data)} are there: the set is cut")
     found = []
     for mark in ("<", ">") if order == _LITTLE else (">", "<"):

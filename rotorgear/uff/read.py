@@ -12,7 +12,7 @@ from rotorgear.errors import ModelError, Problem
 from rotorgear.uff.blocks import Block, blocks_of
 from rotorgear.uff.datasets import Function, Nodes, Shape, TraceLine, Units, UniversalFile
 from rotorgear.uff.functions import read_function
-from rotorgear.uff.rows import Where, columns, numbers_in, numbers_of, whole_in
+from rotorgear.uff.rows import Where, columns, is_whole, numbers_in, numbers_of, whole_in
 
 _NORMAL = 2
 _COMPLEX_MODES = (3, 7)
@@ -134,6 +134,8 @@ def _table(rows: np.ndarray, units: Units, where: Where) -> Nodes:
         raise where.problem(0, "the set has no nodes")
     if not np.isfinite(rows).all():
         raise where.problem(0, "finite coordinates of nodes")
+    if not all(map(is_whole, rows[:, :3].ravel())):
+        raise where.problem(0, "whole numbers of nodes, coordinate systems and colours")
     whole = rows[:, :3].astype(int)
     return Nodes(whole[:, 0], rows[:, 3:] / units.length, whole[:, 1], whole[:, 2])
 
@@ -162,7 +164,10 @@ def _line(block: Block, file: str) -> TraceLine:
         raise where.problem(0, "number and name of a trace line, and its nodes")
     number, count = whole_in(block.lines[0], where, 1, 2)[:2]
     rows = [(k, text) for k, text in enumerate(block.lines[2:], start=3) if text.strip()]
-    nodes = numbers_of(rows, where).astype(int)
+    numbers = numbers_of(rows, where)
+    if not all(map(is_whole, numbers)):
+        raise where.problem(3, "numbers of nodes")
+    nodes = numbers.astype(int)
     if len(nodes) < count:
         raise where.problem(3, f"{count} nodes of the trace line, {len(nodes)} are there: the set is cut")
     return TraceLine(number, block.lines[1].strip(), nodes[:count])
@@ -214,7 +219,7 @@ def _node_values(lines: tuple[str, ...], each: int, where: Where) -> tuple[np.nd
     at = 0
     while at < len(rows):
         row, head = rows[at]
-        if len(head) != 1 or head[0] != int(head[0]):
+        if len(head) != 1 or not is_whole(head[0]):
             raise where.problem(row, "the number of a node in a line of its own", f"{len(head)} numbers")
         at += 1
         found: list[float] = []
@@ -223,6 +228,8 @@ def _node_values(lines: tuple[str, ...], each: int, where: Where) -> tuple[np.nd
             at += 1
         if len(found) != each:
             raise where.problem(rows[at - 1][0], f"{each} values at node {int(head[0])}", str(len(found)))
+        if int(head[0]) in nodes and found != values[nodes.index(int(head[0]))]:
+            raise where.problem(row, "every node once", f"node {int(head[0])} again, with other values")
         nodes.append(int(head[0]))
         values.append(found)
     return np.array(nodes), np.array(values)

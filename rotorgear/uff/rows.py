@@ -14,6 +14,11 @@ from rotorgear.errors import ModelError, Problem
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d{1,3}|[+-]\d{3}(?!\d*\.))?")
 
 
+# Nothing that is measured is larger, in any unit; what is comes from columns that have run together.
+_LARGEST = 1e100
+_LONGEST_WHOLE = 1e10
+
+
 class Where:
     """A dataset in a file, for messages about its lines."""
 
@@ -35,9 +40,10 @@ def numbers_in(text: str, where: Where, row: int) -> list[float]:
         ModelError: something that is no finite number.
     """
     rest = _NUMBER.sub(" ", text).strip()
-    if rest:
+    values = [] if rest else [_value(found) for found in _NUMBER.findall(text)]
+    if rest or not all(abs(value) < _LARGEST for value in values):
         raise where.problem(row, "numbers", repr(text.strip()[:60]))
-    return [_value(found) for found in _NUMBER.findall(text)]
+    return values
 
 
 def numbers_of(rows: Iterable[tuple[int, str]], where: Where) -> NDArray[np.float64]:
@@ -52,9 +58,14 @@ def whole_in(text: str, where: Where, row: int, least: int) -> list[int]:
         ModelError: fewer of them, or others.
     """
     values = numbers_in(text, where, row)
-    if len(values) < least or any(value != int(value) for value in values[:least]):
+    if len(values) < least or not all(map(is_whole, values[:least])):
         raise where.problem(row, f"{least} whole numbers", repr(text.strip()[:60]))
     return [int(value) for value in values]
+
+
+def is_whole(value: float) -> bool:
+    """Whether a number is one that a field of ten columns can count or name something with."""
+    return abs(value) < _LONGEST_WHOLE and value == int(value)
 
 
 def columns(text: str, widths: Iterable[int]) -> list[str]:

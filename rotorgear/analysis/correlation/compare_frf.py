@@ -20,7 +20,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.frf_comparison import FrfComparison, FrfMatch
-from rotorgear.uff.datasets import DERIVATIVES, FREQUENCY_RESPONSE, Function
+from rotorgear.uff.datasets import DERIVATIVES, FREQUENCY, FREQUENCY_RESPONSE, Function
 from rotorgear.uff.read import read_universal
 
 
@@ -70,6 +70,15 @@ def read_rig_frf(path: str | Path, points: str | Path | None = None, model: Mode
             raise AnalysisError(
                 f"{path}: the response of a function is of type {function.numerator}; expected displacement (8), "
                 "velocity (11) or acceleration (12)"
+            )
+        if function.denominator in DERIVATIVES:
+            raise AnalysisError(
+                f"{path}: a function is a motion over a motion (type {function.denominator}), a transmissibility; expected "
+                "motions over forces (13)"
+            )
+        if function.x_type not in (0, FREQUENCY):
+            raise AnalysisError(
+                f"{path}: a function is over an axis of type {function.x_type}; expected frequency (18)"
             )
         if len(function.x) != len(hz) or not np.allclose(function.x, hz, rtol=1e-4):
             raise AnalysisError(

@@ -110,8 +110,9 @@ def compare_shapes(
             )
         )
     paired = {line for line, _ in pairs}
-    matched = [given.shapes[line] for line, _ in pairs]
-    planes = [modes.everywhere[list(modes.group[mode])] for _, mode in pairs]
+    seen = [(line, mode) for line, mode in pairs if np.isfinite(given.shapes[line]).any()]
+    matched = [given.shapes[line] for line, _ in seen]
+    planes = [modes.everywhere[list(modes.group[mode])] for _, mode in seen]
     progress(0.95, "sensors")
     distances = [sensor.distance for sensor in given.sensors] or [None] * len(given.points)
     return ShapeComparison(
@@ -124,10 +125,10 @@ def compare_shapes(
         mac=alike,
         auto_mac=mac(given.shapes, given.shapes),
         model_auto_mac=mac(modes.at_points, modes.at_points),
-        comac=_comac(matched, [modes.at_points[list(modes.group[mode])] for _, mode in pairs], len(given.points)),
+        comac=_comac(matched, [modes.at_points[list(modes.group[mode])] for _, mode in seen], len(given.points)),
         matches=tuple(matches),
         unmatched=tuple(line for k, line in enumerate(given.lines) if k not in paired),
-        subspaces=_subspaces(modes, pairs, given.lines, given.shapes),
+        subspaces=_subspaces(modes, seen, given.lines, given.shapes),
         doubts=sensor_doubts(given.points, modes.axes, np.array(matched), planes),
         tolerance=tolerance,
         chance=chance,

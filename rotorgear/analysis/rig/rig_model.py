@@ -73,5 +73,9 @@ class RigModel:
         if not shapes:
             return slopes, np.zeros((len(chosen), len(self.points), len(x)))
         rows = point_rows(modes.system, self.points)
-        at_points = np.tensordot(rows.toarray(), shape_derivatives(modes.system, changes, values, X), axes=(1, 0))
+        at_points = np.tensordot(
+            rows.toarray(),
+            shape_derivatives(modes.system, changes, modes.eigenvalues, modes.vectors, chosen),
+            axes=(1, 0),
+        )
         return slopes, np.transpose(at_points, (1, 0, 2))

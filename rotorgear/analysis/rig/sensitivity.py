@@ -12,10 +12,11 @@ stiffness k of a spring enters as k dK/dk = K_spring, whose energy needs neither
 
 Shapes follow from Nelson's method (1976, Simplified calculation of eigenvector derivatives, AIAA Journal 14): the bordered system
 
-    [K - w^2 M   M phi] [phi']   [-(K' - w^2 M' - (w^2)' M) phi]
-    [phi^T M     0    ] [  . ] = [-phi^T M' phi / 2           ]
+    [K - w^2 M   M phi] [  phi'  ]   [-(K' - w^2 M') phi]
+    [phi^T M     0    ] [-(w^2)' ] = [-phi^T M' phi / 2 ]
 
-is regular where w is a simple eigenvalue, and phi' is exact, without a sum over modes that would have to be cut.
+is regular where w is a simple eigenvalue, and phi' is exact, without a sum over modes that would have to be cut. Around an
+eigenvalue of several modes stand all of them in the border (Ojalvo 1988, AIAA Journal 26): what leaves their space is exact.
 """
 
 from __future__ import annotations
@@ -39,6 +40,8 @@ from rotorgear.system.system import System
 # Half width of the central differences in x = ln p: their error is h^2 / 6 times the third derivative, some 1e-9 here, and
 # rounding is 1e-15 / h of the energies.
 STEP = 1e-4
+# Modes whose w^2 agree to this share of it are taken as one eigenvalue; simple ones are exact to rounding over it.
+_EQUAL = 1e-7
 
 
 @dataclass(frozen=True)
@@ -137,24 +140,34 @@ def frequency_derivatives(changes: list[Changes], eigenvalues: NDArray[np.float6
 
 
 def shape_derivatives(
-    system: System, changes: list[Changes], eigenvalues: NDArray[np.float64], X: NDArray[np.float64]
+    system: System,
+    changes: list[Changes],
+    eigenvalues: NDArray[np.float64],
+    vectors: NDArray[np.float64],
+    chosen: NDArray[np.intp],
 ) -> NDArray[np.float64]:
-    """Return d phi / dx, (n, m, p), of modes X (n, m) with modal mass 1, each a simple eigenvalue w^2 (m,)."""
+    """Return d phi / dx, (n, k, p), of k chosen ones of the modes `vectors` (n, m), modal mass 1, with eigenvalues w^2 (m,).
+
+    Modes at one frequency are any basis of their space: what they turn into within it means nothing, and is left 0.
+    """
     K = system.stiffness()
     M = system.mass
-    found = np.zeros((*X.shape, len(changes)))
-    for i, w2 in enumerate(eigenvalues):
-        phi = X[:, i]
-        border = sp.csc_array((M @ phi)[:, None])
+    n = len(vectors)
+    found = np.zeros((n, len(chosen), len(changes)))
+    for i, mode in enumerate(chosen):
+        w2 = eigenvalues[mode]
+        equal = np.flatnonzero(np.abs(eigenvalues - w2) <= _EQUAL * w2)
+        border = sp.csc_array(M @ vectors[:, equal])
         bordered = sp.csc_array(sp.block_array([[K - w2 * M, border], [border.T, None]]))
-        right = np.zeros((len(phi) + 1, len(changes)))
+        right = np.zeros((n + len(equal), len(changes)))
+        own = n + int(np.flatnonzero(equal == mode)[0])
         for j, change in enumerate(changes):
             assert change.stiffness_times is not None
             assert change.mass_times is not None
-            slope = change.strain[i] - w2 * change.kinetic[i]
-            right[:-1, j] = -(change.stiffness_times[:, i] - w2 * change.mass_times[:, i] - slope * (M @ phi))
-            right[-1, j] = -0.5 * change.kinetic[i]
-        found[:, i] = _solved(bordered, right)[:-1]
+            # What of it lies along M phi, the change of w^2, goes to the multipliers of the border.
+            right[:n, j] = -(change.stiffness_times[:, i] - w2 * change.mass_times[:, i])
+            right[own, j] = -0.5 * change.kinetic[i]
+        found[:, i] = _solved(bordered, right)[:n]
     return found
 
 

@@ -56,6 +56,13 @@ def read_rig_shapes(path: str | Path, points: str | Path | None = None, model: M
                 [Problem(f"point {sensor.place}", f"node {sensor.node}", "a node that some shape of the file has")],
                 str(path),
             )
+    still = np.flatnonzero(~np.any(np.nan_to_num(table) != 0.0, axis=1))
+    for row in still:
+        # A shape that is 0 everywhere has no direction to compare; its frequency is a line like any other.
+        table[row] = complex(math.nan)
+        notes.append(
+            f"shape {row + 1} ({lines[row].frequency_hz:.4g} Hz) moves no sensor: taken as a line without shape"
+        )
     names = tuple(sensor.place for sensor in sensors)
     return Measured(tuple(lines), names, table, (*file.notes, *notes, *_turned_systems(file)), tuple(sensors))
 

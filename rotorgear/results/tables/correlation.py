@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from rotorgear.results.correlation import ShapeComparison
@@ -24,7 +25,7 @@ def compare_shapes_table(result: ShapeComparison) -> RenderableType:
             str(match.mode_number),
             f"{match.mode_frequency_hz:.2f}",
             f"{match.error_percent:+.2f} %",
-            f"{match.mac:.3f}",
+            "-" if math.isnan(match.mac) else f"{match.mac:.3f}",
             f"{match.phase_collinearity:.2f}",
             close,
         )

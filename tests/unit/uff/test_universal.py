@@ -68,6 +68,23 @@ def binary(
 VALUES = np.array([1e-6 - 2e-6j, 3.5e-7 + 1e-8j, -4e-9 + 0.25j, 10.0 - 13.0j, 0.1 + 2.6e-3j])
 UNEVEN = np.array([1.0, 2.0, 4.0, 8.0, 16.0])
 
+SHAPE = """    -1
+    55
+NONE
+NONE
+NONE
+NONE
+NONE
+         1         2         2         8         2         3
+         2         4         1         1
+  25.0  1.0  0.01  0.0
+         1
+  1.0  2.0  3.0
+         2
+  9.0    2.0  3.0
+    -1
+"""
+
 
 @pytest.mark.parametrize("kind", [2, 4, 5, 6])
 @pytest.mark.parametrize("order", [1, 2])
@@ -90,6 +107,7 @@ def test_binary_functions_of_either_byte_order_and_precision_are_read(tmp_path, 
         {"before": "\n"},
         {"size": 0},
         {"size": 20},
+        {"size": 10**11},
         {"x": UNEVEN, "x_size": "f4"},
         {"order": 2, "says": 1},
         {"order": 1, "says": 2, "x": UNEVEN},
@@ -99,6 +117,7 @@ def test_binary_functions_of_either_byte_order_and_precision_are_read(tmp_path, 
         "LF before the end",
         "no size",
         "half the size",
+        "any size",
         "single abscissa",
         "swapped",
         "swapped back",
@@ -137,6 +156,12 @@ def test_a_closing_line_inside_of_binary_data_closes_nothing(tmp_path):
         ("    -1\n   164\n    -1\n", "units code"),
         ("    -1\n   164\n         1     SI: Meter        2\n    0.0    1.0    1.0    0.0\n    -1\n", "above 0"),
         ("    -1\n   164\n         1     SI: Meter        2\n    1e3    1e3    1.0    0.0\n    -1\n", "correct one"),
+        ("    -1\n    82\n         1         2         0\nNONE\n         1     1e999\n    -1\n", "numbers"),
+        ("    -1\n    82\n      1e15         2         0\nNONE\n         1         2\n    -1\n", "2 whole numbers"),
+        ("    -1\n    15\n     1e300         0         0         1  1.0 2.0 3.0\n    -1\n", "numbers"),
+        (binary(6, VALUES).replace(b"         6         5 ", b"         6       5.5 "), "number of values"),
+        (SHAPE.replace("         2\n", "         1\n"), "node 1 again"),
+        (SHAPE.replace("  9.0  ", "  1e999"), "numbers"),
         ("hello\n", "a line with -1"),
         ("    -1\nhello\n    -1\n", "number of a dataset"),
         ("    -1\n    15\n         1         0\n", "the file is cut"),

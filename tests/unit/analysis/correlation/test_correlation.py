@@ -13,8 +13,9 @@ import rotorgear as rg
 from rotorgear.analysis.correlation.compare_shapes import phase_collinearity
 from rotorgear.cli.main import app
 from rotorgear.errors import AnalysisError, ModelError
-from rotorgear.uff.datasets import Shape
-from rotorgear.uff.write import shape_set
+from rotorgear.uff.datasets import Function, Shape
+from rotorgear.uff.read import read_universal
+from rotorgear.uff.write import function_set, nodes_set, shape_set, units_set
 from tests.paths import MODELS
 from validation.rigs import draw, nominal
 
@@ -140,6 +141,37 @@ def test_responses_of_the_model_itself_have_a_frac_of_one_and_swapped_signs_are_
     table.write_text("point,node,direction\ngears.pinion,1,x\ngears.wheel,2,-y\n")
     signs = rg.compare_frf(model, file, points=table, elements=1, modal_damping=0.02)
     assert any("opposite sign" in sentence and "gears.wheel:y" in sentence for sentence in signs.verdicts)
+
+
+@pytest.mark.parametrize(
+    ("wound", "text"),
+    [
+        ({"denominator": 12}, "transmissibility"),
+        ({"x_type": 19}, "axis of type 19"),
+        ({"numerator": 13}, "type 13"),
+        ({"reference": (0, 0)}, "between two sensors"),
+    ],
+)
+def test_functions_that_are_no_motion_over_force_are_refused(tmp_path, wound, text):
+    good = Function(4, (1, 1), (2, 2), np.array([1.0, 2.0]), np.array([2.0 + 1j, 1.0]), 18, 12, 13)
+    (tmp_path / "rig.uff").write_bytes(function_set(replace(good, **wound)))
+    (tmp_path / "sensors.csv").write_text("point,node,direction\ngears.pinion,1,x\ngears.wheel,2,y\n")
+    with pytest.raises(AnalysisError, match=text):
+        rg.read_rig_frf(tmp_path / "rig.uff", tmp_path / "sensors.csv")
+
+
+def test_a_shape_that_moves_nowhere_is_a_line_without_shape(tmp_path):
+    model = rg.load(MODELS / "geared_pair.toml")
+    result = rg.modal(model, modes=6, elements=2)
+    file = rg.write_uff(result, tmp_path / "rig.uff", modes=range(1, 6))
+    sets = read_universal(file)
+    shapes = [replace(shape, values=shape.values * (k > 0)) for k, shape in enumerate(sets.shapes)]
+    file.write_bytes(b"".join([units_set(sets.units), nodes_set(sets.nodes), *map(shape_set, shapes)]))
+    found = rg.compare_shapes(result, file, samples=5)
+    assert any("taken as a line without shape" in note for note in found.warnings)
+    assert np.isnan(found.matches[0].mac)
+    assert "nan" not in found.text()
+    assert min(match.mac for match in found.matches[1:]) > 1 - 1e-9
 
 
 def test_order_cuts_come_back_from_csv_and_from_a_universal_file(tmp_path):

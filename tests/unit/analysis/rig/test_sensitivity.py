@@ -7,6 +7,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.analysis.rig.rig_model import RigModel
+from rotorgear.analysis.rig.sensitivity import changes_of, system_of
 from rotorgear.errors import AnalysisError, ModelError
 from rotorgear.model.free_numbers import free_numbers
 from rotorgear.system.plan import Plan
@@ -43,6 +44,47 @@ def test_derivatives_of_frequencies_and_shapes_are_those_of_modes_solved_anew(pa
         differences = (along(high) - along(low)) / (2 * h)
         np.testing.assert_allclose(
             shape_slopes[..., j], differences, atol=1e-5 * abs(differences).max(), err_msg=address
+        )
+
+
+def test_the_plane_of_two_modes_at_one_frequency_moves_as_differences_say():
+    """A rotor alike along x and y: each shape is any of a plane, and what leaves the plane is what a rig can see."""
+    points = {name: {"on": f"bearings.{name}", "direction": "y"} for name in ("left", "right")}
+    points |= {f"{name}_x": {"on": f"bearings.{name}", "direction": "x"} for name in ("left", "right")}
+    model = rg.load(MODELS / "jeffcott.toml").with_("points", points | {"disk": {"on": "disks.disk", "direction": "y"}})
+    problem = RigModel(free_numbers(model, "bearings.left.stiffness"), Plan(2), 200.0, tuple(model.points))
+    x = np.zeros(1)
+    modes = problem.modes(x)
+    first = np.arange(2)
+    assert modes.eigenvalues[1] / modes.eigenvalues[0] == pytest.approx(1.0, abs=1e-9)
+    _, slopes = problem.derivatives(x, modes, first, shapes=True)
+    high, low = problem.modes(x + 1e-4), problem.modes(x - 1e-4)
+
+    def projector(plane):
+        Q = np.linalg.qr(plane.T)[0]
+        return Q @ Q.T
+
+    plane = modes.at_points[first]
+    Q = np.linalg.qr(plane.T)[0]
+    off = np.eye(len(Q)) - Q @ Q.T
+    moved = off @ slopes[..., 0].T @ np.linalg.pinv(plane.T)
+    differences = (projector(high.at_points[first]) - projector(low.at_points[first])) / 2e-4
+    np.testing.assert_allclose(moved + moved.T, differences, atol=1e-5 * abs(differences).max())
+
+
+def test_springs_by_their_energy_are_springs_by_differences(pair):
+    x = np.full(len(pair.numbers.addresses), 0.1)
+    system = system_of(pair.numbers.at(x), pair.plan)
+    X = pair.modes(x).vectors[:, :5]
+    own = changes_of(pair.numbers, x, system, pair.plan, X, shapes=True)
+    h = 1e-4
+    for j, address in enumerate(pair.numbers.addresses):
+        step = h * np.eye(len(x))[j]
+        high, low = (system_of(pair.numbers.at(x + sign * step), pair.plan) for sign in (1.0, -1.0))
+        K = (high.stiffness() - low.stiffness()) @ X / (2 * h)
+        np.testing.assert_allclose(own[j].stiffness_times, K, atol=1e-6 * abs(K).max(), err_msg=address)
+        np.testing.assert_allclose(
+            own[j].strain, np.sum(X * K, axis=0), rtol=1e-5, atol=1e-6 * abs(own[j].strain).max()
         )
 
 

@@ -13,12 +13,13 @@ import rotorgear as rg
 from rotorgear.analysis.scatter.family import family_of, system_at
 from rotorgear.analysis.scatter.forms import FormNames, forms_of
 from rotorgear.analysis.scatter.modes import modes_of, overlaps
+from rotorgear.errors import ModelError
 from rotorgear.gears.geometry.flank_tolerance import cumulative_pitch_tolerance
 from rotorgear.model.numbers import numbers_of
 from rotorgear.model.parts.scatter import Scatter
 from rotorgear.model.spreads import spreads_of
 from rotorgear.system.plan import Plan
-from tests.paths import ROOT
+from tests.paths import MODELS, ROOT
 
 PENDULUM = """
 motions = ["torsion"]
@@ -285,3 +286,20 @@ def test_a_thousand_samples_of_a_split_torque_gearbox_equal_whole_solutions():
         nearest = np.min(np.abs(whole.frequency_hz[None, :] / result.sample_hz[k][:, None] - 1.0), axis=1)
         lonely = [i for i, row in enumerate(result.bands) if sum(row.group == one.group for one in result.bands) == 1]
         assert nearest[lonely].max() < 5e-4
+
+
+@pytest.mark.parametrize(
+    ("rows", "text"),
+    [
+        ('"bearings.rotor_1_lft.stiffness" = { sigma = "10 %" }', "did you mean 'rotor_1_left'"),
+        ('"bearings.*.stifness" = { sigma = "10 %" }', "did you mean 'stiffness'"),
+        ('"bearings.*.stiffness" = { sigma = "2 kg" }', r"scatter\.\"bearings.*got '2 kg'"),
+        ('"bearings.*.stiffness" = { grade = 6 }', "such as meshes"),
+        ('"bearings.*.stiffness" = { sigma = "40 %" }', "lognormal"),
+        ('"x.stiffness" = { sigma = "1 %" }\n"title" = { sigma = "1 %" }', "2 problems"),
+    ],
+)
+def test_a_table_of_scatter_that_leads_nowhere_is_refused_when_the_file_is_read(rows, text):
+    file = (MODELS / "geared_pair.toml").read_text() + "\n[scatter]\n"
+    with pytest.raises(ModelError, match=text):
+        rg.loads(file + rows)
