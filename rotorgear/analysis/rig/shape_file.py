@@ -57,7 +57,7 @@ def read_rig_shapes(path: str | Path, points: str | Path | None = None, model: M
                 str(path),
             )
     still = np.flatnonzero(~np.any(np.nan_to_num(table) != 0.0, axis=1))
-    for row in still:
+    for row in map(int, still):
         # A shape that is 0 everywhere has no direction to compare; its frequency is a line like any other.
         table[row] = complex(math.nan)
         notes.append(
