@@ -189,6 +189,7 @@ class MeshResult(Result, kind="mesh"):
     )
     sampling_errors: MeshErrors | None = of("what the choice of positions has of them", record=MeshErrors)
     dofs: int = of("degrees of freedom", note=" of both gears' elements")
+    memory_bytes: float | None = of("largest memory of the process", "B", note=", or `null`")
     loads: tuple[LoadPoint, ...] = of("the same mesh at other loads", "", "load", record=LoadPoint)
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from rotorgear.casings.reduced_body import ReducedBody
 from rotorgear.casings.reduction import reduce
 from rotorgear.casings.survey import MeshModes, free_modes, held_modes, rigid_residual
 from rotorgear.errors import AnalysisError
+from rotorgear.memory import largest_memory
 from rotorgear.model.layout.casings import casing_settings
 from rotorgear.model.model import Model
 from rotorgear.model.model_hash import model_hash
@@ -151,7 +151,7 @@ def _row(model: Model, name: str, count: int, fmax: float | None, tell: Progress
         ),
         seats=_seats(fe, body),
         notes=fe.mesh.notes,
-        memory_bytes=_largest_memory(),
+        memory_bytes=largest_memory(),
         seconds=seconds,
         points=body.surface.points,
         triangles=body.surface.triangles,
@@ -179,13 +179,3 @@ def _seats(fe: FiniteElementBody, body: ReducedBody) -> tuple[CasingSeat, ...]:
         others = "held" if flexibility is None else "free"
         found.append(CasingSeat(seat, patch.point, patch.area, len(patch.nodes), stiffness, others))
     return tuple(found)
-
-
-def _largest_memory() -> float | None:
-    """The most memory that this process has held, in bytes; None where the system does not tell."""
-    try:
-        import resource
-    except ImportError:  # Windows
-        return None
-    unit = 1 if sys.platform == "darwin" else 1024
-    return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit)

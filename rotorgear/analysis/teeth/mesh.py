@@ -17,6 +17,7 @@ from rotorgear.gears.loaded.mesh_cycle import MeshCycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, in_space
 from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 from rotorgear.gears.tooth_fe.settings import PRESETS
+from rotorgear.memory import largest_memory
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.mesh import HelixContact, LoadPoint, MeshResult
@@ -191,6 +192,7 @@ def _other(model: Model, request: MeshRequest, positions: int, clock: Clock) -> 
         slice_errors=None,
         sampling_errors=None,
         dofs=0,
+        memory_bytes=largest_memory(),
         seconds=clock.total(),
         loads=(),
         warnings=curve.warnings,
@@ -243,6 +245,7 @@ def _result(
         slice_errors=errors.slices if errors else None,
         sampling_errors=errors.sampling if errors else None,
         dofs=found.problem.unknowns,
+        memory_bytes=largest_memory(),
         seconds=clock.total(),
         loads=loads,
         warnings=tuple(dict.fromkeys(notes)),

@@ -15,13 +15,14 @@ from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.outline import ToothOutline, tooth_outline
 from rotorgear.gears.tooth_fe.blank_section import AXIAL_SIDE, BlankSection, torsional_flexibility
 from rotorgear.gears.tooth_fe.compliance_cache import cached
+from rotorgear.gears.tooth_fe.forecast import Stack
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance, chained
 from rotorgear.gears.tooth_fe.mesh import LEAST_INNER, PitchMesh, pitch_mesh
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.sector import layered_sector, plane_sector
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.gears.tooth_fe.wheel_compliance import wheel_flexibility
-from rotorgear.gears.tooth_fe.wheel_sector import WheelSector, even_wheel, layered_wheel
+from rotorgear.gears.tooth_fe.wheel_sector import SEATS, WheelSector, even_wheel, layered_wheel
 from rotorgear.progress import Progress, part_of, silent
 
 # Teeth to either side of a loaded one whose response is kept; a pair further away is not felt.
@@ -145,7 +146,7 @@ def gear_compliance(key: ComplianceKey, progress: Progress = silent, *, fresh: b
     """Compliance of a gear, from the disk where it is known; `fresh`: computed in any case, to measure how long it takes.
 
     Raises:
-        AnalysisError: teeth that can't be made or meshed.
+        AnalysisError: teeth that can't be made or meshed, or that take more memory than there is.
         MissingExtraError: scikit-fem is not installed and the gear is not known yet.
     """
     return _computed(key, progress) if fresh else cached(key, lambda: _computed(key, progress))
@@ -153,6 +154,10 @@ def gear_compliance(key: ComplianceKey, progress: Progress = silent, *, fresh: b
 
 def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
     outline, mesh = pitch_of(key)
+    if key.width:
+        expected = layers_of(key, mesh).forecast()
+        expected.require_room()
+        progress(0.0, f"teeth in space, {expected}")
     height = np.linspace(-0.5 * key.width, 0.5 * key.width, 2 * key.size.face + 1) if key.width else np.zeros(1)
     teeth = key.geometry.teeth if key.arc == 0 else key.arc
     reach = min(REACH, (teeth - 1) // 2)
@@ -183,6 +188,24 @@ def _computed(key: ComplianceKey, progress: Progress) -> GearCompliance:
         base_radius=outline.geometry.base_radius,
         unknowns=unknowns,
         asymmetry=asymmetry,
+    )
+
+
+def layers_of(key: ComplianceKey, mesh: PitchMesh) -> Stack:
+    """Sizes of a gear in space, which tell what it takes."""
+    flank = len(mesh.flank)
+    # A wheel keeps its seat on the blank, too: one node of it in each cut, the others between.
+    seat = 3 if key.blank else 0
+    cut = 3 * len(mesh.left) + seat
+    kept = 2 * cut + flank + seat * (2 * SEATS - 1)
+    free = 3 * (len(mesh.points) - len(mesh.inner))
+    return Stack(
+        inside=free - 6 * len(mesh.left) - flank,
+        kept=kept,
+        cut=cut,
+        flank=flank,
+        layers=key.size.face,
+        pitches=key.arc or key.geometry.teeth,
     )
 
 

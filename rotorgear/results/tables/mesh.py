@@ -49,7 +49,10 @@ def mesh_table(result: MeshResult, *, harmonics: int = 0) -> RenderableType:
         parts += ["", loads]
     parts += ["", *lines(*(f"Warning: {text}" for text in result.warnings))]
     if result.dofs:
-        parts.append(f"{result.dofs} dofs, {result.seconds['total']:.2f} s")
+        # Teeth in the plane take nothing worth a word.
+        told = result.memory_bytes is not None and any(np.ptp(helix.z) > 0.0 for helix in result.helix)
+        memory = f", {1e-9 * (result.memory_bytes or 0.0):.1f} GB" if told else ""
+        parts.append(f"{result.dofs} dofs, {result.seconds['total']:.2f} s{memory}")
     return Group(*parts)
 
 
