@@ -48,8 +48,14 @@ def export(
     modal_damping: ModalDampingOption = 0.0,
     elements: ElementsOption = None,
     accuracy: Annotated[
-        float, typer.Option("--accuracy", help="Error of a reduced state space, over its largest response.")
-    ] = 1e-4,
+        float | None,
+        typer.Option(
+            "--accuracy",
+            help="Error of a reduced state space, over its largest response (default 1e-4), and of the frequencies "
+            "that its mesh is refined for (default 1e-3).",
+            show_default=False,
+        ),
+    ] = None,
     full: Annotated[bool, typer.Option("--full", help="State space with all degrees of freedom.")] = False,
     modes: Annotated[
         int | None,

@@ -37,7 +37,7 @@ class StateSpace(ModelResult, kind="state_space"):
     )
     error_estimate: float = of(
         "estimated relative discretisation error",
-        note=" of the frequencies that the mesh was refined for; 0 where its elements were given",
+        note=" of the frequencies that the mesh was refined for; `null` where its elements were given",
         form=".0e",
     )
     discretisation: tuple[Piece, ...] = of("how each shaft segment was divided", "", "piece", record=Piece, json=None)

@@ -50,6 +50,8 @@ _LARGEST = 3000
 _BETWEEN = 61
 # Poles below this share of the highest frequency are rigid motions, where no response is finite.
 _LOWEST = 1e-5
+# Damping ratio below which a mode counts as undamped.
+_NO_WIDTH = 1e-9
 # A response below this share of what the displacements there could add up to is none.
 _FORBIDDEN = 1e-9
 # Static shapes that are no more than this share of what the basis already holds add nothing.
@@ -66,7 +68,7 @@ def state_space(
     speed: float | str | None = None,
     modal_damping: float = 0.0,
     elements: int | None = None,
-    accuracy: float = ACCURACY,
+    accuracy: float | None = None,
     full: bool = False,
     progress: Progress = silent,
 ) -> StateSpace:
@@ -79,7 +81,8 @@ def state_space(
         speed: of the input shaft in rad/s or with its unit; None: standstill.
         modal_damping: damping ratio added to every elastic mode up to 1.5 times the highest frequency, beside that of the model.
         elements: basic elements in each shaft segment. None: refined for modes up to the highest frequency.
-        accuracy: reduce no further than to this share of the largest size of each response.
+        accuracy: reduce no further than to this share of the largest size of each response, and refine the mesh until frequencies
+            are within it; where not given 1e-4 and 1e-3.
         full: all degrees of freedom in place of modes and static shapes.
         progress: callable that is told fraction and step.
 
@@ -89,6 +92,7 @@ def state_space(
     clock = time.perf_counter()
     turns = speed_in_si(speed) or 0.0
     check_request(turns, None, None, elements, None)
+    check_request(turns, None, None, None, accuracy)
     if not 0.0 < fmax < float("inf"):
         raise AnalysisError(f"fmax: got {fmax:g}, expected a positive frequency in Hz")
     if not inputs or not outputs:
@@ -98,7 +102,8 @@ def state_space(
     ports = Ports(model, (*inputs, *outputs))
     zeta = modal_damping + model.damping.modal_ratio
     progress(0.02, "discretisation")
-    system, notes = linear_system(model, turns, fmax, elements)
+    aim = None if elements is not None else accuracy
+    system, notes = linear_system(model, turns, fmax, elements, aim)
     if full and system.n > _LARGEST:
         raise AnalysisError(
             f"a full state space of {system.n} degrees of freedom is dense in {2 * system.n} states; leave 'full' out for a "
@@ -121,9 +126,9 @@ def state_space(
         kept = len(w)
         basis = _basis(dynamics, kept_modes, np.hstack([B, C.T]), _SHIFT * limit)
         progress(0.6, "error of the reduction")
-        made, error = _reduced(dynamics, B, C, basis, limit, damped, accuracy)
+        made, error = _reduced(dynamics, B, C, basis, limit, damped, accuracy or ACCURACY)
     progress(1.0, "done")
-    short = missed(accuracy, error, "write the full system, or ask for less")
+    short = missed(accuracy or ACCURACY, error, "write the full system, or ask for less")
     return StateSpace(
         model=model,
         speed=turns,
@@ -140,7 +145,7 @@ def state_space(
         reduced=not full,
         kept_modes=kept,
         reduction_error=error,
-        error_estimate=0.0 if elements is not None else DEFAULT_ACCURACY,
+        error_estimate=float("nan") if elements is not None else accuracy or DEFAULT_ACCURACY,
         dofs=system.n,
         discretisation=pieces(system),
         seconds={"total": time.perf_counter() - clock},
@@ -157,11 +162,13 @@ def state_space(
     )
 
 
-def linear_system(model: Model, turns: float, fmax: float, elements: int | None) -> tuple[System, tuple[str, ...]]:
+def linear_system(
+    model: Model, turns: float, fmax: float, elements: int | None, accuracy: float | None = None
+) -> tuple[System, tuple[str, ...]]:
     """The system about its equilibrium at a speed in rad/s, meshed as `frf` meshes it up to a frequency in Hz; and notes."""
     linear, notes = about_equilibrium(model, [turns or None])
     first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
-    plan = plan_up_to(at_speed(linear, turns), MARGIN * fmax, elements, None)
+    plan = plan_up_to(at_speed(linear, turns), MARGIN * fmax, elements, accuracy)
     return System(linear, plan=plan, load=first.system.load.of_kind("dynamic")), (*first.notes, *notes)
 
 
@@ -279,9 +286,12 @@ def _reduced(
 
 
 def _peaks(made: _Matrices, limit: float) -> np.ndarray:
-    """Damped natural frequencies up to a limit and their half-power half-widths in rad/s, (p, 2)."""
+    """Damped natural frequencies up to a limit and their half-power half-widths in rad/s, (p, 2).
+
+    A mode without damping has no width, and at its pole nothing can be solved: it is left out.
+    """
     n = made.M.shape[0]
     state = np.block([[np.zeros((n, n)), np.eye(n)], [-la.solve(made.M, made.K), -la.solve(made.M, made.D)]])
     poles = la.eigvals(state)
-    near = poles[(poles.imag > _LOWEST * limit) & (poles.imag <= limit)]
+    near = poles[(poles.imag > _LOWEST * limit) & (poles.imag <= limit) & (-poles.real > _NO_WIDTH * poles.imag)]
     return np.stack([near.imag, np.abs(near.real)], axis=1)
