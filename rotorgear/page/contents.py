@@ -14,16 +14,19 @@ from rotorgear.analysis.campbell.critical import critical
 from rotorgear.analysis.campbell.critical_map import critical_map
 from rotorgear.analysis.casing.casing import casing
 from rotorgear.analysis.common.describe_model import check
+from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.response.response import response
 from rotorgear.analysis.rig.compare_result import compare
-from rotorgear.analysis.standards.standards import standards
+from rotorgear.analysis.standards.standards import HIGHEST, judged
 from rotorgear.analysis.static.static import static
 from rotorgear.analysis.teeth.gear_sheet import gear
 from rotorgear.analysis.teeth.mesh import mesh
 from rotorgear.errors import RotorgearError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress
+from rotorgear.results.critical import CriticalResult
+from rotorgear.results.standards import StandardsResult
 
 # Modes of the table where no rig asks for more, speeds of diagrams and run-ups, stiffnesses of the map.
 MODES = 24
@@ -95,15 +98,24 @@ def _over_speed(found: Contents, model: Model, speed: float, grade: float, progr
     progress(0.2, "Campbell diagram")
     found.run("campbell", lambda: campbell(model, points=CAMPBELL_SPEEDS, mesh_orders=(1,)))
     progress(0.45, "critical speeds")
-    found.run("critical", lambda: critical(model))
+    # The rules judge the critical speeds of the table: both go as far as the widest margin reaches.
+    speeds = found.run("critical", lambda: critical(model, stop=HIGHEST * speed))
     if model.bearings:
         found.run("critical_map", lambda: critical_map(model, stiffness=_stiffnesses(model)))
     else:
         found.missing["critical_map"] = "the model has no bearings"
     progress(0.55, "rules of standards")
-    found.run("standards", lambda: standards(model, grade=grade))
+    if speeds is not None:
+        found.run("standards", lambda: _standards(model, critical_speeds=speeds, grade=grade))
+    else:
+        found.missing["standards"] = found.missing["critical"]
     progress(0.65, "run-up")
     found.run("response", lambda: response(model, points=RUN_UP_SPEEDS, method="direct"))
+
+
+@recorded
+def _standards(model: Model, *, critical_speeds: CriticalResult, grade: float) -> StandardsResult:
+    return judged(critical_speeds, model, grade)
 
 
 def _stiffnesses(model: Model) -> list[float]:

@@ -22,7 +22,7 @@ from rotorgear.results.schema import Record
 P = ParamSpec("P")
 R = TypeVar("R", bound=Result)
 # They say how the work is done or watched, and change no number.
-_NOT_SETTINGS = ("progress", "stream", "executor")
+_NOT_SETTINGS = ("progress", "stream", "executor", "critical_speeds")
 
 
 def recorded(analysis: Callable[P, R]) -> Callable[P, R]:

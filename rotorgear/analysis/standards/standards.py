@@ -77,16 +77,42 @@ def standards(
     Raises:
         AnalysisError: no operating speed, or a grade that is not positive.
     """
+    speed = operating_speed_of(model)
+    top = abs(speed_in_si(stop) or HIGHEST * speed)
+    _require_grade(grade)
+    progress(0.05, "critical speeds")
+    return judged(critical(model, stop=math.copysign(top, speed)), model, grade, progress)
+
+
+def operating_speed_of(model: Model) -> float:
+    """The operating speed of the input shaft in rad/s.
+
+    Raises:
+        AnalysisError: the model has none.
+    """
     speed = model.operation.speed if model.operation else None
     if not speed:
         raise AnalysisError("rules of standards need the speed of [operation]")
+    return speed
+
+
+def _require_grade(grade: float) -> None:
     if not (math.isfinite(grade) and grade > 0.0):
         raise AnalysisError(f"grade: expected a balance quality grade above 0 mm/s, got {grade:g}")
-    top = abs(speed_in_si(stop) or HIGHEST * speed)
+
+
+def judged(found: CriticalResult, model: Model, grade: float, progress: Progress = silent) -> StandardsResult:
+    """The rules from critical speeds that are known already.
+
+    Args:
+        found: damped critical speeds of the model, up to the speed at which peaks are looked for.
+        model, grade, progress: as in `standards`.
+    """
+    speed = operating_speed_of(model)
+    _require_grade(grade)
     direction = 1 if speed > 0.0 else -1
     operating = abs(speed)
-    progress(0.05, "critical speeds")
-    found = critical(model, stop=direction * top)
+    top = abs(found.top_speed)
     fastest = max(abs(model.layout.train.ratio(name)) for name in model.shafts) * top
     plant, notes = plant_up_to(model, direction, top, fastest)
     progress(0.4, "unbalance response")
