@@ -68,12 +68,20 @@ def _bearings(axis: Any, result: CriticalMap) -> None:
             more = f" and {len(alike) - 3} more" if len(alike) > 3 else ""
             axis.text(
                 value,
-                0.02,
-                " " + ", ".join(alike[:3]) + more,
+                _between_curves(axis, result, value),
+                ", ".join(alike[:3]) + more,
                 rotation=90,
                 fontsize=7,
-                va="bottom",
+                va="center",
                 ha="right",
                 color="#444444",
-                transform=axis.get_xaxis_transform(),
             )
+
+
+def _between_curves(axis: Any, result: CriticalMap, stiffness: float) -> float:
+    """The speed in rpm in the middle of the widest gap that the curves leave at a stiffness, on the logarithmic axis."""
+    row = int(np.argmin(np.abs(np.log(result.stiffness / stiffness))))
+    near = np.abs(result.critical_speeds[max(row - 1, 0) : row + 2]) * RPM_PER_RAD_S
+    edges = np.log(np.sort(np.concatenate([near[np.isfinite(near)], axis.get_ylim()])))
+    widest = int(np.argmax(np.diff(edges)))
+    return float(np.exp(0.5 * (edges[widest] + edges[widest + 1])))

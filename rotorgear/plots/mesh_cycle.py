@@ -34,13 +34,13 @@ def mesh(result: MeshResult, fig: Any = None) -> np.ndarray:
     figure = figure_for(fig, (11.0, 3.7 * rows), f"{result.mesh}: {result.stiffness_model}{load}")
     axes = figure.subplots(rows, 2, squeeze=False)
     stiffness = axes[0, 0]
-    stiffness.plot(*_closed(result, 1e-9 * result.stiffness), color=_BLUE, lw=1.6, label=result.definition)
+    stiffness.plot(*_closed(result, 1e-6 * result.stiffness), color=_BLUE, lw=1.6, label=result.definition)
     if result.tangent is not None:
-        stiffness.plot(*_closed(result, 1e-9 * result.tangent), color=_ORANGE, lw=1.2, label="tangent")
-    stiffness.axhline(1e-9 * result.mean_stiffness, color=_GREY, lw=0.9, ls="--", label="mean")
+        stiffness.plot(*_closed(result, 1e-6 * result.tangent), color=_ORANGE, lw=1.2, label="tangent")
+    stiffness.axhline(1e-6 * result.mean_stiffness, color=_GREY, lw=0.9, ls="--", label="mean")
     stiffness.legend(frameon=False, fontsize=8)
     stiffness.set_title(f"stiffness, {'all helices' if result.helices > 1 else 'one helix'}, transverse", fontsize=10)
-    _plain_axis(stiffness, "stiffness, N/nm")
+    _plain_axis(stiffness, "stiffness, N/um")
     _error(axes[0, 1], result)
     if result.helix:
         helix = result.helix[0]
@@ -129,7 +129,7 @@ def mesh_pressure(result: MeshResult, ax: Any = None, *, helix: int = 0) -> Any:
         axis.plot(roll[order], pressure[order], color=_BLUE, lw=1.4, label="on the line of action")
         if touching.any():
             axis.plot(roll[touching], pressure[touching], ".", color=_ORANGE, ms=4, label="a tip corner touches")
-            axis.legend(frameon=False, fontsize=8, loc="lower center")
+            _legend_below(axis, 2)
         axis.set_ylabel("largest pressure, MPa")
         axis.grid(True, alpha=0.25)
         axis.set_ylim(0.0, None)
@@ -155,7 +155,7 @@ def mesh_pressure(result: MeshResult, ax: Any = None, *, helix: int = 0) -> Any:
                 linewidths=0.3,
                 s=14,
             )
-            axis.legend(fontsize=8, loc="lower center")
+            _legend_below(axis, 1)
         axis.set_ylabel("place along the face, mm")
         axis.figure.colorbar(filled, ax=axis, label="largest pressure, MPa", format="%.0f")
     for name, place in zip("ACE", contact.path_of_contact, strict=True):
@@ -171,6 +171,12 @@ def mesh_pressure(result: MeshResult, ax: Any = None, *, helix: int = 0) -> Any:
             fontsize=8,
         )
     return axis
+
+
+def _legend_below(axis: Any, columns: int) -> None:
+    """A legend beside the label below axes that curves or colours fill."""
+    axis.set_xlabel(axis.get_xlabel(), loc="left")
+    axis.legend(frameon=False, fontsize=8, ncols=columns, loc="upper right", bbox_to_anchor=(1.03, -0.07))
 
 
 def mesh_loads(result: MeshResult, ax: Any = None) -> Any:
