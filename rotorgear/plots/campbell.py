@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,9 @@ _MOTION = {
 _MARKERS = {"forward": "^", "backward": "v", "mixed": "D", "planar": "_"}
 _LINES = {"shaft": "#555555", "mesh": "#7a3f9d", "sideband": "#b58ccb"}
 _MOST_LABELS = 14
+# A top of so many times the highest shaft order gives a logarithmic axis; below this share of the top a mode is a rigid one.
+_FLAT = 5.0
+_RIGID = 1e-4
 # More sidebands than that are drawn without names.
 _MOST_SIDEBANDS = 8
 
@@ -38,7 +42,7 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
             the strain energy) or "damping" (logarithmic decrement).
 
     Returns:
-        The axes.
+        The axes. Frequencies are logarithmic where the diagram reaches more than five times as far as the shaft orders.
 
     Raises:
         AnalysisError: an unknown colour. MissingExtraError: matplotlib is not installed.
@@ -46,10 +50,13 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
     if colour not in COLOURS:
         raise AnalysisError(f"colour: got '{colour}', expected {', '.join(COLOURS[:-1])} or {COLOURS[-1]}")
     axis = axes_for(ax, (11.0, 7.0), result.model.title or "Campbell diagram")
-    top = 1.04 * float(np.nanmax(result.frequency_hz))
+    height = _height(result)
+    top = height.top
     left, right = sorted((float(result.speed_rpm[0]), float(result.speed_rpm[-1])))
     axis.set_xlim(left, right)
-    axis.set_ylim(0.0, top)
+    if height.logarithmic:
+        axis.set_yscale("log")
+    axis.set_ylim(height.bottom, top)
     _branches(axis, result, colour)
     # About eight markers of whirl a branch, each branch beginning elsewhere, so that close branches don't hide each other's.
     step = max(1, len(result.speeds) // 8)
@@ -62,8 +69,8 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
                     x.append(result.speed_rpm[k])
                     y.append(result.frequency_hz[k, b])
         axis.plot(x, y, marker, color="#222222", ms=3.6, mfc="white", mew=0.7, ls="none", zorder=4)
-    _lines(axis, result, (left, right), top)
-    _crossings(axis, result, top)
+    _lines(axis, result, (left, right), height)
+    _crossings(axis, result, height)
     if result.operating_speed is not None and left <= result.operating_speed * RPM_PER_RAD_S <= right:
         axis.axvline(result.operating_speed * RPM_PER_RAD_S, color="black", lw=0.8)
         axis.annotate(
@@ -81,6 +88,36 @@ def campbell(result: CampbellResult, ax: Any = None, *, colour: str = "motion") 
     axis.grid(True, alpha=0.15)
     _legend(axis, result, colour)
     return axis
+
+
+@dataclass(frozen=True)
+class _Height:
+    """The axis of frequencies: its ends in Hz, and whether it is logarithmic."""
+
+    bottom: float
+    top: float
+    logarithmic: bool
+
+    def share(self, frequency: Any) -> Any:
+        """Height of a frequency as a share of the axis."""
+        if self.logarithmic:
+            return np.log(np.maximum(frequency, 1e-300) / self.bottom) / np.log(self.top / self.bottom)
+        return np.asarray(frequency) / self.top
+
+    def at(self, share: float) -> float:
+        """Frequency at a share of the axis."""
+        return float(self.bottom * (self.top / self.bottom) ** share) if self.logarithmic else share * self.top
+
+
+def _height(result: CampbellResult) -> _Height:
+    """Linear, but logarithmic where the diagram reaches so far, for the orders of meshes, that shaft orders would lie flat."""
+    top = 1.04 * float(np.nanmax(result.frequency_hz))
+    fastest = float(np.max(np.abs(result.speed_rpm))) / 60.0
+    shafts = max((line.order * fastest for line in result.lines if line.kind == "shaft"), default=top)
+    elastic = result.frequency_hz[result.frequency_hz > _RIGID * top]
+    if not elastic.size or top < _FLAT * shafts:
+        return _Height(0.0, top, False)
+    return _Height(0.7 * min(float(elastic.min()), shafts), top, True)
 
 
 def _branches(axis: Any, result: CampbellResult, colour: str) -> None:
@@ -114,26 +151,27 @@ def _mean(values: np.ndarray) -> np.ndarray:
     return np.asarray(0.5 * (values[:-1] + values[1:]))
 
 
-def _lines(axis: Any, result: CampbellResult, ends: tuple[float, float], top: float) -> None:
+def _lines(axis: Any, result: CampbellResult, ends: tuple[float, float], height: _Height) -> None:
     """Excitation lines, named where they leave the picture: at the right, or at its upper edge."""
     side: list[tuple[float, ExcitationOrder]] = []
     above: list[tuple[float, ExcitationOrder]] = []
     far = max(ends, key=abs)
     sidebands = sum(line.kind == "sideband" for line in result.lines)
+    speeds = np.linspace(*ends, 201)
     for line in result.lines:
-        axis.plot(ends, [line.order * abs(v) / 60.0 for v in ends], "--", color=_LINES[line.kind], lw=0.7, zorder=2)
-        height = line.order * abs(far) / 60.0
+        axis.plot(speeds, line.order * np.abs(speeds) / 60.0, "--", color=_LINES[line.kind], lw=0.7, zorder=2)
+        end = line.order * abs(far) / 60.0
         if line.kind == "sideband" and sidebands > _MOST_SIDEBANDS:
             continue  # the legend says what they are; names would cover each other
-        if height <= top:
-            side.append((height / top, line))
-        else:
-            above.append((60.0 * top / line.order / far, line))
+        if height.bottom <= end <= height.top:
+            side.append((float(height.share(end)), line))
+        elif end > height.top:
+            above.append((60.0 * height.top / line.order / far, line))
     edge = 1.005 if far == ends[1] else -0.06
-    for (height, line), place in zip(side, spread([h for h, _ in side], 0.021), strict=True):
+    for (share, line), place in zip(side, spread([h for h, _ in side], 0.021), strict=True):
         axis.annotate(
             _short(line),
-            (far, height * top),
+            (far, height.at(share)),
             xytext=(edge, place),
             textcoords="axes fraction",
             fontsize=7,
@@ -147,7 +185,7 @@ def _lines(axis: Any, result: CampbellResult, ends: tuple[float, float], top: fl
         if 0.0 <= share <= 1.0:
             axis.annotate(
                 _short(line),
-                (ends[0] + share * span, top),
+                (ends[0] + share * span, height.top),
                 xytext=(place, 1.01),
                 textcoords="axes fraction",
                 fontsize=7,
@@ -166,7 +204,7 @@ def _short(line: ExcitationOrder) -> str:
     return f"{parts} {last.partition(' ')[2] if len(line.parts) > 1 else line.name.split(' ', 2)[2]}"
 
 
-def _crossings(axis: Any, result: CampbellResult, top: float) -> None:
+def _crossings(axis: Any, result: CampbellResult, height: _Height) -> None:
     """A ring at every crossing that is excited, as large as its participation; the speeds of the most telling ones beside it."""
     met = [item for item in result.crossings if item.excited]
     if not met:
@@ -175,17 +213,17 @@ def _crossings(axis: Any, result: CampbellResult, top: float) -> None:
     y = np.array([item.frequency_hz for item in met])
     size = 6.0 + 60.0 * np.sqrt([item.participation for item in met])
     axis.scatter(x, y, s=size, facecolors="none", edgecolors="black", lw=0.7, zorder=5)
-    labels = Labels(axis.get_xlim(), (0.0, top))
-    labels.block(np.column_stack([x, y]))
+    labels = Labels(axis.get_xlim(), (0.0, 1.0))
+    labels.block(np.column_stack([x, height.share(y)]))
     for item in sorted(met, key=lambda item: -_telling(item, result)):
         if labels.count >= _MOST_LABELS:
             break
-        place = labels.place(item.speed * RPM_PER_RAD_S, item.frequency_hz)
+        place = labels.place(item.speed * RPM_PER_RAD_S, float(height.share(item.frequency_hz)))
         if place is not None:
             axis.annotate(
                 f"{item.speed * RPM_PER_RAD_S:.0f}",
                 (item.speed * RPM_PER_RAD_S, item.frequency_hz),
-                xytext=place,
+                xytext=(place[0], height.at(place[1])),
                 fontsize=7,
                 zorder=6,
                 va="center",

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 # Channels that are kept, saved and drawn, but not listed.
 _UNSHOWN = ("gears.",)
+# Below this share of the largest component of its vector a component is what rounding and iterations leave of a zero.
+_ROUNDING = 1e-9
 
 
 def transient_table(result: TransientResult) -> RenderableType:
@@ -78,14 +80,18 @@ def _channels(result: TransientResult) -> Any:
         table.add_column(name, justify="right")
     table.add_column("unit")
     shown = [row for row in result.channels if not row.name.startswith(_UNSHOWN)]
+    scale: dict[str, float] = {}
+    for row in shown:
+        vector = row.name.rpartition(" ")[0] or row.name
+        sizes = [abs(value) for value in (row.largest, row.smallest) if math.isfinite(value)]
+        scale[vector] = max([scale.get(vector, 0.0), *sizes])
     for row in shown:
         if row.name.startswith("bearings.") and " displacement " in row.name:
             continue
-        table.add_row(
-            row.name.partition(".")[2],
-            *(_value(getattr(row, key)) for key in ("mean", "rms", "largest", "smallest")),
-            row.unit,
-        )
+        least = _ROUNDING * scale[row.name.rpartition(" ")[0] or row.name]
+        values = (getattr(row, key) for key in ("mean", "rms", "largest", "smallest"))
+        cells = ("0" if abs(value) < least else _value(value) for value in values)
+        table.add_row(row.name.partition(".")[2], *cells, row.unit)
     return table
 
 

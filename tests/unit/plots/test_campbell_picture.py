@@ -48,3 +48,19 @@ def test_a_long_list_of_crossings_is_cut_to_those_that_take_part_most(
     assert f"{len(result.crossings) - 3} more crossings take part less" in text
     largest = max(result.crossings, key=lambda item: item.participation)
     assert f"{100.0 * largest.participation:.2f}" in text
+
+
+def test_frequencies_are_logarithmic_where_shaft_orders_would_lie_flat(result: rg.CampbellResult) -> None:
+    top = 1.04 * float(np.nanmax(result.frequency_hz))
+    fastest = float(np.abs(result.speed_rpm).max()) / 60.0
+    first = next(line for line in result.lines if line.kind == "shaft")
+    near = rg.plot.campbell(replace(result, lines=(replace(first, order=0.3 * top / fastest),)))
+    assert near.get_yscale() == "linear"
+    assert near.get_ylim()[0] == 0.0
+    end = 0.1 * top
+    far = rg.plot.campbell(replace(result, lines=(replace(first, order=end / fastest),)))
+    assert far.get_yscale() == "log"
+    # The name stands where its line ends, on this axis too.
+    low, high = np.log(far.get_ylim())
+    (name,) = (text for text in far.texts if text.get_text().endswith("1x"))
+    assert name.get_position()[1] == pytest.approx((np.log(end) - low) / (high - low), abs=0.01)
