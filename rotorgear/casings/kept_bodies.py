@@ -54,9 +54,7 @@ def read_body(path: Path, key: str) -> ReducedBody | None:
     values = _read(path, key)
     try:
         if values is not None:
-            return ReducedBody(
-                **{"rigid": None, "ground_force": None, "ground_weight": None, **values}
-            )  # a body that is held has no rigid motions
+            return ReducedBody(**{"rigid": None, **values})  # a body that is held has no rigid motions
     except (KeyError, TypeError):
         pass  # of another kind: computed anew
     return None

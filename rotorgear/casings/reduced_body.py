@@ -69,6 +69,7 @@ class ReducedBody:
         surface: None for a body without a mesh.
         ground_sets: names of held sets and mounts.
         ground_force: (6 g, n) force, and moment about the origin, of the ground on the body at each of them for unit coordinates.
+        ground_damping, ground_mass: (6 g, n) the same for unit velocities and accelerations of the coordinates.
         ground_weight: (6 g, 3) what gravity of 1 m/s^2 adds to it.
         held: whether held faces or mounts carry it; else it floats, and K has the six rigid motions.
         notes: sentences on what was done with the mesh, such as an order that was raised.
@@ -92,6 +93,8 @@ class ReducedBody:
     surface: Surface | None = None
     ground_sets: tuple[str, ...] = ()
     ground_force: np.ndarray | None = None
+    ground_damping: np.ndarray | None = None
+    ground_mass: np.ndarray | None = None
     ground_weight: np.ndarray | None = None
     held: bool = False
     notes: tuple[str, ...] = ()

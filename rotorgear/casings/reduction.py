@@ -20,6 +20,7 @@ the error of its own modes.
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import scipy.linalg as la
@@ -130,6 +131,7 @@ def reduce_in_basis(
     body_mass, centre, inertia = fe.mass_properties
     ground = _ground(fe, space, system, basis)
     damping = modal_damping(M, K, fe.settings.damping_ratio) if fe.settings.damping_ratio else np.zeros_like(M)
+    ground = replace(ground, damping=ground.damping + ground.mass @ la.solve(M, damping, assume_a="pos"))
     damping = damping + _mount_damping(fe, basis)
     progress(1.0, f"{name}: reduced to {len(M)} coordinates")
     reduced = ReducedBody(
@@ -149,8 +151,10 @@ def reduce_in_basis(
         error=error,
         surface=surface_of(fe, basis),
         ground_sets=(*fe.settings.held, *(mount.set for mount in fe.settings.mounts)),
-        ground_force=ground[0],
-        ground_weight=ground[1],
+        ground_force=ground.force,
+        ground_damping=ground.damping,
+        ground_mass=ground.mass,
+        ground_weight=ground.weight,
         held=bool(len(fe.held) or len(flexibility)),
         notes=fe.mesh.notes,
         seconds=seconds,
@@ -213,27 +217,48 @@ def _mount_damping(fe: FiniteElementBody, basis: np.ndarray) -> np.ndarray:
     return C
 
 
-def _ground(
-    fe: FiniteElementBody, space: FreeSpace, system: Constrained, basis: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Wrenches (6 g, n) of the ground about the origin for unit coordinates, and (6 g, 3) for gravity: held sets, then mounts.
+@dataclass(frozen=True)
+class _Ground:
+    """Wrenches of the ground: for unit coordinates, velocities and accelerations (6 g, n), and for gravity (6 g, 3)."""
 
-    By the principle of virtual work f = Ψᵀ (K u - M g), with the static shapes Ψ of the body for unit motions of the ground at
-    one place, the seats at rest. Ψᵀ K Φ has no part of the modes of the inside, so that statics is exact however few they are.
+    force: np.ndarray
+    damping: np.ndarray
+    mass: np.ndarray
+    weight: np.ndarray
+
+
+def _ground(fe: FiniteElementBody, space: FreeSpace, system: Constrained, basis: np.ndarray) -> _Ground:
+    """Wrenches of the ground about the origin, at held sets, then at mounts; of damping those of mounts only.
+
+    By the principle of virtual work f = Ψᵀ (M a + C v + K u - M g), with the static shapes Ψ of the body for unit motions of the
+    ground at one place, the seats at rest. Ψᵀ K Φ has no part of the modes of the inside, so that statics is exact however few
+    they are. Damping of modes, C = M Φ Z Φᵀ M, acts like accelerations M⁻¹ C v of the coordinates.
     """
     R = rigid_motions(fe.mesh.points)
     springs, flexibility = fe.springs()
     seats = fe.mean_weights(fe.seats) if fe.settings.connection == "mean" else np.zeros((fe.dofs, 0))
-    forces = [np.zeros((0, basis.shape[1]))]
-    weights = [np.zeros((0, 3))]
+    mounts = fe.mean_weights(fe.mounts)
+    dampers = la.block_diag(np.zeros((0, 0)), *(np.array(mount.damping) for mount in fe.settings.mounts))
+    count = basis.shape[1]
+    nothing = np.zeros((0, count))
+    found = [_Ground(nothing, nothing, nothing, np.zeros((0, 3)))]
 
-    def add(moved: np.ndarray, drawn: np.ndarray) -> None:
-        """Of nodes that are moved (3p, 6), and the far ends of springs that are drawn (m, 6)."""
+    def add(moved: np.ndarray, own: np.ndarray) -> None:
+        """Of held nodes that are moved (3p, 6), and of mounts (mounts,) whose far ends are."""
+        drawn = own[fe.mount_of_spring][:, None] * (springs.T @ R)
         motions = np.vstack([-seats.T @ moved, drawn - springs.T @ moved])
         shapes = moved + space.shapes @ system.solve(-space.forces(fe.stiffness_times(moved)), motions)
         stretched = (springs.T @ shapes - drawn) / flexibility[:, None]
-        forces.append((fe.stiffness_times(shapes) + springs @ stretched).T @ basis)
-        weights.append(-shapes.T @ fe.matrices.times_mass(R[:, :3]))
+        mass_shapes = fe.matrices.times_mass(shapes)
+        stroke = mounts.T @ shapes - np.repeat(own, 6)[:, None] * (mounts.T @ R)
+        found.append(
+            _Ground(
+                force=(fe.stiffness_times(shapes) + springs @ stretched).T @ basis,
+                damping=stroke.T @ dampers @ (mounts.T @ basis),
+                mass=mass_shapes.T @ basis,
+                weight=-mass_shapes.T @ R[:, :3],
+            )
+        )
 
     for nodes in fe.held_sets:
         moved = np.zeros_like(R)
@@ -241,11 +266,10 @@ def _ground(
         moved[dofs] = R[dofs]
         if fe.joined.interpolation is not None:
             moved = np.asarray(fe.joined.interpolation @ moved.reshape(len(fe.mesh.points), -1)).reshape(moved.shape)
-        add(moved, np.zeros((len(flexibility), 6)))
+        add(moved, np.zeros(len(fe.mounts), dtype=bool))
     for number in range(len(fe.mounts)):
-        own = fe.mount_of_spring == number
-        add(np.zeros_like(R), own[:, None] * (springs.T @ R))
-    return np.vstack(forces), np.vstack(weights)
+        add(np.zeros_like(R), np.arange(len(fe.mounts)) == number)
+    return _Ground(**{key.name: np.vstack([getattr(one, key.name) for one in found]) for key in fields(_Ground)})
 
 
 def surface_of(fe: FiniteElementBody, basis: np.ndarray) -> Surface:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -43,14 +44,31 @@ def _amplitudes_by_axis(key: str, names: str, name: str) -> Written:
     return Written(key, value, axes=(name, "AXIS", "order", "speed"))
 
 
+def _wrenches(kind: str, names: str, name: str, on: str) -> tuple[Written, Written]:
+    """Amplitudes of force and moment along x, y and z of each entry of the field `names`, under keys of their own."""
+
+    def part(first: int) -> Callable[[Any, Any], Any]:
+        return lambda result, values: {
+            place: {axis: np.abs(values[:, :, k, first + j]) for j, axis in enumerate("xyz")}
+            for k, place in enumerate(getattr(result, names))
+        }
+
+    axes = (name, "AXIS", "order", "speed")
+    return (
+        Written(f"{kind}_force_n", part(0), unit="N", axes=axes, label=f"force on {on}"),
+        Written(f"{kind}_moment_n_m", part(3), unit="N m", axes=axes, label=f"moment on {on}"),
+    )
+
+
 class Peak(Record):
     """The largest amplitude of a quantity over orders and speeds, and what the linear analysis leaves out there."""
 
     quantity: str = of(
         "quantity",
-        note=": mesh force, transmission error, approach, bearing force, acceleration, displacement or normal velocity",
+        note=": mesh force, transmission error, approach, bearing force, seat force, ground force, acceleration, "
+        "displacement or normal velocity",
     )
-    part: str = of("mesh, bearing, point or place")
+    part: str = of("mesh, bearing, point, place, seat, or held set or mount")
     unit: str = of("unit of the amplitudes")
     order: int = of("number of the order", note=", from 0")
     speed_rpm: float = of("speed of the input shaft", "rpm")
@@ -175,6 +193,36 @@ class ResponseResult(ModelResult, kind="response"):
     )
     casings: tuple[str, ...] = of(
         "names of the casings with a surface", "", "casing", json=None, default=(), kw_only=True
+    )
+    casing_seats: tuple[str, ...] = of(
+        "seats that something stands in", "", "seat", json=None, default=(), kw_only=True
+    )
+    casing_seat_force: np.ndarray = of(
+        "force and moment on a seat of a casing",
+        "N, N m",
+        "order",
+        "speed",
+        "seat",
+        "component",
+        json=_wrenches("casing_seat", "casing_seats", "CASING.SEAT", "the casing"),
+        note="; the moment about the point of the seat",
+        default_factory=lambda: np.zeros((0, 0, 0, 6)),
+        kw_only=True,
+    )
+    casing_grounds: tuple[str, ...] = of(
+        "held sets and mounts of casings", "", "ground", json=None, default=(), kw_only=True
+    )
+    casing_ground_force: np.ndarray = of(
+        "force and moment of the ground on a casing at one held set or mount",
+        "N, N m",
+        "order",
+        "speed",
+        "ground",
+        "component",
+        json=_wrenches("casing_ground", "casing_grounds", "CASING.SET", "the casing"),
+        note="; the moment about the origin of the model",
+        default_factory=lambda: np.zeros((0, 0, 0, 6)),
+        kw_only=True,
     )
     normal_velocity: np.ndarray = of(
         "normal velocity of a casing",

@@ -198,6 +198,9 @@ def test_the_keys_of_static_are_documented(tmp_path: Path) -> None:
 def test_the_keys_of_response_are_documented(tmp_path: Path) -> None:
     data = written(tmp_path, "response", str(MODEL), "--points", "2", "--fmax", "3000", "--elements", "1")
     data["normal_velocity_m_per_s"] = data["radiated_power_w"] = {"box": [[0.0]]}  # this model has no casing
+    for part, place in (("casing_ground", "feet"), ("casing_seat", "left")):
+        for kind in ("force_n", "moment_n_m"):
+            data[f"{part}_{kind}"] = {"box": {place: {axis: [[0.0]] for axis in "xyz"}}}
     assert differences(data, documented("response")) == NONE
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.common.places import part_nodes
+from rotorgear.analysis.response.casing_loads import GroundLoads, ModalDamping, SeatLoads
 from rotorgear.analysis.response.orders import Order
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.frequency.harmonic import Dynamics, LowRankDamping
@@ -27,6 +28,7 @@ class Readings:
         bearing_force: (o, b, 3); acceleration: of the named points, (o, k).
         displacement: x y z tx ty tz at gears, disks and bearings, (o, d, 6).
         normal_velocity: of the casings with a surface, root of the mean of |v_n|^2 over it, (o, k).
+        seat_force: on seats of casings, (o, s, 6); ground_force: of the ground on casings, (o, g, 6).
         bubble_change: (o,) size of what polynomials that the shaft elements lack would change, as a change of f^H q.
     """
 
@@ -38,6 +40,8 @@ class Readings:
     acceleration: np.ndarray
     displacement: np.ndarray
     normal_velocity: np.ndarray
+    seat_force: np.ndarray
+    ground_force: np.ndarray
     bubble_change: np.ndarray
 
     @property
@@ -78,9 +82,11 @@ class Plant:
         self.system = system
         self.lines = replace(lines, damping=lines.damping + beta * lines.stiffness)
         self.low_rank = None
+        damped = None
         if damping is not None and damping[2] > 0.0 and damping[1].size:
             modes, w, zeta = damping
-            self.low_rank = LowRankDamping(np.asarray(system.mass @ modes), 2.0 * zeta * w)
+            damped = ModalDamping(modes, 2.0 * zeta * w)
+            self.low_rank = LowRankDamping(np.asarray(system.mass @ modes), damped.sizes)
         self.has_tables = system.has_tables
         self.places = part_nodes(system)
         rows = [6 * node + dof for node in self.places.values() for dof in range(6)]
@@ -96,6 +102,8 @@ class Plant:
             name: surface.normal_motion() / surface.normals_and_areas()[1].sum()
             for name, surface in self.surfaces.items()
         }
+        self.seats = SeatLoads(system)
+        self.ground = GroundLoads(system, damped)
         self._parts: tuple[sp.csc_array, ...] | None = None
         self._read: tuple[np.ndarray, np.ndarray] | None = None
         self._bubbles = ForcedChanges.of(system)
@@ -141,7 +149,19 @@ class Plant:
         rotation = (lines.rotation.T @ q).T
         normal = w[:, None] * self._normal(q)
         lacking = self._bubbles.change(speed, w, q, turning=True)
-        return Readings(force, rotation, transverse, approach, held, -(w**2)[:, None] * moved, there, normal, lacking)
+        return Readings(
+            mesh_force=force,
+            transmission_error=rotation,
+            approach=transverse,
+            pressed=approach,
+            bearing_force=held,
+            acceleration=-(w**2)[:, None] * moved,
+            displacement=there,
+            normal_velocity=normal,
+            seat_force=self.seats.read(speed, w, q),
+            ground_force=self.ground.read(w, q),
+            bubble_change=lacking,
+        )
 
     def _normal(self, q: np.ndarray) -> np.ndarray:
         """Root of the mean square of the normal displacement over each casing's surface, (o, k), from q (n, o)."""

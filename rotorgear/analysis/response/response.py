@@ -126,6 +126,8 @@ def response(
         "acceleration",
         "displacement",
         "normal_velocity",
+        "seat_force",
+        "ground_force",
     )
     stacked = {name: np.stack([getattr(reading, name) for reading in run.readings], axis=1) for name in quantities}
     largest = peaks_of(setup, plant, orders, chosen, run.readings)
@@ -150,6 +152,10 @@ def response(
         places=tuple(plant.places),
         displacement=stacked["displacement"],
         casings=tuple(plant.surfaces),
+        casing_seats=plant.seats.names,
+        casing_seat_force=stacked["seat_force"],
+        casing_grounds=plant.ground.names,
+        casing_ground_force=stacked["ground_force"],
         normal_velocity=stacked["normal_velocity"],
         surface_area=np.array([surface.normals_and_areas()[1].sum() for surface in plant.surfaces.values()]),
         shape_speed=at,
