@@ -1,4 +1,4 @@
-"""Reads the mesh of an Abaqus or CalculiX deck (.inp): nodes, solid elements, node sets and element sets.
+"""Reads the mesh of an Abaqus or CalculiX deck (.inp): nodes, solid elements, node sets, element sets and surfaces.
 
 meshio ends the process at elements that it does not know (a mesher writes CPS6 on every named face), reads one block of nodes
 only, and takes no sets from headings. Here any number of blocks is read; elements that are no solids give sets of faces.
@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rotorgear.casings.file_mesh import FileMesh, NamedSet, gathered, set_of
+from rotorgear.casings.elements import element
+from rotorgear.casings.file_mesh import FACES, SOLIDS, FileMesh, NamedSet, gathered, set_of
 
 # Elements by how their names begin: kind and number of nodes; the longest beginning counts.
 _ELEMENTS = {
@@ -30,6 +31,10 @@ _ELEMENTS = {
     **dict.fromkeys(("T2D2", "T3D2", "B21", "B31"), ("line", 2)),
     **dict.fromkeys(("T2D3", "T3D3", "B22", "B32"), ("line3", 3)),
 }
+_SHELL_SIDES = ("SPOS", "SNEG")
+# Corners of the faces S1, S2, ... of solids.
+_TET_FACES = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))
+_HEX_FACES = ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0))
 
 
 def read_abaqus(path: Path) -> FileMesh:
@@ -38,6 +43,7 @@ def read_abaqus(path: Path) -> FileMesh:
     blocks: list[tuple[str, list[list[int]], list[int]]] = []
     node_sets: dict[str, list[int]] = {}
     cell_sets: dict[str, list[int]] = {}
+    surfaces: dict[str, list[tuple[str, str]]] = {}
     instances = 0
     for keyword, options, lines in _keywords(path):
         if keyword == "NODE":
@@ -62,6 +68,11 @@ def read_abaqus(path: Path) -> FileMesh:
         elif keyword in ("NSET", "ELSET"):
             sets = node_sets if keyword == "NSET" else cell_sets
             sets.setdefault(options.get(keyword, ""), []).extend(_members(options, lines, sets))
+        elif keyword == "SURFACE":
+            items = [[item.strip().strip('"') for item in line.split(",")] for line in lines]
+            surfaces.setdefault(options.get("NAME", ""), []).extend(
+                (row[0], row[1] if len(row) > 1 else "") for row in items
+            )
         elif keyword == "INCLUDE":
             raise ValueError(f"it includes another file, {options.get('INPUT', '')}: put both into one")
         elif keyword == "INSTANCE":
@@ -91,7 +102,50 @@ def read_abaqus(path: Path) -> FileMesh:
         # A deck often has one name for the nodes and for the faces of a place; then the faces say more.
         if name and (name not in named or (found.faces and np.array_equal(found.nodes, named[name].nodes))):
             named[name] = found
+    for name, places in surfaces.items():
+        faces = [rows for place in places for rows in _faces_at(place, cells, blocks, cell_sets)]
+        nodes = [node for place, _ in places for node in _members({}, [place], node_sets) if node in order]
+        on_nodes = [np.array([order[node] for node in nodes], dtype=np.int64)] if nodes and not faces else []
+        if name and name not in named and (faces or on_nodes):
+            all_nodes = np.unique(np.concatenate([rows.ravel() for rows in (*faces, *on_nodes)]))
+            named[name] = NamedSet(all_nodes, [rows[:, : 4 if rows.shape[1] in (4, 8, 9) else 3] for rows in faces])
     return FileMesh(np.array(list(coordinates.values())), gathered(cells), named)
+
+
+def _faces_at(
+    place: tuple[str, str],
+    cells: list[tuple[str, np.ndarray]],
+    blocks: list[tuple[str, list[list[int]], list[int]]],
+    cell_sets: dict[str, list[int]],
+) -> Iterator[np.ndarray]:
+    """Yield the nodes (f, m) of a line of a surface: an element or a set of them, and a face S1 to S6 of each."""
+    which, label = place
+    wanted = list(_members({}, [which], cell_sets))
+    if label.upper() in _SHELL_SIDES:
+        label = ""
+    for (kind, rows), (_, _, ids) in zip(cells, blocks, strict=True):
+        chosen = rows[np.isin(ids, wanted)]
+        if not len(chosen):
+            continue
+        if kind in FACES:
+            yield chosen
+        elif label and kind in SOLIDS:
+            number = int(label.upper().removeprefix("S")) - 1 if label.upper().removeprefix("S").isdigit() else -1
+            corners = (
+                (_TET_FACES if kind.startswith("tetra") else _HEX_FACES)[number : number + 1] if number >= 0 else ()
+            )
+            if not corners:
+                raise ValueError(f"a *SURFACE has the face {label} of {kind} elements")
+            yield chosen[:, _with_edges(kind, corners[0])]
+
+
+def _with_edges(kind: str, corners: tuple[int, ...]) -> list[int]:
+    """The nodes of a face of an element with these corners: those on its edges too."""
+    if kind in ("tetra", "hexahedron"):
+        return list(corners)
+    shape = element(kind)
+    same = [sorted(face) == sorted(corners) for face in shape.faces]
+    return [int(node) for node in shape.face_nodes[same.index(True)]]
 
 
 def _keywords(path: Path) -> Iterator[tuple[str, dict[str, str], list[str]]]:

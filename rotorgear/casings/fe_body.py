@@ -335,7 +335,12 @@ def _no_mechanism(body: FiniteElementBody) -> None:
         named = "; ".join(_MOTIONS[int(np.argmax(np.abs(motion)))] for motion in free)
         what = ", ".join([*settings.held, *(mount.set for mount in settings.mounts)])
         key = "held" if settings.held else "mounts"
+        remedy = (
+            "Hold a face, or add springs"
+            if settings.held
+            else "A mount holds the mean motion of its set: give each foot a set and a mount of its own, or add tilt and torsion"
+        )
         raise AnalysisError(
-            f"{settings.address}.{key}: what is held ({what}) leaves the casing a mechanism: {named}. Hold a face, or add "
-            "springs; or hold nothing, for a body that floats on its bearings."
+            f"{settings.address}.{key}: what is held ({what}) leaves the casing a mechanism: {named}. {remedy}; or hold nothing, "
+            "for a body that floats on its bearings."
         )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,8 @@ from rotorgear.casings.file_mesh import FileMesh, NamedSet, gathered, set_of
 from rotorgear.casings.nastran import read_nastran
 from rotorgear.errors import AnalysisError, MissingExtraError
 
+# Data that name groups by numbers: their names stand elsewhere in the file.
+_TAGS = ("point_tags", "cell_tags")
 _DECKS = {".inp": read_abaqus, ".bdf": read_nastran, ".nas": read_nastran, ".fem": read_nastran, ".dat": read_nastran}
 
 
@@ -127,4 +130,42 @@ def _sets(found: Any, blocks: list[tuple[str, np.ndarray]]) -> dict[str, NamedSe
         for name, parts in members.items():
             nodes = np.unique(np.concatenate([part.nodes for part in parts]))
             sets.setdefault(name, NamedSet(nodes, [face for part in parts for face in part.faces]))
+    for name, one in _marked(found, blocks).items():
+        sets.setdefault(name, one)
     return {name: one for name, one in sets.items() if name}
+
+
+def _marked(found: Any, blocks: list[tuple[str, np.ndarray]]) -> dict[str, NamedSet]:
+    """Sets that a format without sets (VTK) keeps as whole numbers of points or cells.
+
+    Data of zeros and ones mark the members of one set; data of -1 for none and 0, 1, ... for sets are named after them all,
+    joined by "-", as meshio writes its sets where a format has none.
+    """
+    sets: dict[str, NamedSet] = {}
+    for name, values in found.point_data.items():
+        for one, members in _members({"": np.asarray(values)}, name):
+            sets[one] = NamedSet(np.flatnonzero(members[""]))
+    for name, per_block in found.cell_data.items():
+        for one, members in _members({k: np.asarray(values) for k, values in enumerate(per_block)}, name):
+            sets[one] = set_of([(blocks[k][0], blocks[k][1][chosen]) for k, chosen in members.items()])
+    return sets
+
+
+def _members(data: dict[Any, np.ndarray], name: str) -> Iterator[tuple[str, dict[Any, np.ndarray]]]:
+    """Yield each set that data (by block) mark, with who is in it."""
+    if (
+        ":" in name
+        or name in _TAGS
+        or any(values.ndim != 1 or values.dtype.kind not in "iub" for values in data.values())
+    ):
+        return
+    there = np.unique(np.concatenate([values.astype(np.int64) for values in data.values()] or [np.zeros(0, np.int64)]))
+    if not there.size:
+        return
+    if there[0] >= 0 and there[-1] == 1:
+        yield name, {key: values.astype(np.int64) == 1 for key, values in data.items()}
+    names = name.split("-")
+    # A name of two parts with zeros and ones may be either: both are there to choose from.
+    if there[0] >= -1 and len(names) == there[-1] + 1 and (len(names) > 1 or there[0] < 0):
+        for number, one in enumerate(names):
+            yield one, {key: values == number for key, values in data.items()}

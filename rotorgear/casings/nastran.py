@@ -1,7 +1,8 @@
 """Reads the mesh of a Nastran deck (.bdf): GRID, solid elements, and the faces of shells by their properties.
 
 Fields are free (commas), small (8 columns) or large (16 columns, a star). meshio wants BEGIN BULK, which meshers leave out, and
-has no sets; here the faces of property N are the set "property_N".
+has no sets; here the faces of property N are the set "property_N", and SET N of the case control, SET1 cards and SPC1 cards of a
+number N are the sets of nodes "set_N" and "spc_N".
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rotorgear.casings.file_mesh import FileMesh, gathered, set_of
+from rotorgear.casings.file_mesh import FileMesh, NamedSet, gathered, set_of
 
 _ELEMENTS = {
     "CTETRA": {4: "tetra", 10: "tetra10"},
@@ -33,6 +34,7 @@ def read_nastran(path: Path) -> FileMesh:
     """Read a deck; ValueError says what in it can't be read."""
     points: dict[int, list[float]] = {}
     rows: dict[tuple[str, int], list[list[int]]] = {}
+    node_sets: dict[str, list[tuple[int, int]]] = {}
     for fields in _cards(path):
         name = fields[0].upper()
         if name == "GRID":
@@ -52,6 +54,12 @@ def read_nastran(path: Path) -> FileMesh:
             if not count:
                 raise ValueError(f"{name} {fields[1]} has {len(nodes)} nodes")
             rows.setdefault((kinds[count], int(fields[2] or 0)), []).append(nodes[:count])
+        elif name == "SET1":
+            node_sets.setdefault(f"set_{fields[1]}", []).extend(_listed(fields[2:]))
+        elif name == "SPC1":
+            node_sets.setdefault(f"spc_{fields[1]}", []).extend(_listed(fields[3:]))
+        elif name == "SET":
+            node_sets.setdefault(f"set_{fields[1]}", []).extend(_listed(fields[2:]))
     if not points:
         raise ValueError("it has no GRID")
     order = {number: place for place, number in enumerate(points)}
@@ -67,6 +75,15 @@ def read_nastran(path: Path) -> FileMesh:
         for (kind, number), cells in blocks.items()
         if kind.startswith(("triangle", "quad"))
     }
+    numbers = np.array(list(points))
+    for name, ranges in node_sets.items():
+        # A set of the case control may be one of elements: only nodes that are there count.
+        nodes = [order[first] for first, last in ranges if first == last and first in order]
+        for first, last in ranges:
+            if first < last:
+                nodes += np.flatnonzero((numbers >= first) & (numbers <= last)).tolist()
+        if nodes:
+            sets[name] = NamedSet(np.unique(nodes))
     return FileMesh(
         np.array(list(points.values())), gathered([(kind, cells) for (kind, _), cells in blocks.items()]), sets
     )
@@ -75,10 +92,20 @@ def read_nastran(path: Path) -> FileMesh:
 def _cards(path: Path) -> Iterator[list[str]]:
     """Yield the fields of each card, with those of its continuations."""
     card: list[str] = []
+    pending = ""
+    number = ""
     with path.open(encoding="utf-8", errors="replace") as file:
         for raw in file:
             line = raw.partition("$")[0].rstrip("\n").expandtabs(8)
             if not line.strip():
+                continue
+            case = re.match(r"\s*SET\s+(\d+)\s*=\s*(.*)", line, re.IGNORECASE)
+            if case or pending:
+                pending += case.group(2) if case else line
+                number = case.group(1) if case else number
+                if not pending.rstrip().endswith(","):  # a set goes on in the next line
+                    yield ["SET", number, *(text.strip() for text in re.split(r"[,\s]+", pending) if text)]
+                    pending = ""
                 continue
             goes_on = line[0] in "+* ," and bool(card)
             fields = _fields(line)
@@ -90,6 +117,16 @@ def _cards(path: Path) -> Iterator[list[str]]:
             card = fields
     if card:
         yield card
+
+
+def _listed(fields: list[str]) -> Iterator[tuple[int, int]]:
+    """First and last number of each entry of a list with "a THRU b"."""
+    words = [text.upper() for text in fields if text]
+    for place, word in enumerate(words):
+        if word == "THRU":
+            yield int(words[place - 1]), int(words[place + 1])
+        elif word.isdigit():
+            yield int(word), int(word)
 
 
 def _fields(line: str) -> list[str]:

@@ -82,9 +82,12 @@ def by_set(mesh: SolidMesh, set_name: str, address: str) -> Patch:
         names = list(mesh.sets)
         guess = nearest(set_name, names)
         there = ", ".join(names[:_LISTED]) + (" ..." if len(names) > _LISTED else "")
-        hint = (
-            f"did you mean '{guess}'?" if guess else f"it has: {there}" if names else "it has none: give places instead"
+        none = "it has none: " + (
+            "give a place instead"
+            if ".seats." in address
+            else "Gmsh 4.1 and Abaqus files keep named sets, VTK files as data of zeros and ones"
         )
+        hint = f"did you mean '{guess}'?" if guess else f"it has: {there}" if names else none
         raise AnalysisError(f"{address}: the mesh has no set '{set_name}' ({hint}).")
     if not len(one.nodes):
         raise AnalysisError(f"{address}: the set '{set_name}' touches no node of the solids.")
@@ -97,6 +100,8 @@ def by_set(mesh: SolidMesh, set_name: str, address: str) -> Patch:
         member = np.zeros(len(mesh.points), dtype=bool)
         member[one.nodes] = True
         chosen = member[boundary].all(axis=1)
+        if not chosen.any():  # some meshers list the corners of quadratic faces only
+            chosen = member[boundary[:, : len(mesh.element.faces[0])]].all(axis=1)
         if len(one.nodes) > 0.5 * len(mesh.points) and chosen.all():
             raise AnalysisError(f"{address}: the set '{set_name}' is the whole body; name a face of it.")
     return patch_of(mesh, boundary[chosen], one.nodes, f"{address} ('{set_name}')")

@@ -10,6 +10,7 @@ import pytest
 from rotorgear.casings.elements import element
 from rotorgear.casings.file_mesh import FileMesh
 from rotorgear.casings.mesh_file import read_mesh
+from rotorgear.casings.patches import by_set
 from rotorgear.casings.solid_mesh import solid_mesh
 from rotorgear.errors import AnalysisError
 from tests.unit.casings.blocks import block, write_inp, write_msh
@@ -60,6 +61,63 @@ def test_files_of_vtk_are_read_without_sets(tmp_path: Path, ending: str) -> None
     found = block()
     meshio.write(tmp_path / f"block.{ending}", meshio.Mesh(found.points, [("tetra10", found.cells["tetra10"])]))
     assert same_body(tmp_path / f"block.{ending}", found).sets == {}
+
+
+@pytest.mark.parametrize("ending", ["vtu", "vtk"])
+def test_whole_numbers_of_points_and_cells_are_sets_of_vtk_files(tmp_path: Path, ending: str) -> None:
+    found = block()
+    faces = low_faces(found)
+    cells = found.cells["tetra10"]
+    mesh = meshio.Mesh(
+        found.points,
+        [("triangle6", faces), ("tetra10", cells)],
+        point_data={"high": np.isin(np.arange(len(found.points)), found.sets["high"].nodes).astype(np.int32)},
+        cell_data={"base-body": [np.zeros(len(faces), dtype=np.int32), np.ones(len(cells), dtype=np.int32)]},
+    )
+    # A temperature is no set.
+    mesh.point_data["heat"] = np.linspace(0.0, 1.0, len(found.points))
+    meshio.write(tmp_path / f"block.{ending}", mesh)
+    read = same_body(tmp_path / f"block.{ending}", found)
+    assert set(read.sets) == {"high", "base", "body", "base-body"}
+    assert read.sets["high"].nodes.tolist() == sorted(found.sets["high"].nodes.tolist())
+    assert len(read.sets["base"].faces[0]) == len(faces)
+
+
+@pytest.mark.parametrize("kind", ["tetra10", "hexahedron20", "tetra", "hexahedron"])
+def test_surfaces_of_abaqus_are_faces(tmp_path: Path, kind: str) -> None:
+    found = block(kind=kind)
+    # All faces of all elements, and those of them that are outside: the whole surface of the block.
+    count = 4 if kind.startswith("tetra") else 6
+    lines = "".join(f"body, S{face + 1}\n" for face in range(count))
+    nodes = "*SURFACE, NAME=by_nodes, TYPE=NODE\nlow, 1.\n"
+    path = write_inp(tmp_path / "block.inp", found, f"*SURFACE, NAME=skin, TYPE=ELEMENT\n{lines}{nodes}")
+    read = same_body(path, found)
+    assert read.sets["by_nodes"].nodes.tolist() == sorted(found.sets["low"].nodes.tolist())
+    whole = solid_mesh(read, 1.0, "casings.b.mesh")
+    area = 2.0 * (0.1 * 0.06 + 0.1 * 0.2 + 0.06 * 0.2)
+    assert by_set(whole, "skin", "casings.b.seats.one").area == pytest.approx(area)
+    # One face of one element.
+    one = write_inp(tmp_path / "one.inp", found, "*SURFACE, NAME=one\n1, S2\n")
+    assert len(read_mesh(one, "casings.b.mesh").sets["one"].faces[0]) == 1
+    with pytest.raises(AnalysisError, match="the face S9"):
+        read_mesh(write_inp(tmp_path / "bad.inp", found, "*SURFACE, NAME=one\n1, S9\n"), "casings.b.mesh")
+
+
+def test_sets_of_nastran_decks_are_sets_of_nodes(tmp_path: Path) -> None:
+    found = block()
+    low = sorted(node + 1 for node in found.sets["low"].nodes.tolist())
+    lines = ["SOL 103", f"SET 5 = {low[0]} THRU {low[2]},", " " + ", ".join(map(str, low[3:])), "BEGIN BULK"]
+    lines += [f"GRID,{i + 1},,{x!r},{y!r},{z!r}" for i, (x, y, z) in enumerate(found.points.tolist())]
+    for i, cell in enumerate(found.cells["tetra10"]):
+        words = [str(n + 1) for n in cell]
+        lines += [f"CTETRA,{i + 1},1," + ",".join(words[:6]) + ",+", "+," + ",".join(words[6:])]
+    lines += ["SPC1,3,123456," + ",".join(map(str, low[:5])), "SET1,8,1,THRU,99999999"]
+    (tmp_path / "block.bdf").write_text("\n".join([*lines, "ENDDATA"]))
+    sets = same_body(tmp_path / "block.bdf", found).sets
+    between = [node for node in range(low[0], low[2] + 1) if node not in low]
+    assert [node + 1 for node in sets["set_5"].nodes.tolist()] == sorted({*low, *between})
+    assert [node + 1 for node in sets["spc_3"].nodes.tolist()] == low[:5]
+    assert len(sets["set_8"].nodes) == len(found.points)
 
 
 def test_med_files_keep_their_groups(tmp_path: Path) -> None:

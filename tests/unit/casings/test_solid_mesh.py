@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from rotorgear.casings.assembly import Elastic, assemble, rigid_motions
-from rotorgear.casings.file_mesh import FileMesh
+from rotorgear.casings.file_mesh import FileMesh, NamedSet
+from rotorgear.casings.patches import by_set
 from rotorgear.casings.solid_mesh import merged, solid_mesh
 from rotorgear.errors import AnalysisError
 from tests.unit.casings.blocks import block
@@ -55,6 +56,17 @@ def test_an_element_folded_by_its_curvature_is_named_and_straightened() -> None:
     assert "negative" in note
     assert "straight edges" in note
     assert mass_of(found) == pytest.approx(straight, rel=1e-12)
+
+
+def test_a_set_of_the_corners_of_quadratic_faces_is_the_faces() -> None:
+    found = block(SIZE, (1, 1, 2), "tetra10")
+    corners = np.unique(found.cells["tetra10"][:, :4])
+    low = found.sets["low"].nodes
+    found.sets["corners"] = NamedSet(np.intersect1d(low, corners))
+    mesh = solid_mesh(found, 1.0, "casings.b.mesh")
+    whole, some = (by_set(mesh, name, "casings.b.seats.one") for name in ("low", "corners"))
+    assert some.area == pytest.approx(SIZE[0] * SIZE[1])
+    assert some.nodes.tolist() == whole.nodes.tolist()
 
 
 def test_elements_numbered_the_other_way_round_are_mirrored() -> None:
