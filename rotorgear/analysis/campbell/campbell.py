@@ -17,7 +17,7 @@ from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.snapshot_basis import Request, SpeedModes
 from rotorgear.analysis.campbell.speed_family import merged
 from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, mesh_reach, operating_speed
-from rotorgear.analysis.common.casings import reduction_errors
+from rotorgear.analysis.common.casings import reduction_errors, serving
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.notes import left_out
@@ -89,6 +89,7 @@ def campbell(
     _check(modes, fmax, sidebands)
     clock = Clock()
     model, given, notes = about_equilibrium_of(model, [float(speed) for speed in asked])
+    model, few = (model, ()) if isinstance(model, System) else serving(model, fmax)
     ends = [float(asked[0]), float(asked[-1])]
     system = system_for_speeds(
         model, ends, modes=modes, fmax=fmax, elements=elements, accuracy=accuracy, only=tuple(only), progress=progress
@@ -116,7 +117,7 @@ def campbell(
         result,
         model=given,
         left_out=(*result.left_out, *notes, *([beyond] if beyond else [])),
-        warnings=(*result.warnings, *([short] if short else [])),
+        warnings=(*result.warnings, *few, *([short] if short else [])),
         status=short or "success",
     )
 

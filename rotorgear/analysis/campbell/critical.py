@@ -14,6 +14,7 @@ from rotorgear.analysis.campbell.crossings import EXCITED, participation, whirl_
 from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.speed_family import SpeedFamily
 from rotorgear.analysis.campbell.speeds import highest_speed
+from rotorgear.analysis.common.casings import serving
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.notes import left_out
@@ -84,14 +85,15 @@ def critical(
     clock = Clock()
     # Where a line meets a mode is not known before: tangents over the whole range.
     model, given, notes = about_equilibrium_of(model, list(np.linspace(0.0, top, _TANGENTS)))
-    highest = max(line.frequency_hz(top) for line in lines)
+    highest = min(max(line.frequency_hz(top) for line in lines), fmax or np.inf)
+    model, few = (model, ()) if isinstance(model, System) else serving(model, highest)
     aim = accuracy
     for _ in range(_ROUNDS):
         system = system_for_speeds(
             model,
             [top],
             modes=None,
-            fmax=min(highest, fmax or np.inf),
+            fmax=highest,
             elements=elements,
             accuracy=aim,
             progress=progress,
@@ -118,7 +120,7 @@ def critical(
         result,
         model=given,
         left_out=(*result.left_out, *notes),
-        warnings=(*result.warnings, *_too_slow(system, top, lines), *([short] if short else [])),
+        warnings=(*result.warnings, *few, *_too_slow(system, top, lines), *([short] if short else [])),
         status=short or "success",
     )
 

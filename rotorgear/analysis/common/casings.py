@@ -1,18 +1,60 @@
-"""What analyses say of casings: how far they were reduced, and how wrong a mode is for it."""
+"""What analyses ask of casings and say of them: how far they were reduced, and how wrong a mode is for it."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 
+from rotorgear.casings.casing import BEYOND
+from rotorgear.model.model import Model
 from rotorgear.quantity import millimetres
 from rotorgear.system.system import System
 
+# So many modes of a casing are taken where the file does not ask for more.
+MOST_MODES = 120
 # A bearing nearer to the point of its seat than this stands there.
 _APART = 1e-4
 # A relative error of a frequency above this is worth a warning.
-_NOTICED = 1e-3
+NOTICED = 1e-3
+
+
+def serving(model: Model, fmax: float | None) -> tuple[Model, tuple[str, ...]]:
+    """The model with modes of its casings up to twice the highest frequency that an analysis asks for.
+
+    Where the file gives `modes_to`, where the usual number of modes reaches as far, and without casings from meshes, it is the
+    model itself. More than some hundred modes are not taken unasked: their number, which grows with f^1.5 at most, sets the cost.
+
+    Args:
+        model: any.
+        fmax: in Hz; None: no range is asked for.
+
+    Returns:
+        The model, and a sentence on each casing whose modes end below twice that frequency.
+    """
+    wanted = BEYOND * (fmax or 0.0)
+    further: dict[str, float] = {}
+    short = []
+    for name, part in model.casings.items():
+        if not part.mesh or part.modes_to is not None:
+            continue
+        body = model.layout.casing(name)
+        if body.left_frequency >= wanted:
+            continue
+        most = body.left_frequency * (MOST_MODES / max(len(body.fixed_frequency), 1)) ** (2.0 / 3.0)
+        if wanted > most:
+            short.append(
+                f"casings.{name}: its modes go to {most:.3g} Hz, and this analysis to {fmax:.4g} Hz; modes_to takes in more"
+            )
+        further[f"casings.{name}.modes_to"] = _rounded_up(min(wanted, most))
+    return (model.with_(further) if further else model), tuple(short)
+
+
+def _rounded_up(frequency: float) -> float:
+    """To two digits, so that analyses that ask for nearly the same find one body."""
+    digit = 10.0 ** (math.floor(math.log10(frequency)) - 1)
+    return math.ceil(frequency / digit) * digit
 
 
 def reduction_errors(system: System, s: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -55,10 +97,10 @@ def casing_notes(system: System) -> Iterator[str]:
 
 def casing_warnings(errors: np.ndarray, s: np.ndarray) -> Iterator[str]:
     """A sentence where the reduction of casings makes a frequency wrong by more than a thousandth."""
-    over = np.flatnonzero(errors > _NOTICED)
+    over = np.flatnonzero(errors > NOTICED)
     if over.size:
         first = int(over[0])
         yield (
-            f"casings: their reduction makes {over.size} of {len(errors)} frequencies wrong by more than {_NOTICED:g}, the "
+            f"casings: their reduction makes {over.size} of {len(errors)} frequencies wrong by more than {NOTICED:g}, the "
             f"first of them at {abs(s[first]) / (2.0 * np.pi):.4g} Hz by {errors[first]:.1e}; raise modes_to"
         )

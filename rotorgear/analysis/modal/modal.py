@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rotorgear.analysis.common.casings import casing_warnings, reduction_errors
+from rotorgear.analysis.common.casings import NOTICED, casing_warnings, reduction_errors, serving
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.notes import gathering
 from rotorgear.analysis.common.recorded import recorded
@@ -77,7 +77,8 @@ def modal(
     if modes is None and fmax is None:
         modes = DEFAULT_MODES
     fixed = isinstance(model, System) or elements is not None
-    system, notes = _system(model, speed, Plan(elements) if elements else (Plan() if fixed else START))
+    served, short = (model, ()) if isinstance(model, System) else serving(model, fmax)
+    system, notes = _system(served, speed, Plan(elements) if elements else (Plan() if fixed else START))
     if not (fixed or error_estimate):
         raise AnalysisError(
             "a mesh that is refined to an accuracy needs the error estimate; give elements to do without"
@@ -130,13 +131,29 @@ def modal(
         )
     reduction = reduction_errors(system, found.eigenvalues, found.vectors)
     kept = reach.inside(np.abs(found.eigenvalues))
+    given = model.model if isinstance(model, System) else model
+    if isinstance(model, Model) and fmax is None and np.any(reduction[:kept] > NOTICED):
+        # How far a number of modes reaches is known now.
+        further, _ = serving(model, float(np.max(np.abs(found.eigenvalues[:kept]))) / (2.0 * np.pi))
+        if further is not model:
+            again = modal(
+                further,
+                speed=speed,
+                modes=modes,
+                elements=elements,
+                accuracy=accuracy,
+                only=only,
+                pruning=pruning,
+                error_estimate=error_estimate,
+                progress=progress,
+            )
+            return replace(again, model=given)
     progress(0.9, "energies")
     result = modal_result(
         system, speed, (modes, fmax), found.first(kept), q[:, :kept], (estimate + reduction)[:kept], clock
     )
-    warnings = (*result.warnings, *casing_warnings(reduction[:kept], found.eigenvalues))
+    warnings = (*result.warnings, *short, *casing_warnings(reduction[:kept], found.eigenvalues))
     progress(1.0, "done")
-    given = model.model if isinstance(model, System) else model
     return replace(result, model=given, left_out=(*result.left_out, *notes), warnings=warnings)
 
 

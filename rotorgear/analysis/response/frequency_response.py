@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.analysis.common.casings import serving
 from rotorgear.analysis.common.gear_bodies import body_notes
 from rotorgear.analysis.common.load_notes import load_notes
 from rotorgear.analysis.common.mesh_notes import mesh_stiffness_left_out
@@ -87,6 +88,8 @@ def frf(
     hz = np.sort(np.asarray(frequencies, float).ravel())
     check_request(turns, None, None, elements, accuracy)
     _check(hz, inputs, outputs, modal_damping)
+    given = model
+    model, few = serving(model, float(hz[-1]))
     ports = Ports(model, (*inputs, *outputs))
     zeta = modal_damping + model.damping.modal_ratio
     linear, notes = about_equilibrium(model, [turns or None])
@@ -118,7 +121,7 @@ def frf(
     short = missed(accuracy, estimate, "ask for less, or give more damping to resonances in the range")
     progress(1.0, "done")
     return FrequencyResponse(
-        model=model,
+        model=given,
         speed=turns,
         frequency_hz=hz,
         inputs=tuple(inputs),
@@ -141,6 +144,7 @@ def frf(
             *mesh_stiffness_left_out(system),
         ),
         warnings=(
+            *few,
             *([] if zeta or system.damping(turns).nnz else [_UNDAMPED]),
             *([short] if short else []),
         ),

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rotorgear.analysis.common.casings import serving
 from rotorgear.analysis.common.gear_bodies import body_notes
 from rotorgear.analysis.common.load_notes import load_notes
 from rotorgear.analysis.common.notes import rolling_notes
@@ -95,6 +96,7 @@ def response(
     # The many minor orders of teeth that differ go far up; the mesh is made for those that shake.
     top = max((order.frequency_at(fastest) for order in orders if not order.minor), default=highest)
     left += _beyond_mesh(orders, top, fastest)
+    linear, few = serving(linear, top / (2.0 * np.pi))
     speed = float(chosen[-1])
     for aim in aims(accuracy):
         progress(0.02, "discretisation")
@@ -179,6 +181,7 @@ def response(
             *load_notes(system, "response"),
         ),
         warnings=(
+            *few,
             *speed_warnings(plant, orders, chosen, (modes, w, zeta)),
             *parting(setup, stacked["mesh_force"], chosen),
             *([short] if short else []),

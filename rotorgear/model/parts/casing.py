@@ -146,7 +146,9 @@ class Casing(Part):
         0, description="how often every element is split in eight: the same body in a finer mesh"
     )
     modes_to: Frequency | None = Field(
-        None, description="highest frequency of the fixed-interface modes that are kept; default: the lowest 20"
+        None,
+        description="highest frequency of the fixed-interface modes that are kept; default: the lowest 20, or more where an "
+        "analysis asks for frequencies beyond half of theirs",
     )
     damping_ratio: Ratio = Field(0.0, description="damping ratio of every elastic mode of the casing by itself")
     mass: PositiveMass | None = Field(None, description="mass, if it is known: the mesh is checked against it")

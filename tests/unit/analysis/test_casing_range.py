@@ -1,0 +1,98 @@
+"""Casings get as many modes of their own as the range of an analysis asks for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.analysis.common.casings import MOST_MODES, serving
+from rotorgear.casings.casing import forget
+from tests.unit.casings.blocks import block, write_inp
+
+pytest.importorskip("meshio")
+MODEL = """
+[operation]
+input_shaft = "rotor"
+speed = "3000 rpm"
+
+[casings.box]
+mesh = "box.inp"
+unit = "m"
+material = "steel"
+held = ["low"]
+seats = { left = "high" }
+damping_ratio = 0.01
+
+[shafts.rotor]
+position = ["100 mm", "60 mm"]
+start = "400 mm"
+sections = [{ length = "100 mm", outer_diameter = "60 mm", rigid = true }]
+
+[unbalances]
+one = { shaft = "rotor", at = "end", magnitude = "100 g mm" }
+
+[bearings.left]
+shaft = "rotor"
+at = "start"
+stiffness = { radial = "1e9 N/m", axial = "1e9 N/m", tilt = "1e6 N m/rad" }
+casing = "box"
+"""
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory: pytest.TempPathFactory) -> rg.Model:
+    folder = tmp_path_factory.mktemp("box")
+    write_inp(folder / "box.inp", block((0.2, 0.12, 0.4), (2, 1, 2)))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROTORGEAR_CACHE", str(folder / "cache"))
+        forget()
+        found = rg.loads(MODEL, folder=folder)
+        found.layout.casing("box")
+    return found
+
+
+@pytest.fixture(autouse=True)
+def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROTORGEAR_CACHE", str(tmp_path / "cache"))
+
+
+def test_a_range_within_the_usual_modes_leaves_the_model_as_it_is(model: rg.Model) -> None:
+    reach = model.layout.casing("box").left_frequency
+    assert serving(model, 0.49 * reach) == (model, ())
+    assert serving(model, None)[0] is model
+    given = model.with_("casings.box.modes_to", reach)
+    assert serving(given, 10.0 * reach) == (given, ())
+
+
+def test_a_wider_range_takes_modes_to_twice_its_end(model: rg.Model) -> None:
+    reach = model.layout.casing("box").left_frequency
+    served, short = serving(model, 0.7 * reach)
+    asked = served.casings["box"].modes_to
+    assert asked is not None
+    assert 1.4 * reach <= asked <= 1.6 * reach
+    assert served.layout.casing("box").left_frequency > asked
+    assert short == ()
+    served, short = serving(model, 20.0 * reach)
+    assert len(served.layout.casing("box").fixed_frequency) < 2 * MOST_MODES
+    assert short[0].endswith("modes_to takes in more")
+
+
+def test_modes_and_responses_of_a_wide_range_are_those_of_many_modes(model: rg.Model) -> None:
+    reach = model.layout.casing("box").left_frequency
+    many = model.with_("casings.box.modes_to", 3.0 * reach)
+    few = model.with_("casings.box.modes_to", 0.99 * reach)
+    found, right, usual = (rg.modal(one, fmax=0.9 * reach, elements=1) for one in (model, many, few))
+    assert found.model is model
+    elastic = ~right.rigid
+    off, before = (np.abs(one.frequency_hz[elastic] / right.frequency_hz[elastic] - 1.0) for one in (found, usual))
+    assert off.max() < 1e-4
+    assert before.max() > 1e-3
+    counted = rg.modal(model, modes=len(found.frequency_hz), elements=1)
+    np.testing.assert_allclose(counted.frequency_hz, right.frequency_hz, rtol=1e-4)
+    hz = [0.5 * reach, 0.9 * reach]
+    there = {"inputs": ["bearings.left:y"], "outputs": ["casings.box(200 mm; 120 mm; 200 mm):x"], "elements": 1}
+    here, wide = (rg.frf(one, hz, **there).receptance for one in (model, many))
+    np.testing.assert_allclose(here, wide, rtol=0.02)
