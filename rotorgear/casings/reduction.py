@@ -30,7 +30,7 @@ from rotorgear.casings.constrained import Constrained, ElasticBody
 from rotorgear.casings.fe_body import FiniteElementBody, FreeSpace
 from rotorgear.casings.modes import modes_up_to
 from rotorgear.casings.reduced_body import ReducedBody, Surface, modal_damping
-from rotorgear.progress import Progress, silent
+from rotorgear.progress import Progress, part_of, silent
 
 # Fixed-interface modes where neither the file nor the analysis says a frequency.
 USUAL = 20
@@ -72,7 +72,10 @@ def reduce_in_basis(
     R = rigid_motions(fe.mesh.points)
     floating = not len(fe.held) and not space.seats.shape[1]
     body = ElasticBody(
-        fe.stiffness_in(space.shapes), R[space.dofs] if floating else R[space.dofs][:, :0], name, progress
+        fe.stiffness_in(space.shapes),
+        R[space.dofs] if floating else R[space.dofs][:, :0],
+        name,
+        part_of(progress, 0.0, 0.3),
     )
     seconds["factorisation"] = time.perf_counter() - started
 

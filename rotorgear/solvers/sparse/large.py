@@ -18,6 +18,7 @@ import scipy.sparse as sp
 from rotorgear.errors import AnalysisError
 from rotorgear.progress import Progress, silent
 from rotorgear.solvers.sparse.factor import symmetric_superlu
+from rotorgear.solvers.sparse.watched import watched
 
 Solver = Literal["pardiso", "metis", "mmd"]
 # Seconds and bytes of one factorisation of 139 000 unknowns of quadratic tetrahedra on one core, and the powers of n that other
@@ -103,7 +104,7 @@ def factor_positive(
         A: (n, n), any sparse format, with the same pattern for all unknowns of a node.
         blocks: unknowns a node.
         what: is factored, for progress and errors.
-        progress: told the forecast before it starts.
+        progress: told the forecast before it starts, then the share of it that has gone by.
         solver: "pardiso", "metis" or "mmd"; None: the best that is installed.
 
     Raises:
@@ -118,8 +119,12 @@ def factor_positive(
         hint = "; pymetis would take a tenth of it (pip install 'rotorgear[casing]')" if solver == "mmd" else ""
         text += f", {cost}{hint}"
     progress(0.0, text)
-    order = nested_dissection(A, blocks) if solver == "metis" else None
-    return LargeFactor(sp.csr_array(A), solver, order)
+
+    def factored() -> LargeFactor:
+        order = nested_dissection(A, blocks) if solver == "metis" else None
+        return LargeFactor(sp.csr_array(A), solver, order)
+
+    return watched(factored, cost.seconds, lambda share: progress(share, text))
 
 
 def nested_dissection(A: Any, blocks: int) -> np.ndarray:
