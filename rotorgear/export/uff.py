@@ -10,10 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rotorgear.analysis.common.points import coordinates
+from rotorgear.analysis.common.points import coordinates, point_node
 from rotorgear.errors import AnalysisError
 from rotorgear.export.files import replacing
-from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.frequency_response import FrequencyResponse
 from rotorgear.results.modal import ModalResult, NodeTable
@@ -146,9 +145,8 @@ def _order_functions(result: ResponseResult, binary: bool) -> list[bytes]:
         raise AnalysisError("order functions are those of named points, and the model has none: give it [points]")
     sets = _geometry(result.nodes)
     for k, name in enumerate(result.points):
-        shaft, z = result.model.layout.place(f"points.{name}")
-        direction = DOF_NAMES.index(result.model.points[name].direction) + 1
-        freedom = (result.nodes.nearest(shaft, z) + 1, direction)
+        node, direction = point_node(result.model, result.nodes, name)
+        freedom = (node + 1, direction + 1)
         for order, ratio in zip(result.orders, result.ratio, strict=True):
             at = result.orders.index(order)
             function = Function(

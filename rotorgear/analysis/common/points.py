@@ -13,13 +13,17 @@ from rotorgear.model.checks.references import ON_SHAFTS
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.quantity import QuantityError, parse_quantity
+from rotorgear.results.modal import NodeTable
 from rotorgear.system.system import System
 
 
-def point_amplitudes(system: System, shapes: np.ndarray) -> dict[str, np.ndarray]:
-    """Complex amplitude of each named point in its direction: name -> (m,), from shapes (p, 6, m)."""
+def point_amplitudes(system: System, nodes: NodeTable, shapes: np.ndarray) -> dict[str, np.ndarray]:
+    """Complex amplitude of each named point in its direction: name -> (m,), from shapes (p, 6, m) at all nodes and surfaces."""
     found = {}
     for name, point in system.model.points.items():
+        if point.on_casing is not None:
+            found[name] = shapes[point_node(system.model, nodes, name)]
+            continue
         node = system.nodes.at(*system.layout.place(f"points.{name}"))
         found[name] = shapes[node, DOF_NAMES.index(point.direction)]
     return found
@@ -36,7 +40,8 @@ def point_rows(system: System, names: Sequence[str]) -> sp.csr_array:
         AnalysisError: a place that the model has not.
     """
     rows = []
-    for name in names:
+    for text in names:
+        name = spelled(system.model, text)
         if name.startswith("casings."):
             casing, row = casing_row(system.model, name)
             rows.append(
@@ -47,6 +52,15 @@ def point_rows(system: System, names: Sequence[str]) -> sp.csr_array:
         dof = 6 * system.nodes.at(shaft, z) + DOF_NAMES.index(direction)
         rows.append(sp.csr_array(system.dofs.transform[[dof]]))
     return sp.csr_array(sp.vstack(rows)) if rows else sp.csr_array(system.dofs.transform[[]])
+
+
+def spelled(model: Model, text: str) -> str:
+    """A place as it is; a named point on a casing as its place, 'casings.box(0.0 m; 0.28 m; 0.2 m):y'."""
+    point = model.points.get(text)
+    if point is None or point.on is None or point.on_casing is None:
+        return text
+    assert point.place is not None, "checked: a point on a casing has a place"
+    return f"{point.on}({'; '.join(f'{x!r} m' for x in point.place)}):{point.direction}"
 
 
 def named_place(model: Model, text: str) -> tuple[str, float, str]:
@@ -68,12 +82,31 @@ def named_place(model: Model, text: str) -> tuple[str, float, str]:
     )
 
 
+def point_node(model: Model, nodes: NodeTable, text: str) -> tuple[int, int]:
+    """Number of the node of a result that a place is at or nearest to, and number of the direction in x y z tx ty tz.
+
+    Raises:
+        AnalysisError: as `named_place` and `casing_place` do; a seat of a casing is no node.
+    """
+    there = spelled(model, text)
+    if there.startswith("casings."):
+        casing, dof, seat, point = casing_place(model, there)
+        if seat:
+            raise AnalysisError(
+                f"'{text}': shapes are known on the surface of a casing; name a place on it in place of a seat"
+            )
+        return int(nodes.of_casing(casing)[point]), dof
+    shaft, z, direction = named_place(model, text)
+    return nodes.nearest(shaft, z), DOF_NAMES.index(direction)
+
+
 def coordinates(model: Model, text: str) -> tuple[np.ndarray, int]:
     """Coordinates (3,) in m, and number of the direction in x y z tx ty tz, of a place as `frf` takes it.
 
     Raises:
         AnalysisError: as `named_place` and `casing_row` do.
     """
+    text = spelled(model, text)
     if text.startswith("casings."):
         name, dof, seat, point = casing_place(model, text)
         body = model.layout.casing(name)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.analysis.common.excitation import excitation_lines
-from rotorgear.analysis.common.points import casing_place, named_place
+from rotorgear.analysis.common.points import point_node
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.correlation.sensor_errors import sensor_doubts
 from rotorgear.analysis.modal.modal import modal
@@ -25,7 +25,6 @@ from rotorgear.analysis.rig.pairing import UNPAIRED, costs, pairs_by_both
 from rotorgear.analysis.rig.shape_file import read_rig_shapes
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
-from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.progress import Progress, silent
 from rotorgear.results.comparison import RigLine
 from rotorgear.results.correlation import ALIKE, ShapeChance, ShapeComparison, ShapeMatch, Subspace
@@ -171,7 +170,7 @@ class _Modes:
             raise AnalysisError("there are no elastic modes to compare with")
         elastic = elastic[np.argsort(result.natural_frequency_hz[elastic], kind="stable")]
         hz = result.natural_frequency_hz[elastic]
-        where = [_node_of(result, name) for name in points]
+        where = [point_node(result.model, result.nodes, name) for name in points]
         nodes = np.array([node for node, _ in where])
         axes = np.array([axis for _, axis in where])
         everywhere = np.moveaxis(result.shapes[nodes][:, :, elastic], 2, 0)
@@ -203,20 +202,6 @@ def _groups(hz: NDArray[np.float64], error: NDArray[np.float64]) -> tuple[tuple[
     near = np.diff(np.log(hz)) <= np.maximum(error[1:] + error[:-1], LINE_NOISE)
     chain = np.concatenate([[0], np.cumsum(~near)])
     return tuple(tuple(int(i) for i in np.flatnonzero(chain == chain[k])) for k in range(len(hz)))
-
-
-def _node_of(result: ModalResult, name: str) -> tuple[int, int]:
-    """Number of the node and of the direction of a place."""
-    model = result.model
-    if name.startswith("casings."):
-        casing, axis, seat, point = casing_place(model, name)
-        if seat:
-            raise AnalysisError(
-                f"'{name}': shapes are known on the surface of a casing; name a place on it in place of a seat"
-            )
-        return int(result.nodes.of_casing(casing)[point]), axis
-    shaft, z, direction = named_place(model, name)
-    return result.nodes.nearest(shaft, z), DOF_NAMES.index(direction)
 
 
 def _share(shape: NDArray[np.complex128], plane: NDArray[np.complex128]) -> float:

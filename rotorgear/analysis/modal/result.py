@@ -62,7 +62,7 @@ def modal_result(
             *conditioning_warnings(system, speed, found.eigenvalues, found.rigid, energies.strain),
         ),
         method=found.method,
-        point_amplitudes=point_amplitudes(system, shapes),
+        point_amplitudes=point_amplitudes(system, nodes, everywhere),
     )
 
 

@@ -89,9 +89,7 @@ class GroundLoads:
 
     def __init__(self, system: System, damped: ModalDamping | None) -> None:
         given = system.model.damping
-        T = sp.csr_array(system.dofs.transform)
         self._parts = []
-        self._modes = damped
         names: list[str] = []
         for casing in system.model.casings:
             body = system.layout.casing(casing)
@@ -99,18 +97,19 @@ class GroundLoads:
             if K is None or C is None or M is None or not body.ground_sets:  # it floats, or was reduced elsewhere
                 continue
             names += [f"{casing}.{place}" for place in body.ground_sets]
-            own = T[system.nodes.of_casing(casing), :]
+            own = sp.csr_array(system.dofs.transform)[system.nodes.of_casing(casing), :]
             # Rayleigh's damping is one of every part of the gearbox.
             C = C + given.rayleigh_beta * K + given.rayleigh_alpha * M
             self._parts.append((own, K, C, M))
         self.names = tuple(names)
-        self._momentum = None if damped is None else np.asarray(system.mass @ damped.modes)
+        self._modes = damped if self._parts else None
+        self._momentum = None if self._modes is None else np.asarray(system.mass @ self._modes.modes)
 
     def read(self, w: np.ndarray, q: np.ndarray) -> np.ndarray:
         """Amplitudes (o, g, 6) for displacements q (n, o) at frequencies w (o,); all in SI."""
         found = [np.zeros((len(w), 0))]
         brake = None
-        if self._parts and self._modes is not None and self._momentum is not None:
+        if self._modes is not None and self._momentum is not None:
             brake = self._modes.modes @ (self._modes.sizes[:, None] * (self._momentum.T @ q)) * (1j * w)
         for own, K, C, M in self._parts:
             u = own @ q

@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.analysis.common.places import part_nodes
+from rotorgear.analysis.common.points import point_rows
 from rotorgear.analysis.response.casing_loads import GroundLoads, ModalDamping, SeatLoads
 from rotorgear.analysis.response.orders import Order
 from rotorgear.model.parts.fields import DOF_NAMES
@@ -91,8 +92,7 @@ class Plant:
         self.places = part_nodes(system)
         rows = [6 * node + dof for node in self.places.values() for dof in range(6)]
         self._place_rows = sp.csr_array(system.dofs.transform)[rows, :]
-        points = system.model.points.items()
-        self._points = [dof_row(system, *system.layout.place(f"points.{name}"), p.direction) for name, p in points]
+        self._points = point_rows(system, tuple(system.model.points)).toarray()
         self.surfaces = {
             name: surface
             for name in system.model.casings
@@ -141,7 +141,7 @@ class Plant:
         force = impedance * (approach - error) + varied
         K, C = self._bearings(speed)
         held = -((K @ q) + (C @ q) * (1j * w)).T.reshape(len(w), -1, 3)
-        moved = (np.reshape(self._points, (len(self._points), len(q))) @ q).T
+        moved = (self._points @ q).T
         there = (self._place_rows @ q).T.reshape(len(w), len(self.places), 6)
         place = np.array([state.face.place if state.face else 0.0 for state in lines.states])
         middle = approach - place * (lines.tilt.T @ q).T

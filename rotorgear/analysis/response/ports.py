@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rotorgear.analysis.common.points import casing_row, named_place
+from rotorgear.analysis.common.points import casing_row, named_place, spelled
 from rotorgear.analysis.response.plant import dof_row
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -22,12 +22,14 @@ class Ports:
     """
 
     def __init__(self, model: Model, names: Sequence[str]) -> None:
-        self._casings = {text: casing_row(model, text) for text in names if text.startswith("casings.")}
+        on_casings = {text: there for text in names if (there := spelled(model, text)).startswith("casings.")}
+        self._casings = {text: casing_row(model, there) for text, there in on_casings.items()}
+        self._directions = {text: there.rpartition(":")[2] for text, there in on_casings.items()}
         self._places = {text: named_place(model, text) for text in names if text not in self._casings}
 
     def direction(self, text: str) -> str:
         """The direction of a place."""
-        return self._places[text][2] if text in self._places else text.rpartition(":")[2]
+        return self._places[text][2] if text in self._places else self._directions[text]
 
     def force_unit(self, text: str) -> str:
         """N, or N m of a rotation."""

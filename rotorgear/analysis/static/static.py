@@ -190,7 +190,7 @@ def _result(found: AlongFaces, speed: float | None, change: Sensitivity, estimat
         assembly=tuple(LoopAssembly(loop.mesh, loop.gear, math.degrees(loop.clocking), loop.rest) for loop in loops),
         torque={item.name: item.torque for item in system.load.applied},
         load_force={load.address: load.constant for load in system.layout.external_loads},
-        point_displacement={n: float(v[0]) for n, v in point_amplitudes(system, moved).items()},
+        point_displacement={n: float(v[0]) for n, v in point_amplitudes(system, nodes, moved).items()},
         imbalance=imbalance(equilibrium),
         error_estimate=estimate,
         dofs=system.n,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotorgear.analysis.common.points import point_rows
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.solvers.time.local_system import Fields, Observed
 from rotorgear.system.local import LocalModel
@@ -105,7 +106,7 @@ def _points(local: LocalModel) -> list[tuple[str, str, dict[str, np.ndarray]]]:
     histories = []
     for name, point in local.system.model.points.items():
         dof = DOF_NAMES.index(point.direction)
-        row = _row(local, local.system.nodes.at(*local.system.layout.place(f"points.{name}")), dof)
+        row = point_rows(local.system, (name,)).toarray()[0]
         unit = "m" if dof < 3 else "rad"
         for kind, what, per in (("q", "displacement", ""), ("v", "velocity", "/s"), ("a", "acceleration", "/s^2")):
             histories.append((f"points.{name} {what}", unit + per, {kind: row}))

@@ -39,6 +39,11 @@ def loads(model: Tables) -> Iterator[Problem]:
                 "give two loads",
             )
         yield from _place(address, load)
+        point = model.points.get(load.point or "")
+        if point is not None and point.on_casing is not None:
+            yield Problem(
+                f"{address}.point", f"'{load.point}', on a casing", "a point on a shaft", "frf takes it as an input"
+            )
         yield from _variation(address, load)
 
 

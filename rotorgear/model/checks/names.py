@@ -6,11 +6,15 @@ from collections.abc import Collection, Iterator
 
 from rotorgear.errors import Problem
 from rotorgear.model.checks.references import ON_SHAFTS, TABLES, PartName, references
+from rotorgear.model.parts.operation import Point
 from rotorgear.model.parts.problems import address as address_of
 from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import LIBRARY
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import nearest
+
+# Tables of what a point may be on.
+_WITH_POINTS = (*ON_SHAFTS, "casings")
 
 Broken = Collection[PartName]
 _LISTED = 20  # so many names a hint lists at most
@@ -44,8 +48,8 @@ def unknown_names(model: Tables, broken: Broken) -> Iterator[Problem]:
             if not _is_known(model, table, name, broken):
                 yield unknown(item.address, name, _names(model, table, broken), f"a {table.removesuffix('s')}")
         # What a point is on is written with its table, which may be wrong itself: then all parts on shafts are valid.
-        elif table not in ON_SHAFTS or not _is_known(model, table, name, broken):
-            tables = [table] if table in ON_SHAFTS else ON_SHAFTS
+        elif table not in _WITH_POINTS or not _is_known(model, table, name, broken):
+            tables = [table] if table in _WITH_POINTS else ON_SHAFTS
             valid = [f"{owner}.{part}" for owner in tables for part in _names(model, owner, broken)]
             yield unknown(item.address, f"{table}.{name}" if name else table, valid, "a part such as 'bearings.left'")
 
@@ -65,7 +69,11 @@ def points(model: Tables) -> Iterator[Problem]:
     """A point is on a part, or at a place of a shaft."""
     for name, point in model.points.items():
         address = f"points.{name}"
-        if point.on is None and point.shaft is None:
+        if point.on_casing is None and point.place is not None:
+            yield Problem(f"{address}.place", "a place", "on = 'casings.NAME' beside it, or shaft and at")
+        elif point.on_casing is not None:
+            yield from _on_casing(address, point)
+        elif point.on is None and point.shaft is None:
             yield Problem(address, "neither on nor shaft", "either on = 'bearings.left' or shaft and at")
         elif point.on is not None and (point.shaft is not None or point.at is not None):
             yield Problem(
@@ -75,6 +83,16 @@ def points(model: Tables) -> Iterator[Problem]:
             )
         elif point.on is None and point.at is None:
             yield Problem(f"{address}.at", "", "missing", "required beside shaft: z on that shaft")
+
+
+def _on_casing(address: str, point: Point) -> Iterator[Problem]:
+    """A point on a casing has a place on its surface, which moves along x, y and z."""
+    if point.place is None:
+        yield Problem(f"{address}.place", "", "missing", "required on a casing: x y z of a place on its surface")
+    if point.shaft is not None or point.at is not None:
+        yield Problem(address, "on together with shaft or at", "one of the two ways to give the place")
+    if point.direction not in ("x", "y", "z"):
+        yield Problem(f"{address}.direction", f"'{point.direction}'", "x, y or z: a surface has no rotations")
 
 
 def unknown_materials(model: Tables, broken: Broken) -> Iterator[Problem]:

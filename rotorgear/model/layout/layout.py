@@ -153,6 +153,8 @@ class Layout:
             return self.at(part.shaft, part.at), self.at(part.to_shaft, to_at)
         if table == "loads":
             return self._load_places(part)
+        if table == "points" and part.on_casing is not None:
+            return ()
         if table == "points" and part.on is not None:
             return self.places(part.on)[:1]
         return (self.at(part.shaft, part.at),)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from rotorgear.model.parts.fields import (
     Gravity,
+    Length,
     Part,
     Power,
     Rate,
@@ -16,6 +17,7 @@ from rotorgear.model.parts.fields import (
     Station,
     Time,
     Torque,
+    refuse,
 )
 
 
@@ -44,10 +46,27 @@ class ModelDamping(Part):
     modal_ratio: Ratio = Field(0.0, description="damping ratio added to that of every mode that is not rigid")
 
 
+def _parse_place(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        raise refuse("the coordinates x y z of a place, such as ['0 mm', '280 mm', '200 mm']")
+    return value
+
+
 class Point(Part):
     """A named point with a direction: an output or a sensor."""
 
-    on: str | None = Field(None, description="address of a part, such as 'bearings.input_left' or 'gears.wheel'")
+    on: str | None = Field(
+        None,
+        description="address of a part, such as 'bearings.input_left' or 'gears.wheel', or of a casing: 'casings.box'",
+    )
+    place: Annotated[tuple[Length, Length, Length], BeforeValidator(_parse_place)] | None = Field(
+        None, description="on a casing: x y z of a place; the point is that of its surface which is next to it"
+    )
     shaft: str | None = Field(None, description="name of a shaft, in place of a part")
     at: Station | None = Field(None, description="z on that shaft")
     direction: Literal["x", "y", "z", "tilt_x", "tilt_y", "torsion"] = Field("x", description="direction looked along")
+
+    @property
+    def on_casing(self) -> str | None:
+        """Name of the casing that it is on, if any."""
+        return self.on.removeprefix("casings.") if self.on is not None and self.on.startswith("casings.") else None

@@ -332,3 +332,44 @@ def test_the_ground_holds_a_casing_as_it_holds_the_bar_as_a_shaft(tmp_path: Path
     assert found[:3] == pytest.approx(ground[:3], rel=1e-9)
     assert found[3:] == pytest.approx(about_origin, rel=1e-7, abs=1e-7)
     assert found[1] == pytest.approx(9.81 * (mass + 2.0 + STEEL[3] * np.pi * 0.01**2 * 0.6), rel=1e-9)
+
+
+def test_a_named_point_on_a_casing_is_seen_by_every_analysis(tmp_path: Path) -> None:
+    path = with_a_cube(write_bar(tmp_path / "bar.npz", z=PLACES, diameter=DIAMETER, seats=[0, 8], held=[4]), 0.2)
+    corner = {"on": "casings.bar", "place": [0.09, 0.11, -0.09], "direction": "y"}
+    more: dict[str, Any] = {
+        "points": {"corner": corner},
+        "unbalances": {"one": {"shaft": "rotor", "at": 0.2, "magnitude": 1e-4}},
+        "operation": {"gravity": [0.0, -9.81, 0.0]},
+    }
+    model = in_casing(path, **more)
+    place = "casings.bar(90 mm; 110 mm; -90 mm):y"
+    hz = [20.0, 90.0]
+    disk = "disks.disk:y"
+    by_name = rg.frf(model, hz, inputs=[disk, "corner"], outputs=["corner", disk], elements=2)
+    by_place = rg.frf(model, hz, inputs=[disk, place], outputs=[place, disk], elements=2)
+    np.testing.assert_array_equal(by_name.receptance, by_place.receptance)
+    assert by_name.input_units == ("N", "N")
+    # The unbalance as forces of the frequency response: u = H_x F + H_y (-i F), F = m e w^2.
+    found = rg.response(model, speeds=[2.0 * np.pi * f for f in hz], elements=2)
+    for s, f in enumerate(hz):
+        w = 2.0 * np.pi * f
+        seen = rg.frf(model, [f], inputs=["disks.disk:x", disk], outputs=["corner"], elements=2, speed=w).receptance[
+            0, 0
+        ]
+        expected = -(w**2) * (1e-4 * w**2) * (seen[0] - 1j * seen[1])
+        assert found.acceleration[0, s, 0] == pytest.approx(expected, rel=1e-8)
+    modes = rg.modal(model, modes=4, elements=2)
+    surface = modes.nodes.of_casing("bar")
+    at = modes.nodes.position[surface]
+    there = surface[np.argmin(np.linalg.norm(at - [0.09, 0.11, -0.09], axis=1))]
+    np.testing.assert_array_equal(modes.point_amplitudes["corner"], modes.shapes[there, 1])
+    assert rg.static(model, elements=2).point_displacement["corner"] < 0.0
+    for wrong, words in (
+        ({"place": None}, "points.corner.place"),
+        ({"direction": "torsion"}, "points.corner.direction"),
+        ({"shaft": "rotor", "at": 0.1}, "points.corner"),
+        ({"on": "casings.box"}, "points.corner.on"),
+    ):
+        with pytest.raises(rg.ModelError, match=words):
+            in_casing(path, **(more | {"points": {"corner": {**corner, **wrong}}}))
