@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +12,14 @@ import rotorgear as rg
 from tests import paths
 
 MODELS = sorted(paths.MODELS.glob("*.toml"))
+# A model remembers the state of its loaded teeth, which takes longer to find than all modes here.
+load = cache(rg.load)
 
 
 @pytest.mark.parametrize("speed", [None, 0.0, 100.0])
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
 def test_pruned_and_full_models_have_the_same_eigenvalues(path: Path, speed: float | None) -> None:
-    model = rg.load(path)
+    model = load(path)
     if speed is not None and any(bearing.journal for bearing in model.bearings.values()):
         # Oil films carry a gearbox where its journals turn.
         speed = model.operation.speed
