@@ -1,4 +1,4 @@
-"""Compare measured mode shapes with those of a model: one assignment by frequency and shape, beside what chance gives.
+"""Compare measured mode shapes with those of a model: pairs by frequency and shape (`identity.py`), beside what chance gives.
 
 Modes closer to each other than the model knows their frequencies turn into each other at the slightest change. A measured shape
 is compared with the plane that they span, and several of them by principal angles (Bjorck and Golub 1973), never one by one.
@@ -15,12 +15,14 @@ from numpy.typing import NDArray
 from rotorgear.analysis.common.excitation import excitation_lines
 from rotorgear.analysis.common.points import point_node
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.correlation.identity import identified_pairs
 from rotorgear.analysis.correlation.sensor_errors import sensor_doubts
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.rig.compare_result import ABOVE_RIG
 from rotorgear.analysis.rig.learnt import LINE_NOISE, STIFFNESS_PRIOR, learnt_stiffnesses, spring_shares
 from rotorgear.analysis.rig.mac import mac
 from rotorgear.analysis.rig.measured import Measured
+from rotorgear.analysis.rig.mesh_of_model import mesh_of
 from rotorgear.analysis.rig.pairing import UNPAIRED, costs, pairs_by_both
 from rotorgear.analysis.rig.shape_file import read_rig_shapes
 from rotorgear.errors import AnalysisError
@@ -33,6 +35,8 @@ from rotorgear.results.modal import ModalResult
 # A pair lies within four standard deviations, so that a model without uncertain springs reaches as far as the tolerance.
 _DEVIATIONS = 4.0
 _EXCITED = 0.005
+# Pairs take some ten modal solutions, which a whole casing would make slow: larger models are paired as they are.
+_MOST_DOFS = 5000
 
 
 @recorded
@@ -52,7 +56,7 @@ def compare_shapes(
     """Pair measured shapes with modes and say what the agreement is worth, and what the sensors can tell.
 
     Args:
-        source: modes of a model, or a model, whose modes are then found up to 1.15 times the highest line.
+        source: modes of a model, or a model, whose modes are then found up to 1.3 times the highest line.
         shapes: a universal file with shapes (dataset 55), or what it holds.
         points: its table of sensors (CSV); None: each node is at the nearest place of the model.
         tolerance: largest |f_mode / f_rig - 1| of a good match.
@@ -75,8 +79,9 @@ def compare_shapes(
         raise AnalysisError("the tolerance lies between 0 and 1 (0.05 is 5 %), and there is at least one random list")
     given.check_points(model)
     if isinstance(source, Model):
-        fmax = ABOVE_RIG * max(line.frequency_hz for line in given.lines)
-        result = modal(source, speed=speed, fmax=fmax, accuracy=accuracy, elements=elements, progress=progress)
+        result = modal(
+            source, speed=speed, fmax=_highest(given), accuracy=accuracy, elements=elements, progress=progress
+        )
     elif speed is not None or accuracy is not None or elements is not None:
         raise AnalysisError("--speed, --accuracy and --elements belong to a model; a result has its own")
     else:
@@ -85,7 +90,7 @@ def compare_shapes(
     alike = modes.likeness(given.shapes)
     rig_hz = np.array([line.frequency_hz for line in given.lines])
     spread = np.hypot(tolerance / _DEVIATIONS, modes.spread)
-    pairs = pairs_by_both(rig_hz, modes.hz, spread, alike)
+    pairs = _pairs(result, modes, given, alike, spread, tolerance)
     chance = _chance(modes, rig_hz, alike, spread, tolerance, samples, seed)
     operation = model.operation
     turning = result.speed if result.speed is not None else (operation.speed if operation else None)
@@ -137,8 +142,31 @@ def compare_shapes(
         dofs=result.dofs,
         left_out=result.left_out,
         warnings=(*given.notes, *result.warnings),
-        method="one assignment by ln f and MAC",
+        method="pairs by ln f and shape, springs known to 30 %",
     )
+
+
+def _highest(given: Measured) -> float:
+    """Frequency in Hz up to which a line may have its mode: one that softer springs than the model's have brought down."""
+    return ABOVE_RIG * (1.0 + 0.5 * STIFFNESS_PRIOR) * max(line.frequency_hz for line in given.lines)
+
+
+def _pairs(
+    result: ModalResult,
+    modes: _Modes,
+    given: Measured,
+    alike: NDArray[np.float64],
+    spread: NDArray[np.float64],
+    tolerance: float,
+) -> list[tuple[int, int]]:
+    """Lines and modes: at standstill by what springs of 30 % may do, else by frequency and shape as they are."""
+    found = None
+    if result.speed is None and result.dofs <= _MOST_DOFS:
+        found = identified_pairs(result.model, mesh_of(result), _highest(given), given, tolerance)
+    if found is None:
+        rig_hz = np.array([line.frequency_hz for line in given.lines])
+        return pairs_by_both(rig_hz, modes.hz, spread, alike)
+    return [(line, mode) for line, mode in found if mode < len(modes.hz)]
 
 
 @dataclass(frozen=True)

@@ -57,11 +57,11 @@ def read_rig_shapes(path: str | Path, points: str | Path | None = None, model: M
                 str(path),
             )
     still = np.flatnonzero(~np.any(np.nan_to_num(table) != 0.0, axis=1))
-    for row in map(int, still):
+    for number in map(int, still):
         # A shape that is 0 everywhere has no direction to compare; its frequency is a line like any other.
-        table[row] = complex(math.nan)
+        table[number] = complex(math.nan)
         notes.append(
-            f"shape {row + 1} ({lines[row].frequency_hz:.4g} Hz) moves no sensor: taken as a line without shape"
+            f"shape {number + 1} ({lines[number].frequency_hz:.4g} Hz) moves no sensor: taken as a line without shape"
         )
     names = tuple(sensor.place for sensor in sensors)
     return Measured(tuple(lines), names, table, (*file.notes, *notes, *_turned_systems(file)), tuple(sensors))
