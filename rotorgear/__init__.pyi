@@ -90,6 +90,8 @@ from rotorgear.analysis.rig.rig_file import read_rig_lines as read_rig_lines
 from rotorgear.analysis.rig.rig_spectrum import compare_spectrum as compare_spectrum
 from rotorgear.analysis.rig.update import update as update
 from rotorgear.analysis.correlation.sensors import sensors as sensors
+from rotorgear.analysis.rig.campaigns import Campaign as Campaign
+from rotorgear.analysis.rig.campaigns import read_campaigns as read_campaigns
 from rotorgear.analysis.rig.measured import Measured as Measured
 from rotorgear.analysis.rig.shape_file import read_rig_shapes as read_rig_shapes
 from rotorgear.analysis.rig.mac import mac as mac

@@ -18,6 +18,7 @@ from rotorgear.cli.common import (
     progress_bar,
     write_json,
 )
+from rotorgear.errors import AnalysisError
 from rotorgear.extras import require
 
 
@@ -43,6 +44,18 @@ def update(
     shape_noise: Annotated[
         float, typer.Option("--shape-noise", help="Noise of a shape, as a share of its root mean square.")
     ] = 0.02,
+    campaigns: Annotated[
+        Path | None,
+        typer.Option(
+            "--campaigns", help="Several campaigns (TOML): files, speeds and states of the gearbox.", show_default=False
+        ),
+    ] = None,
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            "--speed", help="Speed of the input shaft while it was measured (default: at rest).", show_default=False
+        ),
+    ] = None,
     tolerance: ToleranceOption = 0.05,
     accuracy: AccuracyOption = None,
     elements: ElementsOption = None,
@@ -57,16 +70,19 @@ def update(
 
     if output is not None:
         require("tomlkit", "Writing a changed model file")
+    if campaigns is not None and (rig is not None or shapes is not None):
+        raise AnalysisError("--campaigns names its own files: give it without --rig and --shapes")
     loaded = rg.load(model)
     with progress_bar("update") as progress:
         result = rg.update(
             loaded,
-            rig,
+            rig if campaigns is None else rg.read_campaigns(campaigns),
             shapes=shapes,
             points=points,
             free=free,
             prior=prior,
             shape_noise=shape_noise,
+            speed=speed,
             tolerance=tolerance,
             accuracy=accuracy,
             elements=elements,

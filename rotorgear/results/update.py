@@ -32,6 +32,7 @@ class UpdatedLine(Record):
     """One measured line and its mode; the held-out frequency is predicted from the others, to first order about the estimate."""
 
     rig: RigLine = of("rig line", record=RigLine)
+    campaign: str = of("name of the campaign that measured it", note="; empty where there is one only")
     mode_number: int = of("number of the mode", note=", from 1, elastic modes counted")
     before_hz: float = of("frequency of the model before the update", "Hz")
     after_hz: float = of("frequency after the update", "Hz")

@@ -16,6 +16,7 @@ class Wanted:
         modes: how many modes; limit: all of them up to this |s| in rad/s. None is no such limit.
         only: motions that a group of dofs must have to be solved; empty for all.
         pruning: False solves all dofs as one group, for comparison.
+        damped: False leaves out, at a speed, all that takes energy out or brings it in: what is left is gyroscopic.
     """
 
     speed: float | None
@@ -23,6 +24,7 @@ class Wanted:
     limit: float | None
     only: tuple[str, ...] = ()
     pruning: bool = True
+    damped: bool = True
 
 
 @dataclass(frozen=True)

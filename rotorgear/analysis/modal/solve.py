@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -77,7 +77,7 @@ def solve(system: System, wanted: Wanted) -> Modes:
         AnalysisError: a dof has neither inertia nor stiffness, or no group has a motion that is asked for.
         ConvergenceError: a guard of a solver was not met.
     """
-    whole = _problem(system, wanted.speed)
+    whole = _problem(system, wanted.speed) if wanted.damped else _conservative(system, wanted.speed or 0.0)
     # Groups of dofs that no entry of M, D or K couples are eigenproblems of their own.
     matrices = [A for A in (whole.M, whole.D, whole.K) if A is not None]
     groups = independent_groups(matrices) if wanted.pruning else [np.arange(system.n)]
@@ -133,6 +133,25 @@ def _problem(system: System, speed: float | None) -> _Problem:
     )
 
 
+def _conservative(system: System, speed: float) -> _Problem:
+    """M, W G and the symmetric K of a system at a speed in rad/s: nothing damps and nothing drives."""
+    K = system.stiffness(speed)
+    G = sp.csc_array(speed * system.gyroscopic)
+    turns = speed != 0.0 and bool(G.nnz)
+    forms = system.strain_forms(speed)
+    return _Problem(
+        M=system.mass,
+        D=G if turns else None,
+        K=K,
+        K_symmetric=K,
+        S=system.strain_factor(speed),
+        symmetric=True,
+        damped=False,
+        inertial=G if turns else None,
+        forms=replace(forms, viscosity=0.0 * forms.viscosity, circulation=0.0 * forms.circulation) if turns else None,
+    )
+
+
 def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
     if problem.D is None and problem.symmetric:
         modes = _lowest(problem, wanted.modes, wanted.limit)
@@ -146,7 +165,7 @@ def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
     else:
         s, vectors, rigid, errors, available, method = _damped(problem, wanted)
     zeta = system.model.damping.modal_ratio
-    if zeta and wanted.speed is not None:
+    if zeta and wanted.speed is not None and wanted.damped:
         s = with_modal_damping(s, zeta)
     return Modes(s, vectors, rigid, errors, method, available)
 

@@ -94,10 +94,13 @@ class Estimate:
                 posterior = self.misfit.linear(state)
             elif rests:
                 pairs = self.misfit.pairs(state.x, state.modes, posterior)
-                if pairs == state.pairs or looked == _LOOKS:
+                other = self.misfit.beside(state.x, state.modes, pairs)
+                # Of close modes either may be a line's: as many pairs that fit worse would only be exchanged back.
+                worse = len(pairs) == len(state.pairs) and other.objective >= state.objective
+                if worse or pairs == state.pairs or looked == _LOOKS:
                     return state, posterior
                 looked += 1
-                state = self.misfit.beside(state.x, state.modes, pairs)
+                state = other
                 posterior = self.misfit.linear(state)
         raise ConvergenceError(
             f"the update did not come to rest within {_MOST_SOLUTIONS} modal solutions: free fewer numbers, or give smaller "

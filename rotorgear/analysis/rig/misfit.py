@@ -7,15 +7,17 @@ what lies along phi. Shapes of close modes are compared as the plane they span: 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorgear.analysis.rig.campaigns import CampaignModel, CampaignModes
 from rotorgear.analysis.rig.learnt import line_noise
 from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.pairing import pairs_of
 from rotorgear.analysis.rig.posterior import Posterior
-from rotorgear.analysis.rig.rig_model import RigModel, RigModes
+from rotorgear.analysis.rig.rig_model import RigModel, RigModes, Shapes
 
 # Shapes of modes closer than this in ln f turn into each other at the slightest change: their plane is compared, not each.
 CLOSE = 0.03
@@ -48,7 +50,7 @@ class State:
     """
 
     x: NDArray[np.float64]
-    modes: RigModes
+    modes: RigModes | CampaignModes
     pairs: tuple[Pair, ...]
     residual: NDArray[np.float64]
     noise: NDArray[np.float64]
@@ -58,20 +60,46 @@ class State:
 
 @dataclass(frozen=True)
 class Misfit:
-    """A model beside a rig; `looseness` adds to the noise while modes may still be taken for others."""
+    """A model beside a rig; `looseness` adds to the noise while modes may still be taken for others.
 
-    model: RigModel
+    Of several campaigns, `campaign` is that of each line (n,); None: all lines are of one. Those in `turning` were measured at a
+    speed: their shapes are complex, and both parts of what is left of them count, each with its share of the noise.
+    """
+
+    model: RigModel | CampaignModel
     given: Measured
     shape_noise: float
     tolerance: float
     looseness: float = 0.0
+    campaign: NDArray[np.intp] | None = None
+    turning: frozenset[int] = frozenset()
+
+    @cached_property
+    def owner(self) -> NDArray[np.intp]:
+        """Campaign of each line (n,)."""
+        return np.zeros(len(self.given.lines), dtype=np.intp) if self.campaign is None else self.campaign
+
+    @cached_property
+    def shapes(self) -> Shapes:
+        """The measured shapes (n, s): turned to be real where the gearbox stood still."""
+        still = self.given.real_shapes
+        if not self.turning or self.given.shapes is None:
+            return still
+        turns = np.isin(self.owner, list(self.turning))
+        return np.where(turns[:, None], self.given.shapes, still)
+
+    def parts(self, line: int, values: Shapes) -> Shapes:
+        """Real values of a line as they are; of a complex shape the real ones, then the imaginary ones."""
+        if self.owner[line] not in self.turning:
+            return np.real(values)
+        return np.concatenate([np.real(values), np.imag(values)])
 
     def shape_points(self, line: int) -> NDArray[np.intp]:
         """Points at which the shape of a line is compared; a shape at a single point is all scale."""
-        known = np.flatnonzero(np.isfinite(self.given.real_shapes[line]))
+        known = np.flatnonzero(np.isfinite(self.shapes[line]))
         return known if len(known) > 1 else known[:0]
 
-    def beside(self, x: NDArray[np.float64], modes: RigModes, pairs: tuple[Pair, ...]) -> State:
+    def beside(self, x: NDArray[np.float64], modes: RigModes | CampaignModes, pairs: tuple[Pair, ...]) -> State:
         """Residuals of the model at x."""
         residual: list[float] = []
         noise: list[float] = []
@@ -83,11 +111,12 @@ class Misfit:
             owner.append(pair.line)
             points = self.shape_points(pair.line)
             if len(points):
-                y = self.given.real_shapes[pair.line, points]
-                residual += list(_off_subspace(modes.at_points[np.ix_(np.array(pair.near), points)].T, y))
-                share = np.hypot(self.shape_noise, self.looseness)
-                noise += [float(share * np.sqrt(np.mean(y**2)))] * len(points)
-                owner += [pair.line] * len(points)
+                y = self.shapes[pair.line, points]
+                off = self.parts(pair.line, _off_subspace(modes.at_points[np.ix_(np.array(pair.near), points)].T, y))
+                residual += list(off)
+                share = np.hypot(self.shape_noise, self.looseness) * np.sqrt(len(points) / len(off))
+                noise += [float(share * np.sqrt(np.mean(np.abs(y) ** 2)))] * len(off)
+                owner += [pair.line] * len(off)
         r = np.array(residual)
         sigma = np.array(noise)
         objective = float(np.sum((r / sigma) ** 2) + np.sum((x / self.model.numbers.prior) ** 2))
@@ -107,33 +136,47 @@ class Misfit:
             points = self.shape_points(pair.line)
             if len(points):
                 basis = modes.at_points[np.ix_(np.array(pair.near), points)].T
-                share = np.linalg.lstsq(basis, self.given.real_shapes[pair.line, points], rcond=None)[0]
+                share = np.linalg.lstsq(basis, self.shapes[pair.line, points], rcond=None)[0]
                 change = sum(a * shape_slopes[place[k]][points] for a, k in zip(share, pair.near, strict=True))
-                rows += list(_off_subspace(basis, np.asarray(change)))
+                rows += list(self.parts(pair.line, _off_subspace(basis, np.asarray(change))))
         return Posterior(np.array(rows).reshape(-1, len(state.x)), state.noise, self.model.numbers.prior)
 
-    def pairs(self, x: NDArray[np.float64], modes: RigModes, known: Posterior | None) -> tuple[Pair, ...]:
+    def pairs(
+        self, x: NDArray[np.float64], modes: RigModes | CampaignModes, known: Posterior | None
+    ) -> tuple[Pair, ...]:
         """Pair lines and modes, by what is known of the numbers so far."""
         hz = np.array([line.frequency_hz for line in self.given.lines])
         noise = max(line_noise(line) for line in self.given.lines)
         spread = np.full(len(modes.eigenvalues), np.hypot(noise, _LOOSE_FREQUENCY * self.looseness))
         if self.given.points:
-            every = np.arange(len(modes.eigenvalues))
+            every = np.arange(len(modes.eigenvalues), dtype=np.intp)
             slopes, _ = self.model.derivatives(x, modes, every, shapes=False)
             prior = self.model.numbers.prior
             before = np.sqrt(np.sum((slopes * prior) ** 2, axis=1)) if known is None else known.spread_of(slopes)
             spread = np.hypot(spread, before)
-        found = pairs_of(hz, modes.frequency_hz, spread, self.given.real_shapes, modes.at_points, self.tolerance)
+        found: list[tuple[int, int]] = []
+        for number in np.unique(self.owner):
+            lines = np.flatnonzero(self.owner == number)
+            own = np.flatnonzero(modes.campaign == number)
+            pairs = pairs_of(
+                hz[lines],
+                modes.frequency_hz[own],
+                spread[own],
+                self.shapes[lines],
+                modes.at_points[own],
+                self.tolerance,
+            )
+            found += [(int(lines[line]), int(own[mode])) for line, mode in pairs]
         return tuple(Pair(line, mode, _close(modes, mode, self.looseness)) for line, mode in found)
 
 
-def _close(modes: RigModes, mode: int, looseness: float) -> tuple[int, ...]:
+def _close(modes: RigModes | CampaignModes, mode: int, looseness: float) -> tuple[int, ...]:
     """The modes that are close to one, itself among them."""
     near = np.abs(np.log(modes.eigenvalues / modes.eigenvalues[mode])) < 2.0 * (CLOSE + _LOOSE_CLOSE * looseness)
-    return tuple(int(k) for k in np.flatnonzero(near))
+    return tuple(int(k) for k in np.flatnonzero(near & (modes.campaign == modes.campaign[mode])))
 
 
-def _off_subspace(basis: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+def _off_subspace(basis: Shapes, y: Shapes) -> Shapes:
     """What of y (s,) or (s, p) is no combination of the columns of a basis (s, c)."""
     Q = np.linalg.qr(basis)[0]
-    return np.asarray(y - Q @ (Q.T @ y))
+    return np.asarray(y - Q @ (Q.conj().T @ y))

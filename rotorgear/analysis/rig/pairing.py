@@ -7,6 +7,8 @@ shape agrees to 0.9 weighs as much as one that is one standard deviation off. Th
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,8 +27,8 @@ def pairs_of(
     measured_hz: NDArray[np.float64],
     mode_hz: NDArray[np.float64],
     spread: NDArray[np.float64],
-    measured_shapes: NDArray[np.float64],
-    mode_shapes: NDArray[np.float64],
+    measured_shapes: NDArray[Any],
+    mode_shapes: NDArray[Any],
     tolerance: float,
 ) -> list[tuple[int, int]]:
     """Return (line, mode), ascending in lines.

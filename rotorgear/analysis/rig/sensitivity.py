@@ -22,6 +22,7 @@ eigenvalue of several modes stand all of them in the border (Ojalvo 1988, AIAA J
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -41,7 +42,7 @@ from rotorgear.system.system import System
 # rounding is 1e-15 / h of the energies.
 STEP = 1e-4
 # Modes whose w^2 agree to this share of it are taken as one eigenvalue; simple ones are exact to rounding over it.
-_EQUAL = 1e-7
+EQUAL = 1e-7
 
 
 @dataclass(frozen=True)
@@ -76,22 +77,13 @@ def changes_of(
         AnalysisError: a number that moves a place away from another one that it coincides with.
     """
     found = []
-    springs = _springs_of(numbers.model, system)
+    springs = springs_of(numbers.model, system)
     for j, address in enumerate(numbers.addresses):
         part, _, name = address.rpartition(".")
         if name == "stiffness" and part in springs:
             found.append(_of_spring(system, springs[part], X, shapes))
             continue
-        step = np.zeros(len(x))
-        step[j] = STEP
-        above = system_of(numbers.at(x + step), plan)
-        below = system_of(numbers.at(x - step), plan)
-        if not above.n == below.n == X.shape[0]:
-            # Two places that coincide part under the change, and shapes of one mesh mean nothing on the other.
-            raise AnalysisError(
-                f"{numbers.addresses[j]}: a change moves a place away from another one that it coincides with, so that the "
-                "shafts are cut otherwise; move one of them by a hair in the file, or leave it out"
-            )
+        above, below = beside(numbers, x, j, system, plan)
         strain, kinetic = (
             (high - low) / (2.0 * STEP) for high, low in zip(energies(above, X), energies(below, X), strict=True)
         )
@@ -101,12 +93,33 @@ def changes_of(
     return found
 
 
-def _springs_of(model: Model, system: System) -> dict[str, list[ElementGroup]]:
+def beside(
+    numbers: FreeNumbers, x: NDArray[np.float64], j: int, system: System, plan: Plan, speed: float = 0.0
+) -> tuple[System, System]:
+    """The systems above and below x (p,) in number j, on the mesh of a plan.
+
+    Raises:
+        AnalysisError: a number that moves a place away from another one that it coincides with.
+    """
+    step = np.zeros(len(x))
+    step[j] = STEP
+    above = system_of(numbers.at(x + step), plan, speed)
+    below = system_of(numbers.at(x - step), plan, speed)
+    if not above.n == below.n == system.n:
+        # Two places that coincide part under the change, and shapes of one mesh mean nothing on the other.
+        raise AnalysisError(
+            f"{numbers.addresses[j]}: a change moves a place away from another one that it coincides with, so that the "
+            "shafts are cut otherwise; move one of them by a hair in the file, or leave it out"
+        )
+    return above, below
+
+
+def springs_of(model: Model, system: System, speed: float = 0.0) -> dict[str, list[ElementGroup]]:
     """Springs whose stiffness matrix is in proportion to the number that the file gives, by address.
 
     Where a law is linearised about an equilibrium, or a mesh has the stiffness of its load, any number may change any spring.
     """
-    if about_equilibrium(model, [None])[0] is not model:
+    if about_equilibrium(model, [speed or None])[0] is not model:
         return {}
     if any(isinstance(mesh.stiffness, str) for mesh in model.meshes.values()):
         return {}
@@ -127,9 +140,9 @@ def _of_spring(system: System, groups: list[ElementGroup], X: NDArray[np.float64
     return Changes(strain, nothing, K @ X, np.zeros_like(X))
 
 
-def system_of(model: Model, plan: Plan) -> System:
-    """The linear system of a model at standstill, about its equilibrium, on the mesh of a plan."""
-    linear, _ = about_equilibrium(model, [None])
+def system_of(model: Model, plan: Plan, speed: float = 0.0) -> System:
+    """The linear system of a model about its equilibrium at a speed in rad/s, 0 at standstill, on the mesh of a plan."""
+    linear, _ = about_equilibrium(model, [speed or None])
     return System(linear, plan=plan)
 
 
@@ -156,7 +169,7 @@ def shape_derivatives(
     found = np.zeros((n, len(chosen), len(changes)))
     for i, mode in enumerate(chosen):
         w2 = eigenvalues[mode]
-        equal = np.flatnonzero(np.abs(eigenvalues - w2) <= _EQUAL * w2)
+        equal = np.flatnonzero(np.abs(eigenvalues - w2) <= EQUAL * w2)
         border = sp.csc_array(M @ vectors[:, equal])
         bordered = sp.csc_array(sp.block_array([[K - w2 * M, border], [border.T, None]]))
         right = np.zeros((n + len(equal), len(changes)))
@@ -167,13 +180,15 @@ def shape_derivatives(
             # What of it lies along M phi, the change of w^2, goes to the multipliers of the border.
             right[:n, j] = -(change.stiffness_times[:, i] - w2 * change.mass_times[:, i])
             right[own, j] = -0.5 * change.kinetic[i]
-        found[:, i] = _solved(bordered, right)[:n]
+        found[:, i] = solved(bordered, right)[:n]
     return found
 
 
-def energies(system: System, X: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def energies(
+    system: System, X: NDArray[np.float64], speed: float = 0.0
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return phi^T K phi and phi^T M phi, (m,) each, summed element by element from strains, for shapes X (n, m)."""
-    return group_energies(system.groups_at(0.0), system.dofs.expand(X))
+    return group_energies(system.groups_at(speed), system.dofs.expand(X))
 
 
 def group_energies(
@@ -193,7 +208,8 @@ def group_energies(
     return strain, kinetic
 
 
-def _solved(A: sp.csc_array, right: NDArray[np.float64]) -> NDArray[np.float64]:
+def solved(A: sp.csc_array, right: NDArray[Any]) -> NDArray[Any]:
+    """The answer of a bordered system, real or complex."""
     from scipy.sparse.linalg import splu
 
     # Stiffnesses in N/m stand beside ones in N m/rad, and the border beside both: to unit size first.

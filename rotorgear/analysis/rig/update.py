@@ -8,11 +8,14 @@ derivatives from the modes themselves (`sensitivity.py`), so that each costs one
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from rotorgear.analysis.common.recorded import recorded
+from rotorgear.analysis.common.request import speed_in_si
+from rotorgear.analysis.rig.campaigns import Campaign, CampaignModel, joined
 from rotorgear.analysis.rig.compare_result import ABOVE_RIG, rig_lines_of
 from rotorgear.analysis.rig.estimate import Estimate
 from rotorgear.analysis.rig.learnt import line_noise
@@ -24,7 +27,7 @@ from rotorgear.analysis.rig.posterior import Posterior
 from rotorgear.analysis.rig.rig_model import RigModel
 from rotorgear.analysis.rig.shape_file import read_rig_shapes
 from rotorgear.errors import AnalysisError
-from rotorgear.model.free_numbers import DEFAULT_PRIOR, free_numbers
+from rotorgear.model.free_numbers import DEFAULT_PRIOR, FreeNumbers, free_numbers
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.comparison import RigLine
@@ -40,28 +43,31 @@ _MESH_ERROR = (1e-10, 1e-4)
 @recorded
 def update(
     model: Model,
-    rig: str | Path | Measured | Sequence[RigLine | float] | None = None,
+    rig: str | Path | Measured | Sequence[RigLine | float] | Sequence[Campaign] | None = None,
     *,
     shapes: str | Path | None = None,
     points: str | Path | None = None,
     free: str | Iterable[str] = "bearings.*.stiffness, meshes.*.stiffness",
     prior: float | str | Mapping[str, float | str] = DEFAULT_PRIOR,
     shape_noise: float = SHAPE_NOISE,
+    speed: float | str | None = None,
     tolerance: float = 0.05,
     accuracy: float | None = None,
     elements: int | None = None,
     progress: Progress = silent,
 ) -> UpdateResult:
-    """Return the most probable free numbers of a model, given what a rig measured at standstill.
+    """Return the most probable free numbers of a model, given what a rig measured.
 
     Args:
         model: the model.
-        rig: a rig file (CSV), lines, plain frequencies in Hz, or lines with measured shapes (`rg.Measured`).
+        rig: a rig file (CSV), lines, plain frequencies in Hz, or lines with measured shapes (`rg.Measured`); or several
+            campaigns (`rg.Campaign`), each at its speed and in its state of the gearbox.
         shapes: in place of it, a universal file with shapes and their frequencies, and
         points: its table of sensors, as in `rg.read_rig_shapes`; None: each node is at the nearest place of the model.
         free: addresses of numbers, with commas between; "*" stands for all names or places there.
         prior: relative standard deviation of the free numbers before the test, of all or by address.
         shape_noise: standard deviation of a measured displacement over the root mean square of its shape.
+        speed: of the input shaft while it was measured, in rad/s or with its unit; None: at standstill.
         tolerance: largest |f_mode / f_rig - 1| of a pair where no shapes were measured.
         accuracy: relative accuracy of the frequencies that the mesh is refined to; default: a tenth of the least noise of a line,
             at most 1e-4.
@@ -76,50 +82,89 @@ def update(
         ModelError: addresses that lead nowhere, a rig file that can't be read.
         ConvergenceError: the steps don't come to rest.
     """
-    given = _measured(model, rig, shapes, points)
-    given.check_points(model)
     if not 0.0 < shape_noise < 1.0:
         raise AnalysisError(f"the noise of shapes is a share between 0 and 1, such as 0.02; got {shape_noise:g}")
+    campaigns = _campaigns(rig, shapes, points, speed)
     numbers = free_numbers(model, free, prior)
-    # A stiffness that is a third too low hides a line's mode a sixth below it: all modes are wanted that may belong to it.
-    reach = ABOVE_RIG * (1.0 + 0.5 * float(numbers.prior.max()))
-    fmax = reach * max(line.frequency_hz for line in given.lines)
     progress(0.05, "mesh")
-    least = min(line_noise(line) for line in given.lines)
-    plan = Plan(elements) if elements else plan_of(model, fmax, accuracy or float(np.clip(0.1 * least, *_MESH_ERROR)))
-    problem = Misfit(RigModel(numbers, plan, fmax, given.points), given, shape_noise, tolerance)
+    measured = []
+    models = []
+    for campaign in campaigns:
+        own, given = _measured(model, campaign)
+        measured.append(given)
+        models.append(_rig_model(replace(numbers, model=own), given, campaign.speed, accuracy, elements))
+    every, owner = joined(measured)
+    turning = frozenset(number for number, one in enumerate(models) if one.speed)
+    problem = Misfit(
+        CampaignModel(tuple(models), every.points), every, shape_noise, tolerance, campaign=owner, turning=turning
+    )
     steps = Estimate(problem)
     start = steps.start()
     if not start.pairs:
         raise AnalysisError("no line of the rig is near a mode of the model: check units, or raise --tolerance")
     near = steps.approach(start, progress)
     state, posterior = steps.estimate(near, progress)
-    return _result(problem, start, state, posterior)
+    return _result(model, [one.name for one in campaigns], problem, start, state, posterior)
 
 
-def _measured(
-    model: Model,
-    rig: str | Path | Measured | Sequence[RigLine | float] | None,
+def _campaigns(
+    rig: str | Path | Measured | Sequence[RigLine | float] | Sequence[Campaign] | None,
     shapes: str | Path | None,
     points: str | Path | None,
-) -> Measured:
-    """What was measured, from whichever of the two it is given by."""
-    if (rig is None) == (shapes is None):
+    speed: float | str | None,
+) -> tuple[Campaign, ...]:
+    """The campaigns as they are given, or the one that the arguments describe."""
+    several = isinstance(rig, Sequence) and not isinstance(rig, str) and any(isinstance(one, Campaign) for one in rig)
+    if not several:
+        return (Campaign(rig, shapes, points, speed),)  # type: ignore[arg-type]
+    if shapes is not None or points is not None or speed is not None:
+        raise AnalysisError("campaigns have their own shapes, points and speed: give these in each of them")
+    found = tuple(one for one in rig if isinstance(one, Campaign))  # type: ignore[union-attr]
+    if len(found) < len(rig):  # type: ignore[arg-type]
+        raise AnalysisError("campaigns and lines are mixed: make a campaign of the lines too")
+    return found
+
+
+def _measured(model: Model, campaign: Campaign) -> tuple[Model, Measured]:
+    """The model in the state of a campaign, and what was measured there."""
+    rig = campaign.rig
+    if (rig is None) == (campaign.shapes is None):
         raise AnalysisError("give what was measured: --rig lines.csv, or --shapes rig.uff with --points sensors.csv")
-    if shapes is not None:
-        return read_rig_shapes(shapes, points, model)
-    if points is not None:
+    own = model.with_(campaign.changes) if campaign.changes else model
+    if campaign.shapes is not None:
+        given = read_rig_shapes(campaign.shapes, campaign.points, own)
+    elif campaign.points is not None:
         raise AnalysisError("--points belongs to --shapes: the table of sensors says where each node is")
-    assert rig is not None
-    return rig if isinstance(rig, Measured) else Measured(rig_lines_of(rig))
+    else:
+        assert rig is not None
+        given = rig if isinstance(rig, Measured) else Measured(rig_lines_of(rig))
+    given.check_points(own)
+    return own, given
 
 
-def _result(problem: Misfit, start: State, state: State, p: Posterior) -> UpdateResult:
+def _rig_model(
+    numbers: FreeNumbers, given: Measured, speed: float | str | None, accuracy: float | None, elements: int | None
+) -> RigModel:
+    """The model of a campaign on a mesh that is finer than its noise."""
+    # A stiffness that is a third too low hides a line's mode a sixth below it: all modes are wanted that may belong to it.
+    reach = ABOVE_RIG * (1.0 + 0.5 * float(numbers.prior.max()))
+    fmax = reach * max(line.frequency_hz for line in given.lines)
+    least = min(line_noise(line) for line in given.lines)
+    wanted = accuracy or float(np.clip(0.1 * least, *_MESH_ERROR))
+    plan = Plan(elements) if elements else plan_of(numbers.model, fmax, wanted)
+    return RigModel(numbers, plan, fmax, given.points, speed_in_si(speed) or 0.0)
+
+
+def _result(
+    model: Model, campaigns: list[str], problem: Misfit, start: State, state: State, p: Posterior
+) -> UpdateResult:
     from scipy.stats import chi2
 
     numbers = problem.model.numbers
     first = {pair.line: pair.mode for pair in start.pairs}
-    shapes = problem.given.real_shapes
+    # Modes count from 1 in each campaign.
+    offset = np.searchsorted(state.modes.campaign, np.arange(len(campaigns)))
+    shapes = problem.shapes
     before_mac = mac(shapes, start.modes.at_points)
     after_mac = mac(shapes, state.modes.at_points)
     lines = []
@@ -132,7 +177,8 @@ def _result(problem: Misfit, start: State, state: State, p: Posterior) -> Update
         lines.append(
             UpdatedLine(
                 rig=problem.given.lines[line],
-                mode_number=mode + 1,
+                campaign=campaigns[problem.owner[line]] if len(campaigns) > 1 else "",
+                mode_number=int(mode - offset[problem.owner[line]]) + 1,
                 before_hz=float(start.modes.frequency_hz[min(old, len(start.modes.eigenvalues) - 1)]),
                 after_hz=float(state.modes.frequency_hz[mode]),
                 held_out_hz=held_out,
@@ -143,11 +189,15 @@ def _result(problem: Misfit, start: State, state: State, p: Posterior) -> Update
         )
     paired = {pair.line for pair in state.pairs}
     # Each shape has a scale of its own, or its place among close ones, that is fitted to it.
-    fitted = (len(pair.near) for pair in state.pairs if len(problem.shape_points(pair.line)))
+    fitted = (
+        len(pair.near) * (2 if problem.owner[pair.line] in problem.turning else 1)
+        for pair in state.pairs
+        if len(problem.shape_points(pair.line))
+    )
     count = len(state.residual) - sum(fitted)
     rows = zip(numbers.addresses, p.prior, p.sigma, p.learnt, np.exp(state.x), strict=True)
     return UpdateResult(
-        model=numbers.model,
+        model=model,
         parameters=tuple(
             UpdatedParameter(address, float(prior), float(sigma), float(learnt), float(factor))
             for address, prior, sigma, learnt, factor in rows
@@ -163,7 +213,9 @@ def _result(problem: Misfit, start: State, state: State, p: Posterior) -> Update
         dofs=state.modes.system.n,
         method="Gauss-Newton on ln f and shapes, derivatives from the modes",
         left_out=(
-            "damping and rotation: lines are undamped natural frequencies at standstill",
+            "damping: lines are undamped natural frequencies at the speeds of the campaigns"
+            if problem.turning
+            else "damping and rotation: lines are undamped natural frequencies at standstill",
             "the spread of lines predicted from the others is that of the linear model about the estimate",
         ),
         warnings=problem.given.notes,

@@ -26,12 +26,17 @@ def update_table(result: UpdateResult) -> RenderableType:
         )
         numbers.add_row(row.address, *cells, "" if row.identified else "not identified")
     shapes = bool(result.points)
-    modes = table("rig Hz", "mode", "before", "after", "held out", *(("MAC before", "after") if shapes else ()), left=0)
+    several = any(line.campaign for line in result.lines)
+    extra = ("MAC before", "after") if shapes else ()
+    modes = table(
+        *(("campaign",) if several else ()), "rig Hz", "mode", "before", "after", "held out", *extra, left=int(several)
+    )
     for line in result.lines:
         f = line.rig.frequency_hz
         errors = (f"{100 * (hz / f - 1.0):+.2f} %" for hz in (line.before_hz, line.after_hz, line.held_out_hz))
         alike = ("-" if value is None else f"{value:.3f}" for value in (line.mac_before, line.mac_after))
-        modes.add_row(f"{f:.2f}", str(line.mode_number), *errors, *(alike if shapes else ()))
+        name = (line.campaign,) if several else ()
+        modes.add_row(*name, f"{f:.2f}", str(line.mode_number), *errors, *(alike if shapes else ()))
     what = "measured values" if shapes else "matched lines"
     said = [learnt_words(result.parameters, result.measured_values, what), *result.findings]
     unmatched = ", ".join(f"{line.frequency_hz:.1f}" for line in result.unmatched)
