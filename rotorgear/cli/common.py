@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, RotorgearError
 from rotorgear.extras import require
 from rotorgear.progress import Progress, listening, silent
 
@@ -107,6 +107,21 @@ OnlyOption = Annotated[
     str | None, typer.Option("--only", help="Only modes reached by bending, axial or torsion.", show_default=False)
 ]
 
+WorkersOption = Annotated[
+    int | None, typer.Option("--workers", help="Threads (default: all cores).", show_default=False)
+]
+ClusterOption = Annotated[
+    str | None,
+    typer.Option(
+        "--cluster",
+        help="Workers elsewhere: a dask scheduler such as tcp://host:8786, or local:N processes here.",
+        show_default=False,
+    ),
+]
+SaveBlocksOption = Annotated[
+    Path | None, typer.Option("--save", help="Save the result (HDF5), in blocks while it runs.", show_default=False)
+]
+
 
 def is_saved(path: Path) -> bool:
     """Whether a path names a saved result; anything else is a model file."""
@@ -149,6 +164,43 @@ def write_json(data: dict[str, Any], path: Path | None) -> None:
         from rotorgear.export.json_file import write_json as write
 
         write(data, path)
+
+
+def show_result(result: Any, json: Path | None, save: Path | None) -> Console:
+    """Print a result as a table, write it where files were asked for, and return the console for what else there is to say."""
+    out = console()
+    out.print(result.table())
+    write_json(result.to_dict(), json)
+    if save is not None:
+        import rotorgear as rg
+
+        out.print(f"saved {rg.save(result, save)}")
+    return out
+
+
+def check_workers(workers: int | None, cluster: str | None, resume: bool, save: Path | None) -> None:
+    """Refuse options of a long run that say nothing together.
+
+    Raises:
+        AnalysisError: --resume without --save, workers below 1, threads and a cluster at once.
+    """
+    if resume and save is None:
+        raise AnalysisError("--resume needs the --save of the run that was interrupted")
+    if workers is not None and workers < 1:
+        raise AnalysisError(f"--workers: got {workers}, expected 1 or more")
+    if workers is not None and cluster is not None:
+        raise AnalysisError("--workers are threads on this machine, --cluster are workers elsewhere: give one of them")
+
+
+@contextmanager
+def kept_blocks(save: Path | None) -> Iterator[None]:
+    """Say, where a run that saves blocks is interrupted, that those which were done are kept."""
+    try:
+        yield
+    except (KeyboardInterrupt, RotorgearError):
+        if save and any(Path(f"{save}.parts").glob("chunk_*")):
+            typer.echo(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)
+        raise
 
 
 @contextmanager

@@ -13,10 +13,9 @@ from rotorgear.cli.common import (
     ModelFile,
     PlotOption,
     SaveOption,
-    console,
     progress_bar,
+    show_result,
     words_of,
-    write_json,
 )
 from rotorgear.errors import AnalysisError
 from rotorgear.extras import require
@@ -96,12 +95,7 @@ def optimise(
             elements=elements,
             progress=progress,
         )
-    out = console()
-    out.print(result.table())
-    write_json(result.to_dict(), json)
-    if save is not None:
-        rg.save(result, save)
-        out.print(f"saved {save}")
+    out = show_result(result, json, save)
     if output is not None:
         rg.write_optimised_model(result, model, output)
         out.print(f"wrote {output}")

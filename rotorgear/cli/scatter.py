@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from rotorgear.cli.common import (
     AccuracyOption,
+    ClusterOption,
     ElementsOption,
     JsonOption,
     ModelFile,
     PlotOption,
+    SaveBlocksOption,
+    WorkersOption,
+    check_workers,
     console,
+    kept_blocks,
     progress_bar,
     write_json,
 )
-from rotorgear.errors import AnalysisError, RotorgearError
 
 
 def scatter(
@@ -64,21 +67,10 @@ def scatter(
     ] = False,
     accuracy: AccuracyOption = None,
     elements: ElementsOption = None,
-    workers: Annotated[
-        int | None, typer.Option("--workers", help="Threads (default: all cores).", show_default=False)
-    ] = None,
-    cluster: Annotated[
-        str | None,
-        typer.Option(
-            "--cluster",
-            help="Workers elsewhere: a dask scheduler such as tcp://host:8786, or local:N processes here.",
-            show_default=False,
-        ),
-    ] = None,
+    workers: WorkersOption = None,
+    cluster: ClusterOption = None,
     json: JsonOption = None,
-    save: Annotated[
-        Path | None, typer.Option("--save", help="Save the result (HDF5), in blocks while it runs.", show_default=False)
-    ] = None,
+    save: SaveBlocksOption = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with an interrupted scatter of the same --save.")
     ] = False,
@@ -87,17 +79,12 @@ def scatter(
     """Scatter of uncertain numbers: bands of frequencies, margins and load shares, and which number makes them."""
     import rotorgear as rg
 
-    if resume and save is None:
-        raise AnalysisError("--resume needs the --save of the scatter that was interrupted")
-    if workers is not None and workers < 1:
-        raise AnalysisError(f"--workers: got {workers}, expected 1 or more")
-    if workers is not None and cluster is not None:
-        raise AnalysisError("--workers are threads on this machine, --cluster are workers elsewhere: give one of them")
+    check_workers(workers, cluster, resume, save)
     with ExitStack() as stack:
         progress = stack.enter_context(progress_bar("scatter"))
         read = rg.load(model)
         elsewhere = stack.enter_context(rg.cluster(cluster)) if cluster is not None else None
-        try:
+        with kept_blocks(save):
             result = rg.scatter(
                 read,
                 free,
@@ -120,10 +107,6 @@ def scatter(
                 stream=rg.stream(save, resume=resume) if save else None,
                 progress=progress,
             )
-        except (KeyboardInterrupt, RotorgearError):
-            if save and any(Path(f"{save}.parts").glob("chunk_*")):
-                typer.echo(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)
-            raise
     console().print(result.table())
     if save:
         rg.save(result, save)

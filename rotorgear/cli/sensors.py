@@ -13,9 +13,8 @@ from rotorgear.cli.common import (
     JsonOption,
     ModelFile,
     SaveOption,
-    console,
     progress_bar,
-    write_json,
+    show_result,
 )
 
 
@@ -55,10 +54,6 @@ def sensors(
             elements=elements,
             progress=progress,
         )
-    out = console()
-    out.print(result.table())
-    write_json(result.to_dict(), json)
-    if save is not None:
-        out.print(f"saved {rg.save(result, save)}")
+    out = show_result(result, json, save)
     if output is not None:
         out.print(f"wrote {rg.write_sensors(result, output)}")

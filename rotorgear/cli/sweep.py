@@ -8,8 +8,20 @@ from typing import Annotated
 
 import typer
 
-from rotorgear.cli.common import JsonOption, ModelFile, console, plot_folder, progress_bar, write_json
-from rotorgear.errors import AnalysisError, RotorgearError
+from rotorgear.cli.common import (
+    ClusterOption,
+    JsonOption,
+    ModelFile,
+    SaveBlocksOption,
+    WorkersOption,
+    check_workers,
+    console,
+    kept_blocks,
+    plot_folder,
+    progress_bar,
+    write_json,
+)
+from rotorgear.errors import AnalysisError
 from rotorgear.extras import require
 
 # Points that --plot draws portraits and spectra of.
@@ -69,21 +81,10 @@ def sweep(
             show_default=False,
         ),
     ] = None,
-    workers: Annotated[
-        int | None, typer.Option("--workers", help="Threads (default: all cores).", show_default=False)
-    ] = None,
-    cluster: Annotated[
-        str | None,
-        typer.Option(
-            "--cluster",
-            help="Workers elsewhere: a dask scheduler such as tcp://host:8786, or local:N processes here.",
-            show_default=False,
-        ),
-    ] = None,
+    workers: WorkersOption = None,
+    cluster: ClusterOption = None,
     json: JsonOption = None,
-    save: Annotated[
-        Path | None, typer.Option("--save", help="Save the result (HDF5), in blocks while it runs.", show_default=False)
-    ] = None,
+    save: SaveBlocksOption = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with an interrupted sweep of the same --save.")
     ] = False,
@@ -99,12 +100,7 @@ def sweep(
     import rotorgear as rg
     from rotorgear.analysis.sweep.axes import axis_of_option
 
-    if resume and save is None:
-        raise AnalysisError("--resume needs the --save of the sweep that was interrupted")
-    if workers is not None and workers < 1:
-        raise AnalysisError(f"--workers: got {workers}, expected 1 or more")
-    if workers is not None and cluster is not None:
-        raise AnalysisError("--workers are threads on this machine, --cluster are workers elsewhere: give one of them")
+    check_workers(workers, cluster, resume, save)
     axes = [axis_of_option(text) for text in over]
     if len({axis.address for axis in axes}) < len(axes):
         raise AnalysisError(f"--over: '{axes[0].address}' is given twice")
@@ -112,7 +108,7 @@ def sweep(
         progress = stack.enter_context(progress_bar("sweep"))
         read = rg.load(model)
         elsewhere = stack.enter_context(rg.cluster(cluster)) if cluster is not None else None
-        try:
+        with kept_blocks(save):
             result = rg.sweep(
                 read,
                 {axis.address: [axis.text(value) for value in axis.values] for axis in axes},
@@ -134,10 +130,6 @@ def sweep(
                 stream=rg.stream(save, resume=resume) if save else None,
                 progress=progress,
             )
-        except (KeyboardInterrupt, RotorgearError):
-            if save and any(Path(f"{save}.parts").glob("chunk_*")):
-                typer.echo(f"the blocks that were done are kept in {save}.parts: go on with --resume", err=True)
-            raise
     console().print(result.table())
     # First the file that holds everything.
     if save:

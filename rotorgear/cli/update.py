@@ -14,9 +14,8 @@ from rotorgear.cli.common import (
     ModelFile,
     SaveOption,
     ToleranceOption,
-    console,
     progress_bar,
-    write_json,
+    show_result,
 )
 from rotorgear.errors import AnalysisError
 from rotorgear.extras import require
@@ -88,12 +87,7 @@ def update(
             elements=elements,
             progress=progress,
         )
-    out = console()
-    out.print(result.table())
-    write_json(result.to_dict(), json)
-    if save is not None:
-        rg.save(result, save)
-        out.print(f"saved {save}")
+    out = show_result(result, json, save)
     if output is not None:
         rg.write_updated_model(result, model, output)
         out.print(f"wrote {output}")

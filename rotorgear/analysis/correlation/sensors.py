@@ -34,6 +34,8 @@ from rotorgear.system.plan import Plan
 _AXES = ("x", "y", "z")
 # So many candidates, and rows go one by one.
 _ONE_BY_ONE = 200
+# A mode that moves by less than this share of the others along all candidates is not seen there.
+_STILL = 1e-6
 
 
 @recorded
@@ -78,6 +80,13 @@ def sensors(
     if modes is not None:
         check_whole("the number of modes", modes, 2)
     hz, numbers, shapes, dofs = _shapes(model, looks, modes or count, fmax, accuracy, elements)
+    size = np.abs(shapes).max(axis=0)
+    seen = size > _STILL * size.max()
+    # What rounding leaves of a mode that moves along none of the directions is no shape.
+    unseen = ", ".join(str(number) for number in numbers[~seen])
+    hz = hz[seen]
+    numbers = numbers[seen]
+    shapes = shapes[:, seen]
     moving = np.flatnonzero(np.abs(shapes).max(axis=1) > 1e-9 * np.abs(shapes).max())
     if len(moving) < count:
         raise AnalysisError(
@@ -102,6 +111,7 @@ def sensors(
         candidates=len(moving),
         all_auto_mac=float(np.max(np.triu(everywhere, 1), initial=0.0)),
         dofs=dofs,
+        warnings=(f"modes {unseen} move along none of these directions: no sensor there sees them",) if unseen else (),
         left_out=("damping and rotation: shapes are those at standstill", "mass of the sensors"),
         method="effective independence, then AutoMAC",
     )
