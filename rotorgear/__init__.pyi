@@ -87,7 +87,7 @@ from rotorgear.analysis.correlation.compare_frf import read_rig_frf as read_rig_
 from rotorgear.analysis.correlation.compare_orders import compare_orders as compare_orders
 from rotorgear.analysis.correlation.compare_orders import read_order_cuts as read_order_cuts
 from rotorgear.analysis.rig.rig_file import read_rig_lines as read_rig_lines
-from rotorgear.analysis.rig.rig_spectrum import compare_spectrum as compare_spectrum
+from rotorgear.analysis.correlation.compare_spectrum import compare_spectrum as compare_spectrum
 from rotorgear.analysis.rig.update import update as update
 from rotorgear.analysis.correlation.sensors import sensors as sensors
 from rotorgear.analysis.rig.campaigns import Campaign as Campaign

@@ -1,1 +1,1 @@
-"""Measured shapes, frequency responses and order cuts beside a model, and the places of their sensors."""
+"""Measured shapes, frequency responses, order cuts and spectral lines beside a model, and the places of their sensors."""
