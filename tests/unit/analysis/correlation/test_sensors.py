@@ -66,3 +66,11 @@ def test_more_sensors_than_places_and_places_that_are_none_are_refused():
         rg.sensors(model, candidates="casings.*")
     with pytest.raises(AnalysisError, match="directions"):
         rg.sensors(model, directions="xw")
+
+
+def test_modes_that_no_candidate_sees_are_named_and_place_nothing():
+    plan = rg.sensors(rg.load(MODELS / "jeffcott.toml"), count=2, fmax=200.0, directions="z", elements=2)
+    assert any("no sensor there sees them" in warning for warning in plan.warnings)
+    everyone = rg.sensors(rg.load(MODELS / "jeffcott.toml"), count=2, fmax=200.0, elements=2)
+    assert not everyone.warnings
+    assert set(plan.mode_number) < set(everyone.mode_number)

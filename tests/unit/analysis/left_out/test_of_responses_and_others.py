@@ -9,6 +9,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.forces.journal_film import JournalFilm
+from tests.paths import MODELS
 from tests.unit.analysis.left_out.sentences import numbers, pair, says, sentence
 from tests.unit.analysis.spur_pair import spur_pair
 
@@ -140,3 +141,20 @@ def test_a_film_knows_no_tilt_of_its_journal() -> None:
     assert law.left_out() == ("heat, turbulence and tilt of the journal in its film",)
     assert law.components == 2  # forces across its axis, no moments
     assert not {"temperature", "specific_heat", "reynolds"} & set(law.declared())
+
+
+def test_layouts_and_updates_leave_damping_out() -> None:
+    plain = rg.load(MODELS / "jeffcott.toml")
+    damped = plain.with_("bearings.*.damping", {"radial": 2e4})
+    layouts = [
+        rg.optimise(model, "shafts.*.sections.*.outer_diameter", margin="25 %", searches=1, elements=1)
+        for model in (plain, damped)
+    ]
+    assert all(says(layout, "damping: frequencies are those of the undamped rotating system") for layout in layouts)
+    assert layouts[0].numbers == layouts[1].numbers
+    rigs = [rg.update(model, [20.0, 125.5], free="bearings.*.stiffness", elements=2) for model in (plain, damped)]
+    assert all(says(rig, "damping and rotation: lines are undamped natural frequencies") for rig in rigs)
+    assert [row.factor for row in rigs[0].parameters] == [row.factor for row in rigs[1].parameters]
+    # Damping that is left out does move what a rig would see.
+    seen = [rg.modal(model, speed=1.0, modes=8, elements=2).frequency_hz for model in (plain, damped)]
+    assert np.abs(seen[1] - seen[0]).max() > 1e-3
