@@ -17,7 +17,6 @@ from rotorgear.cli.common import (
     progress_bar,
     show_result,
 )
-from rotorgear.errors import AnalysisError
 from rotorgear.extras import require
 
 
@@ -43,16 +42,16 @@ def update(
     shape_noise: Annotated[
         float, typer.Option("--shape-noise", help="Noise of a shape, as a share of its root mean square.")
     ] = 0.02,
-    campaigns: Annotated[
-        Path | None,
-        typer.Option(
-            "--campaigns", help="Several campaigns (TOML): files, speeds and states of the gearbox.", show_default=False
-        ),
-    ] = None,
     speed: Annotated[
         str | None,
         typer.Option(
             "--speed", help="Speed of the input shaft while it was measured (default: at rest).", show_default=False
+        ),
+    ] = None,
+    campaigns: Annotated[
+        Path | None,
+        typer.Option(
+            "--campaigns", help="Several campaigns (TOML): files, speeds and states of the gearbox.", show_default=False
         ),
     ] = None,
     tolerance: ToleranceOption = 0.05,
@@ -69,19 +68,18 @@ def update(
 
     if output is not None:
         require("tomlkit", "Writing a changed model file")
-    if campaigns is not None and (rig is not None or shapes is not None):
-        raise AnalysisError("--campaigns names its own files: give it without --rig and --shapes")
     loaded = rg.load(model)
     with progress_bar("update") as progress:
         result = rg.update(
             loaded,
-            rig if campaigns is None else rg.read_campaigns(campaigns),
+            rig,
             shapes=shapes,
             points=points,
             free=free,
             prior=prior,
             shape_noise=shape_noise,
             speed=speed,
+            campaigns=campaigns,
             tolerance=tolerance,
             accuracy=accuracy,
             elements=elements,

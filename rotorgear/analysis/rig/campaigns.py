@@ -47,9 +47,11 @@ class Campaign:
 
 
 def read_campaigns(path: str | Path) -> tuple[Campaign, ...]:
-    """Return the campaigns of a file (TOML): tables [[campaign]] with rig, or shapes and points, and speed, changes, name.
+    """Return the campaigns of a file (TOML).
 
-    Files that it names lie beside it.
+    Args:
+        path: of the file: tables [[campaign]] with rig, or shapes and points, and speed, changes, name. Files that it names lie
+            beside it.
 
     Raises:
         ModelError: a file that can't be read, no campaigns, other keys.

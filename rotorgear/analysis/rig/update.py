@@ -15,7 +15,7 @@ import numpy as np
 
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si
-from rotorgear.analysis.rig.campaigns import Campaign, CampaignModel, joined
+from rotorgear.analysis.rig.campaigns import Campaign, CampaignModel, joined, read_campaigns
 from rotorgear.analysis.rig.compare_result import ABOVE_RIG, rig_lines_of
 from rotorgear.analysis.rig.estimate import Estimate
 from rotorgear.analysis.rig.learnt import line_noise
@@ -43,7 +43,7 @@ _MESH_ERROR = (1e-10, 1e-4)
 @recorded
 def update(
     model: Model,
-    rig: str | Path | Measured | Sequence[RigLine | float] | Sequence[Campaign] | None = None,
+    rig: str | Path | Measured | Sequence[RigLine | float] | None = None,
     *,
     shapes: str | Path | None = None,
     points: str | Path | None = None,
@@ -51,6 +51,7 @@ def update(
     prior: float | str | Mapping[str, float | str] = DEFAULT_PRIOR,
     shape_noise: float = SHAPE_NOISE,
     speed: float | str | None = None,
+    campaigns: str | Path | Sequence[Campaign] | None = None,
     tolerance: float = 0.05,
     accuracy: float | None = None,
     elements: int | None = None,
@@ -60,14 +61,15 @@ def update(
 
     Args:
         model: the model.
-        rig: a rig file (CSV), lines, plain frequencies in Hz, or lines with measured shapes (`rg.Measured`); or several
-            campaigns (`rg.Campaign`), each at its speed and in its state of the gearbox.
+        rig: a rig file (CSV), lines, plain frequencies in Hz, or lines with measured shapes (`rg.Measured`).
         shapes: in place of it, a universal file with shapes and their frequencies, and
         points: its table of sensors, as in `rg.read_rig_shapes`; None: each node is at the nearest place of the model.
         free: addresses of numbers, with commas between; "*" stands for all names or places there.
         prior: relative standard deviation of the free numbers before the test, of all or by address.
         shape_noise: standard deviation of a measured displacement over the root mean square of its shape.
         speed: of the input shaft while it was measured, in rad/s or with its unit; None: at standstill.
+        campaigns: in place of all these, several campaigns (`rg.Campaign`) or their file (TOML), each at its speed and in its
+            state of the gearbox.
         tolerance: largest |f_mode / f_rig - 1| of a pair where no shapes were measured.
         accuracy: relative accuracy of the frequencies that the mesh is refined to; default: a tenth of the least noise of a line,
             at most 1e-4.
@@ -84,12 +86,12 @@ def update(
     """
     if not 0.0 < shape_noise < 1.0:
         raise AnalysisError(f"the noise of shapes is a share between 0 and 1, such as 0.02; got {shape_noise:g}")
-    campaigns = _campaigns(rig, shapes, points, speed)
+    several = _campaigns(Campaign(rig, shapes, points, speed), campaigns)
     numbers = free_numbers(model, free, prior)
     progress(0.05, "mesh")
     measured = []
     models = []
-    for campaign in campaigns:
+    for campaign in several:
         own, given = _measured(model, campaign)
         measured.append(given)
         models.append(_rig_model(replace(numbers, model=own), given, campaign.speed, accuracy, elements))
@@ -104,24 +106,18 @@ def update(
         raise AnalysisError("no line of the rig is near a mode of the model: check units, or raise --tolerance")
     near = steps.approach(start, progress)
     state, posterior = steps.estimate(near, progress)
-    return _result(model, [one.name for one in campaigns], problem, start, state, posterior)
+    return _result(model, [one.name for one in several], problem, start, state, posterior)
 
 
-def _campaigns(
-    rig: str | Path | Measured | Sequence[RigLine | float] | Sequence[Campaign] | None,
-    shapes: str | Path | None,
-    points: str | Path | None,
-    speed: float | str | None,
-) -> tuple[Campaign, ...]:
-    """The campaigns as they are given, or the one that the arguments describe."""
-    several = isinstance(rig, Sequence) and not isinstance(rig, str) and any(isinstance(one, Campaign) for one in rig)
-    if not several:
-        return (Campaign(rig, shapes, points, speed),)  # type: ignore[arg-type]
-    if shapes is not None or points is not None or speed is not None:
-        raise AnalysisError("campaigns have their own shapes, points and speed: give these in each of them")
-    found = tuple(one for one in rig if isinstance(one, Campaign))  # type: ignore[union-attr]
-    if len(found) < len(rig):  # type: ignore[arg-type]
-        raise AnalysisError("campaigns and lines are mixed: make a campaign of the lines too")
+def _campaigns(one: Campaign, several: str | Path | Sequence[Campaign] | None) -> tuple[Campaign, ...]:
+    """The campaigns as they are given, or the one that the other arguments describe."""
+    if several is None:
+        return (one,)
+    if one != Campaign():
+        raise AnalysisError("campaigns have their own rig, shapes, points and speed: give these in each of them")
+    found = read_campaigns(several) if isinstance(several, str | Path) else tuple(several)
+    if not found:
+        raise AnalysisError("there are no campaigns to update by")
     return found
 
 

@@ -91,7 +91,7 @@ def test_campaigns_at_speeds_and_in_states_share_their_numbers(model):
         rg.Campaign(measured(model, x, speed=SPEED, seed=2, **few), speed=SPEED, name="turning"),
         rg.Campaign(measured(model.with_(HEAVY), x, seed=3, **few), changes=HEAVY, name="heavy"),
     ]
-    result = rg.update(model, campaigns, free=FREE, shape_noise=2e-8, elements=1)
+    result = rg.update(model, campaigns=campaigns, free=FREE, shape_noise=2e-8, elements=1)
     np.testing.assert_allclose(np.log([row.factor for row in result.parameters]), x, atol=1e-6)
     assert [line.campaign for line in result.lines] == ["at rest"] * 4 + ["turning"] * 4 + ["heavy"] * 4
     assert all(line.rig.label == f"true {line.mode_number}" for line in result.lines)
@@ -103,8 +103,8 @@ def test_campaigns_at_speeds_and_in_states_share_their_numbers(model):
         rg.Campaign(measured(model, x, **plain)),
         rg.Campaign(measured(model, x, speed=SPEED, **plain), speed=f"{SPEED} rad/s"),
     ]
-    together = rg.update(model, lines, free=FREE, elements=1).learnt_parameters
-    assert together > rg.update(model, lines[:1], free=FREE, elements=1).learnt_parameters
+    together = rg.update(model, campaigns=lines, free=FREE, elements=1).learnt_parameters
+    assert together > rg.update(model, campaigns=lines[:1], free=FREE, elements=1).learnt_parameters
 
 
 def test_a_file_of_campaigns_names_files_beside_it_and_its_mistakes(model, tmp_path):
@@ -116,7 +116,7 @@ def test_a_file_of_campaigns_names_files_beside_it_and_its_mistakes(model, tmp_p
     )
     first, second = rg.read_campaigns(file)
     assert (first.name, second.name, second.speed) == ("campaign 1", "slow", "10 rpm")
-    found = rg.update(model, (first, second), free="meshes.*.stiffness", elements=1)
+    found = rg.update(model, campaigns=(first, second), free="meshes.*.stiffness", elements=1)
     assert {line.campaign for line in found.lines} == {"campaign 1", "slow"}
     for text, words in [
         ("campaign = 3", "expected tables"),
@@ -129,10 +129,10 @@ def test_a_file_of_campaigns_names_files_beside_it_and_its_mistakes(model, tmp_p
         with pytest.raises(ModelError, match=words):
             rg.read_campaigns(file)
     with pytest.raises(AnalysisError, match="campaigns have their own"):
-        rg.update(model, [first], speed=3.0)
-    with pytest.raises(AnalysisError, match="mixed"):
-        rg.update(model, [first, 10.0])
+        rg.update(model, campaigns=[first], speed=3.0)
+    with pytest.raises(AnalysisError, match="no campaigns"):
+        rg.update(model, campaigns=[])
     with pytest.raises(AnalysisError, match="give what was measured"):
-        rg.update(model, [rg.Campaign()])
+        rg.update(model, campaigns=[rg.Campaign()])
     with pytest.raises(ModelError, match="coupling"):
-        rg.update(model, [rg.Campaign([10.0], changes={"disks.couplin.mass": 1.0})])
+        rg.update(model, campaigns=[rg.Campaign([10.0], changes={"disks.couplin.mass": 1.0})])
