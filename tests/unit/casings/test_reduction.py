@@ -214,7 +214,7 @@ def test_a_long_round_bar_has_the_modes_of_the_timoshenko_shaft(tmp_path: Path) 
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("kind", "counts"), [("hexahedron20", (2, 3, 6))])
+@pytest.mark.parametrize(("kind", "counts"), [("hexahedron20", (2, 3, 6)), ("tetra10", (3, 4, 6))])
 def test_frequencies_of_a_smooth_block_converge_with_order_four(
     tmp_path: Path, kind: str, counts: tuple[int, ...]
 ) -> None:
