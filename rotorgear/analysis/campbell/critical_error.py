@@ -14,6 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rotorgear.analysis.common.casings import reduction_errors
 from rotorgear.analysis.modal.refine import errors_of, total_error
 from rotorgear.solvers.eigen.synchronous import Affine, Synchronous
 from rotorgear.system.left_shapes import left_shapes
@@ -22,6 +23,8 @@ from rotorgear.system.system import System
 
 def speed_error(system: System, ranges: Sequence[Affine], root: Synchronous, order: float, sense: float) -> float:
     """Estimated relative error of one critical speed; 0 where no shaft is cut into elements, infinite where they are too coarse.
+
+    It is that of shaft elements and of the reduction of casings.
 
     Args:
         system: the discretised model.
@@ -34,6 +37,7 @@ def speed_error(system: System, ranges: Sequence[Affine], root: Synchronous, ord
     s = np.array([root.eigenvalue])
     x = root.vector[:, None]
     error = float(total_error(errors_of(system, speed, s, x, np.array([False])), 1)[0])
+    error += float(reduction_errors(system, s, x)[0])
     if not 0.0 < error < np.inf:
         return error
     here = min(ranges, key=lambda piece: max(piece.low - root.speed, root.speed - piece.high))

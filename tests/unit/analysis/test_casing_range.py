@@ -96,3 +96,16 @@ def test_modes_and_responses_of_a_wide_range_are_those_of_many_modes(model: rg.M
     there = {"inputs": ["bearings.left:y"], "outputs": ["casings.box(200 mm; 120 mm; 200 mm):x"], "elements": 1}
     here, wide = (rg.frf(one, hz, **there).receptance for one in (model, many))
     np.testing.assert_allclose(here, wide, rtol=0.02)
+
+
+def test_critical_speeds_state_the_error_by_the_reduction_of_casings(model: rg.Model) -> None:
+    reach = model.layout.casing("box").left_frequency
+    few, many = (model.with_("casings.box.modes_to", share * reach) for share in (0.4, 2.0))
+    top = 2.0 * np.pi * 0.35 * reach
+    found, right = (rg.critical(one, stop=top, elements=1, damped=False) for one in (few, many))
+    assert len(found.speeds) == len(right.speeds) > 2
+    off = np.array([abs(one.speed / other.speed - 1.0) for one, other in zip(found.speeds, right.speeds, strict=True)])
+    stated = np.array([one.error_estimate for one in found.speeds])
+    assert off.max() > 1e-6
+    assert np.all(off <= 2.0 * stated + 1e-9)
+    assert stated.max() < 30.0 * off.max()
