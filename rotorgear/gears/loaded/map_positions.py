@@ -7,7 +7,9 @@ that a law finds its place in one step:
     delta(F_j; u) = delta(F_w; u) + [delta(F_j; u_i) - delta(F_w; u_i)],
 
 the curve of the working load F_w by cubics between the positions u_i (`cycle_curve.py`), the difference to the others straight
-between them. So the approach rises with the load at all positions, as it does at u_i.
+between them: their kinks stand elsewhere. So the approach rises with the load at all positions, as it does at u_i. Helical pairs
+have no kinks. Their differences from load to load are cubics too, for helices that share a load carry a third of F_w or twice as
+much; held to half of the straight ones at least, so that the approach rises.
 """
 
 from __future__ import annotations
@@ -58,10 +60,19 @@ class MapPositions:
         def straight(values: np.ndarray) -> np.ndarray:
             return np.stack([np.interp(even, u, column, period=float(periods)) for column in values.T], axis=1)
 
-        # Compliances step at events, and moments climb steeply there: between positions they are straight.
+        def smooth(values: np.ndarray) -> np.ndarray:
+            assert self.event is not None
+            return CycleCurve(u, values, float(periods), np.tile(self.event, periods)).at(even)
+
         one = approach[:, [working]]
-        curve = CycleCurve(u, one, float(periods), np.tile(self.event, periods)).at(even)
-        return even, curve + straight(approach - one), straight(compliance), straight(moment)
+        if self.event.any():
+            # Compliances step at events, and moments climb steeply there: between positions they are straight.
+            return even, smooth(one) + straight(approach - one), straight(compliance), straight(moment)
+        steps = np.diff(approach, axis=1)
+        rise = np.cumsum(np.maximum(smooth(steps), 0.5 * straight(steps)), axis=1)
+        rise = np.column_stack([np.zeros(len(even)), rise])
+        softness = np.maximum(smooth(compliance), 0.5 * straight(compliance))
+        return even, smooth(one) + rise - rise[:, [working]], softness, smooth(moment)
 
 
 def even_positions(count: int) -> MapPositions:
