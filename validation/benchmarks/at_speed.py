@@ -36,20 +36,22 @@ POSITIONS = 1024
 LOADS = (0.003, 0.01, 0.03, 0.06, *(0.1 * np.arange(1, 21)), *(2.0 + 0.15 * np.arange(1, 21)))
 GROUPS = (1.01, 2.21, 5.1)
 # Damping ratio of the mesh, and of the shafts at the resonance (2 zeta / omega, in s).
-DAMPING = 0.008
+DAMPING = 0.016
 RAYLEIGH = 2.0 * DAMPING / (2.0 * np.pi * 3400.0)
 TEETH = 34
-# Of the sweep: elastic modes, steps in a mesh period, periods until a speed has settled and those that are counted.
+# Of the sweep: elastic modes, steps in a mesh period, periods until a speed has settled and those that are counted. 64 more
+# follow, from which the harmonics are taken.
 MODES = 8
-STEPS = 120
-SETTLED = 90
-COUNTED = 8
-# Speeds over that of the resonance, and about the fold of a first run.
-SPEEDS = np.arange(0.84, 1.0601, 0.02)
-FINE = 1e-3 * np.array([-20, -10, *range(-5, 6), 10, 20])
+STEPS = 96
+SETTLED = 40
+COUNTED = 4
+# Speeds over that of the resonance, and about a fold.
+SPEEDS = np.arange(0.82, 1.0601, 0.02)
+FINE = 1e-3 * np.arange(-10, 11)
+_PASSES = 4
 NEAR_FOLD = 0.02
-# A first harmonic that changes by more than this share between two speeds has jumped.
-JUMP = 0.15
+# A first harmonic that changes by more than this power of the speed has jumped: 10 is the most on a branch.
+JUMP = 50.0
 WAYS = ("up", "down")
 
 
@@ -70,10 +72,9 @@ class Branches:
 
     def fold(self, way: int) -> float:
         """Mesh frequency in Hz where the first harmonic jumps; NaN where it does not."""
-        first = self.harmonics[:, way, 0]
-        ratio = np.abs(np.diff(np.log(first)))
-        jump = int(np.argmax(ratio))
-        if ratio[jump] < JUMP:
+        slope = np.abs(np.diff(np.log(self.harmonics[:, way, 0])) / np.diff(np.log(self.frequency)))
+        jump = int(np.argmax(slope))
+        if slope[jump] < JUMP:
             return float("nan")
         return float(0.5 * (self.frequency[jump] + self.frequency[jump + 1]))
 
@@ -133,22 +134,25 @@ def dense(mesh: MeshLayout, helix: int, force: float, sense: int = 1, near: bool
     return solved_map(problem, force, even_positions(POSITIONS), tuple(groups), silent)
 
 
-def speeds_of(model: rg.Model) -> np.ndarray:
-    """Mesh frequencies 2 % apart, and 0.1 % about the folds of a first run."""
+def refined(model: rg.Model) -> Branches:
+    """Branches over mesh frequencies 2 % apart, and 0.1 % about the folds.
+
+    A sweep in large steps may leave a branch before its end, so that folds move while the speeds about them are made finer.
+    """
     coarse = resonance(model) * SPEEDS
-    first = through(model, coarse)
-    places = [coarse]
-    for way in range(len(WAYS)):
-        fold = first.fold(way)
-        if np.isfinite(fold):
-            places.append(fold * (1.0 + FINE))
-    return np.unique(np.concatenate(places))
+    found = through(model, coarse)
+    for _ in range(_PASSES):
+        folds = [fold for fold in (found.fold(way) for way in range(len(WAYS))) if np.isfinite(fold)]
+        width = [np.diff(found.frequency)[np.searchsorted(found.frequency, fold) - 1] / fold for fold in folds]
+        if all(one <= 1.5 * (FINE[1] - FINE[0]) for one in width):
+            break
+        found = through(model, np.unique(np.concatenate([coarse, *(fold * (1.0 + FINE) for fold in folds)])))
+    return found
 
 
 def compared(model: rg.Model) -> tuple[Branches, Branches]:
     """The branches of the map that ships and of the dense one, over the same speeds."""
-    frequency = speeds_of(model)
-    ships = through(model, frequency)
+    ships = refined(model)
     solved: dict[tuple[object, ...], ContactMap | None] = {}
 
     def once(mesh: MeshLayout, helix: int, force: float, sense: int = 1, near: bool = False) -> ContactMap | None:
@@ -158,7 +162,7 @@ def compared(model: rg.Model) -> tuple[Branches, Branches]:
         return solved[key]
 
     with patch.object(MeshLayout, "contact_map", once):
-        truth = through(model.model_copy(), frequency)
+        truth = through(model.model_copy(), ships.frequency)
     return ships, truth
 
 
