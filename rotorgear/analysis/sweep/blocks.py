@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from rotorgear.analysis.common.pool import Pool
-from rotorgear.analysis.sweep.certify import Judge, bounded, judged
+from rotorgear.analysis.sweep.certify import Judge, bounded, judged, to_certify
+from rotorgear.analysis.sweep.multipliers import certificate
 from rotorgear.analysis.sweep.point import Point, table_of
 from rotorgear.solvers.lanes.lanes import Orbit, Plan, Start, run_block
 from rotorgear.solvers.lanes.small_system import steps_stable
@@ -25,7 +26,7 @@ _MOST_TABLE = 30_000_000
 # Seconds between two words on the progress of blocks that take long.
 _EVERY = 1.0
 # What a stream keeps of an orbit beside its end.
-_OF_ORBIT = ("section", "growth", "sums", "extremes", "finite", "doubt", "settled")
+_OF_ORBIT = ("section", "growth", "sums", "extremes", "finite", "doubt", "settled", "multiplier")
 # Least steps of the run that tells the error of exponents by half as many.
 _LEAST_HALF = 60
 
@@ -98,6 +99,7 @@ def run_jobs(
         return orbits
     chosen = list(range(len(orbits)))
     orbits = _with_doubts(points, orbits, chosen, plan, go_on)
+    orbits, onward = _with_multipliers(points, orbits, chosen, plan, judge, go_on)
     asked = tuple(orbits)
     settled = plan.settle
     for number in range(judge.rounds):
@@ -110,12 +112,43 @@ def run_jobs(
             break
         longer = replace(plan, settle=max(plan.settle, plan.count) * 2**number)
         settled += longer.settle + plan.count
-        again = _run([points[i] for i in chosen], [orbits[i].end for i in chosen], longer, go_on)
+        again = _run([points[i] for i in chosen], [onward[i] for i in chosen], longer, go_on)
         for i, orbit in zip(chosen, again, strict=True):
             orbits[i] = replace(orbit, settled=settled) if bounded(orbit, points[i]) else asked[i]
         chosen = [i for i, orbit in zip(chosen, again, strict=True) if bounded(orbit, points[i])]
         orbits = _with_doubts(points, orbits, chosen, plan, go_on)
+        orbits, onward = _with_multipliers(points, orbits, chosen, plan, judge, go_on)
     return orbits
+
+
+def _with_multipliers(
+    points: Sequence[Point],
+    orbits: Sequence[Orbit],
+    chosen: Sequence[int],
+    plan: Plan,
+    judge: Judge,
+    go_on: Callable[[], bool] | None,
+) -> tuple[list[Orbit], dict[int, Start]]:
+    """The orbits with the multipliers that certify them, where exponents leave that open, and where each goes on from."""
+    from rotorgear.solvers.contact.vectors import LANES
+
+    found = list(orbits)
+    onward = {i: orbits[i].end for i in chosen}
+    for i in chosen:
+        periods, size = to_certify(orbits[i], points[i], plan.steps, judge)
+        if not periods:
+            continue
+        once = Plan(plan.steps, 0, periods, 0)
+
+        def advance(states: Sequence[Start], point: Point = points[i], once: Plan = once) -> list[Start]:
+            cuts = (states[k : k + LANES] for k in range(0, len(states), LANES))
+            return [one.end for own in cuts for one in _run([point] * len(own), own, once, go_on)]
+
+        certified = certificate(points[i].system, orbits[i].end, size, periods, advance)
+        if certified is not None:
+            found[i] = replace(orbits[i], multiplier=certified.growth)
+            onward[i] = certified.onward
+    return found, onward
 
 
 def _with_doubts(
@@ -216,8 +249,8 @@ def packed(orbits: Sequence[Orbit]) -> dict[str, np.ndarray]:
 def unpacked(chunk: dict[str, np.ndarray]) -> list[Orbit]:
     """The orbits back."""
     return [
-        Orbit(section, growth, sums, extremes, Start(z, dz), bool(finite), doubt, int(settled))
-        for section, growth, sums, extremes, finite, doubt, settled, z, dz in zip(
+        Orbit(section, growth, sums, extremes, Start(z, dz), bool(finite), doubt, int(settled), float(multiplier))
+        for section, growth, sums, extremes, finite, doubt, settled, multiplier, z, dz in zip(
             *(chunk[name] for name in (*_OF_ORBIT, "z", "dz")), strict=True
         )
     ]

@@ -7,6 +7,9 @@
     quasi-periodic  the largest exponent is zero within its error, and one standard error away from chaos
     chaotic         it is above that bound by a standard error
 
+A kT whose orbit Newton's method finds stands or falls with the multipliers of that orbit instead (multipliers.py); one that is
+unstable goes on from a small deviation in the direction that grows most.
+
 What does not stand settles longer, in rounds of twice the length each, from where it got to. What still does not after the last
 of them is "not settled".
 """
@@ -19,6 +22,7 @@ import numpy as np
 
 from rotorgear.analysis.sweep.classify import CHAOTIC, QUASI_PERIODIC, Motion, classify, exponents, period_of
 from rotorgear.analysis.sweep.indicators import indicators
+from rotorgear.analysis.sweep.multipliers import SURE
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.solvers.lanes.lanes import Orbit
 
@@ -27,6 +31,9 @@ _ZERO = 2e-4
 _CHANGE = 0.02
 # Share of the tolerance within which a section repeats that is not on its way to anything else.
 _REPEATS = 5e-3
+# Longest periods whose multipliers are asked for, and most degrees of freedom: their cost grows with both.
+_LONGEST = 4
+_MOST = 40
 # Sizes of a motion beyond which it counts as one without bounds.
 _FAR = 1e4
 
@@ -54,6 +61,8 @@ def judged(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[Motion
     error = float(np.hypot(np.nan_to_num(errors[0]), orbit.doubt[0]))
     motion = classify(x, extent, largest, error, judge.tolerance, judge.chaos)
     bound = max(2.0 * error, _ZERO)
+    if motion.period and np.isfinite(orbit.multiplier):
+        return motion, orbit.multiplier < SURE and (motion.period == 1 or _stays(x))
     if motion.period:
         # On an orbit that repeats, growth differs between batches only because tangents turn: that says little on its mean. What
         # repeats need not prove its sign then. But where flanks part, an unstable orbit may repeat for thousands of periods, and
@@ -65,6 +74,23 @@ def judged(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[Motion
     if motion.kind == QUASI_PERIODIC:
         return motion, abs(largest) <= bound and abs(largest) + error <= judge.chaos
     return motion, motion.kind == CHAOTIC and largest - error > judge.chaos
+
+
+def to_certify(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[int, float]:
+    """Common periods after which a run repeats, and its size (m), where multipliers are to tell whether it is stable; else 0.
+
+    What comes back fast needs none: growth that an exponent does not see in so many periods is slower than the bound of chaos.
+    Laws that do not repeat with the common period, such as cages, have no such map.
+    """
+    system = point.system
+    if not orbit.growth.shape[1] or system.n > _MOST or system.own.forces.laws:
+        return 0, 0.0
+    motion, _ = judged(orbit, point, steps, judge)
+    means, _ = exponents(orbit.growth, float(system.turns))
+    if not 0 < motion.period <= _LONGEST or not -judge.chaos < means[0] <= judge.chaos:
+        return 0, 0.0
+    measures = indicators(orbit, system.columns.counted, steps)
+    return motion.period, float(np.maximum(measures["displacement"], measures["peak_to_peak"]).max())
 
 
 def _stays(x: np.ndarray) -> bool:

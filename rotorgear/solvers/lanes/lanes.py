@@ -69,6 +69,7 @@ class Orbit:
         extremes: (p, 2) least and largest of the watched displacements.
         doubt: (t,) what exponents per period change by in a run with other steps.
         settled: common periods before those that count.
+        multiplier: ln|mu| in a common period of the orbit that it is on; nan where that is not asked for or not found.
         end: state at the end. finite: whether everything stayed finite.
     """
 
@@ -80,6 +81,7 @@ class Orbit:
     finite: bool
     doubt: np.ndarray
     settled: int
+    multiplier: float = np.nan
 
 
 def run_block(

@@ -62,8 +62,15 @@ def test_two_frequencies_have_no_exponent_but_zero() -> None:
 @pytest.mark.long
 def test_what_a_sweep_calls_settled_is_so_thirty_times_later() -> None:
     model = rg.load("models/herringbone_pair_24dof_set2.toml")
-    over = {"operation.speed": ["3000 rpm", "8000 rpm", "11500 rpm", "13500 rpm", "20000 rpm", "30000 rpm"]}
-    first = rg.sweep(model, over)
-    later = rg.sweep(model, over, discard=30 * 300)
+    over = {"operation.speed": "3000 rpm:40000 rpm:75"}
+    first = rg.sweep(model, over, steps=160, discard=200, sample=64)
+    later = rg.sweep(model, over, steps=160, discard=30 * 200, sample=30 * 64)
     for one, other in zip(first.motion, later.motion, strict=True):
         assert one in (other, "not settled")
+
+
+@pytest.mark.long
+def test_a_symmetric_start_does_not_hide_that_the_helices_part() -> None:
+    model = rg.load("models/herringbone_pair_24dof_set2.toml")
+    found = rg.sweep(model, {"operation.speed": ["12500 rpm"]}, steps=160, discard=200, sample=64)
+    assert found.motion[0] != "1T"

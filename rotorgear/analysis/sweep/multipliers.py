@@ -1,0 +1,111 @@
+"""Whether a motion that repeats is stable: Newton's method onto the orbit and the multipliers of its map over a period.
+
+An exponent from some hundred periods cannot see slow growth beside slow decay, nor what the symmetry of a start leaves out: one
+that is symmetric in the two helices stays so, on an orbit where they grow apart by 1 part in 250 in a period, until rounding has
+grown to its size. The map x -> P(x) over k common periods sees both. Its derivative M comes from central differences, which run
+side by side; Newton's method x <- x - (M - 1)^-1 (P(x) - x) goes onto the orbit. Motions without strain are left out.
+Seydel, Practical Bifurcation and Stability Analysis (Springer 2010), ch. 7.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+
+from rotorgear.solvers.lanes.lanes import Start
+from rotorgear.solvers.lanes.small_system import SmallSystem
+
+# Steps of the differences, over the size of the motion: rounding of a period leaves 1e-14 of it.
+_STEP = 1e-5
+_ITERATIONS = 6
+# What is left of P(x) - x on the orbit, and how far from the run the orbit may lie, over the size of the motion.
+_CLOSED = 1e-7
+_NEAR = 0.1
+# ln|mu| of a period within which differences can't tell its sign.
+SURE = 1e-4
+# How far along the most unstable direction a run begins anew, over the size of the motion.
+_PUSH = 1e-2
+
+Advance = Callable[[Sequence[Start]], list[Start]]
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """An orbit and its multipliers.
+
+    Attributes:
+        growth: ln|mu| of the largest multiplier in one common period.
+        onward: where the run goes on from: its end; beside an unstable orbit moved along the direction that grows most, unless it
+        is further along it already.
+    """
+
+    growth: float
+    onward: Start
+
+
+def certificate(system: SmallSystem, end: Start, size: float, periods: int, advance: Advance) -> Certificate | None:
+    """The orbit of so many common periods near a state, with its multipliers.
+
+    Args:
+        system: the small system. end: a state near the orbit. size: of the motion's local displacements (m), peak to peak.
+        periods: common periods after which it repeats. advance: runs states over them.
+
+    Returns:
+        The certificate; None where Newton's method finds no orbit near by, as where a contact only just closes.
+    """
+    U = _with_strain(system)
+    n = system.n
+    # z = L^T q: a displacement d = B^T z of that size.
+    scale = size / float(np.linalg.norm(system.B, axis=0).max())
+    x = np.concatenate([end.z, end.dz])
+    begun = x
+
+    def after(states: Sequence[np.ndarray]) -> np.ndarray:
+        ends = advance([Start(state[:n], state[n:]) for state in states])
+        return np.stack([np.concatenate([one.z, one.dz]) for one in ends])
+
+    def slope(at: np.ndarray) -> np.ndarray:
+        h = _STEP * scale
+        sides = after([at + sign * h * u for sign in (1.0, -1.0) for u in U.T])
+        ahead, behind = np.split(sides, 2)
+        return np.asarray(U.T @ (ahead - behind).T / (2.0 * h))
+
+    M = slope(x)
+    for _ in range(_ITERATIONS):
+        left = U.T @ (after([x])[0] - x)
+        if not np.all(np.isfinite(left)) or not np.all(np.isfinite(M)):
+            return None
+        if np.linalg.norm(left) < _CLOSED * scale:
+            break
+        x = x - U @ np.linalg.lstsq(M - np.eye(len(M)), left, rcond=None)[0]
+        if np.linalg.norm(x - begun) > _NEAR * scale * np.sqrt(2.0 * n):
+            return None
+    else:
+        return None
+    if np.linalg.norm(x - begun) > _STEP * scale:
+        M = slope(x)
+        if not np.all(np.isfinite(M)):
+            return None
+    mu, left, right = la.eig(M, left=True)
+    most = int(np.argmax(np.abs(mu)))
+    growth = float(np.log(max(abs(mu[most]), 1e-300))) / periods
+    if growth < SURE:
+        return Certificate(growth, end)
+    # Slow motions may still be far from the orbit; only what lies along the direction of growth counts.
+    along = right[:, most]
+    beside = abs(np.vdot(left[:, most], U.T @ (begun - x)) / np.vdot(left[:, most], along)) * np.linalg.norm(
+        np.real(along)
+    )
+    if beside < _PUSH * scale:
+        direction = U @ np.real(along)
+        begun = begun + _PUSH * scale * direction / np.linalg.norm(direction)
+    return Certificate(growth, Start(begun[:n], begun[n:]))
+
+
+def _with_strain(system: SmallSystem) -> np.ndarray:
+    """Orthonormal states [z, z'] (2 n, s) without those of rigid motions."""
+    V = la.null_space(system.rigid) if len(system.rigid) else np.eye(system.n)
+    return np.asarray(la.block_diag(V, V))

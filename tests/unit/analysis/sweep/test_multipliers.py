@@ -1,0 +1,63 @@
+"""Orbits near a run by Newton's method, their multipliers, and where a run goes on from beside an unstable one."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rotorgear.analysis.sweep.multipliers import SURE, Certificate, certificate
+from rotorgear.solvers.lanes.lanes import Start
+
+SIZE = 1e-5
+# The orbit passes here; the last displacement and velocity are those of a rigid motion.
+ORBIT = 1e-5 * np.array([0.3, -0.2, 0.0, 0.1, 0.4, 0.0])
+
+
+def found(
+    multipliers: tuple[float, ...], begun: np.ndarray, periods: int = 1, curved: float = 1e3
+) -> Certificate | None:
+    """The certificate of a map with known multipliers, curved by a square term."""
+    turned = np.linalg.qr(np.random.default_rng(0).standard_normal((4, 4)))[0]
+    inner = turned @ np.diag(multipliers) @ turned.T
+    elastic = [0, 1, 3, 4]
+    M = np.zeros((6, 6))
+    M[np.ix_(elastic, elastic)] = inner
+    M[2, 2] = M[5, 5] = M[2, 5] = 1.0
+
+    def advance(states: Any) -> list[Start]:
+        ends = []
+        for one in states:
+            off = np.concatenate([one.z, one.dz]) - ORBIT
+            end = ORBIT + M @ off + curved * off**2 * np.array([1, 1, 0, 1, 1, 0])
+            ends.append(Start(end[:3], end[3:]))
+        return ends
+
+    system: Any = SimpleNamespace(n=3, rigid=np.array([[0.0, 0.0, 1.0]]), B=np.eye(3)[:, :1])
+    return certificate(system, Start(begun[:3], begun[3:]), SIZE, periods, advance)
+
+
+@pytest.mark.parametrize("largest", [0.99, 1.004, -1.2])
+@pytest.mark.parametrize("periods", [1, 3])
+def test_the_largest_multiplier_on_the_orbit(largest: float, periods: int) -> None:
+    begun = ORBIT + 0.02 * SIZE * np.array([1.0, -1.0, 50.0, 0.5, 0.3, 20.0])
+    own = found((largest, 0.5, -0.3, 0.1), begun, periods)
+    assert own is not None
+    assert own.growth == pytest.approx(np.log(abs(largest)) / periods, abs=1e-6)
+    assert (own.growth < SURE) == (abs(largest) < 1.0)
+
+
+def test_a_run_on_an_unstable_orbit_goes_on_beside_it_and_one_on_a_stable_orbit_from_its_end() -> None:
+    unstable = found((1.004, 0.5, -0.3, 0.1), ORBIT)
+    stable = found((0.99, 0.5, -0.3, 0.1), ORBIT)
+    assert unstable is not None
+    assert stable is not None
+    beside = np.concatenate([unstable.onward.z, unstable.onward.dz]) - ORBIT
+    assert 1e-3 * SIZE < np.linalg.norm(beside) < 0.05 * SIZE
+    np.testing.assert_array_equal(np.concatenate([stable.onward.z, stable.onward.dz]), ORBIT)
+
+
+def test_without_an_orbit_near_by_nothing_is_said() -> None:
+    assert found((0.99, 0.5, -0.3, 0.1), ORBIT + 20.0 * SIZE) is None

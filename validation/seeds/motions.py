@@ -1,0 +1,73 @@
+"""Motions of a sweep from several starts, in words: what most starts end in, and numbers of chaos with their error.
+
+A run on a regular motion gives the same number from every start of its basin. A chaotic one gives a sample: its mean over the
+starts stands with three standard errors. The largest value in a chaotic motion grows with the length of the run; what stands
+then is that of the periods counted.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+import rotorgear as rg
+
+STARTS = 16
+CHAOTIC = "chaotic"
+
+
+def kinds(result: rg.SweepResult, point: int) -> list[str]:
+    """Response types of all runs of a point."""
+    return [result.motion_at(point, run) for run in range(len(result.run))]
+
+
+def most(found: Sequence[str]) -> str:
+    """The response type that most runs end in; of two as frequent ones the one of the earlier run."""
+    return Counter(found).most_common(1)[0][0]
+
+
+def ends(found: Sequence[str]) -> str:
+    """What runs end in: "2T 16 of 16", or "chaotic 13 of 16, 2T 3"."""
+    (first, count), *others = Counter(found).most_common()
+    rest = "".join(f", {kind} {n}" for kind, n in others)
+    return f"{first} {count} of {len(found)}{rest}"
+
+
+def number(values: np.ndarray, found: Sequence[str], digits: int) -> str:
+    """A number of the motion that most runs end in; of chaos its mean over them, with three standard errors.
+
+    Args:
+        values: (r,) of each run. found: response types of the runs. digits: behind the point, where the motion is regular.
+    """
+    kind = most(found)
+    own = values[[one == kind for one in found]]
+    if kind != CHAOTIC:
+        return f"{np.median(own):.{digits}f}".replace("-0." + "0" * digits, "0." + "0" * digits)
+    if len(own) < 3:
+        return f"{own.mean():.1g} (too few starts for an error)"
+    return stated(float(own.mean()), 3.0 * float(own.std(ddof=1)) / math.sqrt(len(own)))
+
+
+def stated(value: float, error: float) -> str:
+    """Text of a value and its error: "0.214 +- 0.012"; the error with one digit, rounded up."""
+    if error <= 0.0:
+        return f"{value:.4g}"
+    place = math.floor(math.log10(error))
+    unit = 10.0**place
+    behind = max(0, -place)
+    return f"{value:.{behind}f} +- {math.ceil(error / unit - 1e-9) * unit:.{behind}f}"
+
+
+def route(result: rg.SweepResult, names: Sequence[str], form: str = ".0f") -> str:
+    """Stretches of equal names over the first parameter: "1T to 4900, 2T to 5100"."""
+    last = [i for i, name in enumerate(names) if i + 1 == len(names) or names[i + 1] != name]
+    return ", ".join(f"{names[i]} to {result.values[i, 0]:{form}}" for i in last)
+
+
+def least_share(result: rg.SweepResult) -> str:
+    """The smallest number of runs that end in what most of their point do: "9 of 16 starts or more"."""
+    counts = [Counter(kinds(result, p)).most_common(1)[0][1] for p in range(len(result.values))]
+    return f"{min(counts)} of {len(result.run)} starts or more"
