@@ -3,7 +3,7 @@
     delta u = [k - K(t), c - C(t)] [delta d; delta d'] moves the modes,   z' = s z + Y_f B delta u
 
 Over each of N steps the tangents are their mean, delta u is linear and the modes are exact: second order in the step, also
-where tangents jump within it. Multipliers are eigenvalues of the map over a period.
+where tangents jump within it, because the mean knows the place of the jump. Multipliers are eigenvalues of the map over a period.
 Seydel, Practical Bifurcation and Stability Analysis
 (Springer 2010), ch. 7; Hochbruck and Ostermann, Acta Numerica 19 (2010) 209.
 """
@@ -19,6 +19,7 @@ import scipy.sparse as sp
 from rotorgear.solvers.periodic.balance import pairs
 from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.samples import Samples, answered
+from rotorgear.solvers.periodic.switches import Switches
 
 # Instants whose tangents make the mean of a step.
 FINER = 4
@@ -118,13 +119,14 @@ def _tied(plant: Plant, R: np.ndarray) -> bool:
     return bool(loose or seen.max(initial=0.0) > 1e-9 * np.abs(plant.B).max(initial=0.0) * size)
 
 
-def multipliers(plant: Plant, basis: ModalBasis, fine: Samples) -> np.ndarray:
+def multipliers(plant: Plant, basis: ModalBasis, fine: Samples, switches: Switches) -> np.ndarray:
     """Floquet multipliers, largest first, from the laws at FINER instants a step of one period.
 
     Args:
         plant: at the motion's own value. basis: its modes. fine: N FINER instants.
+        switches: where laws change sides between these.
     """
-    return sorted_by_size(la.eigvals(monodromy(plant, basis, fine)))
+    return sorted_by_size(la.eigvals(monodromy(plant, basis, fine, switches)))
 
 
 def sorted_by_size(values: np.ndarray) -> np.ndarray:
@@ -132,7 +134,7 @@ def sorted_by_size(values: np.ndarray) -> np.ndarray:
     return np.asarray(values[np.lexsort((-values.imag, -np.round(np.abs(values), 12)))])
 
 
-def monodromy(plant: Plant, basis: ModalBasis, fine: Samples) -> np.ndarray:
+def monodromy(plant: Plant, basis: ModalBasis, fine: Samples, switches: Switches) -> np.ndarray:
     """The map (2 r, 2 r) of small deviations [q, q'/w0] in the basis over one period."""
     V = basis.V
     r = V.shape[1]
@@ -154,7 +156,7 @@ def monodromy(plant: Plant, basis: ModalBasis, fine: Samples) -> np.ndarray:
     s, X = la.eig(A)
     condition = np.linalg.cond(X, 1)
     if condition > 1e9:
-        return _dense_monodromy(A, forced, B, unit, plant, fine, h)
+        return _dense_monodromy(A, forced, B, unit, _means(plant, fine, switches), h)
     Y = np.linalg.inv(X)
     kept = s.imag >= 0.0
     weight = np.where(s[kept].imag > 0.0, 2.0, 1.0)
@@ -167,7 +169,7 @@ def monodromy(plant: Plant, basis: ModalBasis, fine: Samples) -> np.ndarray:
     Q0 = (h * (first - second))[:, None] * gain
     Q1 = (h * second)[:, None] * gain
     rows = np.vstack([B.T @ (shapes[:r] / unit[:, None]), B.T @ shapes[r:]])
-    S = _means(plant, fine, N)
+    S = _means(plant, fine, switches)
     lift = np.real(rows @ Q1)
     implicit = np.linalg.solve(np.eye(m) - S @ lift, S)
     # Real parts over imaginary ones: what pushes the modes is real, and so is what the laws see of them.
@@ -212,32 +214,38 @@ def _phis(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
-def _means(plant: Plant, fine: Samples, N: int) -> np.ndarray:
-    """[k - K, c - C], its mean over each step, (N, m, 2 m): each step by the trapezoidal rule on its instants."""
+def _means(plant: Plant, fine: Samples, switches: Switches) -> np.ndarray:
+    """[k - K, c - C], its mean over each step, (N, m, 2 m): by the trapezoidal rule on its instants.
+
+    Where a tangent jumps at theta between two of them, the rule has half of both sides in place of theta and 1 - theta.
+    """
     m = plant.m
+    N = len(fine.t) // FINER
+    cells = np.floor(switches.phase / switches.spacing).astype(int)
+    missed = (0.5 - switches.theta)[:, None]
     a, b, flat = pairs(plant.forces.first)
     S = np.zeros((N, m, 2 * m))
-    for place, reference, tangent in (
-        (0, plant.forces.reference_stiffness, fine.Kd),
-        (m, plant.forces.reference_damping, fine.Kv),
+    for place, reference, tangent, jump in (
+        (0, plant.forces.reference_stiffness, fine.Kd, switches.in_d),
+        (m, plant.forces.reference_damping, fine.Kv, switches.in_v),
     ):
         values = reference[a, b] - tangent[:, flat]
         ends = 0.5 * (values + np.roll(values, -1, axis=0))
+        np.add.at(ends, cells, missed * jump[:, flat])
         S[:, a, place + b] = ends.reshape(N, FINER, -1).mean(axis=1)
     return S
 
 
 def _dense_monodromy(
-    A: np.ndarray, forced: np.ndarray, B: np.ndarray, unit: np.ndarray, plant: Plant, fine: Samples, h: float
+    A: np.ndarray, forced: np.ndarray, B: np.ndarray, unit: np.ndarray, S: np.ndarray, h: float
 ) -> np.ndarray:
     """The same by exponentials of whole matrices, where eigenvectors lie too near to each other."""
     r = len(unit)
-    N = len(fine.t) // FINER
-    S = _means(plant, fine, N)
-    rows = np.zeros((2 * plant.m, 2 * r))
-    rows[: plant.m, :r] = B.T / unit
-    rows[plant.m :, r:] = B.T
+    m = B.shape[1]
+    rows = np.zeros((2 * m, 2 * r))
+    rows[:m, :r] = B.T / unit
+    rows[m:, r:] = B.T
     total = np.eye(2 * r)
-    for k in range(N):
+    for k in range(len(S)):
         total = la.expm((A + forced @ (S[k] @ rows)) * h) @ total
     return np.asarray(total)

@@ -12,6 +12,7 @@ from rotorgear.solvers.periodic.cycle import Cycle
 from rotorgear.solvers.periodic.floquet import FINER, ModalBasis, basis_of, multipliers
 from rotorgear.solvers.periodic.plant import Plant, PlantAt
 from rotorgear.solvers.periodic.receptances import Receptances
+from rotorgear.solvers.periodic.switches import switches_of
 
 # Step of a difference in the parameter, as a share of the range.
 _DIFFERENCE = 1e-6
@@ -157,8 +158,10 @@ class HarmonicOrbits:
     def multipliers(self, y: np.ndarray, p: float) -> np.ndarray:
         """Floquet multipliers of a solution."""
         plant = self._plant_at(p)
-        fine = samples_of(self.coefficients(y), plant, self.grid, FINER * self.grid.instants)
-        return multipliers(plant, self._modes(plant), fine)
+        c = self.coefficients(y)
+        fine = samples_of(c, plant, self.grid, FINER * self.grid.instants)
+        switches = switches_of(c, fine, plant, self.grid.frequency(plant.speed))
+        return multipliers(plant, self._modes(plant), fine, switches)
 
     def cycle(self, y: np.ndarray, p: float, instants: int | None = None) -> Cycle:
         """A period of a solution; `settle_on` has been at its value."""
