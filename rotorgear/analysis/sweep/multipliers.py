@@ -60,8 +60,7 @@ def certificate(system: SmallSystem, end: Start, size: float, periods: int, adva
     n = system.n
     # z = L^T q: a displacement d = B^T z of that size.
     scale = size / float(np.linalg.norm(system.B, axis=0).max())
-    x = np.concatenate([end.z, end.dz])
-    begun = x
+    begun = np.concatenate([end.z, end.dz])
 
     def after(states: Sequence[np.ndarray]) -> np.ndarray:
         ends = advance([Start(state[:n], state[n:]) for state in states])
@@ -73,17 +72,9 @@ def certificate(system: SmallSystem, end: Start, size: float, periods: int, adva
         ahead, behind = np.split(sides, 2)
         return np.asarray(U.T @ (ahead - behind).T / (2.0 * h))
 
-    M = slope(x)
-    for _ in range(_ITERATIONS):
-        left = U.T @ (after([x])[0] - x)
-        if not np.all(np.isfinite(left)) or not np.all(np.isfinite(M)):
-            return None
-        if np.linalg.norm(left) < _CLOSED * scale:
-            break
-        x = x - U @ np.linalg.lstsq(M - np.eye(len(M)), left, rcond=None)[0]
-        if np.linalg.norm(x - begun) > _NEAR * scale * np.sqrt(2.0 * n):
-            return None
-    else:
+    M = slope(begun)
+    x = _on_orbit(begun, M, U, scale, after)
+    if x is None:
         return None
     if np.linalg.norm(x - begun) > _STEP * scale:
         M = slope(x)
@@ -103,6 +94,25 @@ def certificate(system: SmallSystem, end: Start, size: float, periods: int, adva
         direction = U @ np.real(along)
         begun = begun + _PUSH * scale * direction / np.linalg.norm(direction)
     return Certificate(growth, Start(begun[:n], begun[n:]))
+
+
+def _on_orbit(
+    begun: np.ndarray, M: np.ndarray, U: np.ndarray, scale: float, after: Callable[[Sequence[np.ndarray]], np.ndarray]
+) -> np.ndarray | None:
+    """The state (2 n,) of the orbit near another one; None where Newton's method finds none, or one that is far away."""
+    if not np.all(np.isfinite(M)):
+        return None
+    x = begun
+    for _ in range(_ITERATIONS):
+        left = U.T @ (after([x])[0] - x)
+        if not np.all(np.isfinite(left)):
+            return None
+        if np.linalg.norm(left) < _CLOSED * scale:
+            return x
+        x = x - U @ np.linalg.lstsq(M - np.eye(len(M)), left, rcond=None)[0]
+        if np.linalg.norm(x - begun) > _NEAR * scale * np.sqrt(len(x)):
+            return None
+    return None
 
 
 def _with_strain(system: SmallSystem) -> np.ndarray:
