@@ -68,13 +68,65 @@ _ODD: list[Any] = [
 Path = tuple[Any, ...]
 
 
+# Seeds below keep what they meant before parts were added.
+_ADDED_FROM = 20_000
+
+
 def model_mutations(model: dict[str, Any], seed: int) -> dict[str, Any]:
-    """A copy with one to four mutations."""
+    """A copy with one to four mutations; of every second late seed they may meet a part that its model had not."""
     draw = random.Random(seed)
     mutant = copy.deepcopy(model)
+    if seed >= _ADDED_FROM and seed % 2:
+        _added(mutant, draw)
     for _ in range(draw.choice([1, 1, 2, 2, 3, 4])):
         draw.choice(_MUTATIONS)(mutant, draw)
     return mutant
+
+
+_BEARING_LAWS: list[dict[str, Any]] = [
+    {"journal": {"diameter": "60 mm", "length": "40 mm", "clearance": "60 um", "viscosity": "20 mPa s"}},
+    {
+        "journal": {
+            "diameter": "60 mm",
+            "length": "40 mm",
+            "clearance": "60 um",
+            "viscosity": "20 mPa s",
+            "lobes": 3,
+            "preload": 0.4,
+        }
+    },
+    {
+        "rolling": {
+            "kind": "ball",
+            "elements": 9,
+            "element_diameter": "12 mm",
+            "pitch_diameter": "60 mm",
+            "clearance": "10 um",
+        }
+    },
+]
+_LOADS: list[dict[str, Any]] = [
+    {"force": ["0 N", "-500 N", "0 N"]},
+    {"force": ["100 N", "0 N", "0 N"], "order": 2},
+    {"force": ["0 N", "0 N", "50 N"], "frequency": "120 Hz", "phase": "30 deg"},
+    {"moment": ["5 N m", "0 N m", "0 N m"], "order": 1},
+]
+
+
+def _added(model: dict[str, Any], draw: random.Random) -> None:
+    """A bearing with a law in place of its stiffness, or a force at a shaft."""
+    shafts = model.get("shafts")
+    if not isinstance(shafts, dict) or not shafts:
+        return
+    shaft = draw.choice(sorted(shafts))
+    bearings = [name for name, part in model.get("bearings", {}).items() if isinstance(part, dict)]
+    if bearings and draw.random() < 0.5:
+        bearing = model["bearings"][draw.choice(bearings)]
+        for key in ("stiffness", "damping", "table"):
+            bearing.pop(key, None)
+        bearing |= copy.deepcopy(draw.choice(_BEARING_LAWS))
+    else:
+        model.setdefault("loads", {})["added"] = {"shaft": shaft, "at": "start", **copy.deepcopy(draw.choice(_LOADS))}
 
 
 def _leaves(node: Any, path: Path = ()) -> Iterator[tuple[Path, Any]]:
@@ -358,7 +410,16 @@ OPTIONS: dict[str, dict[str, list[str]]] = {
         "--elements": _COUNTS,
     },
     "critical": {"--to": _SPEEDS, "--elements": _COUNTS, "--accuracy": _NUMBERS},
-    "static": {"--speed": _SPEEDS, "--elements": _COUNTS},
+    "static": {"--speed": _SPEEDS, "--elements": _COUNTS, "--accuracy": _NUMBERS},
+    "bearing": {"--speed": _SPEEDS, "--speeds": ["1000 rpm:2000 rpm:3", "0:0:0", "", "nan", "1 rpm:2 rpm"]},
+    "scatter": {
+        "--free": ["bearings.*.stiffness", "meshes.*.stiffness", "*", "", "shafts.*.nothing", "operation.speed"],
+        "--sigma": ["10 %", "0", "-1", "nan", "5", "1 mm", ""],
+        "--samples": ["0", "1", "3", "2.5", "abc"],
+        "--modes": _COUNTS,
+        "--speed": _SPEEDS,
+    },
+    "sensors": {"--count": _COUNTS, "--modes": _COUNTS, "--fmax": _NUMBERS, "--directions": ["xyz", "q", "", "y"]},
     "response": {
         "--from": _SPEEDS,
         "--to": _SPEEDS,
@@ -392,6 +453,8 @@ def option_mutations(seed: int) -> list[str]:
     command = draw.choice(sorted(OPTIONS))
     known = OPTIONS[command]
     chosen = draw.sample(sorted(known), min(len(known), draw.randint(1, 3)))
+    if command == "scatter":
+        chosen = sorted({*chosen, "--free", "--sigma", "--samples"})
     if command == "frf":
         chosen = sorted({*chosen, "--inputs", "--outputs"})
     return [command, *[f"{option}={draw.choice(known[option])}" for option in chosen]]

@@ -27,6 +27,44 @@ def _mesh(model: rg.Model) -> Any:
     return rg.mesh(model, next(iter(model.meshes)), stiffness="tooth_fe", preset="preview") if model.meshes else None
 
 
+def _place(model: rg.Model) -> str | None:
+    """A place where a force may act: the first disk, gear or bearing."""
+    for table in ("disks", "gears", "bearings"):
+        for name in getattr(model, table):
+            return f"{table}.{name}:y"
+    return None
+
+
+def _frf(model: rg.Model) -> Any:
+    place = _place(model)
+    return rg.frf(model, inputs=[place], outputs=[place], fmax=500.0, points=5, elements=1) if place else None
+
+
+def _state_space(model: rg.Model) -> Any:
+    place = _place(model)
+    return rg.state_space(model, inputs=[place], outputs=[place], fmax=500.0, elements=1) if place else None
+
+
+def _bearing(model: rg.Model) -> Any:
+    """The sheet of the first bearing with a law; a refusal where there is none is as good."""
+    return rg.bearing(model, next(iter(model.bearings)), speed=_speed(model)) if model.bearings else None
+
+
+def _scatter(model: rg.Model) -> Any:
+    if not model.bearings:
+        return None
+    return rg.scatter(model, "bearings.*.stiffness", sigma=0.1, samples=4, modes=4, elements=1)
+
+
+def _orbits(model: rg.Model) -> Any:
+    speed = _speed(model)
+    return rg.orbits(model, {"operation.speed": [speed, 1.01 * speed]}, harmonics=4, points=4, elements=1)
+
+
+def _sweep(model: rg.Model) -> Any:
+    return rg.sweep(model, {"operation.speed": [_speed(model)]}, discard=2, sample=9)
+
+
 # Meshes of fixed size where the verb allows it: the sizes of refined ones are the user's.
 QUICK: dict[str, Verb] = {
     "check": lambda model: rg.check(model),
@@ -44,6 +82,13 @@ ALL: dict[str, Verb] = {
     "response": lambda model: rg.response(model, points=5),
     "gear": _gear,
     "mesh": _mesh,
+    "frf": _frf,
+    "state space": _state_space,
+    "bearing": _bearing,
+    "scatter": _scatter,
+    "sensors": lambda model: rg.sensors(model, count=4, elements=1),
+    "orbits": _orbits,
+    "sweep": _sweep,
     "transient": lambda model: rg.transient(model, steps=20, error_estimate=False, time=0.01),
 }
 # Numbers of each result that must be finite wherever it is returned; others have NaN as a word for "not there".
@@ -54,6 +99,11 @@ FINITE: dict[str, tuple[str, ...]] = {
     "static": ("displacements",),
     "response": ("speeds", "mesh_force"),
     "transient": ("time", "values", "mesh_force"),
+    "frf": ("receptance",),
+    "state space": ("mass_matrix", "velocity_terms", "stiffness_matrix", "input_matrix", "output_matrix"),
+    "scatter": ("z", "sample_hz"),
+    "sensors": ("mode_hz",),
+    "orbits": ("value", "period", "mean_force", "largest_force"),
 }
 
 

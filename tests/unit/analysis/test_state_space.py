@@ -138,18 +138,3 @@ def test_the_command_writes_all_three_files(tmp_path: Path) -> None:
     assert all(Path(file).stat().st_size for file in files.values())
     assert isinstance(CliRunner().invoke(app, ["export", model]).exception, rg.AnalysisError)
     assert isinstance(CliRunner().invoke(app, ["export", model, "--state-space", "s.csv"]).exception, rg.AnalysisError)
-
-
-def test_a_mode_that_nothing_damps_and_no_place_sees_does_not_stand_in_the_way() -> None:
-    model = rg.Model(
-        shafts={"s": {"sections": [{"length": 0.6, "outer_diameter": 0.04}]}},
-        disks={"d": {"shaft": "s", "at": 0.6, "outer_diameter": 0.35, "bore": 0.04, "width": 0.03}},
-        bearings={
-            "a": {"shaft": "s", "at": 0.0, "stiffness": {"radial": 1e8, "axial": 1e8}, "damping": {"radial": 500.0}},
-            "b": {"shaft": "s", "at": 0.35, "stiffness": {"radial": 1e8}, "damping": {"radial": 500.0}},
-        },
-    )
-    # The axial mode at 274 Hz has no damping: at its pole there is no response to compare.
-    found = rg.state_space(model, inputs=["disks.d:y"], outputs=["disks.d:y"], fmax=300.0)
-    assert found.status == "success"
-    assert found.reduction_error < 1e-4
