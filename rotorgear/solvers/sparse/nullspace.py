@@ -47,7 +47,7 @@ class SupportedSolver:
     def __init__(self, K: sp.csc_array, R: np.ndarray, L: np.ndarray) -> None:
         n = K.shape[0]
         self._columns = np.setdiff1d(np.arange(n), support_dofs(R))
-        self._rows = np.setdiff1d(np.arange(n), support_dofs(L))
+        self._rows = self._columns if L is R else np.setdiff1d(np.arange(n), support_dofs(L))
         try:
             self._factor: Factor = factor_general(sp.csc_array(K[self._rows][:, self._columns]))
         except ConvergenceError as error:
