@@ -104,8 +104,9 @@ def test_many_contacts_at_once_are_each_of_them_alone() -> None:
         assert tangent[i] == pytest.approx(state.tangent, rel=1e-8)
 
 
-def test_a_wrong_tooth_is_felt_once_a_turn() -> None:
-    teeth = spur(first_flank=FlankModification(pitch_error=((5, 20e-6),)))
+@pytest.mark.parametrize("tooth", [5, 0])  # tooth 0 stands in the first period, where the commonest one does not begin
+def test_a_wrong_tooth_is_felt_once_a_turn(tooth: int) -> None:
+    teeth = spur(first_flank=FlankModification(pitch_error=((tooth, 20e-6),)))
     found = contact_map(teeth, LOAD, POSITIONS)
     assert found.periods == 34
     exact = loaded_cycle(teeth, LOAD, found.position)[1].deflection
