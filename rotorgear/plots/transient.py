@@ -73,7 +73,9 @@ def _histories(result: TransientResult, ax: Any, table: np.ndarray, label: str) 
     axes.set_xlabel("time, ms")
     axes.set_ylabel(label)
     axes.grid(alpha=0.3)
-    axes.legend(fontsize=7, ncols=2, loc="upper right")
+    axes.legend(
+        fontsize=7, ncols=4, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.12)
+    )  # curves fill the axes
     return axes
 
 

@@ -1,14 +1,17 @@
 """Writes docs/error_vs_runtime.md and its plots: error against seconds and dofs for all models of the repository.
 
-Run  python -m validation.benchmarks.error_vs_runtime  (one BLAS thread is set by this file itself).
+Run  python -m validation.benchmarks.error_vs_runtime  (one BLAS thread is set by this file itself). With --redraw it draws
+the plots anew from the numbers on the page and measures nothing.
 """
 
 from __future__ import annotations
 
+import argparse
 import os
 
 os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"))
 
+import re
 import subprocess
 import sys
 import time
@@ -17,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 import rotorgear as rg
+from rotorgear.results.convergence import ConvergenceStudy, Rung
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "error_vs_runtime.md"
@@ -99,6 +103,40 @@ def section(name: str, file: Path, model: rg.Model) -> tuple[str, tuple[float, f
     return "\n".join([*lines, table(rows)]), spread
 
 
+_WORDS = re.compile(r"`rotorgear accuracy [^`]*`: (?P<title>.*), (?P<modes>\d+) frequencies\.")
+
+
+def redraw() -> None:
+    """Draw the plots of the page from its own tables."""
+    sections = re.split(r"^## ", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    for text in sections:
+        name = text.partition("\n")[0]
+        words = _WORDS.search(text)
+        if name not in DRAWN or words is None:
+            continue
+        rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| ")]
+        study = ConvergenceStudy(
+            title=words["title"],
+            analysis="modal",
+            reference="the numbers of the page",
+            modes=int(words["modes"]),
+            rungs=tuple(_rung(row) for row in rows[1:]),
+        )
+        print(rg.plot.save(study.plot(), PICTURES / f"error_{name.replace('/', '_')}.png"))
+
+
+def _rung(row: list[str]) -> Rung:
+    """A row of the page as a rung: what was asked for, dofs, time, error, estimate."""
+    method, dofs, seconds, error, estimate = row[:5]
+    family = "accuracy" if method.startswith("accuracy") else "elements"
+    number = re.search(r"[\d.e-]+", method)
+    assert number is not None
+    setting = float(number[0])
+    return Rung(
+        method, family, setting, int(dofs), float(seconds.removesuffix(" s")), float(error), float(estimate), None
+    )
+
+
 def effectivity(result: rg.ModalResult, truth: np.ndarray) -> tuple[float, float]:
     """Smallest and largest ratio of estimate and true error over the modes where both mean something."""
     count = min(len(result), len(truth))
@@ -165,4 +203,9 @@ def table(rows: list[list[str]]) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--redraw", action="store_true", help="draw the plots anew from the numbers on the page")
+    if parser.parse_args().redraw:
+        redraw()
+    else:
+        main()
