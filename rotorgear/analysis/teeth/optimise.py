@@ -209,7 +209,7 @@ def optimise_flanks(
             init="sobol" if len(chosen) > 1 else "latinhypercube",
             tol=1e-3,
             polish=False,
-            rng=np.random.default_rng(12),  # the same question has the same answer
+            seed=np.random.default_rng(12),  # the same question has the same answer; "rng" is new in scipy 1.15
         )
         assert search.best is not None
         # A simplex as wide as what the evolution leaves open, and pointing inwards.
@@ -343,7 +343,7 @@ def _band(
     from scipy.stats import qmc
 
     # Sobol's points are balanced for powers of two: the next one, of which the first ones are taken.
-    strewn = qmc.Sobol(len(values), rng=np.random.default_rng(12)).random_base2(max(1, int(np.ceil(np.log2(samples)))))
+    strewn = qmc.Sobol(len(values), seed=np.random.default_rng(12)).random_base2(max(1, int(np.ceil(np.log2(samples)))))
     least = np.array([0.0 if variable.low >= 0.0 else -np.inf for variable in search.variables])
     found = []
     for number, shares in enumerate(strewn[:samples]):
