@@ -163,10 +163,15 @@ def _pairs(
     found = None
     if result.speed is None and result.dofs <= _MOST_DOFS:
         found = identified_pairs(result.model, mesh_of(result), _highest(given), given, tolerance)
-    if found is None:
-        rig_hz = np.array([line.frequency_hz for line in given.lines])
-        return pairs_by_both(rig_hz, modes.hz, spread, alike)
-    return [(line, mode) for line, mode in found if mode < len(modes.hz)]
+    pairs = [(line, mode) for line, mode in found or () if mode < len(modes.hz)]
+    # Lines that no springs bring to a mode, because a sensor is wrong or the model is, go by the modes that are left as they are.
+    rig_hz = np.array([line.frequency_hz for line in given.lines])
+    lines = np.setdiff1d(np.arange(len(rig_hz)), [line for line, _ in pairs])
+    left = np.setdiff1d(np.arange(len(modes.hz)), [mode for _, mode in pairs])
+    if len(lines) and len(left):
+        others = pairs_by_both(rig_hz[lines], modes.hz[left], spread[left], alike[np.ix_(lines, left)])
+        pairs += [(int(lines[line]), int(left[mode])) for line, mode in others]
+    return sorted(pairs)
 
 
 @dataclass(frozen=True)
