@@ -32,7 +32,7 @@ from rotorgear.cli.speed_options import (
 
 def campbell(
     model: ModelFile,
-    start: FromOption = "0 rpm",
+    start: FromOption = None,
     stop: ToOption = None,
     points: Annotated[int, typer.Option("--points", help="Number of speeds.")] = 51,
     modes: Annotated[
@@ -81,7 +81,7 @@ def campbell(
     with progress_bar("campbell") as progress:
         result = rg.campbell(
             rg.load(model),
-            start=parse_speed(start, "--from") or 0.0,
+            start=parse_speed(start, "--from"),
             stop=parse_speed(stop, "--to"),
             points=points,
             modes=modes,

@@ -18,12 +18,13 @@ from rotorgear.cli.common import (
     progress_bar,
     write_json,
 )
-from rotorgear.cli.speed_options import ToOption, parse_mesh_orders, parse_orders
+from rotorgear.cli.speed_options import FromOption, ToOption, parse_mesh_orders, parse_orders
 from rotorgear.errors import AnalysisError
 
 
 def critical(
     model: ModelFile,
+    start: FromOption = None,
     stop: ToOption = None,
     shaft_orders: Annotated[
         str | None, typer.Option("--shaft-orders", help="Orders of every shaft (default 1).", show_default=False)
@@ -63,6 +64,7 @@ def critical(
     with progress_bar("critical") as progress:
         result = rg.critical(
             built,
+            start=parse_speed(start, "--from"),
             stop=top,
             shaft_orders=parse_orders(shaft_orders, "--shaft-orders", SHAFT_ORDERS),
             mesh_orders=parse_mesh_orders(mesh_orders, ()),

@@ -8,7 +8,14 @@ import typer
 
 from rotorgear.errors import AnalysisError
 
-FromOption = Annotated[str, typer.Option("--from", help="Lowest speed of the input shaft, such as '500 rpm'.")]
+FromOption = Annotated[
+    str | None,
+    typer.Option(
+        "--from",
+        help="Lowest speed of the input shaft (default 0 rpm; with oil films the lowest at which they carry).",
+        show_default=False,
+    ),
+]
 ToOption = Annotated[
     str | None,
     typer.Option("--to", help="Highest speed (default 1.25 times the operating speed).", show_default=False),

@@ -7,10 +7,12 @@ from typing import Annotated
 import typer
 
 from rotorgear.cli.common import JsonOption, ModelFile, SaveOption, console, parse_speed, progress_bar, write_json
+from rotorgear.cli.speed_options import FromOption
 
 
 def standards(
     model: ModelFile,
+    start: FromOption = None,
     stop: Annotated[
         str | None,
         typer.Option(
@@ -27,7 +29,13 @@ def standards(
     import rotorgear as rg
 
     with progress_bar("standards") as progress:
-        result = rg.standards(rg.load(model), stop=parse_speed(stop, "--to"), grade=grade, progress=progress)
+        result = rg.standards(
+            rg.load(model),
+            start=parse_speed(start, "--from"),
+            stop=parse_speed(stop, "--to"),
+            grade=grade,
+            progress=progress,
+        )
     console().print(result.table())
     write_json(result.to_dict(), json)
     if save:

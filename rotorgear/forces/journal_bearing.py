@@ -97,6 +97,7 @@ class JournalBearing(ForceLaw):
     # The film takes its energy from the rotation of the journal, and whirls it where that is too much.
     passive: ClassVar[bool] = False
     shaft_ratio: ClassVar[str] = "order"
+    carries_at_rest: ClassVar[bool] = False
 
     viscosity: float = parameter("Pa s", "dynamic viscosity mu", above=0.0)
     radius: float = parameter("m", "radius R of the journal", above=0.0)

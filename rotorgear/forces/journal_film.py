@@ -279,6 +279,7 @@ class JournalFilm(ForceLaw):
     title: ClassVar[str] = "journal bearing"
     passive: ClassVar[bool] = False
     shaft_ratio: ClassVar[str] = "order"
+    carries_at_rest: ClassVar[bool] = False
 
     viscosity: float = parameter("Pa s", "dynamic viscosity mu", above=0.0)
     radius: float = parameter("m", "radius R of the journal", above=0.0)

@@ -184,6 +184,8 @@ class ForceLaw(ABC):
     # Whether the energy that it stores is the potential of its elastic force. Time integration then keeps energy to rounding
     # where sides meet and part; a law that does not say so is taken half way through each step, and may gain energy there.
     conserves: ClassVar[bool] = False
+    # Whether it carries a load while its shaft stands still; a film does not.
+    carries_at_rest: ClassVar[bool] = True
     # Name of the parameter that holds the turns of the law's shaft for each turn of the reference; a model file fills it in.
     shaft_ratio: ClassVar[str] = ""
 
@@ -250,6 +252,9 @@ class ForceLaw(ABC):
         k = self.components
         count = points or CYCLE_POINTS
         angles = still.cycle() * np.arange(count) / count if still.cycle() and speed else np.zeros(1)
+        if angles.size == 1:
+            value = still.evaluate(d, v, speed=speed)
+            return Linearised(value.force, value.in_displacement, value.in_velocity)
         d, v = (np.broadcast_to(np.asarray(x, float), (angles.size, k)) for x in (d, v))
         values = still.evaluate_many(d, v, angle=angles, speed=speed)
         return Linearised(

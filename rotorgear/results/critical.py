@@ -58,6 +58,7 @@ class CriticalResult(ModelResult, kind="critical"):
     """c critical speeds, ascending; shapes have modal mass 1."""
 
     damped: bool = of("whether damping and circulatory terms took part")
+    low_speed: float = of("lowest speed looked at", "rad/s", json="low_speed_rpm")
     top_speed: float = of(
         "highest speed looked at", "rad/s", json="top_speed_rpm", note=", negative for the other sense"
     )

@@ -16,7 +16,7 @@ from rotorgear.analysis.campbell.crossings import Chain, crossings, margins, roo
 from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.snapshot_basis import Request, SpeedModes
 from rotorgear.analysis.campbell.speed_family import merged
-from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, mesh_reach, operating_speed
+from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, highest_speed, mesh_reach, operating_speed
 from rotorgear.analysis.common.casings import reduction_errors, serving
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
@@ -26,6 +26,7 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes, Portraits, whirl_numbers
 from rotorgear.analysis.modal.refine import errors_of, total_error
+from rotorgear.analysis.static.lowest_speed import lowest_speed
 from rotorgear.analysis.static.tangent import about_equilibrium_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -44,7 +45,7 @@ _SAME_SPEED = 1e-9
 def campbell(
     model: Model | System,
     *,
-    start: float | str = 0.0,
+    start: float | str | None = None,
     stop: float | str | None = None,
     points: int = DEFAULT_SPEEDS,
     speeds: Sequence[float | str] | None = None,
@@ -63,8 +64,8 @@ def campbell(
 
     Args:
         model: a model, or its assembled system, which is then taken as it is.
-        start, stop: lowest and highest speed of the input shaft; numbers are rad/s, texts carry their unit. Without `stop` up to
-            1.25 times the operating speed.
+        start, stop: lowest and highest speed of the input shaft; numbers are rad/s, texts carry their unit. Without `start` from
+            0, with oil films from the lowest speed at which they carry; without `stop` up to 1.25 times the operating speed.
         points: number of speeds between them, evenly spaced.
         speeds: these, all of one sense, in place of an evenly spaced range.
         modes: a branch is returned when it is among the lowest so many oscillating modes at one of the speeds. Where neither
@@ -80,7 +81,11 @@ def campbell(
         AnalysisError: no speeds, speeds of both senses, a speed outside of a bearing's table, nothing that oscillates.
         ConvergenceError: a guard of a solver was not met.
     """
-    asked = chosen_speeds(model.model if isinstance(model, System) else model, speeds, start, stop, points)
+    parts = model.model if isinstance(model, System) else model
+    begun = ""
+    if start is None and speeds is None:
+        start, begun = lowest_speed(parts, None, highest_speed(parts, stop))
+    asked = chosen_speeds(parts, speeds, start or 0.0, stop, points)
     beyond = ""
     if modes is None and fmax is None:
         if mesh_orders and not isinstance(model, System):  # a given system has the mesh it has
@@ -116,7 +121,7 @@ def campbell(
     return replace(
         result,
         model=given,
-        left_out=(*result.left_out, *notes, *([beyond] if beyond else [])),
+        left_out=(*result.left_out, *notes, *(note for note in (begun, beyond) if note)),
         warnings=(*result.warnings, *few, *([short] if short else [])),
         status=short or "success",
     )

@@ -22,6 +22,7 @@ from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import FINEST, missed
 from rotorgear.analysis.modal.branch_shapes import BasisShapes
+from rotorgear.analysis.static.lowest_speed import lowest_speed
 from rotorgear.analysis.static.tangent import about_equilibrium_of
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
@@ -49,6 +50,7 @@ _UNSTRAINED = 1e-3
 def critical(
     model: Model | System,
     *,
+    start: float | str | None = None,
     stop: float | str | None = None,
     shaft_orders: Sequence[float] = SHAFT_ORDERS,
     mesh_orders: Sequence[int] = (),
@@ -58,10 +60,11 @@ def critical(
     accuracy: float | None = None,
     progress: Progress = silent,
 ) -> CriticalResult:
-    """Return all speeds of the input shaft up to `stop` at which a line meets a mode.
+    """Return all speeds of the input shaft from `start` to `stop` at which a line meets a mode.
 
     Args:
         model: a model, or its assembled system, which is then taken as it is.
+        start: lowest speed, rad/s or a text with its unit; None: 0, and with oil films the lowest speed at which they carry.
         stop: rad/s, or a text with its unit; negative turns the other way. None: 1.25 times the operating speed.
         shaft_orders, mesh_orders: multiples of the speed of every shaft, and of the frequency of every mesh.
         damped: with all damping and circulatory terms, where the damped frequency has to meet the line; or without.
@@ -83,8 +86,9 @@ def critical(
     if fmax is not None and not (np.isfinite(fmax) and fmax > 0.0):
         raise AnalysisError(f"the highest frequency must be positive, got {fmax} Hz")
     clock = Clock()
+    low, begun = lowest_speed(parts, start, top)
     # Where a line meets a mode is not known before: tangents over the whole range.
-    model, given, notes = about_equilibrium_of(model, list(np.linspace(0.0, top, _TANGENTS)))
+    model, given, notes = about_equilibrium_of(model, list(np.linspace(low, top, _TANGENTS)))
     highest = min(max(line.frequency_hz(top) for line in lines), fmax or np.inf)
     model, few = (model, ()) if isinstance(model, System) else serving(model, highest)
     aim = accuracy
@@ -99,12 +103,15 @@ def critical(
             progress=progress,
         )
         clock.lap("mesh")
-        family = SpeedFamily(system, *sorted((0.0, top)))
+        family = SpeedFamily(system, *sorted((low, top)))
         found: list[tuple[ExcitationOrder, Synchronous]] = []
         for k, line in enumerate(lines):
             progress(0.3 + 0.6 * k / len(lines), line.name)
             limit = abs(top) if fmax is None else min(abs(top), 2.0 * np.pi * fmax / line.order)
-            found += [(line, root) for root in roots_of(system, family, line.order, np.copysign(limit, top), damped)]
+            if limit > abs(low):
+                found += [
+                    (line, root) for root in roots_of(system, family, line.order, np.copysign(limit, top), damped)
+                ]
         clock.lap("critical speeds")
         errors = _errors(system, family, found, top, damped)
         clock.lap("error estimate")
@@ -114,13 +121,18 @@ def critical(
         # A line that runs along a mode magnifies the error of its frequency.
         aim = max(FINEST, 0.5 * aim * accuracy / worst)
     ranked = sorted(zip(found, errors, strict=True), key=lambda item: item[0][1].speed)
-    result = _result(system, ranked, lines, top, damped, clock)
+    result = _result(system, ranked, lines, (low, top), damped, clock)
     short = missed(accuracy, worst, "ask for less, or for a lower --to")
     return replace(
         result,
         model=given,
-        left_out=(*result.left_out, *notes),
-        warnings=(*result.warnings, *few, *_too_slow(system, top, lines), *([short] if short else [])),
+        left_out=(*result.left_out, *notes, *([begun] if begun else [])),
+        warnings=(
+            *result.warnings,
+            *few,
+            *(() if low else _too_slow(system, top, lines)),
+            *([short] if short else []),
+        ),
         status=short or "success",
     )
 
@@ -151,7 +163,10 @@ def _too_slow(system: System, top: float, lines: tuple[ExcitationOrder, ...]) ->
 
 
 def roots_of(system: System, family: SpeedFamily, order: float, top: float, damped: bool) -> list[Synchronous]:
-    """Synchronous speeds of all groups of dofs from 0 to `top` (rad/s, its sign is that of the rotation), as positive speeds."""
+    """Synchronous speeds of all groups of dofs, as positive speeds.
+
+    They lie between the lowest speed of the family and `top` in rad/s, whose sign is that of the rotation.
+    """
     groups = family.groups
     found = []
     for whole in affine_pieces(system, family, top, damped):
@@ -221,19 +236,20 @@ def _result(
     system: System,
     found: list[tuple[tuple[ExcitationOrder, Synchronous], float]],
     lines: tuple[ExcitationOrder, ...],
-    top: float,
+    ends: tuple[float, float],
     damped: bool,
     clock: Clock,
 ) -> CriticalResult:
+    low, top = ends
     count = len(found)
     X = np.column_stack([root.vector for (_, root), _ in found]) if found else np.zeros((system.n, 0), complex)
     shapes = BasisShapes(system, [np.hstack([X.real, X.imag])])
     coordinates = shapes.coordinates(0, np.vstack([np.eye(count), 1j * np.eye(count)]))
     speeds = np.copysign(np.array([root.speed for (_, root), _ in found]), top)
-    seen = shapes.portraits(coordinates, speeds)
+    seen = shapes.portraits(coordinates, speeds, top)
     words = shapes.descriptions(coordinates, speeds)
     zeta = system.model.damping.modal_ratio if damped else 0.0
-    damps = damped and not SpeedFamily(system, *sorted((0.0, top))).is_conservative
+    damps = damped and not SpeedFamily(system, *sorted((low, top))).is_conservative
     table = []
     for k, ((line, root), error) in enumerate(found):
         share = participation(line, seen, k)
@@ -260,6 +276,7 @@ def _result(
     return CriticalResult(
         model=system.model,
         damped=damped,
+        low_speed=low,
         top_speed=top,
         lines=lines,
         speeds=tuple(table),

@@ -54,11 +54,11 @@ class BasisShapes:
         whole[first:last] = q / np.where(norm > 0.0, norm, 1.0)
         return whole
 
-    def portraits(self, coordinates: np.ndarray, speeds: np.ndarray) -> Portraits:
-        """Energies and whirl of modes (r, m) at speeds (m,) in rad/s."""
+    def portraits(self, coordinates: np.ndarray, speeds: np.ndarray, known: float = 0.0) -> Portraits:
+        """Energies and whirl of modes (r, m) at speeds (m,) in rad/s; at `known` the matrices of all parts are known."""
         batches = self._batches(speeds)
         if not batches:
-            return self._portraits(coordinates, speeds)
+            return self._portraits(coordinates, np.array([known]))
         back = np.argsort(np.concatenate(batches), kind="stable")
         return _joined([self._portraits(coordinates[:, own], speeds[own]) for own in batches], back)
 

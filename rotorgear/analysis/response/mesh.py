@@ -79,10 +79,16 @@ def at_speed(model: Model, speed: float) -> Model:
             else:
                 continue
             if getattr(part, "table", ()) or not np.array_equal(rows, rows.T):
-                even = StiffnessMatrix(matrix=tuple(tuple(row) for row in 0.5 * (rows + rows.T)))
+                even = StiffnessMatrix(matrix=tuple(map(tuple, _conservative(rows))))
                 update = {"stiffness": even, "damping": None, **({"table": ()} if hasattr(part, "table") else {})}
                 changed.setdefault(table, dict(getattr(model, table)))[name] = part.model_copy(update=update)
     return model.model_copy(update=changed) if changed else model
+
+
+def _conservative(K: np.ndarray) -> np.ndarray:
+    """The symmetric part of a stiffness, without directions in which it would push away: a light film has such."""
+    values, directions = np.linalg.eigh(0.5 * (K + K.T))
+    return np.asarray((directions * np.maximum(values, 0.0)) @ directions.T)
 
 
 def damped_modes(system: System, limit: float, speed: float) -> tuple[np.ndarray, np.ndarray]:

@@ -22,6 +22,7 @@ from rotorgear.analysis.response.orders import Order, orders_of
 from rotorgear.analysis.response.plant import Plant, Readings
 from rotorgear.analysis.response.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
 from rotorgear.analysis.response.second_order import peaks_of
+from rotorgear.analysis.static.lowest_speed import lowest_speed
 from rotorgear.analysis.static.mean_state import Setup, mean_state
 from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.errors import AnalysisError
@@ -82,7 +83,7 @@ def response(
         ConvergenceError: the modal solution does not reach its tolerance, or an undamped resonance is hit exactly.
     """
     clock = time.perf_counter()
-    chosen = _speeds(model, speeds, start, stop, points)
+    chosen, begun = _speeds(model, speeds, start, stop, points)
     _check(method, modal_damping, fmax, elements, accuracy)
     zeta = modal_damping + model.damping.modal_ratio
     linear, notes = about_equilibrium(model, _spread(chosen))
@@ -176,6 +177,7 @@ def response(
             *weak,
             *setup.notes,
             *notes,
+            *([begun] if begun else []),
             *body_notes(system),
             *rolling_notes(model, rolls=False),
             *load_notes(system, "response"),
@@ -244,8 +246,9 @@ def _speeds(
     start: float | str | None,
     stop: float | str | None,
     points: int,
-) -> np.ndarray:
-    """Speeds in rad/s, in rising order of size, all of one sense."""
+) -> tuple[np.ndarray, str]:
+    """Speeds in rad/s, in rising order of size, all of one sense, and a sentence where films have chosen the lowest."""
+    begun = ""
     if given is None:
         operating = model.operation.speed if model.operation else None
         if not operating and (start is None or stop is None):
@@ -253,8 +256,11 @@ def _speeds(
                 "no speeds: give start and stop (--from, --to), or [operation] a speed: the run-up then goes to a fifth above it"
             )
         check_whole("the number of points", points)
-        low = LOWEST * (operating or 0.0) if start is None else speed_in_si(start)
         high = HIGHEST * (operating or 0.0) if stop is None else speed_in_si(stop)
+        if start is None:
+            low, begun = lowest_speed(model, None, high, LOWEST * (operating or 0.0))
+        else:
+            low = speed_in_si(start)
         speeds = np.linspace(low, high, points)
     else:
         speeds = np.array([speed_in_si(speed) for speed in given], float)
@@ -263,7 +269,7 @@ def _speeds(
     # One sense, because the sense of rotation chooses the working flanks, and with them the linearised model.
     if np.any(speeds == 0.0) or np.any(np.sign(speeds) != np.sign(speeds[0])):
         raise AnalysisError("speeds: all of one sense and none of them 0; at standstill nothing excites the model")
-    return speeds[np.argsort(np.abs(speeds), kind="stable")]
+    return speeds[np.argsort(np.abs(speeds), kind="stable")], begun
 
 
 def _check(method: str, modal_damping: float, fmax: float | None, elements: int | None, accuracy: float | None) -> None:

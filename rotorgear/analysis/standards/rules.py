@@ -70,13 +70,16 @@ class ResponsePeak:
         return self.speed / (self.above - self.below)
 
 
-def response_peak(amplitude: Callable[[float], float], near: float, width: float) -> ResponsePeak | None:
+def response_peak(
+    amplitude: Callable[[float], float], near: float, width: float, least: float = 0.0
+) -> ResponsePeak | None:
     """The peak of a response next to a speed, and where it has fallen to 0.707 of it, found by roots and not on a grid.
 
     Args:
         amplitude: of the response at a speed; any unit.
         near: speed to begin at, such as a damped critical speed.
         width: relative width that is expected, such as the damping ratio there.
+        least: speed below which the response is not known.
 
     Returns:
         The peak; None where the response has none within a tenth (or ten widths) of the speed.
@@ -86,7 +89,7 @@ def response_peak(amplitude: Callable[[float], float], near: float, width: float
     step = max(0.25 * width, 1e-7) * near
     bracket = (near - step, near + step)
     found = minimize_scalar(
-        lambda speed: -amplitude(abs(speed)), bracket=bracket, method="brent", options={"xtol": 1e-9}
+        lambda speed: -amplitude(max(abs(speed), least)), bracket=bracket, method="brent", options={"xtol": 1e-9}
     )
     peak = abs(float(found.x))
     if not abs(peak / near - 1.0) <= max(0.1, 10.0 * width):
@@ -101,7 +104,7 @@ def response_peak(amplitude: Callable[[float], float], near: float, width: float
         stride = 0.2 * step
         for _ in range(_STEPS):
             beyond = here + sign * stride
-            if beyond <= 0.0 or beyond > 3.0 * peak:
+            if beyond <= least or beyond > 3.0 * peak:
                 return math.nan
             size = amplitude(beyond)
             if size <= level:

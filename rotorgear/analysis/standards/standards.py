@@ -20,6 +20,7 @@ from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.standards import rules
 from rotorgear.analysis.standards.unbalance import UnbalanceResponse, antinodes, plant_up_to
+from rotorgear.analysis.static.lowest_speed import needs_rotation
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.model.parts.supports import Bearing
@@ -54,6 +55,7 @@ _MODES = 24
 def standards(
     model: Model,
     *,
+    start: float | str | None = None,
     stop: float | str | None = None,
     grade: float = 2.5,
     progress: Progress = silent,
@@ -66,6 +68,7 @@ def standards(
 
     Args:
         model: a model with an operating speed.
+        start: lowest speed of the input shaft at which peaks are looked for, as in `critical`.
         stop: highest speed of the input shaft at which peaks are looked for, rad/s or with its unit; None: 1.5 times the
             operating speed.
         grade: balance quality grade G of ISO 21940-11 in mm/s.
@@ -112,16 +115,24 @@ def judged(found: CriticalResult, model: Model, grade: float, progress: Progress
     _require_grade(grade)
     direction = 1 if speed > 0.0 else -1
     operating = abs(speed)
+<<<<<<< HEAD
     top = abs(found.top_speed)
+=======
+    progress(0.05, "critical speeds")
+    found = critical(model, start=start, stop=direction * top)
+    low = abs(found.low_speed)
+>>>>>>> 660b4e6 (Begin ranges of speed where oil films carry; find damped critical speeds between close rows)
     fastest = max(abs(model.layout.train.ratio(name)) for name in model.shafts) * top
-    plant, notes = plant_up_to(model, direction, top, fastest)
+    plant, notes = plant_up_to(model, direction, (low, top), fastest)
     progress(0.4, "unbalance response")
-    lateral = _Lateral(model, plant, found, direction, operating, top)
+    lateral = _Lateral(model, plant, found, direction, operating)
     progress(0.7, "stability and torsion")
     running = modal(model, speed=speed, modes=_MODES)
     lines = excitation_orders(model, (1.0, 2.0), (1,))
     highest = max((line.frequency_hz(operating) for line in lines), default=0.0)
-    still = modal(model, fmax=(1.0 + 2.0 * rules.LEAST_TORSIONAL_MARGIN) * highest)
+    # Films carry nothing at standstill: their gearbox is asked while it runs.
+    at = speed if needs_rotation(model) else None
+    still = modal(model, speed=at, fmax=(1.0 + 2.0 * rules.LEAST_TORSIONAL_MARGIN) * highest)
     progress(1.0, "done")
     return StandardsResult(
         model=model,
@@ -155,12 +166,12 @@ def _verdict(kept: bool) -> str:
 class _Lateral:
     """The unbalance response of each shaft: its peaks, and what the rules say about them."""
 
-    def __init__(
-        self, model: Model, plant: Plant, found: CriticalResult, direction: int, operating: float, top: float
-    ) -> None:
+    def __init__(self, model: Model, plant: Plant, found: CriticalResult, direction: int, operating: float) -> None:
+        top = abs(found.top_speed)
         self.plant = plant
         self.model = model
         self.operating = operating
+        self.low = abs(found.low_speed)
         self.criticals: list[ResponseCritical] = []
         self.checks: list[RuleCheck] = []
         self._responses: dict[str, list[tuple[UnbalanceResponse, float]]] = {}
@@ -191,7 +202,11 @@ class _Lateral:
 
         damped = [one.speed for one in self.criticals if math.isfinite(one.amplification_factor)]
         near = np.multiply.outer(damped, 1.0 + np.array(_NEAR_PEAKS)).ravel()
-        self.curve_speeds = np.unique(np.concatenate([np.linspace(0.02, 1.0, _CURVE) * top, near[near < top]]))
+        self.curve_speeds = np.unique(
+            np.concatenate(
+                [np.linspace(max(0.02 * top, self.low), top, _CURVE), near[(near > self.low) & (near < top)]]
+            )
+        )
         self.curves = {
             shaft: np.array([response.orbits(speed, [probe])[0] for speed in self.curve_speeds])
             for shaft, (response, probe) in self._first.items()
@@ -215,7 +230,9 @@ class _Lateral:
             below = above = math.nan
             factor = math.inf
         else:
-            peak = rules.response_peak(lambda s: float(response.orbits(s, [probe])[0]), near, item.damping_ratio)
+            peak = rules.response_peak(
+                lambda s: float(response.orbits(s, [probe])[0]), near, item.damping_ratio, self.low
+            )
             known = [one.speed for one in self.criticals if one.shaft == shaft]
             if peak is None or any(abs(peak.speed / speed - 1.0) < 1e-3 for speed in known):
                 return

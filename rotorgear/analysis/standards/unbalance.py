@@ -41,15 +41,19 @@ class Antinodes:
     mass: np.ndarray
 
 
-def plant_up_to(model: Model, direction: int, top: float, frequency: float) -> tuple[Plant, tuple[str, ...]]:
+def plant_up_to(
+    model: Model, direction: int, ends: tuple[float, float], frequency: float
+) -> tuple[Plant, tuple[str, ...]]:
     """The model about its mean state as a plant, meshed for a frequency, and sentences on what was left out.
 
     Args:
         model: the model. direction: sense of the input shaft.
-        top: highest speed of the input shaft in rad/s, positive; frequency: highest in rad/s.
+        ends: lowest and highest speed of the input shaft in rad/s, positive; frequency: highest in rad/s.
     """
+    low, top = ends
     speed = direction * top
-    linear, notes = about_equilibrium(model, [float(x) for x in np.linspace(0.1, 1.0, _TANGENTS) * speed])
+    tangents = direction * np.linspace(low or 0.1 * top, top, _TANGENTS)
+    linear, notes = about_equilibrium(model, [float(x) for x in tangents])
     first = mean_state(System(model, load=model.mean_load(direction).of_kind("static")), speed)
     plan = plan_up_to(at_speed(linear, speed), MARGIN * frequency / (2.0 * np.pi), None, None)
     system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))

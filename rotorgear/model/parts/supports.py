@@ -207,6 +207,11 @@ class Bearing(Part):
         return self.rolling is not None or self.journal is not None
 
     @property
+    def has_film(self) -> bool:
+        """Whether oil carries in it, which it does only while its shaft turns."""
+        return self.journal is not None
+
+    @property
     def is_linear(self) -> bool:
         """Whether it has a stiffness that linear analyses take."""
         return not self.has_law or self.stiffness is not None

@@ -26,7 +26,9 @@ from rotorgear.solvers.sparse.factor import factor_general, factor_symmetric, si
 _DENSE_UP_TO = 100
 LEAST_SHARE = 1e-6  # of the highest speed, below which a root is not told from a rigid motion at no speed
 _CENTRE = 1.000731  # off the middle, where an eigenvalue may sit
-_RADIUS = 1.15  # of half the range, for roots that damping moves sideways
+_RADIUS = 1.15  # of half the range
+_HEAVY = 0.7  # |Re s| / |s| from which on a mode no longer oscillates in a way that can be followed
+_BEYOND = 0.15  # of a speed, how far damped roots may move when they are polished
 _MOST = 400  # critical speeds that ARPACK is asked for; more are a question of another range
 _SETTLED = 1e-14  # |Im lambda - p W| / (p W) at which the secant ends
 BACK_SUBSTITUTED = 1e-10  # the same, above which a root is refused
@@ -49,6 +51,15 @@ class Affine:
         """D and K at a speed."""
         K = self.K0 + speed * self.K1
         return sp.csc_array(self.D0 + speed * self.D1), sp.csc_array(K if self.K2 is None else K + speed**2 * self.K2)
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether roots may lie off the imaginary axis: a damping or a circulation."""
+        for skew, even in ((self.D0 + self.D0.T, True), (self.D1 + self.D1.T, True), (self.K0 - self.K0.T, False)):
+            scale = abs(self.K0).max() if not even else 1e-300
+            if skew.nnz and abs(skew).max() > 1e-12 * scale:
+                return True
+        return False
 
     def inertia(self, order: float) -> sp.csc_array:
         """p^2 M - i p D_1 - K_2: what grows with s^2."""
@@ -82,9 +93,13 @@ def synchronous_speeds(family: Affine, order: float) -> list[Synchronous]:
         # Another centre and another start vector where a count says that one was missed.
         for attempt in range(4):
             s, X = _starts(family, order, attempt)
-            # Starts move when they are polished, so some beyond both ends are tried; s near 0 is a rigid motion at no speed.
-            inside = (s.imag > family.low - 1e-3 * family.high) & (s.imag < 1.05 * family.high)
-            inside &= np.abs(s.real) < 0.7 * np.abs(s)  # heavier damping leaves no oscillation to follow
+            # Starts move when they are polished, with damping the further the steeper the matrices grow: some beyond both ends
+            # are tried. s near 0 is a rigid motion at no speed.
+            beyond = _BEYOND if family.is_damped else 0.0
+            inside = (s.imag > (1.0 - beyond) * family.low - 1e-3 * family.high) & (
+                s.imag < (1.05 + beyond) * family.high
+            )
+            inside &= np.abs(s.real) < _HEAVY * np.abs(s)
             near = np.abs(s.imag) > LEAST_SHARE * family.high
             roots: list[Synchronous] = []
             for k in np.flatnonzero(inside & near):
@@ -104,6 +119,9 @@ def _starts(family: Affine, order: float, attempt: int) -> tuple[np.ndarray, np.
     """Eigenvalues s (k,) of the problem in the speed inside the disc, and vectors (n, k)."""
     centre = 0.5 * (family.low + family.high) * _CENTRE * (1.0 + 0.0137 * attempt)
     radius = _RADIUS * 0.5 * (family.high - family.low) / centre
+    if family.is_damped:
+        # Damping moves roots sideways, in a narrow range far beyond a disc that is as wide as it.
+        radius = max(radius, _HEAVY / np.sqrt(1.0 - _HEAVY**2) * family.high / centre)
     diagonal = np.abs(family.K0.diagonal()) + (order * centre) ** 2 * family.M.diagonal()
     scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
     S = sp.diags_array(scale)
