@@ -7,8 +7,16 @@ the inner one moves by
     delta = sqrt((A cos a0 + u)^2 + (A sin a0 + w)^2) - A,   Q = c_p delta^(3/2) where delta > 0
 
 and F is the gradient of the energy 2/5 c_p sum delta^(5/2), so that the law is conservative except for the motion
-of the balls. A deep groove bearing stands centred: A cos a0 = A - s/2, A sin a0 = 0. ISO/TS 16281:2008; de Mul, Vree and Maas,
-J. Tribology 111 (1989) 142.
+of the balls. A deep groove bearing stands centred: A cos a0 = A - s/2, A sin a0 = 0.
+
+Several rows share the bearing: row r stands at l_r along the shaft and takes a push towards + or - z (sigma_r), with
+
+    u = (x + l_r ty) cos phi + (y - l_r tx) sin phi,   A sin a0 -> sigma_r A sin a0
+
+so that two rows make a pair in O arrangement, where the lines of contact meet the axis outside of the pair, in X or in tandem
+(rows.py). A four-point bearing has both sides in one place; each ball then presses across either diagonal by itself.
+
+ISO/TS 16281:2008; de Mul, Vree and Maas, J. Tribology 111 (1989) 142.
 """
 
 from __future__ import annotations
@@ -22,12 +30,13 @@ from scipy.optimize import brentq
 from rotorgear.forces.hertz import point_contact, point_pressure
 from rotorgear.forces.inside import RollingLoads
 from rotorgear.forces.law import ForceLaw, Repeats, parameter, refuse
+from rotorgear.forces.rows import rows_of
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
 _COMPONENTS = 5
 TURN = 2.0 * np.pi
 # Of the parameters; and of the state.
-BALLS, CONTACT, DISTANCE, RADIAL, AXIAL, ORDER, PHASE, ARM = range(8)
+BALLS, CONTACT, DISTANCE, RADIAL, AXIAL, ORDER, PHASE, ARM, ROWS, FIRST = range(10)  # then place and side of each row
 CAGE, CAGE_SPEED = range(2)
 
 
@@ -45,7 +54,6 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     cp = p[CONTACT]
     distance = p[DISTANCE]
     radial = p[RADIAL]
-    axial = p[AXIAL]
     arm = p[ARM]
     for i in range(5):
         F[i] = 0.0
@@ -58,16 +66,21 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
     g = np.zeros(5)
     a = np.zeros(5)
     b = np.zeros(5)
-    for j in range(count):
+    for j in range(count * int(p[ROWS])):
+        row = j // count
+        along = p[FIRST + 2 * row]
+        axial = p[FIRST + 2 * row + 1] * p[AXIAL]
         phi = s[CAGE] + TURN * j / count
         c = np.cos(phi)
         n = np.sin(phi)
         a[0] = c
         a[1] = n
+        a[3] = -along * n
+        a[4] = along * c
         b[2] = 1.0
         b[3] = arm * n
         b[4] = -arm * c
-        u = radial + d[0] * c + d[1] * n
+        u = radial + d[0] * c + d[1] * n - along * (d[3] * n - d[4] * c)
         w = axial + d[2] + arm * (d[3] * n - d[4] * c)
         length = np.sqrt(u * u + w * w)
         delta = length - distance
@@ -87,7 +100,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
                 across = (cosine * b[i] - sine * a[i]) * (cosine * b[k] - sine * a[k]) / length
                 Kd[5 * i + k] += slope * g[i] * g[k] + Q * across
         stored += 0.4 * cp * delta * delta * root
-        du = -d[0] * n + d[1] * c
+        du = -d[0] * n + d[1] * c - along * (d[3] * c + d[4] * n)
         dw = arm * (d[3] * c + d[4] * n)
         turned += Q * (cosine * du + sine * dw) * s[CAGE_SPEED]
     energy[0] = stored
@@ -128,11 +141,17 @@ class BallBearing(ForceLaw):
     reference: tuple[float, ...] = parameter(
         "N/m, N m/rad", "linear stiffness to expand about, on the five diagonals", (0.0,) * _COMPONENTS
     )
+    arrangement: str = parameter(
+        "", "rows and the sides that they press to", "single", choices=("single", "O", "X", "tandem", "four-point")
+    )
+    row_distance: float = parameter("m", "distance of the two rows of a pair", 0.0, least=0.0)
 
     def check(self) -> None:
         """Balls fit into the bearing, and the clearance into the grooves."""
         if not self.ball_diameter < self.pitch_diameter:
             raise refuse(self, "ball_diameter", "a diameter below the pitch diameter")
+        if self.arrangement != "single" and not self.contact_angle > 0.0:
+            raise refuse(self, "contact_angle", "above 0 where rows press to both sides or together")
         if not self.clearance < 2.0 * self.distance:
             raise refuse(self, "clearance", "less than what parts the grooves")
 
@@ -180,15 +199,25 @@ class BallBearing(ForceLaw):
         return 2
 
     def parameters(self) -> np.ndarray:
-        """Z, c_p, A, A cos a0, A sin a0, order, phase, R_i."""
+        """Z, c_p, A, A cos a0, A sin a0, order, phase, R_i, number of rows, and place and side of each."""
         A = self.distance
         a0 = self.contact_angle
         radial = A * np.cos(a0) - 0.5 * self.clearance
         axial = A * np.sin(a0)
         arm = 0.5 * self.pitch_diameter + (self.inner_groove - 0.5) * self.ball_diameter * radial / A
-        return np.array(
-            [self.balls, self.contact_constant, A, radial, axial + self.preload, self.order, self.phase, arm]
-        )
+        rows = rows_of(self.arrangement, self.row_distance)
+        own = [
+            self.balls,
+            self.contact_constant,
+            A,
+            radial,
+            axial + self.preload,
+            self.order,
+            self.phase,
+            arm,
+            len(rows),
+        ]
+        return np.array([*own, *(value for row in rows for value in row)])
 
     def pressed_by(self, force: float) -> BallBearing:
         """The bearing with the preload that a force in N along its contact angle gives."""
@@ -218,21 +247,28 @@ class BallBearing(ForceLaw):
 
     def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> RollingLoads:
         """Loads, contact angles and pressures of the balls at displacements d (5,), with the cage where it is at an angle."""
-        _, _, A, radial, axial, _, _, arm = self.parameters()
-        phi = np.mod(self.order * angle + self.phase + TURN * np.arange(self.balls) / self.balls, TURN)
+        _, _, A, radial, axial, _, _, arm, _ = self.parameters()[:FIRST]
+        rows = rows_of(self.arrangement, self.row_distance)
+        one = np.mod(self.order * angle + self.phase + TURN * np.arange(self.balls) / self.balls, TURN)
+        phi = np.tile(one, len(rows))
+        place, side = np.repeat(np.array(rows), self.balls, axis=0).T
         c = np.cos(phi)
         n = np.sin(phi)
-        across = radial + d[0] * c + d[1] * n
-        along = axial + d[2] + arm * (n * d[3] - c * d[4])
+        tilt = n * d[3] - c * d[4]
+        across = radial + d[0] * c + d[1] * n - place * tilt
+        along = side * axial + d[2] + arm * tilt
         delta = np.hypot(across, along) - A
         load = self.contact_constant * np.maximum(delta, 0.0) ** 1.5
         inner, outer = point_pressure(load, *self._contacts)
-        return RollingLoads(phi, np.where(delta > 0.0, np.arctan2(along, across), 0.0), load, delta, inner, outer)
+        row = np.repeat(np.arange(1, len(rows) + 1), self.balls)
+        return RollingLoads(row, phi, np.where(delta > 0.0, np.arctan2(along, across), 0.0), load, delta, inner, outer)
 
     @classmethod
     def examples(cls) -> tuple[BallBearing, ...]:
-        """A deep groove bearing with clearance that turns, and an angular contact bearing."""
+        """A deep groove bearing with clearance that turns, an angular contact bearing, a pair, and one of four points."""
         return (
             cls(7, 11.5e-3, 43.5e-3, clearance=10e-6, order=0.4, phase=0.2),
             cls(12, 14e-3, 77e-3, contact_angle=0.44, order=0.4),
+            cls(12, 14e-3, 77e-3, contact_angle=0.44, order=0.4, preload=5e-6, arrangement="O", row_distance=0.022),
+            cls(10, 14e-3, 77e-3, contact_angle=0.6, clearance=8e-6, order=0.4, arrangement="four-point"),
         )

@@ -12,12 +12,14 @@ class RollingLoads:
     """The z rolling elements of a bearing.
 
     Attributes:
+        row: number of its row from -z, (z,); of the diagonal in a four-point bearing.
         angle: where each one stands, (z,) rad from +x about +z.
         contact_angle: of its load against the plane across the shaft, (z,) rad; 0 for one that carries nothing.
         load: (z,) N. deflection: of both contacts together, (z,) m, negative where it stands apart.
         inner_pressure, outer_pressure: largest Hertz pressure at the inner and the outer ring, (z,) Pa.
     """
 
+    row: np.ndarray
     angle: np.ndarray
     contact_angle: np.ndarray
     load: np.ndarray

@@ -28,6 +28,7 @@ _SHIPPED = {
     "tilting_pads": "TiltingPads",
     "ball_bearing": "BallBearing",
     "roller_bearing": "RollerBearing",
+    "tapered_bearing": "TaperedBearing",
     "rotating_force": "RotatingForce",
     "torque_curve": "TorqueCurve",
     "plain_spring": "PlainSpring",

@@ -129,7 +129,7 @@ class RollerBearing(ForceLaw):
         if self.roller_diameter and self.pitch_diameter:
             gamma = self.roller_diameter / self.pitch_diameter
             inner, outer = line_pressure(load, self.length, self.roller_diameter, gamma)
-        return RollingLoads(phi, np.zeros(phi.size), load, delta, inner, outer)
+        return RollingLoads(np.ones(phi.size), phi, np.zeros(phi.size), load, delta, inner, outer)
 
     @classmethod
     def examples(cls) -> tuple[RollerBearing, ...]:

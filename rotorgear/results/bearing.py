@@ -9,8 +9,9 @@ from rotorgear.results.schema import Record, derived, of
 
 
 class RollingElementRow(Record):
-    """One ball or roller, with the cage at angle 0."""
+    """One ball or roller, with the cage at angle 0; a ball of a four-point bearing has a row for each diagonal."""
 
+    row: int = of("its row", note=", from -z; of a four-point bearing the diagonal across which it presses")
     angle: float = of("where it stands", "rad", json="angle_deg", note=", from +x about +z")
     contact_angle: float = of("contact angle under load", "rad", json="contact_angle_deg", note="; 0 without load")
     load: float = of("load", "N", json="load_n")

@@ -15,7 +15,7 @@ from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.load import COMPONENTS, Load
 from rotorgear.model.parts.nonlinear_element import element_law
-from rotorgear.model.parts.supports import Bearing, JournalGeometry
+from rotorgear.model.parts.supports import Bearing, JournalGeometry, RollingElements
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.groups import ElementGroup, node_dofs
 from rotorgear.system.loads import wrench_load
@@ -191,6 +191,8 @@ def _bearing_law(bearing: Bearing, ratio: float) -> ForceLaw:
     slip_free = 0.5 * (1.0 - rolling.element_diameter * np.cos(rolling.contact_angle) / rolling.pitch_diameter)
     linear = np.diag(np.array(bearing.stiffness.as_rows())) if bearing.stiffness else np.zeros(6)
     order = float(ratio * slip_free)
+    if rolling.kind == "tapered" or (rolling.kind == "roller" and (rolling.slices or 1) > 1):
+        return _sliced(rolling, order, linear)
     if rolling.kind == "roller":
         return RollerBearing(
             rollers=rolling.elements,
@@ -216,6 +218,29 @@ def _bearing_law(bearing: Bearing, ratio: float) -> ForceLaw:
         order=order,
         preload=side * rolling.preload_displacement,
         reference=tuple(map(float, linear[:5])),
+        arrangement="four-point" if rolling.kind == "four-point" else rolling.arrangement,
+        row_distance=rolling.row_distance or 0.0,
+    )
+    return law.pressed_by(rolling.preload_force) if rolling.preload_force else law
+
+
+def _sliced(rolling: RollingElements, order: float, linear: np.ndarray) -> ForceLaw:
+    """Rollers whose loads vary along them: tapered ones, or cylindrical ones that feel tilt."""
+    from rotorgear.forces.tapered_bearing import SlicedRollers, TaperedBearing
+
+    law = (TaperedBearing if rolling.kind == "tapered" else SlicedRollers)(
+        rollers=rolling.elements,
+        length=rolling.length or 0.0,
+        roller_diameter=rolling.element_diameter,
+        pitch_diameter=rolling.pitch_diameter,
+        contact_angle=rolling.contact_angle,
+        clearance=rolling.clearance,
+        preload=rolling.preload_displacement,
+        slices=rolling.slices or 21,
+        order=order,
+        reference=tuple(map(float, linear[:5])),
+        arrangement=rolling.arrangement,
+        row_distance=rolling.row_distance or 0.0,
     )
     return law.pressed_by(rolling.preload_force) if rolling.preload_force else law
 

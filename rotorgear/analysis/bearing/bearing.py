@@ -122,9 +122,9 @@ def _films(model: Model) -> set[str]:
 
 
 def _elements(inside: RollingLoads) -> tuple[RollingElementRow, ...]:
-    order = np.argsort(inside.angle)
+    order = np.lexsort((inside.angle, inside.row))
     columns = (getattr(inside, item.name)[order] for item in fields(inside))
-    return tuple(RollingElementRow(*map(float, row)) for row in zip(*columns, strict=True))
+    return tuple(RollingElementRow(int(row), *map(float, rest)) for row, *rest in zip(*columns, strict=True))
 
 
 def _film(inside: FilmField, state: LawState, shaft_speed: float) -> FilmState:

@@ -13,6 +13,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
+from rotorgear.model.checks.estimates import estimated
 from rotorgear.model.checks.plausibility import implausible
 from rotorgear.model.model import Model
 from rotorgear.model.model_hash import model_hash
@@ -41,7 +42,7 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
         (_, subject), *given = bound.arguments.items()
         settings = {name: setting(value) for name, value in given if name not in _NOT_SETTINGS}
         seconds = {"total": time.perf_counter() - start} | result.seconds
-        doubts = tuple(implausible(subject.layout)) if isinstance(subject, Model) else ()
+        doubts = (*implausible(subject.layout), *estimated(subject)) if isinstance(subject, Model) else ()
         warnings = (*result.warnings, *(doubt for doubt in doubts if doubt not in result.warnings))
         return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
 

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from rotorgear.errors import Problem
 from rotorgear.forces.clearance_classes import class_clearance
+from rotorgear.model.parts.designations import inner_geometry
 from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import (
@@ -196,11 +197,19 @@ def _rolling(address: str, bearing: Bearing, rolling: RollingElements) -> Iterat
         text = f"{rolling.elements} of {millimetres(rolling.element_diameter)}"
         wanted = f"elements that fit on a circle of {millimetres(rolling.pitch_diameter)}"
         yield Problem(f"{here}.element_diameter", text, wanted)
-    if (rolling.kind == "roller") != (rolling.length is not None):
-        got = "a roller without length" if rolling.kind == "roller" else "a length of balls"
+    rollers = rolling.kind in ("roller", "tapered")
+    known = inner_geometry(rolling.designation) if rolling.designation is not None else None
+    for key, value in known.keys.items() if known is not None else ():
+        given = getattr(rolling, key)
+        if key != "contact_angle" and given != value and not (isinstance(given, float) and math.isclose(given, value)):
+            wanted = f"{value if key == 'kind' else f'{value:.6g}'} as {rolling.designation} has it, or no designation"
+            yield Problem(f"{here}.{key}", f"{given} beside designation = '{rolling.designation}'", wanted)
+    if rollers != (rolling.length is not None):
+        got = "a roller without length" if rollers else "a length of balls"
         yield Problem(f"{here}.length", got, "a length for rollers, none for balls")
     if rolling.kind == "roller" and rolling.contact_angle:
         yield Problem(f"{here}.contact_angle", "an angle", "0 for cylindrical rollers")
+    yield from _rows(here, rolling)
     yield from _fit(here, rolling)
     for key in ("inner_groove", "outer_groove"):
         if getattr(rolling, key) <= 0.5:
@@ -210,9 +219,31 @@ def _rolling(address: str, bearing: Bearing, rolling: RollingElements) -> Iterat
         angle = f"{math.degrees(rolling.contact_angle):.6g} deg"
         yield Problem(f"{here}.contact_angle", angle, "an angle below 80 deg")
     reach = 2.0 * (rolling.inner_groove + rolling.outer_groove - 1.0) * rolling.element_diameter
-    if rolling.kind == "ball" and reach > 0.0 and rolling.clearance >= reach * math.cos(rolling.contact_angle):
+    if not rollers and reach > 0.0 and rolling.clearance >= reach * math.cos(rolling.contact_angle):
         wanted = f"less than {millimetres(reach)}: the balls would fall out"
         yield Problem(f"{here}.clearance", millimetres(rolling.clearance), wanted)
+
+
+def _rows(here: str, rolling: RollingElements) -> Iterator[Problem]:
+    """Rows with the contact angle that makes them press, and slices of rollers."""
+    if rolling.kind in ("tapered", "four-point") and not rolling.contact_angle:
+        yield Problem(
+            f"{here}.contact_angle", "0", f"an angle of a {rolling.kind} bearing, such as '15 deg' or '35 deg'"
+        )
+    pair = rolling.arrangement != "single"
+    if pair and (rolling.kind not in ("ball", "tapered") or not rolling.contact_angle):
+        wanted = "a pair of angular contact ball or tapered roller bearings, with their contact_angle"
+        yield Problem(
+            f"{here}.arrangement", f"{rolling.arrangement} of a {rolling.kind} bearing without an angle", wanted
+        )
+    if (pair or rolling.kind == "four-point") and rolling.contact_angle < 0.0:
+        angle = f"{math.degrees(rolling.contact_angle):.6g} deg"
+        yield Problem(f"{here}.contact_angle", angle, "a positive angle: the arrangement has the sides")
+    if pair != (rolling.row_distance is not None):
+        got = "a pair without a distance" if pair else "a distance of one row"
+        yield Problem(f"{here}.row_distance", got, "the distance of the two rows beside an arrangement O, X or tandem")
+    if rolling.slices is not None and not (rolling.kind in ("roller", "tapered") and 1 <= rolling.slices <= 200):
+        yield Problem(f"{here}.slices", f"{rolling.slices} of a {rolling.kind} bearing", "1 to 200 slices of a roller")
 
 
 def _fit(here: str, rolling: RollingElements) -> Iterator[Problem]:

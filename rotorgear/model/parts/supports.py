@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field, model_validator
 
+from rotorgear.model.parts.designations import SERIES, inner_geometry
 from rotorgear.model.parts.fields import (
     Angle,
     Damping,
@@ -27,6 +28,7 @@ from rotorgear.model.parts.fields import (
     Stiffness,
     Viscosity,
     Whole,
+    refuse,
 )
 
 Rows = tuple[tuple[float, ...], ...]
@@ -110,10 +112,20 @@ class Pedestal(Part):
 
 
 class RollingElements(Part):
-    """What rolls in a bearing: its Hertz contacts, clearance and turning cage, for a transient."""
+    """What rolls in a bearing: its Hertz contacts, clearance and turning cage; by its geometry, or by a designation."""
 
-    kind: Literal["ball", "roller"] = Field(description="ball, or cylindrical roller")
-    elements: Whole = Field(description="number of balls or rollers")
+    # With a designation the four keys that are needed otherwise may be left out.
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema.update(required=[]))
+
+    designation: str | None = Field(
+        None,
+        description="such as 6205, 7218 B, QJ 212, NJ209 or 30209: fills kind, elements, diameters, length and contact angle "
+        "where they are not given; estimated from the outside where nothing is published",
+    )
+    kind: Literal["ball", "roller", "tapered", "four-point"] = Field(
+        description="ball, cylindrical roller, tapered roller, or ball between two arcs (four-point)"
+    )
+    elements: Whole = Field(description="number of balls or rollers of a row")
     element_diameter: PositiveLength = Field(description="diameter of a ball or roller")
     pitch_diameter: PositiveLength = Field(description="diameter of the circle of their centres")
     length: PositiveLength | None = Field(None, description="effective length of a roller")
@@ -131,10 +143,35 @@ class RollingElements(Part):
     preload_force: Force = Field(0.0, description="axial force that presses it together, in place of that displacement")
     contact_angle: Angle = Field(
         0.0,
-        description="free contact angle of an angular contact ball bearing; positive where it takes a push towards +z",
+        description="free contact angle of an angular contact ball bearing, or of the outer raceway of a tapered one; positive "
+        "where it takes a push towards +z",
+    )
+    arrangement: Literal["single", "O", "X", "tandem"] = Field(
+        "single",
+        description="two rows of angular contact or tapered bearings: O (back to back), X (face to face) or tandem; single: one",
+    )
+    row_distance: PositiveLength | None = Field(
+        None, description="distance of the middles of the two rows; the bearing stands half way between them"
+    )
+    slices: Whole | None = Field(
+        None,
+        description="slices of a roller over which its load varies as the rings tilt; default: 21 of a tapered one, 1 of a "
+        "cylindrical one, which then feels no tilt",
     )
     inner_groove: PositiveRatio = Field(0.52, description="groove radius of the inner ring over the ball's diameter")
     outer_groove: PositiveRatio = Field(0.53, description="groove radius of the outer ring over the ball's diameter")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_designation(cls, data: Any) -> Any:
+        """Fill what a designation tells, where it is not given."""
+        if not isinstance(data, dict) or not isinstance(data.get("designation"), str):
+            return data
+        known = inner_geometry(data["designation"])
+        if known is None:
+            raise refuse(f"a designation of the series {SERIES}; or leave it out and give kind, elements and diameters")
+        given = {key: value for key, value in data.items() if value is not None}
+        return {**known.keys, **given}
 
 
 class JournalGeometry(Part):

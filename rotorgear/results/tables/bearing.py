@@ -105,11 +105,22 @@ def _film(sheet: BearingSheet) -> Any:
 
 
 def _elements(sheet: BearingSheet) -> Any:
-    out = table("element", "at deg", "contact deg", "load N", "press um", "p inner MPa", "p outer MPa")
+    several = any(row.row > 1 for row in sheet.rolling_elements)
+    out = table(
+        "element",
+        *(["row"] if several else []),
+        "at deg",
+        "contact deg",
+        "load N",
+        "press um",
+        "p inner MPa",
+        "p outer MPa",
+    )
     for number, row in enumerate(sheet.rolling_elements):
         loaded = row.load > 0.0
         out.add_row(
             str(number + 1),
+            *([str(row.row)] if several else []),
             f"{math.degrees(row.angle):.2f}",
             f"{math.degrees(row.contact_angle):.2f}" if loaded else "-",
             f"{row.load:.2f}",

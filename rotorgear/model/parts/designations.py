@@ -1,0 +1,95 @@
+"""Rolling bearings by their designation: boundary dimensions of ISO 15 and ISO 355 series, and what rolls inside.
+
+Makers print bore, outer diameter and width; what rolls inside they print for few bearings. `_KNOWN` has those of which number and
+size of the elements are published, with the source; of all others they are estimated from the boundary dimensions, by shares that
+hold within some 10 % for the bearings that are known. An estimate is said wherever the bearing is used.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Any
+
+# Outer diameter in mm over the bore code, by the series of diameters: 0 light, 2 medium, 3 heavy (ISO 15; makers' catalogues).
+_BORES = {"00": 10.0, "01": 12.0, "02": 15.0, "03": 17.0}
+_OUTER = {
+    "0": (26, 28, 32, 35, 42, 47, 55, 62, 68, 75, 80, 90, 95, 100, 110, 115, 125, 130, 140, 145, 150),
+    "2": (30, 32, 35, 40, 47, 52, 62, 72, 80, 85, 90, 100, 110, 120, 125, 130, 140, 150, 160, 170, 180),
+    "3": (35, 37, 42, 47, 52, 62, 72, 80, 90, 100, 110, 120, 130, 140, 150, 160, 170, 180, 190, 200, 215),
+}
+# Elements over the difference of the diameters, share of their circle that they fill, length over diameter.
+_SHARES = {
+    "ball": (0.3, 0.6, None),
+    "angular": (0.3, 0.88, None),
+    "four-point": (0.3, 0.75, None),
+    "roller": (0.275, 0.8, 1.05),
+    "tapered": (0.25, 0.85, 1.4),
+}
+_ANGLES = {"B": 40.0, "AC": 25.0, "A": 30.0, "E": 25.0, "C": 15.0, "": 40.0}
+_TAPERED_ANGLES = {"302": 14.0, "303": 12.0, "313": 28.8, "320": 15.0, "322": 14.0, "323": 12.0}
+_FOUR_POINT_ANGLE = 35.0
+# Number, diameter, pitch diameter in mm, and the source.
+_KNOWN = {
+    "6203": (8, 6.746, 28.50, "Case Western Reserve University, Bearing Data Center: 0.2656 and 1.122 in"),
+    "6205": (9, 7.940, 39.04, "Case Western Reserve University, Bearing Data Center: 0.3126 and 1.537 in"),
+    "6211": (10, 14.288, 77.50, "number and size that reproduce makers' tables of defect frequencies, BPFO 4.08"),
+    "NJ209": (15, 11.0, 65.5, "makers' raceway diameters F_w 54.5 and E_w 76.5 mm; 15 rollers, 16 or 17 in some makes"),
+    "7218": (16, 22.225, 125.26, "T. A. Harris, Rolling Bearing Analysis, bearing 218"),
+}
+SERIES = "60, 62, 63, 70, 72, 73, QJ 0 2 3, N NU NJ NUP 2 and 3, 302, 303, 313, 320, 322, 323"
+_FORM = re.compile(
+    r"(?P<series>6[023]|7[023]|QJ ?[023]|N[UJ]?P? ?[23]|3[0-3][023])(?P<code>\d\d)\s*(?P<suffix>[A-Z]{0,2})"
+)
+
+
+@dataclass(frozen=True)
+class InnerGeometry:
+    """What a designation says: keys of `rolling` in SI and radians, and where they come from; `estimated` if from the outside."""
+
+    keys: dict[str, Any]
+    source: str
+    estimated: bool
+
+
+def inner_geometry(designation: str) -> InnerGeometry | None:
+    """What rolls in a bearing such as 6205, 7218 B, QJ 212, NJ209 or 30209; None for a designation that is not in the tables."""
+    found = _FORM.match(designation.strip().upper())
+    if found is None:
+        return None
+    series = found["series"].replace(" ", "")
+    number = int(found["code"])
+    outers = _OUTER.get(series[-1], ())
+    if number >= len(outers):
+        return None
+    bore = _BORES.get(found["code"], 5.0 * number)
+    outer = float(outers[number])
+    kind = {"6": "ball", "7": "ball", "Q": "four-point", "N": "roller", "3": "tapered"}[series[0]]
+    if kind == "tapered" and (number < 3 or series not in _TAPERED_ANGLES):
+        return None
+    share, filled, slender = _SHARES["angular" if series[0] == "7" else kind]
+    known = _KNOWN.get(series + found["code"])
+    if known is not None:
+        count, element, pitch, source = known
+    else:
+        element = share * (outer - bore)
+        pitch = 0.5 * (outer + bore)
+        count = round(filled * math.pi * pitch / element)
+        source = f"estimated from {bore:g} x {outer:g} mm"
+    keys: dict[str, Any] = {
+        "kind": kind,
+        "elements": count,
+        "element_diameter": 1e-3 * element,
+        "pitch_diameter": 1e-3 * pitch,
+    }
+    if slender is not None:
+        keys["length"] = 1e-3 * (12.0 if series + found["code"] == "NJ209" else slender * element)
+    angle = {
+        "7": _ANGLES.get(found["suffix"], 40.0),
+        "Q": _FOUR_POINT_ANGLE,
+        "3": _TAPERED_ANGLES.get(series, 0.0),
+    }.get(series[0])
+    if angle is not None:
+        keys["contact_angle"] = math.radians(angle)
+    return InnerGeometry(keys, source, known is None)

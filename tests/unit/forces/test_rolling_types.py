@@ -1,0 +1,187 @@
+"""Tapered, four-point and paired bearings: sums of single rows, closed forms, and bearings by designation."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rotorgear as rg
+from rotorgear.forces.ball_bearing import BallBearing
+from rotorgear.forces.hertz import LINE_CONTACT
+from rotorgear.forces.roller_bearing import RollerBearing
+from rotorgear.forces.tapered_bearing import SlicedRollers, TaperedBearing
+from rotorgear.model.parts.designations import inner_geometry
+
+BALL = BallBearing(12, 14e-3, 77e-3, contact_angle=0.44, clearance=0.0, phase=0.1)
+TAPERED = TaperedBearing(17, 14e-3, 10e-3, 65e-3, 0.27, phase=0.1, slices=7)
+STATE = np.array([11e-6, -7e-6, 9e-6, 2e-4, -3e-4])
+
+
+def moved(place: float) -> np.ndarray:
+    """Displacements of a row at a place along the shaft from those of the middle of its bearing, (5, 5)."""
+    T = np.eye(5)
+    T[0, 4] = place
+    T[1, 3] = -place
+    return T
+
+
+@pytest.mark.parametrize("single", [BALL, TAPERED], ids=["ball", "tapered"])
+@pytest.mark.parametrize(("arrangement", "sides"), [("O", (1, -1)), ("X", (-1, 1)), ("tandem", (1, 1))])
+def test_a_pair_is_the_sum_of_its_rows(single, arrangement, sides):
+    pair = replace(single, arrangement=arrangement, row_distance=30e-3)
+    force = np.zeros(5)
+    stiffness = np.zeros((5, 5))
+    for place, side in zip((-15e-3, 15e-3), sides, strict=True):
+        T = moved(place)
+        row = replace(single, contact_angle=side * single.contact_angle).evaluate(T @ STATE)
+        force += T.T @ row.force
+        stiffness += T.T @ row.in_displacement @ T
+    value = pair.evaluate(STATE)
+    assert value.force == pytest.approx(force, rel=1e-12)
+    assert value.in_displacement == pytest.approx(stiffness, rel=1e-11)
+    assert value.in_displacement == pytest.approx(value.in_displacement.T, rel=1e-10)
+
+
+def test_an_o_arrangement_resists_tilting_more_than_an_x_arrangement():
+    tilts = []
+    for arrangement in ("O", "X"):
+        pair = replace(BALL, arrangement=arrangement, row_distance=30e-3, preload=5e-6)
+        tilts.append(pair.evaluate(np.zeros(5)).in_displacement[3, 3])
+    # The lines of contact meet the axis at +-(l/2 +- R tan a): the stiffness goes as the square, here (15 + 18)^2 to (15 - 18)^2.
+    assert tilts[0] > 10.0 * tilts[1]
+
+
+def test_preload_of_a_pair_is_the_force_of_each_row_and_doubles_the_axial_stiffness():
+    for single in (BALL, TAPERED):
+        row = single.pressed_by(800.0)
+        pair = replace(single, arrangement="O", row_distance=30e-3).pressed_by(800.0)
+        alone = row.evaluate(np.zeros(5))
+        both = pair.evaluate(np.zeros(5))
+        assert alone.force[2] == pytest.approx(800.0, rel=1e-9)
+        assert both.force == pytest.approx(np.zeros(5), abs=1e-7)
+        assert both.in_displacement[2, 2] == pytest.approx(2.0 * alone.in_displacement[2, 2], rel=1e-9)
+
+
+def test_a_four_point_bearing_is_two_diagonals():
+    four = replace(BALL, arrangement="four-point")
+    both = [replace(BALL, contact_angle=side * BALL.contact_angle).evaluate(STATE).force for side in (1, -1)]
+    assert four.evaluate(STATE).force == pytest.approx(sum(both), rel=1e-12)
+    # A push along the shaft alone is carried by one of them, as by an angular contact bearing.
+    push = np.array([0.0, 0.0, 20e-6, 0.0, 0.0])
+    assert four.evaluate(push).force[2] == pytest.approx(BALL.evaluate(push).force[2], rel=1e-12)
+    inside = four.inside(push)
+    assert set(inside.row[inside.load > 0.0]) == {1}
+
+
+def test_a_tapered_bearing_under_an_axial_load_has_the_closed_form():
+    z = 30e-6
+    a = TAPERED.contact_angle
+    c = LINE_CONTACT * TAPERED.length ** (8.0 / 9.0)
+    F = 17 * np.sin(a) * c * (z * np.sin(a)) ** (10.0 / 9.0)
+    value = TAPERED.evaluate([0.0, 0.0, z, 0.0, 0.0])
+    assert value.force[2] == pytest.approx(F, rel=1e-12)
+    assert value.in_displacement[2, 2] == pytest.approx(10.0 / 9.0 * F / z, rel=1e-12)
+    assert replace(TAPERED, contact_angle=-a).evaluate([0.0, 0.0, -z, 0.0, 0.0]).force[2] == pytest.approx(-F)
+
+
+def test_without_an_angle_it_is_the_cylindrical_bearing_and_resists_tilting():
+    sliced = SlicedRollers(6, 13.6e-3, 11e-3, 65e-3, clearance=10e-6, slices=9)
+    plain = RollerBearing(6, 13.6e-3, clearance=10e-6)
+    d = np.array([9.93244e-6, 0.0, 0.0, 0.0, 0.0])
+    assert sliced.evaluate(d).force[:2] == pytest.approx(plain.evaluate(d[:2]).force, rel=1e-12)
+    assert sliced.evaluate(d).force[0] == pytest.approx(1000.0, rel=1e-4)
+    # Loads vary linearly along the roller: for the softening law the tilting stiffness is that of an area, k L^2/12.
+    fine = replace(sliced, slices=200).evaluate(d).in_displacement
+    assert fine[4, 4] == pytest.approx(fine[0, 0] * sliced.length**2 / 12.0, rel=1e-4)
+
+
+def test_slices_converge_with_order_two():
+    d = np.array([12e-6, 3e-6, 9e-6, 2e-4, 5e-4])
+    exact = replace(TAPERED, slices=200).evaluate(d).force
+    errors = [np.abs(replace(TAPERED, slices=n).evaluate(d).force - exact).max() for n in (4, 8, 16)]
+    assert errors[0] / errors[2] > 8.0
+
+
+@pytest.mark.parametrize(
+    ("designation", "count", "element", "pitch", "kind", "estimated"),
+    [
+        ("6211", 10, 14.288, 77.5, "ball", False),
+        ("NJ209", 15, 11.0, 65.5, "roller", False),
+        ("7218 B", 16, 22.225, 125.26, "ball", False),
+        ("QJ 209", 13, 12.0, 65.0, "four-point", True),
+        ("30209", 17, 10.0, 65.0, "tapered", True),
+    ],
+)
+def test_a_designation_says_what_rolls(designation, count, element, pitch, kind, estimated):
+    found = inner_geometry(designation)
+    assert (found.keys["elements"], found.keys["kind"], found.estimated) == (count, kind, estimated)
+    assert 1e3 * found.keys["element_diameter"] == pytest.approx(element)
+    assert 1e3 * found.keys["pitch_diameter"] == pytest.approx(pitch)
+
+
+def test_shares_of_the_estimate_are_near_the_bearings_that_are_known():
+    from rotorgear.model.parts import designations
+
+    for name, (count, element, pitch, _) in list(designations._KNOWN.items()):
+        known = dict(designations._KNOWN)
+        designations._KNOWN.pop(name)
+        try:
+            keys = inner_geometry(name).keys
+        finally:
+            designations._KNOWN.update(known)
+        assert keys["elements"] == pytest.approx(count, abs=1.01)
+        assert 1e3 * keys["element_diameter"] == pytest.approx(element, rel=0.1)
+        assert 1e3 * keys["pitch_diameter"] == pytest.approx(pitch, rel=0.02)
+
+
+TEXT = """
+[operation]
+input_shaft = "rotor"
+speed = "3000 rpm"
+gravity = ["0 m/s^2", "-9.81 m/s^2", "0 m/s^2"]
+[shafts.rotor]
+sections = [{ length = "200 mm", outer_diameter = "45 mm" }]
+[bearings.front]
+shaft = "rotor"
+at = "start"
+rolling = { %s }
+[bearings.rear]
+shaft = "rotor"
+at = "end"
+rolling = { designation = "NJ209", slices = 11 }
+[loads.pull]
+shaft = "rotor"
+at = "60 mm"
+force = ["0 N", "-2 kN", "300 N"]
+"""
+
+
+def test_a_pair_by_designation_carries_its_shaft_and_says_what_is_estimated():
+    model = rg.loads(TEXT % 'designation = "30209", arrangement = "O", row_distance = "25 mm", preload_force = "500 N"')
+    sheet = rg.bearing(model, "front", stability=False, speeds=["3000 rpm"])
+    assert sheet.law == "tapered roller bearing"
+    assert {row.row for row in sheet.rolling_elements} == {1, 2}
+    assert sheet.bearing_load[2] == pytest.approx(300.0, rel=1e-9)
+    assert any("estimated from 45 x 85 mm" in note for note in sheet.warnings)
+    assert not any("NJ209" in note for note in sheet.warnings)
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ('designation = "1209"', "designation of the series"),
+        ('designation = "6211", elements = 9', "10 as 6211 has it"),
+        ('designation = "7218 B", arrangement = "O"', "row_distance"),
+        ('designation = "6211", arrangement = "X", row_distance = "20 mm"', "with their contact_angle"),
+        ('designation = "6211", slices = 4', "slices of a roller"),
+        (
+            'kind = "tapered", elements = 17, element_diameter = "10 mm", pitch_diameter = "65 mm", length = "14 mm"',
+            "an angle of a tapered bearing",
+        ),
+    ],
+)
+def test_what_does_not_go_together_is_refused(keys, said):
+    with pytest.raises(rg.RotorgearError, match=said):
+        rg.loads(TEXT % keys)
