@@ -29,6 +29,26 @@ class RollingLoads:
 
 
 @dataclass(frozen=True)
+class ThrustField:
+    """The films of a thrust bearing in steady running, nodes of all pads one after the other.
+
+    Attributes:
+        side: +1 or -1, the sense of the push that the pad takes, (t,). angle: (t,) rad, from +x about +z. radius: (j,) m.
+        gap: (t, j) m. pressure: (t, j) Pa.
+        side_flow: oil that leaves at the inner and the outer radius, m^3/s.
+        power_loss: torque on the collar times its speed, W.
+    """
+
+    side: np.ndarray
+    angle: np.ndarray
+    radius: np.ndarray
+    gap: np.ndarray
+    pressure: np.ndarray
+    side_flow: float
+    power_loss: float
+
+
+@dataclass(frozen=True)
 class FilmField:
     """The film of a bearing in steady running.
 

@@ -60,7 +60,7 @@ from rotorgear.solvers.lanes.columns import OWN_LAW, TABLE_ROWS, Column
 from rotorgear.solvers.time.local_forces import Repeats
 
 if TYPE_CHECKING:
-    from rotorgear.forces.inside import FilmField, RollingLoads
+    from rotorgear.forces.inside import FilmField, RollingLoads, ThrustField
 
 __all__ = ["ForceLaw", "LawValue", "LawValues", "Linearised", "Parameter", "Repeats", "parameter", "refuse"]
 
@@ -269,7 +269,9 @@ class ForceLaw(ABC):
         """A law of about the same stiffness that costs less, for what no result depends on."""
         return self
 
-    def inside(self, d: Any, *, angle: float = 0.0, speed: float = 0.0) -> RollingLoads | FilmField | None:
+    def inside(
+        self, d: Any, *, angle: float = 0.0, speed: float = 0.0
+    ) -> RollingLoads | FilmField | ThrustField | None:
         """What a bearing looks like inside at displacements d (k,); None for laws that know nothing of it."""
         return None
 

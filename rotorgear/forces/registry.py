@@ -26,6 +26,7 @@ _SHIPPED = {
     "journal_bearing": "JournalBearing",
     "journal_film": "JournalFilm",
     "tilting_pads": "TiltingPads",
+    "thrust_film": "ThrustFilm",
     "ball_bearing": "BallBearing",
     "roller_bearing": "RollerBearing",
     "tapered_bearing": "TaperedBearing",

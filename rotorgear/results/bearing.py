@@ -43,6 +43,20 @@ class FilmState(Record):
     )
 
 
+class ThrustState(Record):
+    """The films of a thrust bearing under its load. Angles are from +x about +z."""
+
+    minimum_gap: float = of("smallest gap of the films", "m", json="minimum_gap_m")
+    largest_pressure: float = of("largest pressure", "Pa", json="largest_pressure_pa")
+    side_flow: float = of("oil that leaves at the inner and the outer radius", "m^3/s", json="side_flow_m3_per_s")
+    power_loss: float = of("power loss", "W", json="power_loss_w")
+    side: np.ndarray = of("sense of the push that the pad takes", "", "angle", note=", 1 towards +z, -1 towards -z")
+    angle: np.ndarray = of("angle of the grid", "rad", "angle", json="angle_rad", note=", over all pads")
+    radius: np.ndarray = of("radius of the grid", "m", "radius", json="radius_m")
+    gap: np.ndarray = of("gap of the films", "m", "angle", "radius", json="gap_m")
+    pressure: np.ndarray = of("pressure", "Pa", "angle", "radius", json="pressure_pa")
+
+
 class BearingSpeed(Record):
     """The bearing at one speed of the input shaft, at the loads of the gearbox there."""
 
@@ -79,6 +93,7 @@ class BearingSheet(ModelResult, kind="bearing"):
     averaged: bool = of("whether these are means over a pitch of its rolling elements")
     rolling_elements: tuple[RollingElementRow, ...] = of("rolling elements", "", "element", record=RollingElementRow)
     film: FilmState | None = of("film", record=FilmState, note="; `null` in a rolling bearing")
+    thrust_film: ThrustState | None = of("films of a thrust bearing", record=ThrustState, note="; `null` in any other")
     over_speed: tuple[BearingSpeed, ...] = of("over speed", "", "speed", record=BearingSpeed)
     threshold_speed: float | None = of(
         "speed at which the gearbox begins to whirl",

@@ -15,7 +15,7 @@ from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.load import COMPONENTS, Load
 from rotorgear.model.parts.nonlinear_element import element_law
-from rotorgear.model.parts.supports import Bearing, JournalGeometry, RollingElements
+from rotorgear.model.parts.supports import Bearing, JournalGeometry, RollingElements, ThrustGeometry
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.groups import ElementGroup, node_dofs
 from rotorgear.system.loads import wrench_load
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rotorgear.forces.journal_film import JournalFilm
     from rotorgear.forces.law import ForceLaw
     from rotorgear.forces.mesh_contact import MeshContact
+    from rotorgear.forces.thrust_film import ThrustFilm
     from rotorgear.forces.tilting_pads import TiltingPads
 
 
@@ -177,9 +178,35 @@ def journal_law(journal: JournalGeometry, ratio: float) -> JournalFilm | Tilting
     )
 
 
+def thrust_law(thrust: ThrustGeometry, ratio: float) -> ThrustFilm:
+    """The films of a thrust bearing on a shaft that turns at so many times the speed of the reference."""
+    from rotorgear.forces.thrust_film import ThrustFilm
+
+    return ThrustFilm(
+        viscosity=thrust.viscosity,
+        inner_radius=0.5 * thrust.inner_diameter,
+        outer_radius=0.5 * thrust.outer_diameter,
+        clearance=thrust.clearance,
+        pads=thrust.pads,
+        arc=thrust.pad_arc or 0.85 * 2.0 * np.pi / thrust.pads,
+        at=thrust.pad_at,
+        taper=thrust.taper or 0.0,
+        taper_share=thrust.taper_share,
+        pivot=-1.0 if thrust.pivot is None else thrust.pivot,
+        acts=thrust.acts,
+        order=ratio,
+        whirl_ratio=thrust.whirl_ratio,
+        density=thrust.density,
+        around=thrust.around,
+        across=thrust.across,
+    )
+
+
 def _bearing_law(bearing: Bearing, ratio: float) -> ForceLaw:
     if bearing.journal is not None:
         return journal_law(bearing.journal, ratio)
+    if bearing.thrust is not None:
+        return thrust_law(bearing.thrust, ratio)
     from rotorgear.forces.ball_bearing import BallBearing
     from rotorgear.forces.clearance_classes import class_clearance
     from rotorgear.forces.roller_bearing import RollerBearing

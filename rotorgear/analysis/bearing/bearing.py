@@ -24,12 +24,12 @@ from rotorgear.analysis.common.request import speed_in_si
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.static.solve import LawState
 from rotorgear.errors import AnalysisError
-from rotorgear.forces.inside import FilmField, RollingLoads
+from rotorgear.forces.inside import FilmField, RollingLoads, ThrustField
 from rotorgear.forces.law import CYCLE_POINTS
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.bearing import BearingSheet, BearingSpeed, FilmState, RollingElementRow
+from rotorgear.results.bearing import BearingSheet, BearingSpeed, FilmState, RollingElementRow, ThrustState
 
 # Of the operating speed, where no speeds are given.
 _SHARES = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
@@ -104,6 +104,7 @@ def bearing(
         averaged=bool(law.cycle()) and bool(given),
         rolling_elements=_elements(inside) if isinstance(inside, RollingLoads) else (),
         film=_film(inside, state, ratio * given) if isinstance(inside, FilmField) else None,
+        thrust_film=_thrust(inside) if isinstance(inside, ThrustField) else None,
         over_speed=rows,
         threshold_speed=threshold[0] if threshold else None,
         threshold_frequency_hz=threshold[1] if threshold else None,
@@ -118,7 +119,7 @@ def bearing(
 
 def _films(model: Model) -> set[str]:
     """Addresses of bearings that carry by an oil film."""
-    return {f"bearings.{name}" for name, bearing in model.bearings.items() if bearing.journal is not None}
+    return {f"bearings.{name}" for name, bearing in model.bearings.items() if bearing.has_film}
 
 
 def _elements(inside: RollingLoads) -> tuple[RollingElementRow, ...]:
@@ -149,6 +150,11 @@ def _film(inside: FilmField, state: LawState, shaft_speed: float) -> FilmState:
         gap=inside.gap,
         pressure=inside.pressure,
     )
+
+
+def _thrust(inside: ThrustField) -> ThrustState:
+    own = {item.name: getattr(inside, item.name) for item in fields(inside)}
+    return ThrustState(minimum_gap=float(inside.gap.min()), largest_pressure=float(inside.pressure.max()), **own)
 
 
 def _over_speeds(
@@ -231,7 +237,7 @@ def _left_out(model: Model, address: str, law: object, inside: object) -> list[s
     notes = [f"{address}: {text}" for text in law.left_out()]  # type: ignore[attr-defined]
     if table == "bearings" and model.bearings[name].stiffness is not None:
         notes.append(f"{address}: the stiffness given beside its rolling elements, which carry here")
-    if isinstance(inside, FilmField):
+    if isinstance(inside, FilmField | ThrustField):
         notes.append(
             "oil in streamers where the film has broken: friction is that of a film that is whole, the most it can be"
         )

@@ -49,7 +49,8 @@ def address_of(model: Model, name: str | None) -> str:
     known = ", ".join(address.partition(".")[2] for address in laws) or "none"
     if name in model.bearings:
         raise AnalysisError(
-            f"bearings.{name}: a stiffness given by hand has no sheet; give rolling = {{...}} or journal = {{...}}"
+            f"bearings.{name}: a stiffness given by hand has no sheet; "
+            "give rolling = {...}, journal = {...} or thrust = {...}"
         )
     guess = nearest(name or "", [address.partition(".")[2] for address in laws])
     hint = f"did you mean '{guess}'?" if guess else f"those with a law are: {known}"
@@ -112,7 +113,9 @@ def on_grid(law: ForceLaw, factor: float) -> ForceLaw:
     if not hasattr(law, "around"):
         return law
     cells = {}
-    for key in ("around", "along"):
+    for key in ("around", "along", "across"):
+        if key not in law.declared():
+            continue
         about = law.declared()[key]
         cells[key] = int(np.clip(round(factor * getattr(law, key)), about.least, about.most))
     return replace(law, **cells)

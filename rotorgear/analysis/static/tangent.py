@@ -119,7 +119,7 @@ def _linear(model: Model, part: str, speeds: Sequence[float], states: Sequence[L
     given = np.array(owner.damping.as_rows()) if owner.damping else np.zeros((6, 6))
     used = [DOF_NAMES.index(d) for d in owner.directions] if table == "nonlinear_elements" else None
     # The linear bearing has no law any more, so that no note speaks of two descriptions.
-    linear: dict[str, Any] = {} if table == "nonlinear_elements" else {"rolling": None, "journal": None}
+    linear: dict[str, Any] = {} if table == "nonlinear_elements" else {"rolling": None, "journal": None, "thrust": None}
     pairs = [(_six(state.stiffness, used), given + _six(state.damping, used)) for state in states]
     ratio = abs(float(model.layout.train.ratio(owner.shaft)))
     first = pairs[0]

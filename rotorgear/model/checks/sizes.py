@@ -19,6 +19,7 @@ from rotorgear.model.parts.supports import (
     RollingElements,
     StiffnessMatrix,
     TableRow,
+    ThrustGeometry,
 )
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import RPM_PER_RAD_S, millimetres
@@ -97,7 +98,7 @@ def matrices(model: Tables) -> Iterator[Problem]:
 
 def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
     if bearing.stiffness is None and not bearing.table and not bearing.has_law:
-        text = "stiffness (with damping), a table over speed, rolling elements, or a journal"
+        text = "stiffness (with damping), a table over speed, rolling elements, a journal, or a thrust bearing"
         yield Problem(address, "neither stiffness nor table", text)
     elif bearing.stiffness is not None and bearing.table:
         yield Problem(address, "stiffness and table", "one of the two")
@@ -109,6 +110,8 @@ def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
         yield from _rolling(address, bearing, bearing.rolling)
     if bearing.journal:
         yield from _journal(address, bearing, bearing.journal)
+    if bearing.thrust:
+        yield from _thrust(address, bearing, bearing.thrust)
     if bearing.pedestal:
         yield from _pedestal(f"{address}.pedestal", bearing.pedestal)
 
@@ -152,6 +155,40 @@ def _journal(address: str, bearing: Bearing, journal: JournalGeometry) -> Iterat
     if not 0.0 <= journal.lobes * arc <= 2.0 * math.pi * (1.0 + 1e-9) or (journal.lobe_arc is not None and not arc):
         got = f"{journal.lobes} of {math.degrees(arc):.6g} deg"
         yield Problem(f"{here}.lobe_arc", got, "lobes that fit on 360 deg")
+
+
+def _thrust(address: str, bearing: Bearing, thrust: ThrustGeometry) -> Iterator[Problem]:
+    """Films along the shaft alone in their bearing, with pads that fit and carry."""
+    here = f"{address}.thrust"
+    beside = [key for key in ("stiffness", "damping", "rolling", "journal") if getattr(bearing, key) is not None]
+    if beside or bearing.table:
+        wanted = "a thrust bearing alone; what holds the shaft across is a bearing of its own, at the same place"
+        yield Problem(here, f"a thrust bearing beside {beside[0] if beside else 'a table'}", wanted)
+    if not thrust.viscosity:
+        yield Problem(f"{here}.viscosity", "0", "a viscosity above 0 such as '0.02 Pa s'")
+    if thrust.inner_diameter >= thrust.outer_diameter:
+        wanted = f"less than the outer diameter of {millimetres(thrust.outer_diameter)}"
+        yield Problem(f"{here}.inner_diameter", millimetres(thrust.inner_diameter), wanted)
+    if thrust.clearance > 0.05 * thrust.outer_diameter:
+        wanted = "a film that is thin: at most a twentieth of the outer diameter, 1e-3 as a rule"
+        yield Problem(f"{here}.clearance", millimetres(thrust.clearance), wanted)
+    if not 1 <= thrust.pads <= 40:
+        yield Problem(f"{here}.pads", str(thrust.pads), "1 to 40 pads")
+    elif thrust.pad_arc is not None and not 0.0 < thrust.pads * thrust.pad_arc <= 2.0 * math.pi * (1.0 + 1e-9):
+        got = f"{thrust.pads} of {math.degrees(thrust.pad_arc):.6g} deg"
+        yield Problem(f"{here}.pad_arc", got, "pads that fit on 360 deg")
+    if (thrust.taper is None) == (thrust.pivot is None):
+        got = "neither taper nor pivot" if thrust.taper is None else "taper and pivot"
+        yield Problem(here, got, "a taper of fixed pads, or the pivot of tilting ones")
+    if thrust.pivot is not None and not 0.0 < thrust.pivot < 1.0:
+        yield Problem(f"{here}.pivot", f"{thrust.pivot:g}", "a share of the arc between 0 and 1")
+    if not 0.0 < thrust.taper_share <= 1.0:
+        yield Problem(f"{here}.taper_share", f"{thrust.taper_share:g}", "a share of the arc above 0, up to 1")
+    if not thrust.whirl_ratio:
+        yield Problem(f"{here}.whirl_ratio", "0", "a ratio above 0; 1 is synchronous")
+    for key, least, most in (("around", 6, 400), ("across", 4, 200)):
+        if not least <= getattr(thrust, key) <= most:
+            yield Problem(f"{here}.{key}", f"{getattr(thrust, key)}", f"{least} to {most} cells")
 
 
 def _pads(here: str, journal: JournalGeometry) -> Iterator[Problem]:

@@ -217,6 +217,34 @@ class JournalGeometry(Part):
     along: Whole = Field(12, description="cells of the grid over half the length")
 
 
+class ThrustGeometry(Part):
+    """A thrust bearing in oil: sector pads, fixed with a taper and a land, or tilting about a radius."""
+
+    inner_diameter: PositiveLength = Field(description="inner diameter of the pads")
+    outer_diameter: PositiveLength = Field(description="outer diameter of the pads")
+    clearance: PositiveLength = Field(
+        description="gap between collar and pads (the land of fixed ones) of each side, with the shaft at its place"
+    )
+    viscosity: Viscosity = Field(description="dynamic viscosity of the oil in the film")
+    density: Density = Field(870.0, description="density of the oil, for the limit of laminar flow")
+    pads: Whole = Field(8, description="number of pads of a side")
+    pad_arc: Angle | None = Field(None, description="extent of a pad; default: 0.85 of its share of the circle")
+    pad_at: Angle = Field(0.0, description="angle of the middle of the first pad, from +x about +z")
+    taper: PositiveLength | None = Field(None, description="depth of the taper at the leading edge of fixed pads")
+    taper_share: Ratio = Field(0.8, description="share of the arc that the taper takes; 1: a wedge without a land")
+    pivot: Ratio | None = Field(
+        None,
+        description="where in a tilting pad its pivot is, as a share of its arc in the sense of rotation; 0.6 as a rule",
+    )
+    acts: Literal["both", "+z", "-z"] = Field("both", description="pushes of the shaft that the bearing takes")
+    whirl_ratio: Ratio = Field(
+        1.0,
+        description="frequency over the speed of the shaft at which stiffness and damping of tilting pads are taken",
+    )
+    around: Whole = Field(40, description="cells of the grid along a pad")
+    across: Whole = Field(16, description="cells of the grid from the inner to the outer diameter")
+
+
 class Bearing(Part):
     """A bearing between a shaft and the ground, a pedestal or a casing: a stiffness, or a law by its geometry."""
 
@@ -233,6 +261,9 @@ class Bearing(Part):
     journal: JournalGeometry | None = Field(
         None, description="journal bearing by its geometry, in place of stiffness, damping and rolling elements"
     )
+    thrust: ThrustGeometry | None = Field(
+        None, description="thrust bearing by its geometry, in place of stiffness, damping and rolling elements"
+    )
     pedestal: Pedestal | None = Field(None, description="flexible pedestal; default: rigid ground")
     casing: str | None = Field(
         None, description="name of the casing that the bearing stands on: its seat has the bearing's name"
@@ -241,12 +272,12 @@ class Bearing(Part):
     @property
     def has_law(self) -> bool:
         """Whether its geometry gives a force law."""
-        return self.rolling is not None or self.journal is not None
+        return self.rolling is not None or self.has_film
 
     @property
     def has_film(self) -> bool:
         """Whether oil carries in it, which it does only while its shaft turns."""
-        return self.journal is not None
+        return self.journal is not None or self.thrust is not None
 
     @property
     def is_linear(self) -> bool:

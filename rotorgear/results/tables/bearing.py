@@ -28,6 +28,8 @@ def bearing_table(sheet: BearingSheet) -> RenderableType:
     parts += ["", _state(sheet)]
     if sheet.film is not None:
         parts += ["", _film(sheet)]
+    if sheet.thrust_film is not None:
+        parts += ["", _thrust(sheet)]
     if sheet.rolling_elements:
         parts += ["", _elements(sheet)]
     if sheet.over_speed:
@@ -46,7 +48,8 @@ def bearing_table(sheet: BearingSheet) -> RenderableType:
 
 
 def _finer(sheet: BearingSheet) -> str:
-    return "on a grid of twice the cells" if sheet.film is not None else "with twice the positions in a pitch"
+    grid = sheet.film is not None or sheet.thrust_film is not None
+    return "on a grid of twice the cells" if grid else "with twice the positions in a pitch"
 
 
 def _number(value: float, size: float, digits: int = 4) -> str:
@@ -104,6 +107,25 @@ def _film(sheet: BearingSheet) -> Any:
     return out
 
 
+def _thrust(sheet: BearingSheet) -> Any:
+    film = sheet.thrust_film
+    assert film is not None
+    out = plain_table()
+    out.show_header = False
+    out.add_column("")
+    out.add_column("")
+    rows = (
+        ("load along z", f"{float(sheet.bearing_load[2]):.5g} N"),
+        ("smallest gap", f"{1e6 * film.minimum_gap:.3f} um"),
+        ("largest pressure", f"{1e-6 * film.largest_pressure:.4g} MPa"),
+        ("side flow", f"{6e4 * film.side_flow:.4g} l/min"),
+        ("power loss", f"{film.power_loss:.5g} W"),
+    )
+    for label, value in rows:
+        out.add_row(label, value)
+    return out
+
+
 def _elements(sheet: BearingSheet) -> Any:
     several = any(row.row > 1 for row in sheet.rolling_elements)
     out = table(
@@ -133,7 +155,9 @@ def _elements(sheet: BearingSheet) -> Any:
 def _speeds(sheet: BearingSheet) -> Any:
     """Across the shaft; all components are in the JSON."""
     has_damping = any(np.any(row.damping) for row in sheet.over_speed)
-    names = ("xx", "xy", "yx", "yy")
+    along = sheet.thrust_film is not None
+    names = ("zz",) if along else ("xx", "xy", "yx", "yy")
+    own = slice(2, 3) if along else slice(0, 2)
     told = any(row.log_decrement is not None for row in sheet.over_speed)
     out = table(
         "rpm",
@@ -143,14 +167,14 @@ def _speeds(sheet: BearingSheet) -> Any:
         *(["decr."] if told else []),
     )
     for row in sheet.over_speed:
-        K = 1e-6 * row.stiffness[:2, :2].ravel()
-        C = 1e-3 * row.damping[:2, :2].ravel()
+        K = 1e-6 * row.stiffness[own, own].ravel()
+        C = 1e-3 * row.damping[own, own].ravel()
         cells = [_number(float(k), float(np.abs(K).max()), 3) for k in K]
         if has_damping:
             cells += [_number(float(c), float(np.abs(C).max()), 3) for c in C]
         if told:
             cells.append("-" if row.log_decrement is None else f"{row.log_decrement:.3g}")
-        out.add_row(f"{row.speed * RPM_PER_RAD_S:.6g}", f"{np.hypot(*row.load[:2]):.4g}", *cells)
+        out.add_row(f"{row.speed * RPM_PER_RAD_S:.6g}", f"{np.linalg.norm(row.load[own]):.4g}", *cells)
     return out
 
 
