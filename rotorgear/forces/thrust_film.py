@@ -123,8 +123,8 @@ def weighted(theta, radial, x, out, rows, columns, r, dr, dt):  # type: ignore[n
 
 
 @compiled
-def sector_film(p, omega, start, q, v, fields, G, K, C, pressure):  # type: ignore[no-untyped-def]
-    """Fill G (4,), K and C (4, 4) of one pad for its first `fields` fields, and its pressure (around - 1, across - 1)."""
+def sector_film(p, omega, start, q, v, first, fields, G, K, C, pressure):  # type: ignore[no-untyped-def]
+    """Fill G (4,) of one pad for its fields below `fields`, K and C (4, 4) from `first` on, and its pressure at inner nodes."""
     around = int(p[AROUND])
     across = int(p[ACROSS])
     rows = around - 1
@@ -215,6 +215,7 @@ def sector_film(p, omega, start, q, v, fields, G, K, C, pressure):  # type: igno
     phi_r = np.zeros((rows, columns + 1))
     for m in range(fields):
         G[m] = np.sum(weight[m] * x)
+    for m in range(first, fields):
         for i in range(rows + 1):
             for j in range(columns):
                 phi_t[i, j] = theta_c[i, j] * field_at(m, start + (i + 0.5) * dt, r[j], pivot)
@@ -274,7 +275,7 @@ def balanced_pad(p, omega, start, q, v, G, K, C, pressure, slope):  # type: igno
     if not low < q[3] < high:
         q[3] = 0.5 * (low + high)
     for _ in range(_ITERATIONS):
-        sector_film(p, omega, start, q, v, 4, G, K, C, pressure)
+        sector_film(p, omega, start, q, v, 3, 4, G, K, C, pressure)
         if (abs(G[0]) > 0.0 and abs(G[3]) <= _LEVEL * abs(G[0]) * p[OUTER]) or high - low < 1e-14 * own:
             break
         # More tilt closes the trailing edge, where the film presses more.
@@ -286,6 +287,7 @@ def balanced_pad(p, omega, start, q, v, G, K, C, pressure, slope):  # type: igno
             high = q[3]
         step = q[3] - G[3] / K[3, 3] if K[3, 3] != 0.0 else low
         q[3] = step if low < step < high else 0.5 * (low + high)
+    sector_film(p, omega, start, q, v, 0, 4, G, K, C, pressure)
     for m in range(3):
         if most - q[3] < 1e-9 * own:
             slope[m, 1] = 0.0
@@ -325,7 +327,7 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
         if tilts:
             balanced_pad(p, omega, start, q, w, G, K, C, pressure, slope)
         else:
-            sector_film(p, omega, start, q, w, 3, G, K, C, pressure)
+            sector_film(p, omega, start, q, w, 0, 3, G, K, C, pressure)
         for i in range(3):
             F[2 + i] += side * G[i]
             for j in range(3):
@@ -373,8 +375,8 @@ class ThrustFilm(ForceLaw):
     order: float = parameter("rad/rad", "turns of the collar for each turn of the reference", 1.0)
     whirl_ratio: float = parameter("", "frequency of small motions over the speed of the collar", 1.0, above=0.0)
     density: float = parameter("kg/m^3", "of the oil, for Reynolds' number", 870.0, above=0.0)
-    around: int = parameter("", "cells of the grid along a pad", 40, least=6, most=400)
-    across: int = parameter("", "cells from the inner to the outer radius", 16, least=4, most=200)
+    around: int = parameter("", "cells of the grid along a pad", 30, least=6, most=400)
+    across: int = parameter("", "cells from the inner to the outer radius", 12, least=4, most=200)
     least: float = parameter("", "gap over c from which on the film is a wall", 0.02, above=0.0, below=1.0)
     moves: bool = parameter("", "whether tangents are those of small motions, not of slow ones", False)
 
@@ -441,7 +443,7 @@ class ThrustFilm(ForceLaw):
             if self.pivot >= 0.0:
                 balanced_pad(p, self.order * speed, start, q, np.zeros(4), G, K, C, pressure, np.zeros((3, 2)))
             else:
-                sector_film(p, self.order * speed, start, q, np.zeros(4), 3, G, K, C, pressure)
+                sector_film(p, self.order * speed, start, q, np.zeros(4), 0, 3, G, K, C, pressure)
             found.append((start, float(side), q, G, K, C, pressure))
         return found
 

@@ -58,24 +58,21 @@ def _number(value: float, size: float, digits: int = 4) -> str:
 
 
 def _state(sheet: BearingSheet) -> Any:
-    names = _COMPONENTS[: len(sheet.bearing_load)]
+    # A thrust bearing carries nothing across the shaft.
+    shown = [2, 3, 4] if sheet.thrust_film is not None else list(range(len(sheet.bearing_load)))
+    names = [_COMPONENTS[i] for i in shown]
     has_damping = bool(np.any(sheet.bearing_damping))
     out = table("", "load", "moves", *(f"K {name}" for name in names), *(f"C {n}" for n in names if has_damping))
     force = float(np.abs(sheet.bearing_load).max(initial=0.0))
-    for i, name in enumerate(names):
+    largest = [float(np.abs(A).max(initial=0.0)) for A in (sheet.bearing_stiffness, sheet.bearing_damping)]
+    for i, name in zip(shown, names, strict=True):
         cells = [
             _number(float(sheet.bearing_load[i]), force),
             _number(1e6 * float(sheet.bearing_displacement[i]), 1e6 * _largest(sheet)),
         ]
-        cells += [
-            _number(1e-6 * float(k), 1e-6 * float(np.abs(sheet.bearing_stiffness).max()))
-            for k in sheet.bearing_stiffness[i]
-        ]
+        cells += [_number(1e-6 * float(k), 1e-6 * largest[0]) for k in sheet.bearing_stiffness[i, shown]]
         if has_damping:
-            cells += [
-                _number(1e-3 * float(c), 1e-3 * float(np.abs(sheet.bearing_damping).max()))
-                for c in sheet.bearing_damping[i]
-            ]
+            cells += [_number(1e-3 * float(c), 1e-3 * largest[1]) for c in sheet.bearing_damping[i, shown]]
         out.add_row(f"{name}, {'N' if i < 3 else 'N m'}", *cells)
     return out
 
