@@ -42,7 +42,7 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
         (_, subject), *given = bound.arguments.items()
         settings = {name: setting(value) for name, value in given if name not in _NOT_SETTINGS}
         seconds = {"total": time.perf_counter() - start} | result.seconds
-        doubts = (*implausible(subject.layout), *estimated(subject)) if isinstance(subject, Model) else ()
+        doubts = (*implausible(subject.layout), *estimated(subject.layout)) if isinstance(subject, Model) else ()
         warnings = (*result.warnings, *(doubt for doubt in doubts if doubt not in result.warnings))
         return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rotorgear.model.model import Model
-from rotorgear.model.parts.designations import inner_geometry
+from rotorgear.forces.designations import inner_geometry
+from rotorgear.model.layout.layout import Layout
 
 
-def estimated(model: Model) -> Iterator[str]:
+def estimated(layout: Layout) -> Iterator[str]:
     """Yield a sentence on every bearing whose rolling elements follow from its boundary dimensions."""
-    for name, bearing in model.bearings.items():
+    for name, bearing in layout.model.bearings.items():
         rolling = bearing.rolling
         if rolling is None or rolling.designation is None:
             continue

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from rotorgear.errors import Problem
 from rotorgear.forces.clearance_classes import class_clearance
-from rotorgear.model.parts.designations import inner_geometry
+from rotorgear.forces.designations import inner_geometry
 from rotorgear.model.parts.problems import shown
 from rotorgear.model.parts.shaft import Section
 from rotorgear.model.parts.supports import (

@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 
-from rotorgear.model.parts.designations import SERIES, inner_geometry
+from rotorgear.forces.designations import SERIES, inner_geometry
 from rotorgear.model.parts.fields import (
     Angle,
     Damping,

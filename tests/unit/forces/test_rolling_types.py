@@ -9,10 +9,10 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.forces.ball_bearing import BallBearing
+from rotorgear.forces.designations import inner_geometry
 from rotorgear.forces.hertz import LINE_CONTACT
 from rotorgear.forces.roller_bearing import RollerBearing
 from rotorgear.forces.tapered_bearing import SlicedRollers, TaperedBearing
-from rotorgear.model.parts.designations import inner_geometry
 
 BALL = BallBearing(12, 14e-3, 77e-3, contact_angle=0.44, clearance=0.0, phase=0.1)
 TAPERED = TaperedBearing(17, 14e-3, 10e-3, 65e-3, 0.27, phase=0.1, slices=7)
@@ -122,7 +122,7 @@ def test_a_designation_says_what_rolls(designation, count, element, pitch, kind,
 
 
 def test_shares_of_the_estimate_are_near_the_bearings_that_are_known():
-    from rotorgear.model.parts import designations
+    from rotorgear.forces import designations
 
     for name, (count, element, pitch, _) in list(designations._KNOWN.items()):
         known = dict(designations._KNOWN)
