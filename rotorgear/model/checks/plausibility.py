@@ -44,6 +44,15 @@ _SURFACE = 600.0
 _ROLLING_CLEARANCE = 0.05  # of the diameter of an element
 _ERROR = 0.2  # transmission error over module
 _DAMPING = 0.5
+_PERCENT = ("", "percent meant?")
+_ASK = ("is its unit right?", "is its unit right?")
+# Of oils in kg/m^3; what surrounds a shaft over its diameters; damping of a bearing over the critical one; Rayleigh's beta in s.
+_OIL = (500.0, 2000.0)
+_FITS = (0.3, 12.0)
+_OVERDAMPED = 1e3
+_BETA = 1e-2
+# Stress along a shaft under a force in Pa.
+_STRESS = 1.5e9
 
 
 def implausible(layout: Layout) -> Iterator[str]:
@@ -59,6 +68,19 @@ def implausible(layout: Layout) -> Iterator[str]:
 
 def _said(address: str, value: str, usual: str, slip: str) -> str:
     return f"{address}: {value}; usual is {usual}: {slip}"
+
+
+def _outside(
+    address: str, value: float, usual: tuple[float, float], words: tuple[str, str], slips: tuple[str, str]
+) -> Iterator[str]:
+    """The sentence on a value that is below or above what is usual.
+
+    Args:
+        address: of the value. value: by which it is judged, such as a ratio. usual: lowest and highest, infinite where none is.
+        words: the value, and what is usual, as they are printed. slips: the likely slip of a value below, and of one above.
+    """
+    if not usual[0] <= value <= usual[1]:
+        yield _said(address, *words, slips[0] if value < usual[0] else slips[1])
 
 
 def _materials(layout: Layout) -> Iterator[str]:
@@ -113,17 +135,17 @@ def _gears(layout: Layout) -> Iterator[str]:
     for gear in layout.gears:
         part = gear.part
         module = part.normal_module
-        if module is not None and not _MODULE[0] <= module <= _MODULE[1]:
-            yield _said(f"gears.{gear.name}.normal_module", f"{module:.4g} m", "0.05 to 100 mm", "mm meant?")
+        if module is not None:
+            words = (f"{module:.4g} m", "0.05 to 100 mm")
+            yield from _outside(f"gears.{gear.name}.normal_module", module, _MODULE, words, ("mm meant?", "mm meant?"))
         diameter = 2.0 * gear.base_radius
-        if part.width and diameter and not _WIDTH[0] <= part.width / diameter <= _WIDTH[1]:
-            slip = "mm meant?" if part.width > diameter else "is its unit right?"
-            yield _said(
-                f"gears.{gear.name}.width",
+        if part.width and diameter:
+            words = (
                 f"{part.width:.4g} m on a base diameter of {diameter:.4g} m",
                 f"{_WIDTH[0]:g} to {_WIDTH[1]:g} of it",
-                slip,
             )
+            slips = ("is its unit right?", "mm meant?")
+            yield from _outside(f"gears.{gear.name}.width", part.width / diameter, _WIDTH, words, slips)
 
 
 def _meshes(layout: Layout) -> Iterator[str]:
@@ -133,9 +155,9 @@ def _meshes(layout: Layout) -> Iterator[str]:
         if given is not None:
             width = mesh.width * mesh.helices
             low, high = (_MESH_PER_WIDTH[0] * width, _MESH_PER_WIDTH[1] * width) if width else _MESH
-            if not low <= given <= high:
-                slip = "N/um or N/(mm um) meant?" if given < low else "is its unit right?"
-                yield _said(f"{address}.stiffness", f"{given:.4g} N/m", f"{low:.2g} to {high:.2g} N/m", slip)
+            words = (f"{given:.4g} N/m", f"{low:.2g} to {high:.2g} N/m")
+            slips = ("N/um or N/(mm um) meant?", "is its unit right?")
+            yield from _outside(f"{address}.stiffness", given, (low, high), words, slips)
         module = mesh.pinion.part.normal_module
         for item in mesh.part.transmission_error if module else ():
             if module and item.amplitude > _ERROR * module:
@@ -147,8 +169,8 @@ def _meshes(layout: Layout) -> Iterator[str]:
                 )
         if module and mesh.part.backlash and mesh.part.backlash > module:
             yield _said(f"{address}.backlash", f"{mesh.part.backlash:.4g} m", "below the module", "um or mm meant?")
-        if mesh.part.damping_ratio > _DAMPING:
-            yield _said(f"{address}.damping_ratio", f"{mesh.part.damping_ratio:.4g}", "0.02 to 0.2", "percent meant?")
+        words = (f"{mesh.part.damping_ratio:.4g}", "0.02 to 0.2")
+        yield from _outside(f"{address}.damping_ratio", mesh.part.damping_ratio, (0.0, _DAMPING), words, _PERCENT)
 
 
 def _bearings(layout: Layout) -> Iterator[str]:
@@ -165,22 +187,57 @@ def _bearings(layout: Layout) -> Iterator[str]:
                 f"up to {_ROLLING_CLEARANCE:g} of the diameter of an element",
                 "um meant?",
             )
-        if bearing.journal:
-            share = 2.0 * bearing.journal.clearance / bearing.journal.diameter
-            if not _FILM[0] <= share <= _FILM[1]:
-                yield _said(
-                    f"{address}.journal.clearance",
-                    f"{bearing.journal.clearance:.4g} m, {share:.2g} of the radius",
-                    f"{_FILM[0]:g} to {_FILM[1]:g}",
-                    "um meant?",
-                )
-            if not _VISCOSITY[0] <= bearing.journal.viscosity <= _VISCOSITY[1]:
-                yield _said(
-                    f"{address}.journal.viscosity",
-                    f"{bearing.journal.viscosity:.4g} Pa s",
-                    f"{_VISCOSITY[0]:g} to {_VISCOSITY[1]:g} Pa s",
-                    "mPa s (cP) meant?",
-                )
+        yield from _films(address, bearing)
+        yield from _fits(address, bearing, layout)
+        yield from _dampers(address, bearing, weights[bearing.shaft] / _GRAVITY)
+
+
+def _films(address: str, bearing: Bearing) -> Iterator[str]:
+    """Gap, viscosity and density of oil films."""
+    for key in ("journal", "thrust"):
+        film = getattr(bearing, key)
+        if film is None:
+            continue
+        radius = 0.5 * (film.diameter if key == "journal" else film.outer_diameter)
+        share = film.clearance / radius
+        words = (f"{film.clearance:.4g} m, {share:.2g} of the radius", f"{_FILM[0]:g} to {_FILM[1]:g}")
+        yield from _outside(f"{address}.{key}.clearance", share, _FILM, words, ("is its unit right?", "um meant?"))
+        words = (f"{film.viscosity:.4g} Pa s", f"{_VISCOSITY[0]:g} to {_VISCOSITY[1]:g} Pa s")
+        slips = ("is its unit right?", "mPa s (cP) meant?")
+        yield from _outside(f"{address}.{key}.viscosity", film.viscosity, _VISCOSITY, words, slips)
+        words = (f"{film.density:.4g} kg/m^3", f"{_OIL[0]:g} to {_OIL[1]:g} kg/m^3")
+        yield from _outside(
+            f"{address}.{key}.density", film.density, _OIL, words, ("g/cm^3 meant?", "is its unit right?")
+        )
+
+
+def _fits(address: str, bearing: Bearing, layout: Layout) -> Iterator[str]:
+    """Size of what surrounds the shaft against the shaft."""
+    sections = layout.model.shafts[bearing.shaft].sections
+    sizes = (("rolling", "pitch_diameter"), ("journal", "diameter"), ("thrust", "outer_diameter"))
+    for key, name in sizes if sections else ():
+        part = getattr(bearing, key)
+        if part is None:
+            continue
+        thick = max(section.outer_diameter for section in sections)
+        thin = min(section.outer_diameter for section in sections)
+        share = (_FITS[0] * thin, _FITS[1] * thick)
+        size = getattr(part, name)
+        words = (f"{size:.4g} m on a shaft of {thin:.4g} to {thick:.4g} m", f"{share[0]:.2g} to {share[1]:.2g} m")
+        yield from _outside(f"{address}.{key}.{name}", size, share, words, ("is its unit right?", "mm meant?"))
+
+
+def _dampers(address: str, bearing: Bearing, mass: float) -> Iterator[str]:
+    """Damping across the shaft against that which is critical with its stiffness and the mass of the rotor."""
+    if bearing.stiffness is None or bearing.damping is None or not mass:
+        return
+    stiffness = max(bearing.stiffness.as_rows()[i][i] for i in range(2))
+    damping = max(bearing.damping.as_rows()[i][i] for i in range(2))
+    if stiffness <= 0.0:
+        return
+    ratio = damping / (2.0 * math.sqrt(stiffness * mass))
+    words = (f"{damping:.4g} N s/m, {ratio:.3g} of the critical damping", f"up to {_OVERDAMPED:g} of it")
+    yield from _outside(f"{address}.damping", ratio, (0.0, _OVERDAMPED), words, _ASK)
 
 
 def _stiffness(address: str, bearing: Bearing, weight: float, bends: bool) -> Iterator[str]:
@@ -243,8 +300,10 @@ def _operation(layout: Layout) -> Iterator[str]:
         size = math.sqrt(sum(x * x for x in operation.gravity))
         if size and not 0.1 <= size <= 1e3:
             yield _said("operation.gravity", f"{size:.4g} m/s^2", "9.81 m/s^2", "mm/s^2 or g meant?")
-    if model.damping.modal_ratio > _DAMPING:
-        yield _said("damping.modal_ratio", f"{model.damping.modal_ratio:.4g}", "0.005 to 0.05", "percent meant?")
+    words = (f"{model.damping.modal_ratio:.4g}", "0.005 to 0.05")
+    yield from _outside("damping.modal_ratio", model.damping.modal_ratio, (0.0, _DAMPING), words, _PERCENT)
+    words = (f"{model.damping.rayleigh_beta:.4g} s", f"up to {_BETA:g} s")
+    yield from _outside("damping.rayleigh_beta", model.damping.rayleigh_beta, (0.0, _BETA), words, ("", "us meant?"))
     if operation and operation.speed:
         for name, shaft in model.shafts.items():
             largest = max((section.outer_diameter for section in shaft.sections), default=0.0)
@@ -267,6 +326,13 @@ def _operation(layout: Layout) -> Iterator[str]:
         turning = abs(operation.speed * layout.train.ratio(shaft_name)) if operation and operation.speed else 0.0
         torque = part.torque or (part.power / turning if part.power and turning else 0.0)
         stress = 16.0 * torque / (math.pi * thinnest**3) if thinnest else 0.0
+        force = math.sqrt(sum(x * x for x in getattr(part, "force", None) or ()))
+        along = 4.0 * force / (math.pi * thinnest**2) if thinnest else 0.0
+        words = (
+            f"{force:.4g} N, a stress of {1e-6 * along:.3g} MPa in a shaft of {1e3 * thinnest:.3g} mm",
+            "up to 1500 MPa",
+        )
+        yield from _outside(f"{address}.force", along, (0.0, _STRESS), words, ("", "is its unit right?"))
         if stress > _SHEAR:
             key = "torque" if part.torque else "power"
             yield _said(

@@ -66,6 +66,50 @@ SLIPS: list[tuple[dict[str, Any], str, str]] = [
     ),
     ({"meshes.stage.backlash": 0.2}, "meshes.stage.backlash", "mm meant"),
 ]
+FILM = {"diameter": 0.06, "length": 0.03, "clearance": 60e-6, "viscosity": 0.02}
+COLLAR = {"inner_diameter": 0.08, "outer_diameter": 0.14, "clearance": 1e-4, "viscosity": 0.02, "pivot": 0.6}
+AT = {"shaft": "input", "at": "start"}
+SLIPS += [
+    ({"bearings.film": {**AT, "journal": {**FILM, "viscosity": 20.0}}}, "bearings.film.journal.viscosity", "cP"),
+    ({"bearings.film": {**AT, "journal": {**FILM, "density": 0.87}}}, "bearings.film.journal.density", "g/cm\\^3"),
+    (
+        {"bearings.film": {**AT, "journal": {**FILM, "clearance": 60e-9}}},
+        "bearings.film.journal.clearance",
+        "unit right",
+    ),
+    (
+        {"bearings.film": {**AT, "journal": {**FILM, "diameter": 60.0, "clearance": 0.06}}},
+        "bearings.film.journal.diameter",
+        "mm meant",
+    ),
+    ({"bearings.collar": {**AT, "thrust": {**COLLAR, "viscosity": 20.0}}}, "bearings.collar.thrust.viscosity", "cP"),
+    (
+        {"bearings.collar": {**AT, "thrust": {**COLLAR, "clearance": 5e-3}}},
+        "bearings.collar.thrust.clearance",
+        "um meant",
+    ),
+    (
+        {
+            "bearings.ball": {
+                **AT,
+                "rolling": {"kind": "ball", "elements": 9, "element_diameter": 11.5, "pitch_diameter": 43.5},
+            }
+        },
+        "bearings.ball.rolling.pitch_diameter",
+        "mm meant",
+    ),
+    (
+        {"bearings.held": {**AT, "stiffness": {"radial": 2e8}, "damping": {"radial": 5e9}}},
+        "bearings.held.damping",
+        "unit right",
+    ),
+    ({"damping.rayleigh_beta": 2.0}, "damping.rayleigh_beta", "us meant"),
+    (
+        {"loads.pull": {"shaft": "input", "at": "start", "force": [0.0, 5e9, 0.0]}},
+        "loads.pull.force",
+        "unit right",
+    ),
+]
 
 
 @pytest.mark.parametrize(("change", "address", "slip"), SLIPS)
