@@ -84,7 +84,7 @@ def standards(
     top = abs(speed_in_si(stop) or HIGHEST * speed)
     _require_grade(grade)
     progress(0.05, "critical speeds")
-    return judged(critical(model, stop=math.copysign(top, speed)), model, grade, progress)
+    return judged(critical(model, start=start, stop=math.copysign(top, speed)), model, grade, progress)
 
 
 def operating_speed_of(model: Model) -> float:
@@ -115,13 +115,8 @@ def judged(found: CriticalResult, model: Model, grade: float, progress: Progress
     _require_grade(grade)
     direction = 1 if speed > 0.0 else -1
     operating = abs(speed)
-<<<<<<< HEAD
     top = abs(found.top_speed)
-=======
-    progress(0.05, "critical speeds")
-    found = critical(model, start=start, stop=direction * top)
     low = abs(found.low_speed)
->>>>>>> 660b4e6 (Begin ranges of speed where oil films carry; find damped critical speeds between close rows)
     fastest = max(abs(model.layout.train.ratio(name)) for name in model.shafts) * top
     plant, notes = plant_up_to(model, direction, (low, top), fastest)
     progress(0.4, "unbalance response")
