@@ -8,7 +8,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.analysis.response.run_up import choose_method
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
 from tests.fuzz.runner import mutant
 from tests.paths import ROOT
 
@@ -41,3 +41,12 @@ def test_explicit_steps_that_would_not_come_through_are_refused(name: str) -> No
         AnalysisError, match=r"would take about .* evaluations: explicit steps follow the fastest motion"
     ):
         rg.transient(rg.load(ROOT / "models" / f"{name}.toml"), method="explicit")
+
+
+def test_a_reduced_system_that_is_singular_is_told(tmp_path: Path) -> None:
+    model = model_of("geared_pair", 20003, tmp_path)
+    place = [f"disks.{next(iter(model.disks))}:y"]
+    with pytest.raises(ConvergenceError, match="the reduced system is singular at"):
+        rg.state_space(model, inputs=place, outputs=place, fmax=500.0, elements=1)
+    with pytest.raises(RotorgearError, match="dynamic stiffness is singular at a frequency that counts"):
+        rg.sweep(model, {"operation.speed": [model.operation.speed]}, discard=2, sample=9)

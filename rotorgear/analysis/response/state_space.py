@@ -29,7 +29,7 @@ from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.response.ports import Ports
 from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.static.tangent import about_equilibrium
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.state_space import StateSpace
@@ -88,6 +88,7 @@ def state_space(
 
     Raises:
         AnalysisError: a place that the model has not, or a full system of more than 3000 degrees of freedom.
+        ConvergenceError: the reduced system is singular, as at a mode without damping.
     """
     clock = time.perf_counter()
     turns = speed_in_si(speed) or 0.0
@@ -204,7 +205,13 @@ class _Matrices:
     def receptance(self, w: float) -> np.ndarray:
         """C Z^-1 B at a frequency in rad/s, (o, i)."""
         Z = self.K + 1j * w * self.D - w**2 * self.M
-        return np.asarray(self.C @ la.solve(Z, self.B.astype(complex)))
+        try:
+            return np.asarray(self.C @ la.solve(Z, self.B.astype(complex)))
+        except la.LinAlgError:
+            raise ConvergenceError(
+                f"the reduced system is singular at {w / 2.0 / np.pi:.6g} Hz, as at a mode without damping: look at the modes "
+                "there, or take the full system"
+            ) from None
 
 
 def _basis(dynamics: Dynamics, modes: np.ndarray, forces: np.ndarray, shift: float) -> np.ndarray:

@@ -19,6 +19,7 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
+from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.solvers.frequency.receptance import Probes, Scale, around, differences, sizes
 from rotorgear.solvers.sparse.nullspace import SupportedSolver, left_null_space
@@ -156,8 +157,14 @@ def reduced_receptances(among: Candidates, Q: np.ndarray, probes: Probes) -> tup
     G = Q.T @ among.G @ Q
     Z = K + s * D + (s * W) * G + (s * s) * np.eye(len(K))
     B = (Q.T @ among.B).astype(complex)
-    y = np.linalg.solve(Z, np.broadcast_to(B, (probes.count, *B.shape)))
-    dual = np.linalg.solve(Z.transpose(0, 2, 1), np.broadcast_to(B, (probes.count, *B.shape)))
+    try:
+        y = np.linalg.solve(Z, np.broadcast_to(B, (probes.count, *B.shape)))
+        dual = np.linalg.solve(Z.transpose(0, 2, 1), np.broadcast_to(B, (probes.count, *B.shape)))
+    except np.linalg.LinAlgError:
+        raise ConvergenceError(
+            "the model can't be reduced: its dynamic stiffness is singular at a frequency that counts; look for numbers many "
+            "decades apart"
+        ) from None
     return B.T @ y, y, dual
 
 
