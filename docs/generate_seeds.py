@@ -18,15 +18,20 @@ So every number of their tables stands here beside the computed one, with a verd
 
 | verdict | meaning |
 |---|---|
-| exact | given data that the model holds, or a number that follows from it |
+| given | data of the account that the model holds: an input, which proves nothing |
+| exact | follows from given data |
 | assumed | comes out with assumptions, stated in the row, above the table or in the model file; chosen values are no evidence |
 | trend | the direction agrees, not the number |
 | not reproducible | and why; shown, not tuned away |
 
 `python -m validation.seeds` prints these rows, `python -m validation.seeds marine` those of one system. Rows at "follows"
 are not printed in the account but follow from its data; rows at "equations" name misprints, each shown to fail by a test in
-[tests/validation/test_seeds.py](../tests/validation/test_seeds.py). Where a motion is chaotic or counted from chaotic
-motion, numbers have the digits that every machine agrees on.
+[tests/validation/test_seeds.py](../tests/validation/test_seeds.py); rows at "claim" are statements and figures without a
+number. A row on a motion tells where it starts, how long it settles and counts, and how many of its starts end in it: the
+static equilibrium and random states about it (`--initial-conditions 8`, say). Numbers of chaotic motions are means over the
+starts that end in chaos, with three standard errors; another processor gives others within them.
+`python -m validation.seeds.settling` runs every labelled motion again after ten times the settling and tells which labels
+change and which numbers leave their error.
 """
 
 SYSTEMS = {
@@ -37,9 +42,9 @@ turbines, two stages, in torsion with backlash. The printed equations have no eq
 must have meant, with quill shafts between the stages. Stiffness, drag of the LP turbine, mesh frequency, errors and phases
 are fitted to the three printed regions: that shows that they can be reached, and predicts nothing. Runs start from rest on
 the flanks that carry; where the net torque of the LP turbine is negative (load ratio 0.3) those are the coast flanks. 2000
-periods of 8 first-stage mesh periods settle, 200 count, 40 steps a mesh period. The amplitude indicator is the peak to peak
-deflection of the LP first stage over 16.67 um, the static deflection at 15 kN m; the impact time ratio is the share of the
-time on the back side. With the model's file alone, at the load ratios 0.3, 0.6 and 1.0:
+periods of 8 first-stage mesh periods settle, 200 count, 40 steps a mesh period; 400 leave chaos that dies out later. The
+amplitude indicator is the peak to peak deflection of the LP first stage over 16.67 um, the static deflection at 15 kN m; the
+impact time ratio is the share of the time on the back side. With the model's file alone, at the load ratios 0.3, 0.6 and 1.0:
 
 ```console
 $ rotorgear sweep models/marine_dual_turbine.toml --over "loads.lp.torque=6923.077 N m,11250 N m,15000 N m" \\
@@ -68,9 +73,12 @@ Over the load ratio at both total torques, and the three regions with the fitted
         """Models
 [herringbone_pair_24dof.toml](../models/herringbone_pair_24dof.toml) (set 1) and
 [herringbone_pair_24dof_set2.toml](../models/herringbone_pair_24dof_set2.toml) (set 2). No stiffness, damping, inertia or
-clearance is given, so both sets are chosen ones. Each speed starts from its own static equilibrium; 250 (set 1) or 200 (set
-2) mesh periods settle and 64 count, 160 steps each; for the rows of table 3 on trends 1500 and 300, from 16 starts: the
-motion of most of them, and the mean of their shares, good to about 10 %.
+clearance is given, so both sets are chosen ones. Each speed starts from its own static equilibrium, and for the share of
+starts in set 1 from three random states; 250 (set 1) or 200 (set 2) mesh periods settle and 64 count, 160 steps each, and more
+where the motion has not settled ([sweeps](sweep.md#response-types)); for the rows of table 3 on trends 300 and 100, four
+starts: the motion of most, and the mean of their shares, good to about 10 %. Between 11000 and 13500 rpm set 2 has a motion of
+one period that a symmetric start stays on for thousands of periods, though it is unstable: its largest multiplier, by Newton's
+method and the map over a period, is e^0.0217 at 11000 rpm and e^0.0021 at 13000 rpm, in deviations in which the helices differ.
 "kT" says that points k mesh periods apart agree to 2 % of the
 peak to peak deflection, "chaotic" that the largest Lyapunov exponent is above 0.02 per mesh period, as in `rotorgear sweep`.
 
@@ -105,6 +113,9 @@ The spectrum at the output bearing, with the printed harmonics of the transmissi
 take mean and ripple of the stiffness from the contact lines at the printed ratio, and the printed impact. Supports,
 stiffness and the impact's length are not given, so the spread over 40 random sets stands beside the chosen one.
 Accelerations are those of a pinion half, circumferential at its reference circle; 120 mesh periods settle, 60 count.
+The impact stands in the printed equations in the rows of rotation only; a blow along the flank normal pushes along y and z
+too. Both are here: the first gives the printed ratio of axial to circumferential vibration in size, the second is what the
+model file has.
 `python -m validation.seeds.pictures seeds_pair12_impact` draws the printed impacts and the vibration that they give:
 
 ![Printed impact and computed vibration over the contact ratio](pictures/seeds_pair12_impact.png)""",
@@ -145,8 +156,17 @@ def _overview(tables: dict[str, list[Row]]) -> str:
 
 
 def _table(found: list[Row]) -> str:
-    lines = ["| where | what | printed | computed | unit | verdict | reason |", "|---|---|---|---|---|---|---|"]
+    lines = ["| where | what | printed | computed | unit | verdict | reason | motion |", "|---" * 8 + "|"]
     for row in found:
-        cells = (row.where, row.what, row.printed or "-", row.shown, row.unit or "-", row.verdict, row.reason or "-")
+        cells = (
+            row.where,
+            row.what,
+            row.printed or "-",
+            row.shown.replace("+-", "±"),
+            row.unit or "-",
+            row.verdict,
+            row.reason or "-",
+            row.runs or "-",
+        )
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"

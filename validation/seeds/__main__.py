@@ -15,4 +15,5 @@ if __name__ == "__main__":
         print(f"\n{system}")
         for row in rows(system):
             value = f"{row.shown} {row.unit}".strip()
-            print(f"  {row.where:10} {row.what:60} {row.printed or '-':>12} {value:>18}  {row.verdict}  {row.reason}")
+            text = f"{row.verdict}  {row.reason}{f' [{row.runs}]' if row.runs else ''}"
+            print(f"  {row.where:10} {row.what:60} {row.printed or '-':>12} {value:>18}  {text}")

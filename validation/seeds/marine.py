@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import rotorgear as rg
+from validation.seeds.motions import STARTS, ends, kinds, number, route
 from validation.seeds.rows import changed, loaded
 
 MODEL = "marine_dual_turbine"
@@ -23,8 +24,10 @@ STIFFNESS = 1.2e10
 SETTLE = 2000
 COUNT = 200
 STEPS = 40
-# Load ratios looked at for the regions.
+# Load ratios looked at for the regions, those with printed numbers.
 RATIOS = tuple(round(0.1 + 0.05 * i, 2) for i in range(23))
+PRINTED = {"03": 0.3, "06": 0.6, "10": 1.0}
+NOMINAL = 15e3 / PITCH_RADIUS / STIFFNESS
 
 
 @dataclass(frozen=True)
@@ -94,55 +97,77 @@ def contact(
     return found
 
 
-@cache
-def values() -> dict[str, float | str]:
-    """What takes runs."""
-    found: dict[str, float | str] = {}
-    ratios = {"03": 0.3, "06": 0.6, "10": 1.0}
-    nominal = 15e3 / PITCH_RADIUS / STIFFNESS
-    for total, suffix in ((30e3, ""), (35e3, "_35")):
-        for name, run in zip(ratios, contact(list(ratios.values()), total), strict=True):
-            # One digit where the motion is chaotic: the next one is another on every machine.
-            digits = (1, 0) if run.exponent > 0.015 else (3, 1)
-            found |= {
-                f"zeta_{name}{suffix}": round(run.back, digits[0]),
-                f"am_{name}{suffix}": round(run.peak_to_peak / nominal, digits[1]),
-                f"le_{name}{suffix}": round(run.exponent, digits[0]) + 0.0,
-            }
-        found |= {f"region{suffix}": _region(total), f"way{suffix}": _way(total)}
-    soft = contact(list(ratios.values()), table_stiffness=True)
-    for name, run in zip(ratios, soft, strict=True):
+def swept(
+    gammas: Sequence[float], total: float = 30e3, *, settle: int = SETTLE, starts: int = STARTS, **options: float | bool
+) -> rg.SweepResult:
+    """Motions over load ratios from several starts; `options` are those of `operating`."""
+    return rg.sweep(
+        loaded(MODEL),
+        {"load ratio": list(gammas)},
+        steps=STEPS,
+        discard=settle,
+        sample=COUNT,
+        initial_conditions=starts,
+        change=lambda _, at: operating(at[0], total, **options),  # type: ignore[arg-type]
+    )
+
+
+def _begin(settle: int) -> str:
+    return f"static; {settle} + {COUNT} of 8 T_m1"
+
+
+def indicators(result: rg.SweepResult, suffix: str, nominal: float = NOMINAL, settle: int = SETTLE) -> dict[str, str]:
+    """Exponent, amplitude, time on the back side and starts at the printed load ratios, by key."""
+    i = result.contact.index("first_lp")
+    found = {}
+    for p, name in enumerate(PRINTED):
+        own = kinds(result, p)
         found |= {
-            f"zeta_soft_{name}": round(run.back, 1),
-            f"am_soft_{name}": round(run.peak_to_peak / (100.0 * nominal), 2),
-            f"le_soft_{name}": round(run.exponent, 2) + 0.0,
+            f"le_{name}{suffix}": number(result.lyapunov[p, :, 0], own, 4),
+            f"am_{name}{suffix}": number(result.peak_to_peak[p, :, i] / nominal, own, 2),
+            f"zeta_{name}{suffix}": number(result.back[p, :, i], own, 3),
+            f"apart_{name}{suffix}": number(result.apart[p, :, i], own, 3),
+            f"runs_{name}{suffix}": f"{_begin(settle)}; {ends(own)}",
         }
     return found
 
 
-def _way(total: float) -> str:
-    """Motions over the load ratio in steps of 0.02, periods counted in common ones of both stages."""
-    ratios = [round(0.1 + 0.02 * i, 2) for i in range(56)]
-    result = rg.sweep(
-        loaded(MODEL),
-        {"load ratio": ratios},
-        steps=STEPS,
-        discard=SETTLE,
-        sample=COUNT,
-        change=lambda _, at: operating(at[0], total),
+def torque_indicators(settle: int = SETTLE) -> dict[str, str]:
+    """At both total torques with printed results."""
+    ratios = list(PRINTED.values())
+    return indicators(swept(ratios, settle=settle), "", settle=settle) | indicators(
+        swept(ratios, 35e3, settle=settle), "_35", settle=settle
     )
-    names = [kind if kind in ("1T", "2T") else "others" for kind in (result.motion_at(p) for p in range(len(ratios)))]
-    last = [i for i, name in enumerate(names) if i + 1 == len(names) or names[i + 1] != name]
-    return ", ".join(f"{names[i]} to {ratios[i]:.2f}" for i in last)
+
+
+def way(total: float, settle: int = SETTLE, starts: int = 1) -> rg.SweepResult:
+    """Motions over the load ratio in steps of 0.02."""
+    return swept([round(0.1 + 0.02 * i, 2) for i in range(56)], total, settle=settle, starts=starts)
+
+
+def way_names(result: rg.SweepResult) -> list[str]:
+    """Motions over the load ratio, periods counted in common ones of both stages; from 4T on they count as others."""
+    found = [result.motion_at(p) for p in range(len(result.values))]
+    return [kind if kind in ("1T", "2T") else "others" for kind in found]
+
+
+@cache
+def values() -> dict[str, float | str]:
+    """What takes runs."""
+    ratios = list(PRINTED.values())
+    found: dict[str, float | str] = dict(torque_indicators())
+    for total, suffix in ((30e3, ""), (35e3, "_35")):
+        over = way(total)
+        found |= {f"region{suffix}": _region(total), f"way{suffix}": route(over, way_names(over), ".2f")}
+    return found | indicators(swept(ratios, starts=1, table_stiffness=True), "_soft", 100.0 * NOMINAL)
 
 
 def _region(total: float) -> str:
-    """Load ratios with an exponent above 0.1 and an amplitude indicator above 3."""
-    nominal = 15e3 / PITCH_RADIUS / STIFFNESS
+    """Load ratios with an exponent above 0.1 and an amplitude indicator above 3, from the static start."""
     large = [
         gamma
         for gamma, run in zip(RATIOS, contact(RATIOS, total), strict=True)
-        if run.peak_to_peak > 3.0 * nominal and run.exponent > 0.1
+        if run.peak_to_peak > 3.0 * NOMINAL and run.exponent > 0.1
     ]
     return f"{large[0]:.2f} to {large[-1]:.2f}"
 

@@ -15,7 +15,7 @@ import numpy as np
 
 import rotorgear as rg
 
-STARTS = 16
+STARTS = 8
 CHAOTIC = "chaotic"
 
 
@@ -67,7 +67,15 @@ def route(result: rg.SweepResult, names: Sequence[str], form: str = ".0f") -> st
     return ", ".join(f"{names[i]} to {result.values[i, 0]:{form}}" for i in last)
 
 
+def static_share(result: rg.SweepResult) -> str:
+    """The smallest number of runs that end in what the first one, from the static start, does at their point."""
+    if len(result.run) == 1:
+        return "static start alone"
+    counts = [kinds(result, p).count(result.motion_at(p)) for p in range(len(result.values))]
+    return f"as the static start {min(counts)} of {len(result.run)} or more"
+
+
 def least_share(result: rg.SweepResult) -> str:
-    """The smallest number of runs that end in what most of their point do: "9 of 16 starts or more"."""
+    """The smallest number of runs that end in what most of their point do: "5 of 8 starts or more"."""
     counts = [Counter(kinds(result, p)).most_common(1)[0][1] for p in range(len(result.values))]
     return f"{min(counts)} of {len(result.run)} starts or more"

@@ -7,7 +7,6 @@ where the largest Lyapunov exponent is above 0.02 per mesh period, which is what
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Sequence
 from functools import cache
 from itertools import product
@@ -16,6 +15,8 @@ from typing import Any
 import numpy as np
 
 import rotorgear as rg
+from validation.seeds.motions import CHAOTIC, ends, kinds, least_share, most, number, static_share
+from validation.seeds.motions import route as stretches
 from validation.seeds.rows import changed, loaded
 
 MODEL = "herringbone_pair_24dof"
@@ -23,16 +24,30 @@ SECOND = "herringbone_pair_24dof_set2"
 STEPS = 160
 KEPT = 64
 SETTLE = 250
+SETTLE_2 = 200
+SPEEDS = tuple(np.arange(4600.0, 6001.0, 50.0).tolist())
+SPEEDS_2 = tuple(np.arange(3e3, 40.1e3, 500.0).tolist())
 # The trends take longer runs from several starts: motions that are about to lose their order settle slowly, and some coexist.
-LONG_SETTLE = 1500
-LONG_KEPT = 300
-STARTS = 16
+LONG_SETTLE = 300
+LONG_KEPT = 100
+STARTS = 4
+TRENDS: dict[str, dict[str, tuple[float, ...]]] = {
+    "torque": {"torques": (75.0, 150.0, 300.0, 600.0, 1200.0)},
+    "damping": {"damping": (0.5, 1.0, 2.0, 4.0, 8.0)},
+    "backlash": {"backlash": (1e-6, 5e-6, 10e-6, 20e-6, 40e-6)},
+    "stiffness": {"stiffness": (0.5, 0.7, 1.0, 1.4, 2.0)},
+}
 
 
-def route(name: str, speeds: Sequence[float], settle: int = SETTLE) -> rg.SweepResult:
-    """Motions over speeds in rpm, each from its own static start."""
+def route(name: str, speeds: Sequence[float], settle: int = SETTLE, *, starts: int = 1) -> rg.SweepResult:
+    """Motions over speeds in rpm, the first run of each from its own static start."""
     return rg.sweep(
-        loaded(name), {"operation.speed": [f"{rpm} rpm" for rpm in speeds]}, steps=STEPS, discard=settle, sample=KEPT
+        loaded(name),
+        {"operation.speed": [f"{rpm} rpm" for rpm in speeds]},
+        steps=STEPS,
+        discard=settle,
+        sample=KEPT,
+        initial_conditions=starts,
     )
 
 
@@ -41,8 +56,9 @@ def apart(
     backlash: Sequence[float] = (40e-6,),
     damping: Sequence[float] = (1.0,),
     stiffness: Sequence[float] = (1.0,),
-) -> list[str]:
-    """Motion of set 1 at 6000 rpm from most starts, mean share of the time apart to 10 %; damping and stiffness are factors."""
+    settle: int = LONG_SETTLE,
+) -> rg.SweepResult:
+    """Motions of set 1 at 6000 rpm from several starts; damping and stiffness are factors."""
     base = loaded(MODEL)
     # type: ignore[arg-type]
     mean = float(base.meshes["left"].stiffness)
@@ -56,17 +72,23 @@ def apart(
         return changed(base, loads=loads, meshes={"left": mesh, "right": mesh})
 
     points = list(product(torques, backlash, damping, stiffness))
-    result = rg.sweep(
+    return rg.sweep(
         base,
         {"point": list(range(len(points)))},
         steps=STEPS,
-        discard=LONG_SETTLE,
+        discard=settle,
         sample=LONG_KEPT,
         initial_conditions=STARTS,
         change=changed_to,
     )
-    kinds = [Counter(result.motion_at(p, r) for r in range(STARTS)).most_common(1)[0][0] for p in range(len(points))]
-    return [f"{kind} {10 * round(10.0 * result.apart[p, :, 0].mean())} %" for p, kind in enumerate(kinds)]
+
+
+def trend(result: rg.SweepResult) -> list[str]:
+    """Motion of most starts at each point and the mean share of the time apart to 10 %."""
+    return [
+        f"{most(kinds(result, p))} {10 * round(10.0 * result.apart[p, :, 0].mean())} %"
+        for p in range(len(result.values))
+    ]
 
 
 def _input(name: str) -> float:
@@ -74,14 +96,15 @@ def _input(name: str) -> float:
     return sum(load.torque or 0.0 for load in loaded(name).loads.values() if load.kind == "input")
 
 
+def names(result: rg.SweepResult) -> list[str]:
+    """Motions from the static start; those beyond 4T, chaotic and unsettled ones count as "others"."""
+    found = [result.motion_at(p) for p in range(len(result.values))]
+    return [kind if kind in ("1T", "2T", "3T", "4T") else "others" for kind in found]
+
+
 def summary(result: rg.SweepResult) -> str:
-    """Runs of equal motions: "1T to 4900, 2T to 5100 rpm"; beyond 4T all count as one, as short runs don't tell them apart."""
-    names = [
-        kind if kind in ("1T", "2T", "3T", "4T") else "longer, chaotic or unsettled"
-        for kind in (result.motion_at(p) for p in range(len(result.values)))
-    ]
-    last = [i for i, name in enumerate(names) if i + 1 == len(names) or names[i + 1] != name]
-    return ", ".join(f"{names[i]} to {result.values[i, 0]:.0f}" for i in last) + " rpm"
+    """Stretches of equal motions: "1T to 4900, 2T to 5100 rpm"."""
+    return stretches(result, names(result)) + " rpm"
 
 
 def quick() -> dict[str, float | str]:
@@ -111,21 +134,47 @@ def quick() -> dict[str, float | str]:
 @cache
 def values() -> dict[str, float | str]:
     """What takes runs."""
-    first = route(MODEL, np.arange(4600.0, 6001.0, 50.0).tolist())
-    kinds = [first.motion_at(p) for p in range(len(first.values))]
-    speeds = first.values[:, 0]
-    found: dict[str, float | str] = {
+    return set_1() | set_2() | trends()
+
+
+def set_1(settle: int = SETTLE, starts: int = STARTS) -> dict[str, float | str]:
+    """The route of set 1 and two of its exponents."""
+    first = route(MODEL, SPEEDS, settle, starts=starts)
+    found = [first.motion_at(p) for p in range(len(SPEEDS))]
+    in_chaos = SPEEDS.index(5950.0)
+    begin = f"static; {settle} + {KEPT} T"
+    return {
         "route": summary(first),
-        "high": summary(route(SECOND, np.arange(3e3, 40.1e3, 500.0).tolist(), 200)),
-        "first_multi": f"{next((rpm for rpm, kind in zip(speeds, kinds, strict=True) if kind != '1T'), math.nan):.0f}",
-        "first_chaotic": f"{next((rpm for rpm, kind in zip(speeds, kinds, strict=True) if kind == 'chaotic'), math.nan):.0f}",
-        "exponent_1t": round(float(first.lyapunov[0, 0, 0]), 3),
-        "exponent_chaos": round(float(first.lyapunov[kinds.index("chaotic") + 1, 0, 0]), 1),
+        "route_runs": f"{begin}; {static_share(first)}",
+        "first_multi": f"{next((rpm for rpm, kind in zip(SPEEDS, found, strict=True) if kind != '1T'), math.nan):.0f}",
+        "first_chaotic": f"{next((rpm for rpm, kind in zip(SPEEDS, found, strict=True) if kind == CHAOTIC), math.nan):.0f}",
+        "exponent_1t": number(first.lyapunov[0, :, 0], kinds(first, 0), 3),
+        "exponent_1t_runs": f"{begin}; {ends(kinds(first, 0))}",
+        "exponent_chaos": number(first.lyapunov[in_chaos, :, 0], kinds(first, in_chaos), 3),
+        "exponent_chaos_runs": f"{begin}; {ends(kinds(first, in_chaos))}",
+        "coexist": _coexisting(first),
     }
-    trends = {
-        "torque": apart(torques=(75.0, 150.0, 300.0, 600.0, 1200.0)),
-        "damping": apart(damping=(0.5, 1.0, 2.0, 4.0, 8.0)),
-        "backlash": apart(backlash=(1e-6, 5e-6, 10e-6, 20e-6, 40e-6)),
-        "stiffness": apart(stiffness=(0.5, 0.7, 1.0, 1.4, 2.0)),
-    }
-    return found | {f"apart_{name}": ", ".join(entries) for name, entries in trends.items()}
+
+
+def _coexisting(result: rg.SweepResult) -> str:
+    """Speeds at which the starts end in different motions."""
+    found = [p for p in range(len(result.values)) if len(set(kinds(result, p))) > 1]
+    return ", ".join(f"{result.values[p, 0]:.0f} ({ends(kinds(result, p))})" for p in found) or "none"
+
+
+def set_2(settle: int = SETTLE_2, starts: int = 1) -> dict[str, float | str]:
+    """The route of set 2."""
+    second = route(SECOND, SPEEDS_2, settle, starts=starts)
+    return {"high": summary(second), "high_runs": f"static; {settle} + {KEPT} T; {static_share(second)}"}
+
+
+def trends() -> dict[str, float | str]:
+    """Motion and time apart over torque, damping, backlash and stiffness, and how many starts end in it."""
+    found: dict[str, float | str] = {}
+    for name, over in TRENDS.items():
+        result = apart(**over)  # type: ignore[arg-type]
+        found |= {
+            f"apart_{name}": ", ".join(trend(result)),
+            f"apart_{name}_runs": f"static and random; {LONG_SETTLE} + {LONG_KEPT} T; {least_share(result)}",
+        }
+    return found

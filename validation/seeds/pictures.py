@@ -186,11 +186,18 @@ def draw_pair12_impact(figure: Any) -> None:
     left.set_ylabel("impact force, kN")
     known = pair12.values()
     rows = [
-        (pair12.TABLE[i - 1][1], *(float(known[f"{key}_{i}"]) for key in ("rms", "low", "high"))) for i in (1, 3, 5)
+        (
+            pair12.TABLE[i - 1][1],
+            *(float(known[f"{key}_{i}"]) for key in ("rms", "low", "high", "rms_rotation", "fe_force")),
+        )
+        for i in (1, 3, 5)
     ]
-    x, chosen, low, high = np.array(rows).T
+    x, chosen, low, high, rotation, teeth = np.array(rows).T
+    left.plot(x, teeth, "^-", ms=4, color=COLOURS[2], lw=0.8, label="from loaded teeth")
     right.fill_between(x, low, high, color=COLOURS[4], alpha=0.4, lw=0, label="10 to 90 % of 40 random sets")
-    right.plot(x, chosen, ".-", color=COLOURS[0], lw=1.0, label="chosen set")
+    right.plot(x, chosen, ".-", color=COLOURS[0], lw=1.0, label="along the flank normal")
+    right.plot(x, rotation, ".--", color=COLOURS[1], lw=1.0, label="in the rows of rotation only")
+    right.plot(x, [pair12.PRINTED_RMS[at][0] for at in x], "ks", ms=5, mfc="none", label="printed")
     right.set_ylabel("rms of the circumferential acceleration, m/s$^2$")
     for one in (left, right):
         one.set_xlabel("printed contact ratio")

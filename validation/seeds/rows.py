@@ -8,9 +8,11 @@ Columns of NAME.csv:
     unit      of both numbers
     key       a value of NAME.py; or "@" and an address in the model file, "@gears.bull.teeth"; or "@file:address" for
               another file of the system; empty where nothing can be computed
-    verdict   exact (follows from given data, or is given data that the model holds), assumed (comes out with stated assumptions),
-              trend (the direction agrees, not the number), or not reproducible
-    reason    why, in a sentence; must stand for every verdict but exact
+    verdict   given (data of the source that the model holds: an input, no result), exact (follows from given data), assumed
+              (comes out with stated assumptions), trend (the direction agrees, not the number), or not reproducible
+    reason    why, in a sentence; must stand for every verdict but given and exact
+    runs      of a motion: where it starts, how long it settles and counts, and how many starts end in it; a text, or "@" and a
+              key of NAME.py
 """
 
 from __future__ import annotations
@@ -29,7 +31,7 @@ import rotorgear as rg
 FOLDER = Path(__file__).resolve().parent
 MODELS = FOLDER.parents[1] / "models"
 SYSTEMS = ("marine", "pair24", "split", "pair12", "pair16")
-VERDICTS = ("exact", "assumed", "trend", "not reproducible")
+VERDICTS = ("given", "exact", "assumed", "trend", "not reproducible")
 _SCALE = {
     "um": 1e-6,
     "mm": 1e-3,
@@ -53,6 +55,7 @@ class Row:
     computed: float | str | None
     verdict: str
     reason: str
+    runs: str = ""
 
     @property
     def agrees(self) -> bool:
@@ -81,14 +84,14 @@ def entries(system: str) -> list[dict[str, str]]:
 
 
 def rows(system: str, *, quick: bool = False) -> list[Row]:
-    """Return the rows of a system; `quick`: those that are exact, which take no time.
+    """Return the rows of a system; `quick`: those that are given or exact, which take no time.
 
     Raises:
         KeyError: a key that neither the model nor NAME.py has.
     """
     module = import_module(f"validation.seeds.{system}")
     if quick:
-        lines = [line for line in entries(system) if line["verdict"] == "exact"]
+        lines = [line for line in entries(system) if line["verdict"] in ("given", "exact")]
         return [_row(module.MODEL, module.quick(), line) for line in lines]
     known = module.quick() | module.values()
     return [_row(module.MODEL, known, line) for line in entries(system)]
@@ -109,7 +112,12 @@ def _row(model: str, known: Mapping[str, float | str], line: dict[str, str]) -> 
         computed,
         line["verdict"],
         line["reason"],
+        _runs(known, line["runs"]),
     )
+
+
+def _runs(known: Mapping[str, float | str], text: str) -> str:
+    return str(known[text[1:]]) if text.startswith("@") else text
 
 
 def _given(model: str, address: str, unit: str) -> float | str:

@@ -44,6 +44,7 @@ def quick() -> dict[str, float | str]:
         found[f"ste_{item.harmonic}"] = 1e6 * item.amplitude
     for name, printed in (("4883", 4883.0), ("5356", 5356.0)):
         found[f"tone_{name}"] = _nearest_tone(printed, hz, turns)
+    found["axial_fall"] = 100.0 * (1.0 - math.tan(math.radians(25.0)) / math.tan(math.radians(30.0)))
     return found
 
 
