@@ -18,19 +18,19 @@ MODULE = 2.0  # mm
 TEETH = 96
 ROOT = 0.5 * MODULE * TEETH - 1.25 * MODULE
 HELD = ROOT - 3.0 * MODULE
-RADII = (15.0, 24.0, 55.0, HELD, 0.5 * MODULE * TEETH)  # bore, hub, web, circle of the teeth, reference circle
+RADII = (15.0, 24.0, 55.0, HELD, 0.5 * MODULE * TEETH)  # bore, hub, web, inside of the rim, reference circle
 HEIGHTS = (-10.0, -3.5, 3.5, 10.0)
 AROUND = 24
 _CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
 _EDGES = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
 
 
-def write(path: Path) -> None:
-    """Write the deck."""
+def write(path: Path, held: float = HELD, radii: tuple[float, ...] = RADII) -> None:
+    """Write the deck; the rim for the contact is a circle of nodes at `held` mm, on one of the `radii`."""
     web = (1, 2)
     bricks = [
         (i, j, k)
-        for i in range(len(RADII) - 1)
+        for i in range(len(radii) - 1)
         for j in range(AROUND)
         for k in range(len(HEIGHTS) - 1)
         if i not in web or k == 1
@@ -39,7 +39,7 @@ def write(path: Path) -> None:
     places = 2 * np.array(bricks)[:, None] + steps
     places[..., 1] %= 2 * AROUND
     nodes, cells = np.unique(places.reshape(-1, 3), axis=0, return_inverse=True)
-    r = np.interp(nodes[:, 0] / 2, range(len(RADII)), RADII)
+    r = np.interp(nodes[:, 0] / 2, range(len(radii)), radii)
     z = np.interp(nodes[:, 2] / 2, range(len(HEIGHTS)), HEIGHTS)
     angle = np.pi * nodes[:, 1] / AROUND
     lines = ["*HEADING", "wheel with rim, web and hub, in mm", "*NODE"]
@@ -48,7 +48,7 @@ def write(path: Path) -> None:
     lines.append("*ELEMENT, TYPE=C3D20, ELSET=wheel")
     for number, cell in enumerate(cells.reshape(-1, 20) + 1, 1):
         lines += [f"{number}, " + ", ".join(map(str, cell[:10])) + ",", ", ".join(map(str, cell[10:]))]
-    for name, radius in {"bore": RADII[0], "rim": HELD}.items():
+    for name, radius in {"bore": radii[0], "rim": held}.items():
         found = np.flatnonzero(np.abs(r - radius) < 1e-9) + 1
         lines.append(f"*NSET, NSET={name}")
         lines += [", ".join(map(str, found[k : k + 12])) for k in range(0, len(found), 12)]
