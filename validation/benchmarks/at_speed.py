@@ -70,13 +70,16 @@ class Branches:
     harmonics: np.ndarray
     apart: np.ndarray
 
-    def fold(self, way: int) -> float:
-        """Mesh frequency in Hz where the first harmonic jumps; NaN where it does not."""
+    def steepest(self, way: int) -> tuple[float, float]:
+        """Mesh frequency in Hz where the first harmonic changes most from one speed to the next, and the power by which."""
         slope = np.abs(np.diff(np.log(self.harmonics[:, way, 0])) / np.diff(np.log(self.frequency)))
         jump = int(np.argmax(slope))
-        if slope[jump] < JUMP:
-            return float("nan")
-        return float(0.5 * (self.frequency[jump] + self.frequency[jump + 1]))
+        return float(0.5 * (self.frequency[jump] + self.frequency[jump + 1])), float(slope[jump])
+
+    def fold(self, way: int) -> float:
+        """Mesh frequency in Hz where the first harmonic jumps; NaN where it does not."""
+        place, slope = self.steepest(way)
+        return place if slope >= JUMP else float("nan")
 
 
 def damped(model: rg.Model) -> rg.Model:
@@ -135,14 +138,14 @@ def dense(mesh: MeshLayout, helix: int, force: float, sense: int = 1, near: bool
 
 
 def refined(model: rg.Model) -> Branches:
-    """Branches over mesh frequencies 2 % apart, and 0.1 % about the folds.
+    """Branches over mesh frequencies 2 % apart, and 0.1 % where they change most.
 
     A sweep in large steps may leave a branch before its end, so that folds move while the speeds about them are made finer.
     """
     coarse = resonance(model) * SPEEDS
     found = through(model, coarse)
     for _ in range(_PASSES):
-        folds = [fold for fold in (found.fold(way) for way in range(len(WAYS))) if np.isfinite(fold)]
+        folds = [found.steepest(way)[0] for way in range(len(WAYS))]
         width = [np.diff(found.frequency)[np.searchsorted(found.frequency, fold) - 1] / fold for fold in folds]
         if all(one <= 1.5 * (FINE[1] - FINE[0]) for one in width):
             break
@@ -187,9 +190,10 @@ def main() -> None:
             scale = np.maximum(waves, 0.5 * waves.max(axis=1, keepdims=True))
             off = np.abs((ships.harmonics[kept, number] - waves) / scale).max()
             wide = np.abs(ships.peak_to_peak[kept, number] / truth.peak_to_peak[kept, number] - 1.0).max()
+            fold = f"{at[1]:.1f} {100.0 * (at[0] / at[1] - 1.0):+8.3f} %" if np.isfinite(at).all() else "none"
             print(
                 f"{form:8s} {flank:10s}  {way:4s} {kept.sum():7d} {1e6 * truth.peak_to_peak[:, number].max():12.2f} "
-                f"{100.0 * truth.apart[:, number].max():9.1f} % {at[1]:11.1f} {100.0 * (at[0] / at[1] - 1.0):+8.3f} % "
+                f"{100.0 * truth.apart[:, number].max():9.1f} % {fold:>22s} "
                 f"{100.0 * wide:7.3f} % {100.0 * off:7.3f} % {time.process_time() - begun:7.1f}",
                 flush=True,
             )
