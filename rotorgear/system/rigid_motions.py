@@ -41,7 +41,7 @@ def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
         rows.append((strains / np.where(sizes > 0.0, sizes, 1.0)[:, :, None])[used])
     A = np.vstack(rows)
     # The triangle of a tall matrix has its null space, without a square of its rows.
-    A = np.linalg.qr(A, mode="r") if A.shape[0] > A.shape[1] else A
+    A = np.asarray(np.linalg.qr(A, mode="r")) if A.shape[0] > A.shape[1] else A
     null = la.null_space(A, rcond=_ZERO) if A.shape[0] else np.eye(P.shape[1])
     motions = P @ null
     if not motions.shape[1]:  # LAPACK refuses a least-squares problem without a right-hand side

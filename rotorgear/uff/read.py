@@ -214,8 +214,8 @@ def _node_values(lines: tuple[str, ...], each: int, where: Where) -> tuple[np.nd
     rows = [(k, numbers_in(text, where, k)) for k, text in enumerate(lines, start=9) if text.strip()]
     if not rows:
         raise where.problem(9, "the shape has no nodes")
-    nodes = []
-    values = []
+    nodes: list[int] = []
+    values: list[list[float]] = []
     at = 0
     while at < len(rows):
         row, head = rows[at]

@@ -15,7 +15,7 @@ from rotorgear.analysis.rig.estimate import Estimate
 from rotorgear.analysis.rig.learnt import SPRINGS, STIFFNESS_PRIOR
 from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.misfit import Misfit
-from rotorgear.analysis.rig.rig_model import RigModel, RigModes
+from rotorgear.analysis.rig.rig_model import ComparedModes, RigModel
 from rotorgear.model.address import tables_of
 from rotorgear.model.free_numbers import free_numbers, is_number
 from rotorgear.model.model import Model
@@ -56,8 +56,8 @@ def identified_pairs(
 
 def followed(
     model: RigModel,
-    here: tuple[NDArray[np.float64], RigModes],
-    there: tuple[NDArray[np.float64], RigModes],
+    here: tuple[NDArray[np.float64], ComparedModes],
+    there: tuple[NDArray[np.float64], ComparedModes],
     wanted: NDArray[np.intp],
     halves: int = _HALVES,
 ) -> NDArray[np.intp]:

@@ -159,7 +159,7 @@ class CampaignModel:
         parts = tuple(part.modes(x) for part in self.parts)
         turning = any(np.iscomplexobj(part.at_points) for part in parts)
         counts = np.cumsum([0, *(len(part.eigenvalues) for part in parts)])
-        table: Shapes = np.zeros((counts[-1], len(self.points)), dtype=complex if turning else float)
+        table = np.zeros((counts[-1], len(self.points)), dtype=complex if turning else float)
         for first, model, part in zip(counts, self.parts, parts, strict=False):
             table[first : first + len(part.eigenvalues), self._at(model)] = part.at_points
         return CampaignModes(parts, table)
@@ -169,10 +169,10 @@ class CampaignModel:
     ) -> tuple[NDArray[np.float64], Shapes]:
         """d ln f / dx (k, p) and d phi / dx at the points (k, s, p) of k chosen modes."""
         slopes = np.zeros((len(chosen), len(x)))
-        moved: Shapes = np.zeros((len(chosen), len(self.points), len(x)), dtype=modes.at_points.dtype)
+        moved = np.zeros((len(chosen), len(self.points), len(x)), dtype=modes.at_points.dtype)
         for rows, model, part, own in self._of_each(modes, chosen):
             slopes[rows], at_points = model.derivatives(x, part, own, shapes=shapes)
-            moved[np.ix_(rows, self._at(model))] = at_points
+            moved[np.ix_(rows, np.array(self._at(model), dtype=np.intp))] = at_points
         return slopes, moved
 
     def _of_each(

@@ -11,7 +11,7 @@ import numpy as np
 
 from rotorgear.analysis.rig.misfit import Misfit, Pair, State
 from rotorgear.analysis.rig.posterior import Posterior
-from rotorgear.analysis.rig.rig_model import RigModes
+from rotorgear.analysis.rig.rig_model import ComparedModes
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress
 
@@ -108,7 +108,7 @@ class Estimate:
         )
 
 
-def _followed(before: State, modes: RigModes) -> tuple[Pair, ...]:
+def _followed(before: State, modes: ComparedModes) -> tuple[Pair, ...]:
     """The pairs of a state with each mode at its new place: the one-to-one assignment of most overlap."""
     from scipy.optimize import linear_sum_assignment
 

@@ -12,12 +12,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.analysis.rig.campaigns import CampaignModel, CampaignModes
 from rotorgear.analysis.rig.learnt import line_noise
 from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.pairing import pairs_of
 from rotorgear.analysis.rig.posterior import Posterior
-from rotorgear.analysis.rig.rig_model import RigModel, RigModes, Shapes
+from rotorgear.analysis.rig.rig_model import ComparedModel, ComparedModes, Shapes
 
 # Shapes of modes closer than this in ln f turn into each other at the slightest change: their plane is compared, not each.
 CLOSE = 0.03
@@ -50,7 +49,7 @@ class State:
     """
 
     x: NDArray[np.float64]
-    modes: RigModes | CampaignModes
+    modes: ComparedModes
     pairs: tuple[Pair, ...]
     residual: NDArray[np.float64]
     noise: NDArray[np.float64]
@@ -66,7 +65,7 @@ class Misfit:
     speed: their shapes are complex, and both parts of what is left of them count, each with its share of the noise.
     """
 
-    model: RigModel | CampaignModel
+    model: ComparedModel
     given: Measured
     shape_noise: float
     tolerance: float
@@ -99,7 +98,7 @@ class Misfit:
         known = np.flatnonzero(np.isfinite(self.shapes[line]))
         return known if len(known) > 1 else known[:0]
 
-    def beside(self, x: NDArray[np.float64], modes: RigModes | CampaignModes, pairs: tuple[Pair, ...]) -> State:
+    def beside(self, x: NDArray[np.float64], modes: ComparedModes, pairs: tuple[Pair, ...]) -> State:
         """Residuals of the model at x."""
         residual: list[float] = []
         noise: list[float] = []
@@ -141,9 +140,7 @@ class Misfit:
                 rows += list(self.parts(pair.line, _off_subspace(basis, np.asarray(change))))
         return Posterior(np.array(rows).reshape(-1, len(state.x)), state.noise, self.model.numbers.prior)
 
-    def pairs(
-        self, x: NDArray[np.float64], modes: RigModes | CampaignModes, known: Posterior | None
-    ) -> tuple[Pair, ...]:
+    def pairs(self, x: NDArray[np.float64], modes: ComparedModes, known: Posterior | None) -> tuple[Pair, ...]:
         """Pair lines and modes, by what is known of the numbers so far."""
         hz = np.array([line.frequency_hz for line in self.given.lines])
         noise = max(line_noise(line) for line in self.given.lines)
@@ -170,7 +167,7 @@ class Misfit:
         return tuple(Pair(line, mode, _close(modes, mode, self.looseness)) for line, mode in found)
 
 
-def _close(modes: RigModes | CampaignModes, mode: int, looseness: float) -> tuple[int, ...]:
+def _close(modes: ComparedModes, mode: int, looseness: float) -> tuple[int, ...]:
     """The modes that are close to one, itself among them."""
     near = np.abs(np.log(modes.eigenvalues / modes.eigenvalues[mode])) < 2.0 * (CLOSE + _LOOSE_CLOSE * looseness)
     return tuple(int(k) for k in np.flatnonzero(near & (modes.campaign == modes.campaign[mode])))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,35 @@ from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
 Shapes = NDArray[np.float64] | NDArray[np.complex128]
+
+
+class ComparedModes(Protocol):
+    """What lines are compared with: the modes of one model, or those of all campaigns one after the other."""
+
+    @property
+    def system(self) -> System: ...
+    @property
+    def eigenvalues(self) -> NDArray[np.float64]: ...
+    @property
+    def frequency_hz(self) -> NDArray[np.float64]: ...
+    @property
+    def campaign(self) -> NDArray[np.intp]: ...
+    @property
+    def at_points(self) -> Shapes: ...
+    def overlap(self, other: Any) -> NDArray[np.float64]: ...
+
+
+class ComparedModel(Protocol):
+    """Where such modes come from; it understands its own modes only."""
+
+    @property
+    def numbers(self) -> FreeNumbers: ...
+    @property
+    def solutions(self) -> int: ...
+    def modes(self, x: NDArray[np.float64]) -> ComparedModes: ...
+    def derivatives(
+        self, x: NDArray[np.float64], modes: Any, chosen: NDArray[np.intp], *, shapes: bool
+    ) -> tuple[NDArray[np.float64], Shapes]: ...
 
 
 @dataclass(frozen=True)
