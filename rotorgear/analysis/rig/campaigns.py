@@ -169,7 +169,8 @@ class CampaignModel:
     ) -> tuple[NDArray[np.float64], Shapes]:
         """d ln f / dx (k, p) and d phi / dx at the points (k, s, p) of k chosen modes."""
         slopes = np.zeros((len(chosen), len(x)))
-        moved = np.zeros((len(chosen), len(self.points), len(x)), dtype=modes.at_points.dtype)
+        kind = complex if np.iscomplexobj(modes.at_points) else float
+        moved = np.zeros((len(chosen), len(self.points), len(x)), dtype=kind)
         for rows, model, part, own in self._of_each(modes, chosen):
             slopes[rows], at_points = model.derivatives(x, part, own, shapes=shapes)
             moved[np.ix_(rows, np.array(self._at(model), dtype=np.intp))] = at_points
