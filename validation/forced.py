@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from rotorgear.results.response import ResponseResult
+from rotorgear.results.steady.response import ResponseResult
 
 
 def _displacement(result: ResponseResult) -> np.ndarray:

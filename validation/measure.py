@@ -19,7 +19,7 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.errors import AnalysisError
-from rotorgear.results.modal import ModalResult
+from rotorgear.results.steady.modal import ModalResult
 from validation.cases import Case, Expectation
 from validation.forced import FORCED
 from validation.mesh import is_of_mesh, measure_mesh

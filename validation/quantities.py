@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from rotorgear.results.modal import ModalResult
+from rotorgear.results.steady.modal import ModalResult
 
 
 def _log_decrement(result: ModalResult) -> np.ndarray:

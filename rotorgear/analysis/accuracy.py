@@ -20,8 +20,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.convergence import ConvergenceStudy
-from rotorgear.results.mesh_convergence import MeshConvergenceStudy
-from rotorgear.results.sweep_convergence import SweepConvergenceStudy
+from rotorgear.results.motion.sweep_convergence import SweepConvergenceStudy
+from rotorgear.results.parts.mesh_convergence import MeshConvergenceStudy
 
 AnyStudy = ConvergenceStudy | MeshConvergenceStudy | SweepConvergenceStudy
 

@@ -21,7 +21,7 @@ from rotorgear.cli.common import (
 from rotorgear.errors import AnalysisError
 
 if TYPE_CHECKING:
-    from rotorgear.results.mesh_map import MeshMap
+    from rotorgear.results.parts.mesh_map import MeshMap
 
 
 def mesh(

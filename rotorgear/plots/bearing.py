@@ -9,7 +9,7 @@ import numpy as np
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import figure_for
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.bearing import BearingSheet, FilmState, ThrustState
+from rotorgear.results.parts.bearing import BearingSheet, FilmState, ThrustState
 
 # Steps of the grid: a leap from one pad to the next.
 _APART = 1.5

@@ -12,8 +12,9 @@ from rotorgear.results.result import Result
 
 @cache
 def kinds() -> dict[str, type[Result]]:
-    """Return the classes of all results; a new one is here as soon as its file stands in this folder."""
-    for module in pkgutil.iter_modules(rotorgear.results.__path__):
-        if not module.ispkg:
-            import_module(f"{rotorgear.results.__name__}.{module.name}")
+    """Return the classes of all results; a new one is here as soon as its file stands in a room of this folder."""
+    name = rotorgear.results.__name__
+    for module in pkgutil.walk_packages(rotorgear.results.__path__, f"{name}."):
+        if not module.ispkg and not module.name.startswith(f"{name}.tables."):
+            import_module(module.name)
     return dict(Result.kinds)

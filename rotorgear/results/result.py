@@ -89,8 +89,8 @@ class Result(Record):
 
     def table(self, **options: Any) -> RenderableType:
         """What the command prints, as one rich renderable; the options are those of the command that choose tables."""
-        # A table knows its result, so the result finds its table by name: that of its own file, in the room above.
-        place = type(self).__module__.rpartition(".")[2]
+        # A table knows its result, so the result finds its table by name: that of its own room and file, below tables/.
+        place = type(self).__module__.removeprefix(f"{__package__}.")
         module = import_module(f".tables.{place}", __package__)
         table: RenderableType = getattr(module, f"{self.kind}_table")(self, **options)
         return table

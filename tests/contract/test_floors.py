@@ -69,7 +69,15 @@ ROOMS = {
         "": {"geometry", "loaded", "stiffness", "tooth_fe"},
     },
     "model": {"parts": set(), "layout": {"parts"}, "checks": {"layout", "parts"}, "": {"checks", "layout", "parts"}},
-    "results": {"": set(), "tables": {""}},
+    "results": {
+        "": set(),
+        "steady": {""},
+        "motion": {"", "steady"},
+        "parts": {""},
+        "rig": {"", "steady"},
+        "design": {""},
+        "tables": {"", "design", "motion", "parts", "rig", "steady"},
+    },
     "solvers": {
         "sampling": set(),
         "sparse": set(),
@@ -299,18 +307,19 @@ def test_what_loads_modules_by_a_name_is_declared(house: Arrows) -> None:
 def test_every_result_finds_its_table_in_the_room_of_tables_and_every_table_has_a_result() -> None:
     of_kinds = set()
     for kind, result in kinds().items():
-        module = import_module(f"{BY_NAME[Result.__module__]}.{result.__module__.rpartition('.')[2]}")
+        place = result.__module__.removeprefix("rotorgear.results.")
+        module = import_module(f"{BY_NAME[Result.__module__]}.{place}")
         table = getattr(module, f"{kind}_table")
         assert table.__module__ == module.__name__, f"the table of {kind} is made elsewhere"
         first = next(iter(inspect.signature(table).parameters.values()))
         assert first.annotation == result.__name__
         of_kinds.add(Path(str(module.__file__)).stem)
-    tables = {file.stem for file in (ROOT / "rotorgear" / "results" / "tables").glob("*.py")}
+    tables = {file.stem for file in (ROOT / "rotorgear" / "results" / "tables").rglob("*.py")}
     assert tables - {"__init__", "common"} == of_kinds
 
 
 def test_no_folder_of_a_floor_with_rooms_is_too_full() -> None:
-    for floor in ("analysis", "solvers", "gears", "model"):
+    for floor in ("analysis", "solvers", "gears", "model", "results"):
         for folder in [ROOT / "rotorgear" / floor, *(ROOT / "rotorgear" / floor).iterdir()]:
             if folder.is_dir():
                 assert len(list(folder.glob("*.py"))) <= FULL, folder

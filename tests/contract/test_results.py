@@ -23,9 +23,9 @@ from rotorgear.export.hdf5 import read, save
 from rotorgear.model.model_hash import model_hash
 from rotorgear.results.keys import keys_of
 from rotorgear.results.kinds import kinds
+from rotorgear.results.motion.spectrum import SpectralLines
 from rotorgear.results.result import Result
 from rotorgear.results.schema import Record, of
-from rotorgear.results.spectrum import SpectralLines
 from tests.paths import ROOT
 from tests.unit.analysis.geared import pair_file
 from tests.unit.analysis.static.test_bearing_states import BALLS

@@ -11,7 +11,7 @@ from rotorgear.analysis.modal.modal import modal
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.modal import Piece
+from rotorgear.results.steady.modal import Piece
 from rotorgear.system.plan import PieceKey, Plan
 from rotorgear.system.system import System
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rotorgear.results.modal import Piece
+from rotorgear.results.steady.modal import Piece
 from rotorgear.system.nodes import Element
 from rotorgear.system.system import System
 

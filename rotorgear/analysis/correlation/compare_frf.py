@@ -19,7 +19,7 @@ from rotorgear.analysis.rig.sensor_table import Sensor, sensors_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.frf_comparison import FrfComparison, FrfMatch
+from rotorgear.results.rig.frf_comparison import FrfComparison, FrfMatch
 from rotorgear.uff.datasets import DERIVATIVES, FREQUENCY, FREQUENCY_RESPONSE, Function
 from rotorgear.uff.read import read_universal
 

@@ -12,7 +12,7 @@ from rotorgear.analysis.layout.state import State, state_of, total_mass
 from rotorgear.analysis.scatter.family import system_at
 from rotorgear.errors import AnalysisError
 from rotorgear.model.numbers import Numbers
-from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.steady.campbell import ExcitationOrder
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 

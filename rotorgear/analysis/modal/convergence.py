@@ -13,7 +13,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.convergence import ConvergenceStudy
-from rotorgear.results.modal import ModalResult
+from rotorgear.results.steady.modal import ModalResult
 from rotorgear.system.system import System
 
 REFERENCE = 1e-10

@@ -25,7 +25,7 @@ from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.model.parts.fields import MOTIONS
 from rotorgear.progress import Progress, silent
-from rotorgear.results.modal import ModalResult
+from rotorgear.results.steady.modal import ModalResult
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 

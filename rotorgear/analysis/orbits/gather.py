@@ -10,7 +10,7 @@ import numpy as np
 from rotorgear.analysis.orbits.curves import Curve
 from rotorgear.analysis.orbits.family import Range, SystemFamily
 from rotorgear.analysis.orbits.follow import Branch
-from rotorgear.results.orbits import OrbitBranch, SpecialCurve, SpecialPoint
+from rotorgear.results.motion.orbits import OrbitBranch, SpecialCurve, SpecialPoint
 from rotorgear.solvers.periodic.cycle import Cycle
 from rotorgear.solvers.periodic.special import Certified
 

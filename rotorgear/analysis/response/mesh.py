@@ -14,7 +14,7 @@ from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START
 from rotorgear.analysis.modal.solve import solve
 from rotorgear.model.model import Model
 from rotorgear.model.parts.supports import StiffnessMatrix
-from rotorgear.results.modal import ModalResult
+from rotorgear.results.steady.modal import ModalResult
 from rotorgear.system.groups import table_values
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System

@@ -29,7 +29,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
-from rotorgear.results.response import ResponseResult
+from rotorgear.results.steady.response import ResponseResult
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System

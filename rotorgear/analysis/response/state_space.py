@@ -32,7 +32,7 @@ from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.state_space import StateSpace
+from rotorgear.results.steady.state_space import StateSpace
 from rotorgear.solvers.frequency.harmonic import Dynamics
 from rotorgear.solvers.sparse.factor import factor_general
 from rotorgear.system.contacts import contact_lines

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rotorgear.analysis.rig.posterior import Posterior
-from rotorgear.results.comparison import RigLine
-from rotorgear.results.learnt import LearntParameter
+from rotorgear.results.rig.comparison import RigLine
+from rotorgear.results.rig.learnt import LearntParameter
 
 # What a designer usually knows of the stiffness of a mesh, bearing or support, and what a rig of a frequency that states nothing.
 STIFFNESS_PRIOR = 0.30

@@ -30,8 +30,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.free_numbers import DEFAULT_PRIOR, FreeNumbers, free_numbers
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
-from rotorgear.results.comparison import RigLine
-from rotorgear.results.update import UpdatedLine, UpdatedParameter, UpdateResult
+from rotorgear.results.rig.comparison import RigLine
+from rotorgear.results.rig.update import UpdatedLine, UpdatedParameter, UpdateResult
 from rotorgear.system.plan import Plan
 
 # Noise of a measured displacement, as a share of the root mean square of its shape.

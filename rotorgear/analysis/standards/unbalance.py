@@ -18,7 +18,7 @@ from rotorgear.analysis.static.mean_state import mean_state
 from rotorgear.analysis.static.tangent import about_equilibrium
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.modal import NodeTable
+from rotorgear.results.steady.modal import NodeTable
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.loads import weight_loads
 from rotorgear.system.system import System

@@ -36,7 +36,7 @@ from rotorgear.gears.stiffness.face_load import uniform_line
 from rotorgear.model.layout.mean_load import MeanLoad
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent
-from rotorgear.results.static import LoopAssembly, MeshFace, StaticResult
+from rotorgear.results.steady.static import LoopAssembly, MeshFace, StaticResult
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 

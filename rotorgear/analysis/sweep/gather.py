@@ -15,8 +15,8 @@ from rotorgear.analysis.sweep.notes import notes
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.analysis.sweep.request import Request
 from rotorgear.model.model import Model
-from rotorgear.results.reduction import Reduction
-from rotorgear.results.sweep import SweepResult
+from rotorgear.results.motion.reduction import Reduction
+from rotorgear.results.motion.sweep import SweepResult
 from rotorgear.solvers.lanes.lanes import Orbit
 
 _TABLES = (

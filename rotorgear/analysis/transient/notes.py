@@ -7,7 +7,7 @@ import numpy as np
 from rotorgear.analysis.common.mesh_notes import unlike_teeth_left_out
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.transient import TransientResult
+from rotorgear.results.motion.transient import TransientResult
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium
 from rotorgear.system.local import LocalModel
 

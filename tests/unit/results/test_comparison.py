@@ -7,7 +7,7 @@ import json
 
 import pytest
 
-from rotorgear.results.comparison import (
+from rotorgear.results.rig.comparison import (
     Candidate,
     Chance,
     Comparison,

@@ -16,7 +16,7 @@ from rotorgear.analysis.scatter.family import system_at
 from rotorgear.analysis.scatter.forms import forms_of
 from rotorgear.analysis.scatter.modes import modes_of
 from rotorgear.model.numbers import numbers_of
-from rotorgear.results.campbell import ExcitationOrder
+from rotorgear.results.steady.campbell import ExcitationOrder
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.system.plan import Plan
 from tests.paths import ROOT

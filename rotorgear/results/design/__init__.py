@@ -1,0 +1,1 @@
+"""What scatter and search say of a design."""

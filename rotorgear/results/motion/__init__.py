@@ -1,0 +1,1 @@
+"""Motions in time: runs, sweeps over a parameter, periodic orbits."""

@@ -1,0 +1,1 @@
+"""Sheets of single parts: gears and their meshes, bearings, casings."""

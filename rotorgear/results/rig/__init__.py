@@ -1,0 +1,1 @@
+"""Comparison with test rigs, updating by them, places of sensors."""

@@ -1,0 +1,1 @@
+"""Steady states and small motions about them: statics, modes, speeds, responses."""

@@ -1,0 +1,1 @@
+"""Tables of what scatter and search say of a design."""

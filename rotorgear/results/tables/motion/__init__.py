@@ -1,0 +1,1 @@
+"""Tables of motions in time: runs, sweeps over a parameter, periodic orbits."""

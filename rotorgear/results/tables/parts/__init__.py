@@ -1,0 +1,1 @@
+"""Tables of sheets of single parts: gears and their meshes, bearings, casings."""

@@ -1,0 +1,1 @@
+"""Tables of comparison with test rigs, updating by them, places of sensors."""

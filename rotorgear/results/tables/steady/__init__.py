@@ -1,0 +1,1 @@
+"""Tables of steady states and small motions about them: statics, modes, speeds, responses."""
