@@ -35,6 +35,7 @@ from rotorgear.model.parts.supports import (
     StiffnessMatrix,
     Support,
     TableRow,
+    ThrustGeometry,
 )
 from rotorgear.model.parts.topography import MeasuredGrid, Topography
 from rotorgear.quantity import DIMENSIONS
@@ -58,6 +59,7 @@ SECTIONS: list[tuple[str, type[BaseModel]]] = [
     ("[bearings.NAME]", Bearing),
     ("rolling = { ... } of a bearing", RollingElements),
     ("journal = { ... } of a bearing", JournalGeometry),
+    ("thrust = { ... } of a bearing", ThrustGeometry),
     ("table = [{ ... }] of a bearing", TableRow),
     ("pedestal = { ... } of a bearing", Pedestal),
     ("stiffness = { ... } of a bearing, support or coupling", StiffnessMatrix),
@@ -147,6 +149,11 @@ RULES: dict[type[BaseModel], str] = {
         With `pads` it is one of tilting pads, whose stiffness and damping are those of pads that follow at `whirl_ratio`.
         [Bearings](bearings.md) tells more. Refused: turbulent films, eccentricities above 0.95, lengths
         above two diameters.""",
+    ThrustGeometry: """
+        The films carry along z and resist tilting of the collar; what holds the shaft across is a bearing of its own. Statics,
+        transients and sweeps solve the pressure of each pad, linear analyses take stiffness and damping at the static
+        equilibrium, over speed. Fixed pads have a `taper`, tilting ones a `pivot` instead. [Bearings](bearings.md) tells
+        more.""",
     NonlinearElement: """
         A force law of the package, such as `journal_bearing` or `plain_spring`, or one registered from Python before the file
         is loaded. It acts in every analysis: as it is in statics, transients and sweeps, and by its tangents at the static

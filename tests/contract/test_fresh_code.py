@@ -106,6 +106,19 @@ def change(copy: Path, file: str, old: str, new: str) -> None:
     path.write_text(text.replace(old, new), encoding="utf-8")
 
 
+def test_compiled_code_is_kept_in_a_folder_that_any_change_of_its_sources_renames(copy: Path) -> None:
+    ask = "from rotorgear.solvers.time.compiled import cache_folder; print(cache_folder())"
+    before = answers(copy, ask)
+    assert answers(copy, ask) == before
+    folders = {before}
+    for file in ("solvers/time/kernel_contact.py", "solvers/contact/gap_contact.py", "forces/mesh_contact.py"):
+        with (copy / "rotorgear" / file).open("a", encoding="utf-8") as source:
+            source.write("\n# another word\n")
+        folders.add(answers(copy, ask))
+    assert len(folders) == 4
+
+
+@pytest.mark.long  # compiles a loop twice
 def test_a_change_of_an_inlined_function_reaches_the_compiled_loop(copy: Path) -> None:
     before = answer(copy, INTEGRATE)
     assert answer(copy, INTEGRATE) == before  # from the warm cache

@@ -15,7 +15,9 @@ from tests.fuzz.write_toml import toml_text
 
 @pytest.mark.parametrize("first", range(0, 100, 20))
 def test_mutants_give_finite_results_or_a_sentence(first: int, tmp_path: Path) -> None:
-    found = [finding for seed in range(first, first + 20) for finding in run_seed(seed, QUICK, tmp_path)[0]]
+    # Teeth in space that lean take half a minute for each mutant: `python -m tests.fuzz` has them.
+    seeds = [seed for seed in range(first, first + 20) if mutant(seed)[0] != "overhung_pinion"]
+    found = [finding for seed in seeds for finding in run_seed(seed, QUICK, tmp_path)[0]]
     assert found == []
 
 

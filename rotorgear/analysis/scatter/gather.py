@@ -101,7 +101,8 @@ def _variance_shares(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _leading(shares: NDArray[np.float64], numbers: tuple[ScatteredNumber, ...]) -> tuple[str, float]:
-    j = int(np.argmax(shares))
+    # Of parts that are alike the first in the file leads, not the one that rounding prefers.
+    j = int(np.argmax(shares >= (1.0 - 1e-6) * np.max(shares)))
     return (numbers[j].address, float(shares[j])) if shares[j] > 0.0 else ("", 0.0)
 
 
