@@ -11,13 +11,18 @@ import pytest
 import rotorgear as rg
 from tests import paths
 
-MODELS = sorted(paths.MODELS.glob("*.toml"))
+# Their teeth, or their casing, take longer than all else here.
+COSTLY = {"overhung_pinion", "split_torque_casing", "elastic_wheel"}
+MODELS = [
+    pytest.param(path, id=path.stem, marks=[pytest.mark.long] if path.stem in COSTLY else [])
+    for path in sorted(paths.MODELS.glob("*.toml"))
+]
 # A model remembers the state of its loaded teeth, which takes longer to find than all modes here.
 load = cache(rg.load)
 
 
 @pytest.mark.parametrize("speed", [None, 0.0, 100.0])
-@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", MODELS)
 def test_pruned_and_full_models_have_the_same_eigenvalues(path: Path, speed: float | None) -> None:
     model = load(path)
     if speed is not None and any(bearing.journal for bearing in model.bearings.values()):
@@ -66,7 +71,7 @@ def test_only_torsion_leaves_out_what_torsion_cannot_reach() -> None:
 
 
 def test_a_mesh_of_helical_gears_joins_all_motions() -> None:
-    result = rg.modal(rg.load(MODELS[0].parent / "split_torque.toml"), modes=6)
+    result = rg.modal(load(paths.MODELS / "split_torque.toml"), modes=6)
     assert not any("solved apart" in note for note in result.left_out)
 
 

@@ -1,4 +1,4 @@
-"""A hundred mutants in every run of the tests; more by `python -m tests.fuzz`."""
+"""Eighty mutants in every run of the tests; more by `python -m tests.fuzz`."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from tests.fuzz.write_toml import toml_text
 
 @pytest.mark.parametrize("first", range(0, 100, 20))
 def test_mutants_give_finite_results_or_a_sentence(first: int, tmp_path: Path) -> None:
-    # Teeth in space that lean take half a minute for each mutant: `python -m tests.fuzz` has them.
-    seeds = [seed for seed in range(first, first + 20) if mutant(seed)[0] != "overhung_pinion"]
+    # Loaded teeth take up to half a minute for each mutant: `python -m tests.fuzz` has them.
+    seeds = [seed for seed in range(first, first + 20) if "tooth_fe" not in mutant(seed)[1]]
     found = [finding for seed in seeds for finding in run_seed(seed, QUICK, tmp_path)[0]]
     assert found == []
 

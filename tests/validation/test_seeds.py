@@ -113,6 +113,7 @@ def test_set_2_is_of_one_period_again_at_high_speed() -> None:
     assert [found.motion_at(p) == "1T" for p in range(4)] == [True, False, True, True]
 
 
+@pytest.mark.long  # two sweeps that settle for long
 def test_load_closes_the_gap_and_damping_calms() -> None:
     assert pair24.trend(pair24.apart(torques=(300.0,))) == ["1T 0 %"]
     assert pair24.trend(pair24.apart(damping=(4.0,)))[0].startswith("1T")

@@ -93,7 +93,7 @@ def test_one_at_a_time_and_in_vectors_are_the_same_to_rounding(monkeypatch: pyte
 @pytest.mark.parametrize(
     "changes",
     [
-        {"bearings__a__rolling": ROLLING, "bearings__b__rolling": ROLLING},
+        pytest.param({"bearings__a__rolling": ROLLING, "bearings__b__rolling": ROLLING}, marks=pytest.mark.long),
         {"meshes__pair__friction_coefficient": 0.06},
         {
             "operation": {"input_shaft": "one", "speed": "1500 rpm"},
