@@ -5,14 +5,13 @@
     python -m validation.benchmarks.crawl --form overhung --flank bare misaligned
 
 The force of a lone mesh is given by the torque, so that its transmission error at a crawl is that of the loaded contact at
-this force ("contact"): solved here at 1024 positions of a base pitch, without any map. Where its shafts tilt its flanks
-("overhung"), the contact is solved at five misalignments, and at each position tilt and moment agree ("coupled"). Where helices
-and branches share the load, the reference is the joint state of all contacts ("joint"), with maps of `--positions` in a base
-pitch and the loads of a transient; the approach is compared there, for a joint state knows its contacts, and of those the ones
-of loaded teeth. Errors of harmonics, of the mesh and with a pitch error of the shaft of the odd tooth too, are relative to
-themselves, or to half the largest one of their kind where that is more: 1 % of that is the measure. Peak to peak is that of the
-sum of all orders of the response, and of all steps of the transient. "mean" is the largest difference of a mean force from that
-of `static`.
+this force ("contact"). Where its shafts tilt its flanks ("overhung"), the contact is solved at five misalignments, and at each
+position tilt and moment agree ("coupled"). Where helices and branches share the load, the reference is the joint state of all
+contacts ("joint"). No map takes part in any of them (`crawl_reference.py`). The approach is compared in a joint state, for it
+knows its contacts, and of those the ones of loaded teeth. Errors of harmonics, of the mesh and with a pitch error of the shaft of
+the odd tooth too, are relative to themselves, or to half the largest one of their kind where that is more: 1 % of that is the
+measure. Peak to peak is that of the sum of all orders of the response, and of all steps of the transient. "mean" is the largest
+difference of a mean force from that of `static`.
 """
 
 from __future__ import annotations
@@ -20,31 +19,21 @@ from __future__ import annotations
 import argparse
 import itertools
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from unittest.mock import patch
 
 import numpy as np
-from scipy.interpolate import BarycentricInterpolator
 
 import rotorgear as rg
-from rotorgear.analysis.static.mean_state import mean_state
-from rotorgear.gears.loaded.contact_map import ContactMap
-from rotorgear.gears.loaded.mesh_cycle import MeshCycle, mesh_cycle
-from rotorgear.gears.loaded.solved_map import contact_map
-from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
-from rotorgear.model.layout.mesh_layout import MeshLayout
-from rotorgear.system.system import System
+from validation.benchmarks.crawl_reference import ODD, Curves, lines_of, reference
 
-POSITIONS = 1024
 TORQUE = 2000.0
-HARMONICS = 5
+# Of a base pitch, at which a response is drawn for its peak to peak.
+POINTS = 8192
 # Steps and records of a transient in a mesh period, which takes so many seconds: some 1/500 of the lowest elastic mode.
 STEPS = 512
 PERIOD = 0.5
-ODD = 1  # the tooth with the pitch error
 ANALYSES = ("response", "transient")
 MODELS = Path(__file__).parents[2] / "models"
 
@@ -171,127 +160,6 @@ def case(form: str, flank: str, torque: float) -> rg.Model:
     return pair(torque, form, **of_flank[flank])
 
 
-@dataclass(frozen=True)
-class Curves:
-    """What a contact does over its cycle of whole base pitches.
-
-    Attributes:
-        periods: base pitches in the cycle. values: (p, c) in m, transverse, evenly spaced over it.
-        force: (c,) mean forces along the flank normal in N.
-        lone: whether they are transmission errors of a lone mesh, and not approaches.
-        teeth: (c,) whether the contact is of loaded teeth, and not a spring.
-    """
-
-    periods: int
-    values: np.ndarray
-    force: np.ndarray
-    lone: bool
-    teeth: np.ndarray
-
-    @property
-    def harmonics(self) -> np.ndarray:
-        """Amplitudes (k, 5, c) of the orders of the mesh, and where teeth differ of their shaft."""
-        return lines_of(self.values, self.periods)
-
-    @property
-    def peak_to_peak(self) -> np.ndarray:
-        """(c,) in m."""
-        return np.asarray(np.ptp(self.values, axis=0))
-
-
-def lines_of(values: np.ndarray, periods: int) -> np.ndarray:
-    """Amplitudes (k, 5, c) in values (p, c) over a cycle of so many periods: mesh, and shaft where they are more than one."""
-    spectrum = 2.0 * np.abs(np.fft.rfft(values, axis=0)) / len(values)
-    mesh = spectrum[periods : (HARMONICS + 1) * periods : periods]
-    return np.stack([mesh, spectrum[1 : HARMONICS + 1]] if periods > 1 else [mesh])
-
-
-def reference(model: rg.Model, positions: int) -> Curves:
-    """The loaded contact at the force of a lone mesh; of several contacts their joint state."""
-    force = rg.static(model).mesh_force
-    states = model.mean_load(1).forces
-    if len(states) == 1 and any(mesh.tilt for mesh in model.meshes.values()):
-        return coupled(model, np.asarray(force))
-    if len(states) == 1:
-        return Curves(*contact(model), np.asarray(force), lone=True, teeth=np.ones(1, bool))
-
-    def fine(mesh: MeshLayout, helix: int, force: float, sense: int = 1, near: bool = False) -> ContactMap | None:
-        if mesh.part.stiffness != "tooth_fe" or not force:
-            return None
-        return contact_map(mesh.helix_teeth(helix, sense), float(f"{force:.12g}"), positions)
-
-    assert model.operation is not None
-    with patch.object(MeshLayout, "contact_map", fine):
-        setup = mean_state(
-            System(model, load=model.mean_load(1).of_kind("static")), float(model.operation.speed or 0.0)
-        )
-    assert setup.joint is not None
-    cosine = np.cos([state.contact.base_helix_angle for state in setup.lines.states])
-    (cycle,) = setup.joint.cycles
-    return Curves(cycle.periods, cycle.approach / cosine, np.asarray(force), lone=False, teeth=setup.joint.own >= 0)
-
-
-def contact(model: rg.Model) -> tuple[int, np.ndarray]:
-    """Periods of the cycle, and transmission error (p, 1) of the loaded contact of a lone mesh without any map."""
-    (state,) = model.mean_load(1).forces
-    mesh = model.layout.mesh(state.contact.mesh)
-    load = state.normal_force * np.cos(state.contact.base_helix_angle)
-    problem = contact_problem(mesh.helix_teeth(0, state.torque_sense))
-    return over_periods(problem, lambda number: alone(problem, load, number).deflection[:, None])
-
-
-def alone(problem: ContactProblem, load: float, number: int) -> MeshCycle:
-    """The contact at 1024 positions of a base pitch."""
-    return mesh_cycle(problem, load, number + np.arange(POSITIONS) / POSITIONS)
-
-
-def over_periods(problem: ContactProblem, period: Callable[[int], np.ndarray]) -> tuple[int, np.ndarray]:
-    """Base pitches of the cycle, and values over all of them from those (1024, c) of a base pitch by its number."""
-    if not any(flank.single_teeth for flank in problem.flanks):
-        return 1, period(0)
-    # Some pitches before and behind the odd tooth are their own; all others are alike.
-    periods = problem.teeth[0]
-    own = {number % periods: period(number % periods) for number in range(ODD - 3, ODD + 4)}
-    alike = period(periods // 2)
-    return periods, np.concatenate([own.get(number, alike) for number in range(periods)])
-
-
-def coupled(model: rg.Model, force: np.ndarray) -> Curves:
-    """Approach of a lone spur mesh whose shafts tilt its flanks: at each position tilt and moment agree.
-
-    The shafts are linear, tilt = tilt_0 + a M at the force of the torque. Approach and moment of the contact over the tilt come
-    from contacts solved at five misalignments, by the polynomial through them.
-    """
-    assert model.operation is not None
-    load = model.mean_load(1).of_kind("static")
-    joint = mean_state(System(model, load=load), float(model.operation.speed or 0.0)).joint
-    assert joint is not None
-    (cycle,) = joint.cycles
-    a, tilt_0 = np.polyfit(cycle.moment[:, 0], cycle.tilt[:, 0], 1)
-    low, high = cycle.tilt[:, 0].min(), cycle.tilt[:, 0].max()
-    tilts = 0.5 * (low + high) + 0.75 * (high - low) * np.cos(np.pi * (np.arange(5) + 0.5) / 5)
-    (state,) = model.mean_load(1).forces
-    mesh = model.layout.mesh(state.contact.mesh)
-    teeth = mesh.working_teeth(state.torque_sense)
-    problems = [contact_problem(replace(teeth, misalignment=teeth.misalignment - teeth.width * tilt)) for tilt in tilts]
-
-    def period(number: int) -> np.ndarray:
-        cycles = [alone(problem, float(force[0]), number) for problem in problems]
-        moment = BarycentricInterpolator(tilts, np.stack([one.moment for one in cycles]))
-        approach = BarycentricInterpolator(tilts, np.stack([one.deflection for one in cycles]))
-        tilt = np.full(POSITIONS, 0.5 * (low + high))
-        each = np.arange(POSITIONS)
-        h = 1e-4 * (high - low)
-        for _ in range(8):  # Newton's method, each position for itself
-            left = tilt - tilt_0 - a * moment(tilt)[each, each]
-            slope = 1.0 - a * (moment(tilt + h)[each, each] - moment(tilt - h)[each, each]) / (2.0 * h)
-            tilt = tilt - left / slope
-        return np.asarray(approach(tilt)[each, each])[:, None]
-
-    periods, values = over_periods(problems[0], period)
-    return Curves(periods, values, force, lone=False, teeth=np.ones(1, bool))
-
-
 def of_response(model: rg.Model, truth: Curves) -> Curves:
     """The sum of all orders of a response at a crawl."""
     assert model.operation is not None
@@ -299,7 +167,7 @@ def of_response(model: rg.Model, truth: Curves) -> Curves:
     table = (found.transmission_error if truth.lone else found.approach)[:, 0]
     first = model.layout.mesh(found.contact_mesh[0]).pinion
     number = found.ratio / (abs(model.layout.train.ratio(first.shaft)) * (first.part.teeth or 0)) * truth.periods
-    angle = 2.0 * np.pi * np.arange(8 * POSITIONS * truth.periods) / (8 * POSITIONS * truth.periods)
+    angle = 2.0 * np.pi * np.arange(POINTS * truth.periods) / (POINTS * truth.periods)
     whole = np.zeros((len(angle), table.shape[1]))
     for n, row in zip(np.round(number), table, strict=True):
         whole += (np.exp(1j * n * angle)[:, None] * row).real
@@ -361,7 +229,10 @@ def main() -> None:
     )
     parser.add_argument("--analysis", nargs="+", choices=ANALYSES, default=list(ANALYSES))
     parser.add_argument(
-        "--positions", type=int, default=POSITIONS, help="in a base pitch, of the maps of a joint state"
+        "--positions",
+        type=int,
+        default=1024,
+        help="of the reference in a base pitch; a multiple of 6 spares joint states work, as helices share their places",
     )
     asked = parser.parse_args()
     print(

@@ -1,6 +1,7 @@
 """Forecast of memory and time of teeth in space, and what they took: python -m validation.benchmarks.mesh_cost [pairs]
 
-Each gear is computed in a process of its own, from nothing. Seconds are those of the clock, on the machine as it is.
+Each gear is computed in a process of its own, from nothing: the pinion of a pair, or the wheel on its blank ("web"). Seconds are
+those of the clock, on the machine as it is.
 """
 
 from __future__ import annotations
@@ -17,14 +18,16 @@ from rotorgear.memory import largest_memory
 from validation.benchmarks.mesh_estimates import HELICAL
 
 PRESETS = ("default", "fine")
+WEB = {"bore": 0.08, "rim_thickness": 0.015, "web_thickness": 0.016, "hub_diameter": 0.12}
+PAIRS = {**HELICAL, "34/80 20.86 web": replace(HELICAL["34/80 20.86"], flank=({}, {"body": WEB}))}
 
 
 def key_of(name: str, preset: str) -> ComplianceKey:
-    """Pinion of a helical pair."""
-    teeth = HELICAL[name].request().teeth
+    """Pinion of a helical pair, or its wheel on a web."""
+    teeth = PAIRS[name].request().teeth
     assert teeth is not None
     teeth = replace(teeth, fe=ToothFe(preset=preset))  # type: ignore[arg-type]
-    return gear_key(teeth, 0, space=in_space(teeth)[0])
+    return gear_key(teeth, 1 if name.endswith("web") else 0, space=in_space(teeth)[0])
 
 
 def measure(name: str, preset: str) -> None:
@@ -48,7 +51,7 @@ def main(words: list[str]) -> None:
         measure(words[1], words[2])
         return
     print("pair               preset   layers  GB said  GB taken      s said   s taken", flush=True)
-    for name in words or HELICAL:
+    for name in words or PAIRS:
         for preset in PRESETS:
             subprocess.run([sys.executable, "-m", "validation.benchmarks.mesh_cost", "--one", name, preset], check=True)
 

@@ -59,14 +59,21 @@ def root_stress(
     request = mesh_request(model, mesh, "tooth_fe", torque, {"preset": preset, "body": body})
     assert request.teeth is not None
     assert request.load is not None
-    teeth = request.teeth if request.senses[0] > 0 else mirrored(request.teeth)
+    # All teeth are taken alike: one odd tooth would stand in the fillets of all of them.
+    single = request.teeth.first_flank.single_teeth or request.teeth.second_flank.single_teeth
+    alike = replace(
+        request.teeth,
+        first_flank=request.teeth.first_flank.of_most_teeth,
+        second_flank=request.teeth.second_flank.of_most_teeth,
+    )
+    teeth = alike if request.senses[0] > 0 else mirrored(alike)
     if in_space(teeth)[1]:
         raise AnalysisError(
             "The preview of a pair that changes along the face has no roots to show: take --preset default."
         )
     # Positions as for the curves of this helix: where teeth come and go, and where stiffness and pressure need them.
     first = replace(request, senses=request.senses[:1])
-    found = solve_helices(first, request.teeth, request.base_force, Cycle(positions), part_of(progress, 0.0, 0.2))
+    found = solve_helices(first, alike, request.base_force, Cycle(positions), part_of(progress, 0.0, 0.2))
     problem = found.problem
     cycle = found.cycles[0]
     clock.lap("teeth and contact")
@@ -78,7 +85,6 @@ def root_stress(
     ]
     clock.lap("inside of the teeth")
     progress(1.0, "done")
-    single = teeth.first_flank.single_teeth or teeth.second_flank.single_teeth
     return RootStress(
         title=model.title,
         mesh=request.name,

@@ -122,6 +122,11 @@ class FlankModification:
         return tuple(sorted(pitch | {tooth for tooth, _ in self.tooth_topography}))
 
     @property
+    def of_most_teeth(self) -> FlankModification:
+        """The flank without what single teeth have of their own."""
+        return replace(self, pitch_error=(), tooth_topography=())
+
+    @property
     def _grids(self) -> tuple[FlankGrid, ...]:
         own = tuple(grid for _, grid in self.tooth_topography)
         return own if self.topography is None else (self.topography, *own)

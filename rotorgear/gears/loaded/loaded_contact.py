@@ -26,7 +26,7 @@ from rotorgear.solvers.time.unilateral import unilateral
 # Newton's rounds: four to eight as a rule.
 _ROUNDS = 100
 # Change of the forces over the load in the last round. The error left after it is about its square.
-_FORCE_TOLERANCE = 1e-10
+_FORCE_TOLERANCE = 1e-8
 # Energies are known to this share of load times approach.
 _ENERGY_ROUNDING = 1e-16
 # A line search ends where the slope of the energy has fallen to this share of the first one.
@@ -97,8 +97,8 @@ def solve_contact(contact: PositionContact, total: float, start: np.ndarray | No
         ConvergenceError: the compliance is not positive definite, or the forces don't come to rest.
     """
     force = np.full(len(contact.gap), total / len(contact.gap)) if start is None else start * (total / start.sum())
+    added, tangent = _local(contact, force, total)
     for _ in range(_ROUNDS):
-        added, tangent = _local(contact, force, total)
         target, approach = unilateral(
             contact.compliance + np.diag(tangent), contact.gap + added - tangent * force, total, force > 0.0
         )
@@ -108,35 +108,39 @@ def solve_contact(contact: PositionContact, total: float, start: np.ndarray | No
         small = float(np.abs(step).max()) <= _FORCE_TOLERANCE * total
         if small or fall <= _ENERGY_ROUNDING * total * abs(approach):
             return _state(contact, target, approach, total)
-        force = force + _share_of_step(contact, force, step, fall, total) * step
+        share, added, tangent = _share_of_step(contact, force, step, fall, total)
+        force = force + share * step
     raise ConvergenceError(
         f"The loaded contact did not come to rest in {_ROUNDS} rounds; the last change was "
         f"{float(np.abs(step).max()) / total:.1e} of the load. Use a finer preset or a smaller misalignment."
     )
 
 
-def _share_of_step(contact: PositionContact, force: np.ndarray, step: np.ndarray, fall: float, total: float) -> float:
-    """Share t of a step up to which the energy falls: its slope, which rises with t, is not positive there.
+def _share_of_step(
+    contact: PositionContact, force: np.ndarray, step: np.ndarray, fall: float, total: float
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """Share t of a step up to which the energy falls, and g (n,) in m and dg/dF (n,) in m/N there.
 
-    fall: less the slope at t = 0.
+    The slope of the energy rises with t; at the share it is not positive. fall: less the slope at t = 0.
     """
     opening = contact.compliance @ force + contact.gap
     change = contact.compliance @ step
 
-    def slope(t: float) -> float:
-        return float(step @ (opening + t * change + _local(contact, force + t * step, total)[0]))
+    def slope(t: float) -> tuple[float, np.ndarray, np.ndarray]:
+        added, tangent = _local(contact, force + t * step, total)
+        return float(step @ (opening + t * change + added)), added, tangent
 
+    at_high, added, tangent = slope(1.0)
+    if at_high <= 0.0:
+        return 1.0, added, tangent
     low = 0.0
     at_low = -fall
     high = 1.0
-    at_high = slope(high)
-    if at_high <= 0.0:
-        return 1.0
     for _ in range(60):
         # The chord's zero; in the middle where it clings to an end.
         t = low - at_low * (high - low) / (at_high - at_low)
         t = min(max(t, low + 0.1 * (high - low)), high - 1e-9 * (high - low))
-        at_t = slope(t)
+        at_t, added, tangent = slope(t)
         if at_t > 0.0:
             high = t
             at_high = at_t
@@ -144,8 +148,8 @@ def _share_of_step(contact: PositionContact, force: np.ndarray, step: np.ndarray
         low = t
         at_low = at_t
         if at_t >= -_SLOPE_LEFT * fall:
-            break
-    return low
+            return low, added, tangent
+    return low, *_local(contact, force + low * step, total)
 
 
 def _state(contact: PositionContact, force: np.ndarray, approach: float, total: float) -> ContactState:

@@ -262,7 +262,7 @@ def _few_slices(contacts: list[PositionContact], loads: list[float]) -> list[_Co
 
 
 def _row(contact: PositionContact, loads: list[float], place: np.ndarray) -> list[tuple[float, float, float]]:
-    """Approach, its slope and the moment at rising loads of one position: down from the largest, each from the one above.
+    """Approach, its slope and the moment at rising loads of one position: down from the largest, each from those above.
 
     `place` (n,) is that of each slice from the middle of the face (m).
     """
@@ -277,11 +277,17 @@ def _row(contact: PositionContact, loads: list[float], place: np.ndarray) -> lis
         log_width=contact.log_width[near],
         radius=contact.radius[near],
     )
-    start = state.force[near]
+    force = state.force[near]
+    # How the forces change with the load, from the two loads above; below the first one they are taken in proportion.
+    rate = force / loads[-1]
+    at = loads[-1]
     found = [(state.approach, 1.0 / state.tangent, float(state.force @ place))]
     for load in reversed(loads[:-1]):
+        start = np.maximum(force + rate * (load - at), 0.0)
         state = solve_contact(fewer, load, start)
-        start = state.force
+        rate = (force - state.force) / (at - load)
+        force = state.force
+        at = load
         found.append((state.approach, 1.0 / state.tangent, float(state.force @ place[near])))
     return found[::-1]
 

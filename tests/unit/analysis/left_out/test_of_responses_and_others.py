@@ -136,6 +136,18 @@ def test_a_map_over_torques_has_no_estimate_and_the_first_period_only() -> None:
     assert odd.ste_peak_to_peak == pytest.approx(plain.ste_peak_to_peak, rel=1e-9)
 
 
+def test_roots_are_those_of_teeth_that_are_all_alike() -> None:
+    plain, odd = (
+        rg.root_stress(spur_pair(**TEETH, gears__pinion__flank=flank), torque=200.0, preset="preview", positions=4)
+        for flank in ({}, {"pitch_errors": {"0": "8 um"}})
+    )
+    assert says(odd, "errors of single teeth: all teeth are taken alike")
+    assert not says(plain, "errors of single teeth")
+    assert says(plain, "a strength rating: factors of load, size, surface and material")
+    for first, second in zip(plain.gears, odd.gears, strict=True):
+        assert second.at_tangent == pytest.approx(first.at_tangent, rel=1e-9)
+
+
 def test_a_film_knows_no_tilt_of_its_journal() -> None:
     law = JournalFilm.examples()[0]
     assert law.left_out() == ("heat, turbulence and tilt of the journal in its film",)
