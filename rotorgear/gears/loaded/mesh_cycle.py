@@ -19,7 +19,7 @@ from rotorgear.gears.loaded.loaded_contact import (
     solve_contact,
     tangent_compliance,
 )
-from rotorgear.gears.loaded.slice_compliance import slice_compliances
+from rotorgear.gears.loaded.slice_compliance import SliceCompliance, slice_compliances
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
 from rotorgear.progress import Progress, silent
 
@@ -354,7 +354,9 @@ def settled(
     stale = set(unsettled) - contacts.keys()
     for _ in range(passes):
         without = [i for i in unsettled if i in stale]
-        for i, compliance in zip(without, slice_compliances(problem, slices, without, patch), strict=True):
+        before = {i: SliceCompliance(one.compliance, one.log_width) for i, one in contacts.items() if i in stale}
+        solved = slice_compliances(problem, slices, without, patch, before or None)
+        for i, compliance in zip(without, solved, strict=True):
             here = numbers[i]
             contacts[i] = PositionContact(
                 compliance=compliance.matrix,

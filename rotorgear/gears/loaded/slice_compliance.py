@@ -2,11 +2,12 @@
 
 P spreads a unit force on a slice over the flank's nodes, G_o is the flexibility of the gear between teeth o apart. A slice loads
 few layers of the face, so that P G_o takes only their rows of G_o; positions are taken some at a time, which bounds the memory.
+Where patches grow, those of slices far from the ends of the flank stay what they are, and so does all between these.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -14,6 +15,7 @@ import numpy as np
 
 from rotorgear.gears.loaded.contact_points import PatchLoads, Slices, patch_loads
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
+from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 
 # Positions that are taken together.
 _TOGETHER = 16
@@ -33,7 +35,11 @@ class SliceCompliance:
 
 
 def slice_compliances(
-    problem: ContactProblem, slices: Slices, positions: Sequence[int], least: np.ndarray
+    problem: ContactProblem,
+    slices: Slices,
+    positions: Sequence[int],
+    least: np.ndarray,
+    known: Mapping[int, SliceCompliance] | None = None,
 ) -> list[SliceCompliance]:
     """Compliances of the slices at some positions.
 
@@ -42,15 +48,22 @@ def slice_compliances(
         slices: of all positions.
         positions: numbers of those asked for.
         least: (n,) least half-width of the patch of every slice, in normal modules.
+        known: those of all these positions in space with other patches.
     """
     found: list[SliceCompliance] = []
     for first in range(0, len(positions), _TOGETHER):
-        found += _compliances(problem, slices, positions[first : first + _TOGETHER], least)
+        some = positions[first : first + _TOGETHER]
+        before = None if known is None else [known[i] for i in some]
+        found += _compliances(problem, slices, some, least, before)
     return found
 
 
 def _compliances(
-    problem: ContactProblem, slices: Slices, positions: Sequence[int], least: np.ndarray
+    problem: ContactProblem,
+    slices: Slices,
+    positions: Sequence[int],
+    least: np.ndarray,
+    known: Sequence[SliceCompliance] | None,
 ) -> list[SliceCompliance]:
     ranges = [slices.at(position) for position in positions]
     here = np.concatenate(ranges)
@@ -58,15 +71,26 @@ def _compliances(
     blocks = [_Block.of(some.pair, low, high) for low, high in pairwise(np.cumsum([0, *map(len, ranges)]).tolist())]
     matrices = [np.zeros((len(one), len(one))) for one in ranges]
     log_width = np.empty((len(here), 2))
+    patches = []
     for gear in (0, 1):
         place = problem.place(gear, some.z)
-        patches = patch_loads(some, gear, problem.compliance[gear], problem.module, place, least[here], problem.patch)
-        log_width[:, gear] = np.log(problem.module * np.cos(problem.line.base_helix_angle)) + patches.log_width
-        _add_gear(problem, gear, patches, blocks, matrices)
-    return [
-        SliceCompliance(_completed(problem, some.take(block.all), C), log_width[block.all])
-        for block, C in zip(blocks, matrices, strict=True)
-    ]
+        patches.append(
+            patch_loads(some, gear, problem.compliance[gear], problem.module, place, least[here], problem.patch)
+        )
+        log_width[:, gear] = np.log(problem.module * np.cos(problem.line.base_helix_angle)) + patches[gear].log_width
+    if known is None:
+        for gear in (0, 1):
+            _add_gear(problem, gear, patches[gear], blocks, matrices)
+        done = [_completed(problem, some.take(block.all), C) for block, C in zip(blocks, matrices, strict=True)]
+    else:
+        changed = np.any(log_width != np.concatenate([one.log_width for one in known]), axis=1)
+        for gear in (0, 1):
+            _add_rows(problem, gear, patches[gear], blocks, matrices, changed)
+        done = [
+            _with_rows(one.matrix, C, np.flatnonzero(changed[block.all]))
+            for one, C, block in zip(known, matrices, blocks, strict=True)
+        ]
+    return [SliceCompliance(C, log_width[block.all]) for block, C in zip(blocks, done, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -91,7 +115,7 @@ def _add_gear(
     compliance = problem.compliance[gear]
     # Pair k + 1 of the pinion stands clockwise of pair k, that of the gear the other way.
     side = 1 if gear == 0 else -1
-    for o in range(max(max(block.by_pair) - min(block.by_pair) for block in blocks) + 1):
+    for o in range(_span(blocks, compliance) + 1):
         touching = [
             (block, C, rows, block.by_pair[k - o])
             for block, C in zip(blocks, matrices, strict=True)
@@ -109,6 +133,49 @@ def _add_gear(
                 problem.scale[gear] * part
             )
             first = last
+
+
+def _span(blocks: list[_Block], compliance: GearCompliance) -> int:
+    """Largest distance of pairs at one position that still feel each other."""
+    return min(compliance.reach, max(max(block.by_pair) - min(block.by_pair) for block in blocks))
+
+
+def _add_rows(
+    problem: ContactProblem,
+    gear: int,
+    patches: PatchLoads,
+    blocks: list[_Block],
+    matrices: list[np.ndarray],
+    chosen: np.ndarray,
+) -> None:
+    """Add P G_o P' of one gear in the rows of chosen (n,) slices, for pairs before and behind."""
+    compliance = problem.compliance[gear]
+    side = 1 if gear == 0 else -1
+    span = _span(blocks, compliance)
+    for o in range(-span, span + 1):
+        touching = [
+            (block, C, rows.start + np.flatnonzero(chosen[rows]), block.by_pair[k - o])
+            for block, C in zip(blocks, matrices, strict=True)
+            for k, rows in block.by_pair.items()
+            if k - o in block.by_pair and chosen[rows].any()
+        ]
+        if not touching:
+            continue
+        moved = patches.moved(compliance.response(side * o), np.concatenate([rows for _, _, rows, _ in touching]))
+        first = 0
+        for block, C, rows, columns in touching:
+            part = moved[first : first + len(rows)] @ patches.loads[columns].T
+            low = block.all.start
+            C[rows - low, columns.start - low : columns.stop - low] += problem.scale[gear] * part
+            first += len(rows)
+
+
+def _with_rows(C: np.ndarray, other: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """A symmetric matrix with some rows and columns of another one."""
+    found = C.copy()
+    found[rows] = other[rows]
+    found[:, rows] = other[rows].T
+    return np.asarray(0.5 * (found + found.T))
 
 
 def _completed(problem: ContactProblem, slices: Slices, C: np.ndarray) -> np.ndarray:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -14,13 +13,11 @@ from rotorgear.gears.geometry.flank import FlankGrid, FlankModification
 from rotorgear.gears.loaded.contact_map import ContactMap
 from rotorgear.gears.loaded.loaded_contact import PositionContact, solve_contact, solve_many
 from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
-from rotorgear.gears.loaded.map_positions import even_positions
 from rotorgear.gears.loaded.map_store import kept_map
-from rotorgear.gears.loaded.solved_map import contact_map, solved_map
+from rotorgear.gears.loaded.solved_map import contact_map
 from rotorgear.gears.loaded.tooth_contact import contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import ToothFe
-from rotorgear.progress import silent
 from tests.unit.gears.tooth_pairs import LOAD, cycle, helical, pair, spur
 
 POSITIONS = 8
@@ -183,13 +180,7 @@ def test_periods_without_the_odd_tooth_are_solved_on_patches_of_their_own() -> N
 def test_a_helix_that_carries_another_load_than_its_mesh_has_its_own_curve(share: float, near: bool) -> None:
     """Misaligned flanks touch on a part of their face that grows with the load: between the loads of the map, too."""
     teeth = replace(helical(), misalignment=20e-6)
-    found, dense = (contact_map(teeth, LOAD, 8, near), _dense(teeth))
-    u = np.arange(8) / 8
-    curve, exact = (one.approach_at(np.full(8, share * LOAD), u) for one in (found, dense))
+    found = contact_map(teeth, LOAD, 8, near)
+    exact = normal(teeth, found, share)
+    curve = found.approach_at(share * LOAD, found.position)
     assert curve - curve.mean() == pytest.approx(exact - exact.mean(), abs=0.025 * np.ptp(exact))
-
-
-@lru_cache
-def _dense(teeth: ToothPair) -> ContactMap:
-    loads = (tuple(np.geomspace(0.1, 1.0, 60)), tuple(np.geomspace(1.02, 2.2, 30)))
-    return solved_map(contact_problem(teeth), LOAD, even_positions(8), loads, silent)
