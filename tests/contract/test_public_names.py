@@ -49,8 +49,11 @@ EXAMPLES = "\n".join(
     for block in re.findall(r"<!-- run -->\n```python\n(.*?)```", text, flags=re.DOTALL)
 )
 FUNCTIONS = [name for name in NAMES if inspect.isfunction(getattr(rg, name))]
-# A window, machines elsewhere, and a study of a minute: pages describe them, and no test of the docs runs them.
-WITHOUT_EXAMPLE = {"view", "cluster", "mesh_convergence_study"}
+# A window, machines elsewhere, and studies of ten seconds to a minute: pages show their use, and no test of the docs runs it.
+NOT_RUN = {"view", "cluster", "mesh_convergence_study", "casing_convergence_study"}
+SHOWN = "\n".join(
+    block for text in PAGES.values() for block in re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
+)
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name != "plot"])
@@ -71,6 +74,11 @@ def test_a_public_function_says_what_it_takes(name: str) -> None:
         assert "Args:" in (inspect.getdoc(function) or "")
 
 
-@pytest.mark.parametrize("name", [name for name in FUNCTIONS if name not in WITHOUT_EXAMPLE])
+@pytest.mark.parametrize("name", sorted(NOT_RUN))
+def test_a_public_function_too_slow_for_the_tests_of_the_docs_is_used_in_an_example(name: str) -> None:
+    assert re.search(rf"\brg\.{name}\(", SHOWN)
+
+
+@pytest.mark.parametrize("name", [name for name in FUNCTIONS if name not in NOT_RUN])
 def test_a_public_function_is_used_in_an_example_that_the_tests_of_the_docs_run(name: str) -> None:
     assert re.search(rf"\brg\.{name}\(|^@rg\.{name}$", EXAMPLES, flags=re.MULTILINE)
