@@ -11,18 +11,12 @@ import pytest
 import rotorgear as rg
 from tests import paths
 
-# Their teeth, or their casing, take longer than all else here.
-COSTLY = {"overhung_pinion", "split_torque_casing", "elastic_wheel"}
-MODELS = [
-    pytest.param(path, id=path.stem, marks=[pytest.mark.long] if path.stem in COSTLY else [])
-    for path in sorted(paths.MODELS.glob("*.toml"))
-]
 # A model remembers the state of its loaded teeth, which takes longer to find than all modes here.
 load = cache(rg.load)
 
 
 @pytest.mark.parametrize("speed", [None, 0.0, 100.0])
-@pytest.mark.parametrize("path", MODELS)
+@pytest.mark.parametrize("path", paths.SHIPPED)
 def test_pruned_and_full_models_have_the_same_eigenvalues(path: Path, speed: float | None) -> None:
     model = load(path)
     if speed is not None and any(bearing.journal for bearing in model.bearings.values()):

@@ -9,10 +9,10 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.system.system import System
-from tests.paths import MODELS
+from tests.paths import MODELS, SHIPPED
 
 
-@pytest.mark.parametrize("file", sorted(MODELS.glob("*.toml")), ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", SHIPPED)
 def test_a_shipped_model_loads_and_gives_its_modes_at_its_speed(file: Path) -> None:
     model = rg.load(file)
     speed = model.operation.speed if model.operation else None

@@ -60,6 +60,7 @@ def test_check_shows_a_given_damping_whatever_the_direction_of_the_line_of_actio
     assert meshes["first_lp"]["damping_n_s_per_m"] == pytest.approx(143457.3)
 
 
+@pytest.mark.long  # three sweeps with exponents
 def test_the_three_regions_of_the_marine_train() -> None:
     ratios = (0.3, 0.6, 1.0)
     found = dict(zip(ratios, marine.contact(ratios), strict=True))
@@ -75,6 +76,7 @@ def test_the_three_regions_of_the_marine_train() -> None:
         assert amplitude * (1.0 + 0.12) * (1.0 - run.back - run.apart) >= 1.0
 
 
+@pytest.mark.long  # a sweep over the torque
 def test_the_file_of_the_marine_train_gives_the_impact_time_ratio_over_the_torque_as_it_is() -> None:
     over = {"loads.lp.torque": [30e3 * gamma / (1.0 + gamma) for gamma in (0.3, 0.6, 1.0)]}
     found = rg.sweep(loaded(marine.MODEL), over, steps=marine.STEPS, discard=400, sample=200)
@@ -108,6 +110,7 @@ def test_the_pair_of_24_dofs_goes_from_one_period_over_two_to_chaos() -> None:
     assert [found.motion_at(p) for p in range(3)] == ["1T", "2T", "chaotic"]
 
 
+@pytest.mark.long  # a sweep that settles for long
 def test_set_2_is_of_one_period_again_at_high_speed() -> None:
     found = pair24.route(pair24.SECOND, (8000.0, 9000.0, 20000.0, 35000.0), 200)
     assert [found.motion_at(p) == "1T" for p in range(4)] == [True, False, True, True]

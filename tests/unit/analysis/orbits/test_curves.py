@@ -17,7 +17,9 @@ def _curve(case: DeadZone, W: tuple[float, float], ripple: tuple[float, float], 
     return rg.orbits(rg.loads(case.text(W[0])), over, method=method, step=0.2)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(("method", "error"), [("shooting", 1e-5), ("harmonic balance", 1e-3)])
+@pytest.mark.parametrize(
+    ("method", "error"), [pytest.param("shooting", 1e-5, marks=pytest.mark.long), ("harmonic balance", 1e-3)]
+)
 def test_a_fold_curve_ends_at_the_fold_of_its_last_value(method: str, error: float) -> None:
     case = DeadZone(amplitude=0.05)
     found = _curve(case, (0.735, 0.755), (1.0, 1.03), method)

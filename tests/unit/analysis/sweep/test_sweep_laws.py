@@ -98,7 +98,7 @@ def test_one_at_a_time_and_in_vectors_are_the_same_to_rounding(monkeypatch: pyte
         {
             "operation": {"input_shaft": "one", "speed": "1500 rpm"},
             "loads": {
-                "drive": {"shaft": "one", "kind": "input", "torque": "200 N m", "ripple": 0.2, "ripple_order": 6.0},
+                "drive": {"shaft": "one", "kind": "input", "torque": "200 N m", "ripple": 0.2, "ripple_order": 12.0},
                 "propeller": {"shaft": "two", "kind": "output", "speed_power": 2.0},
             },
         },

@@ -249,7 +249,10 @@ def test_probes_hold_the_harmonics_of_all_meshes_up_to_the_highest_tabulated() -
 
 @pytest.mark.parametrize(
     "changes",
-    [{"bearings__a__rolling": ROLLING, "bearings__b__rolling": ROLLING}, {"meshes__pair__friction_coefficient": 0.06}],
+    [
+        pytest.param({"bearings__a__rolling": ROLLING, "bearings__b__rolling": ROLLING}, marks=pytest.mark.long),
+        {"meshes__pair__friction_coefficient": 0.06},
+    ],
     ids=["rolling", "friction"],
 )
 def test_bearings_with_rolling_elements_and_friction_act_in_a_reduced_system(changes: dict[str, Any]) -> None:
@@ -269,7 +272,7 @@ def test_a_long_block_tells_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> No
     rg.sweep(
         rg.load(ROOT / "models" / "backlash_pair.toml"),
         {"operation.speed": ["6000 rpm"]},
-        discard=9000,
+        discard=1200,
         sample=10,
         progress=lambda share, text: told.append((share, text)),
     )
