@@ -8,6 +8,7 @@ import mpmath as mp
 
 from rotorgear.errors import RotorgearError
 from tests.extreme.cases import CASES, CONDITIONING, FLAGGED, REFUSED, Flagged, Refused, measured
+from tests.extreme.holes import HOLES
 from tests.extreme.references import DIGITS
 from tests.extreme.undamped_errors import assembled_error
 
@@ -54,6 +55,12 @@ positive definite there are no strains to take; the warning then says how far th
 Places on a shaft closer than 1e-9 of its length become one node, and the warnings list them.
 """
 
+TRIED = """## Tried with intent
+
+These broke an early version. `python -m tests.extreme` tries them again and prints this table; the usual tests hold each line.
+
+"""
+
 
 def pages() -> dict[str, str]:
     """Return the page by its path."""
@@ -68,6 +75,7 @@ def pages() -> dict[str, str]:
             _refused(),
             WHY + _conditioning(),
             WARNED,
+            TRIED + _table([["what was tried", "what happens"], *([hole.what, hole.outcome] for hole in HOLES)]),
         ]
     return {"docs/extreme.md": "\n".join(parts)}
 

@@ -2,15 +2,18 @@
 
 Between its nodes a shaft is free of strain in its six rigid-body motions only. So the null space of the stiffness lies in the
 span of these motions of every shaft (and of single pedestals), where it is small, and it does not depend on how many
-decades the stiffnesses span.
+decades the stiffnesses span. Parts that nothing joins are solved apart: a thousand loose shafts cost a thousand small problems.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 
 from rotorgear.elements.spring import rigid_transfer
 from rotorgear.system.groups import ElementGroup
@@ -20,65 +23,160 @@ from rotorgear.system.system import System
 _ZERO = 1e-9
 
 
+@dataclass(frozen=True)
+class _Strained:
+    """Elements that can strain: B (e, s, d), which of the strains meet a stiffness (e, s), and their dofs (e, d)."""
+
+    strain: np.ndarray
+    used: np.ndarray
+    dofs: np.ndarray
+
+
 def rigid_motions(system: System, groups: Iterable[ElementGroup]) -> np.ndarray:
     """Return R (n, r), a basis of the motions of the free dofs that strain none of the element groups."""
     P = _candidates(system)
-    T = system.dofs.transform
+    T = sp.csc_array(system.dofs.transform)
+    strained = [part for group in groups if (part := _strained(group)) is not None]
+    label = _joined(P, T, strained)
+    rows = _by_label(label)
+    columns = _by_label(label[P.indices[P.indptr[:-1]]])
+    unknowns = _by_label(label[T.indices[T.indptr[:-1]]])
+    elements: dict[int, list[_Strained]] = {}
+    for part in strained:
+        for k, chosen in _by_label(label[part.dofs[:, 0]]).items():
+            elements.setdefault(k, []).append(_Strained(part.strain[chosen], part.used[chosen], part.dofs[chosen]))
+
+    place = np.zeros(P.shape[0], dtype=int)
+    found = [np.zeros((system.n, 0))]
+    for k, moving in columns.items():
+        here = rows[k]
+        free = unknowns.get(k, np.zeros(0, dtype=int))
+        place[here] = np.arange(len(here))
+        own = [_Strained(part.strain, part.used, place[part.dofs]) for part in elements.get(k, [])]
+        R = _free_of_strain(P[here][:, moving].toarray(), sp.csc_array(T[here][:, free]), system.dofs.selects, own)
+        whole = np.zeros((system.n, R.shape[1]))
+        whole[free] = R
+        found.append(whole)
+    return np.hstack(found)
+
+
+def _strained(group: ElementGroup) -> _Strained | None:
+    """The elements of a group of which some strain meets a stiffness."""
+    B = group.matrices.strain
+    D = group.matrices.modulus
+    if B is None or D is None:
+        return None
+    Z = group.matrices.circulation
+    used = np.any(D != 0.0, axis=2) if Z is None else np.any((D != 0.0) | (Z != 0.0), axis=2)
+    e = len(group.dofs)
+    B = np.broadcast_to(B, (e, *B.shape[1:]))
+    used = np.broadcast_to(used, (e, used.shape[1]))
+    some = used.any(axis=1)
+    return _Strained(B[some], used[some], group.dofs[some]) if some.any() else None
+
+
+def _joined(P: sp.csc_array, T: sp.csc_array, strained: list[_Strained]) -> np.ndarray:
+    """A number for each of all dofs (a,), the same for those that a candidate, a free dof or an element joins."""
+    dofs = [P.indices, T.indices]
+    joint = [np.repeat(np.arange(P.shape[1]), np.diff(P.indptr))]
+    joint.append(P.shape[1] + np.repeat(np.arange(T.shape[1]), np.diff(T.indptr)))
+    count = P.shape[1] + T.shape[1]
+    for part in strained:
+        e, d = part.dofs.shape
+        dofs.append(part.dofs.ravel())
+        joint.append(count + np.repeat(np.arange(e), d))
+        count += e
+    first = np.concatenate(dofs)
+    second = P.shape[0] + np.concatenate(joint)
+    size = P.shape[0] + count
+    graph = sp.coo_array((np.ones(len(first), dtype=np.int8), (first, second)), shape=(size, size))
+    return np.asarray(connected_components(graph, directed=False)[1][: P.shape[0]])
+
+
+def _by_label(label: np.ndarray) -> dict[int, np.ndarray]:
+    """The places of each number among `label` (k,), ascending."""
+    order = np.argsort(label, kind="stable")
+    values, first = np.unique(label[order], return_index=True)
+    return (
+        {int(value): part for value, part in zip(values, np.split(order, first[1:]), strict=True)}
+        if len(values)
+        else {}
+    )
+
+
+def _free_of_strain(P: np.ndarray, T: sp.csc_array, selects: bool, strained: list[_Strained]) -> np.ndarray:
+    """A basis (f, r) of the motions of free dofs in the span of candidates P (a, p) that strain nothing; T is (a, f)."""
+
+    def followed(motions: np.ndarray) -> np.ndarray:
+        """T+ motions (f, k): the motions of the free dofs that come nearest to those (a, k) of all."""
+        if (
+            selects or not motions.shape[1] or not T.shape[1]
+        ):  # LAPACK refuses a problem without unknowns or right-hand side
+            return np.asarray(T.T @ motions)
+        return np.asarray(la.lstsq(T.toarray(), motions)[0])
+
     # What of the candidates the free dofs can't follow must vanish: (I - T T+) P, each row scaled to its largest entry.
-    off_range = P[system.dofs.column < 0] if system.dofs.selects else P - T.toarray() @ la.lstsq(T.toarray(), P)[0]
+    off_range = P - T @ followed(P)
     largest = np.abs(off_range).max(axis=1)
     held = largest > 1e-12
     rows = [off_range[held] / largest[held, None]]
-    for group in groups:
-        B = group.matrices.strain
-        D = group.matrices.modulus
-        if B is None or D is None:
-            continue
-        Z = group.matrices.circulation
-        used = np.any(D != 0.0, axis=2) if Z is None else np.any((D != 0.0) | (Z != 0.0), axis=2)
-        strains = np.einsum("esd,edp->esp", B, P[group.dofs])
-        sizes = np.einsum("esd,edp->esp", np.abs(B), np.abs(P[group.dofs])).max(axis=2)
-        rows.append((strains / np.where(sizes > 0.0, sizes, 1.0)[:, :, None])[used])
+    for part in strained:
+        strains = np.einsum("esd,edp->esp", part.strain, P[part.dofs])
+        sizes = np.einsum("esd,edp->esp", np.abs(part.strain), np.abs(P[part.dofs])).max(axis=2)
+        rows.append((strains / np.where(sizes > 0.0, sizes, 1.0)[:, :, None])[part.used])
     A = np.vstack(rows)
     # The triangle of a tall matrix has its null space, without a square of its rows.
     A = np.asarray(np.linalg.qr(A, mode="r")) if A.shape[0] > A.shape[1] else A
-    null = la.null_space(A, rcond=_ZERO) if A.shape[0] else np.eye(P.shape[1])
-    motions = P @ null
-    if not motions.shape[1]:  # LAPACK refuses a least-squares problem without a right-hand side
-        return np.zeros((system.n, 0))
-    free = motions[system.dofs.column >= 0] if system.dofs.selects else la.lstsq(T.toarray(), motions)[0]
+    _, size, right = la.svd(A) if A.shape[0] else (None, np.zeros(0), np.eye(P.shape[1]))
+    # Rows are scaled to 1: where the largest singular value is far below, nothing holds at all.
+    strains_some = int(np.count_nonzero(size > _ZERO * max(float(size.max(initial=0.0)), 1.0)))
+    free = followed(P @ right[strains_some:].T)
+    if not free.size:
+        return np.zeros((T.shape[1], 0))
     # Candidates may move held dofs only; what is left of the basis is orthonormal again.
-    u, s, _ = la.svd(free, full_matrices=False) if free.size else (free, np.zeros(0), None)
+    u, s, _ = la.svd(free, full_matrices=False)
     return np.asarray(u[:, s > _ZERO])
 
 
-def _candidates(system: System) -> np.ndarray:
+def _candidates(system: System) -> sp.csc_array:
     """Six motions of each shaft about its middle, rotations scaled to its length, three of each pedestal, six of each casing."""
     nodes = system.nodes
-    columns = []
+    rows: list[np.ndarray] = []
+    values: list[np.ndarray] = []
+    columns: list[np.ndarray] = []
+    count = 0
+    carried: dict[str, list[tuple[np.ndarray, float]]] = {name: [] for name in system.model.shafts}
+    turning: dict[str, list[int]] = {name: [] for name in system.model.shafts}
+    for (gear, _), number in nodes.teeth.items():
+        turning[system.layout.gear(gear).shaft].append(6 * len(nodes) + number)
+    for (_, gear), number in nodes.feet.items():
+        place = system.layout.place(f"gears.{gear}")
+        carried[place.shaft].append((6 * len(nodes) + number + np.arange(6), place.z))
     for name, shaft in system.model.shafts.items():
-        numbers = [k for k in nodes.on_shaft(name) if not nodes.pedestal[k]]
-        block = np.zeros((system.dofs.transform.shape[0], 6))
         middle = shaft.start + 0.5 * shaft.length
-        for k in numbers:
-            block[6 * k : 6 * k + 6] = rigid_transfer(np.array([0.0, 0.0, nodes.z[k] - middle]))
-        for (gear, _), number in nodes.teeth.items():
-            if system.layout.gear(gear).shaft == name:
-                block[6 * len(nodes) + number, 5] = 1.0  # elastic gears turn with their shaft
-        for (_, gear), number in nodes.feet.items():
-            place = system.layout.place(f"gears.{gear}")
-            if place.shaft == name:
-                foot = 6 * len(nodes) + number
-                block[foot : foot + 6] = rigid_transfer(np.array([0.0, 0.0, place.z - middle]))
-        block[:, 3:] /= max(shaft.length, 1e-3)
-        columns.append(block)
+        of_nodes = [(6 * k + np.arange(6), nodes.z[k]) for k in nodes.on_shaft(name) if not nodes.pedestal[k]]
+        block = [(dofs, rigid_transfer(np.array([0.0, 0.0, z - middle]))) for dofs, z in (*of_nodes, *carried[name])]
+        block += [(np.array([dof]), np.eye(6)[[5]]) for dof in turning[name]]  # elastic gears turn with their shaft
+        whole = np.vstack([motions for _, motions in block])
+        whole[:, 3:] /= max(shaft.length, 1e-3)
+        rows.append(np.concatenate([dofs for dofs, _ in block]))
+        values.append(whole)
+        columns.append(count + np.arange(6))
+        count += 6
     for k, bearing in enumerate(nodes.pedestal):
         if bearing:
-            block = np.zeros((system.dofs.transform.shape[0], 3))
-            block[[6 * k, 6 * k + 1, 6 * k + 2], [0, 1, 2]] = 1.0
-            columns.append(block)
+            rows.append(6 * k + np.arange(3))
+            values.append(np.eye(3))
+            columns.append(count + np.arange(3))
+            count += 3
     for name in system.model.casings:
-        block = np.zeros((system.dofs.transform.shape[0], 6))
-        block[nodes.of_casing(name)] = system.layout.casing(name).seat_motions
-        columns.append(block)
-    return np.hstack(columns)
+        rows.append(nodes.of_casing(name))
+        values.append(system.layout.casing(name).seat_motions)
+        columns.append(count + np.arange(6))
+        count += 6
+    entries = [np.broadcast_to(r[:, None], v.shape).ravel() for r, v in zip(rows, values, strict=True)]
+    places = [np.broadcast_to(c, v.shape).ravel() for c, v in zip(columns, values, strict=True)]
+    triple = (np.concatenate([v.ravel() for v in values]), (np.concatenate(entries), np.concatenate(places)))
+    P = sp.csc_array(sp.coo_array(triple, shape=(system.dofs.transform.shape[0], count)))
+    P.eliminate_zeros()
+    return P

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,7 +14,11 @@ from rotorgear.solvers.eigen.quadratic import corrected
 from rotorgear.solvers.sparse.pencil import rounding_noise
 from rotorgear.system.strain_forms import StrainForms
 
-Lowest = Callable[[int | None, float | None], UndampedModes]
+
+class Lowest(Protocol):
+    """The lowest undamped modes: so many, or up to a limit in rad/s, counted by Sturm's sequence or as a basis of others."""
+
+    def __call__(self, count: int | None, below: float | None, counted: bool = True) -> UndampedModes: ...
 
 
 @dataclass(frozen=True)

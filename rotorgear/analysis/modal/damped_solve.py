@@ -14,9 +14,11 @@ import scipy.sparse as sp
 from rotorgear.analysis.modal.damped_problem import DampedProblem, by_strains, relative_noise
 from rotorgear.solvers.eigen.damped import DampedModes, damped_modes
 from rotorgear.solvers.eigen.eigen import UndampedModes
-from rotorgear.solvers.eigen.gyroscopic import GyroscopicProblem, gyroscopic_modes
+from rotorgear.solvers.eigen.gyroscopic import gyroscopic_modes
+from rotorgear.solvers.eigen.local_damping import locally_damped_modes
 from rotorgear.solvers.eigen.quadratic import newton, scaled
 from rotorgear.solvers.eigen.ritz import strain_ritz
+from rotorgear.solvers.eigen.undamped_basis import NearUndamped
 from rotorgear.system.strain_forms import StrainForms
 
 # Rounding of K relative to omega^2 (a bound, rarely met) up to which the assembled matrices do.
@@ -28,8 +30,8 @@ _AS_RIGID = 1e-6
 # Dofs up to which all undamped modes are cheap: the basis is then complete, and no approximation.
 _ALL_UP_TO = 120
 # Undamped modes for the basis of gyroscopic ones: so many times those asked for, and some more; up to a share of the dofs.
-_REACH = 1.2
-_MORE = 6
+_REACH = 1.35
+_MORE = 8
 _MOST_OF = 0.4
 # Residual in the dofs above which a mode that the matrices do resolve is refined on them.
 _POLISH = 1e-14
@@ -41,9 +43,9 @@ _ZERO = 1e-9
 
 def damped_group(problem: DampedProblem, count: int | None, below: float | None) -> tuple[DampedModes, str]:
     """Return the damped modes of lowest |s|, and a word on the coordinates they were found in."""
-    conservative = _gyroscopic(problem, count, below)
-    if conservative is not None:
-        return by_strains(problem, conservative), ""
+    found = _near_undamped(problem, count, below)
+    if found is not None:
+        return found, ""
     undamped = _undamped(problem, None, None)  # the softest modes suffer most
     rigid = undamped.vectors[:, : undamped.rigid_count]
     elastic = undamped.eigenvalues[undamped.rigid_count :]
@@ -68,36 +70,38 @@ def damped_group(problem: DampedProblem, count: int | None, below: float | None)
     return _in_coordinates(problem, rigid, basis, count, below), " in modal coordinates"
 
 
-def _gyroscopic(problem: DampedProblem, count: int | None, below: float | None) -> DampedModes | None:
-    """The modes from the undamped ones where nothing damps and the assembled matrices are clean; else None."""
+def _near_undamped(problem: DampedProblem, count: int | None, below: float | None) -> DampedModes | None:
+    """The modes from the undamped ones where the stiffness is symmetric and the assembled matrices are clean; else None."""
     S = problem.strain
     if S is None or problem.K.shape[0] <= _ALL_UP_TO or (count is None and below is None):
         return None
-    if abs(problem.D + problem.D.T).nnz or abs(problem.K - problem.K_symmetric).nnz:
+    if abs(problem.K - problem.K_symmetric).nnz:
         return None
     # Gyroscopic moments bring modes down from above those that are asked for.
     spare = None if count is None else int(_REACH * count) + _MORE
     if spare is not None and spare > _MOST_OF * problem.K.shape[0]:
         return None
-    undamped = problem.lowest(spare, None if below is None else _REACH * below)
+    undamped = problem.lowest(spare, None if below is None else _REACH * below, counted=False)
     first = undamped.rigid_count
     frequencies = np.sqrt(undamped.eigenvalues[first:])
     modes = undamped.vectors[:, first:]
     if undamped.complete or relative_noise(problem, frequencies, modes).max(initial=0.0) > _CLEAN_LARGE:
         return None
-    return gyroscopic_modes(
-        GyroscopicProblem(
-            M=problem.M,
-            G=problem.D,
-            K=problem.K,
-            strain=lambda V: np.asarray(S @ V),
-            frequencies=frequencies,
-            modes=modes,
-            rigid=undamped.vectors[:, :first],
-        ),
-        count,
-        below,
+    if not len(frequencies):
+        return None
+    near = NearUndamped(
+        M=problem.M,
+        D=problem.D,
+        K=problem.K,
+        strain=lambda V: np.asarray(S @ V),
+        frequencies=frequencies,
+        modes=modes,
+        rigid=undamped.vectors[:, :first],
     )
+    if abs(problem.D + problem.D.T).nnz:
+        return locally_damped_modes(near, count, below)
+    found = gyroscopic_modes(near, count, below)
+    return None if found is None else by_strains(problem, found)
 
 
 def _drift_noise(problem: DampedProblem, rigid: np.ndarray) -> float:

@@ -24,6 +24,10 @@ from rotorgear.system.system import System
 
 # Backward error above which a damped mode is refused.
 _LARGEST_RESIDUAL = 1e-8
+# How far beyond the last mode that is asked for another group is searched, and the share of the largest k_ii / m_ii that the
+# square of a frequency must have for a count: rounding lies four decades below.
+_BEYOND = 1.0 + 1e-6
+_RESOLVED = 1e-12
 _LARGE = 20_000  # dofs above which a look at the coarsest mesh costs nothing beside the rest
 
 
@@ -52,22 +56,33 @@ class _Problem:
         if len(group) == self.M.shape[0]:
             return self
 
+        place = np.full(self.M.shape[0], -1)
+        place[group] = np.arange(len(group))
+
         def cut_out(A: sp.csc_array) -> sp.csc_array:
-            return sp.csc_array(A[:, group][group])
+            # Only dofs of the group stand in the rows of its columns, but for stored zeros.
+            columns = A[:, group]
+            rows = place[columns.indices]
+            if rows.size and rows.min() < 0:
+                return sp.csc_array(columns[group])
+            return sp.csc_array((columns.data, rows, columns.indptr), shape=(len(group), len(group)))
 
         D = None if self.D is None else cut_out(self.D)
         D = None if D is None or not D.nnz else D
         K = cut_out(self.K)
-        K_symmetric = cut_out(self.K_symmetric)
+        K_symmetric = K if self.K_symmetric is self.K else cut_out(self.K_symmetric)
         S = None
         if self.S is not None:
             S = sp.csr_array(sp.csc_array(self.S)[:, group])
             S = sp.csr_array(S[np.diff(S.indptr) > 0])
         symmetric = self.symmetric or not (K - K_symmetric).nnz
         damped = self.damped and D is not None and bool((D + D.T).nnz)
+        M = cut_out(self.M)
+        if D is None and symmetric:
+            return _Problem(M, D, K, K_symmetric, S, symmetric, damped, guess=self.guess)
         inertial = None if self.inertial is None else cut_out(self.inertial)
         forms = None if self.forms is None else self.forms.cut(group)
-        return _Problem(cut_out(self.M), D, K, K_symmetric, S, symmetric, damped, inertial, forms, self.guess)
+        return _Problem(M, D, K, K_symmetric, S, symmetric, damped, inertial, forms, self.guess)
 
 
 def solve(system: System, wanted: Wanted) -> Modes:
@@ -87,7 +102,10 @@ def solve(system: System, wanted: Wanted) -> Modes:
     if not chosen:
         raise AnalysisError(f"no dof of the model moves in {' or '.join(wanted.only)}")
     try:
-        solved = [_solve_group(whole.cut(group), wanted, system) for group in chosen]
+        solved: list[Modes] = []
+        for group in chosen:
+            problem = whole.cut(group)
+            solved.append(_solve_group(problem, replace(wanted, limit=_reach(problem, solved, wanted)), system))
     except LooseDofError as error:
         # The solver knows the number of a dof within its group; the whole pencil tells which dofs of the model they are.
         try:
@@ -99,6 +117,22 @@ def solve(system: System, wanted: Wanted) -> Modes:
             raise AnalysisError(f"neither inertia nor stiffness: {names}{more}; {remedy}") from None
         raise AnalysisError(str(error)) from None
     return _merged(system, chosen, solved, wanted.modes, (*group_notes(motions, groups, chosen), *still))
+
+
+def _reach(problem: _Problem, solved: Sequence[Modes], wanted: Wanted) -> float | None:
+    """|s| in rad/s up to which the modes of a next group may be among those asked for; None: there is no such limit.
+
+    The groups before it may have as many modes as were asked for already.
+    """
+    sizes = np.sort(np.concatenate([np.abs(part.eigenvalues) for part in solved])) if solved else np.zeros(0)
+    if wanted.modes is None or len(sizes) < wanted.modes:
+        return wanted.limit
+    reach = _BEYOND * float(sizes[wanted.modes - 1])
+    mass = problem.M.diagonal()
+    highest = float((problem.K_symmetric.diagonal()[mass > 0.0] / mass[mass > 0.0]).max(initial=0.0))
+    if reach**2 <= _RESOLVED * highest:  # modes can't be counted so near to the rounding of the stiffness
+        return wanted.limit
+    return reach if wanted.limit is None else min(reach, wanted.limit)
 
 
 def _problem(system: System, speed: float | None) -> _Problem:
@@ -170,10 +204,17 @@ def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
     return Modes(s, vectors, rigid, errors, method, available)
 
 
-def _lowest(problem: _Problem, modes: int | None, limit: float | None) -> UndampedModes:
+def _lowest(problem: _Problem, modes: int | None, limit: float | None, counted: bool = True) -> UndampedModes:
     S = problem.S
-    strain = None if S is None else (lambda V: S @ V)
-    return lowest_modes(problem.M, problem.K_symmetric, count=modes, below=limit, strain=strain, guess=problem.guess)
+    return lowest_modes(
+        problem.M,
+        problem.K_symmetric,
+        count=modes,
+        below=limit,
+        strain=None if S is None else (lambda V: S @ V),
+        guess=problem.guess,
+        counted=counted,
+    )
 
 
 def _damped(
@@ -191,7 +232,7 @@ def _damped(
             inertial=problem.inertial,
             strain=problem.S,
             forms=problem.forms,
-            lowest=lambda count, below: _lowest(problem, count, below),
+            lowest=lambda count, below, counted=True: _lowest(problem, count, below, counted),
         ),
         wanted.modes,
         wanted.limit,

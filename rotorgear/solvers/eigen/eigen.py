@@ -20,8 +20,10 @@ from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import Strain, backward_errors, check_pencil, count_below, rounding_noise
 
 _DENSE_UP_TO = 250  # unknowns up to which LAPACK is as fast
+_FEW = (100, 12)  # above so many unknowns it is not, where so many times the modes are fewer than those
 _SPARE = 4  # Ritz pairs beyond the converged ones, among which a gap for the Sturm count is looked for
 _GAP = 1e-3  # least relative gap in lambda in which a Sturm count is placed
+_UNCOUNTED = (0.0, 0)  # a shift below which there is nothing to count
 _ATTEMPTS = 6  # each with three times the spare pairs of the one before
 _UNSTABLE = 100.0  # multiple of the rounding of K below which an eigenvalue is negative in earnest
 _EDGE = 1e-9  # a mode this close above the limit `below` counts as on it
@@ -76,6 +78,7 @@ def lowest_modes(
     below: float | None = None,
     strain: Strain | None = None,
     guess: float | None = None,
+    counted: bool = True,
 ) -> UndampedModes:
     """The lowest undamped modes of a symmetric positive semidefinite pair, rigid modes included.
 
@@ -87,6 +90,7 @@ def lowest_modes(
         strain: V (n, m) -> S V (p, m) with K = S^T S, each strain evaluated without forming K. It carries soft modes to
             full precision and tells rigid from soft; without it a mode softer than the rounding of K counts as rigid.
         guess: an eigenvalue [(rad/s)^2] near the first elastic one; saves the search for it, never changes the answer.
+        counted: False leaves the Sturm count out, for a basis of other modes, which are counted themselves.
 
     Raises:
         LooseDofError: a dof has neither inertia nor stiffness (`dofs`).
@@ -122,12 +126,12 @@ def lowest_modes(
             keep = int(np.count_nonzero(pairs.values <= limit))
             if count is not None:
                 keep = min(keep, count)
-            gap = _gap_above(pairs, keep) if keep <= pairs.sure else None
+            gap = (_gap_above(pairs, keep) if counted else _UNCOUNTED) if keep <= pairs.sure else None
             if gap is not None:
                 sturm_shift, expected = gap
                 errors = backward_errors(operator.mass, operator.stiffness, pairs.values, pairs.vectors)
-                sturm_count = count_below(operator.M, operator.K, sturm_shift)
-                operator.factorisations += 1
+                sturm_count = count_below(operator.M, operator.K, sturm_shift) if counted else expected
+                operator.factorisations += counted
                 modes = UndampedModes(
                     eigenvalues=pairs.values[:keep],
                     vectors=pairs.vectors[:, :keep],
@@ -171,7 +175,8 @@ def _candidates(
 ) -> _Candidates:
     """Refined Ritz pairs: `target` lowest ones and up to `spare` more, among which a gap may be found."""
     n = operator.K.shape[0]
-    dense = n <= _DENSE_UP_TO or 3 * (target + spare) > n
+    few = n > _FEW[0] and _FEW[1] * (target + spare) < n
+    dense = (n <= _DENSE_UP_TO and not few) or 3 * (target + spare) > n
     if dense:
         V = dense_modes(operator, massless, target + spare)
         sure = finite = V.shape[1]

@@ -12,9 +12,6 @@ Tisseur and Meerbergen, SIAM Review 43 (2001) 235, sections 3.10 (gyroscopic and
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 import numpy as np
 import scipy.sparse as sp
 
@@ -22,16 +19,13 @@ from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.damped import DampedModes
 from rotorgear.solvers.eigen.quadratic import scaled
 from rotorgear.solvers.eigen.reduced_pencil import gyroscopic_pairs
-from rotorgear.solvers.sparse.entries import norm_1
+from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis
 from rotorgear.solvers.sparse.factor import Factor, factor_symmetric, single_thread
-
-Strain = Callable[[np.ndarray], np.ndarray]
 
 # Error of an eigenvalue by its residual, and of a vector, at which a round is the last.
 _SETTLED = 1e-12
 _SETTLED_VECTOR = 1e-7
-# Part of a correction that is not worth a column of the basis: relative to its mode, and to the largest correction.
-_NEGLIGIBLE = 1e-9
+# Part of a correction that is not worth a column of the basis, relative to the largest correction.
 _COARSE = 2e-3
 _ROUNDS = 8
 # Backward error above which the general solver is better.
@@ -40,124 +34,48 @@ _SOUND = 2e-9
 _LARGEST_SHARE = 0.8
 # Least relative gap between two frequencies in which modes are counted.
 _GAP = 1e-4
-# What G R of a rigid-body motion may be beside |G| |R| and still count as rounding.
-_ROUNDING = 1e-13
 # A mode this close above the limit `below` counts as on it.
 _EDGE = 1e-9
 
 
-@dataclass(frozen=True)
-class GyroscopicProblem:
-    """M, G and K (n, n) with K = S^T S, `strain(V)` = S V, and its undamped modes.
-
-    `modes` (n, k) are elastic and M-orthonormal, lowest first, none missing up to the last, with `frequencies` (k,) in rad/s;
-    `rigid` (n, r) are the rigid-body motions.
-    """
-
-    M: sp.csc_array
-    G: sp.csc_array
-    K: sp.csc_array
-    strain: Strain
-    frequencies: np.ndarray
-    modes: np.ndarray
-    rigid: np.ndarray
-
-
-def gyroscopic_modes(problem: GyroscopicProblem, count: int | None, below: float | None) -> DampedModes | None:
+def gyroscopic_modes(problem: NearUndamped, count: int | None, below: float | None) -> DampedModes | None:
     """The modes of smallest |s| as `damped_modes` gives them; None where a basis does not serve or the count differs.
 
     Args:
-        problem: the pencil and its undamped modes, some more than are asked for.
+        problem: the pencil, whose D = G is skew, and its undamped modes, some more than are asked for.
         count: so many rows, rigid-body motions included; below: only |s| up to this in rad/s. One of them at least.
     """
-    if not len(problem.frequencies):
-        return None
-    # Low beside the first mode, so that corrections of soft modes are good ones.
-    sigma = 0.3 * float(problem.frequencies[0])
-    if _precesses(problem, sigma):
+    if problem.moves_rigid_bodies():
         return None
     rows = None if count is None else max(count - problem.rigid.shape[1], 0)
     with single_thread(problem.K.shape[0]):
-        factor = factor_symmetric(sp.csc_array(problem.K + sigma**2 * problem.M))
-        space = _Space(problem, sigma)
+        factor = factor_symmetric(sp.csc_array(problem.K + problem.shift**2 * problem.M))
+        space = UndampedBasis(problem)
         for _ in range(_ROUNDS):
             if space.size > _LARGEST_SHARE * problem.K.shape[0]:
                 return None
-            w, Y = space.pairs(len(problem.frequencies))
+            basis = space.basis
+            small = space.pencil(basis)
+            w, Y = gyroscopic_pairs(small.M, 0.5 * (small.D - small.D.T), small.K, len(problem.frequencies))
             wanted = len(w) if rows is None else rows
             if below is not None:
                 wanted = min(wanted, int(np.count_nonzero(w <= below * (1.0 + _EDGE))))
             if wanted >= len(w):
                 return None
-            V = space.basis @ Y[:, :wanted]
+            V = basis @ Y[:, :wanted]
             corrections, settled = _corrections(problem, factor, w[:wanted], V)
             if settled:
-                found = _result(problem, w[:wanted], V, count, sigma)
+                found = _result(problem, w[:wanted], V, count)
                 sound = found.backward_error.max(initial=0.0) <= _SOUND
                 return found if sound and _count_agrees(problem, w, wanted) else None
-            space.extend(corrections, V)
+            space.add(corrections, space.sizes(V), _COARSE)
     return None
 
 
-def _precesses(problem: GyroscopicProblem, sigma: float) -> bool:
-    """Whether gyroscopic moments act on a rigid-body motion, which then does not stand apart from the other modes."""
-    if not problem.rigid.shape[1]:
-        return False
-    size = np.sqrt(problem.K.diagonal() + sigma**2 * problem.M.diagonal())
-    size = np.where(size > 0.0, size, 1.0)
-    scale = sp.diags_array(1.0 / size)
-    G = scale @ problem.G @ scale  # units of forces and moments do not matter
-    R = problem.rigid * size[:, None]
-    R = R / np.linalg.norm(R, axis=0)
-    return float(np.abs(G @ R).max()) > _ROUNDING * norm_1(sp.csc_array(G))
-
-
-class _Space:
-    """The basis in coordinates scaled by (K_ii + sigma^2 M_ii)^1/2, orthonormal."""
-
-    def __init__(self, problem: GyroscopicProblem, sigma: float) -> None:
-        self._problem = problem
-        weight = np.sqrt(problem.K.diagonal() + sigma**2 * problem.M.diagonal())
-        self._weight = np.where(weight > 0.0, weight, 1.0)[:, None]
-        # QR takes one vector after the other: soft modes keep their directions among stiff ones.
-        self._scaled = np.linalg.qr(problem.modes * self._weight)[0]
-
-    @property
-    def size(self) -> int:
-        """Number of columns."""
-        return int(self._scaled.shape[1])
-
-    @property
-    def basis(self) -> np.ndarray:
-        """(n, size), real, in the coordinates of the dofs."""
-        return np.asarray(self._scaled / self._weight)
-
-    def pairs(self, most: int) -> tuple[np.ndarray, np.ndarray]:
-        """The lowest `most` frequencies w (m,) in rad/s of the projected pencil, and coordinates (size, m)."""
-        V = self.basis
-        S = self._problem.strain(V)
-        G = V.T @ (self._problem.G @ V)
-        return gyroscopic_pairs(V.T @ (self._problem.M @ V), 0.5 * (G - G.T), S.T @ S, most)
-
-    def extend(self, corrections: np.ndarray, V: np.ndarray) -> None:
-        """Add what complex corrections (n, m) of the modes V (n, m) bring beside the span."""
-        new = corrections * self._weight / np.linalg.norm(V * self._weight, axis=0)
-        rest = np.hstack([new.real, new.imag])
-        for _ in range(2):  # twice is enough for the rounding
-            rest = rest - self._scaled @ (self._scaled.T @ rest)
-        U, size, _ = np.linalg.svd(rest, full_matrices=False)
-        # A correction is no better than a share of itself: what is far below its largest part waits for the next round.
-        least = max(_NEGLIGIBLE, _COARSE * float(size.max(initial=0.0)))
-        self._scaled = np.hstack([self._scaled, U[:, size > least]])
-
-
-def _corrections(problem: GyroscopicProblem, factor: Factor, w: np.ndarray, V: np.ndarray) -> tuple[np.ndarray, bool]:
+def _corrections(problem: NearUndamped, factor: Factor, w: np.ndarray, V: np.ndarray) -> tuple[np.ndarray, bool]:
     """(K + sigma^2 M)^-1 Q(i w) v of each pair, (n, m), and whether eigenvalues and vectors have settled by them."""
-    residual = problem.K @ V + (problem.G @ V) * (1j * w) - (problem.M @ V) * w**2
-    found = factor.solve(residual)
-    R = problem.rigid
-    if R.shape[1]:  # rigid-body motions have no part in elastic modes
-        found = found - R @ np.linalg.solve(R.T @ (problem.M @ R), R.T @ (problem.M @ found))
+    residual = problem.K @ V + (problem.D @ V) * (1j * w) - (problem.M @ V) * w**2
+    found = problem.without_rigid(factor.solve(residual))
 
     def form(A: sp.csc_array, X: np.ndarray) -> np.ndarray:
         return np.asarray(np.real(np.einsum("ij,ij->j", X.conj(), A @ X)))
@@ -169,13 +87,13 @@ def _corrections(problem: GyroscopicProblem, factor: Factor, w: np.ndarray, V: n
     return found, bool(settled)
 
 
-def _count_agrees(problem: GyroscopicProblem, w: np.ndarray, wanted: int) -> bool:
+def _count_agrees(problem: NearUndamped, w: np.ndarray, wanted: int) -> bool:
     """Whether no mode is missing below a gap above the wanted ones; a basis without a gap is not taken."""
     gaps = [k for k in range(max(wanted, 1), len(w)) if w[k] - w[k - 1] > _GAP * w[k]]
     if not gaps:
         return False
     middle = float(0.5 * (w[gaps[0] - 1] + w[gaps[0]]))
-    hermitian = sp.csc_array(problem.K - middle**2 * problem.M + 1j * middle * problem.G)
+    hermitian = sp.csc_array(problem.K - middle**2 * problem.M + 1j * middle * problem.D)
     try:
         counted = int(np.count_nonzero(factor_symmetric(hermitian).pivots.real < 0.0))
     except ConvergenceError:  # no factors without row exchanges: nothing to count with
@@ -183,12 +101,12 @@ def _count_agrees(problem: GyroscopicProblem, w: np.ndarray, wanted: int) -> boo
     return counted == gaps[0] + problem.rigid.shape[1]
 
 
-def _result(problem: GyroscopicProblem, w: np.ndarray, V: np.ndarray, count: int | None, sigma: float) -> DampedModes:
+def _result(problem: NearUndamped, w: np.ndarray, V: np.ndarray, count: int | None) -> DampedModes:
     """Rigid-body motions and modes with their backward errors."""
     rigid = problem.rigid[:, :count]
     values = np.concatenate([np.zeros(rigid.shape[1]), 1j * w])
     V = np.hstack([rigid, V])
-    quadratic = scaled(problem.M, problem.G, problem.K, float(problem.frequencies[0]))
+    quadratic = scaled(problem.M, problem.D, problem.K, float(problem.frequencies[0]))
     return DampedModes(
         eigenvalues=values,
         vectors=V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])],
@@ -197,6 +115,6 @@ def _result(problem: GyroscopicProblem, w: np.ndarray, V: np.ndarray, count: int
         zero_count=2 * problem.rigid.shape[1],
         complete=False,
         method="basis of undamped modes, counted by pivot signs",
-        shift=sigma,
+        shift=problem.shift,
         factorisations=2,
     )

@@ -21,6 +21,7 @@ from rotorgear.solvers.sparse.pencil import EPS, rounding_noise
 _BLOCK = 4  # as many copies of an eigenvalue are found at once; more columns cost more than they bring
 _CONVERGED = 1e-9  # residual of T v = theta v relative to theta; its square is the error of the Rayleigh quotient
 _USEFUL = (1e-3, 10.0)  # |sigma| / first elastic eigenvalue: inside, the shift costs neither accuracy nor iterations
+_START = 1e-4  # |sigma| at first over the least k_ii / m_ii
 _SPREAD = 1e7  # highest eigenvalue / |sigma| up to which rounding in soft modes leaves the stiff ones alone
 # Highest eigenvalue / |sigma| from which modes in the middle are rounding to both dense solvers, of 16 digits each: the whole
 # space is then handed on, and the Jacobi iteration on strains (ritz.py) tells its modes apart.
@@ -76,14 +77,15 @@ def shifted_operator(M: sp.csc_array, K: sp.csc_array, guess: float | None = Non
         AnalysisError: K is not positive semidefinite.
         ConvergenceError: K - sigma M is singular for every shift.
     """
-    # Without a guess begin far below all frequencies, and come up by the probe.
+    # The least k_ii / m_ii is a Rayleigh quotient: the lowest eigenvalue does not lie above it, mostly some decades below. The
+    # probe moves on from a start that is off.
     if guess:
         sigma = -0.1 * guess
     else:
         mass = M.diagonal()
         stiffness = K.diagonal()
         both = (mass > 0.0) & (stiffness > 0.0)
-        sigma = -(1e-16 * float(np.median(stiffness[both] / mass[both])) if np.any(both) else 1.0)
+        sigma = -(_START * float(np.min(stiffness[both] / mass[both])) if np.any(both) else 1.0)
     factored = 0
     for _ in range(12):
         factored += 1

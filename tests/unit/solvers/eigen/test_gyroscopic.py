@@ -10,10 +10,11 @@ import scipy.sparse as sp
 
 from rotorgear.solvers.eigen.damped import damped_modes
 from rotorgear.solvers.eigen.eigen import lowest_modes
-from rotorgear.solvers.eigen.gyroscopic import GyroscopicProblem, gyroscopic_modes
+from rotorgear.solvers.eigen.gyroscopic import gyroscopic_modes
+from rotorgear.solvers.eigen.undamped_basis import NearUndamped
 
 
-def spinning_string(n: int, spin: float, free: bool = False) -> GyroscopicProblem:
+def spinning_string(n: int, spin: float, free: bool = False) -> NearUndamped:
     """Two equal chains of springs across each other in a frame that spins: s -> i w with w^2 -+ 2 spin w = w_k^2, exactly.
 
     `free`: without walls, and the spin acts on the left half only, so that nothing decouples.
@@ -32,7 +33,7 @@ def spinning_string(n: int, spin: float, free: bool = False) -> GyroscopicProble
     G = sp.csc_array(sp.block_array([[None, J], [-J, None]]))
     undamped = lowest_modes(M, K, count=24, strain=lambda V: S @ V)
     r = undamped.rigid_count
-    return GyroscopicProblem(
+    return NearUndamped(
         M,
         G,
         K,
@@ -84,6 +85,6 @@ def test_a_limit_gives_what_the_general_solver_gives() -> None:
     problem = spinning_string(100, 0.03)
     limit = float(problem.frequencies[9]) * 1.01
     found = gyroscopic_modes(problem, None, limit)
-    general = damped_modes(problem.M, problem.G, problem.K, below=limit)
+    general = damped_modes(problem.M, problem.D, problem.K, below=limit)
     assert found is not None
     assert found.eigenvalues.imag == pytest.approx(general.eigenvalues.imag, rel=1e-10)

@@ -1,0 +1,225 @@
+"""Modes of a gyroscopic structure with dampers at few places, Q(s) v = (s^2 M + s D + K) v = 0, from undamped ones; D = G + C.
+
+The basis holds the undamped modes X, what the forces s D x of each call forth, (K + sigma^2 M)^-1 D X, and the static responses
+to the dampers. It is projected on its own columns (Galerkin), and a small dense problem gives eigenvalues z, right vectors v and
+left ones y. What they leave in the dofs, r = Q(z) v and t = Q(z)^H y, corrects all three by the one factor that is there,
+
+    e = A^-1 r,   f = A^-1 t,   A = K + sigma^2 M,   v <- v - e,
+    z <- z + (2 t^H e - f^H Q(z) e) / (y^H Q'(z) v),
+
+the quotient (y - f)^H Q(z) (v - e) = 0, whose error is the product of the errors that are left on both sides. Where t^H e alone
+says something else, the corrections e become columns of the basis, and the small problem is solved again.
+
+No mode of the structure without its dampers is missing where Q(i w) of the dofs and of the basis have the same number of negative
+eigenvalues, see `gyroscopic`. Dampers alone bring motions that do not oscillate, and those are left to the general solver.
+
+Tisseur and Meerbergen, SIAM Review 43 (2001) 235, sections 3 and 6; Lancaster, Lambda-Matrices and Vibrating Systems, section 4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from rotorgear.errors import ConvergenceError
+from rotorgear.solvers.eigen.damped import DampedModes
+from rotorgear.solvers.eigen.quadratic import scaled
+from rotorgear.solvers.eigen.reduced_pencil import Pencil, clusters, eigen
+from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis
+from rotorgear.solvers.sparse.factor import Factor, factor_symmetric, single_thread
+
+# Dofs on which dampers act: so many at most, and this share of all.
+_MOST_PLACES = 96
+_MOST_OF = 0.2
+# Relative size of an eigenvalue of the damping matrix that is rounding.
+_RANK = 1e-12
+# By how much the two corrections of an eigenvalue may differ, relative to it; what is left is a tenth of that or less.
+_SETTLED = 2e-9
+# Eigenvalues this close to each other are corrected together.
+_CLOSE = 1e-3
+# Share of the largest correction that is not worth a column yet.
+_COARSE = 3e-2
+_ROUNDS = 5
+# Backward error above which vectors are not good enough.
+_SOUND = 1e-9
+# Share of the dofs above which a basis saves nothing.
+_LARGEST_SHARE = 0.6
+# Places above the last mode, relative to it, at which modes may be counted; and how far around it no mode may lie.
+_COUNT_AT = (1.02, 1.035, 1.05)
+_AROUND = 1e-4
+# An eigenvalue of the small problem below this share of the first frequency is that of a rigid-body motion.
+_STILL = 1e-5
+# A mode this close above the limit `below` counts as on it.
+_EDGE = 1e-9
+
+
+def locally_damped_modes(problem: NearUndamped, count: int | None, below: float | None) -> DampedModes | None:
+    """The modes of smallest |s| as `damped_modes` gives them; None where a basis does not serve.
+
+    Args:
+        problem: the pencil and its undamped modes, some more than are asked for.
+        count: so many rows, rigid-body motions included; below: only |s| up to this in rad/s. One of them at least.
+    """
+    places = _places(problem)
+    if places is None or problem.moves_rigid_bodies():
+        return None
+    most = len(problem.frequencies)
+    rows = most if count is None else max(count - problem.rigid.shape[1], 0)
+    with single_thread(problem.K.shape[0]):
+        factor = factor_symmetric(sp.csc_array(problem.K + problem.shift**2 * problem.M))
+        space = _begun(problem, factor, places, rows)
+        for _ in range(_ROUNDS):
+            if space.size > _LARGEST_SHARE * problem.K.shape[0]:
+                return None
+            basis = space.basis
+            small = space.pencil(basis)
+            shift = float(np.sqrt(problem.frequencies[0] * problem.frequencies[-1]))
+            found = eigen(small, shift, _STILL * float(problem.frequencies[0]), most)
+            size = np.abs(found.s)
+            wanted = min(rows, len(size))
+            if below is not None:
+                wanted = min(wanted, int(np.count_nonzero(size <= below * (1.0 + _EDGE))))
+            # A motion that does not oscillate among the modes, or none above them to end at, is another solver's business.
+            if wanted >= len(size) or np.any(np.abs(found.real) <= _COUNT_AT[-1] * size[wanted]):
+                return None
+            pairs = _Pairs(found.s[:wanted], basis @ found.q[:, :wanted], basis @ found.y[:, :wanted])
+            corrected, e, unsure = _corrected(problem, factor, pairs)
+            modes = _result(problem, corrected, count) if unsure <= _SETTLED else None
+            if modes is not None and modes.backward_error.max(initial=0.0) > _SOUND:
+                modes = _result(problem, _polished(problem, factor, corrected), count)
+            if modes is not None and modes.backward_error.max(initial=0.0) <= _SOUND:
+                last = float(size[wanted - 1]) if wanted else float(problem.frequencies[0]) / _COUNT_AT[-1]
+                return modes if _none_is_missing(problem, small, last) else None
+            space.add(e, space.sizes(pairs.v), _COARSE)
+    return None
+
+
+@dataclass(frozen=True)
+class _Pairs:
+    """Eigenvalues (m,) with right and left vectors (n, m)."""
+
+    s: np.ndarray
+    v: np.ndarray
+    y: np.ndarray
+
+
+def _places(problem: NearUndamped) -> np.ndarray | None:
+    """Unit forces P (n, p) of the dampers, whose damping matrix is P c P^T; None where they are everywhere."""
+    C = sp.csc_array(0.5 * (problem.D + problem.D.T))
+    C.eliminate_zeros()
+    touched = np.unique(C.indices)
+    if len(touched) > min(_MOST_PLACES, _MOST_OF * C.shape[0]):
+        return None
+    scale = 1.0 / problem.weight[touched]
+    values, vectors = np.linalg.eigh(C[touched][:, touched].toarray() * scale * scale[:, None])
+    real = np.abs(values) > _RANK * np.abs(values).max(initial=0.0)
+    P = np.zeros((C.shape[0], int(real.sum())))
+    P[touched] = vectors[:, real] / scale[:, None]
+    return P
+
+
+def _begun(problem: NearUndamped, factor: Factor, places: np.ndarray, rows: int) -> UndampedBasis:
+    """Undamped modes, static responses to dampers, and what the velocities of the first `rows` modes call forth."""
+    space = UndampedBasis(problem)
+    modes = problem.modes[:, :rows]
+    forced = problem.without_rigid(factor.solve(np.hstack([places, problem.D @ modes])))
+    local = forced[:, : places.shape[1]]
+    space.add(local, np.maximum(space.sizes(local), np.finfo(float).tiny), 0.0)
+    space.add(forced[:, places.shape[1] :] * problem.frequencies[:rows], space.sizes(modes), _COARSE)
+    return space
+
+
+def _corrected(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> tuple[_Pairs, np.ndarray, float]:
+    """The pairs with both corrections, e (n, m), and the largest difference of the two corrections of an eigenvalue over |s|."""
+    z = pairs.s
+    m = len(z)
+    backwards = sp.csc_array(problem.D.T)
+
+    def applied(D: sp.csc_array, s: np.ndarray, X: np.ndarray) -> np.ndarray:
+        return np.asarray((problem.M @ X) * s**2 + (D @ X) * s + problem.K @ X)
+
+    right = applied(problem.D, z, pairs.v)
+    left = applied(backwards, z.conj(), pairs.y)
+    both = problem.without_rigid(factor.solve(np.hstack([right, left])))
+    e = both[:, :m]
+    f = both[:, m:]
+    onward = applied(problem.D, z, e)
+    values = z.copy()
+    v = pairs.v - e
+    y = pairs.y - f
+    unsure = 0.0
+    for close in clusters(z, _CLOSE):
+        V = pairs.v[:, close]
+        Y = pairs.y[:, close]
+        # y_i^H ((s_i + s_j) M + D) v_j: the product in which left and right vectors of a pencil are biorthogonal.
+        product = Y.conj().T @ ((problem.M @ V) * z[close] + problem.D @ V) + z[close][:, None] * (
+            Y.conj().T @ (problem.M @ V)
+        )
+        first = np.linalg.solve(product, left[:, close].conj().T @ e[:, close])
+        second = 2.0 * first - np.linalg.solve(product, f[:, close].conj().T @ onward[:, close])
+        unsure = max(unsure, float((np.abs(second - first) / np.abs(z[close])[:, None]).max()))
+        if len(close) == 1:
+            values[close] = z[close] + second[0]
+            continue
+        values[close], turn = np.linalg.eig(np.diag(z[close]) + second)
+        v[:, close] = v[:, close] @ turn
+    order = np.argsort(np.abs(values), kind="stable")
+    return _Pairs(values[order], v[:, order], y[:, order]), e, unsure
+
+
+def _polished(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> _Pairs:
+    """The pairs with right vectors that one more correction A^-1 Q(s) v frees of what lies beyond the undamped modes X.
+
+    Along X, where r of the projection was zero, it is the eigenvalue that decides, and A would mistake s: that part is not taken.
+    """
+    r = (problem.M @ pairs.v) * pairs.s**2 + (problem.D @ pairs.v) * pairs.s + problem.K @ pairs.v
+    e = problem.without_rigid(factor.solve(r))
+    e = e - problem.modes @ (problem.modes.T @ (problem.M @ e))
+    return _Pairs(pairs.s, pairs.v - e, pairs.y)
+
+
+def _none_is_missing(problem: NearUndamped, small: Pencil, last: float) -> bool:
+    """Whether the structure without its dampers has as many modes in the dofs as in the basis, up to a little above `last`."""
+    G = 0.5j * (small.D - small.D.T)
+    scale = 1.0 / np.sqrt(np.diag(small.K) + problem.shift**2 * np.diag(small.M))
+
+    def below(w: float) -> int:
+        """How many modes the basis has below w."""
+        return int(
+            np.count_nonzero(np.linalg.eigvalsh((small.K + w * G - w**2 * small.M) * scale * scale[:, None]) < 0.0)
+        )
+
+    for place in _COUNT_AT:
+        w = place * last
+        expected = below(w * (1.0 - _AROUND))
+        if below(w * (1.0 + _AROUND)) == expected:
+            break
+    else:
+        return False
+    hermitian = sp.csc_array(problem.K - w**2 * problem.M + 0.5j * w * (problem.D - problem.D.T))
+    try:
+        counted = int(np.count_nonzero(factor_symmetric(hermitian).pivots.real < 0.0))
+    except ConvergenceError:  # no factors without row exchanges: nothing to count with
+        return False
+    return counted == expected + problem.rigid.shape[1]
+
+
+def _result(problem: NearUndamped, pairs: _Pairs, count: int | None) -> DampedModes:
+    """Rigid-body motions and modes with their backward errors."""
+    rigid = problem.rigid[:, :count]
+    values = np.concatenate([np.zeros(rigid.shape[1]), pairs.s])
+    V = np.hstack([rigid, pairs.v])
+    quadratic = scaled(problem.M, problem.D, problem.K, float(problem.frequencies[0]))
+    return DampedModes(
+        eigenvalues=values,
+        vectors=V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])],
+        rigid=np.arange(len(values)) < rigid.shape[1],
+        backward_error=quadratic.residuals(values / quadratic.w0, V / quadratic.scale[:, None]),
+        zero_count=2 * problem.rigid.shape[1],
+        complete=False,
+        method="basis of undamped modes and responses to dampers, counted by pivot signs",
+        shift=problem.shift,
+        factorisations=2,
+    )

@@ -1,0 +1,74 @@
+"""Modes with dampers at few places from a basis of undamped ones, against the general solver, and when they are left to it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from rotorgear.solvers.eigen.damped import DampedModes, damped_modes
+from rotorgear.solvers.eigen.local_damping import locally_damped_modes
+from rotorgear.solvers.eigen.undamped_basis import NearUndamped
+from tests.unit.solvers.eigen.test_gyroscopic import spinning_string
+
+N = 150
+
+
+def string_on_dampers(spin: float, coefficients: dict[int, float], free: bool = False) -> NearUndamped:
+    """Two chains across each other that spin, with dampers at some of their 2 N dofs."""
+    problem = spinning_string(N, spin, free)
+    C = np.zeros(2 * N)
+    C[list(coefficients)] = list(coefficients.values())
+    return replace(problem, D=sp.csc_array(problem.D + sp.diags_array(C)))
+
+
+def in_general(problem: NearUndamped, count: int | None, below: float | None = None) -> DampedModes:
+    return damped_modes(problem.M, problem.D, problem.K, count=count, below=below, rigid_vectors=problem.rigid)
+
+
+@pytest.mark.parametrize("spin", [0.0, 1e-3, 0.05])
+@pytest.mark.parametrize(
+    "dampers",
+    [
+        {30: 0.02, N + 30: 0.02},  # equal in both planes: without spin all modes are double
+        {30: 0.3, N + 71: 0.01},
+        {40: 0.2, 90: 0.2, N + 12: 0.05, N + 100: 0.4},
+    ],
+)
+def test_dampers_at_few_places_give_what_the_general_solver_gives(spin: float, dampers: dict[int, float]) -> None:
+    problem = string_on_dampers(spin, dampers)
+    found = locally_damped_modes(problem, 12, None)
+    assert found is not None
+    exact = in_general(problem, 12)
+    assert found.eigenvalues == pytest.approx(exact.eigenvalues, rel=1e-9)
+    assert found.backward_error.max() < 1e-8
+    # Each vector lies in the span of the true ones of its eigenvalue, which may be double.
+    for s, v in zip(found.eigenvalues, found.vectors.T, strict=True):
+        near = exact.vectors[:, np.abs(exact.eigenvalues - s) < 1e-6 * abs(s)]
+        Q = np.linalg.qr(near)[0]
+        assert np.linalg.norm(v - Q @ (Q.conj().T @ v)) < 1e-4 * np.linalg.norm(v)
+
+
+def test_a_limit_and_free_bodies_give_what_the_general_solver_gives() -> None:
+    problem = string_on_dampers(0.02, {30: 0.1})
+    limit = 0.5 * float(problem.frequencies[11] + problem.frequencies[12])
+    found = locally_damped_modes(problem, None, limit)
+    assert found is not None
+    assert found.eigenvalues == pytest.approx(in_general(problem, None, limit).eigenvalues, rel=1e-9)
+
+
+def test_what_a_basis_does_not_hold_is_left_to_the_general_solver() -> None:
+    problem = string_on_dampers(0.02, {30: 0.1})
+    # A pair is taken out of the basis, and no response brings it back: the count says so.
+    odd = np.arange(len(problem.frequencies)) // 2 != 4
+    silent = string_on_dampers(0.02, {})
+    holed = replace(silent, frequencies=silent.frequencies[odd], modes=silent.modes[:, odd])
+    assert locally_damped_modes(silent, 12, None) is not None
+    assert locally_damped_modes(holed, 12, None) is None
+    # Dampers everywhere, one so strong that motions do not oscillate, and one that a rigid-body motion moves.
+    everywhere = replace(problem, D=sp.csc_array(problem.D + 1e-3 * problem.M))
+    assert locally_damped_modes(everywhere, 12, None) is None
+    assert locally_damped_modes(string_on_dampers(0.02, {30: 40.0}), 12, None) is None
+    assert locally_damped_modes(string_on_dampers(0.0, {30: 0.1}, free=True), 12, None) is None
