@@ -11,8 +11,8 @@ from rotorgear.errors import AnalysisError
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
-# Neighbouring elements begin to act on each other's errors, and close modes to change places, from about here. Below, the estimate
-# from each element by itself was within a tenth of the error on all models, above it was off by up to a factor of two.
+# Neighbouring elements begin to act on each other's errors, and close modes to change places, from about here. Below, the
+# estimate from each element by itself was within a tenth of the error on all models, above it was off by up to a factor of two.
 ROUGH = 1e-3
 _LARGEST = 2000  # dofs up to which a second solution is worth its time
 
