@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from rotorgear.casings.elements import element
-from rotorgear.casings.file_mesh import FACES, SOLIDS, FileMesh, NamedSet, gathered, set_of
+from rotorgear.casings.file_mesh import FACES, SOLIDS, FileMesh, NamedSet, gathered, not_read, set_of
 
 # Elements by how their names begin: kind and number of nodes; the longest beginning counts.
 _ELEMENTS = {
@@ -32,6 +32,17 @@ _ELEMENTS = {
     **dict.fromkeys(("T2D3", "T3D3", "B22", "B32"), ("line3", 3)),
 }
 _SHELL_SIDES = ("SPOS", "SNEG")
+# What decks put on a body beside its elements; it is not read, and that is said.
+_BESIDE = (
+    "COUPLING",
+    "DISTRIBUTING COUPLING",
+    "KINEMATIC COUPLING",
+    "RIGID BODY",
+    "MPC",
+    "EQUATION",
+    "TIE",
+    "CONTACT PAIR",
+)
 # Corners of the faces S1, S2, ... of solids.
 _TET_FACES = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))
 _HEX_FACES = ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0))
@@ -44,9 +55,16 @@ def read_abaqus(path: Path) -> FileMesh:
     node_sets: dict[str, list[int]] = {}
     cell_sets: dict[str, list[int]] = {}
     surfaces: dict[str, list[tuple[str, str]]] = {}
+    nodes_of_elements: dict[str, str] = {}
     instances = 0
+    beside: list[str] = []
     for keyword, options, lines in _keywords(path):
-        if keyword == "NODE":
+        if keyword == "SYSTEM" or (keyword == "NODE" and options.get("SYSTEM", "R").upper() != "R"):
+            raise ValueError("its nodes stand in a coordinate system of their own: export global coordinates x, y, z")
+        if keyword in _BESIDE:
+            if keyword not in beside:
+                beside.append(keyword)
+        elif keyword == "NODE":
             for line in lines:
                 number, *xyz = line.rstrip(",").split(",")
                 if len(xyz) < 3:
@@ -65,6 +83,8 @@ def read_abaqus(path: Path) -> FileMesh:
             blocks.append((kind, [row[1:] for row in rows], [row[0] for row in rows]))
             if "ELSET" in options:
                 cell_sets.setdefault(options["ELSET"], []).extend(row[0] for row in rows)
+        elif keyword == "NSET" and "ELSET" in options:
+            nodes_of_elements[options.get("NSET", "")] = options["ELSET"]
         elif keyword in ("NSET", "ELSET"):
             sets = node_sets if keyword == "NSET" else cell_sets
             sets.setdefault(options.get(keyword, ""), []).extend(_members(options, lines, sets))
@@ -102,6 +122,10 @@ def read_abaqus(path: Path) -> FileMesh:
         # A deck often has one name for the nodes and for the faces of a place; then the faces say more.
         if name and (name not in named or (found.faces and np.array_equal(found.nodes, named[name].nodes))):
             named[name] = found
+    for name, elements in nodes_of_elements.items():
+        wanted = np.array(cell_sets.get(elements, []))
+        of_blocks = [rows[np.isin(ids, wanted)].ravel() for (_, rows), (_, _, ids) in zip(cells, blocks, strict=True)]
+        named.setdefault(name, NamedSet(np.unique(np.concatenate([np.zeros(0, dtype=np.int64), *of_blocks]))))
     for name, places in surfaces.items():
         faces = [rows for place in places for rows in _faces_at(place, cells, blocks, cell_sets)]
         nodes = [node for place, _ in places for node in _members({}, [place], node_sets) if node in order]
@@ -109,7 +133,7 @@ def read_abaqus(path: Path) -> FileMesh:
         if name and name not in named and (faces or on_nodes):
             all_nodes = np.unique(np.concatenate([rows.ravel() for rows in (*faces, *on_nodes)]))
             named[name] = NamedSet(all_nodes, [rows[:, : 4 if rows.shape[1] in (4, 8, 9) else 3] for rows in faces])
-    return FileMesh(np.array(list(coordinates.values())), gathered(cells), named)
+    return FileMesh(np.array(list(coordinates.values())), gathered(cells), named, not_read(beside))
 
 
 def _faces_at(

@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from rotorgear.casings.assembly import Assembled, assemble, rigid_motions
 from rotorgear.casings.file_mesh import NamedSet
 from rotorgear.casings.joins import Joined, join
+from rotorgear.casings.mechanisms import no_hinges, no_mechanism
 from rotorgear.casings.mesh_file import read_mesh
 from rotorgear.casings.patches import Patch, by_cylinder, by_set, cylinder_faces
 from rotorgear.casings.settings import CasingSettings, MountSettings
@@ -24,7 +25,6 @@ from rotorgear.quantity import millimetres
 # Sizes of a casing that are believed; beyond, the unit is likely wrong.
 _LEAST_SIZE = 5e-3
 _LARGEST_SIZE = 50.0
-_MOTIONS = tuple(f"{motion} {axis}" for motion in ("displacement along", "rotation about") for axis in "xyz")
 
 
 @dataclass(frozen=True)
@@ -208,14 +208,15 @@ def finite_element_body(settings: CasingSettings, progress: Progress = silent) -
     for patch in held_patches:
         held_sets.append(np.setdiff1d(patch.nodes, held))
         held = np.union1d(held, patch.nodes)
-    _apart(settings, seats, held, joined.tied)
     progress(0.3, f"{address}: assembling {3 * len(mesh.points)} unknowns")
     matrices = assemble(mesh, settings.material)
     body = FiniteElementBody(settings, mesh, matrices, joined, seats, mounts, held, tuple(held_sets))
+    _apart(body)
     for patch in (*seats, *mounts):
         patch.weights(mesh.points)
     _believable_mass(body)
-    _no_mechanism(body)
+    no_mechanism(body)
+    no_hinges(body)
     progress(1.0, f"{address}: assembled")
     return body
 
@@ -274,8 +275,17 @@ def _one_body(joined: Joined, settings: CasingSettings) -> None:
     )
 
 
-def _apart(settings: CasingSettings, seats: tuple[Patch, ...], held: np.ndarray, tied: np.ndarray) -> None:
-    """No node is in two seats, or in a seat and held."""
+def _apart(body: FiniteElementBody) -> None:
+    """No node is in two seats, or in a seat and held; no mount is on held nodes alone."""
+    settings = body.settings
+    seats = body.seats
+    held = body.held
+    tied = body.joined.tied
+    for patch in body.mounts:
+        if np.isin(patch.nodes, held).all():
+            raise AnalysisError(
+                f"{patch.name}: all its nodes are held ({', '.join(settings.held)}), which no spring moves: mount it or hold it."
+            )
     for number, (name, _) in enumerate(settings.seats):
         nodes = seats[number].nodes
         address = f"{settings.address}.seats.{name}"
@@ -309,38 +319,3 @@ def _believable_mass(body: FiniteElementBody) -> None:
         f"{settings.address}.mass: the mesh has {mass:.6g} kg, and {settings.mass:.6g} kg are stated{hint or '.'} Check unit and "
         "density, or give mass_tolerance."
     )
-
-
-def _no_mechanism(body: FiniteElementBody) -> None:
-    """What holds the body leaves it no rigid motion; nothing at all may hold it."""
-    settings = body.settings
-    if not settings.held and not settings.mounts:
-        return
-    mesh = body.mesh
-    centre = mesh.points.mean(axis=0)
-    size = np.linalg.norm(np.ptp(mesh.points, axis=0))
-    R = rigid_motions(mesh.points, centre)
-    R[:, 3:] /= size
-    rows = [R.reshape(-1, 3, 6)[body.held].reshape(-1, 6)]
-    springs, flexibility = body.springs()
-    if len(flexibility):
-        # Only which motions are held counts, not how stiffly.
-        held = springs.T @ R
-        rows.append(held / np.linalg.norm(held, axis=1)[:, None].clip(min=1e-300))
-    # Of the triangle: a held face has thousands of rows, and the whole left factor of their decomposition has their square.
-    triangle = np.linalg.qr(np.vstack(rows), mode="r")
-    _, singular, motions = np.linalg.svd(triangle, full_matrices=True)
-    free = [motions[i] for i in range(6) if i >= len(singular) or singular[i] < 1e-6 * singular[0]]
-    if free:
-        named = "; ".join(_MOTIONS[int(np.argmax(np.abs(motion)))] for motion in free)
-        what = ", ".join([*settings.held, *(mount.set for mount in settings.mounts)])
-        key = "held" if settings.held else "mounts"
-        remedy = (
-            "Hold a face, or add springs"
-            if settings.held
-            else "A mount holds the mean motion of its set: give each foot a set and a mount of its own, or add tilt and torsion"
-        )
-        raise AnalysisError(
-            f"{settings.address}.{key}: what is held ({what}) leaves the casing a mechanism: {named}. {remedy}; or hold nothing, "
-            "for a body that floats on its bearings."
-        )

@@ -8,16 +8,8 @@ import numpy as np
 
 # Kinds of cells, in the words of meshio, by what rotorgear does with them.
 SOLIDS = ("tetra", "tetra10", "hexahedron", "hexahedron20", "hexahedron27")
-OTHER_SOLIDS = (
-    "wedge",
-    "wedge15",
-    "wedge18",
-    "pyramid",
-    "pyramid13",
-    "pyramid14",
-    "hexahedron24",
-    "VTK_LAGRANGE_TETRAHEDRON",
-)
+# How the names of all kinds of solids begin, of higher orders too.
+SOLID_BEGINNINGS = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron", "VTK")
 FACES = {"triangle": 3, "triangle6": 3, "triangle7": 3, "quad": 4, "quad8": 4, "quad9": 4}
 
 
@@ -44,6 +36,13 @@ class FileMesh:
     cells: dict[str, np.ndarray]
     sets: dict[str, NamedSet] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+
+
+def not_read(cards: list[str]) -> list[str]:
+    """The note on what a deck puts on a body beside its elements; none where there is nothing."""
+    if not cards:
+        return []
+    return [f"Not read from the deck: {', '.join(cards)}; seats, mounts, joins and masses stand in the model file."]
 
 
 def gathered(blocks: list[tuple[str, np.ndarray]]) -> dict[str, np.ndarray]:

@@ -35,6 +35,8 @@ def read_mesh(path: Path, address: str) -> FileMesh:
         AnalysisError: no such file, or one that can't be read.
         MissingExtraError: meshio is not installed.
     """
+    if path.is_dir():
+        raise AnalysisError(f"{address}: '{path}' is a folder, not the file of a mesh.")
     if not path.is_file():
         there = sorted(item.name for item in path.parent.iterdir() if item.is_file()) if path.parent.is_dir() else []
         from rotorgear.quantity import nearest
@@ -49,8 +51,10 @@ def read_mesh(path: Path, address: str) -> FileMesh:
         raise
     except Exception as error:
         words = " ".join(str(error).split())[:200]
+        # A ValueError is a sentence of the readers beside this one, or Python's on what is no number.
+        kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
         raise AnalysisError(
-            f"{address}: '{path.name}' can't be read as a mesh ({type(error).__name__}: {words}). Export it as Gmsh .msh 4.1, "
+            f"{address}: '{path.name}' can't be read as a mesh ({kind}{words}). Export it as Gmsh .msh 4.1, "
             "Abaqus .inp or .vtu, with its solids and its named sets."
         ) from None
     if mesh.points.ndim != 2 or mesh.points.shape[1] != 3 or not np.all(np.isfinite(mesh.points)):

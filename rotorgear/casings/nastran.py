@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rotorgear.casings.file_mesh import FileMesh, NamedSet, gathered, set_of
+from rotorgear.casings.file_mesh import FileMesh, NamedSet, gathered, not_read, set_of
 
 _ELEMENTS = {
     "CTETRA": {4: "tetra", 10: "tetra10"},
@@ -26,6 +26,10 @@ _ELEMENTS = {
     "CQUAD8": {8: "quad8", 4: "quad"},
 }
 _SOLIDS = ("CTETRA", "CHEXA", "CPENTA", "CPYRAM")
+# Beams and shells that are not computed, whatever they stand on: without them the body would be softer than it is meant.
+_STRUCTURE = ("CBAR", "CBEAM", "CBEND", "CROD", "CONROD", "CTUBE", "CTRIAR", "CQUADR", "CSHEAR")
+# What decks put on a body beside its elements; it is not read, and that is said.
+_BESIDE = ("RBE1", "RBE2", "RBE3", "RBAR", "RROD", "MPC", "CONM1", "CONM2", "CBUSH", "CELAS1", "CELAS2")
 # Nastran counts the upright edges of a hexahedron before those of its top.
 _HEXA = [*range(12), *range(16, 20), *range(12, 16)]
 
@@ -35,9 +39,16 @@ def read_nastran(path: Path) -> FileMesh:
     points: dict[int, list[float]] = {}
     rows: dict[tuple[str, int], list[list[int]]] = {}
     node_sets: dict[str, list[tuple[int, int]]] = {}
+    beside: dict[str, int] = {}
     for fields in _cards(path):
         name = fields[0].upper()
-        if name == "GRID":
+        if name in _STRUCTURE:
+            raise ValueError(f"{name} {fields[1]} is a beam or a shell: mesh it as solids, or leave it out of the file")
+        if name.startswith("INCLUDE"):
+            raise ValueError("it includes another file: put both into one")
+        if name in _BESIDE:
+            beside[name] = beside.get(name, 0) + 1
+        elif name == "GRID":
             if fields[2].strip() not in ("", "0"):
                 raise ValueError(
                     f"GRID {fields[1]} stands in a coordinate system of its own: export global coordinates"
@@ -85,7 +96,10 @@ def read_nastran(path: Path) -> FileMesh:
         if nodes:
             sets[name] = NamedSet(np.unique(nodes))
     return FileMesh(
-        np.array(list(points.values())), gathered([(kind, cells) for (kind, _), cells in blocks.items()]), sets
+        np.array(list(points.values())),
+        gathered([(kind, cells) for (kind, _), cells in blocks.items()]),
+        sets,
+        not_read([f"{count} {name}" for name, count in beside.items()]),
     )
 
 

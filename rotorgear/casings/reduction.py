@@ -36,6 +36,8 @@ from rotorgear.progress import Progress, part_of, silent
 USUAL = 20
 # Residual shapes whose mass is less than this share of the largest follow from the others.
 _DEPENDENT = 1e-10
+# A residual shape smaller than this share of what it is the rest of is no more than the rounding of the modes.
+_FOLLOWED = 1e-8
 # Right-hand sides that are solved at a time: many share the reading of the factor, few need less memory.
 _COLUMNS = 16
 
@@ -94,7 +96,7 @@ def reduce_in_basis(
     def times_mass(columns: np.ndarray) -> np.ndarray:
         return space.forces(fe.matrices.times_mass(space.shapes @ columns))
 
-    _, fixed, left = modes_up_to(system.solve, times_mass, len(space.dofs), modes_to, USUAL)
+    _, fixed, left = modes_up_to(system.solve, times_mass, len(space.dofs), modes_to, USUAL, name)
     seconds["fixed-interface modes"] = time.perf_counter() - started
 
     progress(0.7, f"{name}: residual shapes and error")
@@ -103,9 +105,12 @@ def reduce_in_basis(
     kept = fixed.shape[1]
     mass_fixed = fe.matrices.times_mass(fixed)
     mass_static = fe.matrices.times_mass(static)
-    residual = space.shapes @ system.solve(space.forces(mass_static))
+    whole = space.shapes @ system.solve(space.forces(mass_static))
+    residual = whole - fixed @ (mass_fixed.T @ whole)
     residual -= fixed @ (mass_fixed.T @ residual)
-    residual -= fixed @ (mass_fixed.T @ residual)
+    # Where the modes that are kept follow nearly all of a shape, the rest of it is their rounding.
+    left_over = np.linalg.norm(residual, axis=0) > _FOLLOWED * np.linalg.norm(whole, axis=0)
+    residual = residual[:, left_over]
     residual = independent(residual, fe.matrices.times_mass(residual))
     internal = np.hstack([fixed, residual])
 

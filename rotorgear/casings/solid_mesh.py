@@ -14,7 +14,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from rotorgear.casings.elements import QUADRATIC, Element, element
-from rotorgear.casings.file_mesh import OTHER_SOLIDS, SOLIDS, FileMesh, NamedSet
+from rotorgear.casings.file_mesh import SOLID_BEGINNINGS, SOLIDS, FileMesh, NamedSet
 from rotorgear.errors import AnalysisError
 
 # Degrees of the polynomials that the rules for stiffness and mass integrate: exact for straight tetrahedra and bricks, with
@@ -116,12 +116,12 @@ def solid_mesh(found: FileMesh, unit: float, address: str) -> SolidMesh:
 def _only_kind(found: FileMesh, address: str) -> str:
     """The one kind of solids in a file."""
     kinds = [kind for kind in SOLIDS if kind in found.cells]
-    others = [kind for kind in found.cells if kind in OTHER_SOLIDS or (kind not in SOLIDS and kind.startswith("VTK"))]
+    others = [kind for kind in found.cells if kind not in SOLIDS and kind.startswith(SOLID_BEGINNINGS)]
     counts = ", ".join(f"{len(cells)} {kind}" for kind, cells in found.cells.items()) or "none"
     if others:
         raise AnalysisError(
             f"{address}: the mesh has {others[0]} cells, which are not computed (cells: {counts}). Mesh the body with "
-            "tetrahedra, or with hexahedra alone."
+            "tetrahedra of the first or second order, or with such hexahedra alone."
         )
     if not kinds:
         raise AnalysisError(

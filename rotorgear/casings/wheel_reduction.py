@@ -79,7 +79,7 @@ def reduce_wheel(fe: FiniteElementBody, modes_to: float | None, progress: Progre
     def times_mass(columns: np.ndarray) -> np.ndarray:
         return space.forces(fe.matrices.times_mass(space.shapes @ columns))
 
-    squares, modes, left = modes_up_to(system.solve, times_mass, len(space.dofs), modes_to, USUAL)
+    squares, modes, left = modes_up_to(system.solve, times_mass, len(space.dofs), modes_to, USUAL, name)
     kept, left = _whole_pairs(np.sqrt(squares) / (2.0 * np.pi), left)
     progress(0.7, f"{name}: static shapes of the rim")
     modes = space.shapes @ modes[:, :kept]

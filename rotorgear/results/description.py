@@ -87,6 +87,7 @@ class ModelDescription(Result, kind="check"):
     meshes: tuple[MeshRow, ...] = of("meshes", "", "mesh", record=MeshRow)
     torques: tuple[TorqueRow, ...] = of("torques", "", "torque", record=TorqueRow)
     total_mass_kg: float = of("mass of all shafts and what is on them", "kg")
+    casing_mass_kg: dict[str, float] = of("mass of each casing", "kg", "CASING", note=", where it is known")
     counts: dict[str, int] = of("number of parts in each table of the file", "", "TABLE")
     nodes: int = of("number of nodes")
     dofs: int = of("degrees of freedom")

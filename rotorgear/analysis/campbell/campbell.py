@@ -17,7 +17,7 @@ from rotorgear.analysis.campbell.discretise import system_for_speeds
 from rotorgear.analysis.campbell.snapshot_basis import Request, SpeedModes
 from rotorgear.analysis.campbell.speed_family import merged
 from rotorgear.analysis.campbell.speeds import DEFAULT_SPEEDS, chosen_speeds, highest_speed, mesh_reach, operating_speed
-from rotorgear.analysis.common.casings import reduction_errors, serving
+from rotorgear.analysis.common.casings import casing_warnings, reduction_errors, serving
 from rotorgear.analysis.common.clock import Clock
 from rotorgear.analysis.common.excitation import MESH_ORDERS, SHAFT_ORDERS, excitation_orders
 from rotorgear.analysis.common.notes import left_out
@@ -122,7 +122,7 @@ def campbell(
         result,
         model=given,
         left_out=(*result.left_out, *notes, *(note for note in (begun, beyond) if note)),
-        warnings=(*result.warnings, *few, *([short] if short else [])),
+        warnings=(*result.warnings, *few, *_reduction_warnings(system, found, chains), *([short] if short else [])),
         status=short or "success",
     )
 
@@ -191,6 +191,17 @@ def _chain(found: SpeedModes, grid: np.ndarray, group: int, number: np.ndarray) 
             s[k] = part.s[place]
             q[k] = part.q[:, place]
     return Chain(group, s, q)
+
+
+def _reduction_warnings(system: System, found: SpeedModes, chains: list[Chain]) -> tuple[str, ...]:
+    """A sentence where the reduction of casings makes a mode as low as the branches wrong by more than a thousandth."""
+    if not system.model.casings:
+        return ()
+    top = max(float(np.nanmax(np.abs(chain.s))) for chain in chains)
+    first = found.snapshots[0]
+    low = np.abs(first.s) <= top
+    s = first.s[low]
+    return tuple(casing_warnings(reduction_errors(system, s, first.vectors[:, low]), s))
 
 
 def _error_estimate(

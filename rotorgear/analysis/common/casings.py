@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from rotorgear.analysis.common.excitation import rates
 from rotorgear.casings.casing import BEYOND
 from rotorgear.model.model import Model
 from rotorgear.quantity import millimetres
+from rotorgear.solvers.time.local_forces import LocalLaw
 from rotorgear.system.system import System
 
 # So many modes of a casing are taken where the file does not ask for more.
@@ -85,6 +87,13 @@ def casing_notes(system: System) -> Iterator[str]:
         elif body.error is None:
             yield f"casings.{name}: the error of its reduction; its file says nothing of what was left out"
         yield from (f"casings.{name}: {note}" for note in body.notes)
+        for part in model.casings[name].seats:
+            table = "bearings" if part in model.bearings else "nonlinear_elements"
+            if getattr(model, table)[part].casing != name:
+                yield (
+                    f"casings.{name}.seats.{part}: {table}.{part}, which stands elsewhere; casing = '{name}' among its keys "
+                    "puts it into this seat"
+                )
     for table in ("bearings", "nonlinear_elements"):
         for part in getattr(model, table):
             seat = system.layout.seat(f"{table}.{part}")
@@ -93,6 +102,26 @@ def casing_notes(system: System) -> Iterator[str]:
                     f"{table}.{part}: the flexibility of its seat over the {millimetres(abs(float(seat.arm[2])))} to the "
                     "point of the seat, which carries it rigidly"
                 )
+
+
+def time_warnings(model: Model, laws: Sequence[LocalLaw], speed: float) -> Iterator[str]:
+    """A sentence on each casing whose modes end below twice the highest harmonic that acts in a motion over time.
+
+    Such motions have the modes of the model file, or the usual number of them: they don't state what a reduction makes wrong.
+
+    Args:
+        model: with casings or without.
+        laws: what acts.
+        speed: the largest one of the reference, in rad/s.
+    """
+    top = float(rates(laws, speed).max(initial=0.0)) / (2.0 * np.pi) if model.casings else 0.0
+    for name in model.casings:
+        body = model.layout.casing(name)
+        if body.left_frequency < BEYOND * top:
+            yield (
+                f"casings.{name}: its {len(body.fixed_frequency)} modes serve up to {body.left_frequency / BEYOND:.4g} Hz, half "
+                f"of the lowest one that is left out, and what excites goes to {top:.4g} Hz; modes_to takes in more"
+            )
 
 
 def casing_warnings(errors: np.ndarray, s: np.ndarray) -> Iterator[str]:

@@ -26,6 +26,7 @@ _COUNTED = (
     "supports",
     "couplings",
     "nonlinear_elements",
+    "casings",
     "unbalances",
     "points",
 )
@@ -61,6 +62,7 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
             for item in system.load.applied
         ),
         total_mass_kg=sum(bare + bodies for bare, bodies, _ in masses.values()),
+        casing_mass_kg=_casing_masses(system),
         counts={table: len(getattr(model, table)) for table in _COUNTED if getattr(model, table)},
         nodes=len(system.nodes),
         dofs=system.n,
@@ -68,6 +70,11 @@ def check(model: Model, *, elements: int | None = None) -> ModelDescription:
         left_out=left_out(system, speed),
         warnings=(*system.nodes.merged, *model_warnings(system)),
     )
+
+
+def _casing_masses(system: System) -> dict[str, float]:
+    masses = {name: float(system.layout.casing(name).body_mass) for name in system.model.casings}
+    return {name: mass for name, mass in masses.items() if math.isfinite(mass)}
 
 
 def _masses(system: System) -> dict[str, tuple[float, float, float]]:

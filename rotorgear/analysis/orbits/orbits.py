@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_whole, missed
@@ -140,7 +141,7 @@ def orbits(
             *family.notes,
             *_modes_left_out(problem),
         ),
-        warnings=(*_warnings(branches, curves), *((short,) if short else ())),
+        warnings=(*_warnings(branches, curves), *_short_of_modes(family), *((short,) if short else ())),
     )
 
 
@@ -221,6 +222,13 @@ def _modes_left_out(problem: AnyOrbits) -> tuple[str, ...]:
         f"of Floquet multipliers: modes beyond the lowest {basis.count} (to {basis.highest / 2.0 / np.pi:.4g} Hz) but for the "
         "static shapes of the contacts; the motions themselves hold all",
     )
+
+
+def _short_of_modes(family: SystemFamily) -> tuple[str, ...]:
+    """A warning on each casing whose modes end too low for the faster end of the range."""
+    local = family.local
+    fastest = max(abs(family.plant(share).speed) for share in (0.0, 1.0))
+    return tuple(time_warnings(local.system.model, local.local.forces.laws, fastest))
 
 
 def _warnings(branches: list[Branch], curves: list[Curve]) -> list[str]:

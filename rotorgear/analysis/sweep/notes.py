@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.sweep.axes import Axis
 from rotorgear.analysis.sweep.classify import period_in
 from rotorgear.analysis.sweep.point import Point
@@ -72,6 +73,13 @@ def coarse_shafts(model: Model, elements: int | None) -> tuple[str, ...]:
     if elements is not None or not any(shaft.sections for shaft in model.shafts.values()):
         return ()
     return ("each shaft segment has one element of second order: compare with --elements 8, say",)
+
+
+def short_of_modes(model: Model, points: Sequence[Point | None]) -> tuple[str, ...]:
+    """A warning on each casing whose modes end too low for the point with the fastest excitation."""
+    sound = [point for point in points if point is not None]
+    fastest = max(sound, key=lambda point: point.system.w)
+    return tuple(time_warnings(model, fastest.forces.laws, fastest.system.w / fastest.order))
 
 
 def left_out_of(models: Sequence[tuple[str, ...]]) -> tuple[str, ...]:

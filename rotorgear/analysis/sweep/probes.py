@@ -14,25 +14,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rotorgear.analysis.common.excitation import rates
 from rotorgear.solvers.frequency.receptance import Probes
 from rotorgear.solvers.time.local_forces import LocalLaw
 
-HIGHEST = 10
 _ASIDE = 0.005
 _SPEEDS = 16
 _GRID = 48
 _NATURAL = 96
-
-
-def rates(laws: Sequence[LocalLaw], speed: float) -> np.ndarray:
-    """Rad/s of all harmonics of all laws at a speed of the reference, each once."""
-    frequencies = [
-        each.order * abs(speed) * harmonic
-        for law in laws
-        for each in law.repeats()
-        for harmonic in range(1, min(each.harmonics, HIGHEST) + 1)
-    ]
-    return np.unique(np.round([w for w in frequencies if w > 0.0], 6))
 
 
 def probes_for(laws: Sequence[LocalLaw], speeds: Sequence[float], natural: np.ndarray, damping: float = 0.0) -> Probes:

@@ -10,7 +10,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from rotorgear.analysis.sweep.probes import probes_for, rates
+from rotorgear.analysis.common.excitation import rates
+from rotorgear.analysis.sweep.probes import probes_for
 from rotorgear.errors import AnalysisError
 from rotorgear.results.motion.reduction import Reduction
 from rotorgear.solvers.frequency.contact_basis import Candidates, Choice, candidates, choose, reduced

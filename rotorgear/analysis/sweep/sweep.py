@@ -14,7 +14,7 @@ from rotorgear.analysis.sweep.axes import Axis, Family, axis_of, points_of
 from rotorgear.analysis.sweep.blocks import Workers, blocks, packed, unpacked, waves
 from rotorgear.analysis.sweep.classify import CHAOS, TOLERANCE
 from rotorgear.analysis.sweep.gather import gathered
-from rotorgear.analysis.sweep.notes import coarse_shafts, left_out_of
+from rotorgear.analysis.sweep.notes import coarse_shafts, left_out_of, short_of_modes
 from rotorgear.analysis.sweep.point import Point, PointMaker
 from rotorgear.analysis.sweep.portrait import Wanted, portraits_of, wanted_points
 from rotorgear.analysis.sweep.reduce import Large
@@ -127,7 +127,7 @@ def sweep(
     result = replace(
         result,
         left_out=left_out_of(left_out),
-        warnings=(*result.warnings, *coarse_shafts(model, elements)),
+        warnings=(*result.warnings, *coarse_shafts(model, elements), *short_of_modes(model, points)),
     )
     if wanted:
         result = replace(result, portraits=portraits_of(result, wanted, points, request, orbits, progress))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.common.mesh_notes import unlike_teeth_left_out
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -121,6 +122,8 @@ def transient_warnings(
         notes.append(
             f"{_held(result.model)} are held at their values for the largest speed, {rpm:.6g} rpm, over the whole run-up"
         )
+    fastest = float(np.abs(result.speed).max(initial=0.0))
+    notes += time_warnings(local.system.model, local.local.forces.laws, fastest)
     notes += [*_beyond_maps(result, local), *_drifting(result), *_unsettled(result)]
     return tuple(notes)
 

@@ -25,6 +25,12 @@ _TYPES = {
     "string_type": "a text in quotes",
     "bool_type": "true or false",
 }
+_BOUNDS = {
+    "greater_than_equal": ("at least", "ge"),
+    "greater_than": ("more than", "gt"),
+    "less_than_equal": ("at most", "le"),
+    "less_than": ("less than", "lt"),
+}
 
 
 def address(loc: Iterable[int | str]) -> str:
@@ -104,6 +110,9 @@ def _problem(item: Any, root: type[BaseModel]) -> Problem:
         return Problem(where, value, "one of " + ", ".join(choices), f"did you mean '{guess}'?" if guess else "")
     if kind == "too_short":
         return Problem(where, value, f"at least {item['ctx']['min_length']} entry")
+    if kind in _BOUNDS:
+        words, bound = _BOUNDS[kind]
+        return Problem(where, value, f"{words} {item['ctx'][bound]:g}")
     return Problem(where, value, _TYPES.get(kind, str(item["msg"])))
 
 

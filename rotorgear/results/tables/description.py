@@ -108,6 +108,9 @@ def check_table(d: ModelDescription) -> RenderableType:
 
     speed = "no speed given" if d.speed_rpm is None else f"input shaft '{d.reference_shaft}' at {d.speed_rpm:.6g} rpm"
     mass = f"total mass {d.total_mass_kg:.6g} kg; " if d.total_mass_kg else ""
+    if d.casing_mass_kg:
+        casings = ", ".join(f"{name} {kg:.6g} kg" for name, kg in d.casing_mass_kg.items())
+        mass = f"mass of shafts and what is on them {d.total_mass_kg:.6g} kg, of casing {casings}; "
     counts = ", ".join(counted(number, name) for name, number in d.counts.items())
     parts: list[Any] = [heading(d.title or "Model"), *lines(f"{speed}; {counts}"), ""]
     parts.append(table_of(d.shafts, *SHAFT_COLUMNS))

@@ -98,6 +98,27 @@ def test_modes_and_responses_of_a_wide_range_are_those_of_many_modes(model: rg.M
     np.testing.assert_allclose(here, wide, rtol=0.02)
 
 
+def test_motions_over_time_say_where_the_modes_of_a_casing_end(model: rg.Model) -> None:
+    reach = model.layout.casing("box").left_frequency
+    buzz = {"shaft": "rotor", "at": "end", "force": [100.0, 0.0, 0.0]}
+    words = f"casings.box: its 20 modes serve up to {0.5 * reach:.4g} Hz"
+    for share, told in ((0.4, False), (0.6, True)):
+        loaded = model.with_({"loads": {"buzz": {**buzz, "order": round(share * reach / 50.0)}}})
+        found = rg.transient(loaded, time=1e-3, steps=4, records=4, error_estimate=False)
+        assert any(note.startswith(words) for note in found.warnings) == told
+        swept = rg.sweep(loaded, {"operation.speed": ["3000 rpm"]}, discard=2, sample=2, exponents=0)
+        assert any(note.startswith(words) for note in swept.warnings) == told
+        followed = rg.orbits(loaded, {"operation.speed": "3000 rpm:3001 rpm"}, harmonics=2, step=0.5)
+        assert any(note.startswith(words) for note in followed.warnings) == told
+
+
+def test_campbell_diagrams_of_a_number_of_modes_say_what_the_reduction_makes_wrong(model: rg.Model) -> None:
+    few = model.with_("casings.box.modes_to", 0.3 * model.layout.casing("box").left_frequency)
+    wide, narrow = (rg.campbell(few, points=2, modes=count, elements=1) for count in (20, 2))
+    assert any("their reduction makes" in note for note in wide.warnings)
+    assert not any("their reduction makes" in note for note in narrow.warnings)
+
+
 def test_critical_speeds_state_the_error_by_the_reduction_of_casings(model: rg.Model) -> None:
     reach = model.layout.casing("box").left_frequency
     few, many = (model.with_("casings.box.modes_to", share * reach) for share in (0.4, 2.0))

@@ -44,6 +44,8 @@ stiffness = { radial = "1e8 N/m", axial = "1e8 N/m" }
 casing = "box"
 """
 
+SPRINGS = '{ x = "1e8 N/m", y = "1e8 N/m", axial = "1e8 N/m", tilt = "1e5 N m/rad", torsion = "1e5 N m/rad" }'
+
 
 @pytest.fixture(autouse=True)
 def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -91,6 +93,9 @@ def problem(folder: Path, old: str, new: str) -> str:
             "no face of the mesh lies on this cylinder (radius 30 mm)",
         ),
         ('casing = "box"', 'casing = "bx"', "did you mean 'box'?"),
+        ('held = ["low"]', f'held = ["low"]\nmounts = {{ low = {SPRINGS} }}', "all its nodes are held (low)"),
+        ('unit = "m"', 'unit = "m"\nsplits = 9', "casings.box.splits: got 9, expected at most 4"),
+        ('"box.inp"', '"."', "is a folder"),
         ('casing = "box"', 'casing = "box"\npedestal = { stiffness = { x = 1e8 } }', "casing and pedestal"),
     ],
 )
@@ -118,6 +123,32 @@ def test_bodies_that_do_not_hang_together_and_sets_that_hold_too_little_are_name
     )
     assert "a mechanism: rotation about y" in problem(folder, '["low"]', '["edge"]')
     assert "the set 'nowhere' touches no node" in problem(folder, '{ left = "high" }', '{ left = "nowhere" }')
+
+
+def beside(first: FileMesh, offset: tuple[float, float, float], *, low: float) -> FileMesh:
+    """A block with a copy of itself that is moved; nodes at one place are one."""
+    cells = first.cells["tetra10"]
+    both = np.vstack([first.points, first.points + offset])
+    _, known, number = np.unique(np.round(both, 9), axis=0, return_index=True, return_inverse=True)
+    points = both[known]
+    sets = {"low": points[:, 2] < low, "high": np.abs(points[:, 2] - points[:, 2].max()) < 1e-9}
+    return FileMesh(
+        points,
+        {"tetra10": number.ravel()[np.vstack([cells, cells + len(first.points)])]},
+        {name: NamedSet(np.flatnonzero(chosen)) for name, chosen in sets.items()},
+    )
+
+
+def test_parts_that_share_an_edge_or_a_node_are_hinges(folder: Path) -> None:
+    one = block((0.1, 0.06, 0.1), (2, 1, 1))
+    for offset in ((0.1, 0.0, 0.1), (0.1, 0.06, 0.1)):
+        write_inp(folder / "box.inp", beside(one, offset, low=1e-9))
+        said = problem(folder, "damping_ratio", "damping_ratio")
+        assert "turn there like hinges: 12 elements about (50 mm, 30 mm, 50 mm); 12 elements about (150 mm" in said
+    # Held on both sides of an edge, or with a face in common, nothing turns.
+    for offset, low in (((0.1, 0.0, 0.1), 0.11), ((0.05, 0.0, 0.1), 1e-9)):
+        write_inp(folder / "box.inp", beside(one, offset, low=low))
+        assert rg.casing(rg.loads(MODEL, folder=folder), modes=2).casings["box"].held_frequency_hz[0] > 100.0
 
 
 def test_memory_grows_with_the_held_nodes_and_not_with_their_square(folder: Path) -> None:

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import re
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -68,6 +72,25 @@ def test_the_reduced_box_agrees_with_the_whole_mesh_within_the_error_it_states()
     assert difference.max() < 1e-3
     # What the eigensolver of the whole leaves is some 1e-9.
     assert np.all(difference <= 1.5 * reduced.error_estimate[elastic] + 1e-8)
+
+
+@pytest.mark.long
+def test_the_box_on_its_feet_has_the_modes_of_another_program() -> None:
+    held = rg.casing(geared_box(), modes=10).casings["box"].held_frequency_hz
+    # CalculiX 2.20, quadratic tetrahedra with straight edges on the same corners.
+    calculix = [814.485, 968.480, 1147.871, 1244.692, 1310.403, 1362.833, 1487.954, 1519.576, 1544.298, 1679.773]
+    assert held == pytest.approx(calculix, rel=1e-4)
+
+
+@pytest.mark.long
+def test_140_000_unknowns_take_a_minute_and_two_gigabytes_and_a_half_at_most() -> None:
+    pytest.importorskip("pymetis")
+    program = [sys.executable, "-m", "validation.benchmarks.casing", "--large"]
+    done = subprocess.run(program, cwd=ROOT, capture_output=True, text=True, check=True)
+    found = re.search(r"in all ([\d.]+) CPU s and ([\d.]+) GB", done.stdout)
+    assert found is not None, done.stdout
+    assert float(found[1]) < 60.0
+    assert float(found[2]) < 2.5
 
 
 @pytest.mark.long

@@ -120,6 +120,20 @@ def test_sets_of_nastran_decks_are_sets_of_nodes(tmp_path: Path) -> None:
     assert len(sets["set_8"].nodes) == len(found.points)
 
 
+def test_what_decks_put_on_a_body_beside_its_elements_is_named(tmp_path: Path) -> None:
+    found = block()
+    tie = "*TIE, NAME=t\na, b\n*COUPLING, REF NODE=1\n*KINEMATIC\n1, 6\n*NSET, NSET=feet, ELSET=body\n"
+    deck = write_inp(tmp_path / "block.inp", found, tie)
+    read = same_body(deck, found)
+    assert [note.partition(";")[0] for note in read.notes] == ["Not read from the deck: TIE, COUPLING"]
+    assert len(read.sets["feet"].nodes) == len(found.points)
+    lines = [f"GRID,{i + 1},,{x!r},{y!r},{z!r}" for i, (x, y, z) in enumerate(found.points.tolist())]
+    lines += [f"CTETRA,{i},1,{','.join(str(n + 1) for n in c[:4])}" for i, c in enumerate(found.cells["tetra10"], 1)]
+    (tmp_path / "block.bdf").write_text("\n".join([*lines, "RBE2,90,1,123456,5,6", "CONM2,91,1,,2.5"]))
+    (note,) = read_mesh(tmp_path / "block.bdf", "casings.b.mesh").notes
+    assert note.startswith("Not read from the deck: 1 RBE2, 1 CONM2")
+
+
 def test_med_files_keep_their_groups(tmp_path: Path) -> None:
     found = block()
     faces = low_faces(found)
@@ -164,6 +178,10 @@ def test_a_nastran_deck_without_begin_bulk_is_read(tmp_path: Path, large: bool) 
         ("a.msh", "no mesh", "can't be read"),
         ("a.xyz", "no mesh", "can't be read"),
         ("a.bdf", "CEND\n", "no GRID"),
+        ("a.bdf", "GRID,1,,0.,0.,0.\nCBAR,9,2,1,2\n", "CBAR 9 is a beam or a shell"),
+        ("a.bdf", "GRID,1,,0.,0.,0.\nINCLUDE 'rest.bdf'\n", "it includes another file"),
+        ("a.inp", "*NODE, SYSTEM=C\n1, 0, 0, 0\n", "a coordinate system of their own"),
+        ("a.inp", "*SYSTEM\n0, 0, 0\n*NODE\n1, 0, 0, 0\n", "a coordinate system of their own"),
     ],
 )
 def test_a_file_that_can_not_be_read_is_a_sentence(tmp_path: Path, name: str, text: str, words: str) -> None:

@@ -85,6 +85,25 @@ def test_residual_shapes_make_up_for_modes_that_are_left_out(tmp_path: Path) -> 
     assert errors(plain[:3], whole).max() > 3.0 * errors(few.modes()[0][:3], whole).max()
 
 
+def test_a_rigid_seat_stiffens_its_face_and_a_mean_one_does_not(tmp_path: Path) -> None:
+    one = held_at_its_foot(tmp_path)
+    mean, rigid = (reduce(finite_element_body(replace(one, connection=kind)), None)[0] for kind in ("mean", "rigid"))
+    # The face of a mean seat is as free as without a seat.
+    np.testing.assert_allclose(mean.modes()[0][:6], held_modes(finite_element_body(one), 6).frequency, rtol=1e-4)
+    stiffened = rigid.modes()[0][:6] / mean.modes()[0][:6] - 1.0
+    assert stiffened.min() > -1e-6
+    assert stiffened.max() > 2e-3
+
+
+def test_modes_beyond_what_a_mesh_can_have_are_not_taken(tmp_path: Path) -> None:
+    fe = finite_element_body(replace(held_at_its_foot(tmp_path, counts=(1, 1, 2)), damping_ratio=0.01))
+    body, _ = reduce(fe, 10e6)
+    free = fe.dofs - 3 * len(fe.held)
+    assert len(body.fixed_frequency) == free // 4
+    assert body.fixed_frequency[-1] < body.left_frequency < 10e6
+    np.testing.assert_allclose(body.modes()[0][:8], held_modes(fe, 8).frequency, rtol=1e-5)
+
+
 def test_a_mean_seat_on_a_bar_without_contraction_has_the_stiffness_of_the_bar(tmp_path: Path) -> None:
     one = held_at_its_foot(tmp_path, counts=(1, 1, 2), kind="hexahedron20")
     body, _ = reduce(finite_element_body(replace(one, material=Elastic(206e9, 0.0, 7850.0))), 20e3)

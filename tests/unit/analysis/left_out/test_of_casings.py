@@ -91,6 +91,15 @@ def test_linear_elements_are_computed_as_quadratic_ones(model: rg.Model, tmp_pat
     np.testing.assert_allclose(elastic(rg.loads(MODEL, folder=tmp_path)), elastic(model), rtol=1e-9)
 
 
+def test_a_seat_whose_bearing_stands_elsewhere_is_empty(model: rg.Model) -> None:
+    forgotten = model.with_("bearings.left.casing", None)
+    found = rg.modal(forgotten, modes=9, elements=1)
+    sentence(found, "casings.box.seats.left", "stands elsewhere")
+    assert not any("stands elsewhere" in line for line in rg.modal(model, modes=3, elements=1).left_out)
+    ground = rg.modal(forgotten.with_("casings", {}), modes=2, elements=1).frequency_hz
+    assert all(np.min(np.abs(found.frequency_hz / f - 1.0)) < 1e-9 for f in ground[ground > 1.0])
+
+
 def test_a_bearing_beside_its_seat_is_carried_rigidly(model: rg.Model) -> None:
     beside = model.with_("bearings.left.at", "230 mm")
     (distance,) = numbers(

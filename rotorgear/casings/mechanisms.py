@@ -1,0 +1,146 @@
+"""Whether a casing can move without strain where it should not: held too little, or hanging together by edges only.
+
+Elements that share whole faces move rigidly as one part, if at all. Parts of a mesh that share an edge or a node alone, which
+meshers leave where two solids just touch, turn there like a hinge: no stiffness resists it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+
+from rotorgear.casings.assembly import rigid_motions
+from rotorgear.casings.solid_mesh import SolidMesh
+from rotorgear.errors import AnalysisError
+from rotorgear.quantity import millimetres
+
+if TYPE_CHECKING:
+    from rotorgear.casings.fe_body import FiniteElementBody
+
+_MOTIONS = tuple(f"{motion} {axis}" for motion in ("displacement along", "rotation about") for axis in "xyz")
+# So many parts without common faces are no body any more.
+_MOST_PARTS = 200
+# Squares of relative motions below this share of the largest are rounding of the file's coordinates.
+_ROUNDING = 1e-12
+_LISTED = 4
+
+
+def no_mechanism(body: FiniteElementBody) -> None:
+    """What holds a body leaves it no rigid motion; nothing at all may hold it.
+
+    Raises:
+        AnalysisError: the motions that are left, by name.
+    """
+    settings = body.settings
+    if not settings.held and not settings.mounts:
+        return
+    R = _scaled_motions(body.mesh.points)
+    rows = [R.reshape(-1, 3, 6)[body.held].reshape(-1, 6), _on_springs(body, R)]
+    # Of the triangle: a held face has thousands of rows, and the whole left factor of their decomposition has their square.
+    triangle = np.linalg.qr(np.vstack(rows), mode="r")
+    _, singular, motions = np.linalg.svd(triangle, full_matrices=True)
+    free = [motions[i] for i in range(6) if i >= len(singular) or singular[i] < 1e-6 * singular[0]]
+    if free:
+        named = "; ".join(_MOTIONS[int(np.argmax(np.abs(motion)))] for motion in free)
+        what = ", ".join([*settings.held, *(mount.set for mount in settings.mounts)])
+        key = "held" if settings.held else "mounts"
+        remedy = (
+            "Hold a face, or add springs"
+            if settings.held
+            else "A mount holds the mean motion of its set: give each foot a set and a mount of its own, or add tilt and torsion"
+        )
+        raise AnalysisError(
+            f"{settings.address}.{key}: what is held ({what}) leaves the casing a mechanism: {named}. {remedy}; or hold nothing, "
+            "for a body that floats on its bearings."
+        )
+
+
+def _scaled_motions(points: np.ndarray) -> np.ndarray:
+    """Rigid motions (3p, 6) about the middle of a mesh, whose rotations move its ends by as much as its displacements."""
+    R = rigid_motions(points, points.mean(axis=0))
+    R[:, 3:] /= np.linalg.norm(np.ptp(points, axis=0))
+    return R
+
+
+def _on_springs(body: FiniteElementBody, motions: np.ndarray) -> np.ndarray:
+    """How far motions (3p, k) stretch the springs of mounts, (m, k); only which are held counts, not how stiffly."""
+    springs, flexibility = body.springs()
+    stretched = np.asarray(springs.T @ motions).reshape(len(flexibility), motions.shape[1])
+    return np.asarray(stretched / np.linalg.norm(stretched, axis=1)[:, None].clip(min=1e-300))
+
+
+def no_hinges(body: FiniteElementBody) -> None:
+    """Parts that share edges or nodes only do not move against each other: by several of these, by joins, or by what holds them.
+
+    Raises:
+        AnalysisError: the parts.
+    """
+    mesh = body.mesh
+    count, part_of = _parts_by_faces(mesh)
+    if count == 1:
+        return
+    elements = np.bincount(part_of, minlength=count)
+    held = bool(len(body.held) or body.settings.mounts)
+    if count <= _MOST_PARTS:
+        squares = la.eigvalsh(_relative_motions(body, part_of, count))
+        if np.count_nonzero(squares < _ROUNDING * squares[-1]) <= (0 if held else 6):
+            return
+    described = []
+    for part in np.argsort(-elements)[:_LISTED]:
+        middle = mesh.points[np.unique(mesh.cells[part_of == part])].mean(axis=0)
+        described.append(f"{elements[part]} elements about ({', '.join(millimetres(x) for x in middle)})")
+    more = f" and {count - _LISTED} more" if count > _LISTED else ""
+    raise AnalysisError(
+        f"{body.settings.address}.mesh: parts of the mesh hang together by edges or single nodes only, and turn there like "
+        f"hinges: {'; '.join(described)}{more}. Let them meet in whole faces, or hold them together by joins."
+    )
+
+
+def _parts_by_faces(mesh: SolidMesh) -> tuple[int, np.ndarray]:
+    """How many parts there are whose elements hang together by faces, and the part (e,) of each element."""
+    shape = mesh.element
+    faces = np.sort(mesh.cells[:, np.array(shape.faces)].reshape(-1, len(shape.faces[0])), axis=1)
+    order = np.lexsort(faces.T)
+    same = np.flatnonzero((faces[order[1:]] == faces[order[:-1]]).all(axis=1))
+    owner = order // len(shape.faces)
+    n = len(mesh.cells)
+    pairs = sp.coo_array((np.ones(len(same)), (owner[same], owner[same + 1])), shape=(n, n))
+    count, labels = connected_components(pairs, directed=False)
+    return int(count), labels
+
+
+def _relative_motions(body: FiniteElementBody, part_of: np.ndarray, count: int) -> np.ndarray:
+    """G (6c, 6c): squares of what rigid motions of c parts do to what joins them and holds them."""
+    mesh = body.mesh
+    nodes = len(mesh.points)
+    R = _scaled_motions(mesh.points).reshape(nodes, 3, 6)
+    k = mesh.cells.shape[1]
+    # Every part that each node belongs to, once.
+    node, part = np.unique(np.column_stack([mesh.cells.ravel(), np.repeat(part_of, k)]), axis=0).T
+    first = np.concatenate([[True], node[1:] != node[:-1]])
+
+    def motions(of_nodes: np.ndarray, of_parts: np.ndarray) -> sp.csr_array:
+        """(3m, 6c): displacements of nodes with their parts."""
+        rows = np.repeat(np.arange(3 * len(of_nodes)), 6)
+        columns = (6 * np.repeat(of_parts, 3)[:, None] + np.arange(6)).ravel()
+        return sp.csr_array((R[of_nodes].ravel(), (rows, columns)), shape=(3 * len(of_nodes), 6 * count))
+
+    moved = motions(node[first], part[first])  # every node has a part: this is by number
+    again = ~first
+    known = part[first]
+    blocks = [motions(node[again], part[again]) - motions(node[again], known[node[again]])]
+    if body.joined.interpolation is not None:
+        follow = sp.csr_array(sp.kron(body.joined.interpolation - sp.eye_array(nodes), sp.eye_array(3)))
+        blocks.append(sp.csr_array(follow @ moved))
+    blocks.append(sp.csr_array(moved[(3 * body.held[:, None] + np.arange(3)).ravel()]))
+    if body.settings.mounts:
+        blocks.append(sp.csr_array(_on_springs(body, moved.toarray())))
+    G = sum((block.T @ block).toarray() for block in blocks)
+    if body.joined.stiffness is not None:
+        springs = (moved.T @ sp.kron(body.joined.stiffness, sp.eye_array(3)) @ moved).toarray()
+        G = G + springs / np.abs(springs).max(initial=1e-300)
+    return np.asarray(G)
