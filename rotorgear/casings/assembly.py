@@ -87,18 +87,3 @@ def assemble(mesh: SolidMesh, material: Elastic) -> Assembled:
         masses += np.bincount(where, (volume @ products.T).ravel(), len(keys))
     stiffness = sp.bsr_array((blocks, columns, starts), shape=(3 * nodes, 3 * nodes))
     return Assembled(stiffness, sp.csr_array((material.density * masses, columns, starts), shape=(nodes, nodes)))
-
-
-def rigid_motions(points: np.ndarray, about: np.ndarray | None = None) -> np.ndarray:
-    """Displacements (3p, 6) of points in unit displacements along x y z and unit rotations about the axes through a point."""
-    x, y, z = (points - (np.zeros(3) if about is None else about)).T
-    zero = np.zeros(len(points))
-    one = np.ones(len(points))
-    motions = np.array(
-        [
-            [one, zero, zero, zero, z, -y],
-            [zero, one, zero, -z, zero, x],
-            [zero, zero, one, y, -x, zero],
-        ]
-    )
-    return np.asarray(motions.transpose(2, 0, 1).reshape(-1, 6))

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.kept_bodies import key_of, path_of, read_body, read_wheel, write_body, write_wheel
-from rotorgear.casings.reduced_body import ReducedBody
+from rotorgear.casings.reduced_body import BEYOND, ReducedBody
 from rotorgear.casings.reduction import reduce
 from rotorgear.casings.settings import CasingSettings
 from rotorgear.casings.wheel import ReducedWheel
@@ -16,9 +16,6 @@ from rotorgear.casings.wheel_reduction import reduce_wheel
 from rotorgear.errors import AnalysisError
 from rotorgear.progress import Progress, part_of, silent
 
-# Fixed-interface modes up to this multiple of an analysis's highest frequency bring its error to some 2e-3 without residual
-# shapes, and well below 1e-3 with them.
-BEYOND = 2.0
 # A process keeps this many bodies in memory; one takes some ten MB, mostly its surface.
 _MOST_KEPT = 8
 _KEPT: dict[str, ReducedBody | ReducedWheel] = {}

@@ -9,11 +9,12 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
-from rotorgear.casings.assembly import Assembled, assemble, rigid_motions
+from rotorgear.casings.assembly import Assembled, assemble
 from rotorgear.casings.file_mesh import NamedSet
 from rotorgear.casings.joins import Joined, join
 from rotorgear.casings.mechanisms import no_hinges, no_mechanism
 from rotorgear.casings.mesh_file import read_mesh
+from rotorgear.casings.motions import rigid_motions
 from rotorgear.casings.patches import Patch, by_cylinder, by_set, cylinder_faces
 from rotorgear.casings.settings import CasingSettings, MountSettings
 from rotorgear.casings.solid_mesh import SolidMesh, merged, solid_mesh
@@ -215,8 +216,9 @@ def finite_element_body(settings: CasingSettings, progress: Progress = silent) -
     for patch in (*seats, *mounts):
         patch.weights(mesh.points)
     _believable_mass(body)
-    no_mechanism(body)
-    no_hinges(body)
+    springs = body.springs()[0]
+    no_mechanism(settings, mesh, held, springs)
+    no_hinges(settings, joined, held, springs)
     progress(1.0, f"{address}: assembled")
     return body
 

@@ -6,20 +6,17 @@ meshers leave where two solids just touch, turn there like a hinge: no stiffness
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
-from rotorgear.casings.assembly import rigid_motions
+from rotorgear.casings.joins import Joined
+from rotorgear.casings.motions import rigid_motions
+from rotorgear.casings.settings import CasingSettings
 from rotorgear.casings.solid_mesh import SolidMesh
 from rotorgear.errors import AnalysisError
 from rotorgear.quantity import millimetres
-
-if TYPE_CHECKING:
-    from rotorgear.casings.fe_body import FiniteElementBody
 
 _MOTIONS = tuple(f"{motion} {axis}" for motion in ("displacement along", "rotation about") for axis in "xyz")
 # So many parts without common faces are no body any more.
@@ -29,17 +26,22 @@ _ROUNDING = 1e-12
 _LISTED = 4
 
 
-def no_mechanism(body: FiniteElementBody) -> None:
+def no_mechanism(settings: CasingSettings, mesh: SolidMesh, held: np.ndarray, springs: np.ndarray) -> None:
     """What holds a body leaves it no rigid motion; nothing at all may hold it.
+
+    Args:
+        settings: of the model file.
+        mesh: of the body.
+        held: nodes that are fixed.
+        springs: (3p, m) directions of the springs of mounts.
 
     Raises:
         AnalysisError: the motions that are left, by name.
     """
-    settings = body.settings
     if not settings.held and not settings.mounts:
         return
-    R = _scaled_motions(body.mesh.points)
-    rows = [R.reshape(-1, 3, 6)[body.held].reshape(-1, 6), _on_springs(body, R)]
+    R = _scaled_motions(mesh.points)
+    rows = [R.reshape(-1, 3, 6)[held].reshape(-1, 6), _on_springs(springs, R)]
     # Of the triangle: a held face has thousands of rows, and the whole left factor of their decomposition has their square.
     triangle = np.linalg.qr(np.vstack(rows), mode="r")
     _, singular, motions = np.linalg.svd(triangle, full_matrices=True)
@@ -66,28 +68,31 @@ def _scaled_motions(points: np.ndarray) -> np.ndarray:
     return R
 
 
-def _on_springs(body: FiniteElementBody, motions: np.ndarray) -> np.ndarray:
+def _on_springs(springs: np.ndarray, motions: np.ndarray) -> np.ndarray:
     """How far motions (3p, k) stretch the springs of mounts, (m, k); only which are held counts, not how stiffly."""
-    springs, flexibility = body.springs()
-    stretched = np.asarray(springs.T @ motions).reshape(len(flexibility), motions.shape[1])
+    stretched = springs.T @ motions
     return np.asarray(stretched / np.linalg.norm(stretched, axis=1)[:, None].clip(min=1e-300))
 
 
-def no_hinges(body: FiniteElementBody) -> None:
+def no_hinges(settings: CasingSettings, joined: Joined, held: np.ndarray, springs: np.ndarray) -> None:
     """Parts that share edges or nodes only do not move against each other: by several of these, by joins, or by what holds them.
+
+    Args:
+        settings: of the model file.
+        joined: the mesh with its joins.
+        held, springs: as of `no_mechanism`.
 
     Raises:
         AnalysisError: the parts.
     """
-    mesh = body.mesh
+    mesh = joined.mesh
     count, part_of = _parts_by_faces(mesh)
     if count == 1:
         return
     elements = np.bincount(part_of, minlength=count)
-    held = bool(len(body.held) or body.settings.mounts)
     if count <= _MOST_PARTS:
-        squares = la.eigvalsh(_relative_motions(body, part_of, count))
-        if np.count_nonzero(squares < _ROUNDING * squares[-1]) <= (0 if held else 6):
+        squares = la.eigvalsh(_relative_motions(joined, part_of, held, springs))
+        if np.count_nonzero(squares < _ROUNDING * squares[-1]) <= (0 if len(held) or springs.shape[1] else 6):
             return
     described = []
     for part in np.argsort(-elements)[:_LISTED]:
@@ -95,7 +100,7 @@ def no_hinges(body: FiniteElementBody) -> None:
         described.append(f"{elements[part]} elements about ({', '.join(millimetres(x) for x in middle)})")
     more = f" and {count - _LISTED} more" if count > _LISTED else ""
     raise AnalysisError(
-        f"{body.settings.address}.mesh: parts of the mesh hang together by edges or single nodes only, and turn there like "
+        f"{settings.address}.mesh: parts of the mesh hang together by edges or single nodes only, and turn there like "
         f"hinges: {'; '.join(described)}{more}. Let them meet in whole faces, or hold them together by joins."
     )
 
@@ -113,9 +118,10 @@ def _parts_by_faces(mesh: SolidMesh) -> tuple[int, np.ndarray]:
     return int(count), labels
 
 
-def _relative_motions(body: FiniteElementBody, part_of: np.ndarray, count: int) -> np.ndarray:
+def _relative_motions(joined: Joined, part_of: np.ndarray, held: np.ndarray, springs: np.ndarray) -> np.ndarray:
     """G (6c, 6c): squares of what rigid motions of c parts do to what joins them and holds them."""
-    mesh = body.mesh
+    mesh = joined.mesh
+    count = int(part_of.max()) + 1
     nodes = len(mesh.points)
     R = _scaled_motions(mesh.points).reshape(nodes, 3, 6)
     k = mesh.cells.shape[1]
@@ -133,14 +139,14 @@ def _relative_motions(body: FiniteElementBody, part_of: np.ndarray, count: int) 
     again = ~first
     known = part[first]
     blocks = [motions(node[again], part[again]) - motions(node[again], known[node[again]])]
-    if body.joined.interpolation is not None:
-        follow = sp.csr_array(sp.kron(body.joined.interpolation - sp.eye_array(nodes), sp.eye_array(3)))
+    if joined.interpolation is not None:
+        follow = sp.csr_array(sp.kron(joined.interpolation - sp.eye_array(nodes), sp.eye_array(3)))
         blocks.append(sp.csr_array(follow @ moved))
-    blocks.append(sp.csr_array(moved[(3 * body.held[:, None] + np.arange(3)).ravel()]))
-    if body.settings.mounts:
-        blocks.append(sp.csr_array(_on_springs(body, moved.toarray())))
+    blocks.append(sp.csr_array(moved[(3 * held[:, None] + np.arange(3)).ravel()]))
+    if springs.shape[1]:
+        blocks.append(sp.csr_array(_on_springs(springs, moved.toarray())))
     G = sum((block.T @ block).toarray() for block in blocks)
-    if body.joined.stiffness is not None:
-        springs = (moved.T @ sp.kron(body.joined.stiffness, sp.eye_array(3)) @ moved).toarray()
-        G = G + springs / np.abs(springs).max(initial=1e-300)
+    if joined.stiffness is not None:
+        joint = (moved.T @ sp.kron(joined.stiffness, sp.eye_array(3)) @ moved).toarray()
+        G = G + joint / np.abs(joint).max(initial=1e-300)
     return np.asarray(G)

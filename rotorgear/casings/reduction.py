@@ -25,10 +25,10 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 import scipy.linalg as la
 
-from rotorgear.casings.assembly import rigid_motions
 from rotorgear.casings.constrained import Constrained, ElasticBody
 from rotorgear.casings.fe_body import FiniteElementBody, FreeSpace
 from rotorgear.casings.modes import modes_up_to
+from rotorgear.casings.motions import rigid_motions
 from rotorgear.casings.reduced_body import ReducedBody, Surface, modal_damping
 from rotorgear.progress import Progress, part_of, silent
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg as la
 
-from rotorgear.casings.assembly import rigid_motions
 from rotorgear.casings.constrained import Constrained, ElasticBody
 from rotorgear.casings.fe_body import FiniteElementBody, FreeSpace
 from rotorgear.casings.modes import lowest_modes
+from rotorgear.casings.motions import rigid_motions
 from rotorgear.progress import Progress, silent
 
 

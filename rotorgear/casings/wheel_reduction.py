@@ -25,11 +25,11 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from rotorgear.casings.assembly import rigid_motions
 from rotorgear.casings.constrained import Constrained, ElasticBody
 from rotorgear.casings.fe_body import FiniteElementBody
 from rotorgear.casings.mesh_error import eigenvalue_errors
 from rotorgear.casings.modes import modes_up_to
+from rotorgear.casings.motions import rigid_motions
 from rotorgear.casings.reduction import independent, surface_of, symmetric
 from rotorgear.casings.spin import spin_integrals
 from rotorgear.casings.wheel import ReducedWheel

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from rotorgear.analysis.common.excitation import rates
-from rotorgear.casings.casing import BEYOND
+from rotorgear.casings.reduced_body import BEYOND
 from rotorgear.model.model import Model
 from rotorgear.quantity import millimetres
 from rotorgear.solvers.time.local_forces import LocalLaw

@@ -110,4 +110,4 @@ def _size(point: Point) -> float:
     """Displacement in m that motions are measured by: static deflection, backlash, and the smallest that counts."""
     columns = point.system.columns
     backlash = columns.clearance[columns.counted & np.isfinite(columns.clearance)]
-    return float(max(np.abs(point.static_force / point.stiffness).max(), backlash.max(initial=0.0), 1e-6))
+    return float(max(np.abs(point.static_force / point.stiffness).max(initial=0.0), backlash.max(initial=0.0), 1e-6))

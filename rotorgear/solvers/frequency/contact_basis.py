@@ -22,7 +22,7 @@ import scipy.sparse as sp
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.solvers.frequency.receptance import Probes, Scale, around, differences, sizes
-from rotorgear.solvers.sparse.nullspace import SupportedSolver, left_null_space
+from rotorgear.solvers.sparse.nullspace import SupportedSolver, in_comparable_units, left_null_space
 from rotorgear.solvers.sparse.residual_vectors import ritz_residuals
 from rotorgear.solvers.time.local_system import LocalSystem
 
@@ -99,7 +99,7 @@ def candidates(local: LocalSystem, loads: np.ndarray, acting: np.ndarray, count:
     R = V[:, :rigid]
 
     # Attachment vectors: static shapes under forces whose share on rigid-body motions is carried by inertia (a free structure).
-    solver = SupportedSolver(K, R * np.sqrt(np.maximum(K.diagonal(), 1e-300))[:, None], left_null_space(K, M, R))
+    solver = SupportedSolver(K, in_comparable_units(R, K, M), left_null_space(K, M, R))
     B = local.B.toarray()
     forces = np.hstack([B, loads])
     X = solver.solve(forces - M @ (R @ (R.T @ forces)))

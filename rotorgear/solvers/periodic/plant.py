@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.solvers.sparse.nullspace import SupportedSolver, left_null_space
+from rotorgear.solvers.sparse.nullspace import SupportedSolver, in_comparable_units, left_null_space
 from rotorgear.solvers.time.contact_equilibrium import free_motions
 from rotorgear.solvers.time.local_forces import LocalForces
 from rotorgear.solvers.time.local_system import LocalSystem
@@ -57,7 +57,7 @@ class Plant:
         """What follows from stiffness and places of the laws alone."""
         solver = SupportedSolver(
             self.K,
-            self.free * np.sqrt(np.maximum(self.K.diagonal(), 1e-300))[:, None],
+            in_comparable_units(self.free, self.K, self.M),
             left_null_space(self.K, self.M, self.free),
         )
         return Elastic(self.M, self.free, solver, _settled(self.M, self.free, solver, self.B))

@@ -14,6 +14,9 @@ import scipy.sparse as sp
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.sparse.factor import Factor, factor_general
 
+# Square of a frequency far below those of dofs on springs, over their median square.
+_SLOW = 1e-10
+
 
 def support_dofs(R: np.ndarray) -> np.ndarray:
     """The r dofs (r,) whose fixing stops all motions R (n, r); scale the rows of R to comparable units first."""
@@ -22,6 +25,19 @@ def support_dofs(R: np.ndarray) -> np.ndarray:
     _, order = la.qr(R.T, mode="r", pivoting=True)
     dofs: np.ndarray = np.sort(order[: R.shape[1]])
     return dofs
+
+
+def in_comparable_units(R: np.ndarray, K: sp.csc_array, M: sp.csc_array) -> np.ndarray:
+    """Motions R (n, r) with each dof in the root of the strain energy that it alone takes.
+
+    A dof that no spring holds, such as the rotation of a lone rotor, has that of its inertia at a frequency far below those of
+    the others: else the rounding of dofs on stiff springs would pass for the motion.
+    """
+    k = np.maximum(K.diagonal(), 0.0)
+    m = M.diagonal()
+    sprung = (k > 0.0) & (m > 0.0)
+    least = _SLOW * float(np.median(k[sprung] / m[sprung])) if sprung.any() else 1.0
+    return np.asarray(R * np.sqrt(np.maximum(np.maximum(k, least * m), 1e-300))[:, None])
 
 
 def left_null_space(K: sp.csc_array, M: sp.csc_array, R: np.ndarray) -> np.ndarray:

@@ -13,7 +13,7 @@ import scipy.sparse as sp
 
 from rotorgear.solvers.eigen.eigen import lowest_modes
 from rotorgear.solvers.sparse.newton import settle
-from rotorgear.solvers.sparse.nullspace import SupportedSolver, left_null_space
+from rotorgear.solvers.sparse.nullspace import SupportedSolver, in_comparable_units, left_null_space
 from rotorgear.solvers.time.local_forces import LocalLaw, gather
 from rotorgear.solvers.time.local_system import LocalSystem, local_tangent
 
@@ -54,7 +54,7 @@ def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibr
     M = system.M
     R = free_motions(M, K) if free is None else free
     B = system.B.toarray()
-    solver = SupportedSolver(K, R * np.sqrt(np.maximum(K.diagonal(), 1e-300))[:, None], left_null_space(K, M, R))
+    solver = SupportedSolver(K, in_comparable_units(R, K, M), left_null_space(K, M, R))
 
     def settled(f: np.ndarray) -> np.ndarray:
         q = solver.solve(f - M @ (R @ (R.T @ f)))

@@ -104,12 +104,8 @@ def test_motions_over_time_say_where_the_modes_of_a_casing_end(model: rg.Model) 
     words = f"casings.box: its 20 modes serve up to {0.5 * reach:.4g} Hz"
     for share, told in ((0.4, False), (0.6, True)):
         loaded = model.with_({"loads": {"buzz": {**buzz, "order": round(share * reach / 50.0)}}})
-        found = rg.transient(loaded, time=1e-3, steps=4, records=4, error_estimate=False)
+        found = rg.transient(loaded, time=0.04, steps=4, records=4, error_estimate=False)
         assert any(note.startswith(words) for note in found.warnings) == told
-        swept = rg.sweep(loaded, {"operation.speed": ["3000 rpm"]}, discard=2, sample=2, exponents=0)
-        assert any(note.startswith(words) for note in swept.warnings) == told
-        followed = rg.orbits(loaded, {"operation.speed": "3000 rpm:3001 rpm"}, harmonics=2, step=0.5)
-        assert any(note.startswith(words) for note in followed.warnings) == told
 
 
 def test_campbell_diagrams_of_a_number_of_modes_say_what_the_reduction_makes_wrong(model: rg.Model) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rotorgear.casings.assembly import Elastic, assemble, rigid_motions
+from rotorgear.casings.assembly import Elastic, assemble
 from rotorgear.casings.file_mesh import FileMesh, NamedSet
+from rotorgear.casings.motions import rigid_motions
 from rotorgear.casings.patches import by_set
 from rotorgear.casings.solid_mesh import merged, solid_mesh
 from rotorgear.errors import AnalysisError
