@@ -2,6 +2,7 @@
 
     python -m validation.rigs           200 rigs: do stated intervals cover the truth, and are modes paired right? (long)
     python -m validation.rigs 20        so many rigs
+    python -m validation.rigs 200 rigs.jsonl 400   for 400 CPU s; the same again goes on from the file
     python -m validation.rigs 40 pairs  without updates: does `compare --shapes` pair lines with their modes?
 
 Each rig is split_torque.toml with its 14 stiffnesses times exp(0.2 N(0, 1)); 20 elastic modes are measured to 0.5 %, with
@@ -10,9 +11,11 @@ shapes at 12 points to 2 % of their root mean square. The update starts from the
 
 from __future__ import annotations
 
+import json
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from pathlib import Path
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -81,39 +84,78 @@ def draw(
     return Rig(x, Measured(lines, tuple(SENSORS), noisy.astype(complex)))
 
 
-def calibration(rigs: int) -> None:
-    """Print how often stated 90 % intervals hold the truth, and how often lines find their modes."""
+@dataclass(frozen=True)
+class Outcome:
+    """What the update by one rig came to.
+
+    Attributes:
+        inside: whether the 90 % interval of each number holds the truth; empty where the update came to no end.
+        right: lines with their mode, of all of them.
+        alone: the same by frequency alone.
+        solutions: modal solutions of the update.
+    """
+
+    seed: int
+    inside: list[bool]
+    right: int
+    alone: int
+    solutions: int
+
+
+def outcome(model: rg.Model, seed: int) -> Outcome:
+    """Update the file by the rig of a seed, and see what it found."""
+    rig = draw(model, seed)
+    own = RigModel(free_numbers(model, FREE, SPREAD), PLAN, 3000.0, tuple(SENSORS))
+    modes = own.modes(0.0 * rig.x)
+    hz = np.array([line.frequency_hz for line in rig.measured.lines])
+    near = dict(pairs_of(hz, modes.frequency_hz, hz, np.zeros((MODES, 0)), modes.at_points, 0.05))
+    alone = sum(near.get(k) == k for k in range(MODES))
+    try:
+        result = rg.update(model, rig.measured, free=FREE, prior=SPREAD, shape_noise=SHAPE_NOISE)
+    except rg.ConvergenceError as error:
+        print(f"rig {seed}: {error}")
+        return Outcome(seed, [], 0, alone, 0)
+    x = np.log([row.factor for row in result.parameters])
+    sigma = np.array([row.sigma for row in result.parameters])
+    inside = np.abs(x - rig.x) <= 1.6449 * sigma
+    right = sum(line.rig.label == f"true mode {line.mode_number}" for line in result.lines)
+    return Outcome(seed, inside.tolist(), right, alone, result.modal_solutions)
+
+
+def calibration(rigs: int, file: Path | None = None, piece: float = np.inf) -> None:
+    """Print how often stated 90 % intervals hold the truth, and how often lines find their modes.
+
+    Args:
+        rigs: how many.
+        file: JSON lines of the rigs that are done; those in it are not done again.
+        piece: CPU s after which the rest is left for another time.
+    """
     model = nominal()
     numbers = free_numbers(model, FREE, SPREAD)
-    inside = np.zeros((rigs, len(numbers.addresses)))
-    right, alone, solutions, failed = [], [], [], 0
+    done = [Outcome(**json.loads(row)) for row in file.read_text().splitlines()] if file and file.exists() else []
+    known = {one.seed for one in done}
     start = time.process_time()
     for seed in range(rigs):
-        rig = draw(model, seed)
-        try:
-            result = rg.update(model, rig.measured, free=FREE, prior=SPREAD, shape_noise=SHAPE_NOISE)
-        except rg.ConvergenceError as error:
-            failed += 1
-            print(f"rig {seed}: {error}")
-            inside[seed] = np.nan
+        if seed in known:
             continue
-        x = np.log([row.factor for row in result.parameters])
-        sigma = np.array([row.sigma for row in result.parameters])
-        inside[seed] = np.abs(x - rig.x) <= 1.6449 * sigma
-        right += [line.rig.label == f"true mode {line.mode_number}" for line in result.lines]
-        right += [False] * len(result.unmatched)
-        solutions.append(result.modal_solutions)
-        modes = RigModel(numbers, PLAN, 3000.0, tuple(SENSORS)).modes(0.0 * rig.x)
-        hz = np.array([line.frequency_hz for line in rig.measured.lines])
-        by_frequency = dict(pairs_of(hz, modes.frequency_hz, hz, np.zeros((MODES, 0)), modes.at_points, 0.05))
-        alone += [by_frequency.get(k) == k for k in range(MODES)]
-    print(f"{rigs} rigs, {failed} without an estimate, {(time.process_time() - start) / rigs:.1f} CPU s each")
-    print(f"90 % intervals hold the truth in {100 * np.nanmean(inside):.1f} % over all; by number:")
-    for address, share in zip(numbers.addresses, 100 * np.nanmean(inside, axis=0), strict=True):
+        if time.process_time() - start > piece:
+            break
+        done.append(outcome(model, seed))
+        if file:
+            with file.open("a") as kept:
+                kept.write(json.dumps(asdict(done[-1])) + "\n")
+    ended = [one for one in done if one.inside]
+    inside = np.array([one.inside for one in ended])
+    fresh = len(done) - len(known)
+    print(f"{len(done)} rigs, {len(done) - len(ended)} without an estimate", end="")
+    print(f", {(time.process_time() - start) / fresh:.1f} CPU s each" if fresh else "")
+    print(f"90 % intervals hold the truth in {100 * inside.mean():.1f} % over all; by number:")
+    for address, share in zip(numbers.addresses, 100 * inside.mean(axis=0), strict=True):
         print(f"  {address:36} {share:5.1f} %")
-    print(
-        f"lines with the right mode: {100 * np.mean(right):.1f} % with shapes, {100 * np.mean(alone):.1f} % by frequency alone"
-    )
+    right = 100 * np.mean([one.right for one in ended]) / MODES
+    alone = 100 * np.mean([one.alone for one in done]) / MODES
+    print(f"lines with the right mode: {right:.1f} % with shapes, {alone:.1f} % by frequency alone")
+    solutions = [one.solutions for one in ended]
     print(f"modal solutions an update: {np.mean(solutions):.1f}, at most {max(solutions)}")
 
 
@@ -156,8 +198,9 @@ def _followed(model: RigModel, modes: RigModes, x: np.ndarray) -> np.ndarray:
 
 
 if __name__ == "__main__":
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 200
-    if sys.argv[2:] == ["pairs"]:
+    words = sys.argv[1:]
+    count = int(words[0]) if words else 200
+    if words[1:] == ["pairs"]:
         pairing(count)
     else:
-        calibration(count)
+        calibration(count, Path(words[1]) if len(words) > 1 else None, float(words[2]) if len(words) > 2 else np.inf)

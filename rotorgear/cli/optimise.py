@@ -40,7 +40,12 @@ def optimise(
             show_default=False,
         ),
     ] = None,
-    objective: Annotated[str, typer.Option("--objective", help="change (the least) or mass (the least).")] = "change",
+    objective: Annotated[
+        str,
+        typer.Option(
+            "--objective", help="change (the least), mass (the least) or scatter (the least sensitive to [scatter])."
+        ),
+    ] = "change",
     speeds: Annotated[
         str | None,
         typer.Option(

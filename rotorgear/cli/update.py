@@ -11,6 +11,7 @@ from rotorgear.cli.common import (
     AccuracyOption,
     ElementsOption,
     JsonOption,
+    ModalDampingOption,
     ModelFile,
     SaveOption,
     ToleranceOption,
@@ -29,9 +30,17 @@ def update(
         Path | None,
         typer.Option("--shapes", help="Measured mode shapes and frequencies (UFF, dataset 55).", show_default=False),
     ] = None,
+    frf: Annotated[
+        Path | None,
+        typer.Option(
+            "--frf", help="Measured frequency responses (UFF, dataset 58), beside these or alone.", show_default=False
+        ),
+    ] = None,
     points: Annotated[
         Path | None,
-        typer.Option("--points", help="Sensors of the shapes (CSV: point,node,direction).", show_default=False),
+        typer.Option(
+            "--points", help="Sensors of shapes and responses (CSV: point,node,direction).", show_default=False
+        ),
     ] = None,
     free: Annotated[
         str, typer.Option("--free", help="Addresses of the free numbers, with commas between; * for all names.")
@@ -42,6 +51,10 @@ def update(
     shape_noise: Annotated[
         float, typer.Option("--shape-noise", help="Noise of a shape, as a share of its root mean square.")
     ] = 0.02,
+    frf_noise: Annotated[
+        float, typer.Option("--frf-noise", help="Noise of a frequency response, as a share of its size.")
+    ] = 0.05,
+    modal_damping: ModalDampingOption = 0.0,
     speed: Annotated[
         str | None,
         typer.Option(
@@ -74,10 +87,13 @@ def update(
             loaded,
             rig,
             shapes=shapes,
+            frf=frf,
             points=points,
             free=free,
             prior=prior,
             shape_noise=shape_noise,
+            frf_noise=frf_noise,
+            modal_damping=modal_damping,
             speed=speed,
             campaigns=campaigns,
             tolerance=tolerance,

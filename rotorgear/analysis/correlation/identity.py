@@ -1,9 +1,9 @@
 """Which mode of a model a measured shape is, where the model's springs are known to 30 % only.
 
 A measured mode is not the nearest one in frequency and shape: between two modes that veer both are mixtures of what the model
-has. So springs are first moved to where lines and shapes want them (`rig/estimate.py`, a step each against less and less enlarged
-noise), lines are paired with the modes there, and each of these is followed back to the model as it is, along a straight path in
-the logs of the stiffnesses: one-to-one by overlap in mass, in halves where a mode turns too far in one step.
+has. So springs are first moved to where lines and shapes want them (`updating/estimate.py`, a step each against less and less
+enlarged noise), lines are paired with the modes there, and each of these is followed back to the model as it is, along a straight
+path in the logs of the stiffnesses: one-to-one by overlap in mass, in halves where a mode turns too far in one step.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rotorgear.analysis.rig.estimate import Estimate
 from rotorgear.analysis.rig.learnt import SPRINGS, STIFFNESS_PRIOR
 from rotorgear.analysis.rig.measured import Measured
-from rotorgear.analysis.rig.misfit import Misfit
 from rotorgear.analysis.rig.rig_model import ComparedModes, RigModel
+from rotorgear.analysis.updating.estimate import Estimate
+from rotorgear.analysis.updating.misfit import Misfit
 from rotorgear.model.address import tables_of
 from rotorgear.model.free_numbers import free_numbers, is_number
 from rotorgear.model.model import Model

@@ -4,7 +4,7 @@ Which modes count is decided by participation: the share of an exciting mesh in 
 whirl of a shaft in its kinetic energy. Modes that nobody excites may lie where they like. Sequential quadratic programming (Kraft
 1988, A software package for sequential quadratic programming, DFVLR-FB 88-28) with exact gradients goes down the penalty of
 `penalty.py` from the file and from points strewn over the bounds; of the layouts that keep the margin the one with the least
-change, or the least mass, is taken.
+change or the least mass is taken, or the one that keeps it by the most standard deviations of what scatters.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, speed_in_si
 from rotorgear.analysis.layout.bounds import bounds_of
+from rotorgear.analysis.layout.deviation import MARGINS, kept_deviations
 from rotorgear.analysis.layout.problem import Problem
 from rotorgear.analysis.layout.state import State, total_mass
 from rotorgear.errors import AnalysisError
@@ -31,7 +32,7 @@ from rotorgear.solvers.sampling.points import unit_points
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.system.plan import Plan
 
-OBJECTIVES = ("change", "mass")
+OBJECTIVES = ("change", "mass", "scatter")
 # Order of the elements where none is asked for; the table's own mesh is one order higher, and its margins are compared.
 _ORDER = 4
 # The penalty asks for so much more than the margin, since it is flat at its own edge.
@@ -42,6 +43,9 @@ _ITERATIONS = 60
 _BISECTIONS = 7
 # Weight of the penalty beside the mass over that of the file.
 _WEIGHT = 30.0
+# Standard deviations by which the margin is to be kept: one more step after each that was reached, at most so many.
+_DEVIATIONS = 0.5
+_MOST_DEVIATIONS = 6.0
 # A number this near to a bound, as a share of their distance, stands at it.
 _AT_BOUND = 1e-4
 _ROUNDING = 1e-5
@@ -91,7 +95,8 @@ def optimise(
         margin: least |f_mode / f_line - 1|, such as 0.15 or "15 %".
         bounds: pattern of addresses -> "LOW:HIGH", shares added to the value ("-20 %:20 %", the default) or values with units.
             Places move by a tenth of their shaft where nothing is said, and never past gears, disks or bearings.
-        objective: change: the margin with small changes of the numbers; mass: with the least mass.
+        objective: change: the margin with small changes of the numbers; mass: with the least mass; scatter: by the most standard
+            deviations of the frequencies, where the numbers of the model's [scatter] do.
         speeds: of the input shaft, in rad/s or with units; the operating speed where not given.
         mesh_orders, shaft_orders: the excitations.
         participation: least share of the exciting part in the energy of a mode from which on it counts.
@@ -106,6 +111,11 @@ def optimise(
     asked = _share(margin)
     if objective not in OBJECTIVES:
         raise AnalysisError(f"objective: got '{objective}', expected {' or '.join(OBJECTIVES)}")
+    if objective == "scatter" and not model.scatter:
+        raise AnalysisError(
+            "objective 'scatter': nothing scatters; give [scatter] in the model file, such as "
+            "\"bearings.*.stiffness\" = { sigma = '10 %' }"
+        )
     if not 0.0 < participation < 1.0:
         raise AnalysisError(f"participation: got {participation:g}, expected a share between 0 and 1, such as 0.01")
     if searches < 1:
@@ -119,14 +129,14 @@ def optimise(
     low, high, notes = bounds_of(numbers, bounds or {})
     top = max(line.frequency_hz(speed) for line in lines for speed in at)
     plan = Plan(elements) if elements else Plan(1, _ORDER)
-    problem = Problem(
-        numbers, low, high, at, lines, plan, top * (1.0 + asked) * _BEYOND, _MORE * asked, asked, participation
-    )
+    beyond = 1.0 + MARGINS * asked if objective == "scatter" else (1.0 + asked) * _BEYOND
+    problem = Problem(numbers, low, high, at, lines, plan, top * beyond, _MORE * asked, asked, participation)
     with single_thread(0):
         ends = _searched(problem, searches, seed, progress)
         best = min(ends, key=lambda end: (not end.reached, _cost(problem, objective, end)))
         if best.reached:
-            best = _lightened(problem, best, progress) if objective == "mass" else _nearer(problem, best)
+            improve = {"mass": _lightened, "scatter": _steadied, "change": _nearer}[objective]
+            best = improve(problem, best, progress)
         result = _result(problem, best, objective)
     reached = sum(end.reached for end in ends)
     progress(1.0, "done")
@@ -206,8 +216,9 @@ def _cost(problem: Problem, objective: str, end: _End) -> float:
     return float(np.sum((end.t - problem.start) ** 2))
 
 
-def _nearer(problem: Problem, end: _End) -> _End:
+def _nearer(problem: Problem, end: _End, progress: Progress) -> _End:
     """Back towards the file as far as the margin is kept."""
+    progress(0.8, "least change")
     good = 1.0
     bad = 0.0
     for _ in range(_BISECTIONS):
@@ -251,9 +262,36 @@ def _lightened(problem: Problem, end: _End, progress: Progress) -> _End:
     return best
 
 
+def _steadied(problem: Problem, end: _End, progress: Progress) -> _End:
+    """A layout that keeps the margin and as many standard deviations more as can be reached from one that keeps it.
+
+    Slopes of the penalty hold the deviations; whether the margin is kept is asked with those of each layout.
+    """
+    best = end
+    kept = kept_deviations(_scattering(problem).states(end.t), problem.asked, problem.least)
+    wanted = _DEVIATIONS * (np.floor(max(kept, 0.0) / _DEVIATIONS) + 1.0) if np.isfinite(kept) else np.inf
+    while wanted <= _MOST_DEVIATIONS:
+        progress(0.8 + 0.15 * wanted / _MOST_DEVIATIONS, f"{wanted:g} standard deviations")
+        wider = _scattering(problem, float(wanted))
+        found = _descended(wider, best.t)
+        problem.solutions += wider.solutions
+        problem.gradients += wider.gradients
+        if not found.reached:
+            break
+        best = found
+        wanted += _DEVIATIONS
+    return best
+
+
+def _scattering(problem: Problem, deviations: float = 0.0) -> Problem:
+    """The problem with modes that know how far they scatter."""
+    return replace(problem, deviations=deviations, solutions=0, gradients=0)
+
+
 def _result(problem: Problem, end: _End, objective: str) -> OptimiseResult:
     numbers = problem.numbers
-    finer = _on_finer_mesh(problem)
+    scatters = bool(numbers.model.scatter)
+    finer = _on_finer_mesh(_scattering(problem) if scatters else problem)
     before = finer.states(problem.start)
     after = finer.states(end.t)
     pull = np.zeros(len(end.t)) if end.reached else problem.slopes(end.t, problem.states(end.t))
@@ -286,6 +324,8 @@ def _result(problem: Problem, end: _End, objective: str) -> OptimiseResult:
         objective=objective,
         penalty_before=problem.penalty(before),
         penalty_after=problem.penalty(after),
+        deviations_before=kept_deviations(before, problem.asked, problem.least) if scatters else None,
+        deviations_after=kept_deviations(after, problem.asked, problem.least) if scatters else None,
         mass_before_kg=total_mass(before[0].system),
         mass_after_kg=total_mass(after[0].system),
         solutions=problem.solutions + finer.solutions,

@@ -58,14 +58,15 @@ class Near:
     slopes: NDArray[np.float64]
 
 
-def near_modes(state: State, margin: float, least: float) -> list[Near]:
-    """The modes that count in J."""
+def near_modes(state: State, margin: float | NDArray[np.float64], least: float) -> list[Near]:
+    """The modes that count in J; `margin` is one for all, or that of each beside each line (l, m)."""
     found = []
-    spaces = _spaces(state.hz)
+    wide = np.broadcast_to(np.asarray(margin, dtype=float), state.taken.shape)
+    spaces = spaces_of(state.hz)
     for line, F in enumerate(state.line_hz):
         for space in spaces:
             own = list(space)
-            u = (state.hz[own] / F - 1.0) / margin
+            u = (state.hz[own] / F - 1.0) / wide[line, own]
             inside = np.maximum(1.0 - u**2, 0.0)
             share = float(state.taken[line, own].sum())
             t = float(np.clip((share / least - _RAMP) / (1.0 - _RAMP), 0.0, 1.0))
@@ -73,12 +74,12 @@ def near_modes(state: State, margin: float, least: float) -> list[Near]:
             if weight == 0.0 or not inside.any():
                 continue
             slope = 6.0 * t * (1.0 - t) / (least * (1.0 - _RAMP))
-            df = weight * (-4.0 * u * inside) / (F * margin * len(own))
+            df = weight * (-4.0 * u * inside) / (F * wide[line, own] * len(own))
             found.append(Near(line, space, share, weight, slope, float(np.mean(inside**2)), df))
     return found
 
 
-def _spaces(hz: NDArray[np.float64]) -> list[tuple[int, ...]]:
+def spaces_of(hz: NDArray[np.float64]) -> list[tuple[int, ...]]:
     """Modes by number, those that are close together."""
     spaces: list[list[int]] = []
     for k, f in enumerate(hz):
@@ -113,7 +114,7 @@ def penalty_slopes(
     for j in range(count):
         above, below, width = beside(j)
         change = (forms_of(above, state.speed, X) - forms_of(below, state.speed, X)) / width
-        changed = _complex(change)
+        changed = complex_forms(change)
         df = frequency_slopes(state, chosen, changed[:3]) / (2.0 * np.pi)
         for one in near:
             slopes[j] += float(one.slopes @ df[[chosen.index(k) for k in one.modes]])
@@ -136,7 +137,7 @@ def frequency_slopes(state: State, chosen: list[int], change: NDArray[np.complex
     return np.asarray(np.real(K + 1j * w * G - w**2 * M) / size)
 
 
-def _complex(forms: NDArray[np.float64]) -> NDArray[np.complex128]:
+def complex_forms(forms: NDArray[np.float64]) -> NDArray[np.complex128]:
     """Forms (a, k, k) among complex shapes from those over their real parts, then their imaginary ones (a, 2 k, 2 k)."""
     k = forms.shape[1] // 2
     C = np.vstack([np.eye(k), 1j * np.eye(k)])
@@ -174,7 +175,7 @@ def _share_slope(
         phi = state.V @ state.modes.q[:, k]
         turned = _bordered(state, float(state.modes.omega[k]), together, push)
         X = np.column_stack([phi.real, turned.real, phi.imag, turned.imag])
-        forms = _complex(forms_of(state.system, state.speed, X))
+        forms = complex_forms(forms_of(state.system, state.speed, X))
         part, whole = exciting_forms(names, line, forms, senses)
         moved_part, moved_whole = exciting_forms(names, line, changed, senses)
         at = own[one.modes.index(k)]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorgear.analysis.layout.deviation import with_deviations
 from rotorgear.analysis.layout.penalty import near_modes, penalty, penalty_slopes
 from rotorgear.analysis.layout.state import State, state_of, total_mass
 from rotorgear.analysis.scatter.family import system_at
@@ -37,6 +38,8 @@ class Problem:
         margin: that the penalty asks for, a little more than
         asked: the margin itself.
         least: least participation that counts.
+        deviations: standard deviations of a mode's frequency that are added to its margin, by [scatter] of the model; None:
+            scatter is not looked at.
         solutions, gradients: how many were needed so far.
     """
 
@@ -50,6 +53,7 @@ class Problem:
     margin: float
     asked: float
     least: float
+    deviations: float | None = None
     solutions: int = field(default=0)
     gradients: int = field(default=0)
 
@@ -66,14 +70,23 @@ class Problem:
         """The modes at every speed."""
         model = self.numbers.at(self.values(t))
         self.solutions += len(self.speeds)
-        return [
+        found = [
             state_of(model, speed, self.plan, self.lines, self.below_hz, margin=self.margin, least=self.least)
             for speed in self.speeds
         ]
+        if self.deviations is None:
+            return found
+        return [with_deviations(state, model, self.plan, self.asked, self.least) for state in found]
+
+    def _wide(self, state: State, margin: float) -> NDArray[np.float64]:
+        """A margin with the deviations of each mode beside each line, (l, m)."""
+        if state.sigma is None or not self.deviations:
+            return np.full(state.taken.shape, margin)
+        return np.asarray(margin + self.deviations * state.sigma * state.hz / state.line_hz[:, None])
 
     def penalty(self, states: list[State]) -> float:
         """J of all speeds."""
-        return sum(penalty(near_modes(state, self.margin, self.least)) for state in states)
+        return sum(penalty(near_modes(state, self._wide(state, self.margin), self.least)) for state in states)
 
     def slopes(self, t: NDArray[np.float64], states: list[State]) -> NDArray[np.float64]:
         """dJ/dt (p,)."""
@@ -89,7 +102,7 @@ class Problem:
             def beside(j: int, state: State = state) -> tuple[System, System, float]:
                 return self._beside(t, j, state)
 
-            near = near_modes(state, self.margin, self.least)
+            near = near_modes(state, self._wide(state, self.margin), self.least)
             total += penalty_slopes(state, near, self.lines, beside, len(t))
         return total
 
@@ -106,11 +119,13 @@ class Problem:
         return at(t), np.array([(at(t + step) - at(t - step)) / 2e-3 for step in steps])
 
     def margins_kept(self, states: list[State]) -> bool:
-        """Whether no mode that counts is within the margin that was asked for."""
+        """Whether no mode that counts is within the margin that was asked for, deviations included."""
         return all(
-            not np.any((np.abs(state.hz / F - 1.0) < _EDGE * self.asked) & (taken >= self.least))
+            not np.any(
+                (np.abs(state.hz / state.line_hz[:, None] - 1.0) < _EDGE * self._wide(state, self.asked))
+                & (state.taken >= self.least)
+            )
             for state in states
-            for F, taken in zip(state.line_hz, state.taken, strict=True)
         )
 
     def _beside(self, t: NDArray[np.float64], j: int, state: State) -> tuple[System, System, float]:

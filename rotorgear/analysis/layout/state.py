@@ -38,6 +38,7 @@ class State:
         modes: m elastic modes in coordinates of V.
         taken: participation of each line in each mode (l, m).
         line_hz: frequencies of the lines (l,).
+        sigma: relative standard deviations of the frequencies (m,), where numbers scatter.
     """
 
     system: System
@@ -47,6 +48,7 @@ class State:
     modes: FormModes
     taken: NDArray[np.float64]
     line_hz: NDArray[np.float64]
+    sigma: NDArray[np.float64] | None = None
 
     @property
     def hz(self) -> NDArray[np.float64]:

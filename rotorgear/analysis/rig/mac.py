@@ -30,3 +30,9 @@ def mac(a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
     cross = np.abs(A.conj() @ B.T) ** 2
     size = (np.abs(A) ** 2 @ known_b.T) * (known_a @ (np.abs(B) ** 2).T)
     return np.where(size > 0.0, cross / np.where(size > 0.0, size, 1.0), np.nan)
+
+
+def frac(a: NDArray[np.complex128] | NDArray[np.float64], b: NDArray[np.complex128] | NDArray[np.float64]) -> float:
+    """|a^H b|^2 / (a^H a b^H b); NaN where one is zero."""
+    size = float(np.sum(np.abs(a) ** 2) * np.sum(np.abs(b) ** 2))
+    return float(np.abs(np.vdot(a, b)) ** 2) / size if size > 0.0 else float("nan")

@@ -33,6 +33,8 @@ class ComparedModes(Protocol):
     def campaign(self) -> NDArray[np.intp]: ...
     @property
     def at_points(self) -> Shapes: ...
+    @property
+    def parts(self) -> tuple[Any, ...]: ...
     def overlap(self, other: Any) -> NDArray[np.float64]: ...
 
 
@@ -59,6 +61,7 @@ class RigModes:
         eigenvalues: w^2 (m,).
         vectors: shapes X (n, m), X^H (K + w^2 M) X = 2 w^2: modal mass 1 at standstill, where they are real.
         at_points: their values at s points (m, s).
+        carriers: rigid and elastic shapes, of any size (n, m').
     """
 
     system: System
@@ -66,6 +69,7 @@ class RigModes:
     eigenvalues: NDArray[np.float64]
     vectors: Shapes
     at_points: Shapes
+    carriers: Shapes
 
     @property
     def frequency_hz(self) -> NDArray[np.float64]:
@@ -76,6 +80,11 @@ class RigModes:
     def campaign(self) -> NDArray[np.intp]:
         """Number of the campaign that each mode belongs to, (m,)."""
         return np.zeros(len(self.eigenvalues), dtype=np.intp)
+
+    @property
+    def parts(self) -> tuple[RigModes, ...]:
+        """The modes of each campaign: there is one."""
+        return (self,)
 
     def overlap(self, other: RigModes) -> NDArray[np.float64]:
         """|phi_i^H M phi_k|^2 of each mode i here with each mode k of the other, (m, m'): 1 where they are the same mode.
@@ -122,7 +131,7 @@ class RigModel:
             doubled += np.real(np.sum(X.conj() * (system.mass @ X), axis=0))
             X = X * np.sqrt(2.0 / doubled)
         rows = point_rows(system, self.points)
-        return RigModes(system, self.speed, squares, X, np.asarray(rows @ X).T)
+        return RigModes(system, self.speed, squares, X, np.asarray(rows @ X).T, found.vectors)
 
     def derivatives(
         self, x: NDArray[np.float64], modes: RigModes, chosen: NDArray[np.intp], *, shapes: bool

@@ -68,9 +68,15 @@ class OptimiseResult(ModelResult, kind="optimise"):
     )
     least_margin: float = of("margin that is asked for")
     participation: float = of("least participation that counts")
-    objective: str = of("objective", note=': `"change"` or `"mass"`')
+    objective: str = of("objective", note=': `"change"`, `"mass"` or `"scatter"`')
     penalty_before: float = of("penalty before", note=": 0 where all margins are kept", form=".3g")
     penalty_after: float = of("penalty after", form=".3g")
+    deviations_before: float | None = of(
+        "standard deviations by which the margin is kept before",
+        note=", the least of all modes that count; negative inside it, `null` where nothing scatters",
+        form="+.2f",
+    )
+    deviations_after: float | None = of("standard deviations by which the margin is kept after", form="+.2f")
     mass_before_kg: float = of("mass of the rotors before", "kg", form=".3f")
     mass_after_kg: float = of("mass of the rotors after", "kg", form=".3f")
     solutions: int = of("modal solutions that were needed")

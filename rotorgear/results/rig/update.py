@@ -42,12 +42,24 @@ class UpdatedLine(Record):
     mac_after: float | None = of("MAC after the update", note="; `null` without shapes", form=".3f")
 
 
+class UpdatedResponse(Record):
+    """One measured frequency response beside the model's; the held-out one is predicted from all else that was measured."""
+
+    campaign: str = of("name of the campaign that measured it", note="; empty where there is one only")
+    response: str = of("place of the response")
+    reference: str = of("place of the force")
+    frac_before: float = of("FRAC before the update", form=".3f")
+    frac_after: float = of("FRAC after the update", form=".3f")
+    frac_held_out: float = of("FRAC of the response predicted from the others", form=".3f")
+
+
 class UpdateResult(ModelResult, kind="update"):
     """The update of a model; `model` is the one before, `updated_model()` the one after."""
 
     parameters: tuple[UpdatedParameter, ...] = of("free numbers", "", "parameter", record=UpdatedParameter)
     lines: tuple[UpdatedLine, ...] = of("measured lines with a mode", "", "line", record=UpdatedLine)
     unmatched: tuple[RigLine, ...] = of("measured lines without a mode", "", "unmatched_line", record=RigLine)
+    responses: tuple[UpdatedResponse, ...] = of("measured frequency responses", "", "response", record=UpdatedResponse)
     correlation: np.ndarray = of("correlation of the estimates", "", "parameter", "parameter")
     points: tuple[str, ...] = of("names of the points", "", "point", note=" where shapes were measured")
     chi_squared: float = of("weighted sum of squares at the estimate", note=": measured values and priors together")
@@ -97,6 +109,14 @@ def _findings(result: UpdateResult) -> list[str]:
         said.append(
             f"Each line held out and predicted from the others: {held_out:.2g} % rms, against {before:.2g} % before: the "
             f"updated model {better}."
+        )
+    if len(result.responses) > 1:
+        mean_before = float(np.mean([row.frac_before for row in result.responses]))
+        mean_held_out = float(np.mean([row.frac_held_out for row in result.responses]))
+        verdict = "better" if mean_held_out > mean_before else "no better"
+        said.append(
+            f"Each frequency response held out and predicted from the others: FRAC {mean_held_out:.3f} in the mean, against "
+            f"{mean_before:.3f} before: the updated model predicts responses it has not seen {verdict}."
         )
     per = result.chi_squared / max(result.measured_values, 1)
     if result.misfit_probability < MISFIT:

@@ -45,6 +45,10 @@ def _cells(hz: float, margin: float, share: float, inside: float) -> tuple[str, 
     return (f"{hz:.1f}", f"{100 * margin:+.2f} %", f"{100 * share:.2f} %", others)
 
 
+def _deviations(value: float) -> str:
+    return f"{value:+.1f} standard deviations" if np.isfinite(value) else "any scatter (no mode that counts is near)"
+
+
 def _said(result: OptimiseResult) -> list[str]:
     asked = f"{100 * result.least_margin:.3g} %"
     least = f"{100 * result.participation:.3g} %"
@@ -65,6 +69,11 @@ def _said(result: OptimiseResult) -> list[str]:
             f"Bounds that forbid it: {held}."
             if held
             else "No bound forbids it: the search ended in a local minimum; free more numbers, or ask for more searches."
+        )
+    if result.deviations_before is not None and result.deviations_after is not None:
+        said.append(
+            f"With [scatter], the margin is kept by {_deviations(result.deviations_before)} before, "
+            f"{_deviations(result.deviations_after)} after (negative: a mode inside it)."
         )
     said.append(f"Mass of the rotors {result.mass_before_kg:.2f} kg before, {result.mass_after_kg:.2f} kg after.")
     said.append(

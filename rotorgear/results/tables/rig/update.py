@@ -37,11 +37,18 @@ def update_table(result: UpdateResult) -> RenderableType:
         alike = ("-" if value is None else f"{value:.3f}" for value in (line.mac_before, line.mac_after))
         name = (line.campaign,) if several else ()
         modes.add_row(*name, f"{f:.2f}", str(line.mode_number), *errors, *(alike if shapes else ()))
-    what = "measured values" if shapes else "matched lines"
+    answers = table("response over force", "FRAC before", "after", "held out")
+    for one in result.responses:
+        pair = f"{one.campaign}: " * bool(one.campaign) + f"{one.response} over {one.reference}"
+        fracs = (one.frac_before, one.frac_after, one.frac_held_out)
+        answers.add_row(pair, *(f"{value:.3f}" for value in fracs))
+    what = "measured values" if shapes or result.responses else "matched lines"
     said = [learnt_words(result.parameters, result.measured_values, what), *result.findings]
     unmatched = ", ".join(f"{line.frequency_hz:.1f}" for line in result.unmatched)
     said += [f"Without a mode: {unmatched} Hz."] if unmatched else []
     said += [f"Warning: {warning}." for warning in result.warnings]
     said += [f"{result.modal_solutions} modal solutions of {result.dofs} dofs."]
     parts: list[Any] = [heading(result.title)] if result.title else []
-    return Group(*parts, numbers, *lines(""), modes, *lines("", *said))
+    compared = [modes] if result.lines else []
+    compared += [*(lines("") if compared else ()), answers] if result.responses else []
+    return Group(*parts, numbers, *lines(""), *compared, *lines("", *said))

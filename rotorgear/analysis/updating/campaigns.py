@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorgear.analysis.rig.frf_file import MeasuredFrf
 from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.rig_model import RigModel, RigModes, Shapes
 from rotorgear.errors import ModelError, Problem
@@ -22,7 +23,8 @@ from rotorgear.model.free_numbers import FreeNumbers
 from rotorgear.results.rig.comparison import RigLine
 from rotorgear.system.system import System
 
-_KEYS = ("name", "rig", "shapes", "points", "speed", "changes")
+_KEYS = ("name", "rig", "shapes", "frf", "points", "speed", "changes")
+_FILES = ("rig", "shapes", "frf", "points")
 
 
 @dataclass(frozen=True)
@@ -32,10 +34,11 @@ class Campaign:
     Attributes:
         rig: a rig file (CSV), lines, plain frequencies in Hz, or lines with shapes (`rg.Measured`).
         shapes: in place of it, a universal file with shapes and their frequencies, and
-        points: its table of sensors.
+        points: the table of sensors of shapes and responses.
         speed: of the input shaft in rad/s or with its unit; None: at standstill.
         changes: address -> value of what was otherwise than in the model file, such as {"disks.hub.mass": "3 kg"}.
         name: what tables call it.
+        frf: beside lines or shapes, or alone: a universal file with frequency responses, or what it holds (`rg.read_rig_frf`).
     """
 
     rig: str | Path | Measured | Sequence[RigLine | float] | None = None
@@ -44,14 +47,15 @@ class Campaign:
     speed: float | str | None = None
     changes: Mapping[str, Any] = field(default_factory=dict)
     name: str = ""
+    frf: str | Path | MeasuredFrf | None = None
 
 
 def read_campaigns(path: str | Path) -> tuple[Campaign, ...]:
     """Return the campaigns of a file (TOML).
 
     Args:
-        path: of the file: tables [[campaign]] with rig, or shapes and points, and speed, changes, name. Files that it names lie
-            beside it.
+        path: of the file: tables [[campaign]] with rig, or shapes and points, or frf, and speed, changes, name. Files that it
+            names lie beside it.
 
     Raises:
         ModelError: a file that can't be read, no campaigns, other keys.
@@ -70,7 +74,7 @@ def read_campaigns(path: str | Path) -> tuple[Campaign, ...]:
     for number, table in enumerate(tables, start=1):
         address = f"campaign {number}"
         strange = sorted(set(table) - set(_KEYS))
-        wrong = [key for key in ("name", "rig", "shapes", "points") if not isinstance(table.get(key, ""), str)]
+        wrong = [key for key in ("name", *_FILES) if not isinstance(table.get(key, ""), str)]
         if strange:
             problems.append(Problem(address, strange[0], f"only {', '.join(_KEYS)}"))
         elif wrong:
@@ -78,7 +82,7 @@ def read_campaigns(path: str | Path) -> tuple[Campaign, ...]:
         elif not isinstance(table.get("changes", {}), dict):
             problems.append(Problem(f"{address}: changes", repr(table["changes"]), "a table of addresses and values"))
         else:
-            files = {key: file.parent / table[key] for key in ("rig", "shapes", "points") if key in table}
+            files = {key: file.parent / table[key] for key in _FILES if key in table}
             name = table.get("name", f"campaign {number}")
             found.append(Campaign(**files, speed=table.get("speed"), changes=table.get("changes", {}), name=name))
     if problems:

@@ -1,12 +1,14 @@
 """What a model with free numbers shows beside what was measured: residuals, their noise, and their derivatives.
 
 Shapes have no scale: the residual of measured y and shape phi is y - a phi with the a that fits best, and its derivative loses
-what lies along phi. Shapes of close modes are compared as the plane they span: y less its projection on it.
+what lies along phi. Shapes of close modes are compared as the plane they span: y less its projection on it. Frequency responses
+follow the pairs of lines and modes (`frf_misfit.py`): they need none.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -17,6 +19,7 @@ from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.pairing import pairs_of
 from rotorgear.analysis.rig.posterior import Posterior
 from rotorgear.analysis.rig.rig_model import ComparedModel, ComparedModes, Shapes
+from rotorgear.analysis.updating.frf_misfit import FrfMisfit
 
 # Shapes of modes closer than this in ln f turn into each other at the slightest change: their plane is compared, not each.
 CLOSE = 0.03
@@ -42,9 +45,10 @@ class State:
         x: logs of the factors (p,).
         modes: of the model there.
         pairs: lines and modes.
-        residual: measured less computed: of each pair ln f, then its shape (n,).
+        residual: measured less computed: of each pair ln f, then its shape; then ln H of the frequency responses (n,).
         noise: standard deviations of the rows (n,).
-        owner: line of each row (n,).
+        owner: line of each row; -1, -2 ... for the first frequency response, the second ... (n,).
+        looseness: that of the noise.
         objective: squared residuals in units of the noise, and of x in units of the prior.
     """
 
@@ -55,6 +59,7 @@ class State:
     noise: NDArray[np.float64]
     owner: NDArray[np.intp]
     objective: float
+    looseness: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -62,7 +67,8 @@ class Misfit:
     """A model beside a rig; `looseness` adds to the noise while modes may still be taken for others.
 
     Of several campaigns, `campaign` is that of each line (n,); None: all lines are of one. Those in `turning` were measured at a
-    speed: their shapes are complex, and both parts of what is left of them count, each with its share of the noise.
+    speed: their shapes are complex, and both parts of what is left of them count, each with its share of the noise. `responses`
+    are the frequency responses of some campaigns, by number.
     """
 
     model: ComparedModel
@@ -72,6 +78,7 @@ class Misfit:
     looseness: float = 0.0
     campaign: NDArray[np.intp] | None = None
     turning: frozenset[int] = frozenset()
+    responses: Mapping[int, FrfMisfit] = field(default_factory=dict)
 
     @cached_property
     def owner(self) -> NDArray[np.intp]:
@@ -116,10 +123,16 @@ class Misfit:
                 share = np.hypot(self.shape_noise, self.looseness) * np.sqrt(len(points) / len(off))
                 noise += [float(share * np.sqrt(np.mean(np.abs(y) ** 2)))] * len(off)
                 owner += [pair.line] * len(off)
-        r = np.array(residual)
-        sigma = np.array(noise)
+        parts = [(np.array(residual), np.array(noise), np.array(owner, dtype=np.intp))]
+        first = 0
+        for number, response in self.responses.items():
+            rows, sigmas = response.residual(x, modes.parts[number], self.looseness)
+            owners = -1 - (first + np.arange(len(rows)))
+            parts.append((rows.ravel(), sigmas.ravel(), np.repeat(owners, rows.shape[1])))
+            first += len(rows)
+        r, sigma, whose = (np.concatenate(column) for column in zip(*parts, strict=True))
         objective = float(np.sum((r / sigma) ** 2) + np.sum((x / self.model.numbers.prior) ** 2))
-        return State(x, modes, pairs, r, sigma, np.array(owner, dtype=np.intp), objective)
+        return State(x, modes, pairs, r, sigma, whose, objective, self.looseness)
 
     def linear(self, state: State) -> Posterior:
         """The linear model about a state."""
@@ -138,10 +151,16 @@ class Misfit:
                 share = np.linalg.lstsq(basis, self.shapes[pair.line, points], rcond=None)[0]
                 change = sum(a * shape_slopes[place[k]][points] for a, k in zip(share, pair.near, strict=True))
                 rows += list(self.parts(pair.line, _off_subspace(basis, np.asarray(change))))
-        return Posterior(np.array(rows).reshape(-1, len(state.x)), state.noise, self.model.numbers.prior)
+        jacobian = [np.array(rows).reshape(-1, len(state.x))]
+        for number, response in self.responses.items():
+            slopes = response.slopes(state.x, modes.parts[number], state.looseness)
+            jacobian.append(slopes.reshape(-1, len(state.x)))
+        return Posterior(np.concatenate(jacobian), state.noise, self.model.numbers.prior)
 
     def pairs(self, x: NDArray[np.float64], modes: ComparedModes, known: Posterior | None) -> tuple[Pair, ...]:
         """Pair lines and modes, by what is known of the numbers so far."""
+        if not self.given.lines:
+            return ()
         hz = np.array([line.frequency_hz for line in self.given.lines])
         noise = max(line_noise(line) for line in self.given.lines)
         spread = np.full(len(modes.eigenvalues), np.hypot(noise, _LOOSE_FREQUENCY * self.looseness))

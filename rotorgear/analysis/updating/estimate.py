@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotorgear.analysis.rig.misfit import Misfit, Pair, State
 from rotorgear.analysis.rig.posterior import Posterior
 from rotorgear.analysis.rig.rig_model import ComparedModes
+from rotorgear.analysis.updating.misfit import Misfit, Pair, State
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress
 

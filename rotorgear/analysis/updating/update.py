@@ -1,41 +1,48 @@
-"""Update free numbers of a model by the lines and shapes of a test rig: the most probable values, and what the rig taught.
+"""Update free numbers of a model by what a test rig measured: the most probable values, and what the rig taught.
 
-The log of each number is normal about the file's value with the spread of the prior, each measured ln f and each displacement
-of a measured shape about the model's with its noise (`misfit.py`). Steps towards the most probable numbers (`estimate.py`) take
-derivatives from the modes themselves (`sensitivity.py`), so that each costs one modal solution.
+The log of each number is normal about the file's value with the spread of the prior, each measured ln f, each displacement of a
+measured shape and each ln H of a frequency response about the model's with its noise (`misfit.py`). Steps towards the most
+probable numbers (`estimate.py`) take derivatives from the modes themselves (`sensitivity.py`), so that each costs one modal
+solution.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si
-from rotorgear.analysis.rig.campaigns import Campaign, CampaignModel, joined, read_campaigns
 from rotorgear.analysis.rig.compare_result import ABOVE_RIG, rig_lines_of
-from rotorgear.analysis.rig.estimate import Estimate
-from rotorgear.analysis.rig.learnt import line_noise
-from rotorgear.analysis.rig.mac import mac
+from rotorgear.analysis.rig.frf_file import MeasuredFrf, read_rig_frf
+from rotorgear.analysis.rig.learnt import LINE_NOISE, line_noise
+from rotorgear.analysis.rig.mac import frac, mac
 from rotorgear.analysis.rig.measured import Measured
 from rotorgear.analysis.rig.mesh_of_model import plan_of
-from rotorgear.analysis.rig.misfit import Misfit, Pair, State
 from rotorgear.analysis.rig.posterior import Posterior
 from rotorgear.analysis.rig.rig_model import RigModel
 from rotorgear.analysis.rig.shape_file import read_rig_shapes
+from rotorgear.analysis.updating.campaigns import Campaign, CampaignModel, joined, read_campaigns
+from rotorgear.analysis.updating.estimate import Estimate
+from rotorgear.analysis.updating.frf_misfit import FrfMisfit
+from rotorgear.analysis.updating.misfit import Misfit, Pair, State
+from rotorgear.analysis.updating.receptance_model import CARRIED
 from rotorgear.errors import AnalysisError
 from rotorgear.model.free_numbers import DEFAULT_PRIOR, FreeNumbers, free_numbers
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.rig.comparison import RigLine
-from rotorgear.results.rig.update import UpdatedLine, UpdatedParameter, UpdateResult
+from rotorgear.results.rig.update import UpdatedLine, UpdatedParameter, UpdatedResponse, UpdateResult
 from rotorgear.system.plan import Plan
 
 # Noise of a measured displacement, as a share of the root mean square of its shape.
 SHAPE_NOISE = 0.02
+# Noise of a measured frequency response, as a share of its size.
+FRF_NOISE = 0.05
 # The mesh is finer than the noise by a tenth, within these bounds.
 _MESH_ERROR = (1e-10, 1e-4)
 
@@ -46,10 +53,13 @@ def update(
     rig: str | Path | Measured | Sequence[RigLine | float] | None = None,
     *,
     shapes: str | Path | None = None,
+    frf: str | Path | MeasuredFrf | None = None,
     points: str | Path | None = None,
     free: str | Iterable[str] = "bearings.*.stiffness, meshes.*.stiffness",
     prior: float | str | Mapping[str, float | str] = DEFAULT_PRIOR,
     shape_noise: float = SHAPE_NOISE,
+    frf_noise: float = FRF_NOISE,
+    modal_damping: float = 0.0,
     speed: float | str | None = None,
     campaigns: str | Path | Sequence[Campaign] | None = None,
     tolerance: float = 0.05,
@@ -62,11 +72,15 @@ def update(
     Args:
         model: the model.
         rig: a rig file (CSV), lines, plain frequencies in Hz, or lines with measured shapes (`rg.Measured`).
-        shapes: in place of it, a universal file with shapes and their frequencies, and
-        points: its table of sensors, as in `rg.read_rig_shapes`; None: each node is at the nearest place of the model.
+        shapes: in place of it, a universal file with shapes and their frequencies.
+        frf: beside these or alone, a universal file with frequency responses, or what it holds (`rg.read_rig_frf`).
+        points: table of sensors of shapes and responses, as in `rg.read_rig_shapes`; None: each node is at the nearest place of
+            the model.
         free: addresses of numbers, with commas between; "*" stands for all names or places there.
         prior: relative standard deviation of the free numbers before the test, of all or by address.
         shape_noise: standard deviation of a measured displacement over the root mean square of its shape.
+        frf_noise: standard deviation of a measured frequency response, as a share of its size.
+        modal_damping: damping ratio added to every elastic mode of the responses, as in `frf`.
         speed: of the input shaft while it was measured, in rad/s or with its unit; None: at standstill.
         campaigns: in place of all these, several campaigns (`rg.Campaign`) or their file (TOML), each at its speed and in its
             state of the gearbox.
@@ -86,23 +100,41 @@ def update(
     """
     if not 0.0 < shape_noise < 1.0:
         raise AnalysisError(f"the noise of shapes is a share between 0 and 1, such as 0.02; got {shape_noise:g}")
-    several = _campaigns(Campaign(rig, shapes, points, speed), campaigns)
+    if not 0.0 < frf_noise < 1.0:
+        raise AnalysisError(
+            f"the noise of frequency responses is a share between 0 and 1, such as 0.05; got {frf_noise:g}"
+        )
+    if not 0.0 <= modal_damping < 1.0:
+        raise AnalysisError(f"modal_damping: got {modal_damping:g}, expected 0 to less than 1")
+    several = _campaigns(Campaign(rig, shapes, points, speed, frf=frf), campaigns)
     numbers = free_numbers(model, free, prior)
     progress(0.05, "mesh")
     measured = []
     models = []
-    for campaign in several:
-        own, given = _measured(model, campaign)
+    responses = {}
+    for number, campaign in enumerate(several):
+        own = model.with_(campaign.changes) if campaign.changes else model
+        given = _measured(own, campaign)
+        heard = _responses(own, campaign)
         measured.append(given)
-        models.append(_rig_model(replace(numbers, model=own), given, campaign.speed, accuracy, elements))
+        top = float(heard.frequency_hz[-1]) if heard else 0.0
+        models.append(_rig_model(replace(numbers, model=own), given, top, campaign.speed, accuracy, elements))
+        if heard:
+            responses[number] = FrfMisfit(models[-1], heard, frf_noise, modal_damping)
     every, owner = joined(measured)
     turning = frozenset(number for number, one in enumerate(models) if one.speed)
     problem = Misfit(
-        CampaignModel(tuple(models), every.points), every, shape_noise, tolerance, campaign=owner, turning=turning
+        CampaignModel(tuple(models), every.points),
+        every,
+        shape_noise,
+        tolerance,
+        campaign=owner,
+        turning=turning,
+        responses=responses,
     )
     steps = Estimate(problem)
     start = steps.start()
-    if not start.pairs:
+    if not start.pairs and not responses:
         raise AnalysisError("no line of the rig is near a mode of the model: check units, or raise --tolerance")
     near = steps.approach(start, progress)
     state, posterior = steps.estimate(near, progress)
@@ -114,38 +146,53 @@ def _campaigns(one: Campaign, several: str | Path | Sequence[Campaign] | None) -
     if several is None:
         return (one,)
     if one != Campaign():
-        raise AnalysisError("campaigns have their own rig, shapes, points and speed: give these in each of them")
+        raise AnalysisError("campaigns have their own rig, shapes, frf, points and speed: give these in each of them")
     found = read_campaigns(several) if isinstance(several, str | Path) else tuple(several)
     if not found:
         raise AnalysisError("there are no campaigns to update by")
     return found
 
 
-def _measured(model: Model, campaign: Campaign) -> tuple[Model, Measured]:
-    """The model in the state of a campaign, and what was measured there."""
+def _measured(model: Model, campaign: Campaign) -> Measured:
+    """Lines and shapes of a campaign, by the model in its state."""
     rig = campaign.rig
-    if (rig is None) == (campaign.shapes is None):
-        raise AnalysisError("give what was measured: --rig lines.csv, or --shapes rig.uff with --points sensors.csv")
-    own = model.with_(campaign.changes) if campaign.changes else model
+    only_responses = campaign.frf is not None and rig is None and campaign.shapes is None
+    if (rig is None) == (campaign.shapes is None) and not only_responses:
+        raise AnalysisError(
+            "give what was measured: --rig lines.csv, or --shapes rig.uff with --points sensors.csv; and --frf rig.uff"
+        )
     if campaign.shapes is not None:
-        given = read_rig_shapes(campaign.shapes, campaign.points, own)
-    elif campaign.points is not None:
-        raise AnalysisError("--points belongs to --shapes: the table of sensors says where each node is")
+        given = read_rig_shapes(campaign.shapes, campaign.points, model)
+    elif campaign.points is not None and campaign.frf is None:
+        raise AnalysisError("--points belongs to --shapes or --frf: the table of sensors says where each node is")
+    elif rig is None:
+        given = Measured(())
     else:
-        assert rig is not None
         given = rig if isinstance(rig, Measured) else Measured(rig_lines_of(rig))
-    given.check_points(own)
-    return own, given
+    given.check_points(model)
+    return given
+
+
+def _responses(model: Model, campaign: Campaign) -> MeasuredFrf | None:
+    """Frequency responses of a campaign, by the model in its state."""
+    if campaign.frf is None or isinstance(campaign.frf, MeasuredFrf):
+        return campaign.frf
+    return read_rig_frf(campaign.frf, campaign.points, model)
 
 
 def _rig_model(
-    numbers: FreeNumbers, given: Measured, speed: float | str | None, accuracy: float | None, elements: int | None
+    numbers: FreeNumbers,
+    given: Measured,
+    top: float,
+    speed: float | str | None,
+    accuracy: float | None,
+    elements: int | None,
 ) -> RigModel:
-    """The model of a campaign on a mesh that is finer than its noise."""
+    """The model of a campaign, with frequency responses up to `top` Hz, on a mesh that is finer than its noise."""
     # A stiffness that is a third too low hides a line's mode a sixth below it: all modes are wanted that may belong to it.
     reach = ABOVE_RIG * (1.0 + 0.5 * float(numbers.prior.max()))
-    fmax = reach * max(line.frequency_hz for line in given.lines)
-    least = min(line_noise(line) for line in given.lines)
+    fmax = max(CARRIED * top, reach * max((line.frequency_hz for line in given.lines), default=0.0))
+    least = min((line_noise(line) for line in given.lines), default=LINE_NOISE)
     wanted = accuracy or float(np.clip(0.1 * least, *_MESH_ERROR))
     plan = Plan(elements) if elements else plan_of(numbers.model, fmax, wanted)
     return RigModel(numbers, plan, fmax, given.points, speed_in_si(speed) or 0.0)
@@ -199,6 +246,7 @@ def _result(
             for address, prior, sigma, learnt, factor in rows
         ),
         lines=tuple(lines),
+        responses=tuple(_response_rows(campaigns, problem, start, state, p)),
         unmatched=tuple(line for k, line in enumerate(problem.given.lines) if k not in paired),
         correlation=p.correlation,
         points=problem.given.points,
@@ -207,25 +255,65 @@ def _result(
         misfit_probability=float(chi2.sf(state.objective, count)),
         modal_solutions=problem.model.solutions,
         dofs=state.modes.system.n,
-        method="Gauss-Newton on ln f and shapes, derivatives from the modes",
-        left_out=(
+        method="Gauss-Newton on ln f, shapes and ln H, derivatives from the modes",
+        left_out=_left_out(problem, state),
+        warnings=(*problem.given.notes, *(note for one in problem.responses.values() for note in one.warnings)),
+    )
+
+
+def _left_out(problem: Misfit, state: State) -> tuple[str, ...]:
+    said = []
+    if problem.given.lines:
+        said.append(
             "damping: lines are undamped natural frequencies at the speeds of the campaigns"
             if problem.turning
-            else "damping and rotation: lines are undamped natural frequencies at standstill",
-            "the spread of lines predicted from the others is that of the linear model about the estimate",
-        ),
-        warnings=problem.given.notes,
-    )
+            else "damping and rotation: lines are undamped natural frequencies at standstill"
+        )
+        said.append("the spread of lines predicted from the others is that of the linear model about the estimate")
+    for number, response in problem.responses.items():
+        said += response.notes
+        error = response.basis_error(state.x, state.modes.parts[number])
+        said.append(f"shapes above those that carry the responses: within {error:.0e} of the whole system's at 3 peaks")
+    return tuple(said)
+
+
+def _response_rows(
+    campaigns: list[str], problem: Misfit, start: State, state: State, p: Posterior
+) -> Iterator[UpdatedResponse]:
+    """Each measured frequency response beside the model before, after, and after all others alone."""
+    owner = -1
+    for number, one in problem.responses.items():
+        before = one.computed(start.x, start.modes.parts[number])
+        after = one.computed(state.x, state.modes.parts[number])
+        pairs = zip(one.given.responses, one.given.references, one.measured, before, after, strict=True)
+        for response, reference, rig, first, last in pairs:
+            own = state.owner == owner
+            moved = p.jacobian[own] @ (_without(state, p, own) - state.x)
+            half = len(moved) // 2
+            yield UpdatedResponse(
+                campaign=campaigns[number] if len(campaigns) > 1 else "",
+                response=response,
+                reference=reference,
+                frac_before=frac(rig, first),
+                frac_after=frac(rig, last),
+                frac_held_out=frac(rig, last * np.exp(moved[:half] + 1j * moved[half:])),
+            )
+            owner -= 1
+
+
+def _without(state: State, p: Posterior, own: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """The numbers that all other rows make most probable, to first order about the estimate."""
+    linear = state.residual + p.jacobian @ state.x
+    return Posterior(p.jacobian[~own], p.noise[~own], p.prior).estimate(linear[~own])
 
 
 def _held_out(state: State, p: Posterior, pair: Pair) -> tuple[float, float]:
     """Frequency of a line in Hz as the other lines predict it, and its relative standard deviation with the noise of the line."""
-    others = state.owner != pair.line
-    linear = state.residual + p.jacobian @ state.x
-    rest = Posterior(p.jacobian[others], p.noise[others], p.prior)
-    own = int(np.flatnonzero(state.owner == pair.line)[0])
+    belongs = state.owner == pair.line
+    rest = Posterior(p.jacobian[~belongs], p.noise[~belongs], p.prior)
+    own = int(np.flatnonzero(belongs)[0])
     slope = p.jacobian[own]
-    x = rest.estimate(linear[others])
+    x = _without(state, p, belongs)
     predicted = float(state.modes.frequency_hz[pair.mode] * np.exp(slope @ (x - state.x)))
     spread = float(rest.spread_of(slope[None])[0])
     return predicted, float(np.hypot(p.noise[own], spread))
