@@ -89,8 +89,19 @@ def free_numbers(
                 got = shown(value_at(tables, place))
                 hint = "only numbers have a spread; leave it out, or give a number in its place"
                 raise ModelError([Problem(address, got, "a number other than 0, or several", hint)])
+            if isinstance(value_at(tables, place), int):
+                raise ModelError([whole_number(address, value_at(tables, place))])
             if address not in addresses:
                 addresses.append(address)
+    twice = overlapping(addresses)
+    if twice:
+        raise ModelError(twice)
+    if isinstance(prior, Mapping):
+        for pattern in prior:
+            if not any(fnmatch.fnmatchcase(address, pattern) for address in addresses):
+                hint = nearest(pattern, addresses)
+                expected = "an address of the free numbers, or a pattern of some"
+                raise ModelError([Problem("prior", pattern, expected, f"did you mean '{hint}'?" if hint else "")])
     return FreeNumbers(model, tuple(addresses), np.array([_prior_of(address, prior) for address in addresses]))
 
 
@@ -100,6 +111,22 @@ def address_of(place: Place) -> str:
     for key in place:
         text += f"[{key}]" if isinstance(key, int) else f".{key}"
     return text.removeprefix(".")
+
+
+def whole_number(address: str, value: int) -> Problem:
+    """A count, such as a number of teeth, in place of a number that can vary."""
+    return Problem(address, shown(value), "a number that can vary little by little; this one is whole", "leave it out")
+
+
+def overlapping(addresses: Iterable[str]) -> list[Problem]:
+    """Addresses that are a part of another one, which would be changed twice."""
+    known = list(addresses)
+    found = []
+    for address in known:
+        whole = next((other for other in known if address.startswith((f"{other}.", f"{other}["))), None)
+        if whole:
+            found.append(Problem(address, "", f"it is a part of {whole}, which is named too: leave one of them out"))
+    return found
 
 
 def _prior_of(address: str, prior: float | str | Mapping[str, float | str]) -> float:

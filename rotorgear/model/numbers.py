@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from rotorgear.errors import ModelError, Problem
 from rotorgear.model.address import Place, places_of, tables_of, value_at
-from rotorgear.model.free_numbers import address_of, given_places, is_number, times
+from rotorgear.model.free_numbers import address_of, given_places, is_number, overlapping, times, whole_number
 from rotorgear.model.model import Model
 from rotorgear.model.parts.problems import shown
 from rotorgear.quantity import DIMENSIONS, QuantityError, parse_quantity
@@ -83,6 +83,9 @@ def numbers_of(model: Model, free: str | Iterable[str]) -> Numbers:
     places: dict[str, Place] = {}
     for pattern in patterns:
         places |= {address_of(place): place for place in given_places(tables, pattern)}
+    twice = overlapping(places)
+    if twice:
+        raise ModelError(twice)
     start = []
     factor = []
     for address, place in places.items():
@@ -91,6 +94,8 @@ def numbers_of(model: Model, free: str | Iterable[str]) -> Numbers:
         if not (several and is_number(value)) and (not isinstance(value, int | float) or isinstance(value, bool)):
             hint = "leave it out, or give a number in its place"
             raise ModelError([Problem(address, shown(value), "a number, or several", hint)])
+        if isinstance(value, int):
+            raise ModelError([whole_number(address, value)])
         start.append(1.0 if several else float(value))
         factor.append(several)
     units = ("" if many else _unit(model, places[address]) for address, many in zip(places, factor, strict=True))

@@ -14,13 +14,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.errors import ModelError, Problem
-from rotorgear.gears.geometry.flank_tolerance import cumulative_pitch_tolerance
+from rotorgear.gears.geometry.flank_tolerance import FLANK_CLASSES, cumulative_pitch_tolerance
 from rotorgear.model.model import Model
 from rotorgear.model.numbers import Numbers, matching, numbers_of, size_of
 from rotorgear.model.parts.scatter import Scatter
@@ -57,8 +57,16 @@ class Spreads:
         )
 
     def at(self, z: NDArray[np.float64]) -> Model:
-        """The model at z (p,)."""
-        return self.numbers.at(self.values(z))
+        """The model at z (p,).
+
+        Raises:
+            ModelError: values that the model can't have.
+        """
+        try:
+            return self.numbers.at(self.values(z))
+        except ModelError as error:
+            hint = "its scatter reaches there: make it smaller"
+            raise ModelError([replace(problem, hint=problem.hint or hint) for problem in error.problems]) from None
 
     @property
     def reach(self) -> NDArray[np.float64]:
@@ -164,6 +172,9 @@ def _graded(model: Model, address: str, grade: int) -> float:
         raise ModelError(
             [Problem(f"scatter of {address}", f"grade {grade}", "an address such as meshes.*.index_error", hint)]
         )
+    if grade > FLANK_CLASSES:
+        hint = "the classes of ISO 1328-1:2013"
+        raise ModelError([Problem(f"scatter of {address}", f"grade {grade}", f"1 to {FLANK_CLASSES}", hint)])
     variance = 0.0
     for gear in model.layout.mesh(name).gears:
         g = gear.geometry

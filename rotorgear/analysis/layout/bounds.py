@@ -52,7 +52,11 @@ def bounds_of(
             reach = _OF_SHAFT * _length(numbers.model, address)
             low[j] = numbers.start[j] - reach
             high[j] = numbers.start[j] + reach
-        if not low[j] <= numbers.start[j] <= high[j] or low[j] == high[j]:
+        if low[j] >= high[j]:
+            raise AnalysisError(
+                f"bounds of {address}: {low[j]:g} to {high[j]:g} leave no room; give the lower one first"
+            )
+        if not low[j] <= numbers.start[j] <= high[j]:
             raise AnalysisError(
                 f"bounds of {address}: {low[j]:g} to {high[j]:g} do not hold its value {numbers.start[j]:g}"
             )

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, speed_in_si
+from rotorgear.analysis.common.request import check_request, check_whole, speed_in_si
 from rotorgear.analysis.layout.bounds import bounds_of
 from rotorgear.analysis.layout.deviation import MARGINS, kept_deviations
 from rotorgear.analysis.layout.problem import Problem
@@ -118,8 +118,7 @@ def optimise(
         )
     if not 0.0 < participation < 1.0:
         raise AnalysisError(f"participation: got {participation:g}, expected a share between 0 and 1, such as 0.01")
-    if searches < 1:
-        raise AnalysisError(f"searches: got {searches}, expected 1 or more")
+    check_whole("the number of searches", searches)
     at = _speeds(model, speeds)
     check_request(at[0], None, None, elements, None)
     lines = excitation_orders(model, shaft_orders, mesh_orders)
@@ -160,7 +159,7 @@ def _speeds(model: Model, speeds: Sequence[float | str] | None) -> tuple[float, 
         if not own:
             raise AnalysisError("no speed: give --speeds, or [operation] speed in the model file")
         return (own,)
-    found = tuple(float(value) for value in map(speed_in_si, speeds) if value)
+    found = tuple(dict.fromkeys(float(value) for value in map(speed_in_si, speeds) if value))
     if not found:
         raise AnalysisError("speeds: expected at least one other than 0")
     return found

@@ -42,6 +42,17 @@ class Measured:
                 f"measured shapes have one row a line and one column a point, ({len(self.lines)}, {len(self.points)}); "
                 f"got {self.shapes.shape}"
             )
+        if np.isinf(self.shapes).any():
+            raise AnalysisError("measured shapes hold infinite displacements: NaN stands for one that was not measured")
+        twice = sorted({point for point in self.points if self.points.count(point) > 1})
+        if twice:
+            raise AnalysisError(
+                f"shapes were measured twice at {', '.join(twice)}: keep one sensor of each place and direction"
+            )
+        # A shape that is 0 everywhere has no direction to compare; its frequency is a line like any other.
+        still = ~np.any(np.nan_to_num(self.shapes) != 0.0, axis=1)
+        if still.any():
+            object.__setattr__(self, "shapes", np.where(still[:, None], complex(np.nan), self.shapes))
 
     def check_points(self, model: Model) -> None:
         """Raise AnalysisError where a measured point is none of the model's."""
@@ -49,7 +60,8 @@ class Measured:
             if not (name in model.points or ":" in name):
                 known = ", ".join(model.points) or "none"
                 raise AnalysisError(
-                    f"shapes were measured at '{name}', which is no point of the model ([points]: {known})"
+                    f"shapes were measured at '{name}', which is no point of the model ([points]: {known}), and no part with a "
+                    "direction such as 'bearings.left:x'"
                 )
             coordinates(model, name)
 

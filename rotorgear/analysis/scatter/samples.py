@@ -168,9 +168,14 @@ def participations(
     q^H (M + i sign(W) M J) q / 2, half of it where nothing turns.
     """
     found = np.zeros((len(lines), len(modes.omega)))
+    sizes: dict[bool, NDArray[np.float64]] = {}
     for row, line in enumerate(lines):
         part, whole = exciting_forms(names, line, forms, senses)
-        found[row] = diagonal(part, modes.q) / diagonal(whole, modes.q)
+        # Kinetic energies of all shaft orders, strain energies of all mesh orders are the same.
+        of_shafts = line.kind == "shaft"
+        if of_shafts not in sizes:
+            sizes[of_shafts] = diagonal(whole, modes.q)
+        found[row] = diagonal(part, modes.q) / sizes[of_shafts]
     return found
 
 

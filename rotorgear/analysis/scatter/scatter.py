@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.pool import Pool, in_order
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, speed_in_si
+from rotorgear.analysis.common.request import check_request, check_whole, speed_in_si
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.scatter.basis import basis_of, nominal_modes, whole_modes, with_shapes
 from rotorgear.analysis.scatter.family import Family, family_of, system_at
@@ -68,6 +68,9 @@ class Request:
     sobol: int
 
     def __post_init__(self) -> None:
+        check_whole("the number of samples", self.samples)
+        check_whole("the number of base points (sobol)", self.sobol, 0)
+        check_whole("the seed", self.seed, 0)
         if not 2 <= self.samples <= _MOST_SAMPLES:
             raise AnalysisError(f"samples: got {self.samples}, expected 2 to {_MOST_SAMPLES}")
         if self.sampling not in SAMPLINGS:

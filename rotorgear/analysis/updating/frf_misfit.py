@@ -27,6 +27,9 @@ _FLOOR = 0.01
 # Width of the band that is smoothed over, as a share of the frequency, and noise of the logarithm, where looseness is 1.
 _SMOOTHED = 0.2
 _LOOSE = 0.5
+# Smoothed responses are further apart than by this factor, or point against each other by this cosine, for other reasons.
+_OTHER_SIZE = 20.0
+_OTHER_SIGN = -0.5
 
 
 @dataclass
@@ -47,11 +50,13 @@ class FrfMisfit:
 
     def __post_init__(self) -> None:
         self._seen: tuple[bytes, Receptances] | None = None
-        size = np.sqrt(np.mean(np.abs(self.given.receptance) ** 2, axis=1))
-        for k, value in enumerate(size):
-            if not value > 0.0 or not np.isfinite(value):
+        for name, row in zip(self.names, self.given.receptance, strict=True):
+            dead = np.flatnonzero(~(np.abs(row) > 0.0) | ~np.isfinite(row))
+            if dead.size:
+                more = f" and {dead.size - 1} more frequencies" if dead.size > 1 else ""
                 raise AnalysisError(
-                    f"the measured response {self.names[k]} is zero or no number: leave it out of the file"
+                    f"the measured response {name} is 0 or no number at {self.given.frequency_hz[dead[0]]:.6g} Hz{more}: leave "
+                    "it out of the file"
                 )
 
     @property
@@ -122,6 +127,23 @@ class FrfMisfit:
         change = self._of_pairs(self._receptances.slopes(x, here)) @ S.T
         rate = np.transpose(change / H, (1, 2, 0))
         return np.concatenate([rate.real, rate.imag], axis=1)
+
+    def doubts(self, x: NDArray[np.float64], modes: RigModes) -> list[str]:
+        """Responses that are of the other sign or of quite another size, both smoothed: no stiffness does that."""
+        S = self._smoothing(1.0)
+        said = []
+        for name, rig, own in zip(self.names, self.measured @ S.T, self.computed(x, modes) @ S.T, strict=True):
+            ratio = float(np.exp(np.mean(np.log(np.abs(rig / own)))))
+            cosine = float(np.real(np.vdot(own, rig)) / (np.linalg.norm(own) * np.linalg.norm(rig)))
+            if not 1.0 / _OTHER_SIZE < ratio < _OTHER_SIZE:
+                said.append(
+                    f"{name} was measured {ratio:.2g} times as large as the model has it: is its unit or its place another one"
+                )
+            elif cosine < _OTHER_SIGN:
+                said.append(
+                    f"{name} was measured with the other sign: does the sensor or the hammer look the other way"
+                )
+        return said
 
     def basis_error(self, x: NDArray[np.float64], modes: RigModes) -> float:
         """Error of the shapes that carry the responses: see `ReceptanceModel.error`."""

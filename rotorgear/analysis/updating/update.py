@@ -31,7 +31,7 @@ from rotorgear.analysis.updating.estimate import Estimate
 from rotorgear.analysis.updating.frf_misfit import FrfMisfit
 from rotorgear.analysis.updating.misfit import Misfit, Pair, State
 from rotorgear.analysis.updating.receptance_model import CARRIED
-from rotorgear.errors import AnalysisError
+from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.free_numbers import DEFAULT_PRIOR, FreeNumbers, free_numbers
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
@@ -136,9 +136,14 @@ def update(
     start = steps.start()
     if not start.pairs and not responses:
         raise AnalysisError("no line of the rig is near a mode of the model: check units, or raise --tolerance")
-    near = steps.approach(start, progress)
-    state, posterior = steps.estimate(near, progress)
-    return _result(model, [one.name for one in several], problem, start, state, posterior)
+    doubts = [doubt for number, one in responses.items() for doubt in one.doubts(start.x, start.modes.parts[number])]
+    try:
+        near = steps.approach(start, progress)
+        state, posterior = steps.estimate(near, progress)
+    except ConvergenceError as error:
+        raise ConvergenceError("; ".join([str(error), *doubts])) from None
+    result = _result(model, [one.name for one in several], problem, start, state, posterior)
+    return replace(result, warnings=(*result.warnings, *doubts, *_changed_numbers(numbers, several)))
 
 
 def _campaigns(one: Campaign, several: str | Path | Sequence[Campaign] | None) -> tuple[Campaign, ...]:
@@ -151,6 +156,16 @@ def _campaigns(one: Campaign, several: str | Path | Sequence[Campaign] | None) -
     if not found:
         raise AnalysisError("there are no campaigns to update by")
     return found
+
+
+def _changed_numbers(numbers: FreeNumbers, several: Sequence[Campaign]) -> list[str]:
+    """Warnings on campaigns that change a number that is free."""
+    return [
+        f"campaign {one.name or number}: {address} is free and has another value there; its factor is that of both values"
+        for number, one in enumerate(several, start=1)
+        for address in numbers.addresses
+        if any(address == name or address.startswith(f"{name}.") for name in one.changes)
+    ]
 
 
 def _measured(model: Model, campaign: Campaign) -> Measured:
@@ -169,6 +184,10 @@ def _measured(model: Model, campaign: Campaign) -> Measured:
         given = Measured(())
     else:
         given = rig if isinstance(rig, Measured) else Measured(rig_lines_of(rig))
+    hz = [line.frequency_hz for line in given.lines]
+    if not given.points and len(set(hz)) < len(hz):
+        twice = next(f for f in hz if hz.count(f) > 1)
+        raise AnalysisError(f"the rig line {twice:g} Hz is given twice: keep one of them")
     given.check_points(model)
     return given
 
@@ -257,8 +276,19 @@ def _result(
         dofs=state.modes.system.n,
         method="Gauss-Newton on ln f, shapes and ln H, derivatives from the modes",
         left_out=_left_out(problem, state),
-        warnings=(*problem.given.notes, *(note for one in problem.responses.values() for note in one.warnings)),
+        warnings=(
+            *problem.given.notes,
+            *_shape_warnings(problem),
+            *(note for one in problem.responses.values() for note in one.warnings),
+        ),
     )
+
+
+def _shape_warnings(problem: Misfit) -> list[str]:
+    """What measured shapes can't do."""
+    if len(problem.given.points) == 1:
+        return ["shapes at a single sensor have a size and no direction to compare: the frequencies alone are used"]
+    return []
 
 
 def _left_out(problem: Misfit, state: State) -> tuple[str, ...]:

@@ -11,6 +11,9 @@ import math
 
 from rotorgear.gears.geometry.geometry import GearGeometry
 
+# Classes of the standard: 1 to 11.
+FLANK_CLASSES = 11
+
 
 def base_pitch_deviation(g: GearGeometry, grade: int) -> float:
     """f_pb (m) of a gear in a tolerance class."""

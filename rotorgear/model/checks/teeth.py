@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from rotorgear.errors import Problem, RotorgearError
+from rotorgear.gears.geometry.flank_tolerance import FLANK_CLASSES
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.measure import ball_contact_diameter, ideal_ball_diameter, with_allowance
 from rotorgear.gears.geometry.outline import tooth_outline
@@ -13,8 +14,6 @@ from rotorgear.model.checks.flank import flank_problems
 from rotorgear.model.checks.pairs import ball_diameter
 from rotorgear.model.parts.gear import Gear
 from rotorgear.quantity import millimetres
-
-_LAST_GRADE = 11
 
 
 def tooth_problems(address: str, gear: Gear, geometry: GearGeometry) -> Iterator[Problem]:
@@ -45,9 +44,9 @@ def tooth_problems(address: str, gear: Gear, geometry: GearGeometry) -> Iterator
         limits = f"a diameter on the involute, from {millimetres(low)} to below {millimetres(high)}"
         yield Problem(f"{address}.tip_relief_diameter", millimetres(start), limits)
     yield from flank_problems(f"{address}.flank", gear.flank, outline, gear.width or 0.0)
-    if gear.accuracy_grade is not None and gear.accuracy_grade > _LAST_GRADE:
+    if gear.accuracy_grade is not None and gear.accuracy_grade > FLANK_CLASSES:
         yield Problem(
-            f"{address}.accuracy_grade", str(gear.accuracy_grade), f"a class from 1 to {_LAST_GRADE} of ISO 1328-1"
+            f"{address}.accuracy_grade", str(gear.accuracy_grade), f"a class from 1 to {FLANK_CLASSES} of ISO 1328-1"
         )
     yield from _ball(address, gear, geometry)
 

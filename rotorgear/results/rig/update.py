@@ -122,7 +122,19 @@ def _findings(result: UpdateResult) -> list[str]:
     if result.misfit_probability < MISFIT:
         said.append(
             f"Misfit {per:.1f} times what noise and priors allow (chance {result.misfit_probability:.1g}): the model is wrong "
-            "in more than these numbers, or the noise is understated, or a line has the wrong mode. Don't use the estimates."
+            "in more than these numbers, or the noise is understated, or a line has the wrong mode"
+            + (
+                ", or a sensor looks otherwise than its table says (`compare --shapes` names such)"
+                if result.points
+                else ""
+            )
+            + ". Don't use the estimates."
+        )
+    elif result.unmatched:
+        count = len(result.unmatched)
+        said.append(
+            f"Misfit {per:.2f} of what noise and priors allow, without the {count} of {count + len(result.lines)} lines "
+            "that have no mode: these are no natural frequencies, or speak against the model."
         )
     else:
         said.append(f"Misfit {per:.2f} of what noise and priors allow: nothing speaks against the form of the model.")

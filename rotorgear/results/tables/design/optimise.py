@@ -68,6 +68,8 @@ def _said(result: OptimiseResult) -> list[str]:
         said.append(
             f"Bounds that forbid it: {held}."
             if held
+            else "None of the free numbers moves the modes that count: free others."
+            if not any(row.pull for row in result.numbers)
             else "No bound forbids it: the search ended in a local minimum; free more numbers, or ask for more searches."
         )
     if result.deviations_before is not None and result.deviations_after is not None:

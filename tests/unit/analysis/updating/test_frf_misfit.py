@@ -112,7 +112,7 @@ def test_responses_beside_lines_at_a_speed_share_the_numbers_of_a_campaign(pair)
     [
         ({"modal_damping": 1.5}, "modal_damping"),
         ({"frf_noise": 0.0}, "noise of frequency responses"),
-        ({"frf": "dead"}, "is zero or no number"),
+        ({"frf": "dead"}, "is 0 or no number at 5 Hz and 79 more"),
         ({"frf": "nowhere"}, "is no place"),
         ({"campaigns": [rg.Campaign([10.0])]}, "campaigns have their own"),
     ],

@@ -86,3 +86,41 @@ def test_points_that_the_model_has_not_and_lines_far_away_are_refused(model):
         rg.update(model, [1.0], free=FREE, tolerance=0.01)
     with pytest.raises(AnalysisError, match="one row a line"):
         rg.Measured(rig.lines, rig.points[1:], rig.shapes)
+
+
+def test_what_a_rig_leaves_open_is_said(model):
+    rig = measured(model, np.zeros(5), 5e-3, shapes=False)
+    strange = rg.Measured((*rig.lines, rg.RigLine(400.0)))
+    result = rg.update(model, strange, free=FREE, elements=8)
+    assert any("without the 1 of 11 lines that have no mode" in sentence for sentence in result.findings)
+    with_shapes = measured(model, np.zeros(5), 5e-3, shapes=True)
+    one = rg.Measured(with_shapes.lines, with_shapes.points[:1], with_shapes.shapes[:, :1])
+    assert any("a single sensor" in warning for warning in rg.update(model, one, free=FREE, elements=8).warnings)
+    stiff = rg.Campaign(rig, changes={"meshes.pair.stiffness": "1.1e8 N/m"}, name="stiff")
+    several = rg.update(model, campaigns=[rg.Campaign(rig), stiff], free="meshes.*.stiffness", elements=8)
+    assert any("campaign stiff: meshes.pair.stiffness is free and has another value" in w for w in several.warnings)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"free": "gears.*.teeth"}, "this one is whole"),
+        ({"free": "bearings.rotor_1_left.stiffness, bearings.rotor_1_left.stiffness.x"}, "it is a part of"),
+        ({"free": FREE, "prior": {"bearing.*": 0.1}}, "an address of the free numbers"),
+        ({"free": FREE, "rig": [10.0, 10.0]}, "is given twice"),
+    ],
+)
+def test_numbers_and_lines_that_make_no_sense_are_refused_in_a_sentence(model, change, words):
+    with pytest.raises(rg.RotorgearError, match=words):
+        rg.update(model, **({"rig": [10.0, 11.0], "elements": 1} | change))
+
+
+def test_shapes_measured_twice_or_without_end_are_refused_and_still_ones_are_none(model):
+    rig = measured(model, np.zeros(5), 1e-3, shapes=True)
+    with pytest.raises(AnalysisError, match="measured twice at generator_x"):
+        rg.Measured(rig.lines, (*rig.points[:-1], rig.points[0]), rig.shapes)
+    with pytest.raises(AnalysisError, match="infinite"):
+        rg.Measured(rig.lines, rig.points, rig.shapes * np.inf)
+    still = rig.shapes.copy()
+    still[2] = 0.0
+    assert np.isnan(rg.Measured(rig.lines, rig.points, still).shapes[2]).all()
