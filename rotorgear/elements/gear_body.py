@@ -8,10 +8,14 @@ rigid motions, those of the node, have neither stiffness nor damping.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from rotorgear.casings.wheel import ReducedWheel
 from rotorgear.elements.matrices import ElementMatrices
+
+if TYPE_CHECKING:
+    from rotorgear.casings.wheel import ReducedWheel
 
 
 def gear_body(wheel: ReducedWheel) -> ElementMatrices:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.casings.wheel import ReducedWheel
 from rotorgear.elements.elastic_body import elastic_body
 from rotorgear.elements.gear_body import gear_body
 from rotorgear.elements.gear_mesh import (
@@ -30,6 +30,9 @@ from rotorgear.model.parts.supports import Bearing, DampingMatrix, StiffnessMatr
 from rotorgear.model.parts.tables import Tables
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.system.nodes import CASING, Element, Nodes
+
+if TYPE_CHECKING:
+    from rotorgear.casings.wheel import ReducedWheel
 
 # Motion of the six dofs of a node.
 _NODE_MOTIONS = ("bending", "bending", "axial", "bending", "bending", "torsion")

@@ -7,15 +7,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.casings.wheel import ReducedWheel
 from rotorgear.elements.shaft_bubbles import bubble_motions
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.tables import Tables
 from rotorgear.system.plan import Plan
+
+if TYPE_CHECKING:
+    from rotorgear.casings.wheel import ReducedWheel
 
 MERGE_DISTANCE = 1e-9
 MOST_ELEMENTS = 200_000

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from rotorgear.casings.reduced_body import ReducedBody
+if TYPE_CHECKING:
+    from rotorgear.casings.reduced_body import ReducedBody
+
 
 # From this share of its kinetic energy on a casing moves as a whole.
 _AS_A_WHOLE = 0.5

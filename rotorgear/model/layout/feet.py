@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from rotorgear.casings.wheel import ReducedWheel
+from typing import TYPE_CHECKING
+
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.quantity import millimetres
+
+if TYPE_CHECKING:
+    from rotorgear.casings.wheel import ReducedWheel
 
 # How far the circle that the teeth are held on may be off the rim of the mesh, in normal modules. A ring of this height under
 # the mean force of the teeth gives some thousandths of what the teeth give.

@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rotorgear.casings.reduced_body import ReducedBody
 from rotorgear.errors import Problem
 from rotorgear.gears.geometry.blank import RigidBody
 from rotorgear.model.layout.assembly import Assembly, put_together
@@ -26,6 +25,7 @@ from rotorgear.model.parts.load import Load
 from rotorgear.model.parts.tables import Tables
 
 if TYPE_CHECKING:
+    from rotorgear.casings.reduced_body import ReducedBody
     from rotorgear.casings.wheel import ReducedWheel
     from rotorgear.gears.tooth_fe.blank_section import BlankTorsion
 

@@ -6,16 +6,19 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotorgear.casings.reduced_body import ReducedBody
 from rotorgear.errors import AnalysisError
 from rotorgear.model.layout.places import Place
 from rotorgear.model.parts.casing import Casing
 from rotorgear.model.parts.tables import Tables
 from rotorgear.progress import listener
 from rotorgear.quantity import millimetres, nearest
+
+if TYPE_CHECKING:
+    from rotorgear.casings.reduced_body import ReducedBody
 
 # A shaft whose axis misses the reference point of a seat by more than this stands in another one.
 _OFF_AXIS = 5e-3
