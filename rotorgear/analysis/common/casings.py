@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,8 +12,10 @@ from rotorgear.analysis.common.excitation import rates
 from rotorgear.casings.reduced_body import BEYOND
 from rotorgear.model.model import Model
 from rotorgear.quantity import millimetres
-from rotorgear.solvers.time.local_forces import LocalLaw
 from rotorgear.system.system import System
+
+if TYPE_CHECKING:
+    from rotorgear.solvers.time.local_forces import LocalLaw
 
 # So many modes of a casing are taken where the file does not ask for more.
 MOST_MODES = 120
