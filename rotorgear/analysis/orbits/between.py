@@ -4,6 +4,9 @@ A model is read, checked and assembled for each value of a parameter, which take
 matrices and parameters of laws are mostly smooth in it: the interpolant through Chebyshev points then converges geometrically
 (Trefethen, Approximation Theory and Approximation Practice, SIAM 2013, ch. 8), and values at the new points of twice as many
 tell its error. What is not smooth is assembled at each value.
+
+A power gives torques in proportion to 1/speed: over a speed the polynomials are those of each number times the speed, of low degree
+over wide ranges too.
 """
 
 from __future__ import annotations
@@ -28,16 +31,20 @@ _ABOUT = {
 
 @dataclass(frozen=True)
 class Between:
-    """Polynomials through systems at k shares of a range: barycentric weights (k,), numbers by name (k, ...)."""
+    """Polynomials through systems at k shares of a range: barycentric weights (k,), numbers by name (k, ...).
+
+    `factor`: by which numbers are multiplied, at a share.
+    """
 
     shares: np.ndarray
     weights: np.ndarray
     first: LocalSystem
     varying: dict[str, np.ndarray]
+    factor: Callable[[float], float]
 
     def at(self, share: float) -> LocalSystem:
         """The system at a share."""
-        own = _mixed(self.shares, self.weights, self.varying, share)
+        own = _mixed(self.shares, self.weights, self.varying, share, self.factor)
         first = self.first
         changed: dict[str, object] = {}
         for name in _MATRICES:
@@ -59,8 +66,12 @@ class Between:
         return made
 
 
-def between(system_at: Callable[[float], LocalSystem]) -> Between | None:
-    """Polynomials of the systems over shares from 0 to 1; None where they do not converge."""
+def between(system_at: Callable[[float], LocalSystem], factor: Callable[[float], float]) -> Between | None:
+    """Polynomials of the systems over shares from 0 to 1; None where they do not converge.
+
+    Args:
+        system_at: the system at a share. factor: with which its numbers are polynomials, at a share; never zero.
+    """
     known: dict[float, dict[str, np.ndarray]] = {}
     systems: dict[float, LocalSystem] = {}
 
@@ -84,7 +95,7 @@ def between(system_at: Callable[[float], LocalSystem]) -> Between | None:
             exact = numbers_at(share)
             if not _alike(systems[0.0], [systems[share]]):
                 return None
-            guess = _mixed(coarse, _weights(degree), varying, share)
+            guess = _mixed(coarse, _weights(degree), varying, share, factor)
             for name, values in exact.items():
                 if name in varying:
                     size = np.maximum(sizes[name], 1e-6 * sizes[name].max())
@@ -92,7 +103,7 @@ def between(system_at: Callable[[float], LocalSystem]) -> Between | None:
                 elif not np.array_equal(values, rows[0][name]):
                     return None
         if worst <= _ROUNDING:
-            return Between(coarse, _weights(degree), systems[0.0], varying)
+            return Between(coarse, _weights(degree), systems[0.0], varying, factor)
         degree *= 2
     return None
 
@@ -112,7 +123,11 @@ def _weights(degree: int) -> np.ndarray:
 
 
 def _mixed(
-    shares: np.ndarray, weights: np.ndarray, varying: dict[str, np.ndarray], share: float
+    shares: np.ndarray,
+    weights: np.ndarray,
+    varying: dict[str, np.ndarray],
+    share: float,
+    factor: Callable[[float], float],
 ) -> dict[str, np.ndarray]:
     off = share - shares
     at = np.flatnonzero(off == 0.0)
@@ -120,8 +135,15 @@ def _mixed(
         return {name: values[at[0]] for name, values in varying.items()}
     parts = weights / off
     parts /= parts.sum()
+    parts *= np.array([factor(one) for one in shares]) / factor(share)
+    whole = parts.sum()
     # About the first of them, so that numbers that stay the same stay so to the last bit: a count is no 2.9999.
-    return {name: values[0] + np.tensordot(parts, values - values[0], axes=1) for name, values in varying.items()}
+    found = {}
+    for name, values in varying.items():
+        same = np.all(values == values[0], axis=0)
+        mixed = whole * values[0] + np.tensordot(parts, values - values[0], axes=1)
+        found[name] = np.where(same, values[0], mixed)
+    return found
 
 
 def _numbers(system: LocalSystem) -> dict[str, np.ndarray]:

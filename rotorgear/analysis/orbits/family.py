@@ -142,9 +142,7 @@ class SystemFamily:
         if speed is None:
             return own
         turned = replace(own, rotation=Rotation.constant(speed))
-        # Sums of the same matrices: what one system has found serves all.
-        for name in ("stiffness_about", "damping_about"):
-            turned.__dict__[name] = getattr(own, name)
+        _keep_sums(own, turned)
         return turned
 
     def _exact(self, shares: Sequence[float]) -> LocalSystem:
@@ -160,7 +158,11 @@ class SystemFamily:
         if not self._asked_between:
             self._asked_between = True
             base = [0.0] * len(shares)
-            self._through = between(lambda share: self._exact([*base[:own], share, *base[own + 1 :]]))
+            over = self._ranges[own]
+            self._through = between(
+                lambda share: self._exact([*base[:own], share, *base[own + 1 :]]),
+                (lambda share: over.at(share) / over.begin) if own == self._speed_axis else (lambda share: 1.0),
+            )
         return self._through.at(shares[own]) if self._through else None
 
     def _varies(self, i: int) -> bool:
@@ -194,6 +196,12 @@ class SystemFamily:
                 self._known.clear()
             self._known[shares] = self._plants.of(self.system(shares))
         return self._known[shares]
+
+
+def _keep_sums(own: LocalSystem, turned: LocalSystem) -> None:
+    """Sums of the same matrices: what one system has found serves the other."""
+    for name in ("stiffness_about", "damping_about"):
+        turned.__dict__[name] = getattr(own, name)
 
 
 def _only_turns(model: Model) -> bool:

@@ -111,6 +111,7 @@ class TangentWork(NamedTuple):
     Attributes:
         d: (2 m, w) displacements and velocities along a tangent. blocks: (2, b, w) tangents of the laws.
         totals: (t, 2 n, w) sums of slopes. used, start: (t m, w) impulses of the damping, see kernel_jumps.py.
+        done: (t m 6, w) what the contacts did in a step, see kernel_switches.py.
     """
 
     d: np.ndarray
@@ -118,6 +119,7 @@ class TangentWork(NamedTuple):
     totals: np.ndarray
     used: np.ndarray
     start: np.ndarray
+    done: np.ndarray
 
 
 class PathSpan(NamedTuple):

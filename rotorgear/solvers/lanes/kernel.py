@@ -14,9 +14,11 @@ import numpy as np
 
 from rotorgear.solvers.contact.vectors import LANES, fill, get, put, work
 from rotorgear.solvers.lanes.arguments import TangentWork
+from rotorgear.solvers.lanes.columns import STIFFNESS
 from rotorgear.solvers.lanes.kernel_jumps import add_used_along, missing, missing_along, push
 from rotorgear.solvers.lanes.kernel_laws import SPACE, force_laws, laws_along, schedule_laws
 from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, contacts, count, product, read_table, widen
+from rotorgear.solvers.lanes.kernel_switches import DONE, ENTERED, MIDDLE, correct, do, ended, enter
 from rotorgear.solvers.lanes.kernel_tangents import orthonormal
 from rotorgear.solvers.time.compiled import compiled
 
@@ -96,6 +98,7 @@ def tangent_stage(number, h, system, columns, laws, found, kept, stage, ahead, b
             put(stage, at + 2 * n + j, along)
         if own:
             laws_along(laws, blocks, d, stage, at + 2 * n)
+        do(number, h, columns, found, d, work.done, DONE * m * k)
         if jumping:
             add_used_along(jumps, weight_of(number, h), found, kept, d, used, start, m * k, number == 0)
         advance(number, h, matrix, stage, ahead, at, base, 2 * n * k, totals[k])
@@ -128,6 +131,17 @@ def end_tangents(system, columns, kept, moved, tangents, impulse, work):
             put(d, j, slope_of(j, first, column, value, moved, k * rows))
         missing_along(jumps, values, kept, d, used, start, m * k, impulse)
         push(pushes, impulse, moved, k * rows, tangents, 2 * n * k)
+
+
+@compiled
+def switch_tangents(h, system, columns, entered, ends, moved, tangents, work):
+    """Put all tangents right where a contact has switched in a step."""
+    across = system.across
+    d = work.d
+    m = columns.kind.size
+    for k in range(tangents.shape[0]):
+        product(across, moved[k], d)
+        correct(h, columns, entered, ends, system.pushes, d, work.done, tangents[k], moved[k], DONE * m * k)
 
 
 @compiled(fast=True, free=True)
@@ -176,7 +190,11 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
     moved_ahead = work(t * rows).reshape(t, rows, LANES)
     weighed = work(t * 2 * n).reshape(t, 2 * n, LANES)
     blocks = work(2 * laws.block_first[-1]).reshape(2, laws.block_first[-1], LANES)
-    along = TangentWork(d, blocks, work(t * 2 * n).reshape(t, 2 * n, LANES), work(t * m), work(t * m))
+    along = TangentWork(
+        d, blocks, work(t * 2 * n).reshape(t, 2 * n, LANES), work(t * m), work(t * m), work(t * m * DONE)
+    )
+    entered = work(m * ENTERED).reshape(m, ENTERED, LANES)
+    ends = work(m * 4).reshape(m, 4, LANES)
     condition = np.zeros((LANES, laws.state_first[-1]))
     space = np.zeros(SPACE)
     used = work(m)
@@ -203,10 +221,18 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
                     widen(seen, extremes, p)
                 advance(number, h, matrix, stage, ahead, 0, state, 0, total)
                 if t:
+                    if number == 0:
+                        enter(columns, now, d, found, entered)
+                    elif number == 1:
+                        entered[:, MIDDLE] = now[:, STIFFNESS]
                     tangent_stage(number, h, system, columns, laws, found, kept, moved, moved_ahead, tangents, along)
                 stage, ahead, moved, moved_ahead, F, F_ahead = ahead, stage, moved_ahead, moved, F_ahead, F
-            if jumping:
+            if jumping or t:
                 product(across, stage, d)
+            if t and ended(columns, now, d, entered, ends):
+                switch_tangents(h, system, columns, entered, ends, moved, tangents, along)
+                product(across, stage, d)
+            if jumping:
                 missing(jumps, values, now, d, used, kept, impulse)
                 push(pushes, impulse, stage, 0, state, 0)
                 if t:

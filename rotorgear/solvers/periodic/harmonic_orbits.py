@@ -19,6 +19,8 @@ _DIFFERENCE = 1e-6
 # Modes up to so many base frequencies, and so many times the contact's own, belong to the map over a period.
 _BASES = 16.0
 _CONTACTS = 3.0
+# Values whose receptances are kept.
+_MOST_SETTLED = 2000
 
 
 class HarmonicOrbits:
@@ -38,7 +40,8 @@ class HarmonicOrbits:
         self.grid = grid
         self.scale = scale
         self._receptances = receptances or Receptances(grid.harmonics, grid.order)
-        self._exact: tuple[float, np.ndarray, np.ndarray] | None = None
+        # Receptances (H + 1, m, m) at values settled on, and the watched displacements (H, p, m) of unit forces there.
+        self._settled: dict[float, tuple[np.ndarray, np.ndarray]] = {}
         self._last: tuple[bytes, float, np.ndarray] | None = None
         self._basis: ModalBasis | None = None
         self._basis_of: Plant | None = None
@@ -49,18 +52,33 @@ class HarmonicOrbits:
         return (2 * self.grid.harmonics + 1) * self.scale.size
 
     def settle_on(self, p: float) -> None:
-        """Solve for the exact receptances at a value."""
-        if self._exact is None or self._exact[0] != p:
-            R, X = self._receptances.exact(self._plant_at(p))
-            self._exact = (p, R, X)
+        """Solve for the exact receptances at a value, unless they follow from those of its neighbours to rounding."""
+        if p in self._settled:
+            return
+        plant = self._plant_at(p)
+        own = self._receptances
+        if own.serves(plant, p):
+            self._settle(p, own.near(plant), own.watched(plant))
+        else:
+            self._solve_at(p)
+
+    def _settle(self, p: float, R: np.ndarray, watched: np.ndarray) -> None:
+        if len(self._settled) > _MOST_SETTLED:
+            self._settled.clear()
+        self._settled[p] = (R, watched)
+
+    def _solve_at(self, p: float) -> np.ndarray:
+        """Displacements (H, n, m) of unit local forces at a value."""
+        plant = self._plant_at(p)
+        X = self._receptances.exact(plant, p)[:, :, : plant.m]
+        self._settle(p, self._receptances.with_static(plant, plant.B.T @ X), plant.watched.T @ X)
+        return X
 
     def _receptance(self, p: float) -> np.ndarray:
-        if self._exact is not None and self._exact[0] == p:
-            return self._exact[1]
         if not self._receptances.begun:
             self.settle_on(p)
-            assert self._exact is not None
-            return self._exact[1]
+        if p in self._settled:
+            return self._settled[p][0]
         return self._receptances.near(self._plant_at(p))
 
     def along(self, plant_at: PlantAt) -> HarmonicOrbits:
@@ -169,14 +187,13 @@ class HarmonicOrbits:
         grid = self.grid
         c = self.coefficients(y)
         self.settle_on(p)
-        assert self._exact is not None
-        X = self._exact[2]
+        moved = self._settled[p][1]
         u = balance(c, plant, grid, tangents=False).u
         W = plant.watched
         seen = np.zeros((grid.harmonics + 1, W.shape[1]), complex)
         seen[0] = W.T @ (plant.still.q + plant.still.X @ u[0].real)
         if W.shape[1]:
-            seen[1:] = np.einsum("np,hnm,hm->hp", W, X, u[1:], optimize=True)
+            seen[1:] = np.einsum("hpm,hm->hp", moved, u[1:])
         N = instants or grid.instants
         w = grid.frequency(plant.speed)
         laws = plant.forces
@@ -186,11 +203,10 @@ class HarmonicOrbits:
 
     def state(self, y: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
         """Displacements and velocities (n,) of a solution at the begin of its period."""
-        self.settle_on(p)
-        assert self._exact is not None
+        X = self._solve_at(p)
         plant = self._plant_at(p)
         u = balance(self.coefficients(y), plant, self.grid, tangents=False).u
-        q = np.einsum("hnm,hm->hn", self._exact[2], u[1:])
+        q = np.einsum("hnm,hm->hn", X, u[1:])
         turn = 1j * self.grid.frequency(plant.speed) * np.arange(1, len(u))[:, None]
         still = plant.still.q + plant.still.X @ u[0].real
         return still + q.real.sum(axis=0), (turn * q).real.sum(axis=0)

@@ -3,7 +3,8 @@
     Z(h, p) X = B,   Z^T Y = B,   R = B^T X = B^T V (Y^T Z V)^-1 Y^T B
 
 With V and Y from a few exact solutions the last form, a Petrov and Galerkin projection, gives the exact ones again, their
-slopes in p, and what lies near: its error is the product of the residuals of both sides. Antoulas, Beattie and Gugercin,
+slopes in p, and what lies near: its error is the product of the residuals of both sides. What it changes by without the oldest of
+these solutions is more than its own error, and tells where the next one is due. Antoulas, Beattie and Gugercin,
 Interpolatory Methods for Model Reduction (SIAM 2020).
 """
 
@@ -12,16 +13,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.sparse.factor import factor_general
 
-# Systems up to this size are solved densely, all harmonics at once.
+# Systems up to this size are solved densely, and those whose damping is full to such a share, as modal damping makes it.
 _DENSE = 60
-# Exact solutions that the rational form is made of.
-_KEPT = 2
+_FULL = 0.3
+# Exact solutions that the rational form is made of, and its change without the oldest one that it may serve with.
+_KEPT = 3
+_ENOUGH = 1e-10
+# How far beyond these solutions, over what they span, it is worth a try.
+_REACH = 0.25
 
 
 @dataclass(frozen=True)
@@ -43,8 +49,10 @@ class Receptances:
         self._h = np.arange(1, harmonics + 1)
         self._order = order
         self._known: list[tuple[np.ndarray, np.ndarray]] = []
-        self._bases: tuple[np.ndarray, np.ndarray] | None = None
-        self._small: tuple[Plant, Projected] | None = None
+        self._places: list[float] = []
+        # By the solutions left out and whether watched places are in it.
+        self._bases: dict[tuple[int, bool], tuple[np.ndarray, np.ndarray]] = {}
+        self._small: dict[tuple[int, bool], tuple[Plant, Projected]] = {}
         self.exact_solutions = 0
         # Those of half the frequencies, where a motion of twice the period asked for them.
         self.twice: Receptances | None = None
@@ -58,23 +66,26 @@ class Receptances:
         """Of the harmonics from the first on, rad/s."""
         return np.asarray(self._h * self._order * abs(plant.speed))
 
-    def exact(self, plant: Plant) -> tuple[np.ndarray, np.ndarray]:
-        """R (H + 1, m, m) and the displacements X (H, n, m) of unit local forces, h from 1 on."""
+    def exact(self, plant: Plant, place: float) -> np.ndarray:
+        """Displacements X (H, n, m + p) of unit local forces, and of unit forces at the p watched places, h from 1 on.
+
+        `place`: of the plant along the parameter.
+        """
         w = self.frequencies(plant)
-        B = plant.B.astype(complex)
+        B = np.hstack([plant.B, plant.watched]).astype(complex)
         n, m = B.shape
         self.exact_solutions += 1
-        if n <= _DENSE:
+        X = np.empty((len(w), n, m), complex)
+        Y = np.empty_like(X)
+        if n <= _DENSE or _full(plant.D):
             K, D, M = (A.toarray() for A in (plant.K, plant.D, plant.M))
-            Z = K + 1j * w[:, None, None] * D - (w**2)[:, None, None] * M
-            try:
-                X = np.linalg.solve(Z, np.broadcast_to(B, (len(w), n, m)))
-                Y = np.linalg.solve(Z.transpose(0, 2, 1), np.broadcast_to(B, (len(w), n, m)))
-            except np.linalg.LinAlgError:
-                raise ConvergenceError(_SINGULAR) from None
+            for i, frequency in enumerate(w):
+                lu, pivots, singular = la.lapack.zgetrf(K + 1j * frequency * D - frequency**2 * M, overwrite_a=True)
+                if singular:
+                    raise ConvergenceError(_SINGULAR)
+                X[i] = la.lapack.zgetrs(lu, pivots, B)[0]
+                Y[i] = la.lapack.zgetrs(lu, pivots, B, trans=1)[0]
         else:
-            X = np.empty((len(w), n, m), complex)
-            Y = np.empty_like(X)
             K, D, M = _on_one_pattern(plant)
             for i, frequency in enumerate(w):
                 data = K.data + (1j * frequency) * D.data - frequency**2 * M.data
@@ -84,47 +95,80 @@ class Receptances:
         if not np.all(np.isfinite(X)):
             raise ConvergenceError(_SINGULAR)
         self._known = [*self._known, (X, Y)][-_KEPT:]
-        self._bases = None
-        self._small = None
-        return self._with_static(plant, plant.B.T @ X), X
+        self._places = [*self._places, place][-_KEPT:]
+        self._bases.clear()
+        self._small.clear()
+        return X
 
-    def near(self, plant: Plant) -> np.ndarray:
-        """R (H + 1, m, m) by the rational form; exact solutions have to be there."""
-        own = self._projected(plant)
+    def serves(self, plant: Plant, place: float) -> bool:
+        """Whether the rational form is exact but for rounding at a plant: without its oldest solution it gives the same."""
+        # Bases cost as much as half a solution: not where a form of so few can't reach.
+        low = min(self._places, default=0.0)
+        high = max(self._places, default=0.0)
+        beyond = _REACH * (high - low)
+        if len(self._known) < _KEPT or not low - beyond <= place <= high + beyond:
+            return False
+        try:
+            best = self.near(plant)[1:]
+            fewer = self.near(plant, leave=1)[1:]
+        except np.linalg.LinAlgError:
+            return False
+        change = np.linalg.norm(best - fewer, axis=(1, 2))
+        return bool(np.all(change <= _ENOUGH * np.linalg.norm(best, axis=(1, 2))))
+
+    def near(self, plant: Plant, leave: int = 0) -> np.ndarray:
+        """R (H + 1, m, m) by the rational form; exact solutions have to be there, `leave` of which are left out."""
+        return self.with_static(plant, self._between(plant, leave, wide=False))
+
+    def watched(self, plant: Plant) -> np.ndarray:
+        """Watched displacements (H, p, m) of unit local forces by the rational form, h from 1 on."""
+        return self._between(plant, 0, wide=True)[:, plant.m :, : plant.m]
+
+    def _between(self, plant: Plant, leave: int, *, wide: bool) -> np.ndarray:
+        own = self._projected(plant, leave, wide=wide)
         w = self.frequencies(plant)[:, None, None]
         inner = own.K + 1j * w * own.C - w**2 * own.M
         if own.G is not None:
             inner = inner + 1j * w * plant.speed * own.G
-        return self._with_static(plant, own.seen @ np.linalg.solve(inner, own.pushed))
+        return np.asarray(own.seen @ np.linalg.solve(inner, own.pushed))
 
-    def _projected(self, plant: Plant) -> Projected:
+    def _projected(self, plant: Plant, leave: int, *, wide: bool) -> Projected:
         """The plant in both bases: anew where more than its speed and load has changed."""
-        if self._small is not None and _same_matrices(self._small[0], plant):
-            return self._small[1]
-        if self._bases is None:
+        key = (leave, wide)
+        if key in self._small and _same_matrices(self._small[key][0], plant):
+            return self._small[key][1]
+        B = np.hstack([plant.B, plant.watched]) if wide else plant.B
+        if key not in self._bases:
+            s = B.shape[1]
             # Columns of one size, orthonormal: two values next to each other give nearly the same ones.
-            V, Y = (np.concatenate([pair[side] for pair in self._known], axis=2) for side in (0, 1))
-            self._bases = (_orthonormal(V), _orthonormal(Y).transpose(0, 2, 1))
-        V, left = self._bases
+            V, Y = (np.concatenate([pair[side][:, :, :s] for pair in self._known[leave:]], axis=2) for side in (0, 1))
+            self._bases[key] = (_orthonormal(V), _orthonormal(Y).transpose(0, 2, 1))
+        V, left = self._bases[key]
         h, n, p = V.shape
         flat = V.transpose(1, 0, 2).reshape(n, h * p)
 
         def seen_by_both(A: sp.csc_array) -> np.ndarray:
-            return np.asarray(left @ (A @ flat).reshape(n, h, p).transpose(1, 0, 2))
+            moved = (A.toarray() if _full(A) else A) @ flat
+            return np.asarray(left @ moved.reshape(n, h, p).transpose(1, 0, 2))
 
         own = Projected(
             seen_by_both(plant.K),
             seen_by_both(plant.C),
             seen_by_both(plant.M),
             None if plant.gyroscopic is None else seen_by_both(plant.gyroscopic),
-            plant.B.T @ V,
-            left @ plant.B,
+            B.T @ V,
+            left @ B,
         )
-        self._small = (plant, own)
+        self._small[key] = (plant, own)
         return own
 
-    def _with_static(self, plant: Plant, R: np.ndarray) -> np.ndarray:
+    def with_static(self, plant: Plant, R: np.ndarray) -> np.ndarray:
+        """R of h = 0 ... H from those from 1 on."""
         return np.concatenate([plant.still.R[None].astype(complex), R])
+
+
+def _full(A: sp.csc_array) -> bool:
+    return bool(A.nnz > _FULL * A.shape[0] * A.shape[1])
 
 
 def _orthonormal(V: np.ndarray) -> np.ndarray:
