@@ -5,8 +5,8 @@ matrices and parameters of laws are mostly smooth in it: the interpolant through
 (Trefethen, Approximation Theory and Approximation Practice, SIAM 2013, ch. 8), and values at the new points of twice as many
 tell its error. What is not smooth is assembled at each value.
 
-A power gives torques in proportion to 1/speed: over a speed the polynomials are those of each number times the speed, of low degree
-over wide ranges too.
+A power gives torques in proportion to 1/speed: over a speed the polynomials are those of each number times the speed, of low
+degree over wide ranges too.
 """
 
 from __future__ import annotations
@@ -66,7 +66,9 @@ class Between:
         return made
 
 
-def between(system_at: Callable[[float], LocalSystem], factor: Callable[[float], float]) -> Between | None:
+def between(
+    system_at: Callable[[float], LocalSystem], factor: Callable[[float], float] = lambda share: 1.0
+) -> Between | None:
     """Polynomials of the systems over shares from 0 to 1; None where they do not converge.
 
     Args:

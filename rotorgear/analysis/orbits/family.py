@@ -159,10 +159,14 @@ class SystemFamily:
             self._asked_between = True
             base = [0.0] * len(shares)
             over = self._ranges[own]
-            self._through = between(
-                lambda share: self._exact([*base[:own], share, *base[own + 1 :]]),
-                (lambda share: over.at(share) / over.begin) if own == self._speed_axis else (lambda share: 1.0),
-            )
+
+            def exact(share: float) -> LocalSystem:
+                return self._exact([*base[:own], share, *base[own + 1 :]])
+
+            if own == self._speed_axis:
+                self._through = between(exact, lambda share: over.at(share) / over.begin)
+            else:
+                self._through = between(exact)
         return self._through.at(shares[own]) if self._through else None
 
     def _varies(self, i: int) -> bool:

@@ -141,7 +141,12 @@ def orbits(
             *family.notes,
             *_modes_left_out(problem),
         ),
-        warnings=(*_warnings(branches, curves), *_short_of_modes(family), *((short,) if short else ())),
+        warnings=(
+            *_undamped(family.plant(0.0)),
+            *_warnings(branches, curves),
+            *_short_of_modes(family),
+            *((short,) if short else ()),
+        ),
     )
 
 
@@ -229,6 +234,17 @@ def _short_of_modes(family: SystemFamily) -> tuple[str, ...]:
     local = family.local
     fastest = max(abs(family.plant(share).speed) for share in (0.0, 1.0))
     return tuple(time_warnings(local.system.model, local.local.forces.laws, fastest))
+
+
+def _undamped(plant: Plant) -> tuple[str, ...]:
+    """A word where nothing takes up energy."""
+    rates = plant.D + plant.D.T
+    if any(law.uses_velocity for law in plant.forces.laws) or (rates.nnz and abs(rates).max() > 0.0):
+        return ()
+    return (
+        "nothing damps the model: at a resonance its motions have no bound, and no branch comes past one; "
+        "give damping.modal_ratio or the damping of bearings and meshes",
+    )
 
 
 def _warnings(branches: list[Branch], curves: list[Curve]) -> list[str]:

@@ -82,16 +82,27 @@ def located(orbits: Orbits, a: Certified, b: Certified, kind: str) -> Certified 
     chord = b.node.z - a.node.z
     length = float(np.linalg.norm(chord))
     normal = chord / length
+    nodes: dict[float, Node] = {0.0: a.node, 1.0: b.node}
     known: dict[float, Certified] = {0.0: a, 1.0: b}
 
-    def test(share: float) -> float:
+    def node_at(share: float) -> Node:
+        if share not in nodes:
+            nodes[share] = corrected(orbits, a.node.z + share * chord, normal, normal)
+        return nodes[share]
+
+    def certified(share: float) -> Certified:
         if share not in known:
-            node = corrected(orbits, a.node.z + share * chord, normal, normal)
+            node = node_at(share)
             known[share] = Certified(node, orbits.multipliers(node.y, node.p))
-        one = known[share]
+        return known[share]
+
+    def test(share: float) -> float:
         if kind == FOLD:
-            return float(one.node.tangent[-1] * np.sign(one.node.tangent @ normal))
-        return _doubling(one.multipliers) if kind == DOUBLING else _ring(one.multipliers)
+            # Multipliers cost more than all else, and a fold does not ask for them.
+            tangent = node_at(share).tangent
+            return float(tangent[-1] * np.sign(tangent @ normal))
+        multipliers = certified(share).multipliers
+        return _doubling(multipliers) if kind == DOUBLING else _ring(multipliers)
 
     ends = (test(0.0), test(1.0))
     if not ends[0] * ends[1] < 0.0:
@@ -104,7 +115,7 @@ def located(orbits: Orbits, a: Certified, b: Certified, kind: str) -> Certified 
     # Where a pair comes into being outside the circle, none has crossed it.
     if kind == NEIMARK_SACKER and left > _JUMP * max(abs(one) for one in ends):
         return None
-    return known[root]
+    return certified(root)
 
 
 def _outside(multipliers: np.ndarray) -> int:
