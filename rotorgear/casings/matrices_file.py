@@ -13,6 +13,8 @@ Everything beside stiffness and mass may be left out, but some interface must be
 
 from __future__ import annotations
 
+import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -40,6 +42,8 @@ _STRAINED = 1e-8
 _UNKNOWN = (float("nan"), np.full(3, np.nan), np.full((3, 3), np.nan))
 # Largest difference of a matrix from its transpose, relative to its largest entry, that rounding explains.
 _SYMMETRIC = 1e-8
+# An eigenvalue below zero by more than this share of the largest is no rounding, of single precision either.
+_PUSHES = 1e-5
 
 
 def read_matrices(
@@ -88,9 +92,14 @@ def read_matrices(
     if n < 6 * len(seats):
         raise AnalysisError(f"{address}: {n} dofs in '{path.name}', but {len(seats)} seats have {6 * len(seats)}")
     try:
-        of_ratio = modal_damping(mass, stiffness, damping_ratio)
+        squares = la.eigvalsh(stiffness, mass)
     except la.LinAlgError:
         raise AnalysisError(f"{address}: the mass matrix in '{path.name}' is not positive definite") from None
+    if squares[0] < -_PUSHES * np.abs(squares).max():
+        raise AnalysisError(
+            f"{address}: the stiffness in '{path.name}' pushes some motion on instead of holding it (an eigenvalue is negative)"
+        )
+    of_ratio = modal_damping(mass, stiffness, damping_ratio)
     for key, columns in (("weight", 3), ("rigid", 6)):
         if key in arrays and arrays[key].shape != (n, columns):
             raise AnalysisError(f"{address}: {key} is {arrays[key].shape} in '{path.name}', expected ({n}, {columns})")
@@ -154,10 +163,9 @@ def _arrays(path: Path, address: str) -> dict[str, np.ndarray]:
             arrays = {name: file[name] for name in file.files}
     except FileNotFoundError:
         raise AnalysisError(f"{address}: there is no file '{path}'") from None
-    except (OSError, ValueError, EOFError) as error:
-        raise AnalysisError(
-            f"{address}: '{path.name}' can't be read as a NumPy archive (.npz): {str(error).splitlines()[0]}"
-        ) from None
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        words = " ".join(str(error).split()) or "it is cut off"
+        raise AnalysisError(f"{address}: '{path.name}' can't be read as a NumPy archive (.npz): {words}") from None
     unknown = [name for name in arrays if name not in _KNOWN]
     if unknown:
         raise AnalysisError(

@@ -130,8 +130,8 @@ def _only_kind(found: FileMesh, address: str) -> str:
         )
     if len(kinds) > 1:
         raise AnalysisError(
-            f"{address}: the mesh mixes {' and '.join(kinds)} (cells: {counts}), which do not fit together. Use one kind, "
-            "or one mesh for each kind with joins between them."
+            f"{address}: the mesh mixes {' and '.join(kinds)} (cells: {counts}), which do not fit together. Mesh the whole "
+            "body with one kind."
         )
     return kinds[0]
 

@@ -10,7 +10,7 @@ import pytest
 
 from rotorgear.casings.matrices_file import read_matrices
 from rotorgear.errors import AnalysisError
-from tests.bar_casing import STEEL, bar_matrices
+from tests.bar_casing import STEEL, bar_matrices, write_bar
 
 PLACES = np.linspace(-0.1, 0.5, 7)
 
@@ -62,6 +62,7 @@ def test_the_model_file_may_say_where_the_seats_are(tmp_path: Path, arrays: dict
         ({"mass": np.eye(6)}, "mass is 6 x 6 in 'bar.npz', stiffness 42 x 42"),
         ({"stiffness": np.triu(np.ones((42, 42)))}, "stiffness is not symmetric"),
         ({"mass": np.zeros((42, 42))}, "the mass matrix in 'bar.npz' is not positive definite"),
+        ({"stiffness": -np.eye(42)}, "the stiffness in 'bar.npz' pushes some motion on"),
         ({"mass": np.full((42, 42), np.nan)}, "mass has entries that are no finite numbers"),
         ({"seats": np.array(["a"])}, "1 names of seats with 2 reference points"),
         ({"weight": np.zeros((3, 3))}, r"weight is \(3, 3\) in 'bar.npz', expected \(42, 3\)"),
@@ -84,6 +85,11 @@ def test_files_that_are_no_archives_are_refused(tmp_path: Path) -> None:
     (tmp_path / "text.npz").write_text("no matrices")
     with pytest.raises(AnalysisError, match=r"'text\.npz' can't be read as a NumPy archive"):
         read_matrices(tmp_path / "text.npz", {}, 0.0, "box")
+    for share in (0.1, 0.5, 0.9):
+        whole = write_bar(tmp_path / "bar.npz", z=np.linspace(0.0, 0.5, 3), diameter=0.03, seats=[0]).read_bytes()
+        (tmp_path / "cut.npz").write_bytes(whole[: int(share * len(whole))])
+        with pytest.raises(AnalysisError, match=r"'cut\.npz' can't be read as a NumPy archive \(\.npz\): \w"):
+            read_matrices(tmp_path / "cut.npz", {}, 0.0, "box")
     (tmp_path / "box.op4").write_text("")
     with pytest.raises(
         AnalysisError, match=r"'box\.op4' is a file of Nastran, which is not read; write its matrices into"
