@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,9 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.casings.casing import forget
+from rotorgear.casings.fe_body import finite_element_body
+from rotorgear.casings.wheel_reduction import reduce_wheel
+from rotorgear.model.layout.wheels import wheel_settings
 from tests.unit.analysis.left_out.sentences import numbers, sentence
 from tests.unit.casings.blocks import block, write_inp
 from tests.unit.casings.test_wheel import WHEEL
@@ -133,6 +137,26 @@ def test_modes_of_a_gear_body_that_are_left_out_change_less_than_those_that_are_
     more = rg.modal(gear_pair(folder, WHEEL.replace("6 kHz", "9 kHz") % ""), modes=12, elements=1)
     off = np.abs(found.frequency_hz[~found.rigid] / more.frequency_hz[~more.rigid] - 1.0)
     assert 1e-9 < off.max() < 1e-3
+
+
+@pytest.mark.long
+def test_the_error_of_the_mesh_of_a_gear_body_is_as_large_as_said(folder: Path) -> None:
+    model = gear_pair(folder)
+    found = rg.modal(model, modes=3, elements=1)
+    (said,) = numbers(
+        sentence(found, "gears.wheel.body: the error of its mesh").partition("up to ")[2].split(" in ")[0]
+    )
+    settings = wheel_settings("wheel", model.gears["wheel"], model.materials["own"])
+    coarse, fine = (
+        reduce_wheel(finite_element_body(replace(settings, splits=splits)), settings.modes_to) for splits in (0, 1)
+    )
+    own = slice(0, min(coarse.modes, fine.modes))
+    np.testing.assert_array_equal(coarse.diameters[own], fine.diameters[own])
+    off = coarse.frequency[own] / fine.frequency[own] - 1.0
+    assert said == pytest.approx(coarse.mesh_error, rel=0.05)
+    assert off.min() > 0.0
+    assert 0.5 * said < off.max() < said
+    assert off.max() > 10.0 * np.nanmax(found.error_estimate)
 
 
 def test_a_gear_body_that_turns_does_not_grow(folder: Path) -> None:
