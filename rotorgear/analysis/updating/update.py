@@ -174,7 +174,8 @@ def _measured(model: Model, campaign: Campaign) -> Measured:
     only_responses = campaign.frf is not None and rig is None and campaign.shapes is None
     if (rig is None) == (campaign.shapes is None) and not only_responses:
         raise AnalysisError(
-            "give what was measured: --rig lines.csv, or --shapes rig.uff with --points sensors.csv; and --frf rig.uff"
+            "give what was measured: --rig lines.csv or --shapes rig.uff, --frf rig.uff beside one of them or alone, and where "
+            "the sensors are: --points sensors.csv"
         )
     if campaign.shapes is not None:
         given = read_rig_shapes(campaign.shapes, campaign.points, model)

@@ -193,6 +193,20 @@ def test_the_least_mass_is_lighter_than_the_least_change_and_keeps_the_margin():
     assert mass.mass_after_kg <= change.mass_after_kg
 
 
+def test_several_speeds_keep_their_margins_at_once():
+    result = rg.optimise(
+        rg.loads(ROTOR),
+        "shafts.*.sections.*.outer_diameter",
+        margin="20 %",
+        speeds=["9000 rpm", "10000 rpm"],
+        searches=1,
+    )
+    before = [abs(row.before_margin) < 0.2 for row in result.lines]
+    assert before == [False, True]
+    assert result.reached
+    assert [round(row.frequency_hz) for row in result.lines] == [150, 167]
+
+
 SCATTERING = """
 [scatter]
 "bearings.*.stiffness" = { sigma = "15 %" }
