@@ -15,9 +15,11 @@ SMALLEST = 0.01
 # Harmonics of a given curve that are looked at, so that what is left out has a size.
 SEEN = 100
 # Harmonics of loaded teeth below the first share of the strongest are minor ones. They are left out while all of them together
-# change no peak to peak by more than the second share.
+# change no peak to peak by more than the second share of it, or of the third share of the largest one where that is more: helices
+# that carry little have small curves, which count like the others.
 _MINOR = 0.004
 _PEAK_TO_PEAK = 0.005
+_SMALL_CURVE = 0.1
 # Teeth that differ have orders without end; no more than so many are taken.
 _MOST = 1024
 _NODES = 256
@@ -81,7 +83,7 @@ class Needed:
     Attributes:
         numbers: theirs, rising; major: those of them that are large by themselves.
         weak: the largest of the others, relative to the strongest.
-        change: largest change of a peak to peak without the others, relative to the largest peak to peak.
+        change: largest change of a peak to peak without the others, relative to it, or to a tenth of the largest one.
     """
 
     numbers: tuple[int, ...] = ()
@@ -101,12 +103,13 @@ def that_matter(values: np.ndarray) -> Needed:
     order = np.argsort(-size, kind="stable")
     least = min(int(np.count_nonzero(size > _MINOR * largest)), _MOST)
     whole = np.ptp(values, axis=0)
+    scale = np.maximum(whole, _SMALL_CURVE * whole.max())
 
     def change(count: int) -> float:
         kept = np.zeros_like(spectrum)
         kept[order[:count]] = spectrum[order[:count]]
         parts = np.fft.irfft(kept, len(values), axis=0)
-        return float(np.abs(np.ptp(parts, axis=0) - whole).max() / whole.max())
+        return float((np.abs(np.ptp(parts, axis=0) - whole) / scale).max())
 
     count = least
     while count < min(len(order) - 1, _MOST) and change(count) > _PEAK_TO_PEAK:
