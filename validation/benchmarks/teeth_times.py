@@ -54,8 +54,8 @@ helix_angle = "{beta} deg"
 width = "{width} mm"
 """
 _MOTIONS = {
-    "response": ["response", "split.toml", "--modal-damping", "0.02", "--fmax", "10000"],
-    "transient": ["transient", "split.toml", "--modal-damping", "0.02", "--time", "20 ms", "--discard", "10 ms"],
+    "response": ["response", "split.toml", "--fmax", "10000"],
+    "transient": ["transient", "split.toml", "--time", "20 ms"],
 }
 
 
@@ -78,7 +78,7 @@ def split_torque() -> str:
         head, mark, tail = text.partition(f"[meshes.{mesh}]")
         tail = re.sub(r'stiffness = "5.63e8 N/m"', 'stiffness = "tooth_fe"', tail, count=1)
         text = head + mark + re.sub(r"transmission_error = .*", "", tail, count=1)
-    return text
+    return text + "\n[damping]\nmodal_ratio = 0.02\n"
 
 
 def main(words: list[str]) -> None:
