@@ -1,12 +1,13 @@
 """Bring the docs up to date:  python docs/update.py
 
-With names of pages or generators, only those:  python docs/update.py mesh json
+With names of pages or generators, only those, their long blocks too:  python docs/update.py mesh json
 With --check it changes nothing, and fails where something but seconds would change.
 
 Every number on a page is printed by a command beside it. This runs the marked blocks of all pages (the marks stand in
 `machinery/snippets.py`), puts in what they print now, and writes the generated pages. A generator is a file
 `docs/generate_*.py` with a function `pages() -> dict[str, str]`: the text of each page by its path from the top of the
-repository. With `LONG = True` at its top it only runs with --long. So do the notebooks, where they are not named.
+repository. With `LONG = True` at its top it only runs with --long. So do the notebooks and the long blocks of pages, where
+these are not named.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Callable, Collection, Iterator
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 
@@ -63,10 +65,10 @@ def generated_changes(file: Path) -> Iterator[tuple[Path, str, str]]:
             yield page, old, text
 
 
-def snippet_changes(page: Path) -> Iterator[tuple[Path, str, str]]:
+def snippet_changes(page: Path, *, long: bool = True) -> Iterator[tuple[Path, str, str]]:
     """Yield (page, old text, new text) if what the blocks of a page print is not what it shows, seconds apart."""
     with tempfile.TemporaryDirectory() as directory:
-        outcomes = list(run_page(page, Path(directory)))
+        outcomes = list(run_page(page, Path(directory), long=long))
     old = page.read_text(encoding="utf-8")
     new = rewritten(page, outcomes)
     if new != old:
@@ -95,7 +97,7 @@ def update(check: bool, long: bool, names: Collection[str] = ()) -> tuple[int, i
     changed = failed = 0
     jobs: list[tuple[Callable[[Path], Iterator[tuple[Path, str, str]]], Path]]
     jobs = [(generated_changes, file) for file in generators() if long or not is_long(file)]
-    jobs += [(snippet_changes, page) for page in pages()]
+    jobs += [(partial(snippet_changes, long=long or bool(names)), page) for page in pages()]
     jobs += [(notebook_changes, file) for file in notebooks() if long or file.stem in names]
     for changes, source in jobs:
         if names and source.stem.removeprefix("generate_") not in names:
@@ -122,7 +124,7 @@ def main() -> int:
     parser.add_argument(
         "--check", action="store_true", help="change nothing; fail where something but seconds would change"
     )
-    parser.add_argument("--long", action="store_true", help="run the generators that take minutes, too")
+    parser.add_argument("--long", action="store_true", help="run the generators and blocks that take long, too")
     parser.add_argument("names", nargs="*", help="pages or generators, such as mesh or json; default: all")
     options = parser.parse_args()
     changed, failed = update(options.check, options.long, options.names)

@@ -7,6 +7,8 @@ A mark is an HTML comment on the line before a fenced block:
     <!-- output -->               the block is what the python block before it prints
     <!-- run: rotorgear ... -->   the block is what this command prints
     <!-- run exit=2: ... -->      the same for a command that ends with this code; `<!-- run exit=2 -->` for `console`
+    <!-- run long: ... -->        a block of seconds to minutes on which no other depends: run with the long tests, and where its
+                                  page is brought up to date; also `<!-- run long -->`
     <!-- file: gearbox.toml -->   the block is written to this file
 
 The blocks of a page run in order, in one directory that starts with a copy of `models/`. Commands are `rotorgear` and
@@ -33,7 +35,7 @@ PRINT_WIDTH = 100
 LONGEST_RUN = 300  # seconds
 
 _FENCE = re.compile(r"^( *)(`{3,}|~{3,})\s*([\w-]*)[^`]*$")
-_MARK = re.compile(r"^\s*<!--\s*(run|output|file)\b(?:\s+exit=(\d+))?\s*(?::\s*(.*?))?\s*-->\s*$")
+_MARK = re.compile(r"^\s*<!--\s*(run|output|file)\b(\s+long)?(?:\s+exit=(\d+))?\s*(?::\s*(.*?))?\s*-->\s*$")
 
 
 class SnippetError(Exception):
@@ -42,7 +44,10 @@ class SnippetError(Exception):
 
 @dataclass(frozen=True)
 class Block:
-    """A marked block: its page, the line of its fence (from 1), its language, its mark, and its text."""
+    """A marked block: its page, the line of its fence (from 1), its language, its mark, and its text.
+
+    An output of a long block is long, as that is.
+    """
 
     page: Path
     line: int
@@ -50,6 +55,7 @@ class Block:
     verb: str
     argument: str
     exit_code: int
+    long: bool
     text: str
 
     @property
@@ -95,7 +101,8 @@ def marked_blocks(page: Path) -> list[Block]:
             end = _end_of_block(lines, k, fence[2])
             if mark:
                 text = "\n".join(line.removeprefix(fence[1]) for line in lines[k + 1 : end])
-                blocks.append(Block(page, k + 1, fence[3], mark[1], mark[3] or "", int(mark[2] or 0), text))
+                long = blocks[-1].long if mark[1] == "output" and blocks else bool(mark[2])
+                blocks.append(Block(page, k + 1, fence[3], mark[1], mark[4] or "", int(mark[3] or 0), long, text))
                 _check_mark(blocks)
             k = end
         mark = None if fence else _MARK.match(lines[k])
@@ -123,6 +130,7 @@ def _check_mark(blocks: list[Block]) -> None:
         and not block.text.startswith("$ "),
         "a file needs a name inside the directory": block.verb == "file" and not _is_inside(block.argument),
         "output takes no argument": block.verb == "output" and bool(block.argument),
+        "long is for run only": block.long and block.verb == "file",
         "exit= is for commands only": bool(block.exit_code) and (block.verb != "run" or block.language == "python"),
         "output needs a marked python block before it": block.verb == "output"
         and not any(b.language == "python" for b in blocks[:-1]),
@@ -137,13 +145,13 @@ def _is_inside(name: str) -> bool:
     return bool(name) and not path.is_absolute() and ".." not in path.parts
 
 
-def run_page(page: Path, directory: Path) -> Iterator[Outcome]:
-    """Run the marked blocks of a page in a directory; yield each block that shows an output.
+def run_page(page: Path, directory: Path, *, long: bool = True) -> Iterator[Outcome]:
+    """Run the marked blocks of a page in a directory, with or without long ones; yield each block that shows an output.
 
     Raises:
         SnippetError: where a block fails.
     """
-    blocks = marked_blocks(page)
+    blocks = [block for block in marked_blocks(page) if long or not block.long]
     directory.mkdir(parents=True, exist_ok=True)
     if blocks and (ROOT / "models").is_dir():
         shutil.copytree(ROOT / "models", directory / "models", dirs_exist_ok=True)

@@ -7,7 +7,10 @@ import pytest
 from validation.benchmarks.tooth_compliance import GEARS, errors
 
 
-@pytest.mark.parametrize("title", GEARS)
+# The first of the gears here, the others with the long tests: each takes seconds for its three presets.
+@pytest.mark.parametrize(
+    "title", [pytest.param(title, marks=[pytest.mark.long] if number else []) for number, title in enumerate(GEARS)]
+)
 def test_the_presets_keep_their_errors(title: str) -> None:
     found = {name: error for name, (error, _) in errors(GEARS[title]).items()}
     assert found["preview"] < 2e-2

@@ -13,13 +13,23 @@ from update import generated_changes, generators, is_long
 GENERATORS = [
     pytest.param(file, id=file.stem, marks=[pytest.mark.long] if is_long(file) else []) for file in generators()
 ]
+WITH_BLOCKS = [page for page in pages() if marked_blocks(page)]
 HINT = "run  python docs/update.py  and read the change"
 
 
-@pytest.mark.parametrize(
-    "page", [page for page in pages() if marked_blocks(page)], ids=lambda page: str(page.relative_to(ROOT))
-)
+@pytest.mark.parametrize("page", WITH_BLOCKS, ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_blocks_of_a_page_print_what_it_shows(page: Path, tmp_path: Path) -> None:
+    for outcome in run_page(page, tmp_path, long=False):
+        assert outcome.agrees, f"{outcome.block.place}: {HINT}\n{difference(outcome.block.text, outcome.printed)}"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "page",
+    [page for page in WITH_BLOCKS if any(block.long for block in marked_blocks(page))],
+    ids=lambda page: str(page.relative_to(ROOT)),
+)
+def test_the_long_blocks_of_a_page_print_what_it_shows(page: Path, tmp_path: Path) -> None:
     for outcome in run_page(page, tmp_path):
         assert outcome.agrees, f"{outcome.block.place}: {HINT}\n{difference(outcome.block.text, outcome.printed)}"
 
@@ -161,6 +171,16 @@ def test_blocks_run_in_order_in_one_directory_with_shared_variables(page: Path, 
     assert outcomes[0].printed == "4.1429\nand more"
 
 
+def test_long_blocks_and_their_outputs_are_left_to_the_long_tests(page: Path, tmp_path: Path) -> None:
+    text = PAGE.replace("   <!-- run -->\n", "   <!-- run long -->\n").replace(
+        "<!-- run: python", "<!-- run long: python"
+    )
+    page.write_text(text, encoding="utf-8")
+    assert [block.long for block in marked_blocks(page)] == [False, False, True, True, True, False]
+    assert [outcome.block.line for outcome in run_page(page, tmp_path / "quick", long=False)] == [37]
+    assert [outcome.block.line for outcome in run_page(page, tmp_path / "all")] == [26, 32, 37]
+
+
 def test_an_update_changes_the_outputs_that_differ_and_nothing_else(page: Path, tmp_path: Path) -> None:
     expected = PAGE.replace("4.1000", "4.1429").replace("wrong", "gone")
     page.write_text(rewritten(page, list(run_page(page, tmp_path / "one"))), encoding="utf-8")
@@ -178,6 +198,7 @@ def test_an_update_changes_the_outputs_that_differ_and_nothing_else(page: Path, 
         ("<!-- output -->\n```text\n1\n```\n", "python block before"),
         ("<!-- file: ../away.toml -->\n```toml\n```\n", "inside the directory"),
         ("<!-- run exit=1 -->\n```python\n```\n", "commands only"),
+        ("<!-- file long: a.toml -->\n```toml\n```\n", "long is for run"),
         ("<!-- run: rm -r . -->\n```text\n```\n", "rotorgear and python"),
         ("<!-- run: python -c 'raise SystemExit(1)' -->\n```text\n```\n", "ended with code 1, expected 0"),
         ("<!-- run -->\n```python\n1 / 0\n```\n", "ZeroDivisionError"),
