@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -26,7 +27,7 @@ class DampedProblem:
     """(s^2 M + s D + K) q = 0 of n dofs, with D = alpha M + spin G + C and what K and C are made of.
 
     `strain` (p, n) is S with S^T S the symmetric part of K; None where a spring is indefinite. `lowest(count, below)` gives the
-    undamped modes.
+    undamped modes; `make_forms` keeps what it made.
     """
 
     M: sp.csc_array
@@ -35,8 +36,13 @@ class DampedProblem:
     K_symmetric: sp.csc_array
     inertial: sp.csc_array
     strain: sp.csr_array | None
-    forms: StrainForms
+    make_forms: Callable[[], StrainForms]
     lowest: Lowest
+
+    @property
+    def forms(self) -> StrainForms:
+        """Strains, and what acts on them; made when they are first asked for."""
+        return self.make_forms()
 
 
 def by_strains(problem: DampedProblem, found: DampedModes) -> DampedModes:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 
 from rotorgear.analysis.modal.modes import Modes, Wanted
@@ -11,20 +13,25 @@ from rotorgear.errors import AnalysisError
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
-# Neighbouring elements begin to act on each other's errors, and close modes to change places, from about here. Below, the
+# Neighbouring elements begin to act on each other's errors, and close modes to change places, from about here: below, the
 # estimate from each element by itself was within a tenth of the error on all models, above it was off by up to a factor of two.
 ROUGH = 1e-3
+# Fewer elements than this in a piece may hide an error from the next orders, which then shows four orders up only.
+_FEW_ELEMENTS = 4
+_ROUGH_WITH_FEW = 1e-4
 _LARGEST = 2000  # dofs up to which a second solution is worth its time
 
 
 def enriched_errors(system: System, wanted: Wanted, found: Modes, estimate: np.ndarray) -> np.ndarray:
-    """Estimated relative errors (m,): those above `ROUGH` replaced by the difference from a mesh of four orders more.
+    """Estimated relative errors (m,): rough ones replaced by the difference from a mesh of four orders more.
 
     Args:
         system, wanted, found: the coarse mesh, what was asked of it, and its modes.
         estimate: their estimated relative errors (m,); where it is infinite it stays so.
     """
-    rough = ~found.rigid & np.isfinite(estimate) & (estimate > ROUGH)
+    pieces = Counter((shaft, e.piece) for shaft, elements in system.nodes.elements.items() for e in elements)
+    limit = ROUGH if min(pieces.values(), default=0) >= _FEW_ELEMENTS else _ROUGH_WITH_FEW
+    rough = ~found.rigid & np.isfinite(estimate) & (estimate > limit)
     if not rough.any() or system.n > _LARGEST:
         return estimate
     finer = system.with_plan(_much_finer(system))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 import scipy.sparse as sp
@@ -35,7 +36,7 @@ _LARGE = 20_000  # dofs above which a look at the coarsest mesh costs nothing be
 class _Problem:
     """M, D (None without such terms) and K of one group of dofs, and its strain factor S (None where a spring is indefinite).
 
-    `inertial` is the part alpha M + spin G of D and `forms` what the rest of D and K are made of, both None without D and
+    `inertial` is the part alpha M + spin G of D and `forms()` what the rest of D and K are made of, both None without D and
     circulatory terms. `symmetric` says whether K is, `damped` whether anything takes energy out, `guess` where the first elastic
     eigenvalue may be.
     """
@@ -48,7 +49,7 @@ class _Problem:
     symmetric: bool
     damped: bool
     inertial: sp.csc_array | None = None
-    forms: StrainForms | None = None
+    forms: Callable[[], StrainForms] | None = None
     guess: float | None = None
 
     def cut(self, group: np.ndarray) -> _Problem:
@@ -81,7 +82,8 @@ class _Problem:
         if D is None and symmetric:
             return _Problem(M, D, K, K_symmetric, S, symmetric, damped, guess=self.guess)
         inertial = None if self.inertial is None else cut_out(self.inertial)
-        forms = None if self.forms is None else self.forms.cut(group)
+        whole = self.forms
+        forms = None if whole is None else cache(lambda: whole().cut(group))
         return _Problem(M, D, K, K_symmetric, S, symmetric, damped, inertial, forms, self.guess)
 
 
@@ -162,7 +164,7 @@ def _problem(system: System, speed: float | None) -> _Problem:
         symmetric=not circulatory.nnz,
         damped=speed is not None and bool(system.damping(at).nnz),
         inertial=None if is_plain else system.inertial_terms(at),
-        forms=None if is_plain else system.strain_forms(at),
+        forms=None if is_plain else cache(lambda: system.strain_forms(at)),
         guess=guess,
     )
 
@@ -172,7 +174,12 @@ def _conservative(system: System, speed: float) -> _Problem:
     K = system.stiffness(speed)
     G = sp.csc_array(speed * system.gyroscopic)
     turns = speed != 0.0 and bool(G.nnz)
-    forms = system.strain_forms(speed)
+
+    @cache
+    def forms() -> StrainForms:
+        whole = system.strain_forms(speed)
+        return replace(whole, viscosity=0.0 * whole.viscosity, circulation=0.0 * whole.circulation)
+
     return _Problem(
         M=system.mass,
         D=G if turns else None,
@@ -182,7 +189,7 @@ def _conservative(system: System, speed: float) -> _Problem:
         symmetric=True,
         damped=False,
         inertial=G if turns else None,
-        forms=replace(forms, viscosity=0.0 * forms.viscosity, circulation=0.0 * forms.circulation) if turns else None,
+        forms=forms if turns else None,
     )
 
 
@@ -231,7 +238,7 @@ def _damped(
             K_symmetric=problem.K_symmetric,
             inertial=problem.inertial,
             strain=problem.S,
-            forms=problem.forms,
+            make_forms=problem.forms,
             lowest=lambda count, below, counted=True: _lowest(problem, count, below, counted),
         ),
         wanted.modes,
