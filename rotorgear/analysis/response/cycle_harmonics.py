@@ -6,6 +6,7 @@ A curve x(u) over a cycle u = 0 to 1 is its mean plus the sum of Re(c_n e^{2 pi 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -51,12 +52,19 @@ def _of_straight(start: np.ndarray, end: np.ndarray, first: np.ndarray, last: np
 
 def harmonics_of_pulse(duration: float, at: float) -> np.ndarray:
     """Coefficients (SEEN,) of a half sine of height 1 that lasts a share of the cycle from `at` on."""
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    nodes, weights = _gauss()
     x = 0.5 * (nodes + 1.0)
     n = np.arange(1, SEEN + 1)[:, None]
     return np.asarray(
         duration * (weights * np.sin(np.pi * x) * np.exp(-2j * np.pi * n * (at + duration * x))).sum(axis=1)
     )
+
+
+@cache
+def _gauss() -> tuple[np.ndarray, np.ndarray]:
+    """The rule of Gauss and Legendre, which takes longer to find than to use."""
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    return nodes, weights
 
 
 def strong(coefficients: np.ndarray) -> tuple[list[tuple[int, complex]], float]:

@@ -106,10 +106,15 @@ class Reducer:
         )
         complete = choice.basis.shape[1] == local.n  # what is left then is rounding
         if self._wanted.modes is None and not (complete or choice.error <= self._wanted.error):
+            way = (
+                "run single speeds by the transient analysis"
+                if first.most == MOST_WITH_BODIES
+                else "lump the shafts (rigid gears on springs)"
+            )
             raise AnalysisError(
                 f"{local.n} dofs can't be reduced: with {choice.basis.shape[1]} coordinates (at most {first.most}) the "
                 f"receptances at the contacts are {100.0 * choice.error:.2g} % off up to {top / 2.0 / np.pi:.6g} Hz, expected "
-                f"{100.0 * self._wanted.error:.2g} %; lower the speed, lump the shafts (rigid gears on springs), or allow more "
+                f"{100.0 * self._wanted.error:.2g} %; lower the speed, {way}, or allow more "
                 "(reduction_error, --reduction-error)"
             )
         own, V = reduced(local, among, choice.basis)
