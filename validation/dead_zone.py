@@ -6,9 +6,11 @@ z .05 Fm .1 Fa .05 folds at W .7481043, z .05 Fm .1 Fa .2 doubles its period at 
 
     python -m validation.dead_zone
     python -m validation.dead_zone family 0.05,0.1,0.05 0.1,0.1,0.15
+    python -m validation.dead_zone jumps
 
 The second prints the special points between W .3 and 1.8 of oscillators z,Fm,Fa by both methods, side by side: what one finds and
-the other does not is spurious or missed.
+the other does not is spurious or missed. The third sweeps the first oscillator up and down, and prints between which speeds its
+motion jumps: the folds have to lie there.
 """
 
 from __future__ import annotations
@@ -124,6 +126,39 @@ def main() -> None:
                 print(f"  {point.kind} at W {W:.7f}, x {low:.6f} to {high:.6f}, multipliers {sizes}")
 
 
+# Frequency ratios of the sweep: close about both folds of the first oscillator.
+SWEPT = (
+    0.448,
+    0.4495,
+    0.4503,
+    0.4508,
+    0.452,
+    0.455,
+    0.46,
+    0.5,
+    0.55,
+    0.6,
+    0.65,
+    0.7,
+    0.72,
+    0.735,
+    0.742,
+    0.7465,
+    0.7478,
+    0.7484,
+    0.75,
+)
+
+
+def jumps() -> dict[str, tuple[float, float]]:
+    """Frequency ratios between which a sweep of the first oscillator jumps, by its direction."""
+    case = DeadZone()
+    over = {"operation.speed": [case.speed(W) for W in SWEPT]}
+    found = rg.sweep(rg.loads(case.text(SWEPT[0])), over, direction="both", discard=400, sample=50, exponents=0)
+    at = np.abs(np.diff(np.log(found.peak_to_peak[:, :, 0]), axis=0)).argmax(axis=0)
+    return {run: (SWEPT[i], SWEPT[i + 1]) for run, i in zip(found.run, at, strict=True)}
+
+
 def family(cases: list[str]) -> None:
     """Print the special points of oscillators "z,Fm,Fa" by shooting and by harmonic balance."""
     for text in cases:
@@ -138,5 +173,8 @@ def family(cases: list[str]) -> None:
 if __name__ == "__main__":
     if sys.argv[1:2] == ["family"]:
         family(sys.argv[2:])
+    elif sys.argv[1:2] == ["jumps"]:
+        for run, (low, high) in jumps().items():
+            print(f"{run}: jumps between W {low} and {high}")
     else:
         main()

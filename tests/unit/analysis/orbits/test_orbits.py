@@ -10,7 +10,7 @@ from rotorgear.analysis.orbits.family import SystemFamily, range_of
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.periodic.floquet import basis_of
 from tests.paths import MODELS
-from validation.dead_zone import HALF_BACKLASH, DeadZone
+from validation.dead_zone import HALF_BACKLASH, DeadZone, jumps
 
 
 def test_shooting_finds_the_fold_of_an_oscillator_with_a_dead_zone() -> None:
@@ -46,6 +46,14 @@ def test_both_methods_find_the_period_doubling_and_shooting_the_branch_behind_it
     assert mu.prod(axis=1).real == pytest.approx(damped, rel=1e-5)
     # Flanks part: the mean of a tangent over a step has to know where in it they do. Both runs begin at one value.
     assert np.sort(mu[0, :2].real) == pytest.approx(np.sort(exact.multipliers[0, :2].real), abs=5e-5)
+
+
+@pytest.mark.long  # a sweep of twenty speeds one after another
+def test_sweeps_jump_where_the_folds_are() -> None:
+    found = jumps()
+    for run, fold in (("up", 0.7481043), ("down", 0.450539)):
+        low, high = found[run]
+        assert low < fold < high
 
 
 def test_the_modes_of_a_free_pair_hold_nothing_of_its_rotation() -> None:
