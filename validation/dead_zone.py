@@ -9,7 +9,7 @@ z .05 Fm .1 Fa .05 folds at W .7481043, z .05 Fm .1 Fa .2 doubles its period at 
     python -m validation.dead_zone jumps
 
 The second prints the special points between W .3 and 1.8 of oscillators z,Fm,Fa by both methods, side by side: what one finds and
-the other does not is spurious or missed. The third sweeps the first oscillator up and down, and prints between which speeds its
+the other does not is spurious or missed. The third sweeps that with Fa .05 up and down, and prints between which speeds its
 motion jumps: the folds have to lie there.
 """
 
