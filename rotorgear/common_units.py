@@ -7,7 +7,7 @@ tests/unit/test_quantity.py asks pint for each of them. A unit that is not here 
 
 from __future__ import annotations
 
-# Dimension -> unit as it is written -> factor. Speeds, frequencies and ratios have tables of their own in quantity.py.
+# Dimension -> unit as it is written -> factor. Speeds, frequencies, temperatures, ratios have tables of their own in quantity.py.
 COMMON_UNITS: dict[str, dict[str, float]] = {
     "length": {
         "m": 1.0,
@@ -92,6 +92,7 @@ COMMON_UNITS: dict[str, dict[str, float]] = {
     "acceleration": {"m/s^2": 1.0, "m/s2": 1.0, "mm/s^2": 0.001},
     "force": {"N": 1.0, "kN": 1000.0, "MN": 1000000.0, "mN": 0.001, "lbf": 4.4482216152605005},
     "viscosity": {"Pa s": 1.0, "Pa*s": 1.0, "mPa s": 0.001, "N s/m^2": 1.0},
+    "specific_heat": {"J/(kg K)": 1.0, "J/(kg*K)": 1.0, "kJ/(kg K)": 1000.0},
     "damping": {"N s/m": 1.0, "N*s/m": 1.0, "kN s/m": 1000.0, "N s/mm": 1000.0},
     "rotational_damping": {"N m s/rad": 1.0, "N*m*s/rad": 1.0, "N m s": 1.0},
 }

@@ -49,6 +49,8 @@ _TABLE = [
     ("acceleration", "m/s^2", "an acceleration", "9.81 m/s^2"),
     ("force", "N", "a force", "500 N"),
     ("viscosity", "Pa*s", "a dynamic viscosity", "0.01 Pa s"),
+    ("temperature", "K", "a temperature", "45 degC"),
+    ("specific_heat", "J/(kg*K)", "a specific heat", "1900 J/(kg K)"),
     ("damping", "N*s/m", "a damping coefficient", "500 N s/m"),
     ("rotational_damping", "N*m*s/rad", "a rotational damping coefficient", "2 N m s/rad"),
     ("ratio", "", "a ratio", "0.05"),
@@ -78,6 +80,9 @@ _SPEED_UNITS = {
     "r/min": _RPM,
 }
 _FREQUENCY_UNITS = {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6, "mHz": 1e-3, "cpm": 1 / 60, "rpm": 1 / 60, "rad/s": 1 / _TURN}
+# Temperatures have a zero of their own: factor to K, and K at 0 of the unit.
+_TEMPERATURE_UNITS = {"K": (1.0, 0.0), "degF": (5.0 / 9.0, 459.67 * 5.0 / 9.0)}
+_TEMPERATURE_UNITS |= dict.fromkeys(("degC", "°C", "C"), (1.0, 273.15))
 
 
 class QuantityError(ValueError):
@@ -103,6 +108,11 @@ def parse_quantity(value: Any, dimension: str) -> float:
     if match is None or not _UNIT_TEXT.match(match[2]):
         raise QuantityError(_expected(wanted) + ("; decimals take a point" if "," in value else ""))
     unit = " ".join(match[2].split())
+    if dimension == "temperature":
+        if unit not in _TEMPERATURE_UNITS:
+            raise QuantityError(f"{_expected(wanted)}; units: {', '.join(_TEMPERATURE_UNITS)}")
+        factor, zero = _TEMPERATURE_UNITS[unit]
+        return _sensible(float(match[1]) * factor + zero, wanted)
     return _sensible(_sensible(float(match[1]), wanted) * _factor(unit, dimension), wanted)
 
 

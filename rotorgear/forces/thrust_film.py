@@ -1,19 +1,12 @@
 """Thrust bearing of sector pads, fixed with a taper and a land or tilting about a radius, by Reynolds' equation.
 
-On a pad from r_i to r_o over the angle beta, with the collar at the displacement z and the tilts tx, ty, and p = 0 on all edges,
-
-    d/dt(h^3/r dp/dt) + d/dr(r h^3 dp/dr) = 12 mu r (dh/dtime + omega/2 dh/dt),   h = c + shape - q . phi
-    q = sigma (z, tx, ty),   phi = (1, r sin t, -r cos t),   sigma = +1 where the pads take a push towards +z
-
-in finite volumes of second order. A fixed pad has the shape delta (1 - u/b) up to the share b of its arc in the sense of
-rotation and is flat behind; b = 1 is a plain wedge. A tilting pad turns about the radius through its pivot at t_p until the film
-has no moment about it: one more field phi_3 = r sin(t - t_p) with G_3 = int p phi_3 dA = 0, which small motions keep, so that
+A pad reaches from r_i to r_o over the angle beta; its film is that of thrust_pressure.py. A fixed pad has the shape
+delta (1 - u/b) up to the share b of its arc in the sense of rotation and is flat behind; b = 1 is a plain wedge. A tilting pad
+turns about the radius through its pivot until the film has no moment about it, G_3 = 0, which small motions keep, so that
 
     Z_red = Z_rr - Z_r3 Z_3r / Z_33,   Z = K + i w C
 
-at w = `whirl_ratio` times the speed (as in tilting_pads.py). Forces are int p phi dA, tangents those of the discrete film. Below
-the least gap h_c the gap goes on as h_c exp(h/h_c - 1): the film becomes a wall. p >= 0 by changes of the active set, as in
-journal_film.py.
+at w = `whirl_ratio` times the speed (as in tilting_pads.py).
 
 Pinkus and Sternlicht, Theory of Hydrodynamic Lubrication (1961), chs. 3 and 4.
 """
@@ -26,336 +19,19 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rotorgear.forces.inside import ThrustField
-from rotorgear.forces.journal_film import factor, solve
-from rotorgear.forces.law import ForceLaw, Linearised, parameter, refuse
-from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
+from rotorgear.forces.law import Linearised, parameter, refuse
+from rotorgear.forces.oil_film import TURN, OilFilm
+from rotorgear.forces.thrust_pressure import FIRST, PADS, balanced_pad, force, gap_at, schedule, sector_film
 
-TURN = 2.0 * np.pi
-# Of the parameters, then middle and side of each pad; and of the state.
-(
-    VISCOSITY,
-    INNER,
-    OUTER,
-    CLEARANCE,
-    ORDER,
-    ARC,
-    TAPER,
-    SHARE,
-    PIVOT,
-    LEAST,
-    AROUND,
-    ACROSS,
-    PADS,
-    FIRST,
-) = range(14)
-SPEED = 0
-_MOST_CHANGES = 200
-_ITERATIONS = 60
-_LEVEL = 1e-12
-_DEEPEST_EXPONENT = -12.0
 _TAYLOR = 1000.0  # Reynolds' number rho omega r h / mu up to which films of thrust bearings are laminar
 
 
-@schedule_function
-def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
-    """Speed of the collar."""
-    s[SPEED] = p[ORDER] * speed
-
-
-@compiled
-def gap_at(p, omega, start, t, r, q, out):  # type: ignore[no-untyped-def]
-    """Fill out with the gap at an angle and a radius, and its change with what closes it; q (4,)."""
-    h = p[CLEARANCE]
-    if p[PIVOT] < 0.0:
-        u = (t - start) / p[ARC]
-        if omega < 0.0:
-            u = 1.0 - u
-        if u < p[SHARE]:
-            h += p[TAPER] * (1.0 - u / p[SHARE])
-    pivot = start + abs(p[PIVOT]) * p[ARC]
-    h -= q[0] + r * (np.sin(t) * q[1] - np.cos(t) * q[2]) + r * np.sin(t - pivot) * q[3]
-    least = p[LEAST] * p[CLEARANCE]
-    if h >= least:
-        out[0] = h
-        out[1] = 1.0
-    else:
-        exponent = h / least - 1.0
-        if exponent > _DEEPEST_EXPONENT:
-            out[0] = least * np.exp(exponent)
-            out[1] = out[0] / least
-        else:
-            out[0] = least * np.exp(_DEEPEST_EXPONENT)
-            out[1] = 0.0
-
-
-@compiled
-def field_at(which, t, r, pivot):  # type: ignore[no-untyped-def]
-    """phi_which at an angle and a radius."""
-    if which == 0:
-        return 1.0
-    if which == 1:
-        return r * np.sin(t)
-    if which == 2:
-        return -r * np.cos(t)
-    return r * np.sin(t - pivot)
-
-
-@compiled
-def weighted(theta, radial, x, out, rows, columns, r, dr, dt):  # type: ignore[no-untyped-def]
-    """-div(w grad x) with weights w between the nodes: `theta` (rows + 1, columns), `radial` (rows, columns + 1)."""
-    for i in range(rows):
-        for j in range(columns):
-            k = i * columns + j
-            per_t = 1.0 / (r[j] * dt * dt)
-            total = (theta[i, j] + theta[i + 1, j]) * per_t * x[k]
-            if i > 0:
-                total -= theta[i, j] * per_t * x[k - columns]
-            if i < rows - 1:
-                total -= theta[i + 1, j] * per_t * x[k + columns]
-            back = radial[i, j] * (r[j] - 0.5 * dr) / dr**2
-            forth = radial[i, j + 1] * (r[j] + 0.5 * dr) / dr**2
-            total += (back + forth) * x[k]
-            if j > 0:
-                total -= back * x[k - 1]
-            if j < columns - 1:
-                total -= forth * x[k + 1]
-            out[k] = total
-
-
-@compiled
-def sector_film(p, omega, start, q, v, first, fields, G, K, C, pressure):  # type: ignore[no-untyped-def]
-    """Fill G (4,) of one pad for its fields below `fields`, K and C (4, 4) from `first` on, and its pressure at inner nodes."""
-    around = int(p[AROUND])
-    across = int(p[ACROSS])
-    rows = around - 1
-    columns = across - 1
-    n = rows * columns
-    dt = p[ARC] / around
-    dr = (p[OUTER] - p[INNER]) / across
-    pivot = start + abs(p[PIVOT]) * p[ARC]
-    r = p[INNER] + dr * np.arange(1, across)
-    here = np.zeros(2)
-    theta_h = np.zeros((rows + 1, columns))
-    theta_c = np.zeros((rows + 1, columns))
-    radial_h = np.zeros((rows, columns + 1))
-    radial_c = np.zeros((rows, columns + 1))
-    closes = np.zeros((rows, columns))
-    for i in range(rows + 1):
-        for j in range(columns):
-            gap_at(p, omega, start, start + (i + 0.5) * dt, r[j], q, here)
-            theta_h[i, j] = here[0]
-            theta_c[i, j] = here[1]
-            if i < rows:
-                gap_at(p, omega, start, start + (i + 1.0) * dt, r[j], q, here)
-                closes[i, j] = here[1]
-        if i < rows:
-            for j in range(columns + 1):
-                gap_at(p, omega, start, start + (i + 1.0) * dt, p[INNER] + (j + 0.5) * dr, q, here)
-                radial_h[i, j] = here[0]
-                radial_c[i, j] = here[1]
-    wedge = 6.0 * p[VISCOSITY] * omega / dt
-    squeeze = 12.0 * p[VISCOSITY]
-    push = np.zeros(n)
-    for i in range(rows):
-        for j in range(columns):
-            speed = 0.0
-            for m in range(fields):
-                speed += v[m] * field_at(m, start + (i + 1.0) * dt, r[j], pivot)
-            push[i * columns + j] = r[j] * (
-                squeeze * closes[i, j] * speed - wedge * (theta_h[i + 1, j] - theta_h[i, j])
-            )
-    theta_3 = theta_h**3
-    radial_3 = radial_h**3
-    free = np.ones(n, dtype=np.bool_)
-    A = np.zeros((n, columns + 1))
-    x = np.zeros(n)
-    left = np.zeros(n)
-    for _ in range(_MOST_CHANGES):
-        A[:] = 0.0
-        for i in range(rows):
-            for j in range(columns):
-                k = i * columns + j
-                if not free[k]:
-                    A[k, 0] = 1.0
-                    continue
-                per_t = 1.0 / (r[j] * dt * dt)
-                back = radial_3[i, j] * (r[j] - 0.5 * dr) / dr**2
-                forth = radial_3[i, j + 1] * (r[j] + 0.5 * dr) / dr**2
-                A[k, 0] = (theta_3[i, j] + theta_3[i + 1, j]) * per_t + back + forth
-                if j > 0 and free[k - 1]:
-                    A[k, 1] = -back
-                if i > 0 and free[k - columns]:
-                    A[k, columns] += -theta_3[i, j] * per_t
-        factor(A, n, columns)
-        for k in range(n):
-            x[k] = push[k] if free[k] else 0.0
-        solve(A, n, columns, x)
-        weighted(theta_3, radial_3, x, left, rows, columns, r, dr, dt)
-        changed = False
-        for k in range(n):
-            if free[k]:
-                if x[k] < 0.0:
-                    free[k] = False
-                    changed = True
-            elif left[k] < push[k]:
-                free[k] = True
-                changed = True
-        if not changed:
-            break
-    weight = np.zeros((4, n))
-    for i in range(rows):
-        for j in range(columns):
-            k = i * columns + j
-            pressure[i, j] = x[k] if free[k] else 0.0
-            if free[k]:
-                for m in range(fields):
-                    weight[m, k] = field_at(m, start + (i + 1.0) * dt, r[j], pivot) * r[j] * dr * dt
-    change = np.zeros(n)
-    phi_t = np.zeros((rows + 1, columns))
-    phi_r = np.zeros((rows, columns + 1))
-    for m in range(fields):
-        G[m] = np.sum(weight[m] * x)
-    for m in range(first, fields):
-        for i in range(rows + 1):
-            for j in range(columns):
-                phi_t[i, j] = theta_c[i, j] * field_at(m, start + (i + 0.5) * dt, r[j], pivot)
-        for i in range(rows):
-            for j in range(columns + 1):
-                phi_r[i, j] = radial_c[i, j] * field_at(m, start + (i + 1.0) * dt, p[INNER] + (j + 0.5) * dr, pivot)
-        weighted(-3.0 * theta_h**2 * phi_t, -3.0 * radial_h**2 * phi_r, x, left, rows, columns, r, dr, dt)
-        for i in range(rows):
-            for j in range(columns):
-                k = i * columns + j
-                change[k] = r[j] * wedge * (phi_t[i + 1, j] - phi_t[i, j]) - left[k] if free[k] else 0.0
-        solve(A, n, columns, change)
-        for o in range(fields):
-            K[o, m] = np.sum(weight[o] * change)
-        for i in range(rows):
-            for j in range(columns):
-                k = i * columns + j
-                phi = closes[i, j] * field_at(m, start + (i + 1.0) * dt, r[j], pivot)
-                change[k] = squeeze * r[j] * phi if free[k] else 0.0
-        solve(A, n, columns, change)
-        for o in range(fields):
-            C[o, m] = np.sum(weight[o] * change)
-
-
-@compiled
-def balanced_pad(p, omega, start, q, v, G, K, C, pressure, slope):  # type: ignore[no-untyped-def]
-    """Turn a pad about its pivot until G_3 = 0: q[3] is found; a pad whose edge comes down first lies on it.
-
-    slope (3, 2): change of q[3] with the other three and with their velocities.
-    """
-    own = p[CLEARANCE] / p[OUTER]
-    least = p[LEAST] * p[CLEARANCE]
-    pivot = start + abs(p[PIVOT]) * p[ARC]
-    low = -1e3 * own
-    high = 1e3 * own
-    # Tilts that leave the least gap at the edges of the pad.
-    for corner in range(4):
-        t = start + (p[ARC] if corner % 2 else 0.0)
-        r = p[OUTER] if corner // 2 else p[INNER]
-        room = p[CLEARANCE] - q[0] - r * (np.sin(t) * q[1] - np.cos(t) * q[2]) - least
-        side = r * np.sin(t - pivot)
-        if side > 0.0 and room / side < high:
-            high = room / side
-            for m in range(3):
-                slope[m, 0] = -field_at(m, t, r, pivot) / side
-        if side < 0.0 and room / side > low:
-            low = room / side
-            for m in range(3):
-                slope[m, 1] = -field_at(m, t, r, pivot) / side
-    if high <= low:
-        high = low = 0.0
-    most = high
-    lowest = low
-    sense = 1.0 if omega >= 0.0 else -1.0
-    # A flat pad has no pressure to tell it how to turn: it begins with its leading edge open.
-    q[3] = 0.5 * (high if sense > 0.0 else low)
-    if not low < q[3] < high:
-        q[3] = 0.5 * (low + high)
-    for _ in range(_ITERATIONS):
-        sector_film(p, omega, start, q, v, 3, 4, G, K, C, pressure)
-        if (abs(G[0]) > 0.0 and abs(G[3]) <= _LEVEL * abs(G[0]) * p[OUTER]) or high - low < 1e-14 * own:
-            break
-        # More tilt closes the trailing edge, where the film presses more.
-        if G[3] > 0.0:
-            high = q[3]
-        elif G[3] < 0.0 or sense > 0.0:
-            low = q[3]
-        else:
-            high = q[3]
-        step = q[3] - G[3] / K[3, 3] if K[3, 3] != 0.0 else low
-        q[3] = step if low < step < high else 0.5 * (low + high)
-    sector_film(p, omega, start, q, v, 0, 4, G, K, C, pressure)
-    for m in range(3):
-        if most - q[3] < 1e-9 * own:
-            slope[m, 1] = 0.0
-        elif q[3] - lowest < 1e-9 * own:
-            slope[m, 0] = slope[m, 1]
-            slope[m, 1] = 0.0
-        else:
-            slope[m, 0] = -K[3, m] / K[3, 3] if K[3, 3] != 0.0 else 0.0
-            slope[m, 1] = -C[3, m] / K[3, 3] if K[3, 3] != 0.0 else 0.0
-
-
-@force_function
-def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
-    """Force along z and moments about x and y of the collar on its films."""
-    omega = s[SPEED]
-    for i in range(5):
-        F[i] = 0.0
-    for i in range(25):
-        Kd[i] = 0.0
-        Kv[i] = 0.0
-    G = np.zeros(4)
-    K = np.zeros((4, 4))
-    C = np.zeros((4, 4))
-    q = np.zeros(4)
-    w = np.zeros(4)
-    slope = np.zeros((3, 2))
-    taken = 0.0
-    tilts = p[PIVOT] >= 0.0
-    pressure = np.zeros((int(p[AROUND]) - 1, int(p[ACROSS]) - 1))
-    for pad in range(int(p[PADS])):
-        start = p[FIRST + 2 * pad] - 0.5 * p[ARC]
-        side = p[FIRST + 2 * pad + 1]
-        q[3] = 0.0
-        for i in range(3):
-            q[i] = side * d[2 + i]
-            w[i] = side * v[2 + i]
-        if tilts:
-            balanced_pad(p, omega, start, q, w, G, K, C, pressure, slope)
-        else:
-            sector_film(p, omega, start, q, w, 0, 3, G, K, C, pressure)
-        for i in range(3):
-            F[2 + i] += side * G[i]
-            for j in range(3):
-                stiff = K[i, j]
-                damp = C[i, j]
-                if tilts:
-                    stiff += K[i, 3] * slope[j, 0]
-                    damp += K[i, 3] * slope[j, 1]
-                taken += v[2 + i] * C[i, j] * v[2 + j]
-                Kd[5 * (2 + i) + 2 + j] += stiff
-                Kv[5 * (2 + i) + 2 + j] += damp
-    # At a velocity the films take up v^T C v; what they give back as the collar leaves them comes from its rotation.
-    energy[0] = 0.0
-    energy[1] = taken - (F[2] * v[2] + F[3] * v[3] + F[4] * v[4])
-    energy[2] = taken
-    energy[3] = 0.0
-
-
 @dataclass(frozen=True)
-class ThrustFilm(ForceLaw):
+class ThrustFilm(OilFilm):
     """Thrust bearing of sector pads: five displacements of the collar, of which those along x and y press on nothing."""
 
     title: ClassVar[str] = "thrust bearing"
-    passive: ClassVar[bool] = False
-    shaft_ratio: ClassVar[str] = "order"
-    carries_at_rest: ClassVar[bool] = False
 
-    viscosity: float = parameter("Pa s", "dynamic viscosity mu", above=0.0)
     inner_radius: float = parameter("m", "inner radius r_i of the pads", above=0.0)
     outer_radius: float = parameter("m", "outer radius r_o of the pads", above=0.0)
     clearance: float = parameter("m", "gap c between collar and pads (land) with the shaft at 0", above=0.0)
@@ -372,9 +48,7 @@ class ThrustFilm(ForceLaw):
         below=1.0,
     )
     acts: str = parameter("", "pushes of the shaft that it takes", "both", choices=("both", "+z", "-z"))
-    order: float = parameter("rad/rad", "turns of the collar for each turn of the reference", 1.0)
     whirl_ratio: float = parameter("", "frequency of small motions over the speed of the collar", 1.0, above=0.0)
-    density: float = parameter("kg/m^3", "of the oil, for Reynolds' number", 870.0, above=0.0)
     around: int = parameter("", "cells of the grid along a pad", 30, least=6, most=400)
     across: int = parameter("", "cells from the inner to the outer radius", 12, least=4, most=200)
     least: float = parameter("", "gap over c from which on the film is a wall", 0.02, above=0.0, below=1.0)
@@ -400,10 +74,6 @@ class ThrustFilm(ForceLaw):
         """Return the compiled functions schedule and force."""
         return schedule, force
 
-    def state_size(self) -> int:
-        """Speed of the collar."""
-        return 1
-
     def parameters(self) -> np.ndarray:
         """What the grid needs, then middle and side of each pad."""
         sides = {"both": (1.0, -1.0), "+z": (1.0,), "-z": (-1.0,)}[self.acts]
@@ -424,7 +94,10 @@ class ThrustFilm(ForceLaw):
     def left_out(self) -> tuple[str, ...]:
         """What the films leave out."""
         pads = ("tilt of pads across their radius, inertia, friction and elasticity of pads and pivots",)
-        return (*(pads if self.pivot >= 0.0 else ()), "turbulence, and oil carried over from pad to pad")
+        return (
+            *(pads if self.pivot >= 0.0 else ()),
+            f"{self.heat_left_out}, turbulence, and oil carried over from pad to pad",
+        )
 
     def _each_pad(
         self, d: Any, speed: float
@@ -479,7 +152,9 @@ class ThrustFilm(ForceLaw):
         return found
 
     def beyond(self, d: Any, speed: float) -> str:
-        """A gap that is too thin for the model, or a turbulent film."""
+        """Heat, a gap that is too thin for the model, or a turbulent film."""
+        if hot := self.too_hot():
+            return hot
         smallest = min(float(h.min()) for _, _, h in self.gaps(d, speed))
         if smallest <= self.least * self.clearance:
             return (

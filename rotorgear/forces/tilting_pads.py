@@ -10,7 +10,7 @@ exp(i w t) of a pad without inertia keep F_t = 0, so with Z = K + i w C in xi, e
 
     Z_red = Z_rr - Z_rt Z_tr / Z_tt,   K = sum Re Z_red e_r e_r^T,   C = sum Im Z_red / w e_r e_r^T
 
-at w = `whirl_ratio` times the speed of the journal; 1: synchronous. The film of a pad is that of journal_film.py.
+at w = `whirl_ratio` times the speed of the journal; 1: synchronous. The film of a pad is that of journal_pressure.py.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ import numpy as np
 
 from rotorgear.forces.film_flow import power_loss, side_flow
 from rotorgear.forces.inside import FilmField
-from rotorgear.forces.journal_film import (
+from rotorgear.forces.journal_oil import JournalOil
+from rotorgear.forces.journal_pressure import (
     ALONG,
     AROUND,
     CLEARANCE,
@@ -31,13 +32,12 @@ from rotorgear.forces.journal_film import (
     PADS,
     PRELOAD,
     SPEED,
-    TURN,
     WALL,
-    beyond_film,
     pad_film,
     schedule,
 )
-from rotorgear.forces.law import ForceLaw, Linearised, parameter, refuse
+from rotorgear.forces.law import Linearised, parameter, refuse
+from rotorgear.forces.oil_film import TURN
 from rotorgear.forces.shell import add_wall, place_in_shell
 from rotorgear.solvers.time.compiled import compiled, force_function
 
@@ -144,61 +144,34 @@ def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
 
 
 @dataclass(frozen=True)
-class TiltingPads(ForceLaw):
+class TiltingPads(JournalOil):
     """Journal bearing of tilting pads without inertia, by Reynolds' equation on a grid."""
 
     title: ClassVar[str] = "tilting-pad journal bearing"
-    passive: ClassVar[bool] = False
-    shaft_ratio: ClassVar[str] = "order"
-    carries_at_rest: ClassVar[bool] = False
 
-    viscosity: float = parameter("Pa s", "dynamic viscosity mu", above=0.0)
-    radius: float = parameter("m", "radius R of the journal", above=0.0)
-    length: float = parameter("m", "length L of the bearing", above=0.0)
-    clearance: float = parameter("m", "radial clearance c at the pivots", above=0.0)
     pads: int = parameter("", "number of pads", 5, least=2, most=12)
     arc: float = parameter("rad", "extent of a pad", np.radians(60.0), above=0.0)
     at: float = parameter("rad", "angle of the first pivot, from +x about +z", 0.0)
     pivot: float = parameter("", "place of the pivot in the arc, in the sense of rotation", 0.5, above=0.0, below=1.0)
-    preload: float = parameter("", "preload m of the pads", 0.0, least=0.0, below=1.0)
-    order: float = parameter("rad/rad", "turns of the journal for each turn of the reference", 1.0)
     whirl_ratio: float = parameter("", "frequency of small motions over the speed of the journal", 1.0, above=0.0)
-    cavitation: str = parameter("", "how the film cavitates", "reynolds", choices=("reynolds", "half_sommerfeld"))
-    density: float = parameter("kg/m^3", "of the oil, for Reynolds' number", 870.0, above=0.0)
-    around: int = parameter("", "cells of the grid around the circle, over all pads", 240, least=24, most=2000)
-    along: int = parameter("", "cells over half the length", 8, least=2, most=200)
-    contact: float = parameter("", "displacement over c at which the journal lies on a pad", 0.95, above=0.0, below=1.0)
-    wall: float = parameter("N/m", "stiffness of the shell", 1e9, least=0.0)
     moves: bool = parameter("", "whether tangents are those of small motions, not of slow ones", False)
 
     def check(self) -> None:
         """Pads fit around the journal, and the bearing is not longer than the grid serves."""
-        if self.length > 4.0 * self.radius:
-            raise refuse(self, "length", "at most 2 diameters, beyond which shafts bend in their bearing")
+        super().check()
         if self.pads * self.arc > TURN * (1.0 + 1e-9):
             raise refuse(self, "arc", "pads that fit around the journal")
-
-    @property
-    def components(self) -> int:
-        """Two."""
-        return 2
 
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
         return schedule, force
 
-    def state_size(self) -> int:
-        """Speed of the journal."""
-        return 1
-
     def parameters(self) -> np.ndarray:
-        """In the order of journal_film.py: what the grid needs, then start, extent and pivot of each pad."""
+        """What the grid needs, then start, extent and pivot of each pad."""
         place = self.pivot if self.order >= 0.0 else 1.0 - self.pivot
         pivots = self.at + TURN * np.arange(self.pads) / self.pads
-        own = [self.viscosity, self.radius, self.length, self.clearance, self.order, self.contact, self.wall]
-        cut = float(self.cavitation == "half_sommerfeld")
-        each = [value for q in pivots for value in (q - place * self.arc, self.arc, q)]
-        return np.array([*own, self.preload, max(self.around // self.pads, 12), self.along, cut, 0.0, self.pads, *each])
+        pads = [(float(q) - place * self.arc, self.arc, float(q)) for q in pivots]
+        return self.of_grid(max(self.around // self.pads, 12), False, pads)
 
     def rough(self) -> TiltingPads:
         """The same on a grid that knows the stiffness to some 10 %."""
@@ -208,17 +181,13 @@ class TiltingPads(ForceLaw):
         """The bearing for small motions, whose pads follow at their frequency."""
         return replace(self, moves=True)
 
-    def beyond(self, d: Any, speed: float) -> str:
-        """Turbulence by Taylor's number, and an eccentricity near the shell."""
-        return beyond_film(self, d, speed)
-
     def left_out(self) -> tuple[str, ...]:
         """What the pads and their film leave out."""
         return (
             "inertia, friction and elasticity of pads and pivots",
             f"small motions at other than {self.whirl_ratio:g} times the speed: K and C are those of this whirl ratio",
             "in time: the oil that pads squeeze as they turn",
-            "heat, turbulence and tilt of the journal in its film",
+            f"{self.heat_left_out}, turbulence and tilt of the journal in its film",
         )
 
     def _each_pad(self, d: Any, speed: float) -> list[tuple[np.ndarray, ...]]:
@@ -257,7 +226,7 @@ class TiltingPads(ForceLaw):
         """Pressure, gap, side flow and power loss with the journal at rest at displacements d (2,)."""
         p = self.parameters()
         around = int(p[AROUND])
-        own = self.clearance / (1.0 - self.preload)
+        own = self.pad_clearance
         step = self.radius * self.arc / around
         dz = 0.5 * self.length / self.along
         angles = []

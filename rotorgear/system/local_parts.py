@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from rotorgear.model.layout.mean_load import MeshForce
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.load import COMPONENTS, Load
 from rotorgear.model.parts.nonlinear_element import element_law
-from rotorgear.model.parts.supports import Bearing, JournalGeometry, RollingElements, ThrustGeometry
+from rotorgear.model.parts.supports import Bearing, JournalGeometry, Oil, RollingElements, ThrustGeometry
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.groups import ElementGroup, node_dofs
 from rotorgear.system.loads import wrench_load
@@ -134,13 +134,29 @@ def bearing_parts(system: System) -> Iterator[LocalPart]:
         yield LocalPart(f"bearings.{name}", name, law, columns_at(system, dofs, rows))
 
 
+def _oil_of(film: Oil) -> dict[str, Any]:
+    """Parameters of the oil of a film, which begins at the temperature of the inlet."""
+    from rotorgear.forces.oil import oil_viscosity
+
+    given = {"density": film.density, "specific_heat": film.specific_heat, "heat_share": film.heat_share}
+    if film.viscosity is not None:
+        return {**given, "viscosity": film.viscosity}
+    assert film.inlet_temperature is not None
+    return {
+        **given,
+        "viscosity": oil_viscosity(film.grade, film.density, film.inlet_temperature),
+        "grade": film.grade,
+        "inlet_temperature": film.inlet_temperature,
+    }
+
+
 def journal_law(journal: JournalGeometry, ratio: float) -> JournalFilm | TiltingPads:
     """The film of a journal bearing on a shaft that turns at so many times the speed of the reference."""
     if journal.pads:
         from rotorgear.forces.tilting_pads import TiltingPads
 
         return TiltingPads(
-            viscosity=journal.viscosity,
+            **_oil_of(journal),
             radius=0.5 * journal.diameter,
             length=journal.length,
             clearance=journal.clearance,
@@ -152,14 +168,13 @@ def journal_law(journal: JournalGeometry, ratio: float) -> JournalFilm | Tilting
             order=ratio,
             whirl_ratio=journal.whirl_ratio,
             cavitation=journal.cavitation,
-            density=journal.density,
             around=journal.around,
             along=journal.along,
         )
     from rotorgear.forces.journal_film import JournalFilm
 
     return JournalFilm(
-        viscosity=journal.viscosity,
+        **_oil_of(journal),
         radius=0.5 * journal.diameter,
         length=journal.length,
         clearance=journal.clearance,
@@ -172,7 +187,6 @@ def journal_law(journal: JournalGeometry, ratio: float) -> JournalFilm | Tilting
         inlet=journal.inlet or 0.0,
         follows=journal.inlet is None and journal.lobes == 1,
         cavitation=journal.cavitation,
-        density=journal.density,
         around=journal.around,
         along=journal.along,
     )
@@ -183,7 +197,7 @@ def thrust_law(thrust: ThrustGeometry, ratio: float) -> ThrustFilm:
     from rotorgear.forces.thrust_film import ThrustFilm
 
     return ThrustFilm(
-        viscosity=thrust.viscosity,
+        **_oil_of(thrust),
         inner_radius=0.5 * thrust.inner_diameter,
         outer_radius=0.5 * thrust.outer_diameter,
         clearance=thrust.clearance,
@@ -196,7 +210,6 @@ def thrust_law(thrust: ThrustGeometry, ratio: float) -> ThrustFilm:
         acts=thrust.acts,
         order=ratio,
         whirl_ratio=thrust.whirl_ratio,
-        density=thrust.density,
         around=thrust.around,
         across=thrust.across,
     )

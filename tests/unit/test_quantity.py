@@ -55,6 +55,11 @@ from rotorgear.quantity import DIMENSIONS, QuantityError, _factor_by_pint, milli
         ("20 us", "time", 2e-5),
         ("5 %", "ratio", 0.05),
         ("0.05", "ratio", 0.05),
+        ("45 degC", "temperature", 318.15),
+        ("-10 °C", "temperature", 263.15),
+        ("300 K", "temperature", 300.0),
+        ("113 degF", "temperature", 318.15),
+        ("1.9 kJ/(kg K)", "specific_heat", 1900.0),
     ],
 )
 def test_a_text_is_read_with_its_unit(text: str, dimension: str, value: float) -> None:
@@ -74,7 +79,7 @@ def test_common_units_are_those_of_pint() -> None:
 
 
 def test_every_dimension_has_common_units_or_a_table_of_its_own() -> None:
-    assert set(DIMENSIONS) == {*COMMON_UNITS, "speed", "frequency", "ratio"}
+    assert set(DIMENSIONS) == {*COMMON_UNITS, "speed", "frequency", "temperature", "ratio"}
 
 
 @pytest.mark.parametrize("dimension", DIMENSIONS)

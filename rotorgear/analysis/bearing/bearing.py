@@ -6,11 +6,13 @@ import time
 from collections.abc import Sequence
 from dataclasses import fields
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
 from rotorgear.analysis.bearing.state import (
+    Carried,
     address_of,
     by_its_law,
     carried,
@@ -22,10 +24,11 @@ from rotorgear.analysis.bearing.state import (
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si
 from rotorgear.analysis.modal.modal import modal
-from rotorgear.analysis.static.solve import LawState
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.inside import FilmField, RollingLoads, ThrustField
+from rotorgear.forces.journal_oil import JournalOil
 from rotorgear.forces.law import CYCLE_POINTS
+from rotorgear.forces.oil_film import OilFilm
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -81,6 +84,7 @@ def bearing(
     progress(0.2, "error estimate")
     other = carried(on_grid(law, 2.0), state.force, state.d, given, 2 * CYCLE_POINTS)
     error = change_of_tangents(here, other)
+    law = here.law
     inside = law.settled(here.d).inside(here.d, speed=given)
     asked = (
         [speed_in_si(one) for one in speeds] if speeds is not None else [share * given for share in _SHARES if given]
@@ -103,8 +107,8 @@ def bearing(
         bearing_damping=here.damping,
         averaged=bool(law.cycle()) and bool(given),
         rolling_elements=_elements(inside) if isinstance(inside, RollingLoads) else (),
-        film=_film(inside, state, ratio * given) if isinstance(inside, FilmField) else None,
-        thrust_film=_thrust(inside) if isinstance(inside, ThrustField) else None,
+        film=_film(inside, here, ratio * given) if isinstance(inside, FilmField) else None,
+        thrust_film=_thrust(inside, here) if isinstance(inside, ThrustField) else None,
         over_speed=rows,
         threshold_speed=threshold[0] if threshold else None,
         threshold_frequency_hz=threshold[1] if threshold else None,
@@ -128,23 +132,24 @@ def _elements(inside: RollingLoads) -> tuple[RollingElementRow, ...]:
     return tuple(RollingElementRow(int(row), *map(float, rest)) for row, *rest in zip(*columns, strict=True))
 
 
-def _film(inside: FilmField, state: LawState, shaft_speed: float) -> FilmState:
-    law = state.part.law
-    W = float(np.hypot(*state.force[:2]))
+def _film(inside: FilmField, here: Carried, shaft_speed: float) -> FilmState:
+    law = here.law
+    assert isinstance(law, JournalOil)
+    W = float(np.hypot(*here.force[:2]))
     # From the load to the line of centres, positive in the sense of rotation.
-    angle = np.arctan2(state.d[1], state.d[0]) - np.arctan2(state.force[1], state.force[0])
+    angle = np.arctan2(here.d[1], here.d[0]) - np.arctan2(here.force[1], here.force[0])
     attitude = float(np.sign(shaft_speed) * (np.mod(angle + np.pi, 2.0 * np.pi) - np.pi))
-    size = 2.0 * law.radius * law.length  # type: ignore[attr-defined]
     turns = abs(shaft_speed) / (2.0 * np.pi)
-    thinness = law.radius / law.clearance  # type: ignore[attr-defined]
+    area = 2.0 * law.radius * law.length
     return FilmState(
-        eccentricity=float(np.hypot(*state.d[:2])) / law.clearance,  # type: ignore[attr-defined]
+        eccentricity=float(np.hypot(*here.d[:2])) / law.clearance,
         attitude=attitude,
         minimum_gap=float(inside.gap.min()),
-        sommerfeld=law.viscosity * turns * size / W * thinness**2 if W else np.inf,  # type: ignore[attr-defined]
+        sommerfeld=law.viscosity * turns * area / W * (law.radius / law.clearance) ** 2 if W else np.inf,
         largest_pressure=float(inside.pressure.max()),
         side_flow=inside.side_flow,
         power_loss=inside.power_loss,
+        **_heat(law),
         angle=inside.angle,
         z=inside.z,
         gap=inside.gap,
@@ -152,9 +157,22 @@ def _film(inside: FilmField, state: LawState, shaft_speed: float) -> FilmState:
     )
 
 
-def _thrust(inside: ThrustField) -> ThrustState:
+def _heat(law: OilFilm) -> dict[str, Any]:
+    """Viscosity of a film, with its temperature and that of the oil that leaves; T is the mean of inlet and outlet."""
+    T = law.temperature
+    outlet = None if T is None else 2.0 * T - law.inlet_temperature
+    return {"film_temperature": T, "outlet_temperature": outlet, "film_viscosity": law.viscosity}
+
+
+def _thrust(inside: ThrustField, here: Carried) -> ThrustState:
+    assert isinstance(here.law, OilFilm)
     own = {item.name: getattr(inside, item.name) for item in fields(inside)}
-    return ThrustState(minimum_gap=float(inside.gap.min()), largest_pressure=float(inside.pressure.max()), **own)
+    return ThrustState(
+        minimum_gap=float(inside.gap.min()),
+        largest_pressure=float(inside.pressure.max()),
+        **_heat(here.law),
+        **own,
+    )
 
 
 def _over_speeds(
@@ -180,6 +198,7 @@ def _over_speeds(
                 damping=state.damping,
                 critical_mass=mass,
                 whirl_ratio=whirl,
+                film_temperature=getattr(state.part.law, "temperature", None),
                 log_decrement=_least_decrement(model, speed)[0] if stability else None,
             )
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from rotorgear.analysis.common.request import direction_of
 from rotorgear.analysis.static.cycle import over_cycle
+from rotorgear.analysis.static.film_heat import in_heat_balance
 from rotorgear.analysis.static.solve import LawState, equilibrate
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.law import CYCLE_POINTS
@@ -25,8 +27,9 @@ _TOLERANCE = 1e-11
 
 @dataclass(frozen=True)
 class Carried:
-    """Displacements d (k,) of a law under a load, and its tangents (k, k) there."""
+    """A law, warm where it is a film in heat balance, its displacements d (k,) under a load, and its tangents (k, k) there."""
 
+    law: ForceLaw
     d: np.ndarray
     force: np.ndarray
     stiffness: np.ndarray
@@ -83,14 +86,26 @@ def carried(law: ForceLaw, load: np.ndarray, start: np.ndarray, speed: float, po
     Raises:
         AnalysisError: Newton's method does not find it.
     """
+    near = [start]
+
+    def settled(laws: Sequence[ForceLaw]) -> tuple[np.ndarray, list[np.ndarray]]:
+        near[0] = _under(laws[0], load, near[0], speed, points)
+        return near[0], near
+
+    (own,), d = in_heat_balance([law], speed, settled)
+    tangent = own.settled(d).linearised(d, speed=speed, points=points)
+    return Carried(own, d, tangent.force, tangent.stiffness, tangent.damping)
+
+
+def _under(law: ForceLaw, load: np.ndarray, start: np.ndarray, speed: float, points: int) -> np.ndarray:
+    """Displacements of a law under a load, by Newton's method."""
     d = start.copy()
     size = float(np.abs(load).max(initial=0.0))
     for _ in range(_ITERATIONS):
         about = law.linearised(d, speed=speed, points=points)
         rest = load - about.force
         if float(np.abs(rest).max(initial=0.0)) <= _TOLERANCE * max(size, 1e-300):
-            tangent = law.settled(d).linearised(d, speed=speed, points=points)
-            return Carried(d, tangent.force, tangent.stiffness, tangent.damping)
+            return d
         # What nothing loads (a motion along a film) has no stiffness: least squares leaves it where it is.
         d = d + np.linalg.lstsq(about.stiffness, rest, rcond=1e-13)[0]
     raise AnalysisError("the bearing's own equilibrium was not found on another grid; check its load")

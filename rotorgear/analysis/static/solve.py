@@ -6,12 +6,16 @@ instead, and the torque flow is turned there. That is repeated until every conta
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
+from rotorgear.analysis.static.film_heat import in_heat_balance
 from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.errors import AnalysisError
 from rotorgear.model.parts.fields import DOF_NAMES
@@ -26,6 +30,9 @@ from rotorgear.system.loads import external_load, torque_loads, weight_loads
 from rotorgear.system.local_parts import LocalPart, expansion_stiffness, without_linear_part
 from rotorgear.system.rigid_motions import rigid_motions
 from rotorgear.system.system import System
+
+if TYPE_CHECKING:
+    from rotorgear.forces.law import ForceLaw
 
 # A contact pulls where its force is below minus this share of the largest one.
 _PULLS = 1e-9
@@ -188,25 +195,34 @@ def _laws_at_rest(
     ends = np.cumsum([0, *(part.law.components for part in parts)])
     k = la.block_diag(*about)
 
-    def laws(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        states = [part.law.linearised(d[a:b], speed=speed) for part, a, b in zip(parts, ends, ends[1:], strict=False)]
-        return np.concatenate([state.force for state in states]), la.block_diag(*(state.stiffness for state in states))
-
     solved = solver.solve(np.column_stack([f, B]), carried=True)
-    found = settle(B.T @ solved[:, 0], B.T @ solved[:, 1:], k, laws)
-    if not found.converged:
-        names = ", ".join(part.part for part in parts)
-        raise AnalysisError(
-            f"no equilibrium was found with {names} under these loads at {speed * RPM_PER_RAD_S:.6g} rpm: look for a law that "
-            "can't carry the load, such as a journal bearing at standstill"
-        )
+    near: list[np.ndarray | None] = [None]
+
+    def settled(laws: Sequence[ForceLaw]) -> tuple[np.ndarray, list[np.ndarray]]:
+        def forces(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            states = [law.linearised(d[a:b], speed=speed) for law, (a, b) in zip(laws, pairwise(ends), strict=True)]
+            tangents = la.block_diag(*(state.stiffness for state in states))
+            return np.concatenate([state.force for state in states]), tangents
+
+        found = settle(B.T @ solved[:, 0], B.T @ solved[:, 1:], k, forces, near[0])
+        if not found.converged:
+            names = ", ".join(part.part for part in parts)
+            raise AnalysisError(
+                f"no equilibrium was found with {names} under these loads at {speed * RPM_PER_RAD_S:.6g} rpm: look for a law "
+                "that can't carry the load, such as a journal bearing at standstill"
+            )
+        near[0] = found.d
+        return found.d, [found.d[a:b] for a, b in pairwise(ends)]
+
+    warmed, found = in_heat_balance([part.law for part in parts], speed, settled)
     states = []
-    for part, a, b in zip(parts, ends, ends[1:], strict=False):
-        d = found.d[a:b]
-        if why := part.law.beyond(d, speed):
+    for part, law, (a, b) in zip(parts, warmed, pairwise(ends), strict=True):
+        d = found[a:b]
+        if why := law.beyond(d, speed):
             raise AnalysisError(f"{part.part}: in equilibrium at {speed * RPM_PER_RAD_S:.6g} rpm {why}")
-        tangent = part.law.settled(d).linearised(d, speed=speed)
-        states.append(LawState(part, d, tangent.force, tangent.stiffness, tangent.damping, speed != 0.0))
+        tangent = law.settled(d).linearised(d, speed=speed)
+        own = replace(part, law=law)
+        states.append(LawState(own, d, tangent.force, tangent.stiffness, tangent.damping, speed != 0.0))
     return states
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.static.along_faces import about_faces
+from rotorgear.analysis.static.film_temperatures import at_film_temperatures
 from rotorgear.analysis.static.ground import mean_torsion_notes, springs_about_mean
 from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
 from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, Large, Reduced, Wanted
@@ -132,7 +133,8 @@ class PointMaker:
         return replace(known, speed=speed) if isinstance(known, Large) else ready(known, speed, modal_ratio)
 
     def _still(self, model: Model, speed: float) -> Still | Large:
-        system = System(about_faces(model, [speed])[0], plan=plan_in_time(self._elements))
+        warm = at_film_temperatures(model, speed)
+        system = System(about_faces(warm, [speed])[0], plan=plan_in_time(self._elements))
         if system.n == 0:
             raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
         built = springs_about_mean(local_model(system, Rotation.constant(speed), speed), speed)
@@ -176,12 +178,12 @@ def _with_approaches(built: LocalModel) -> LocalSystem:
 
 
 def _standing(model: Model) -> bool:
-    """Whether only the rotation depends on the speed: no power, tables, gear bodies, internal damping, torque over speed."""
+    """Whether only the rotation depends on the speed: no power, tables, films, bodies, internal damping, torque over speed."""
     operation = model.operation
     assert operation is not None
     powers = [operation.power, *(load.power for load in model.loads.values())]
     varying = any(load.varies for load in model.loads.values())
-    tables = any(bearing.table for bearing in model.bearings.values())
+    tables = any(bearing.table or bearing.has_film for bearing in model.bearings.values())
     bodies = any(gear.body.mesh for gear in model.gears.values())
     inner = any(shaft.internal_damping for shaft in model.shafts.values())
     # Laws of one's own may depend on the speed as they like.

@@ -15,6 +15,7 @@ from rotorgear.model.parts.supports import (
     Bearing,
     DampingMatrix,
     JournalGeometry,
+    Oil,
     Pedestal,
     RollingElements,
     StiffnessMatrix,
@@ -116,6 +117,25 @@ def _bearing(address: str, bearing: Bearing) -> Iterator[Problem]:
         yield from _pedestal(f"{address}.pedestal", bearing.pedestal)
 
 
+def _oil(here: str, film: Oil) -> Iterator[Problem]:
+    """A viscosity, or a grade with the temperature at which the oil flows in."""
+    if film.viscosity is not None and film.oil is not None:
+        yield Problem(f"{here}.viscosity", "viscosity and oil", "one of the two")
+    elif film.viscosity == 0.0:
+        yield Problem(f"{here}.viscosity", "0", "a viscosity above 0 such as '0.02 Pa s'")
+    elif film.viscosity is None and film.oil is None:
+        yield Problem(here, "neither viscosity nor oil", "a viscosity such as '0.02 Pa s', or an oil such as 'VG 46'")
+    if film.oil is not None and film.inlet_temperature is None:
+        yield Problem(f"{here}.inlet_temperature", "no temperature beside the oil", "a temperature such as '45 degC'")
+    if film.oil is None and (film.inlet_temperature is not None or film.heat_share != 1.0):
+        key = "inlet_temperature" if film.inlet_temperature is not None else "heat_share"
+        yield Problem(
+            f"{here}.{key}", "heat of a film of given viscosity", "an oil such as 'VG 46' in place of the viscosity"
+        )
+    if film.heat_share > 1.0:
+        yield Problem(f"{here}.heat_share", f"{film.heat_share:g}", "a share from 0 to 1")
+
+
 def _journal(address: str, bearing: Bearing, journal: JournalGeometry) -> Iterator[Problem]:
     """An oil film alone in its bearing, with lobes that fit, on a grid that serves."""
     here = f"{address}.journal"
@@ -123,8 +143,7 @@ def _journal(address: str, bearing: Bearing, journal: JournalGeometry) -> Iterat
     if beside or bearing.table:
         wanted = "a journal alone; what holds the shaft along z is a support or a bearing of its own"
         yield Problem(here, f"a journal beside {beside[0] if beside else 'a table'}", wanted)
-    if not journal.viscosity:
-        yield Problem(f"{here}.viscosity", "0", "a viscosity above 0 such as '0.02 Pa s'")
+    yield from _oil(here, journal)
     if journal.length > 2.0 * journal.diameter:
         got = f"{millimetres(journal.length)} on a diameter of {millimetres(journal.diameter)}"
         yield Problem(f"{here}.length", got, "at most two diameters, beyond which shafts bend in their bearing")
@@ -164,8 +183,7 @@ def _thrust(address: str, bearing: Bearing, thrust: ThrustGeometry) -> Iterator[
     if beside or bearing.table:
         wanted = "a thrust bearing alone; what holds the shaft across is a bearing of its own, at the same place"
         yield Problem(here, f"a thrust bearing beside {beside[0] if beside else 'a table'}", wanted)
-    if not thrust.viscosity:
-        yield Problem(f"{here}.viscosity", "0", "a viscosity above 0 such as '0.02 Pa s'")
+    yield from _oil(here, thrust)
     if thrust.inner_diameter >= thrust.outer_diameter:
         wanted = f"less than the outer diameter of {millimetres(thrust.outer_diameter)}"
         yield Problem(f"{here}.inner_diameter", millimetres(thrust.inner_diameter), wanted)

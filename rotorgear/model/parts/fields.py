@@ -177,6 +177,8 @@ PositiveRatio = Annotated[float, Unit("ratio", "positive")]
 SignedRatio = Annotated[float, Unit("ratio")]
 Force = Annotated[float, Unit("force", "non-negative")]
 Viscosity = Annotated[float, Unit("viscosity", "non-negative")]
+Temperature = Annotated[float, Unit("temperature", "positive")]
+SpecificHeat = Annotated[float, Unit("specific_heat", "positive")]
 UnbalanceSize = Annotated[float, Unit("unbalance", "non-negative")]
 Acceleration = Annotated[float, Unit("acceleration")]
 

@@ -23,9 +23,11 @@ from rotorgear.model.parts.fields import (
     RotationalStiffness,
     SignedDamping,
     SignedStiffness,
+    SpecificHeat,
     Speed,
     Station,
     Stiffness,
+    Temperature,
     Viscosity,
     Whole,
     refuse,
@@ -174,7 +176,57 @@ class RollingElements(Part):
         return {**known.keys, **given}
 
 
-class JournalGeometry(Part):
+class Oil(Part):
+    """The oil of a film: its viscosity, or its grade and the temperature at which it flows in."""
+
+    viscosity: Viscosity | None = Field(
+        None, description="dynamic viscosity of the oil in the film, whatever its temperature; or give the oil"
+    )
+    oil: (
+        Literal[
+            "VG 10",
+            "VG 15",
+            "VG 22",
+            "VG 32",
+            "VG 46",
+            "VG 68",
+            "VG 100",
+            "VG 150",
+            "VG 220",
+            "VG 320",
+            "VG 460",
+            "VG 680",
+            "VG 1000",
+        ]
+        | None
+    ) = Field(
+        None,
+        description="grade of ISO 3448 of a mineral oil, in place of the viscosity: the film has that of its temperature in heat "
+        "balance",
+    )
+    inlet_temperature: Temperature | None = Field(None, description="temperature at which the oil flows in")
+    heat_share: Ratio = Field(
+        1.0,
+        description="share of the power loss of the film that the oil carries away; 1: all of it, 0: the film stays at the "
+        "inlet temperature",
+    )
+    specific_heat: SpecificHeat = Field(1900.0, description="specific heat of the oil")
+    density: Density = Field(
+        870.0, description="density of the oil, for the limit of laminar flow and the heat balance"
+    )
+
+    @property
+    def heats(self) -> bool:
+        """Whether the viscosity follows from the heat balance of the film."""
+        return self.oil is not None and self.heat_share > 0.0
+
+    @property
+    def grade(self) -> float:
+        """Kinematic viscosity at 40 deg C in m^2/s; 0 where the viscosity is given."""
+        return 1e-6 * float(self.oil.removeprefix("VG ")) if self.oil else 0.0
+
+
+class JournalGeometry(Oil):
     """A journal bearing with its oil film: plain, with lobes, or of tilting pads."""
 
     diameter: PositiveLength = Field(description="diameter of the journal")
@@ -182,8 +234,6 @@ class JournalGeometry(Part):
     clearance: PositiveLength = Field(
         description="radial clearance; of lobes where the gap of the centred journal is least"
     )
-    viscosity: Viscosity = Field(description="dynamic viscosity of the oil in the film")
-    density: Density = Field(870.0, description="density of the oil, for the limit of laminar flow")
     cavitation: Literal["reynolds", "half_sommerfeld"] = Field(
         "reynolds",
         description="how the film cavitates; reynolds: pressure and its slope vanish together; half_sommerfeld: negative "
@@ -217,7 +267,7 @@ class JournalGeometry(Part):
     along: Whole = Field(12, description="cells of the grid over half the length")
 
 
-class ThrustGeometry(Part):
+class ThrustGeometry(Oil):
     """A thrust bearing in oil: sector pads, fixed with a taper and a land, or tilting about a radius."""
 
     inner_diameter: PositiveLength = Field(description="inner diameter of the pads")
@@ -225,8 +275,6 @@ class ThrustGeometry(Part):
     clearance: PositiveLength = Field(
         description="gap between collar and pads (the land of fixed ones) of each side, with the shaft at its place"
     )
-    viscosity: Viscosity = Field(description="dynamic viscosity of the oil in the film")
-    density: Density = Field(870.0, description="density of the oil, for the limit of laminar flow")
     pads: Whole = Field(8, description="number of pads of a side")
     pad_arc: Angle | None = Field(None, description="extent of a pad; default: 0.85 of its share of the circle")
     pad_at: Angle = Field(0.0, description="angle of the middle of the first pad, from +x about +z")
@@ -277,7 +325,12 @@ class Bearing(Part):
     @property
     def has_film(self) -> bool:
         """Whether oil carries in it, which it does only while its shaft turns."""
-        return self.journal is not None or self.thrust is not None
+        return self.film is not None
+
+    @property
+    def film(self) -> JournalGeometry | ThrustGeometry | None:
+        """Its journal or thrust bearing in oil; None without."""
+        return self.journal or self.thrust
 
     @property
     def is_linear(self) -> bool:

@@ -35,6 +35,16 @@ class FilmState(Record):
     largest_pressure: float = of("largest pressure", "Pa", json="largest_pressure_pa")
     side_flow: float = of("oil that leaves at both ends", "m^3/s", json="side_flow_m3_per_s")
     power_loss: float = of("power loss", "W", json="power_loss_w")
+    film_temperature: float | None = of(
+        "mean temperature of the film", "K", json="film_temperature_k", note="; `null` where the viscosity is given"
+    )
+    outlet_temperature: float | None = of(
+        "temperature of the oil that leaves",
+        "K",
+        json="outlet_temperature_k",
+        note="; `null` where the viscosity is given",
+    )
+    film_viscosity: float = of("dynamic viscosity of the film", "Pa s", json="film_viscosity_pa_s")
     angle: np.ndarray = of("angle of the grid", "rad", "angle", json="angle_rad")
     z: np.ndarray = of("place along the shaft from the middle of the bearing", "m", "place", json="z_m")
     gap: np.ndarray = of("gap of the film", "m", "angle", json="gap_m")
@@ -50,6 +60,16 @@ class ThrustState(Record):
     largest_pressure: float = of("largest pressure", "Pa", json="largest_pressure_pa")
     side_flow: float = of("oil that leaves at the inner and the outer radius", "m^3/s", json="side_flow_m3_per_s")
     power_loss: float = of("power loss", "W", json="power_loss_w")
+    film_temperature: float | None = of(
+        "mean temperature of the film", "K", json="film_temperature_k", note="; `null` where the viscosity is given"
+    )
+    outlet_temperature: float | None = of(
+        "temperature of the oil that leaves",
+        "K",
+        json="outlet_temperature_k",
+        note="; `null` where the viscosity is given",
+    )
+    film_viscosity: float = of("dynamic viscosity of the film", "Pa s", json="film_viscosity_pa_s")
     side: np.ndarray = of("sense of the push that the pad takes", "", "angle", note=", 1 towards +z, -1 towards -z")
     angle: np.ndarray = of("angle of the grid", "rad", "angle", json="angle_rad", note=", over all pads")
     radius: np.ndarray = of("radius of the grid", "m", "radius", json="radius_m")
@@ -72,6 +92,9 @@ class BearingSpeed(Record):
         note=", a bearing; a heavier one whirls; `null` where none does",
     )
     whirl_ratio: float | None = of("frequency of that whirl over the speed of the shaft", form=".4f")
+    film_temperature: float | None = of(
+        "mean temperature of the film", "K", json="film_temperature_k", note="; `null` where the viscosity is given"
+    )
     log_decrement: float | None = of(
         "smallest logarithmic decrement of the gearbox",
         note=", of its 24 lowest modes that anything damps; `null` where it was not asked for",

@@ -52,7 +52,7 @@ class Settled:
     crept: int = 0
 
 
-def settle(d0: np.ndarray, A: np.ndarray, k: np.ndarray, laws: Laws) -> Settled:
+def settle(d0: np.ndarray, A: np.ndarray, k: np.ndarray, laws: Laws, near: np.ndarray | None = None) -> Settled:
     """Return the local displacements in equilibrium.
 
     Args:
@@ -60,6 +60,7 @@ def settle(d0: np.ndarray, A: np.ndarray, k: np.ndarray, laws: Laws) -> Settled:
         A: (m, m) receptance of the local displacements with the laws linear at k.
         k: (m, m) that stiffness.
         laws: forces and tangents.
+        near: (m,) where the solution is looked for; None: d0.
     """
     size = float(np.abs(d0).max(initial=0.0))
 
@@ -71,7 +72,7 @@ def settle(d0: np.ndarray, A: np.ndarray, k: np.ndarray, laws: Laws) -> Settled:
         noise = _ROUNDING * (np.abs(d) + np.abs(A) @ (np.abs(F) + np.abs(k) @ np.abs(d))).max(initial=0.0)
         return bool(noise <= _WORST * largest and np.abs(r).max(initial=0.0) <= max(_TOLERANCE * largest, noise))
 
-    found = _newton(d0, A, k, laws, residual, small)
+    found = _newton(d0 if near is None else near, A, k, laws, residual, small)
     if found.converged:
         return found
 

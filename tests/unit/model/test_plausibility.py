@@ -110,6 +110,55 @@ SLIPS += [
         "unit right",
     ),
 ]
+BALLS = {"kind": "ball", "elements": 9, "element_diameter": 8e-3, "pitch_diameter": 46e-3, "contact_angle": 0.4}
+SLIPS += [
+    ({"operation.power": None, "operation.torque": 0.12}, "operation.torque", "kN m or kW"),
+    ({"operation.speed": 12000.0}, "operation.speed", "rpm meant"),
+    ({"operation.gravity": [0.0, -1.0, 0.0]}, "operation.gravity", "in g"),
+    ({"damping.rayleigh_alpha": 2e5}, "damping.rayleigh_alpha", "unit right"),
+    ({"unbalances.u": {**AT, "magnitude": 2e-5, "phase": 90.0}}, "unbalances.u.phase", "deg meant"),
+    ({"meshes.stage.phase": 180.0}, "meshes.stage.phase", "deg meant"),
+    ({"gears.pinion.flank": {"crowning": 4e-4}}, "gears.pinion.flank.crowning", "um meant"),
+    ({"meshes.stage.friction_coefficient": 5.0}, "meshes.stage.friction_coefficient", "percent"),
+    ({"meshes.stage.lubricant_viscosity": 20.0}, "meshes.stage.lubricant_viscosity", "cP"),
+    ({"meshes.stage.index_error": 0.02}, "meshes.stage.index_error", "um or mm"),
+    (
+        {"loads.brake": {"shaft": "output", "kind": "output", "torque": 1e-4, "ripple": 5.0}},
+        "loads.brake.ripple",
+        "percent",
+    ),
+    ({"disks.d": {**AT, "mass": 3e5, "polar_inertia": 3e3, "diametral_inertia": 2e3}}, "shafts.input", "mass in g"),
+    (
+        {"bearings.ball": {**AT, "rolling": {**BALLS, "element_diameter": 8e-6}}},
+        "bearings.ball.rolling.element_diameter",
+        "unit right",
+    ),
+    (
+        {"bearings.ball": {**AT, "rolling": {**BALLS, "preload_displacement": 5e-3}}},
+        "bearings.ball.rolling.preload_displacement",
+        "um meant",
+    ),
+    (
+        {"bearings.ball": {**AT, "rolling": {**BALLS, "preload_force": 4e5}}},
+        "bearings.ball.rolling.preload_force",
+        "unit right",
+    ),
+    (
+        {"bearings.b": {**AT, "stiffness": {"radial": 2e8}, "pedestal": {"mass": 2.0, "stiffness": {"radial": 400.0}}}},
+        "bearings.b.pedestal.stiffness",
+        "N/um meant",
+    ),
+    (
+        {"bearings.film": {**AT, "journal": {**FILM, "viscosity": None, "oil": "VG 46", "inlet_temperature": 45.0}}},
+        "bearings.film.journal.inlet_temperature",
+        "degC meant",
+    ),
+    (
+        {"bearings.film": {**AT, "journal": {**FILM, "pads": 5, "pad_at": 270.0}}},
+        "bearings.film.journal.pad_at",
+        "deg meant",
+    ),
+]
 
 
 @pytest.mark.parametrize(("change", "address", "slip"), SLIPS)

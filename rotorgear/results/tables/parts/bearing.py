@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.parts.bearing import BearingSheet
+from rotorgear.results.parts.bearing import BearingSheet, FilmState, ThrustState
 from rotorgear.results.tables.common import error_words, heading, lines, plain_table, table
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 _COMPONENTS = ("x", "y", "z", "tilt_x", "tilt_y")
 _NEGLIGIBLE = 1e-9
+_CELSIUS = 273.15
 
 
 def bearing_table(sheet: BearingSheet) -> RenderableType:
@@ -98,6 +99,7 @@ def _film(sheet: BearingSheet) -> Any:
         ("largest pressure", f"{1e-6 * film.largest_pressure:.4g} MPa"),
         ("side flow", f"{6e4 * film.side_flow:.4g} l/min"),
         ("power loss", f"{film.power_loss:.5g} W"),
+        *_heat(film),
     )
     for label, value in rows:
         out.add_row(label, value)
@@ -117,10 +119,23 @@ def _thrust(sheet: BearingSheet) -> Any:
         ("largest pressure", f"{1e-6 * film.largest_pressure:.4g} MPa"),
         ("side flow", f"{6e4 * film.side_flow:.4g} l/min"),
         ("power loss", f"{film.power_loss:.5g} W"),
+        *_heat(film),
     )
     for label, value in rows:
         out.add_row(label, value)
     return out
+
+
+def _heat(film: FilmState | ThrustState) -> list[tuple[str, str]]:
+    """Temperatures of a film in heat balance, and its viscosity there."""
+    if film.film_temperature is None or film.outlet_temperature is None:
+        return []
+    film_temperature, outlet = (T - _CELSIUS for T in (film.film_temperature, film.outlet_temperature))
+    inlet = 2.0 * film_temperature - outlet
+    return [
+        ("oil", f"in at {inlet:.4g} degC, out at {outlet:.4g} degC"),
+        ("film", f"{film_temperature:.4g} degC, {1e3 * film.film_viscosity:.4g} mPa s"),
+    ]
 
 
 def _elements(sheet: BearingSheet) -> Any:

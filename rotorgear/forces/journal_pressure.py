@@ -1,0 +1,236 @@
+"""Compiled: pressure, force and tangents of the film on the pads of a journal bearing.
+
+On each pad (one of 360 deg of a plain bearing, or a lobe), with the gap h = c_p - x cos t - y sin t - m c_p cos(t - t_m),
+
+    1/R^2 d/dt(h^3 dp/dt) + d/dz(h^3 dp/dz) = 12 mu (dh/dt + omega/2 dh/dtheta),   p = 0 at the edges of the pad and at both ends
+
+in finite volumes of second order, on one half of the length; from the last cell to the end at half a cell the flow is that which
+makes the mean of a parabola exact, the profile of a short bearing. Cavitation "reynolds" (Swift and Stieber): p >= 0, and where
+p = 0 the film does not have to push; the linear complementarity problem is solved exactly by changes of the active set.
+"half_sommerfeld" (Guembel) cuts the negative pressure of the full film. The force is F = int p n dA, and its tangents are those
+of the discrete film: A dp = -(dA p + db) where the film carries.
+
+Pinkus and Sternlicht, Theory of Hydrodynamic Lubrication (1961); Lund and Thomsen, in Topics in Fluid Film Bearing and Rotor
+Bearing System Design (ASME 1978); Murty, Linear Complementarity (1988).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rotorgear.forces.shell import add_wall, place_in_shell
+from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
+
+# Of the parameters; then start, extent, place of the least gap of each pad.
+VISCOSITY, RADIUS, LENGTH, CLEARANCE, ORDER, CONTACT, WALL, PRELOAD, AROUND, ALONG, CUT, FOLLOWS, PADS, FIRST = range(
+    14
+)
+SPEED = 0  # of the state
+_MOST_CHANGES = 200
+
+
+@schedule_function
+def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
+    """Speed of the journal."""
+    s[SPEED] = p[ORDER] * speed
+
+
+@compiled
+def factor(A, n, width):  # type: ignore[no-untyped-def]
+    """L D L^T of a symmetric band matrix A (n, width + 1), A[k, j] the entry (k, k - j), in place."""
+    for k in range(n):
+        first = max(0, k - width)
+        for j in range(first, k):
+            total = A[k, k - j]
+            for i in range(max(first, j - width), j):
+                total -= A[k, k - i] * A[i, 0] * A[j, j - i]
+            A[k, k - j] = total / A[j, 0]
+        total = A[k, 0]
+        for i in range(first, k):
+            total -= A[k, k - i] ** 2 * A[i, 0]
+        A[k, 0] = total
+
+
+@compiled
+def solve(A, n, width, b):  # type: ignore[no-untyped-def]
+    """Solve with the factors, b (n,) in place."""
+    for k in range(n):
+        for i in range(max(0, k - width), k):
+            b[k] -= A[k, k - i] * b[i]
+    for k in range(n):
+        b[k] /= A[k, 0]
+    for k in range(n - 1, -1, -1):
+        for i in range(max(0, k - width), k):
+            b[i] -= A[k, k - i] * b[k]
+
+
+@compiled
+def assemble(A, h, middle, free, around, along, per_t, per_z):  # type: ignore[no-untyped-def]
+    """Fill the band of -div(h^3 grad) of the free nodes; the others are held at 0."""
+    width = along
+    end = 2.0 / (1.0 - 1.0 / (3.0 * along))
+    for k in range((around - 1) * along):
+        for j in range(width + 1):
+            A[k, j] = 0.0
+    for i in range(around - 1):
+        back = middle[i] ** 3 * per_t
+        forth = middle[i + 1] ** 3 * per_t
+        side = h[i + 1] ** 3 * per_z
+        for j in range(along):
+            k = i * along + j
+            if not free[k]:
+                A[k, 0] = 1.0
+                continue
+            A[k, 0] = back + forth + (side if j > 0 else 0.0) + (side if j < along - 1 else end * side)
+            if j > 0 and free[k - 1]:
+                A[k, 1] = -side
+            if i > 0 and free[k - along]:
+                A[k, along] += -back
+
+
+@compiled
+def applied(h3, middle3, q, out, around, along, per_t, per_z):  # type: ignore[no-untyped-def]
+    """-div(w grad q) with any weights w (`h3` at nodes, `middle3` between them)."""
+    end = 2.0 / (1.0 - 1.0 / (3.0 * along))
+    for i in range(around - 1):
+        for j in range(along):
+            k = i * along + j
+            total = (middle3[i] + middle3[i + 1]) * per_t * q[k]
+            if i > 0:
+                total -= middle3[i] * per_t * q[k - along]
+            if i < around - 2:
+                total -= middle3[i + 1] * per_t * q[k + along]
+            side = h3[i + 1] * per_z
+            if j > 0:
+                total += side * (q[k] - q[k - 1])
+            total += side * (q[k] - q[k + 1]) if j < along - 1 else end * side * q[k]
+            out[k] = total
+
+
+@compiled
+def pad_film(p, omega, x, y, vx, vy, start, extent, least, F, Kd, Kv, pressure):  # type: ignore[no-untyped-def]
+    """Add force and tangents of one pad, and fill its pressure (around - 1, along) over half the length."""
+    around = int(p[AROUND])
+    along = int(p[ALONG])
+    n = (around - 1) * along
+    dt = extent / around
+    dz = 0.5 * p[LENGTH] / along
+    per_t = 1.0 / (p[RADIUS] * dt) ** 2
+    per_z = 1.0 / dz**2
+    own = p[CLEARANCE] / (1.0 - p[PRELOAD])
+    cosine = np.zeros(around + 1)
+    sine = np.zeros(around + 1)
+    h = np.zeros(around + 1)
+    middle = np.zeros(around)
+    middle_c = np.zeros(around)
+    middle_s = np.zeros(around)
+    for i in range(around + 1):
+        t = start + i * dt
+        cosine[i] = np.cos(t)
+        sine[i] = np.sin(t)
+        h[i] = own - x * cosine[i] - y * sine[i] - p[PRELOAD] * own * np.cos(t - least)
+        if i < around:
+            t += 0.5 * dt
+            middle_c[i] = np.cos(t)
+            middle_s[i] = np.sin(t)
+            middle[i] = own - x * middle_c[i] - y * middle_s[i] - p[PRELOAD] * own * np.cos(t - least)
+    push = np.zeros(n)
+    wedge = 6.0 * p[VISCOSITY] * omega / dt
+    squeeze = 12.0 * p[VISCOSITY]
+    for i in range(around - 1):
+        value = squeeze * (vx * cosine[i + 1] + vy * sine[i + 1]) - wedge * (middle[i + 1] - middle[i])
+        for j in range(along):
+            push[i * along + j] = value
+    free = np.ones(n, dtype=np.bool_)
+    A = np.zeros((n, along + 1))
+    q = np.zeros(n)
+    left = np.zeros(n)
+    h3 = h**3
+    middle3 = middle**3
+    for _ in range(_MOST_CHANGES):
+        assemble(A, h, middle, free, around, along, per_t, per_z)
+        factor(A, n, along)
+        for k in range(n):
+            q[k] = push[k] if free[k] else 0.0
+        solve(A, n, along, q)
+        if p[CUT] > 0.0:
+            break
+        applied(h3, middle3, q, left, around, along, per_t, per_z)
+        changed = False
+        for k in range(n):
+            if free[k]:
+                if q[k] < 0.0:
+                    free[k] = False
+                    changed = True
+            elif left[k] < push[k]:
+                free[k] = True
+                changed = True
+        if not changed:
+            break
+    area = 2.0 * p[RADIUS] * dt * dz
+    weight_c = np.zeros(n)
+    weight_s = np.zeros(n)
+    for i in range(around - 1):
+        for j in range(along):
+            k = i * along + j
+            carries = free[k] and (q[k] > 0.0 or p[CUT] == 0.0)
+            weight_c[k] = area * cosine[i + 1] if carries else 0.0
+            weight_s[k] = area * sine[i + 1] if carries else 0.0
+            pressure[i, j] = q[k] if carries else 0.0
+    F[0] += np.sum(weight_c * q)
+    F[1] += np.sum(weight_s * q)
+    change = np.zeros(n)
+    for which in range(2):
+        c = cosine if which == 0 else sine
+        mc = middle_c if which == 0 else middle_s
+        applied(-3.0 * h**2 * c, -3.0 * middle**2 * mc, q, left, around, along, per_t, per_z)
+        for i in range(around - 1):
+            for j in range(along):
+                k = i * along + j
+                change[k] = wedge * (mc[i + 1] - mc[i]) - left[k] if free[k] else 0.0
+        solve(A, n, along, change)
+        Kd[which] += np.sum(weight_c * change)
+        Kd[2 + which] += np.sum(weight_s * change)
+        for i in range(around - 1):
+            for j in range(along):
+                k = i * along + j
+                change[k] = squeeze * c[i + 1] if free[k] else 0.0
+        solve(A, n, along, change)
+        Kv[which] += np.sum(weight_c * change)
+        Kv[2 + which] += np.sum(weight_s * change)
+
+
+@force_function
+def force(p, s, d, v, F, Kd, Kv, energy):  # type: ignore[no-untyped-def]
+    """Force of the journal on the film and the shell, along x and y."""
+    place = np.zeros(5)
+    touches = place_in_shell(d, p[CONTACT] * p[CLEARANCE], place)
+    x = place[0]
+    y = place[1]
+    omega = s[SPEED]
+    film = np.zeros(2)
+    k = np.zeros(4)
+    c = np.zeros(4)
+    pressure = np.zeros((int(p[AROUND]) - 1, int(p[ALONG])))
+    follows = p[FOLLOWS] > 0.0 and np.hypot(x, y) > 0.0
+    for pad in range(int(p[PADS])):
+        at = FIRST + 3 * pad
+        start = np.arctan2(-y, -x) if follows else p[at]
+        pad_film(p, omega, x, y, v[0], v[1], start, p[at + 1], p[at + 2], film, k, c, pressure)
+    if follows:
+        # The inlet turns with the journal: dF/dt0 = J F - K J d - C J v by symmetry of rotation, dt0/dd = (-y, x)/|d|^2.
+        turned_x = -film[1] - (k[0] * -y + k[1] * x) - (c[0] * -v[1] + c[1] * v[0])
+        turned_y = film[0] - (k[2] * -y + k[3] * x) - (c[2] * -v[1] + c[3] * v[0])
+        size = x * x + y * y
+        k[0] += turned_x * -y / size
+        k[1] += turned_x * x / size
+        k[2] += turned_y * -y / size
+        k[3] += turned_y * x / size
+    energy[0] = add_wall(d, place, p[WALL], film, k, F, Kd)
+    for i in range(4):
+        Kv[i] = c[i]
+    # What the film takes up: the journal turns it in at omega/2 beside the motion of its centre.
+    turning = 0.5 * omega * (film[0] * y - film[1] * x)
+    energy[1] = turning
+    energy[2] = film[0] * v[0] + film[1] * v[1] + turning
+    energy[3] = 1.0 if touches else 0.0
