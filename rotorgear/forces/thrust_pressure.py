@@ -153,6 +153,11 @@ def sector_film(p, omega, start, q, v, first, fields, G, K, C, pressure):  # typ
             )
     theta_3 = theta_h**3
     radial_3 = radial_h**3
+    # Half a cell at each rim has no node: with this flow to the rim the sum over the nodes is that of a parabola, which oil has
+    # that leaves at the rims alone.
+    rim = 1.0 / (1.0 + across / (6.0 * (across - 1.0) ** 2))
+    radial_3[:, 0] *= rim
+    radial_3[:, columns] *= rim
     free = np.ones(n, dtype=np.bool_)
     A = np.zeros((n, columns + 1))
     x = np.zeros(n)
@@ -209,6 +214,8 @@ def sector_film(p, omega, start, q, v, first, fields, G, K, C, pressure):  # typ
         for i in range(rows):
             for j in range(columns + 1):
                 phi_r[i, j] = radial_c[i, j] * field_at(m, start + (i + 1.0) * dt, p[INNER] + (j + 0.5) * dr, pivot)
+            phi_r[i, 0] *= rim
+            phi_r[i, columns] *= rim
         weighted(-3.0 * theta_h**2 * phi_t, -3.0 * radial_h**2 * phi_r, x, left, rows, columns, r, dr, dt)
         for i in range(rows):
             for j in range(columns):

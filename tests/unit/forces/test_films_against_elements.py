@@ -70,6 +70,7 @@ def test_a_tilting_pad_has_its_synchronous_stiffness_and_damping_from_finite_ele
     d = np.array([0.0, -6e-5])
     Z = np.zeros((2, 2), complex)
     F = np.zeros(2)
+    loaded = 0
     for q in -np.pi / 2 + 2.0 * np.pi * np.arange(5) / 5:
         e = np.array([np.cos(q), np.sin(q)])
         pad = [(-pivot * arc, arc, 0.0)]
@@ -87,12 +88,15 @@ def test_a_tilting_pad_has_its_synchronous_stiffness_and_damping_from_finite_ele
         # From where the trailing edge is nearly closed, where the film presses behind the pivot, to where it presses before it.
         tilts = most - own * np.array([0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2])
         before = next((eta for eta in tilts if moment(eta) < 0.0), None)
-        assert before is not None
+        if before is None:
+            continue  # nothing presses it: its gap closes towards both edges
+        loaded += 1
         eta = brentq(moment, before, tilts[0], xtol=1e-13)
         K, D = quotients(local, np.array([xi, eta]), 1e-7, 1e-3)
         z = K + 1j * SPEED * D
         Z += (z[0, 0] - z[0, 1] * z[1, 0] / z[1, 1]) * np.outer(e, e)
         F += local(np.array([xi, eta]), np.zeros(2))[0] * e
+    assert loaded == 3
     about = law.linearised(d, speed=SPEED)
     np.testing.assert_allclose(about.force, F, atol=0.01 * np.abs(F).max())
     np.testing.assert_allclose(about.stiffness, Z.real, atol=0.03 * np.abs(Z.real).max())

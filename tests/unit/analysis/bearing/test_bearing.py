@@ -124,6 +124,50 @@ def test_both_kinds_have_a_convergence_study() -> None:
     assert all(rung.error <= 1.5 * rung.estimate for rung in balls.rungs)
 
 
+@pytest.mark.parametrize(
+    "kind",
+    [
+        'rolling = { kind = "tapered", elements = 14, element_diameter = "10 mm", pitch_diameter = "60 mm", length = "14 mm", '
+        'contact_angle = "15 deg", slices = 7 }',
+        'rolling = { kind = "four-point", elements = 13, element_diameter = "12 mm", pitch_diameter = "65 mm", '
+        'contact_angle = "35 deg" }',
+        'thrust = { inner_diameter = "80 mm", outer_diameter = "140 mm", clearance = "60 um", viscosity = "0.03 Pa s", pads = 4, '
+        "pivot = 0.6, around = 24, across = 8 }",
+        FILM.format(120).replace("along = 4", "along = 6, pads = 5, preload = 0.3"),
+        FILM.format(96).replace('viscosity = "20 mPa s"', 'oil = "VG 46", inlet_temperature = "45 degC"'),
+    ],
+    ids=["tapered", "four-point", "thrust", "tilting pads", "heat balance"],
+)
+def test_the_newer_kinds_have_a_convergence_study(kind: str) -> None:
+    model = rg.loads(f"""
+[operation]
+input_shaft = "rotor"
+speed = "3000 rpm"
+[shafts.rotor]
+[bearings.front]
+shaft = "rotor"
+at = "start"
+{kind}
+[supports.guide]
+shaft = "rotor"
+at = "start"
+fixed = ["tilt_x", "tilt_y"{', "x", "y"' if kind.startswith("thrust") else ', "z"' if "journal" in kind else ""}]
+[disks.d]
+shaft = "rotor"
+at = "start"
+mass = 10
+polar_inertia = 0.1
+diametral_inertia = 0.1
+[loads.pull]
+shaft = "rotor"
+at = "start"
+force = [300.0, 400.0, 2000.0]
+""")
+    study = rg.accuracy(model, "bearing", repeat=1)
+    assert study.rungs[-1].error < 0.02
+    assert all(rung.error <= 1.5 * rung.estimate for rung in study.rungs)
+
+
 def test_a_split_torque_gearbox_stands_in_its_films_at_its_own_loads_and_runs_stably() -> None:
     model = rg.load(ROOT / "models" / "split_torque_journals.toml")
     speed = model.operation.speed

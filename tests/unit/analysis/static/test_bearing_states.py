@@ -58,6 +58,29 @@ def test_a_roller_bearing_has_the_deflection_of_its_line_contacts():
     assert np.abs(result.laws[0].stiffness - result.laws[0].stiffness.T).max() <= 1e-10 * 657.8e6
 
 
+def test_a_pure_moment_tilts_a_ball_bearing_as_the_sum_over_its_balls_says():
+    """M = sum c_p delta^1.5 w/s R_i sin phi with w = R_i tilt sin phi, s = sqrt(A^2 + w^2), delta = s - A, summed here anew."""
+    z, d, pitch = 7, 11.5e-3, 43.5e-3
+    c_p = 333375.588 * 1e3**1.5  # of the published cases, N/m^1.5
+    A = 0.05 * d
+    R = 0.5 * pitch + 0.02 * d
+
+    def moment(tilt: float) -> float:
+        w = R * tilt * np.sin(2.0 * np.pi * np.arange(z) / z)
+        s = np.hypot(A, w)
+        return float(np.sum(c_p * (s - A) ** 1.5 * w / s * R * np.sin(2.0 * np.pi * np.arange(z) / z)))
+
+    model = rotor(BALLS, "[0.0, 0.0, 0.0]").with_(
+        {"supports.guide.fixed": ["x", "y", "z"], "loads.pull.moment": [5.0, 0.0, 0.0]}
+    )
+    law = rg.static(model).laws[0]
+    assert law.force[3] == pytest.approx(5.0, rel=1e-9)
+    assert moment(law.displacement[3]) == pytest.approx(
+        5.0, rel=2e-3
+    )  # the standard's rounded constant, as for a force
+    assert abs(law.displacement[4]) < 1e-6 * abs(law.displacement[3])
+
+
 def test_linear_analyses_print_the_state_that_they_are_about():
     model = rotor(BALLS, '["0 N", "1 kN", "0 N"]', "3000 rpm")
     said = [note for note in rg.modal(model).left_out if note.startswith("bearings.front: 15.19 um, ")]
