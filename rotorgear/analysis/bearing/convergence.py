@@ -91,11 +91,8 @@ def bearing_convergence_study(
         return Judged(state.d.size, changes(here, truth, "d", "stiffness", "damping"), estimate)
 
     if film:
-        settings = [
-            Setting(f"{on_grid(law, g).around} x {2 * on_grid(law, g).along} cells", "grid", g, {"fineness": g})  # type: ignore[attr-defined]
-            for g in _GRIDS
-        ]
-        words = f"the film on {on_grid(law, _FINEST_GRID).around} x {2 * on_grid(law, _FINEST_GRID).along} cells"  # type: ignore[attr-defined]
+        settings = [Setting(f"{_cells(on_grid(law, g))} cells", "grid", g, {"fineness": g}) for g in _GRIDS]
+        words = f"the film on {_cells(on_grid(law, _FINEST_GRID))} cells"
     else:
         settings = [Setting(f"{n} positions in a pitch", "positions", float(n), {"fineness": n}) for n in _POINTS]
         words = f"means over {_FINEST_POINTS} positions in a pitch"
@@ -110,3 +107,8 @@ def bearing_convergence_study(
         compared="displacements, stiffness and damping",
         resolution=_ROUNDING,
     )
+
+
+def _cells(film: Any) -> str:
+    """Cells of a grid each way: around a journal and along all of it, or along a thrust pad and across it."""
+    return f"{film.around} x {film.across if hasattr(film, 'across') else 2 * film.along}"

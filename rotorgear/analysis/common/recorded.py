@@ -14,7 +14,7 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 from rotorgear.model.checks.estimates import estimated
-from rotorgear.model.checks.plausibility import implausible
+from rotorgear.model.checks.plausibility.machine import implausible
 from rotorgear.model.model import Model
 from rotorgear.model.model_hash import model_hash
 from rotorgear.results.result import Result

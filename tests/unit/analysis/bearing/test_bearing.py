@@ -10,7 +10,7 @@ from rotorgear.analysis.bearing.bearing import rigid_threshold
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.hertz import line_pressure, point_pressure
 from rotorgear.forces.journal_film import JournalFilm
-from rotorgear.system.local_parts import journal_law
+from rotorgear.system.bearing_laws import journal_law
 from tests.paths import ROOT
 from tests.unit.analysis.static.test_bearing_states import BALLS, ROLLERS, rotor
 
@@ -95,6 +95,26 @@ def test_a_film_carries_the_load_of_the_gearbox_at_the_attitude_of_its_state() -
     np.testing.assert_allclose(sheet.over_speed[0].stiffness, sheet.bearing_stiffness, rtol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("at", "keys"),
+    [
+        ("pad_at", {"pads": 5, "preload": 0.3, "pivot": 0.6}),
+        ("lobe_at", {"lobes": 2, "preload": 0.5, "offset": 0.8}),
+    ],
+)
+def test_a_bearing_built_for_the_other_sense_of_rotation_is_the_mirror_image(at: str, keys: dict[str, float]) -> None:
+    there = journal_rotor().with_("loads.pull.force", [0.0, -500.0, 0.0])
+    sheets = []
+    film = {"diameter": 0.06, "length": 0.03, "clearance": 60e-6, "viscosity": 0.02, "around": 60, "along": 4, **keys}
+    for speed, angle in (("3000 rpm", "100 deg"), ("-3000 rpm", "80 deg")):
+        model = there.with_({"bearings.front.journal": {**film, at: angle}, "operation.speed": speed})
+        sheets.append(rg.bearing(model, speeds=[], stability=False))
+    here, mirrored = sheets
+    flip = np.array([-1.0, 1.0])
+    np.testing.assert_allclose(mirrored.bearing_displacement, flip * here.bearing_displacement, rtol=1e-6)
+    np.testing.assert_allclose(mirrored.bearing_stiffness, np.outer(flip, flip) * here.bearing_stiffness, rtol=1e-5)
+
+
 def test_the_threshold_of_a_rigid_rotor_makes_its_characteristic_polynomial_imaginary() -> None:
     K = np.array([[8.0, 40.0], [-52.0, 4.0]]) * 1e6
     C = np.array([[90.0, -9.0], [-9.0, 110.0]]) * 1e3
@@ -161,11 +181,12 @@ diametral_inertia = 0.1
 [loads.pull]
 shaft = "rotor"
 at = "start"
-force = [300.0, 400.0, 2000.0]
+force = {"[1500.0, 2000.0, 1000.0]" if kind.startswith("rolling") else "[300.0, 400.0, 2000.0]"}
 """)
-    study = rg.accuracy(model, "bearing", repeat=1)
+    study = rg.accuracy(model, "bearing")
     assert study.rungs[-1].error < 0.02
-    assert all(rung.error <= 1.5 * rung.estimate for rung in study.rungs)
+    # Means over fewer than eight positions do not know their own error.
+    assert all(rung.error <= 1.5 * rung.estimate for rung in study.rungs[-4:])
 
 
 def test_a_split_torque_gearbox_stands_in_its_films_at_its_own_loads_and_runs_stably() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from rotorgear.model.checks.plausible import ASK, GRAVITY, mass_of, outside, said
+from rotorgear.model.checks.plausibility.sentence import ASK, GRAVITY, mass_of, outside, said
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.supports import Bearing, RollingElements, StiffnessMatrix
 

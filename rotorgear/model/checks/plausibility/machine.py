@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from rotorgear.model.checks.plausible import mass_of, outside, said
-from rotorgear.model.checks.plausible_bearings import bearings, couplings
-from rotorgear.model.checks.plausible_operation import operation
+from rotorgear.model.checks.plausibility.bearings import bearings, couplings
+from rotorgear.model.checks.plausibility.operation import operation
+from rotorgear.model.checks.plausibility.sentence import mass_of, outside, said
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.gear import Gear
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import BaseModel
 
-from rotorgear.model.checks.plausible import GRAVITY, mass_of, outside, said
+from rotorgear.model.checks.plausibility.sentence import GRAVITY, mass_of, outside, said
 from rotorgear.model.layout.layout import Layout
 from rotorgear.model.parts.fields import Unit
 from rotorgear.model.parts.load import Load

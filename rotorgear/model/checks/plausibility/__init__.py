@@ -1,0 +1,1 @@
+"""Values that the physics of a machine makes unlikely."""
