@@ -289,8 +289,8 @@ class ThrustGeometry(Oil):
         1.0,
         description="frequency over the speed of the shaft at which stiffness and damping of tilting pads are taken",
     )
-    around: Whole = Field(30, description="cells of the grid along a pad")
-    across: Whole = Field(12, description="cells of the grid from the inner to the outer diameter")
+    around: Whole = Field(40, description="cells of the grid along a pad")
+    across: Whole = Field(10, description="cells of the grid from the inner to the outer diameter")
 
 
 class Bearing(Part):
