@@ -16,9 +16,9 @@ from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.model.parts.load import COMPONENTS, Load
 from rotorgear.model.parts.nonlinear_element import element_law
 from rotorgear.solvers.time.motion import Rotation
-from rotorgear.system.bearing_laws import bearing_law
 from rotorgear.system.groups import ElementGroup, node_dofs
 from rotorgear.system.loads import wrench_load
+from rotorgear.system.local_bearings import bearing_law
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:

@@ -26,9 +26,7 @@ from rotorgear.analysis.common.request import speed_in_si
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.inside import FilmField, RollingLoads, ThrustField
-from rotorgear.forces.journal_oil import JournalOil
 from rotorgear.forces.law import CYCLE_POINTS
-from rotorgear.forces.oil_film import OilFilm
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -133,8 +131,7 @@ def _elements(inside: RollingLoads) -> tuple[RollingElementRow, ...]:
 
 
 def _film(inside: FilmField, here: Carried, shaft_speed: float) -> FilmState:
-    law = here.law
-    assert isinstance(law, JournalOil)
+    law: Any = here.law
     W = float(np.hypot(*here.force[:2]))
     # From the load to the line of centres, positive in the sense of rotation.
     angle = np.arctan2(here.d[1], here.d[0]) - np.arctan2(here.force[1], here.force[0])
@@ -157,7 +154,7 @@ def _film(inside: FilmField, here: Carried, shaft_speed: float) -> FilmState:
     )
 
 
-def _heat(law: OilFilm) -> dict[str, Any]:
+def _heat(law: Any) -> dict[str, Any]:
     """Viscosity of a film, with its temperature and that of the oil that leaves; T is the mean of inlet and outlet."""
     T = law.temperature
     outlet = None if T is None else 2.0 * T - law.inlet_temperature
@@ -165,7 +162,6 @@ def _heat(law: OilFilm) -> dict[str, Any]:
 
 
 def _thrust(inside: ThrustField, here: Carried) -> ThrustState:
-    assert isinstance(here.law, OilFilm)
     own = {item.name: getattr(inside, item.name) for item in fields(inside)}
     return ThrustState(
         minimum_gap=float(inside.gap.min()),

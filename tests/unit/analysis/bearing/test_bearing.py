@@ -10,7 +10,7 @@ from rotorgear.analysis.bearing.bearing import rigid_threshold
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.hertz import line_pressure, point_pressure
 from rotorgear.forces.journal_film import JournalFilm
-from rotorgear.system.bearing_laws import journal_law
+from rotorgear.system.local_bearings import journal_law
 from tests.paths import ROOT
 from tests.unit.analysis.static.test_bearing_states import BALLS, ROLLERS, rotor
 
