@@ -103,8 +103,8 @@ def _problem(item: Any, root: type[BaseModel]) -> Problem:
     if kind == "missing":
         return Problem(where, "", "missing", f"required: {description}" if description else "required")
     if kind == "literal_error":
-        words = re.findall(r"'([^']+)'|(\w+)", item["ctx"]["expected"].replace(" or ", " "))
-        choices = [text or number for text, number in words]
+        listed = re.findall(r"'([^']+)'|(\w+)", item["ctx"]["expected"].replace(" or ", " "))
+        choices = [text or number for text, number in listed]
         if len(choices) == 1:
             return Problem(where, value, choices[0], description)
         guess = nearest(item["input"], choices) if isinstance(item["input"], str) else ""
