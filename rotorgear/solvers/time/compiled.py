@@ -6,6 +6,7 @@ Only modules named `kernel_*` and force laws import this one, and they are impor
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import tempfile
 import warnings
@@ -17,6 +18,7 @@ from typing import Any
 
 from rotorgear.errors import MissingExtraError
 from rotorgear.fingerprint import fingerprint
+from rotorgear.solvers.time.compiled_once import CompiledOnce
 
 try:
     import numba
@@ -88,15 +90,26 @@ def compiled(
     options: dict[str, Any] = {"fastmath": FAST} if fast else {}
     if free:
         options["nogil"] = True
-    arguments = (signature,) if signature is not None else ()
     folder = cache_folder()
-    if folder is None:
-        return numba.njit(*arguments, **options)(function)
+    made = None if folder is None else _kept(function, folder, options)
+    if made is None:
+        made = numba.njit(**options)(function)
+    if signature is not None:
+        made.compile(signature)
+        made.disable_compile()
+    return made
+
+
+def _kept(function: Callable[..., Any], folder: Path, options: dict[str, Any]) -> Any:
+    """The function as numba compiles it and keeps it in a folder; None for one without a file, such as one typed at a prompt."""
     with _cache_in(folder):
         try:
-            return numba.njit(*arguments, cache=True, **options)(function)
-        except (RuntimeError, OSError):  # a function without a file, such as one typed at a prompt
-            return numba.njit(*arguments, **options)(function)
+            made = numba.njit(cache=True, **options)(function)
+        except (RuntimeError, OSError):
+            return None
+    place = f"{function.__module__}.{function.__qualname__}-{function.__code__.co_firstlineno}"
+    made._cache = CompiledOnce(made._cache, folder / (re.sub(r"[^\w.-]", "_", place) + ".lock"))
+    return made
 
 
 def schedule_function(function: Callable[..., Any]) -> Any:
