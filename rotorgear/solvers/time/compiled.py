@@ -16,9 +16,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from rotorgear.compiled_once import CompiledOnce
 from rotorgear.errors import MissingExtraError
 from rotorgear.fingerprint import fingerprint
-from rotorgear.solvers.time.compiled_once import CompiledOnce
 
 try:
     import numba

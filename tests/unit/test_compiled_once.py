@@ -8,8 +8,7 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("numba")
-from rotorgear.solvers.time.compiled_once import CompiledOnce
+from rotorgear.compiled_once import CompiledOnce
 
 
 class Kept:
