@@ -27,7 +27,11 @@ PAGES = {page.name: page.read_text(encoding="utf-8") for page in [*(ROOT / "docs
 # Options of other tools, by the words of the code that they stand in.
 OTHER_TOOLS = ("docs/", "python", "pytest", "dask", "check.py", "pip ", "octave", "mkdocs")
 # Those of benchmarks of the repository that stand apart from the word python.
-OF_BENCHMARKS = {"casings.md": {"--large"}, "run_time.md": {"--repetitions", "--longest"}}
+OF_BENCHMARKS = {
+    "casings.md": {"--large"},
+    "response.md": {"--form"},
+    "run_time.md": {"--repetitions", "--longest"},
+}
 # Pages that tell what former options are called now.
 OF_FORMER_NAMES = {"glossary.md"}
 _CODE = re.compile(r"^```.*?^```|`[^`\n]+`", re.MULTILINE | re.DOTALL)

@@ -87,6 +87,8 @@ def compiled(
     """Compile a function with numba and keep the result on disk; a `free` one lets other threads run beside it."""
     if function is None:
         return lambda given: compiled(given, signature=signature, fast=fast, free=free)
+    if numba.config.DISABLE_JIT:
+        return function
     options: dict[str, Any] = {"fastmath": FAST} if fast else {}
     if free:
         options["nogil"] = True

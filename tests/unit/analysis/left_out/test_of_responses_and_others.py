@@ -152,7 +152,7 @@ def test_a_film_knows_no_tilt_of_its_journal() -> None:
     law = JournalFilm.examples()[0]
     assert law.left_out() == ("heat, turbulence and tilt of the journal in its film",)
     assert law.components == 2  # forces across its axis, no moments
-    assert not {"temperature", "specific_heat", "reynolds"} & set(law.declared())
+    assert not {"turbulence", "reynolds"} & set(law.declared())
 
 
 def test_layouts_and_updates_leave_damping_out() -> None:

@@ -60,6 +60,7 @@ def test_damping_that_sets_in_within_a_step_needs_no_more_steps(damping: str, rp
     assert few.lyapunov == pytest.approx(many.lyapunov, abs=0.02)
 
 
+@pytest.mark.long  # settles for thousands of periods
 def test_runs_that_still_remember_their_start_settle_longer() -> None:
     marine = rg.load(PAIR.with_name("marine_dual_turbine.toml"))  # decays by 5e-4 a mesh period
     over = {"loads.lp.torque": "15.1 kN m,15.4 kN m"}
