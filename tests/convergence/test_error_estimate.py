@@ -76,6 +76,11 @@ def test_more_modes_than_anyone_reads_are_refused_before_they_are_sought() -> No
 def test_damping_that_gathers_modes_without_end_is_named() -> None:
     model = beam("pinned", internal_damping=1e-4)
     assert any("without end at 1592 Hz" in line for line in rg.modal(model, speed=0.0, modes=24).warnings)
+
+
+@pytest.mark.long  # it tries finer meshes first
+def test_an_accuracy_of_modes_that_gather_without_end_is_refused() -> None:
+    model = beam("pinned", internal_damping=1e-4)
     with pytest.raises(rg.AnalysisError, match="without end at 1592 Hz"):
         rg.modal(model, speed=0.0, modes=14, accuracy=1e-10)
 

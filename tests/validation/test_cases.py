@@ -18,7 +18,7 @@ from validation.table import printed
 
 # Most of the time of all cases. Unit tests hold the same physics on smaller problems.
 # `python -m validation` runs them all.
-LONG_CASES = frozenset({"D1", "D2", "D3", "D4", "D5", "D6", "E4"})
+LONG_CASES = frozenset({"D1", "D2", "D3", "D4", "D5", "D6", "E4", "F5", "T1"})
 
 
 @pytest.mark.parametrize(

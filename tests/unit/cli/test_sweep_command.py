@@ -113,7 +113,7 @@ def test_a_killed_sweep_goes_on_to_the_same_file(tmp_path: Path) -> None:
         "sweep",
         PAIR,
         "--over",
-        "operation.speed=3000 rpm:9000 rpm:128",
+        "operation.speed=3000 rpm:9000 rpm:64",
         "--discard",
         "200",
         "--sample",

@@ -413,6 +413,7 @@ stiffness_variation = [{ harmonic = 1, amplitude = 0.15, phase = "60 deg" }]
 """
 
 
+@pytest.mark.long  # the common period of two stages is many of each
 def test_two_stages_over_their_common_period_are_those_of_the_transient() -> None:
     model = rg.loads(TWO_STAGES)
     swept = rg.sweep(model, {"operation.speed": ["4000 rpm"]}, discard=30, sample=2, steps=200)

@@ -42,7 +42,7 @@ def test_a_parameter_that_changes_nothing_is_named() -> None:
     assert idle[0].startswith("gears.pinion.mass ")
 
 
-@pytest.mark.parametrize("damping", ["adhesive", "non-adhesive"])
+@pytest.mark.parametrize("damping", ["adhesive", pytest.param("non-adhesive", marks=pytest.mark.long)])
 @pytest.mark.parametrize("rpm", [3560, pytest.param(3300, marks=pytest.mark.long)])
 def test_damping_that_sets_in_within_a_step_needs_no_more_steps(damping: str, rpm: int) -> None:
     # The ramp is 22 nm, a fortieth of what flanks pass in a step. Without the impulse from the ends of the steps the pair with

@@ -74,7 +74,9 @@ def test_the_rotor_model_deflects_as_the_loaded_teeth_do(helix: float, kind: str
         assert deflection == pytest.approx(rg.mesh(rg.loads(text), estimate=False).mean_transmission_error, rel=1e-6)
 
 
-@pytest.mark.parametrize(("helix", "kind", "near"), [(0.0, "spur", 1e-6), (20.86, "helical", 1e-5)])
+@pytest.mark.parametrize(
+    ("helix", "kind", "near"), [pytest.param(0.0, "spur", 1e-6, marks=pytest.mark.long), (20.86, "helical", 1e-5)]
+)
 def test_statics_press_the_teeth_together_as_loaded_contact_does(helix: float, kind: str, near: float) -> None:
     text = pair_file(helix, kind, mesh=NAMED)
     assert rg.static(rg.loads(text)).mesh_deflection[0] == pytest.approx(mean_approach(text), rel=near)

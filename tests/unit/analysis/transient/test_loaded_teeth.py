@@ -43,7 +43,7 @@ CASES = [(change, torque) for change in CHANGES for torque in (1000.0, 2000.0, 4
 SHORT = (("bare", 2000.0), ("relieved", 4000.0))
 
 
-@pytest.mark.parametrize(("change", "torque"), SHORT)
+@pytest.mark.parametrize(("change", "torque"), [pytest.param(*SHORT[0], marks=pytest.mark.long), SHORT[1]])
 def test_a_response_and_a_transient_at_a_crawl_are_the_static_contact(change: str, torque: float) -> None:
     """Harmonics of the approach of a lone spur pair, against the contact solved at even positions without any map."""
     model = pair(CHANGES[change], torque)
