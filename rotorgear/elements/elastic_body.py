@@ -44,8 +44,9 @@ def elastic_body(stiffness: np.ndarray, mass: np.ndarray, damping: np.ndarray, m
     viscosity = modes.T @ damping @ modes
     viscosity[np.abs(viscosity) < _ROUNDING * np.abs(viscosity).max(initial=0.0)] = 0.0
     strain = modes.T @ mass
-    # What rounding leaves of an elastic strain in a free motion would be multiplied by the stiffest mode.
-    strain[rigid:] -= (strain[rigid:] @ free) @ la.pinv(free)
+    if rigid:
+        # What rounding leaves of an elastic strain in a free motion would be multiplied by the stiffest mode.
+        strain[rigid:] -= (strain[rigid:] @ free) @ la.pinv(free)
     # A free motion leaves no strain behind, unless a damper holds it.
     used = (squares > 0.0) | np.any(viscosity, axis=0)
     return ElementMatrices(
