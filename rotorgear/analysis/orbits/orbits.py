@@ -76,8 +76,8 @@ def orbits(
         progress: callable that is told fraction and step.
 
     Raises:
-        AnalysisError: nothing repeats, a least common period that is too long, laws without periodic motions, or a request
-            that makes no sense.
+        AnalysisError: no mesh, nothing repeats, a least common period that is too long, laws without periodic motions, or a
+            request that makes no sense.
     """
     begun = clock.perf_counter()
     _check(over, harmonics, instants, method, accuracy, step, points)
@@ -87,6 +87,11 @@ def orbits(
         progress(0.0, "model")
         family = SystemFamily(model, ranges, excite, elements)
         contacts = contacts_of(family)
+        if not contacts.label:
+            raise AnalysisError(
+                "the model has no mesh, and orbits tells motions by their mesh contacts: transient follows a rotor on its "
+                "bearings, and sweep its motions over speed"
+            )
         scale = scale_of(family.plant(0.0))
         H = harmonics or HARMONICS
         laps = {"model": clock.perf_counter() - begun}

@@ -99,3 +99,11 @@ def test_stages_without_a_short_common_period_are_refused_with_the_remedy() -> N
 def test_requests_that_make_no_sense_are_refused(over: dict[str, str], options: dict[str, object], said: str) -> None:
     with pytest.raises(AnalysisError, match=said):
         rg.orbits(rg.load(MODELS / "backlash_pair.toml"), over, **options)  # type: ignore[arg-type]
+
+
+def test_a_rotor_without_a_mesh_is_refused_before_anything_is_computed() -> None:
+    rotor = rg.load(MODELS / "jeffcott.toml").with_(
+        "unbalances", {"u": {"shaft": "rotor", "at": "start", "magnitude": "1 g mm"}}
+    )
+    with pytest.raises(AnalysisError, match="the model has no mesh"):
+        rg.orbits(rotor, {"operation.speed": "1000 rpm:1100 rpm"})
