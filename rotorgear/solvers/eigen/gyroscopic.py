@@ -65,7 +65,7 @@ def gyroscopic_modes(problem: NearUndamped, count: int | None, below: float | No
             V = basis @ Y[:, :wanted]
             corrections, settled = _corrections(problem, factor, w[:wanted], V)
             if settled:
-                found = _result(problem, w[:wanted], V, count)
+                found = counted_modes(problem, 1j * w[:wanted], V, count, "basis of undamped modes")
                 sound = found.backward_error.max(initial=0.0) <= _SOUND
                 return found if sound and _count_agrees(problem, w, wanted) else None
             space.add(corrections, space.sizes(V), _COARSE)
@@ -101,10 +101,15 @@ def _count_agrees(problem: NearUndamped, w: np.ndarray, wanted: int) -> bool:
     return counted == gaps[0] + problem.rigid.shape[1]
 
 
-def _result(problem: NearUndamped, w: np.ndarray, V: np.ndarray, count: int | None) -> DampedModes:
-    """Rigid-body motions and modes with their backward errors."""
+def counted_modes(problem: NearUndamped, s: np.ndarray, V: np.ndarray, count: int | None, basis: str) -> DampedModes:
+    """Rigid-body motions and modes, that pivot signs have counted, with their backward errors.
+
+    Args:
+        problem: what is solved. s, V: eigenvalues (m,) and vectors (n, m) of its elastic modes. count: of rigid-body motions, at
+            most; None for all. basis: in which the modes were found, in words.
+    """
     rigid = problem.rigid[:, :count]
-    values = np.concatenate([np.zeros(rigid.shape[1]), 1j * w])
+    values = np.concatenate([np.zeros(rigid.shape[1]), s])
     V = np.hstack([rigid, V])
     quadratic = scaled(problem.M, problem.D, problem.K, float(problem.frequencies[0]))
     return DampedModes(
@@ -114,7 +119,7 @@ def _result(problem: NearUndamped, w: np.ndarray, V: np.ndarray, count: int | No
         backward_error=quadratic.residuals(values / quadratic.w0, V / quadratic.scale[:, None]),
         zero_count=2 * problem.rigid.shape[1],
         complete=False,
-        method="basis of undamped modes, counted by pivot signs",
+        method=f"{basis}, counted by pivot signs",
         shift=problem.shift,
         factorisations=2,
     )

@@ -25,7 +25,7 @@ import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.damped import DampedModes
-from rotorgear.solvers.eigen.quadratic import scaled
+from rotorgear.solvers.eigen.gyroscopic import counted_modes
 from rotorgear.solvers.eigen.reduced_pencil import Pencil, clusters, eigen
 from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis
 from rotorgear.solvers.sparse.factor import Factor, factor_symmetric, single_thread
@@ -207,19 +207,5 @@ def _none_is_missing(problem: NearUndamped, small: Pencil, last: float) -> bool:
 
 
 def _result(problem: NearUndamped, pairs: _Pairs, count: int | None) -> DampedModes:
-    """Rigid-body motions and modes with their backward errors."""
-    rigid = problem.rigid[:, :count]
-    values = np.concatenate([np.zeros(rigid.shape[1]), pairs.s])
-    V = np.hstack([rigid, pairs.v])
-    quadratic = scaled(problem.M, problem.D, problem.K, float(problem.frequencies[0]))
-    return DampedModes(
-        eigenvalues=values,
-        vectors=V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])],
-        rigid=np.arange(len(values)) < rigid.shape[1],
-        backward_error=quadratic.residuals(values / quadratic.w0, V / quadratic.scale[:, None]),
-        zero_count=2 * problem.rigid.shape[1],
-        complete=False,
-        method="basis of undamped modes and responses to dampers, counted by pivot signs",
-        shift=problem.shift,
-        factorisations=2,
-    )
+    """Modes of pairs with their backward errors."""
+    return counted_modes(problem, pairs.s, pairs.v, count, "basis of undamped modes and responses to dampers")

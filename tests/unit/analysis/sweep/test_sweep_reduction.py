@@ -77,7 +77,7 @@ def test_a_reduced_sweep_shows_the_motions_of_the_whole_one_with_and_without_con
     assert part.static_force == pytest.approx(whole.static_force, rel=1e-10)
 
 
-@pytest.mark.long  # ten sweeps
+@pytest.mark.long  # five sweeps over two speeds
 def test_more_modes_come_nearer_in_receptance_and_in_motion(tmp_path: Path) -> None:
     model = pair(tmp_path)
     over = {"operation.speed": ["2000 rpm", "7000 rpm"]}
