@@ -183,7 +183,7 @@ def formula(function: Callable[..., Any]) -> Any:
     return numba.njit(forceinline=True)(function)
 
 
-@compiled
+@compiled(inner=True)
 def work(rows):
     """New rows (rows, LANES) of zeros that begin where vector registers read best."""
     raw = np.zeros(rows * LANES + 8)

@@ -23,7 +23,7 @@ from rotorgear.solvers.lanes.kernel_tangents import orthonormal
 from rotorgear.solvers.time.compiled import compiled
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def slope_of(i, first, column, value, stage, at):
     """z'' of a dof: row i of a sparse matrix times rows of a stage from `at` on."""
     total = fill(0.0)
@@ -32,7 +32,7 @@ def slope_of(i, first, column, value, stage, at):
     return total
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def advance(number, h, matrix, stage, ahead, at, base, base_at, total):
     """Add a stage's slopes to those of the step, and write the state of the next stage; the last one writes the step's end, too.
 
@@ -70,7 +70,7 @@ def advance(number, h, matrix, stage, ahead, at, base, base_at, total):
         put(ahead, at + n + i, v0 + share * a)
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def tangent_stage(number, h, system, columns, laws, found, kept, stage, ahead, base, work):
     """One stage of all tangents: (t, 2 n + m + 1, w) of this stage and the next, (t, 2 n, w) of the step's begin."""
     matrix = system.matrix
@@ -104,13 +104,13 @@ def tangent_stage(number, h, system, columns, laws, found, kept, stage, ahead, b
         advance(number, h, matrix, stage, ahead, at, base, 2 * n * k, totals[k])
 
 
-@compiled
+@compiled(inner=True)
 def weight_of(number, h):
     """Weight of a stage in a step."""
     return (h / 6.0) if number in (0, 3) else (h / 3.0)
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def end_tangents(system, columns, kept, moved, tangents, impulse, work):
     """Put the impulses of the damping right along all tangents."""
     first = system.across.first
@@ -133,7 +133,7 @@ def end_tangents(system, columns, kept, moved, tangents, impulse, work):
         push(pushes, impulse, moved, k * rows, tangents, 2 * n * k)
 
 
-@compiled
+@compiled(inner=True)
 def switch_tangents(h, system, columns, entered, ends, moved, tangents, work):
     """Put all tangents right where a contact has switched in a step."""
     across = system.across

@@ -40,7 +40,7 @@ def regularised(values, j):
     return get(values, VALUES * j + CLEARANCE), get(values, VALUES * j + DEPTH), get(values, VALUES * j + PER_DEPTH)
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def missing(jumps, values, table, d, used, kept, impulse):
     """What the impulses of a step lack, to impulse (m, w); kept (m, 4, w) goes from the step's begin to its end.
 
@@ -65,7 +65,7 @@ def missing(jumps, values, table, d, used, kept, impulse):
         put(kept, KEPT * j + RIGHT, right)
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def add_used_along(jumps, weight, found, kept, d, used, start, at, first):
     """Add what a stage's damping does along a tangent with displacements and velocities d (2 m, w), to rows of used from `at` on.
 
@@ -82,7 +82,7 @@ def add_used_along(jumps, weight, found, kept, d, used, start, at, first):
             put(used, at + j, get(used, at + j) + weight * now)
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def missing_along(jumps, values, kept, d, used, start, at, impulse):
     """What the impulses of a step lack along a tangent with displacements d (2 m, w) at its end, to impulse (m, w)."""
     none = fill(0.0)
@@ -95,7 +95,7 @@ def missing_along(jumps, values, kept, d, used, start, at, impulse):
         put(impulse, j, where_positive(get(kept, KEPT * j + RIGHT), rest, none))
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def push(matrix, impulse, stage, at, state, state_at):
     """Add impulses to the velocities, by rows of -B, in the stage to come (rows from `at` on) and the state."""
     first = matrix.first

@@ -15,7 +15,7 @@ _MOST_COMPONENTS = 6
 SPACE = 3 * _MOST_COMPONENTS + 2 * _MOST_COMPONENTS**2 + 4
 
 
-@compiled
+@compiled(inner=True)
 def schedule_laws(laws, time, state):
     """Fill the state (w, s) of the laws in all lanes at a time in radians of the fastest excitation."""
     schedules = laws.schedules
@@ -37,7 +37,7 @@ def schedule_laws(laws, time, state):
             )
 
 
-@compiled
+@compiled(inner=True)
 def force_laws(laws, state, d, F, found, tangents, work):
     """Forces of the laws to F (m, w), their tangents in displacement and velocity to tangents (2, b, w), and the sides
     that touch to found (m, 4, w).
@@ -85,7 +85,7 @@ def force_laws(laws, state, d, F, found, tangents, work):
                 tangents[1, block_first[i] + j, w] = in_v[j] / rate
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def laws_along(laws, tangents, d, out, at):
     """Forces of the laws along a tangent's displacements and velocities d (2 m, w), to the rows of out from `at` on."""
     kind = laws.kind

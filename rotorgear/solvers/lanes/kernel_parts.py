@@ -32,7 +32,7 @@ def tabulate(laws, angles, out):
         schedule_all(laws, angles[i], 1.0, 0.0, out[i])
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def read_table(table, at, out):
     """One time of the tables for all lanes, out (m, 4, w); a table with one lane serves them all."""
     for j in range(out.shape[0]):
@@ -43,7 +43,7 @@ def read_table(table, at, out):
                 put(out, TABLE_ROWS * j + f, get(table, (at * out.shape[0] + j) * table.shape[2] + f))
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def product(matrix, x, out):
     """out = A x for a sparse matrix with values by lane."""
     first = matrix.first
@@ -56,7 +56,7 @@ def product(matrix, x, out):
         put(out, i, total)
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def contacts(columns, table, weight, d, F, found, used):
     """Forces (m, w) of the columns that are contacts or prescribed, their tangents, and the side that touches.
 
@@ -97,7 +97,7 @@ def leave(now, prescribed, weight, rate, j, F, found, used):
     put(used, j, get(used, j) + weight * (now.damping * rate))
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def widen(seen, extremes, p):
     """Take p displacements (p, w) into their least and largest values so far, (2, p, w)."""
     for j in range(p):
@@ -106,7 +106,7 @@ def widen(seen, extremes, p):
         put(extremes, p + j, larger(get(extremes, p + j), x))
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def count(counted, table, d, F, found, last, sums):
     """Take a step into the statistics of the columns that are counted (m,); arrays as in `contacts`, sums (m, 14, w)."""
     one = fill(1.0)

@@ -34,13 +34,13 @@ _POINTS = (0.1127016653792583, 0.5, 0.8872983346207417)
 _WEIGHTS = (0.2777777777777778, 0.4444444444444444, 0.2777777777777778)
 
 
-@compiled
+@compiled(inner=True)
 def parts(kind, mode):
     """Whether a column of this kind and mode has a tangent that jumps."""
     return kind not in (BILATERAL, PRESCRIBED, OWN_LAW) and mode != PENETRATION
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def enter(columns, table, d, found, entered):
     """Keep the begin of a step: d (2 m, w), found (m, 4, w) and table (m, 4, w) of its first stage; entered (m, 5, w)."""
     for j in range(columns.kind.size):
@@ -53,7 +53,7 @@ def enter(columns, table, d, found, entered):
             entered[j, BEGIN, w] = table[j, STIFFNESS, w]
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def do(number, h, columns, found, d, done, at):
     """Add what a stage's contacts do along a tangent with d (2 m, w) to rows of done from `at` on, DONE a column."""
     weight = (h / 6.0) if number in (0, 3) else (h / 3.0)
@@ -81,27 +81,27 @@ def do(number, h, columns, found, d, done, at):
             put(done, row + FAR_BY_C, get(done, row + FAR_BY_C) + far * damper)
 
 
-@compiled
+@compiled(inner=True)
 def cubic(s, a, b, rate_a, rate_b):
     """Value at the share s of a step, of the cubic with values and rates (a step) at both ends."""
     u = 1.0 - s
     return u * u * ((1.0 + 2.0 * s) * a + s * rate_a) + s * s * ((3.0 - 2.0 * s) * b - u * rate_b)
 
 
-@compiled
+@compiled(inner=True)
 def slope_of_cubic(s, a, b, rate_a, rate_b):
     """Its slope over s."""
     u = 1.0 - s
     return 6.0 * s * u * (b - a) + u * (1.0 - 3.0 * s) * rate_a + s * (3.0 * s - 2.0) * rate_b
 
 
-@compiled
+@compiled(inner=True)
 def depth_of(x, clearance):
     """Penetration of the side that touches."""
     return max(x, -x - clearance, 0.0)
 
 
-@compiled
+@compiled(inner=True)
 def holds_at(x, rate, k, c, clearance, per_depth, clamped):
     """Whether a contact pushes at an approach and its rate."""
     depth = depth_of(x, clearance)
@@ -111,7 +111,7 @@ def holds_at(x, rate, k, c, clearance, per_depth, clamped):
     return not clamped or k * depth + c * min(depth * per_depth, 1.0) * closing > 0.0
 
 
-@compiled
+@compiled(inner=True)
 def switch_at(h, x0, rate0, x1, rate1, k, c, clearance, per_depth, clamped):
     """Share of a step at which a contact begins or ceases to hold."""
     low = 0.0
@@ -128,7 +128,7 @@ def switch_at(h, x0, rate0, x1, rate1, k, c, clearance, per_depth, clamped):
     return 0.5 * (low + high)
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def ended(columns, table, d, entered, ends):
     """Whether any column of any lane has switched in a step that ends with d (2 m, w); ends (m, 4, w) are filled.
 
@@ -161,7 +161,7 @@ def ended(columns, table, d, entered, ends):
     return changed > 0.0
 
 
-@compiled
+@compiled(inner=True)
 def correct(h, columns, entered, ends, pushes, d, done, tangents, ahead, at):
     """Put one tangent right: its d (2 m, w) at the end, done from row `at` on; its state (2 n, w) and that of the stage to come.
 

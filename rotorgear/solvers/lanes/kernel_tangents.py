@@ -11,7 +11,7 @@ from rotorgear.solvers.contact.vectors import LANES, fill, get, put
 from rotorgear.solvers.time.compiled import compiled
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def remove(part, part_at, along, along_at, measured, measured_at, unit, unit_at, rows):
     """Take away from rows of `part` as much of `along` as the product of `measured` with the unit vector `unit` says."""
     total = fill(0.0)
@@ -21,7 +21,7 @@ def remove(part, part_at, along, along_at, measured, measured_at, unit, unit_at,
         put(part, part_at + i, get(part, part_at + i) - total * get(along, along_at + i))
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def weigh(root, tangents, weighed, at):
     """Root of the stiffness times displacements, and velocities as they are: the energy of a tangent is the square of it."""
     n = root.shape[0]
@@ -33,7 +33,7 @@ def weigh(root, tangents, weighed, at):
         put(weighed, at + n + i, get(tangents, at + n + i))
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def orthonormal(tangents, weighed, root, rigid, growth):
     """Free tangents (t, 2 n, w) of rigid-body motions (r, n, w), orthonormalise them, add the logarithms of their size to growth.
 

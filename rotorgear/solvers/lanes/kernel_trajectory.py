@@ -15,7 +15,7 @@ from rotorgear.solvers.lanes.kernel_parts import CLEARANCE, DEPTH, FORCE, PER_DE
 from rotorgear.solvers.time.compiled import compiled
 
 
-@compiled
+@compiled(inner=True)
 def force(kind, mode, values, now, d, v):
     """Force of one column, and the share of its damping that can jump.
 
@@ -38,7 +38,7 @@ def force(kind, mode, values, now, d, v):
     return found.force + push, found.damping * rate
 
 
-@compiled
+@compiled(inner=True)
 def own_schedules(laws, time, condition):
     """Fill the state (s,) of the laws at a time in radians of the fastest excitation."""
     schedules = laws.schedules
@@ -57,7 +57,7 @@ def own_schedules(laws, time, condition):
         )
 
 
-@compiled
+@compiled(inner=True)
 def own_forces(laws, work):
     """Forces of the laws of kernel_laws.py to work.local, one system."""
     forces = laws.forces
@@ -94,7 +94,7 @@ def own_forces(laws, work):
             local[a + j, 2] = F[j] / (rate * rate)
 
 
-@compiled
+@compiled(inner=True)
 def slopes(system, columns, now, laws, work, y, a):
     """z'' (n,) of a state y = (z, z') with the tables (m, 4) of now; fills work.local."""
     K = system.K

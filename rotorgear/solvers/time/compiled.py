@@ -82,16 +82,33 @@ def _cache_in(folder: Path) -> Iterator[None]:
 
 
 def compiled(
-    function: Callable[..., Any] | None = None, *, signature: Any = None, fast: bool = False, free: bool = False
+    function: Callable[..., Any] | None = None,
+    *,
+    signature: Any = None,
+    fast: bool = False,
+    free: bool = False,
+    inner: bool = False,
 ) -> Any:
-    """Compile a function with numba and keep the result on disk; a `free` one lets other threads run beside it."""
+    """Compile a function with numba and keep the result on disk.
+
+    Args:
+        function: what is compiled.
+        signature: its only types; else each call with other types compiles anew.
+        fast: sums may be reordered.
+        free: other threads may run beside it.
+        inner: compiled functions alone call it, and it becomes part of each of them. Otherwise the linker takes the first copy of
+            it that the process has loaded, and with reordered sums the last bit would depend on what the process did before.
+    """
     if function is None:
-        return lambda given: compiled(given, signature=signature, fast=fast, free=free)
+        return lambda given: compiled(given, signature=signature, fast=fast, free=free, inner=inner)
     if numba.config.DISABLE_JIT:
         return function
     options: dict[str, Any] = {"fastmath": FAST} if fast else {}
     if free:
         options["nogil"] = True
+    if inner:
+        # Python never calls it: without its two entries from outside it is compiled once, not three times.
+        options |= {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     folder = cache_folder()
     made = None if folder is None else _kept(function, folder, options)
     if made is None:

@@ -27,7 +27,7 @@ from rotorgear.solvers.time.kernel_time import rotation_at
 _BLOCK = 256
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def modal_pass(modal, u, yr, yi, out):
     """y <- e y + G u + g and out = Re(C y), block by block so that y stays in the fast cache.
 

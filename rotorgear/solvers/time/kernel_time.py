@@ -24,7 +24,7 @@ def rotation_at(t, turning):
     return angles[i] + (speeds[i] + 0.5 * rate * late) * late, speeds[i] + rate * late
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def subtract_products(structure, q, v, out):
     """Subtract K q + D v from out."""
     first = structure.first
@@ -38,7 +38,7 @@ def subtract_products(structure, q, v, out):
         out[i] -= total
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def inertia_products(structure, x, out):
     """out = M x."""
     first = structure.first
@@ -51,7 +51,7 @@ def inertia_products(structure, x, out):
         out[i] = total
 
 
-@compiled(fast=True)
+@compiled(fast=True, inner=True)
 def lu_solve(factors, b, y, x):
     """Solve A x = b from its `Triangles`; y is overwritten."""
     diagonal = factors.diagonal
