@@ -8,9 +8,9 @@ from typing import TypeVar
 
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.kept_bodies import key_of, path_of, read_body, read_wheel, write_body, write_wheel
-from rotorgear.casings.reduced_body import BEYOND, ReducedBody
+from rotorgear.casings.reduced_body import ReducedBody
 from rotorgear.casings.reduction import reduce
-from rotorgear.casings.settings import CasingSettings
+from rotorgear.casings.settings import BEYOND, CasingSettings
 from rotorgear.casings.wheel import ReducedWheel
 from rotorgear.casings.wheel_reduction import reduce_wheel
 from rotorgear.errors import AnalysisError

@@ -14,10 +14,6 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy.linalg as la
 
-# Fixed-interface modes up to this multiple of an analysis's highest frequency bring its error to some 2e-3 without residual
-# shapes, and well below 1e-3 with them.
-BEYOND = 2.0
-
 
 @dataclass(frozen=True)
 class Surface:

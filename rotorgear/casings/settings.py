@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from rotorgear.casings.assembly import Elastic
-from rotorgear.casings.patches import Cylinder
+if TYPE_CHECKING:
+    from rotorgear.casings.assembly import Elastic
+    from rotorgear.casings.patches import Cylinder
 
 Rows = tuple[tuple[float, ...], ...]
+
+# Fixed-interface modes up to this multiple of an analysis's highest frequency bring its error to some 2e-3 without residual
+# shapes, and well below 1e-3 with them.
+BEYOND = 2.0
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,9 @@ import numpy as np
 from rotorgear.casings.constrained import ElasticBody
 from rotorgear.casings.fe_body import FiniteElementBody, finite_element_body
 from rotorgear.casings.mesh_error import eigenvalue_errors
-from rotorgear.casings.reduced_body import BEYOND, ReducedBody
+from rotorgear.casings.reduced_body import ReducedBody
 from rotorgear.casings.reduction import reduce
+from rotorgear.casings.settings import BEYOND
 from rotorgear.casings.survey import MeshModes, free_modes, held_modes, rigid_residual
 from rotorgear.errors import AnalysisError
 from rotorgear.memory import largest_memory

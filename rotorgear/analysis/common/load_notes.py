@@ -9,7 +9,6 @@ import numpy as np
 
 from rotorgear.model.layout.external_loads import ExternalLoad
 from rotorgear.model.parts.load import COMPONENTS
-from rotorgear.system.local_parts import varying_load
 from rotorgear.system.system import System
 
 Analysis = Literal["static", "response", "modes", "frf", "time"]
@@ -40,6 +39,8 @@ def load_notes(system: System, analysis: Analysis) -> Iterator[str]:
             yield f"{load.address}: {what}; its constant part acts on the equilibrium that nonlinear parts are linear about"
     if analysis != "response":
         return
+    from rotorgear.system.local_parts import varying_load
+
     for item in system.load.applied:
         torque = varying_load(system, item.name)
         if torque is not None and torque.speed_power:

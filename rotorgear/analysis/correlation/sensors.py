@@ -82,6 +82,8 @@ def sensors(
     hz, numbers, shapes, dofs = _shapes(model, looks, modes or count, fmax, accuracy, elements)
     size = np.abs(shapes).max(axis=0)
     seen = size > _STILL * size.max()
+    if not seen.any():
+        raise AnalysisError(f"no mode up to {hz[-1]:.5g} Hz moves a candidate along {', '.join(directions)}")
     # What rounding leaves of a mode that moves along none of the directions is no shape.
     unseen = ", ".join(str(number) for number in numbers[~seen])
     hz = hz[seen]

@@ -9,8 +9,6 @@ from functools import cache
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.analysis.modal.damped_problem import DampedProblem
-from rotorgear.analysis.modal.damped_solve import damped_group
 from rotorgear.analysis.modal.modes import Modes, Wanted
 from rotorgear.analysis.modal.rigid_basis import sorted_rigid
 from rotorgear.errors import AnalysisError, ConvergenceError
@@ -228,6 +226,10 @@ def _damped(
     problem: _Problem, wanted: Wanted
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, int | None, str]:
     """Eigenvalues, vectors of modal mass 1, rigid ones, backward errors, number of modes there are, and the method in words."""
+    # Most models at standstill need none of these solvers.
+    from rotorgear.analysis.modal.damped_problem import DampedProblem
+    from rotorgear.analysis.modal.damped_solve import damped_group
+
     assert problem.forms is not None
     assert problem.inertial is not None
     modes, coordinates = damped_group(

@@ -74,3 +74,8 @@ def test_modes_that_no_candidate_sees_are_named_and_place_nothing():
     everyone = rg.sensors(rg.load(MODELS / "jeffcott.toml"), count=2, fmax=200.0, elements=2)
     assert not everyone.warnings
     assert set(plan.mode_number) < set(everyone.mode_number)
+
+
+def test_a_machine_that_only_twists_has_no_place_for_a_sensor_that_looks_along_an_axis():
+    with pytest.raises(AnalysisError, match="moves a candidate along x, y, z"):
+        rg.sensors(rg.load(MODELS / "marine_dual_turbine.toml"), count=4, elements=1)
