@@ -2,7 +2,8 @@
 
 A number changes the forms of its own parts, so that F(z) = F(0) + sum_j [F_j(z_j) - F(0)] as long as no two numbers meet in one
 element. Each F_j is interpolated at Chebyshev points, which is exact for the powers 1 (stiffness) to 4 (diameter) in which
-numbers enter. Both are checked by whole systems at points of their own; where it does not hold, every sample is assembled.
+numbers enter. Three points show which numbers enter by themselves, the others get all. Sum and interpolation are checked by
+whole systems at points of their own; where they do not hold, every sample is assembled.
 """
 
 from __future__ import annotations
@@ -22,8 +23,10 @@ from rotorgear.progress import Progress, silent
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
-# Points at which each number is looked at, and the largest error of the sum that is still rounding beside a basis.
+# Points at which each number is looked at: as many as show that it enters linearly, else all.
+_FEW = 3
 _POINTS = 7
+# Trials of the sum, and its largest error that is still rounding beside a basis.
 _TRIALS = 3
 _SUM_ERROR = 1e-8
 # Terms that are rounding are left out.
@@ -37,6 +40,22 @@ def system_at(model: Model, speed: float | None, plan: Plan) -> System:
 
 
 @dataclass(frozen=True)
+class Term:
+    """What the numbers add to one form: a sum of k Chebyshev polynomials, each of one number over its reach.
+
+    Attributes:
+        form: number of the form.
+        number, degree: of each polynomial (k,).
+        coefficients: of each polynomial (k, r r).
+    """
+
+    form: int
+    number: NDArray[np.intp]
+    degree: NDArray[np.intp]
+    coefficients: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class Family:
     """Forms over one basis at any z.
 
@@ -46,8 +65,7 @@ class Family:
         plan: the mesh.
         V: the basis over the free dofs (n, r).
         nominal: forms at z = 0 (a, r, r).
-        terms: of each number (number of the form, powers' coefficients (k, r, r)) of Chebyshev polynomials over its reach;
-            None where every sample is assembled.
+        terms: what the numbers add to each form that changes; None where every sample is assembled.
     """
 
     spreads: Spreads
@@ -55,7 +73,7 @@ class Family:
     plan: Plan
     V: NDArray[np.float64]
     nominal: NDArray[np.float64]
-    terms: tuple[tuple[tuple[int, NDArray[np.float64]], ...], ...] | None
+    terms: tuple[Term, ...] | None
 
     def system(self, z: NDArray[np.float64]) -> System:
         """The whole system at z (p,).
@@ -82,11 +100,11 @@ class Family:
         """The forms at z (p,), each (r, r)."""
         if self.terms is None:
             return self.assembled(z)
+        angle = np.arccos(np.clip(z / self.spreads.reach, -1.0, 1.0))
+        T = np.cos(np.multiply.outer(angle, np.arange(_POINTS)))
         found = self.nominal.copy()
-        for own, x in zip(self.terms, z / self.spreads.reach, strict=True):
-            angle = np.arccos(np.clip(x, -1.0, 1.0))
-            for form, coefficients in own:
-                found[form] += np.tensordot(np.cos(angle * np.arange(len(coefficients))), coefficients, axes=1)
+        for term in self.terms:
+            found[term.form] += (T[term.number, term.degree] @ term.coefficients).reshape(found[term.form].shape)
         return found
 
 
@@ -96,42 +114,54 @@ def family_of(
     """Return the family over a basis V (n, r)."""
     nominal = forms_of(system_at(spreads.numbers.model, speed, plan), speed or 0.0, V)
     bare = Family(spreads, speed, plan, V, nominal, None)
-    k = np.arange(_POINTS)
-    angles = np.pi * (k + 0.5) / _POINTS
-    # c = (2 / n) sum f(x_i) cos(k t_i), half of it for k = 0.
-    fit = np.cos(np.outer(k, angles)) * (2.0 / _POINTS)
-    fit[0] *= 0.5
-    terms = []
-    for j, reach in enumerate(spreads.reach):
+    changes = []
+    for j in range(len(spreads)):
         progress(j / len(spreads), f"number {j + 1} of {len(spreads)}")
-        seen = []
-        for x in np.cos(angles):
-            z = np.zeros(len(spreads))
-            z[j] = reach * x
-            seen.append(bare.assembled(z) - nominal)
-        terms.append(tuple(_kept(fit, np.array(seen), nominal)))
-    whole = Family(spreads, speed, plan, V, nominal, tuple(terms))
+        few = _interpolated(bare, j, _FEW)
+        linear = all(len(coefficients) < _FEW for coefficients in few.values())
+        changes.append(few if linear else _interpolated(bare, j, _POINTS))
+    whole = Family(spreads, speed, plan, V, nominal, _terms(changes))
     trials = np.random.default_rng(0).uniform(-0.7, 0.7, (_TRIALS, len(spreads))) * spreads.reach
     if all(_error(whole.at(z), bare.assembled(z)) < _SUM_ERROR for z in trials):
         return whole
     return bare
 
 
-def _kept(
-    fit: NDArray[np.float64], seen: NDArray[np.float64], nominal: NDArray[np.float64]
-) -> list[tuple[int, NDArray[np.float64]]]:
-    """Coefficients of the forms that change, up to the last that is no rounding."""
-    found = []
-    for form in range(len(nominal)):
-        change = seen[:, form]
-        size = np.sqrt(np.outer(np.abs(np.diag(nominal[form])), np.abs(np.diag(nominal[form]))))
-        least = _NOTHING * max(float(size.max(initial=0.0)), float(np.abs(nominal[form]).max(initial=0.0)))
+def _interpolated(bare: Family, j: int, points: int) -> dict[int, NDArray[np.float64]]:
+    """What number j adds to the forms that it changes: form -> coefficients (k, r, r), k as many as are no rounding."""
+    k = np.arange(points)
+    angles = np.pi * (k + 0.5) / points
+    # c = (2 / n) sum f(x_i) cos(k t_i), half of it for k = 0.
+    fit = np.cos(np.outer(k, angles)) * (2.0 / points)
+    fit[0] *= 0.5
+    seen = []
+    for x in np.cos(angles):
+        z = np.zeros(len(bare.spreads))
+        z[j] = bare.spreads.reach[j] * x
+        seen.append(bare.assembled(z) - bare.nominal)
+    found = {}
+    for form, nominal in enumerate(bare.nominal):
+        change = np.array([forms[form] for forms in seen])
+        # Of a symmetric positive form its diagonal is the largest; a skew one has none.
+        least = _NOTHING * float(np.abs(nominal).max(initial=0.0))
         if np.abs(change).max(initial=0.0) <= least:
             continue
         coefficients = np.tensordot(fit, change, axes=1)
         large = np.flatnonzero(np.abs(coefficients).max(axis=(1, 2)) > least)
-        found.append((form, coefficients[: large[-1] + 1]))
+        found[form] = coefficients[: large[-1] + 1]
     return found
+
+
+def _terms(changes: list[dict[int, NDArray[np.float64]]]) -> tuple[Term, ...]:
+    """The sums of all numbers, form by form."""
+    found = []
+    for form in sorted({form for change in changes for form in change}):
+        parts = [(j, change[form]) for j, change in enumerate(changes) if form in change]
+        number = np.concatenate([np.full(len(c), j) for j, c in parts])
+        degree = np.concatenate([np.arange(len(c)) for _, c in parts])
+        coefficients = np.concatenate([c.reshape(len(c), -1) for _, c in parts])
+        found.append(Term(form, number, degree, coefficients))
+    return tuple(found)
 
 
 def _error(found: NDArray[np.float64], exact: NDArray[np.float64]) -> float:

@@ -35,7 +35,7 @@ def couplings(study: Study) -> NDArray[np.complex128]:
     for j in range(p):
         z = np.zeros(p)
         z[j] = _STEP
-        change = (family.assembled(z)[:3] - family.assembled(-z)[:3]) / (2.0 * _STEP)
+        change = (family.at(z)[:3] - family.at(-z)[:3]) / (2.0 * _STEP)
         K, M, G = (Q.conj().T @ change[form] @ Q for form in (STIFFNESS, MASS, GYROSCOPIC))
         found[j] = (K - np.outer(omega, omega) * M + 0.5j * np.add.outer(omega, omega) * G) / (2.0 * root)
     return found

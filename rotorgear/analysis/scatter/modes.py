@@ -21,6 +21,8 @@ from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS
 
 # Elastic are modes above this share of the scale of the first elastic one of the nominal model.
 _RIGID = 1e-4
+# Pairs of states beyond those that are wanted, among which the farthest gap is sought.
+_BEYOND = 4
 
 
 @dataclass(frozen=True)
@@ -61,30 +63,57 @@ def modes_of(forms: NDArray[np.float64], count: int, least: float, wide: int) ->
         return FormModes(np.sqrt(values[:count]), T[:, :count])
     root = np.sqrt(values)
     g = T.T @ forms[GYROSCOPIC] @ T
-    m = len(root)
-    H = np.zeros((2 * m, 2 * m), dtype=complex)
-    H[:m, m:] = np.diag(-1j * root)
-    H[m:, :m] = np.diag(1j * root)
-    H[m:, m:] = 0.5j * (g - g.T)
-    # Frequencies come in pairs +-w: the positive ones are the upper half, ascending.
-    omega, y = la.eigh(H, subset_by_index=(m, min(m + count, 2 * m) - 1), check_finite=False)
+    omega, y = _rotating(root, 0.5 * (g - g.T), min(count, len(root)))
     # y = (L^(1/2) a, i w a) has length 1 where a^H (L + w^2) a = 1: to modal mass 1.
-    a = y[:m] / root[:, None] * (np.sqrt(2.0) * omega)
-    return FormModes(omega, T @ a)
+    a = y[: len(root)] / root[:, None] * (np.sqrt(2.0) * omega)
+    return FormModes(omega, times(T, a))
+
+
+def _rotating(
+    root: NDArray[np.float64], g: NDArray[np.float64], count: int
+) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+    """The lowest `count` positive w (m,) with their orthonormal states y (2 m, count), from L^(1/2) (m,) and g (m, m).
+
+    The matrix is i A with a real skew A = [0  -L^(1/2); L^(1/2)  g], whose inverse B = [b g b  b; -b  0], b = L^(-1/2), needs no
+    solution. B^T B, real at less than half the cost, holds each 1/w^2 twice. Its highest vectors span the states of +-w; within
+    them -i B itself is solved, so that neither squares nor frequencies that meet cost accuracy.
+    """
+    m = len(root)
+    b = np.diag(1.0 / root)
+    B = np.block([[b @ g @ b, b], [-b, np.zeros((m, m))]])
+    squares, X = la.eigh(B.T @ B, driver="evd", check_finite=False)
+    # The span ends where the next pair is farthest off, so that it parts no two frequencies that meet.
+    pairs = np.append(squares[::-2], 0.0)
+    ends = np.arange(count, min(count + _BEYOND, m) + 1)
+    end = int(ends[np.argmin(pairs[ends] / pairs[ends - 1])])
+    X = X[:, 2 * (m - end) :]
+    inverse, c = la.eigh(-1j * (X.T @ B @ X), driver="evd", check_finite=False)
+    # They come in pairs +-1/w: the lowest w stand last.
+    lowest = slice(None, -count - 1, -1)
+    return 1.0 / inverse[lowest], times(X, c[:, lowest])
+
+
+def times(
+    A: NDArray[np.float64], Q: NDArray[np.complex128] | NDArray[np.float64]
+) -> NDArray[np.complex128] | NDArray[np.float64]:
+    """A Q of a real A: real and imaginary parts stand side by side, at half the cost of a complex A."""
+    if np.isrealobj(Q):
+        return np.asarray(A @ Q)
+    return np.asarray((np.ascontiguousarray(A) @ np.ascontiguousarray(Q).view(float)).view(complex))
 
 
 def overlaps(
     K: NDArray[np.float64], M: NDArray[np.float64], first: FormModes, second: FormModes
 ) -> NDArray[np.complex128] | NDArray[np.float64]:
     """Products of modes in the energy of K and M, (m, m'): 1 in size where they are the same mode, each of length 1."""
+    K_second = times(K, second.q)
+    M_second = times(M, second.q) * second.omega
+    one = _energy(first, times(K, first.q), times(M, first.q) * first.omega)
+    other = _energy(second, K_second, M_second)
+    common = first.q.conj().T @ K_second + first.omega[:, None] * (first.q.conj().T @ M_second)
+    return np.asarray(0.5 * common / np.sqrt(np.outer(one, other)))
 
-    def product(a: FormModes, b: FormModes) -> NDArray[np.complex128]:
-        kinetic = a.omega[:, None] * b.omega[None, :] * (a.q.conj().T @ (M @ b.q))
-        return np.asarray(0.5 * (a.q.conj().T @ (K @ b.q) + kinetic))
 
-    one = np.sqrt(np.real(np.diag(product(first, first))))
-    K_other = K @ second.q
-    M_other = M @ second.q
-    square = np.sum(second.q.conj() * K_other, axis=0) + second.omega**2 * np.sum(second.q.conj() * M_other, axis=0)
-    other = np.sqrt(np.real(0.5 * square))
-    return np.asarray(product(first, second) / np.outer(one, other))
+def _energy(modes: FormModes, Kq: NDArray[np.complex128], wMq: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """q^H (K + w^2 M) q / 2 of each mode (m,)."""
+    return np.real(0.5 * np.sum(modes.q.conj() * (Kq + wMq * modes.omega), axis=0))

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from rotorgear.analysis.scatter.family import Family
 from rotorgear.analysis.scatter.forms import MASS, STIFFNESS, FormNames
-from rotorgear.analysis.scatter.modes import FormModes, modes_of, overlaps
+from rotorgear.analysis.scatter.modes import FormModes, modes_of, overlaps, times
 from rotorgear.analysis.static.shares import load_shares
 from rotorgear.analysis.static.static import solved
 from rotorgear.errors import RotorgearError
@@ -190,15 +190,17 @@ def exciting_forms(
         return np.sum([forms[names.mesh(part)] for part in line.parts], axis=0), forms[STIFFNESS]
     if not line.name.endswith(" 1x"):
         return np.sum([forms[names.kinetic(part)] for part in line.parts], axis=0), forms[MASS]
-    halves = [0.5 * (forms[names.bending(p)] + 1j * senses[p] * forms[names.swept(p)]) for p in line.parts]
-    return np.sum(halves, axis=0), forms[MASS]
+    bending = np.sum([forms[names.bending(part)] for part in line.parts], axis=0)
+    swept = np.sum([senses[part] * forms[names.swept(part)] for part in line.parts], axis=0)
+    return 0.5 * (bending + 1j * swept), forms[MASS]
 
 
 def diagonal(
     form: NDArray[np.complex128] | NDArray[np.float64], Q: NDArray[np.complex128] | NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """q^H A q of the columns of Q (r, m), A Hermitian."""
-    return np.real(np.sum(Q.conj() * (form @ Q), axis=0))
+    product = form @ Q if np.iscomplexobj(form) else times(form, Q)
+    return np.real(np.sum(Q.conj() * product, axis=0))
 
 
 def nearest_margin(hz: NDArray[np.float64], able: NDArray[np.bool_], line_hz: float) -> float:

@@ -92,6 +92,28 @@ def test_modes_of_forms_are_those_of_the_damped_solver_without_damping():
     assert np.abs(product) == pytest.approx(np.eye(8), abs=1e-6)
 
 
+@pytest.mark.parametrize("gyroscopic", [30.0, 0.0])
+def test_rotating_states_are_those_of_the_hermitian_matrix_also_where_frequencies_meet(gyroscopic: float):
+    m = 24
+    count = 9
+    forms = np.zeros((3, m, m))
+    # Each frequency stands twice without rotation, and one such pair parts the wanted ones from the others.
+    squares = np.sort(np.repeat(np.linspace(10.0, 4000.0, m // 2), 2)) ** 2
+    forms[0] = np.diag(squares)
+    forms[1] = np.eye(m)
+    drawn = np.random.default_rng(5).normal(size=(m, m)) * gyroscopic
+    forms[2] = drawn - drawn.T
+    forms[2, 0, 1] -= 1e-9  # something rotates
+    forms[2, 1, 0] += 1e-9
+    found = modes_of(forms, count, 1.0, m)
+    root = np.diag(np.sqrt(squares))
+    H = np.block([[np.zeros((m, m)), -1j * root], [1j * root, 1j * forms[2]]])
+    assert found.omega == pytest.approx(np.linalg.eigvalsh(H)[m : m + count], rel=1e-11)
+    states = np.vstack([root @ found.q, 1j * found.q * found.omega]) / (np.sqrt(2.0) * found.omega)
+    assert np.abs(states.conj().T @ states - np.eye(count)).max() < 1e-10
+    assert np.abs(H @ states - states * found.omega).max() < 1e-7 * found.omega[0]
+
+
 def test_forward_and_backward_whirl_take_part_in_unbalance_as_their_sense_says():
     from rotorgear.analysis.common.excitation import excitation_orders
     from rotorgear.analysis.scatter.samples import participations, spin_signs
