@@ -86,12 +86,12 @@ class Pair:
 
 
 def refuse_other_kinds(document: Document, source: str) -> None:
-    """Refuse planetary, worm and bevel gearing.
+    """Refuse planetary, worm and bevel gearing, by its stage where the file has one, else by a gear of it.
 
     Raises:
         AnalysisError: the file has some; it is named.
     """
-    for component in document.components.values():
+    for component in sorted(document.components.values(), key=lambda part: not part.type.endswith("_stage")):
         word = _REFUSED.get(component.type)
         spline = component.type.startswith("involute_spline")
         if word is None and not spline and component.type.endswith(("_stage", "_gear", "_wheel", "_rack")):

@@ -172,6 +172,26 @@ def test_other_gearing_is_refused_by_its_name(kind: str, words: str, tmp_path: P
         imported(document, tmp_path)
 
 
+# Components of two public files of FVA Workbench in their order: a minus planetary stage (version 1.1) and a worm stage (1.4).
+PLANETARY = (
+    "material concept_bearing shaft ring_gear cylindrical_gear side_plate planet_carrier cylindrical_stage planetary_stage"
+)
+WORM = "worm_stage_gear_data material worm_wheel_hob_tool worm_grinding_disc_tool shaft worm_gear worm_wheel worm_stage"
+
+
+@pytest.mark.parametrize(
+    ("kinds", "version", "words"), [(PLANETARY, "1.1", "a planetary stage"), (WORM, "1.4", "a worm stage")]
+)
+def test_a_planetary_and_a_worm_file_are_refused_by_their_stage(
+    kinds: str, version: str, words: str, tmp_path: Path
+) -> None:
+    parts = "".join(f'<component id="{i}" name="Teil [{i}]" type="{kind}"/>' for i, kind in enumerate(kinds.split()))
+    text = f'<?xml version="1.0"?><model version="{version}"><relations/><components>{parts}</components></model>'
+    (tmp_path / "file.rexs").write_text(text, encoding="utf-8")
+    with pytest.raises(rg.AnalysisError, match=f"the file has {words}, "):
+        rg.import_rexs(tmp_path / "file.rexs")
+
+
 def test_a_document_type_is_refused_before_any_entity_expands(tmp_path: Path) -> None:
     bomb = '<?xml version="1.0"?><!DOCTYPE m [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><model version="1.0">&b;</model>'
     (tmp_path / "bomb.rexs").write_text(bomb, encoding="utf-8")
