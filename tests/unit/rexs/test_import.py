@@ -173,7 +173,7 @@ def test_other_gearing_is_refused_by_its_name(kind: str, words: str, tmp_path: P
 
 
 # Components of two public files of FVA Workbench in their order: a minus planetary stage (version 1.1) and a worm stage (1.4).
-PLANETARY = "material concept_bearing shaft ring_gear cylindrical_gear side_plate planet_carrier cylindrical_stage planetary_stage"
+PLANETARY = "material concept_bearing shaft ring_gear cylindrical_gear planet_carrier cylindrical_stage planetary_stage"
 WORM = "worm_stage_gear_data material worm_wheel_hob_tool worm_grinding_disc_tool shaft worm_gear worm_wheel worm_stage"
 
 
