@@ -12,12 +12,16 @@ rotation y has two equal halves and a is real.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import scipy.linalg as la
 from numpy.typing import NDArray
 
 from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS
+
+# Shapes of modes in columns, complex where the system rotates.
+Shapes: TypeAlias = NDArray[np.complex128] | NDArray[np.float64]
 
 # Elastic are modes above this share of the scale of the first elastic one of the nominal model.
 _RIGID = 1e-4
@@ -35,7 +39,7 @@ class FormModes:
     """
 
     omega: NDArray[np.float64]
-    q: NDArray[np.complex128] | NDArray[np.float64]
+    q: Shapes
 
 
 def modes_of(forms: NDArray[np.float64], count: int, least: float, wide: int) -> FormModes:
@@ -69,9 +73,7 @@ def modes_of(forms: NDArray[np.float64], count: int, least: float, wide: int) ->
     return FormModes(omega, times(T, a))
 
 
-def _rotating(
-    root: NDArray[np.float64], g: NDArray[np.float64], count: int
-) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+def _rotating(root: NDArray[np.float64], g: NDArray[np.float64], count: int) -> tuple[NDArray[np.float64], Shapes]:
     """The lowest `count` positive w (m,) with their orthonormal states y (2 m, count), from L^(1/2) (m,) and g (m, m).
 
     The matrix is i A with a real skew A = [0  -L^(1/2); L^(1/2)  g], whose inverse B = [b g b  b; -b  0], b = L^(-1/2), needs no
@@ -93,27 +95,28 @@ def _rotating(
     return 1.0 / inverse[lowest], times(X, c[:, lowest])
 
 
-def times(
-    A: NDArray[np.float64], Q: NDArray[np.complex128] | NDArray[np.float64]
-) -> NDArray[np.complex128] | NDArray[np.float64]:
+def times(A: NDArray[np.float64], Q: Shapes) -> Shapes:
     """A Q of a real A: real and imaginary parts stand side by side, at half the cost of a complex A."""
+    product: Shapes
     if np.isrealobj(Q):
-        return np.asarray(A @ Q)
-    return np.asarray((np.ascontiguousarray(A) @ np.ascontiguousarray(Q).view(float)).view(complex))
+        product = np.matmul(A, Q)
+        return product
+    product = np.matmul(A, np.ascontiguousarray(Q).view(np.float64)).view(np.complex128)
+    return product
 
 
-def overlaps(
-    K: NDArray[np.float64], M: NDArray[np.float64], first: FormModes, second: FormModes
-) -> NDArray[np.complex128] | NDArray[np.float64]:
+def overlaps(K: NDArray[np.float64], M: NDArray[np.float64], first: FormModes, second: FormModes) -> Shapes:
     """Products of modes in the energy of K and M, (m, m'): 1 in size where they are the same mode, each of length 1."""
     K_second = times(K, second.q)
     M_second = times(M, second.q) * second.omega
     one = _energy(first, times(K, first.q), times(M, first.q) * first.omega)
     other = _energy(second, K_second, M_second)
-    common = first.q.conj().T @ K_second + first.omega[:, None] * (first.q.conj().T @ M_second)
-    return np.asarray(0.5 * common / np.sqrt(np.outer(one, other)))
+    conjugate = first.q.conj().T
+    common: Shapes = np.matmul(conjugate, K_second) + first.omega[:, None] * np.matmul(conjugate, M_second)
+    common /= 2.0 * np.sqrt(np.outer(one, other))
+    return common
 
 
-def _energy(modes: FormModes, Kq: NDArray[np.complex128], wMq: NDArray[np.complex128]) -> NDArray[np.float64]:
+def _energy(modes: FormModes, Kq: Shapes, wMq: Shapes) -> NDArray[np.float64]:
     """q^H (K + w^2 M) q / 2 of each mode (m,)."""
-    return np.real(0.5 * np.sum(modes.q.conj() * (Kq + wMq * modes.omega), axis=0))
+    return np.asarray(0.5 * np.sum(np.real(modes.q.conj() * (Kq + wMq * modes.omega)), axis=0))

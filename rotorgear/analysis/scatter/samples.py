@@ -199,7 +199,7 @@ def diagonal(
     form: NDArray[np.complex128] | NDArray[np.float64], Q: NDArray[np.complex128] | NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """q^H A q of the columns of Q (r, m), A Hermitian."""
-    product = form @ Q if np.iscomplexobj(form) else times(form, Q)
+    product = form @ Q if np.iscomplexobj(form) else times(np.real(form), Q)
     return np.real(np.sum(Q.conj() * product, axis=0))
 
 
