@@ -174,24 +174,25 @@ def _conservative(pencil: Pencil, smallest: float, count: int) -> Eigen | None:
 def _biorthogonal(pencil: Pencil, s: np.ndarray, q: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Left vectors scaled to y_i^H ((s_i + s_j) M + D) q_j = delta_ij inside each cluster of eigenvalues."""
     y = y.copy()
-    for close in clusters(s):
-        if len(close) == 1:
-            k = close[0]
-            y[:, k] /= np.conj(y[:, k].conj() @ (2.0 * s[k] * (pencil.M @ q[:, k]) + pencil.D @ q[:, k]))
-            continue
-        product = y[:, close].conj().T @ (2.0 * np.mean(s[close]) * pencil.M + pencil.D) @ q[:, close]
-        y[:, close] = y[:, close] @ np.linalg.pinv(product).conj().T
+    groups = clusters(s)
+    alone = np.array([group[0] for group in groups if len(group) == 1], dtype=int)
+    slope = 2.0 * s[alone] * (pencil.M @ q[:, alone]) + pencil.D @ q[:, alone]
+    y[:, alone] /= np.einsum("rm,rm->m", y[:, alone], slope.conj())
+    for close in groups:
+        if len(close) > 1:
+            product = y[:, close].conj().T @ (2.0 * np.mean(s[close]) * pencil.M + pencil.D) @ q[:, close]
+            y[:, close] = y[:, close] @ np.linalg.pinv(product).conj().T
     return y
 
 
 def clusters(s: np.ndarray, tolerance: float = _CLUSTER) -> list[np.ndarray]:
     """Numbers of the eigenvalues (m,), ascending in |s|, that lie within a relative tolerance of each other, group by group."""
-    groups: list[list[int]] = []
-    for k in range(len(s)):
-        # Ascending in size only, groups of one size and other phases interleave: look back at the last few.
-        near = [g for g in groups[-6:] if np.min(np.abs(s[g] - s[k])) <= tolerance * abs(s[k])]
-        if near:
-            near[-1].append(k)
-        else:
-            groups.append([k])
-    return [np.array(group) for group in groups]
+    if not len(s):
+        return []
+    # Ascending in size only, groups of one size and other phases interleave: each joins the latest group with a near member.
+    near = np.tril(np.abs(s[:, None] - s) <= tolerance * np.abs(s)[:, None], -1)
+    group = np.arange(len(s))
+    for k in np.flatnonzero(near.any(axis=1)):
+        group[k] = group[near[k]].max()
+    order = np.argsort(group, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(group[order])) + 1)
