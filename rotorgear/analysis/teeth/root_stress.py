@@ -20,8 +20,8 @@ from rotorgear.gears.geometry.root_section import root_section
 from rotorgear.gears.loaded.contact_points import patch_loads
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, gear_key, in_space
-from rotorgear.gears.loaded.tooth_solution import solve_teeth, tooth_inside
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.tooth_fe.tooth_solution import solve_teeth, tooth_inside
 from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent

@@ -19,9 +19,9 @@ from rotorgear.gears.loaded.contact_points import patch_loads
 from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, gear_key, in_space
-from rotorgear.gears.loaded.tooth_solution import TeethSolution, solve_teeth
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.sector import clockwise
+from rotorgear.gears.tooth_fe.tooth_solution import TeethSolution, solve_teeth
 from rotorgear.model.layout.mesh_layout import mirrored
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, part_of, silent

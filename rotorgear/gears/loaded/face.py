@@ -19,7 +19,6 @@ from rotorgear.gears.loaded.helix_cycles import helix_cycle
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
 from rotorgear.gears.stiffness.face_load import FaceLoad, FaceSpring
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-from rotorgear.progress import listener
 
 # Positions of a mesh period, as many as the stiffness of a model takes.
 _POSITIONS = 64
@@ -42,7 +41,7 @@ def loaded_face(teeth: ToothPair, force: float, positions: int = _POSITIONS) -> 
         MissingExtraError: scikit-fem is needed and not installed.
     """
     cosine = float(np.cos(teeth.pair.base_helix_angle))
-    found = helix_cycle(teeth, force * cosine, positions, listener())
+    found = helix_cycle(teeth, force * cosine, positions)
     cycle = found.cycle
     # A tilt that closes the flanks at larger z.
     tangents = cycle.along_face * np.array([1.0, -1.0])

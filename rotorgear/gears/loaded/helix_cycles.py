@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from rotorgear.gears.loaded.mesh_cycle import MeshCycle, with_more
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
 from rotorgear.gears.stiffness.cycle_curve import CycleCurve
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
-from rotorgear.progress import Progress, part_of, silent
+from rotorgear.progress import Progress, listener, part_of, silent
 
 # Curves that positions are chosen for: peak to peak of transmission error and stiffness, and the largest pressure.
 _SIDES = np.array([2, 2, 1])
@@ -145,12 +146,14 @@ class HelixCycle:
         return np.asarray(self.cycle.weight @ values)
 
 
-def helix_cycle(teeth: ToothPair, load: float, positions: int, progress: Progress = silent) -> HelixCycle:
+@lru_cache(maxsize=4)  # stiffness and map of a mesh ask for the same one
+def helix_cycle(teeth: ToothPair, load: float, positions: int) -> HelixCycle:
     """Loaded contact of one helix for F_bt = load (N), at so many positions of a base pitch.
 
     Those of a spur pair are the ones that `rotorgear mesh` chooses, where pairs come and go and the curves need them. Curves of
     helical teeth are smooth, and the mean of even positions then converges faster than any power of their number.
     """
+    progress = listener()
     if teeth.first.helix_angle:
         problem, cycle = loaded_cycle(teeth, load, np.arange(positions) / positions, progress)
         return HelixCycle(problem, cycle, None)

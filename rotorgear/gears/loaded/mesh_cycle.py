@@ -10,46 +10,30 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.contact_points import Slices, contact_slices
 from rotorgear.gears.loaded.loaded_contact import (
     ContactState,
     PositionContact,
     moment_and_tangents,
-    solve_contact,
     tangent_compliance,
 )
-from rotorgear.gears.loaded.slice_compliance import SliceCompliance, slice_compliances
+from rotorgear.gears.loaded.settled_contacts import PASSES, settled
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
 from rotorgear.progress import Progress, silent
 
-# In space each patch stays wider than its Hertz strip by this factor; all are wider than this in normal modules.
-_STRIP_MARGIN = 1.3
-_LEAST_PATCH = 0.08
-# A patch that has to grow becomes so much wider than its strip asks for.
-_WIDENING = 1.05
-# In the plane a slice is a tooth pair's whole line. Its own compliance is seven times K / l and more, so that C + dg/dF stays
-# positive definite for strips up to six times as wide as their patches.
-_LEAST_TANGENT_IN_PLANE = -2.0
 # Corner contacts are followed up to this share of the base pitch.
 _MOST_BEYOND = 0.45
 # They are followed a little farther than they touch, so that the next pass does not ask for more.
 _MORE_BEYOND = 1.05
-# Passes for the reach of corners, and for the widths of patches.
+# Passes for the reach of corners.
 _PASSES = 12
 # The reach of corners is found at every so many positions first.
 _STRIDE = 8
-# Wider strips (half-width over m_n) are no line contact any more.
-_WIDEST_STRIP = 0.5
 # Above such a pressure (Pa) no gear steel stays elastic.
 _MOST_PRESSURE = 4e9
 # First guesses: the load is spread over two thirds of the face, and the teeth give way as one pair of 8 N/(mm um) would.
 _FIRST_PEAK = 1.5
 _FIRST_STIFFNESS = 8e9
-
-
-class WideContactError(AnalysisError):
-    """A load under which the contact is no line any more."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +57,7 @@ class MeshCycle:
         opening: (n,) of the flanks under load along their normal (m); of slices that carry less than nothing: the overlap
             C_jj F_j that their force takes away.
         contacts: (p,) the contact at each position, its slices in the order of `slices`.
+        states: (p,) its solution.
         patch: (n,) least half-widths of the patches in normal modules.
         beyond: how far corner contacts were followed before the start and after the end (m).
         warnings: sentences.
@@ -92,6 +77,7 @@ class MeshCycle:
     residual: float
     opening: np.ndarray
     contacts: tuple[PositionContact, ...]
+    states: tuple[ContactState, ...]
     patch: np.ndarray
     beyond: tuple[float, float]
     warnings: tuple[str, ...] = ()
@@ -151,6 +137,7 @@ class MeshCycle:
             pressure=self.pressure[here],
             opening=self.opening[here],
             contacts=tuple(self.contacts[i] for i in numbers),
+            states=tuple(self.states[i] for i in numbers),
             patch=self.patch[here],
         )
 
@@ -162,24 +149,32 @@ def mesh_cycle(problem: ContactProblem, load: float, positions: np.ndarray, prog
         WideContactError: a load under which the contact is no line any more.
         ConvergenceError: a position has no solution to the tolerance.
     """
-    # Corners as for a typical stiffness: a guess that spares passes. A few positions correct it before all are solved.
-    beyond = _beyond(problem, _FIRST_PEAK * load / (_FIRST_STIFFNESS * problem.width) + problem.largest_gap)
-    if len(positions) >= 2 * _STRIDE:
-        beyond = _followed(problem, load, positions[::_STRIDE], beyond, silent, passes=1).beyond
-    return _followed(problem, load, positions, beyond, progress)
+    if len(positions) < 2 * _STRIDE:
+        return _followed(problem, load, positions, _first_reach(problem, load), progress)
+    return _followed(problem, load, positions, corner_reach(problem, load, positions[::_STRIDE]), progress)
+
+
+def corner_reach(problem: ContactProblem, load: float, positions: np.ndarray) -> tuple[float, float]:
+    """How far corners touch before the start and after the end (m) for F_bt = load (N), as some positions tell it."""
+    return _followed(problem, load, positions, _first_reach(problem, load), silent, passes=1).beyond
+
+
+def _first_reach(problem: ContactProblem, load: float) -> tuple[float, float]:
+    """As for a typical stiffness: a guess that spares passes."""
+    return beyond_line(problem, _FIRST_PEAK * load / (_FIRST_STIFFNESS * problem.width) + problem.largest_gap)
 
 
 def with_more(
     problem: ContactProblem, cycle: MeshCycle, positions: np.ndarray, progress: Progress = silent
 ) -> MeshCycle:
     """The cycle with more positions (m,), solved with slices as far beyond the line of action as those that are there."""
-    more = _swept(problem, cycle.load, positions, cycle.beyond, progress, _PASSES)
-    wanted = _beyond(problem, float((more.deflection - more.no_load).max()) + problem.largest_gap)
+    more = _swept(problem, cycle.load, positions, cycle.beyond, progress, PASSES)
+    wanted = beyond_line(problem, float((more.deflection - more.no_load).max()) + problem.largest_gap)
     if any(np.array(wanted) > cycle.beyond):
         # Rare, since a little more was followed than touched: all positions get the same reach.
         farther = (max(cycle.beyond[0], _MORE_BEYOND * wanted[0]), max(cycle.beyond[1], _MORE_BEYOND * wanted[1]))
         return _swept(
-            problem, cycle.load, np.sort(np.concatenate([cycle.position, positions])), farther, silent, _PASSES
+            problem, cycle.load, np.sort(np.concatenate([cycle.position, positions])), farther, silent, PASSES
         )
     return _joined(cycle, more)
 
@@ -202,6 +197,7 @@ def _joined(first: MeshCycle, second: MeshCycle) -> MeshCycle:
     a = first.slices
     b = second.slices
     contacts = first.contacts + second.contacts
+    states = first.states + second.states
     return replace(
         first,
         position=place[order],
@@ -226,6 +222,7 @@ def _joined(first: MeshCycle, second: MeshCycle) -> MeshCycle:
         residual=max(first.residual, second.residual),
         opening=pieces(first.opening, second.opening),
         contacts=tuple(contacts[i] for i in order),
+        states=tuple(states[i] for i in order),
         patch=pieces(first.patch, second.patch),
         warnings=tuple(dict.fromkeys(first.warnings + second.warnings)),
     )
@@ -237,13 +234,13 @@ def _followed(
     positions: np.ndarray,
     beyond: tuple[float, float],
     progress: Progress,
-    passes: int = _PASSES,
+    passes: int = PASSES,
 ) -> MeshCycle:
     """The cycle with corners followed as far as they touch, but not much farther: slices that never touch cost time."""
     for _ in range(_PASSES):
         cycle = _swept(problem, load, positions, beyond, progress, passes)
         approach = float((cycle.deflection - cycle.no_load).max())
-        wanted = _beyond(problem, approach + problem.largest_gap)
+        wanted = beyond_line(problem, approach + problem.largest_gap)
         near = all(have <= _MORE_BEYOND**2 * want for have, want in zip(beyond, wanted, strict=True))
         if near and all(np.array(wanted) <= beyond):
             break
@@ -251,7 +248,7 @@ def _followed(
     return cycle
 
 
-def _beyond(problem: ContactProblem, approach: float) -> tuple[float, float]:
+def beyond_line(problem: ContactProblem, approach: float) -> tuple[float, float]:
     """How far corners can touch for an approach along the line of action: there the gap has become as large."""
     grid = np.linspace(0.0, _MOST_BEYOND * problem.line.base_pitch, 401)
 
@@ -274,13 +271,14 @@ def _swept(
     cosine = float(np.cos(problem.line.base_helix_angle))
     slices = contact_slices(problem.line, positions, problem.width, problem.slices, beyond, stations=problem.uncoupled)
     gap = problem.gap(slices)
-    contacts, states, patch = settled(problem, slices, gap, load / cosine, progress, passes=passes)
+    found = settled(problem, slices, gap, load / cosine, progress, passes=passes)
+    states = found.states
     force = np.concatenate([state.force for state in states])
     strip = np.concatenate([state.strip for state in states])
     place = slices.z @ slices.weight
     along = [
-        moment_and_tangents(contact, state, place[slices.position == i])
-        for i, (contact, state) in enumerate(zip(contacts, states, strict=True))
+        moment_and_tangents(contact, state, place[slices.at(i)])
+        for i, (contact, state) in enumerate(zip(found.contacts, states, strict=True))
     ]
 
     # Hertz: p_0 = 2 F' / (pi a). Along the line of action delta = delta_n / cos b_b and F_bt = F_n cos b_b.
@@ -299,9 +297,10 @@ def _swept(
         strip=strip,
         pressure=pressure,
         residual=max(state.residual for state in states),
-        opening=np.concatenate([_opening(*one) for one in zip(contacts, states, strict=True)]),
-        contacts=tuple(contacts),
-        patch=patch,
+        opening=np.concatenate([_opening(*one) for one in zip(found.contacts, states, strict=True)]),
+        contacts=found.contacts,
+        states=states,
+        patch=found.patch,
         beyond=beyond,
         warnings=_notes(problem, slices, force, pressure, beyond),
     )
@@ -318,81 +317,6 @@ def _opening(contact: PositionContact, state: ContactState) -> np.ndarray:
     """Opening (n,) of the slices at one position, and less than nothing where they carry."""
     opening = contact.compliance @ state.force + contact.gap - state.approach
     return np.where(state.force > 0.0, -np.diag(contact.compliance) * state.force, opening)
-
-
-def settled(
-    problem: ContactProblem,
-    slices: Slices,
-    gap: np.ndarray,
-    total: float,
-    progress: Progress = silent,
-    known: tuple[list[PositionContact], np.ndarray] | None = None,
-    passes: int = _PASSES,
-) -> tuple[list[PositionContact], list[ContactState], np.ndarray]:
-    """Contacts and states at all positions, with patches wider than the strips under them; and their least widths (n,).
-
-    Args:
-        problem: the helix.
-        slices: of all positions.
-        gap: (n,) along the flank normal (m).
-        total: normal force (N).
-        progress: told how far it is.
-        known: contacts and least widths of the same slices with other gaps.
-        passes: for the widths at most.
-    """
-    cosine = float(np.cos(problem.line.base_helix_angle))
-    # In the plane of action: length of the contact line dz / cos b_b, and R = rho_1 rho_2 / (rho_1 + rho_2) with
-    # rho = xi / cos b_b.
-    length = slices.length / cosine
-    R = np.sum(slices.roll[0] * slices.roll[1] / slices.roll.sum(axis=0) * slices.weight, axis=1) / cosine
-    count = int(slices.position[-1]) + 1
-    numbers = [slices.at(i) for i in range(count)]
-    patch = np.full(len(slices), _LEAST_PATCH) if known is None else known[1].copy()
-    contacts = {} if known is None else {i: replace(one, gap=gap[numbers[i]]) for i, one in enumerate(known[0])}
-    states: dict[int, ContactState] = {}
-    unsettled = list(range(count))
-    stale = set(unsettled) - contacts.keys()
-    for _ in range(passes):
-        without = [i for i in unsettled if i in stale]
-        before = {i: SliceCompliance(one.compliance, one.log_width) for i, one in contacts.items() if i in stale}
-        solved = slice_compliances(problem, slices, without, patch, before or None)
-        for i, compliance in zip(without, solved, strict=True):
-            here = numbers[i]
-            contacts[i] = PositionContact(
-                compliance=compliance.matrix,
-                gap=gap[here],
-                length=length[here],
-                local=problem.local,
-                log_width=compliance.log_width,
-                radius=R[here],
-                modulus=problem.modulus,
-                least_tangent=_LEAST_TANGENT_IN_PLANE if problem.plane else 0.01,
-            )
-        for i in unsettled:
-            states[i] = solve_contact(contacts[i], total, states[i].force if i in states else None)
-            _refuse_wide(float(states[i].strip.max()) / problem.module)
-            progress((i + 1) / count, f"contact {i + 1} of {count}")
-        if problem.plane:
-            break
-        # The patches' half-widths lie in the transverse section; cos b_b brings them across the line.
-        wanted = {i: _STRIP_MARGIN * states[i].strip / cosine / problem.module for i in unsettled}
-        unsettled = [i for i in unsettled if np.any(wanted[i] > patch[numbers[i]])]
-        if not unsettled:
-            break
-        for i in unsettled:
-            short = wanted[i] > patch[numbers[i]]
-            patch[numbers[i][short]] = _WIDENING * wanted[i][short]
-        stale = set(unsettled)
-    return [contacts[i] for i in range(count)], [states[i] for i in range(count)], patch
-
-
-def _refuse_wide(strip: float) -> None:
-    """Refuse a contact whose half-width in normal modules makes it no line contact."""
-    if strip > _WIDEST_STRIP:
-        raise WideContactError(
-            f"At this load the contact strip would be {2.0 * strip:.2g} modules wide, which is no line contact any more: "
-            "reduce the torque."
-        )
 
 
 def _notes(

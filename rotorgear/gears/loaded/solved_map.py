@@ -13,24 +13,34 @@ With pitch errors, period n has the pairs whose teeth are n ahead. Periods in wh
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.contact_map import ContactMap
-from rotorgear.gears.loaded.loaded_contact import PositionContact, solve_contact, solve_many
+from rotorgear.gears.loaded.contact_points import Slices, contact_slices
+from rotorgear.gears.loaded.map_columns import Column, faded, map_columns, with_start
 from rotorgear.gears.loaded.map_positions import MapPositions, even_positions, map_positions
 from rotorgear.gears.loaded.map_store import kept_map
-from rotorgear.gears.loaded.mesh_cycle import MeshCycle, WideContactError, mesh_cycle, settled
+from rotorgear.gears.loaded.mesh_cycle import MeshCycle, beyond_line, corner_reach, mesh_cycle
+from rotorgear.gears.loaded.settled_contacts import (
+    Settled,
+    WideContactError,
+    settled,
+    with_least_patches,
+)
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.progress import Progress, listener, part_of
 
-# Positions that are solved in a base pitch, in the plane and in space. In the plane the approach has a kink wherever a tooth pair
-# comes or goes.
-POSITIONS = (512, 96)
+# Positions that are solved in a base pitch. Spur pairs have a kink wherever a tooth pair comes or goes: even positions in the
+# plane, chosen ones in space; the curves of helical ones are smooth, and they take those that the stiffness of a model takes.
+POSITIONS = 512
+_IN_SPACE_POSITIONS = {"spur": 128, "helical": 64}
+# An odd tooth of a helical pair comes and goes within a small part of a base pitch.
+_WITH_ODD_TEETH = 96
 # Loads as multiples of the working load: resonances with contact loss reach four to five times it. In the plane pairs come and go
 # suddenly with the load too, and solutions are cheap.
 _IN_PLANE = ((0.003, 0.01, *(0.025 * np.arange(1, 81)), *(2.0 + 0.05 * np.arange(1, 61))),)
@@ -51,22 +61,18 @@ _IN_SPACE = (
     (2.7, 3.3, 4.1, 5.0),
 )
 # Linear analyses stay near the mean load of a contact, but helices and branches need not share alike: some carry a third of the
-# working load, others twice as much. Kinks of spur pairs need more positions than smooth curves of helical ones.
-_NEAR_POSITIONS = {"spur": 128, "helical": 64}
+# working load, others twice as much.
 _NEAR_IN_SPACE = (*_UP_TO_WORKING, (1.12, 1.25, 1.4), (1.6, 1.8, 2.0))
+# Slices reach as far beyond the line of action as corners touch, and the six of a corner that is followed farther than it touches
+# move the approach by 0.03 %: groups up to so many times the working load have slices of their own.
+_MODERATE = 2.5
+# Positions that tell this reach. Where corners touch farther than was thought, they are followed a little farther still.
+_TELLING = 12
+_FARTHER = 1.05
 # More differing periods than these are refused.
 _MOST_DIFFERING = 128
 # More periods than these make no map.
 _MOST_PERIODS = 4096
-
-
-@dataclass(frozen=True)
-class _Column:
-    """Approach along the normal (p,) in m, its slope d delta / dF (p,) in m/N, moment (p,) in N m, at one load."""
-
-    approach: np.ndarray
-    slope: np.ndarray
-    moment: np.ndarray
 
 
 @lru_cache(maxsize=32)  # the helices of a model and its analyses ask for the same maps again and again
@@ -77,7 +83,7 @@ def contact_map(teeth: ToothPair, load: float, positions: int | None = None, nea
         teeth: one helix.
         load: working force (N) along the flank normal.
         positions: so many even ones in a base pitch, and the map keeps these; default 512 even ones in the plane, and in space
-            where the curves need them: 128 of a spur pair, 96 of a helical one, or 64 near the working load.
+            128 of a spur pair where the curves need them, and 64 of a helical one, or 96 where single teeth differ.
         near: for linear analyses: in space fewer loads, up to about twice the working one.
 
     Raises:
@@ -93,13 +99,15 @@ def contact_map(teeth: ToothPair, load: float, positions: int | None = None, nea
         told = part_of(progress, 0.5, 1.0)
         if problem.plane and not problem.uncoupled:
             # One slice for a tooth pair: cheap, with patches that follow no load, so that one group has all loads.
-            return solved_map(problem, load, even_positions(positions or POSITIONS[0]), _IN_PLANE, told)
+            return solved_map(problem, load, even_positions(positions or POSITIONS), _IN_PLANE, told)
         groups = _NEAR_IN_SPACE if near else _IN_SPACE
         if positions:
             return solved_map(problem, load, even_positions(positions), groups, told)
-        few = _NEAR_POSITIONS["helical" if teeth.first.helix_angle else "spur"]
-        chosen = map_positions(teeth, load * _cosine(problem), few if near else max(few, POSITIONS[1]))
-        return solved_map(problem, load, chosen, groups, told)
+        count = _IN_SPACE_POSITIONS["helical" if teeth.first.helix_angle else "spur"]
+        if any(flank.single_teeth for flank in problem.flanks):
+            count = max(count, _WITH_ODD_TEETH)
+        working = float(f"{load * _cosine(problem):.12g}")  # that of the mesh's stiffness, whose cycle is known
+        return solved_map(problem, load, map_positions(teeth, working, count), groups, told)
 
     return kept_map((teeth, load, positions, near), solve)
 
@@ -116,57 +124,141 @@ def solved_map(
     kinds = list(dict.fromkeys(of_period))
     # Patches are those of the commonest period: where an odd tooth carries they are wider, and would move all the others.
     common = of_period.index(max(kinds, key=of_period.count))
-    solved: list[list[_Column]] = [[] for _ in kinds]
+    place = common + positions.position
+    few = problem.plane and not problem.uncoupled
+    solved: list[list[Column]] = [[] for _ in kinds]
     touch: list[np.ndarray] = []
     notes: list[str] = []
     factors: list[float] = []
-    for number, group in enumerate(groups):
-        told = part_of(progress, number / len(groups), (number + 1) / len(groups))
+    families = _families(groups)
+    for number, family in enumerate(families):
+        told = part_of(progress, number / len(families), (number + 1) / len(families))
+        tops = [load * group[-1] for group in family]
         try:
-            known = positions.cycle if group[-1] == 1.0 and not common else None
-            cycle = known or mesh_cycle(problem, group[-1] * load * _cosine(problem), common + positions.position, told)
+            if not factors:
+                known = None if common or family[-1][-1] != 1.0 else positions.cycle
+                cycle = known or mesh_cycle(problem, tops[-1] * _cosine(problem), place, told)
+                notes += cycle.warnings
+                slices = cycle.slices
+                contacts = _up_to(problem, cycle, tops)
+            else:
+                slices, contacts = _above(problem, tops, place, told)
         except WideContactError:
             if not factors:
                 raise
+            contacts = []
+        for group, commonest in zip(family, contacts, strict=False):
+            bound = factors[-1:]
+            loads_of = [load * f for f in (*bound, *group)]
+            for kind, errors in enumerate(kinds):
+                found = _of_kind(problem, slices, commonest, loads_of[-1], of_period.index(errors) - common)
+                columns = map_columns(slices, found, loads_of, few=few)
+                if bound:
+                    columns = faded(columns, solved[kind][-1], [*bound, *group])
+                else:
+                    touch.append(np.array([contact.gap.min() for contact in found.contacts]))
+                solved[kind] += columns
+                told((kind + 1) / len(kinds), f"teeth {kind + 1} of {len(kinds)}")
+            factors += group
+        if len(contacts) < len(family):
             notes.append(
                 f"the loaded teeth were solved up to {factors[-1]:.3g} times the working load; above it their contact is no line"
             )
             break
-        bound = factors[-1:]
-        for kind, errors in enumerate(kinds):
-            columns, gaps = _columns(
-                problem, cycle, [load * f for f in (*bound, *group)], of_period.index(errors) - common
-            )
-            if bound:
-                columns = _faded(columns, solved[kind][-1], [*bound, *group])
-            else:
-                touch.append(gaps)
-                notes += cycle.warnings
-            solved[kind] += columns
-            told((kind + 1) / len(kinds), f"teeth {kind + 1} of {len(kinds)}")
-        factors += group
-    loads = load * np.array([0.0, *factors])
-    approach = [np.stack([touch[k], *(c.approach for c in solved[k])], axis=1) for k in range(len(kinds))]
-    slope = [_with_start(np.stack([c.slope for c in solved[k]], axis=1), approach[k], loads) for k in range(len(kinds))]
-    moment = [np.stack([np.zeros(len(positions.position)), *(c.moment for c in columns)], axis=1) for columns in solved]
     order = [kinds.index(errors) for errors in of_period]
-    varies = not problem.plane or problem.uncoupled
-    working = int(np.argmin(np.abs(loads - load)))
+    loads = load * np.array([0.0, *factors])
+    return _assembled(problem, positions, loads, load, order, touch, solved, notes)
+
+
+def _assembled(
+    problem: ContactProblem,
+    positions: MapPositions,
+    loads: np.ndarray,
+    load: float,
+    order: list[int],
+    touch: list[np.ndarray],
+    solved: list[list[Column]],
+    notes: list[str],
+) -> ContactMap:
+    """The map over all periods, period n being of the kind order[n], from touch and columns of each kind."""
+    kinds = range(len(solved))
+    approach = [np.stack([touch[k], *(c.approach for c in solved[k])], axis=1) for k in kinds]
+    slope = [with_start(np.stack([c.slope for c in solved[k]], axis=1), approach[k], loads) for k in kinds]
+    moment = [np.stack([np.zeros(len(positions.position)), *(c.moment for c in columns)], axis=1) for columns in solved]
     position, *curves = positions.kept(
         np.concatenate([approach[k] for k in order]),
         np.concatenate([slope[k] for k in order]),
         np.concatenate([moment[k] for k in order]),
-        working,
+        int(np.argmin(np.abs(loads - load))),
     )
     return ContactMap(
         position=position,
-        periods=len(of_period),
+        periods=len(order),
         load=loads,
         approach=curves[0],
         warnings=tuple(dict.fromkeys((*problem.warnings, *notes))),
         compliance=curves[1],
-        moment=curves[2] if varies else None,
+        moment=curves[2] if not problem.plane or problem.uncoupled else None,
     )
+
+
+def _families(groups: tuple[tuple[float, ...], ...]) -> list[tuple[tuple[float, ...], ...]]:
+    """Groups that share their slices: up to the working load, up to `_MODERATE` times it, and above."""
+    borders = (0.0, 1.0, _MODERATE, np.inf)
+    families = [tuple(group for group in groups if low < group[-1] <= high) for low, high in pairwise(borders)]
+    return [family for family in families if family]
+
+
+def _up_to(problem: ContactProblem, cycle: MeshCycle, loads: list[float]) -> list[Settled]:
+    """Contacts on the slices of a cycle under rising normal forces (N), the last of which is that of the cycle."""
+    last = Settled(cycle.contacts, cycle.states, cycle.patch)
+    if len(loads) == 1:
+        return [last]
+    gap = problem.gap(cycle.slices)
+    found = [with_least_patches(problem, cycle.slices, gap, last)]
+    for load in loads[:-1]:
+        found.append(settled(problem, cycle.slices, gap, load, known=found[-1]))
+    return [*found[1:], last]
+
+
+def _above(
+    problem: ContactProblem, loads: list[float], place: np.ndarray, progress: Progress
+) -> tuple[Slices, list[Settled]]:
+    """Slices that reach as far as corners touch under the largest of rising normal forces (N), and contacts under each.
+
+    Forces end before the first one under which the contact is no line.
+
+    Raises:
+        WideContactError: there is none.
+    """
+    cosine = _cosine(problem)
+    reach = corner_reach(problem, loads[-1] * cosine, place[:: max(1, len(place) // _TELLING)])
+    while True:
+        slices = contact_slices(problem.line, place, problem.width, problem.slices, reach, stations=problem.uncoupled)
+        gap = problem.gap(slices)
+        found: list[Settled] = []
+        last: Settled | None = None
+        for load in loads:
+            try:
+                last = settled(problem, slices, gap, load, progress, last)
+                found.append(last)
+            except WideContactError:
+                if not found:
+                    raise
+                break
+        deflection = max(state.approach for state in found[-1].states) - float(gap.min())
+        wanted = beyond_line(problem, deflection / cosine + problem.largest_gap)
+        if wanted[0] <= reach[0] and wanted[1] <= reach[1]:
+            return slices, found
+        # Rare: the positions that told the reach missed where most is touched.
+        reach = (max(reach[0], _FARTHER * wanted[0]), max(reach[1], _FARTHER * wanted[1]))
+
+
+def _of_kind(problem: ContactProblem, slices: Slices, commonest: Settled, load: float, ahead: int) -> Settled:
+    """Contacts of the period so many after the commonest, under a normal force (N)."""
+    if not any(flank.single_teeth for flank in problem.flanks):
+        return commonest
+    return settled(problem, slices, problem.gap(slices, ahead), load, known=commonest)
 
 
 def _cosine(problem: ContactProblem) -> float:
@@ -208,90 +300,3 @@ def _errors_by_period(problem: ContactProblem) -> list[tuple[float, ...]]:
             "give errors to fewer teeth."
         )
     return found if differing > 1 else found[:1]
-
-
-def _columns(
-    problem: ContactProblem, cycle: MeshCycle, loads: list[float], period: int
-) -> tuple[list[_Column], np.ndarray]:
-    """Approaches at normal forces that rise to that of the cycle, so many periods after it; and that of first touch, (p,)."""
-    gap = problem.gap(cycle.slices, period)
-    contacts = list(cycle.contacts)
-    if any(flank.single_teeth for flank in problem.flanks):
-        contacts = settled(problem, cycle.slices, gap, loads[-1], known=(contacts, cycle.patch))[0]
-    if problem.plane and not problem.uncoupled:
-        columns = _few_slices(contacts, loads)
-    else:
-        place = cycle.slices.z @ cycle.slices.weight
-        rows = [_row(contact, loads, place[cycle.slices.at(i)]) for i, contact in enumerate(contacts)]
-        columns = [_Column(*(np.array([row[j][i] for row in rows]) for i in range(3))) for j in range(len(loads))]
-    return columns, np.array([contact.gap.min() for contact in contacts])
-
-
-def _few_slices(contacts: list[PositionContact], loads: list[float]) -> list[_Column]:
-    """Columns of a pair that has one slice for a tooth pair: all positions with as many pairs, and all loads, at once."""
-    found = np.empty((2, len(contacts), len(loads)))
-    for n in {len(contact.gap) for contact in contacts}:
-        which = [i for i, contact in enumerate(contacts) if len(contact.gap) == n]
-
-        def stacked(name: str, which: list[int] = which) -> np.ndarray:
-            return np.repeat(np.stack([getattr(contacts[i], name) for i in which]), len(loads), axis=0)
-
-        many = replace(
-            contacts[which[0]],
-            compliance=stacked("compliance"),
-            gap=stacked("gap"),
-            length=stacked("length"),
-            log_width=stacked("log_width"),
-            radius=stacked("radius"),
-        )
-        approach, tangent = solve_many(many, np.tile(loads, len(which)))
-        found[:, which] = np.stack([approach, 1.0 / tangent]).reshape(2, len(which), len(loads))
-    return [_Column(found[0, :, j], found[1, :, j], np.zeros(len(contacts))) for j in range(len(loads))]
-
-
-def _row(contact: PositionContact, loads: list[float], place: np.ndarray) -> list[tuple[float, float, float]]:
-    """Approach, its slope and the moment at rising loads of one position: down from the largest, each from those above.
-
-    `place` (n,) is that of each slice from the middle of the face (m).
-    """
-    state = solve_contact(contact, loads[-1])
-    # A slice whose gap is wider than the approach at the largest load touches at none.
-    near = np.flatnonzero((contact.gap < state.approach) | (state.force > 0.0))
-    fewer = replace(
-        contact,
-        compliance=contact.compliance[np.ix_(near, near)],
-        gap=contact.gap[near],
-        length=contact.length[near],
-        log_width=contact.log_width[near],
-        radius=contact.radius[near],
-    )
-    force = state.force[near]
-    # How the forces change with the load, from the two loads above; below the first one they are taken in proportion.
-    rate = force / loads[-1]
-    at = loads[-1]
-    found = [(state.approach, 1.0 / state.tangent, float(state.force @ place))]
-    for load in reversed(loads[:-1]):
-        start = np.maximum(force + rate * (load - at), 0.0)
-        state = solve_contact(fewer, load, start)
-        rate = (force - state.force) / (at - load)
-        force = state.force
-        at = load
-        found.append((state.approach, 1.0 / state.tangent, float(state.force @ place[near])))
-    return found[::-1]
-
-
-def _faded(columns: list[_Column], below: _Column, factors: list[float]) -> list[_Column]:
-    """Columns above a bound, the first of them at it, led from the value `below` it to their own at the last load."""
-    jump = columns[0].approach - below.approach
-    turn = columns[0].moment - below.moment
-    left = [(factors[-1] - factor) / (factors[-1] - factors[0]) for factor in factors[1:]]
-    return [
-        _Column(column.approach - jump * share, column.slope, column.moment - turn * share)
-        for column, share in zip(columns[1:], left, strict=True)
-    ]
-
-
-def _with_start(slope: np.ndarray, approach: np.ndarray, loads: np.ndarray) -> np.ndarray:
-    """Slopes (p, l) with that at no load: of the parabola through the first two points with the slope at the second."""
-    first = 2.0 * (approach[:, 1] - approach[:, 0]) / loads[1] - slope[:, 0]
-    return np.column_stack([np.maximum(first, slope[:, 0]), slope])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.helix_cycles import helix_cycle
 from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
-from rotorgear.progress import listener
 
 
 def tooth_fe_stiffness(teeth: ToothPair, load: float | None, positions: int) -> MeshStiffness:
@@ -14,7 +13,7 @@ def tooth_fe_stiffness(teeth: ToothPair, load: float | None, positions: int) -> 
         raise AnalysisError(
             "The stiffness of loaded teeth needs a load: give the torque or power that the mesh carries."
         )
-    found = helix_cycle(teeth, load, positions, listener())
+    found = helix_cycle(teeth, load, positions)
     return MeshStiffness(
         model="tooth_fe",
         position=found.cycle.position,

@@ -355,8 +355,8 @@ class MeshLayout:
 
         given = name or self.part.stiffness
         angle = self.pinion.base_helix_angle
-        # Rounding of the torque flow must not make another load: equal meshes are solved once.
-        load = None if not normal_force else float(f"{normal_force * math.cos(angle):.12g}")
+        # Rounding of the torque flow must not make another load: equal meshes are solved once, and their maps begin with this.
+        load = None if not normal_force else float(f"{float(f'{normal_force:.12g}') * math.cos(angle):.12g}")
         if not isinstance(given, str):
             values = given if isinstance(given, tuple) else (given,)
             # A file gives both helices together, in phase: half of it is one helix.

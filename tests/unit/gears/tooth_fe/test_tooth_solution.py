@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from rotorgear.gears.geometry.blank import BlankShape
-from rotorgear.gears.loaded.tooth_solution import solve_teeth
 from rotorgear.gears.tooth_fe.compliance_model import ComplianceKey, compliance_key, gear_compliance
 from rotorgear.gears.tooth_fe.settings import ToothFe
+from rotorgear.gears.tooth_fe.tooth_solution import solve_teeth
 from tests.unit.gears.tooth_pairs import COARSE, helical, spur
 
 WEBBED = BlankShape(30e-3, 67e-3, 15e-3, 5e-3, 40e-3, 54e-3)
