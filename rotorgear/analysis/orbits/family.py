@@ -29,6 +29,8 @@ from rotorgear.system.local import LocalModel
 MOST_TURNS = 8
 SPEED = "operation.speed"
 _KEPT = 400
+# Shares beyond the ends of a range at which a step is looked at before it is cut: numbers between serve there, too.
+_BEYOND = 0.05
 
 
 @dataclass(frozen=True)
@@ -152,7 +154,7 @@ class SystemFamily:
     def _between(self, shares: Sequence[float]) -> LocalSystem | None:
         """The system between exact ones where a single range, besides a speed that only turns, leads there smoothly."""
         moving = [i for i in range(len(shares)) if not (self._free_speed and i == self._speed_axis)]
-        if len(moving) != 1 or not 0.0 < shares[moving[0]] < 1.0:
+        if len(moving) != 1 or shares[moving[0]] in (0.0, 1.0) or not -_BEYOND < shares[moving[0]] < 1.0 + _BEYOND:
             return None
         own = moving[0]
         if not self._asked_between:

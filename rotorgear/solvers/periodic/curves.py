@@ -4,36 +4,37 @@
 
 A is the derivative of r at a fold; at a period doubling that of the equations of twice the period, or the monodromy matrix plus
 one. It is singular where g vanishes. With [A^T c; b^T 0] [w; g] = [0; 1] the slopes of g are -w^T A' v, and along y, where A
-is a derivative itself, -w^T (A(y + e v) - A(y - e v))/2e.
+is a derivative itself, -w^T (A(y + e v) - A(y))/e.
 Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria (SIAM 2000), ch. 4.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol, Self
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
+import scipy.linalg as la
 
 from rotorgear.solvers.periodic.arclength import Linear
 from rotorgear.solvers.periodic.cycle import Cycle
 from rotorgear.solvers.periodic.shooting import ShootingOrbits
 from rotorgear.solvers.periodic.special import DOUBLING, Orbits
 
-# Steps of differences: along v, of length 1, and in both parameters.
+# Steps of differences to one side: along v, of length 1, and in both parameters.
 _ALONG = 1e-5
 _DIFFERENCE = 1e-6
 _VIEWS = 6
+# Linear equations behind a point of the curve that are made anew, and every so many later ones.
+_ANEW = 1
+_RENEWED = 6
 
 
 class Differentiable(Orbits, Protocol):
     """Equations of periodic motions with derivatives that are smooth in the parameter."""
 
-    def smooth_residual(self, y: np.ndarray, p: float) -> np.ndarray:
-        """r (N,), for differences in a parameter."""
-
-    def jacobian(self, y: np.ndarray, p: float) -> np.ndarray:
-        """Derivative of r by y (N, N)."""
+    def values(self, y: np.ndarray, p: float, *, smooth: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """r (N,) and its derivative by y (N, N); smooth ones for differences in a parameter."""
 
     def cycle(self, y: np.ndarray, p: float) -> Cycle:
         """A period of a solution."""
@@ -43,6 +44,26 @@ class Differentiable(Orbits, Protocol):
 
     def twice(self, y: np.ndarray, other: Any) -> np.ndarray:
         """The unknowns of one motion in the equations of twice its period."""
+
+
+class Here(NamedTuple):
+    """Of a point: r (N,), its derivative by y (N, N), both null vectors v and w, and g."""
+
+    r: np.ndarray
+    in_y: np.ndarray
+    v: np.ndarray
+    w: np.ndarray
+    g: float
+
+
+class Slopes(NamedTuple):
+    """Where (z, q) and at which g they were last known: derivatives of r by p and q (N,), and of g by (z, q) (N + 2,)."""
+
+    at: np.ndarray
+    g: float
+    in_p: np.ndarray
+    in_q: np.ndarray
+    slope: np.ndarray
 
 
 class SpecialCurve:
@@ -60,6 +81,9 @@ class SpecialCurve:
         self._doubling = kind == DOUBLING
         self._views: dict[float, tuple[Differentiable, Differentiable]] = {}
         self._settle = True
+        self._last: tuple[tuple[bytes, float], Here] | None = None
+        self._slopes: Slopes | None = None
+        self._age = 0
         own, other = self._view(q)
         self._map = self._doubling and isinstance(own, ShootingOrbits)
         marks = (
@@ -70,7 +94,7 @@ class SpecialCurve:
         self._places = rows[np.argsort(marks[rows])]
         own.settle_on(p)
         other.settle_on(p)
-        U, _, Vt = np.linalg.svd(self._matrix(y, p, q))
+        U, _, Vt = np.linalg.svd(self._equations(y, p, q, smooth=True)[2])
         self._b = U[:, -1]
         self._c = Vt[-1]
 
@@ -94,15 +118,18 @@ class SpecialCurve:
         """From the next point on."""
         self._settle = True
 
-    def _matrix(self, y: np.ndarray, p: float, q: float, along: np.ndarray | None = None) -> np.ndarray:
-        """A at (y, p, q), or a step of `along` away from it."""
+    def _equations(
+        self, y: np.ndarray, p: float, q: float, *, smooth: bool
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """r, its derivative by y, and A."""
         own, other = self._view(q)
-        full = y
+        r, J = own.values(y, p, smooth=smooth)
         if other is not own:
-            full = np.asarray(own.twice(y, other))
-        if along is not None:
-            full = full + along
-        J = other.jacobian(full, p)
+            return r, J, other.values(np.asarray(own.twice(y, other)), p, smooth=smooth)[1]
+        return r, J, self._of(J)
+
+    def _of(self, J: np.ndarray) -> np.ndarray:
+        """A of the derivative of the equations that it belongs to."""
         return J + 2.0 * np.eye(len(J)) if self._map else J
 
     def _bordered(self, A: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
@@ -114,48 +141,71 @@ class SpecialCurve:
         full[n, :n] = self._c
         right = np.zeros(n + 1)
         right[n] = 1.0
-        v = np.linalg.solve(full, right)
-        w = np.linalg.solve(full.T, right)
+        factors = la.lu_factor(full, check_finite=False)
+        v = la.lu_solve(factors, right, check_finite=False)
+        w = la.lu_solve(factors, right, trans=1, check_finite=False)
         return v[:n], w[:n], float(v[n])
+
+    def _at(self, z: np.ndarray, q: float) -> Here:
+        """All that belongs to a point; that of the last one is kept, for a step of Newton's method ends where the next begins."""
+        key = (z.tobytes(), q)
+        if self._last is None or self._last[0] != key or self._settle:
+            y = z[:-1]
+            p = float(z[-1])
+            if self._settle:
+                for one in self._view(q):
+                    one.settle_on(p)
+            r, J, A = self._equations(y, p, q, smooth=False)
+            v, w, g = self._bordered(A)
+            if self._settle:
+                # Borders near to both null vectors keep the bordered matrix regular along the curve.
+                self._c = v / np.linalg.norm(v)
+                self._b = w / np.linalg.norm(w)
+                v, w, g = self._bordered(A)
+                self._settle = False
+                self._age = 0
+            self._last = (key, Here(r, J, v, w, g))
+        return self._last[1]
 
     def residual(self, z: np.ndarray, q: float) -> np.ndarray:
         """[r, g]."""
-        y = z[:-1]
-        p = float(z[-1])
-        if self._settle:
-            for one in self._view(q):
-                one.settle_on(p)
-        A = self._matrix(y, p, q)
-        v, w, g = self._bordered(A)
-        if self._settle:
-            # Borders near to both null vectors keep the bordered matrix regular along the curve.
-            self._c = v / np.linalg.norm(v)
-            self._b = w / np.linalg.norm(w)
-            g = self._bordered(A)[2]
-            self._settle = False
-        return np.append(self._view(q)[0].residual(y, p), g)
+        here = self._at(z, q)
+        return np.append(here.r, here.g)
 
     def linear(self, z: np.ndarray, q: float) -> Linear:
-        """[r, g] and its derivatives."""
+        """[r, g] and its derivatives.
+
+        Those in both parameters, and of g by y, cost four times as much as all else: they are made at each point of the
+        curve, and on the way to the next the slope of g follows its own changes (Broyden's update).
+        """
+        here = self._at(z, q)
+        now = np.append(here.r, here.g)
+        at = np.append(z, q)
+        last = self._slopes
+        self._age += 1
+        if last is None or self._age <= _ANEW or self._age % _RENEWED == 0:
+            in_p, in_q, slope = self._differences(z, q, here)
+        else:
+            in_p = last.in_p
+            in_q = last.in_q
+            moved = at - last.at
+            missed = here.g - last.g - float(last.slope @ moved)
+            slope = last.slope + missed * moved / float(moved @ moved)
+        self._slopes = Slopes(at, here.g, in_p, in_q, slope)
+        full = np.vstack([np.column_stack([here.in_y, in_p]), slope[:-1]])
+        return Linear(now, full, np.append(in_q, slope[-1]))
+
+    def _differences(self, z: np.ndarray, q: float, here: Here) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Derivatives of r by p and q (N,), and of g by (y, p, q), by differences from one smooth base."""
         y = z[:-1]
         p = float(z[-1])
-        own = self._view(q)[0]
-        here = own.linear(y, p)
-        v, w, g = self._bordered(self._matrix(y, p, q))
-        in_q = _difference(lambda x: self._view(x)[0].smooth_residual(y, p), q) / (2.0 * _DIFFERENCE)
-        g_p = -w @ _difference(lambda x: self._matrix(y, x, q), p) @ v / (2.0 * _DIFFERENCE)
-        g_q = -w @ _difference(lambda x: self._matrix(y, p, x), q) @ v / (2.0 * _DIFFERENCE)
-        step = _ALONG / float(np.linalg.norm(v))
-        curved = w @ (self._matrix(y, p, q, step * v) - self._matrix(y, p, q, -step * v)) / (2.0 * step)
-        n = y.size
-        full = np.zeros((n + 1, n + 1))
-        full[:n, :n] = here.in_y
-        full[:n, n] = here.in_p
-        full[n, :n] = -curved[self._places]
-        full[n, n] = g_p
-        return Linear(np.append(here.residual, g), full, np.append(in_q, g_q))
-
-
-def _difference(values: Callable[[float], np.ndarray], at: float) -> np.ndarray:
-    """Difference of an array over a step in a parameter to both sides."""
-    return values(at + _DIFFERENCE) - values(at - _DIFFERENCE)
+        own, other = self._view(q)
+        r, _, A = self._equations(y, p, q, smooth=True)
+        by_p = self._equations(y, p + _DIFFERENCE, q, smooth=True)
+        by_q = self._equations(y, p, q + _DIFFERENCE, smooth=True)
+        step = _ALONG / float(np.linalg.norm(here.v))
+        full = y if other is own else np.asarray(own.twice(y, other))
+        bent = self._of(other.values(full + step * here.v, p, smooth=True)[1])
+        in_y = -(here.w @ (bent - A) / step)[self._places]
+        ends = [-here.w @ ((one[2] - A) @ here.v) / _DIFFERENCE for one in (by_p, by_q)]
+        return (by_p[0] - r) / _DIFFERENCE, (by_q[0] - r) / _DIFFERENCE, np.append(in_y, ends)

@@ -136,15 +136,13 @@ class HarmonicOrbits:
         u = balance(c, plant, self.grid, tangents=False).u
         return self._rest(c, plant, self._receptances.near(plant), u)
 
-    def smooth_residual(self, y: np.ndarray, p: float) -> np.ndarray:
-        """The residual by receptances between exact ones, for differences in a parameter."""
-        return self._smooth_rest(self.coefficients(y), p)
-
-    def jacobian(self, y: np.ndarray, p: float) -> np.ndarray:
-        """Derivative of the residual by the unknowns, by receptances between exact ones."""
+    def values(self, y: np.ndarray, p: float, *, smooth: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """The residual and its derivative by y; smooth ones by receptances between exact ones, for differences in p."""
         plant = self._plant_at(p)
-        tangent = balance(self.coefficients(y), plant, self.grid).tangent
-        return self._derivative(self._receptances.near(plant), tangent)
+        c = self.coefficients(y)
+        R = self._receptances.near(plant) if smooth else self._receptance(p)
+        found = balance(c, plant, self.grid)
+        return self._rest(c, plant, R, found.u), self._derivative(R, found.tangent)
 
     def _derivative(self, R: np.ndarray, tangent: np.ndarray) -> np.ndarray:
         H = self.grid.harmonics

@@ -2,11 +2,47 @@
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from rotorgear.solvers.time.arguments import Answer
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import force_all, schedule_all
+from rotorgear.solvers.time.kernel_gather import ENERGIES, SIDE
+
+# Changes of piece that are looked for in one cell.
+MOST_IN_CELL = 6
+
+
+class Harmonic(NamedTuple):
+    """A motion by coefficients (H + 1, m) in real and imaginary parts; frequency, speed and spacing of instants in phase."""
+
+    real: np.ndarray
+    imaginary: np.ndarray
+    w: float
+    speed: float
+    spacing: float
+
+
+class PieceWork(NamedTuple):
+    """d, v (m,), state and answer of the laws at one instant."""
+
+    d: np.ndarray
+    v: np.ndarray
+    state: np.ndarray
+    answer: Any
+
+
+class FoundSwitches(NamedTuple):
+    """Room for switches: cell and law, theta (r,), answers F (4, r, m), Kd and Kv (4, r, blocks) beside."""
+
+    cell: np.ndarray
+    law: np.ndarray
+    theta: np.ndarray
+    F: np.ndarray
+    Kd: np.ndarray
+    Kv: np.ndarray
 
 
 @compiled
@@ -29,52 +65,84 @@ def motion_at(real, imaginary, w, phase, d, v):
     """Fill d and v (m,) of the coefficients (H + 1, m) at one phase w t."""
     d[:] = 0.0
     v[:] = 0.0
+    # cos(h p), sin(h p) by the addition theorem.
+    c1 = np.cos(phase)
+    s1 = np.sin(phase)
+    c = 1.0
+    s = 0.0
     for h in range(real.shape[0]):
-        c = np.cos(h * phase)
-        s = np.sin(h * phase)
         for j in range(d.size):
             d[j] += real[h, j] * c - imaginary[h, j] * s
             v[j] -= h * w * (real[h, j] * s + imaginary[h, j] * c)
+        c, s = c * c1 - s * s1, s * c1 + c * s1
 
 
 @compiled
-def switches_in(laws, real, imaginary, w, speed, spacing, cells, index, bisections, beside, theta, instants, answer):
-    """Bisect for the switch of law index[e] in each cell, and fill the answers beside it: at -1, -2, 1 and 2 times `beside`."""
-    m = real.shape[1]
-    state = np.zeros(laws.state_first[-1])
+def law_at(laws, motion, phase, law, full, work):
+    """Fill the answers of all laws at one phase, and tell which smooth piece of its force the law with this number is on.
+
+    Pieces are told apart by the side that touches, by whether the law answers to a small motion, which one does not that has let
+    go, and by whether its damping is all there, `full` being what that is.
+    """
+    motion_at(motion.real, motion.imaginary, motion.w, phase, work.d, work.v)
+    schedule_all(laws, motion.speed * phase / motion.w, motion.speed, phase / motion.w, work.state)
+    force_all(laws, work.state, work.d, work.v, work.answer)
+    holds = 0.0
+    damping = 0.0
+    for i in range(laws.block_first[law], laws.block_first[law + 1]):
+        damping += work.answer.Kv[i]
+        if work.answer.Kd[i] != 0.0 or work.answer.Kv[i] != 0.0:
+            holds = 1.0
+    piece = 4.0 * work.answer.energy[ENERGIES * law + SIDE] + holds
+    return piece + 2.0 if damping >= full else piece
+
+
+@compiled
+def switches_in(laws, motion, cells, index, full, bisections, beside, found):
+    """Find where law index[e] comes from one piece to another in each cell, one after the other, and its answers beside.
+
+    `found` is filled: cell and law of each switch, theta in the cell, and F, Kd and Kv at -1, -2, 1 and 2 times `beside` from it.
+    Returns the number of switches; no more than there is room for.
+    """
+    m = motion.real.shape[1]
     blocks = laws.block_first[-1]
-    own = Answer(np.zeros(m), np.zeros(blocks), np.zeros(blocks), np.zeros(4 * laws.kind.size))
-    d = np.zeros(m)
-    v = np.zeros(m)
-    e = cells.size
-    for i in range(e):
+    work = PieceWork(
+        np.zeros(m),
+        np.zeros(m),
+        np.zeros(laws.state_first[-1]),
+        Answer(np.zeros(m), np.zeros(blocks), np.zeros(blocks), np.zeros(ENERGIES * laws.kind.size)),
+    )
+    number = 0
+    for i in range(cells.size):
+        law = index[i]
+        begin = cells[i] * motion.spacing
+        piece = law_at(laws, motion, begin, law, full[law], work)
+        last = law_at(laws, motion, begin + motion.spacing, law, full[law], work)
         low = 0.0
-        high = 1.0
-        begin = 0.0
-        for k in range(bisections + 1):
-            middle = 0.0 if k == 0 else 0.5 * (low + high)
-            phase = (cells[i] + middle) * spacing
-            motion_at(real, imaginary, w, phase, d, v)
-            schedule_all(laws, speed * phase / w, speed, phase / w, state)
-            force_all(laws, state, d, v, own)
-            side = own.energy[4 * index[i] + 3]
-            if k == 0:
-                begin = side
-            elif side == begin:
-                low = middle
-            else:
-                high = middle
-        theta[i] = 0.5 * (low + high)
-        for k in range(4):
-            away = (-1.0, -2.0, 1.0, 2.0)[k] * beside
-            phase = (cells[i] + theta[i] + away) * spacing
-            row = k * e + i
-            motion_at(real, imaginary, w, phase, instants.d[row], instants.v[row])
-            schedule_all(laws, speed * phase / w, speed, phase / w, state)
-            force_all(
-                laws,
-                state,
-                instants.d[row],
-                instants.v[row],
-                Answer(answer.F[row], answer.Kd[row], answer.Kv[row], answer.energy[row]),
-            )
+        for _ in range(MOST_IN_CELL):
+            if piece == last or number == found.theta.size:
+                break
+            high = 1.0
+            following = last
+            for _ in range(bisections):
+                middle = 0.5 * (low + high)
+                now = law_at(laws, motion, begin + middle * motion.spacing, law, full[law], work)
+                if now == piece:
+                    low = middle
+                else:
+                    high = middle
+                    following = now
+            theta = 0.5 * (low + high)
+            found.cell[number] = cells[i]
+            found.law[number] = law
+            found.theta[number] = theta
+            for k in range(4):
+                away = (-1.0, -2.0, 1.0, 2.0)[k] * beside
+                law_at(laws, motion, begin + (theta + away) * motion.spacing, law, full[law], work)
+                found.F[k, number] = work.answer.F
+                found.Kd[k, number] = work.answer.Kd
+                found.Kv[k, number] = work.answer.Kv
+            number += 1
+            piece = following
+            low = high
+    return number

@@ -182,13 +182,10 @@ class ShootingOrbits:
         other._size = self._size
         return other
 
-    def smooth_residual(self, y: np.ndarray, p: float) -> np.ndarray:
-        """The residual, for differences in a parameter."""
-        return self._run(y, p, 0, np.array([0.0, 2.0 * np.pi * self.periods]))[0][:, 0] - y
-
-    def jacobian(self, y: np.ndarray, p: float) -> np.ndarray:
-        """Derivative of the residual by the unknowns."""
-        return self.monodromy(y, p) - np.eye(self.size)
+    def values(self, y: np.ndarray, p: float, *, smooth: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """The residual and its derivative by the unknowns; `smooth` changes nothing, for nothing is approximated."""
+        here = self._mapped(y, p, self.size)
+        return here[:, 0] - y, here[:, 1:] - np.eye(self.size)
 
     def monodromy(self, y: np.ndarray, p: float) -> np.ndarray:
         """Derivative of the map over a period, (2 n, 2 n)."""

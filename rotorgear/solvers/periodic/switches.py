@@ -15,11 +15,12 @@ import numpy as np
 
 from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.samples import Samples, arguments_of
-from rotorgear.solvers.time.arguments import Answer, Instants
+from rotorgear.solvers.time.local_forces import LocalForces
 
 _BISECTIONS = 40
 # Distance from a switch, as a share of the spacing, at which both sides are looked at.
 _BESIDE = 1e-6
+_ROUNDING = 1e-9
 # More switches than these say that a law chatters: then the sum stays as it is.
 _MOST = 400
 
@@ -28,7 +29,7 @@ _MOST = 400
 class Switches:
     """e switches: phase w t of each (e,), theta in its cell, spacing of the instants in phase, and jumps.
 
-    `force` and `rate`: of -F and of its rate over phase, (e, m). `in_d`, `in_v`: of -Kd and -Kv, (e, blocks).
+    `force` and `rate`: of -F and of its rate over phase, (e, m). `in_d`, `in_v`: of -Kd and -Kv, (e, blocks), and of their rates.
     """
 
     phase: np.ndarray
@@ -38,86 +39,87 @@ class Switches:
     rate: np.ndarray
     in_d: np.ndarray
     in_v: np.ndarray
+    rate_in_d: np.ndarray
+    rate_in_v: np.ndarray
 
     def of_forces(self, harmonics: int, m: int) -> np.ndarray:
         """What the mean of u e^{-i h w t} over the instants has too much, (H + 1, m)."""
         if not self.phase.size:
             return np.zeros((harmonics + 1, m), complex)
-        h = np.arange(harmonics + 1)
-        first = self.theta - 0.5
-        second = self.theta**2 - self.theta + 1.0 / 6.0
-        turned = np.exp(-1j * np.outer(h, self.phase))
-        # The rate of u e^{-i h p} jumps by [u'] - i h [u].
-        slope = turned @ (second[:, None] * self.rate)
-        value = turned @ (first[:, None] * self.force)
-        bent = turned @ (second[:, None] * self.force)
-        s = self.spacing
-        return np.asarray((s * value - 0.5 * s * s * (slope - 1j * h[:, None] * bent)) / (2.0 * np.pi))
+        return self._too_much(np.arange(harmonics + 1), self.force, self.rate)
 
     def of_tangents(self, harmonics: int, flat: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The same for tangents in d and v, for h from -H to H, (2 H + 1, pairs) each; the leading term."""
+        """The same for tangents in d and v, for h from -H to H, (2 H + 1, pairs) each."""
         if not self.phase.size:
             nothing = np.zeros((2 * harmonics + 1, flat.size), complex)
             return nothing, nothing
         h = np.arange(-harmonics, harmonics + 1)
-        turned = np.exp(-1j * np.outer(h, self.phase)) * (self.theta - 0.5) * self.spacing / (2.0 * np.pi)
-        return turned @ self.in_d[:, flat], turned @ self.in_v[:, flat]
+        return (
+            self._too_much(h, self.in_d[:, flat], self.rate_in_d[:, flat]),
+            self._too_much(h, self.in_v[:, flat], self.rate_in_v[:, flat]),
+        )
+
+    def _too_much(self, h: np.ndarray, jump: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """Error of the mean of g e^{-i h p}, (len(h), k), of jumps of g and of its rate over phase (e, k)."""
+        s = self.spacing
+        turned = np.exp(-1j * np.outer(h, self.phase))
+        first = (self.theta - 0.5)[:, None]
+        second = (self.theta**2 - self.theta + 1.0 / 6.0)[:, None]
+        # The rate of g e^{-i h p} jumps by [g'] - i h [g].
+        bent = turned @ (second * rate) - 1j * h[:, None] * (turned @ (second * jump))
+        return np.asarray((s * (turned @ (first * jump)) - 0.5 * s * s * bent) / (2.0 * np.pi))
 
 
 def switches_of(c: np.ndarray, now: Samples, plant: Plant, w: float) -> Switches:
-    """Find where the laws change sides between the instants of a motion with coefficients c (H + 1, m) and frequency w."""
-    from rotorgear.solvers.periodic.kernel_instants import switches_in
+    """Find where laws come from one smooth piece to another between the instants of a motion with coefficients c (H + 1, m)."""
+    from rotorgear.solvers.periodic.kernel_instants import MOST_IN_CELL, FoundSwitches, Harmonic, switches_in
 
     forces = plant.forces
-    N = len(now.t)
-    spacing = 2.0 * np.pi / N
-    side = now.side
-    cells, laws = np.nonzero(side != np.roll(side, -1, axis=0))
+    spacing = 2.0 * np.pi / len(now.t)
     m = forces.m
     blocks = now.Kd.shape[1]
+    piece, full = _pieces(now, forces)
+    cells, laws = np.nonzero(piece != np.roll(piece, -1, axis=0))
     if not cells.size or cells.size > _MOST:
         nothing = np.zeros((0, m))
         tangents = np.zeros((0, blocks))
-        return Switches(np.zeros(0), np.zeros(0), spacing, nothing, nothing, tangents, tangents)
-    e = cells.size
-    theta = np.zeros(e)
-    instants = Instants(np.zeros(0), np.zeros(0), np.zeros(0), np.zeros((4 * e, m)), np.zeros((4 * e, m)))
-    answer = Answer(
-        np.zeros((4 * e, m)), np.zeros((4 * e, blocks)), np.zeros((4 * e, blocks)), np.zeros((4 * e, side.shape[1] * 4))
+        return Switches(np.zeros(0), np.zeros(0), spacing, nothing, nothing, tangents, tangents, tangents, tangents)
+    room = MOST_IN_CELL * cells.size
+    found = FoundSwitches(
+        np.zeros(room, np.int64),
+        np.zeros(room, np.int64),
+        np.zeros(room),
+        np.zeros((4, room, m)),
+        np.zeros((4, room, blocks)),
+        np.zeros((4, room, blocks)),
     )
-    switches_in(
-        arguments_of(forces),
-        np.ascontiguousarray(c.real),
-        np.ascontiguousarray(c.imag),
-        w,
-        plant.speed,
-        spacing,
-        cells,
-        laws,
-        _BISECTIONS,
-        _BESIDE,
-        theta,
-        instants,
-        answer,
-    )
-    phase = (cells + theta) * spacing
+    motion = Harmonic(np.ascontiguousarray(c.real), np.ascontiguousarray(c.imag), w, plant.speed, spacing)
+    e = switches_in(arguments_of(forces), motion, cells, laws, full, _BISECTIONS, _BESIDE, found)
+    theta = found.theta[:e]
+    law = found.law[:e]
+    numbers = np.arange(len(forces.laws))
+    own = np.repeat(numbers, np.diff(forces.first)) == law[:, None]
+    own_block = np.repeat(numbers, np.diff(forces.block_first)) == law[:, None]
     step = _BESIDE * spacing
-    F_before, F_earlier, F_after, F_later = answer.F.reshape(4, e, m)
-    Kd_before, _, Kd_after, _ = answer.Kd.reshape(4, e, blocks)
-    Kv_before, _, Kv_after, _ = answer.Kv.reshape(4, e, blocks)
-    own = np.zeros((cells.size, m), bool)
-    own_block = np.zeros((cells.size, blocks), bool)
-    for i in range(len(forces.laws)):
-        own[laws == i, forces.first[i] : forces.first[i + 1]] = True
-        own_block[laws == i, forces.block_first[i] : forces.block_first[i + 1]] = True
-    rate = ((F_later - F_after) - (F_before - F_earlier)) / step
-    jump = (2.0 * F_after - F_later) - (2.0 * F_before - F_earlier)
-    return Switches(
-        phase,
-        theta,
-        spacing,
-        np.where(own, -jump, 0.0),
-        np.where(own, -rate, 0.0),
-        np.where(own_block, Kd_before - Kd_after, 0.0),
-        np.where(own_block, Kv_before - Kv_after, 0.0),
-    )
+    force, rate = _jumps(found.F[:, :e], own, step)
+    in_d, rate_in_d = _jumps(found.Kd[:, :e], own_block, step)
+    in_v, rate_in_v = _jumps(found.Kv[:, :e], own_block, step)
+    return Switches((found.cell[:e] + theta) * spacing, theta, spacing, force, rate, in_d, in_v, rate_in_d, rate_in_v)
+
+
+def _jumps(beside: np.ndarray, own: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Jumps of -g and of its rate (e, k) from g at -1, -2, 1 and 2 steps (4, e, k), of those entries that are a law's own."""
+    before, earlier, after, later = beside
+    jump = (2.0 * after - later) - (2.0 * before - earlier)
+    rate = ((later - after) - (before - earlier)) / step
+    return np.where(own, -jump, 0.0), np.where(own, -rate, 0.0)
+
+
+def _pieces(now: Samples, forces: LocalForces) -> tuple[np.ndarray, np.ndarray]:
+    """Which smooth piece each law is on at the instants (r, l), told as `law_at` tells it, and the full damping (l,) of each."""
+    first = forces.block_first[:-1]
+    damping = np.add.reduceat(now.Kv, first, axis=1)
+    largest = damping.max(axis=0)
+    full = np.where(largest > 0.0, (1.0 - _ROUNDING) * largest, np.inf)
+    holds = np.add.reduceat((now.Kd != 0.0) | (now.Kv != 0.0), first, axis=1)
+    return 4.0 * now.side + holds.astype(bool) + 2.0 * (damping >= full), full

@@ -153,3 +153,31 @@ def force_function(function: Callable[..., Any]) -> Any:
         The compiled function.
     """
     return compiled(function, signature=FORCE)
+
+
+class Handed(numba.types.WrapperAddressProtocol):
+    """A compiled function as compiled loops take it: its address, found once.
+
+    numba finds type and address of a function anew at each call that it is handed to, which costs more than a thousand
+    evaluations of a law.
+    """
+
+    def __init__(self, function: Any, signature: Any) -> None:
+        kept = function.get_compile_result(signature)
+        self._function = function  # its machine code lives as long as it does
+        self._signature = signature
+        self._address = kept.library.get_pointer_to_function(kept.fndesc.llvm_cfunc_wrapper_name)
+
+    def __wrapper_address__(self) -> int:
+        """Address of the machine code."""
+        return int(self._address)
+
+    def signature(self) -> Any:
+        """What it takes and returns."""
+        return self._signature
+
+
+@cache
+def handed(function: Any, signature: Any) -> Any:
+    """A compiled function ready to be handed over; where nothing is compiled, the function itself."""
+    return function if numba.config.DISABLE_JIT else Handed(function, signature)

@@ -120,9 +120,11 @@ class LocalForces:
 
     def arguments(self) -> Laws:
         """What the compiled loops take."""
+        from rotorgear.solvers.time.compiled import FORCE, SCHEDULE, handed
+
         return Laws(
-            self.schedules,
-            self.forces,
+            tuple(handed(one, SCHEDULE) for one in self.schedules),
+            tuple(handed(one, FORCE) for one in self.forces),
             self.kind,
             self.first,
             self.parameters,
