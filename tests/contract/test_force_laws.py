@@ -5,6 +5,8 @@ from __future__ import annotations
 import pickle
 import re
 from dataclasses import replace
+from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -202,11 +204,25 @@ def test_damping_that_sets_in_with_contact_has_an_impulse() -> None:
     assert contact.impulse(-1e-5)[0] == 0.0
 
 
+@cache
+def contacts_alone() -> Any:
+    """`contacts`, which compiled functions alone may call, as a function for Python."""
+    import numba
+
+    from rotorgear.solvers.lanes.kernel_parts import contacts
+
+    @numba.njit
+    def called(columns, table, weight, d, F, found, used):  # type: ignore[no-untyped-def]
+        contacts(columns, table, weight, d, F, found, used)
+
+    return called
+
+
 @pytest.mark.parametrize(("name", "law"), LAWS, ids=[name for name, _ in LAWS])
 def test_in_lanes_a_law_is_what_it_is_alone(name: str, law: ForceLaw) -> None:
     from rotorgear.solvers.contact.vectors import LANES
     from rotorgear.solvers.lanes.arguments import ColumnValues
-    from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, SIDE, contacts
+    from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, SIDE
 
     columns = Columns.of(law.columns(SPEED)).scaled(SPEED)
     if np.all(columns.kind == OWN_LAW):
@@ -221,7 +237,7 @@ def test_in_lanes_a_law_is_what_it_is_alone(name: str, law: ForceLaw) -> None:
     d[1::2] = np.array([rate for _, rate in moved]).T / SPEED
     values, tables = (np.repeat(each[:, :, None], LANES, axis=2) for each in (columns.values, table))
     acting = ColumnValues(columns.kind, columns.mode, columns.jumps, columns.counted, True, values)
-    contacts(acting, tables, 1.0, d, F, found.reshape(k, FOUND, LANES), used)
+    contacts_alone()(acting, tables, 1.0, d, F, found.reshape(k, FOUND, LANES), used)
     for lane, (one, rate) in enumerate(moved):
         alone = law.evaluate(one, rate, angle=ANGLE, speed=SPEED)
         assert SPEED**2 * F[:, lane] == pytest.approx(alone.force, rel=1e-12)
