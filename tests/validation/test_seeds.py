@@ -183,7 +183,7 @@ def test_what_changes_after_longer_settling_is_told() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("name", settling.NAMES)
 def test_no_label_changes_when_settling_is_ten_times_as_long(name: str) -> None:
-    assert list(settling.changes(settling.labels(name, 1), settling.labels(name, settling.TIMES))) == []
+    assert list(settling.changes(settling.labels(name, 1), settling.labels(name, settling.times_of(name)))) == []
 
 
 # --- misprints ---

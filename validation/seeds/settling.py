@@ -1,19 +1,26 @@
 """python -m validation.seeds.settling [NAME ...]: labels and numbers of the five systems after ten times the settling.
 
-Prints each label that differs between both runs, unless the shorter one says that it has not settled, and each number of chaos
-that leaves the root of the sum of squares of both stated errors. Long: some ten minutes of one core for each name.
+Of set 2 of the 24-dof pair it is thirty times. Prints each label that differs between both runs, unless the shorter one says that
+it has not settled, and each number of chaos that leaves the root of the sum of squares of both stated errors. Long: each name
+takes one to ten minutes of a core. What has been run is kept (kept.py), so that an interrupted run goes on where it was.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 
-from validation.seeds import marine, pair24
+from validation.seeds import kept, marine, pair24
 from validation.seeds.motions import kinds
 
 TIMES = 10
+TIMES_2 = 30
+# Speeds of set 2 in one run.
+_PART = 25
+
+Values = dict[str, float | str]
 
 
 def changes(first: Mapping[str, float | str], later: Mapping[str, float | str]) -> Iterator[str]:
@@ -43,51 +50,64 @@ def _number(text: str) -> tuple[float, float] | None:
 
 
 def labels(name: str, times: int) -> dict[str, float | str]:
-    """Every label of a route or a set of points at so many times the settling of the page, by place."""
-    runs: dict[str, Callable[[], object]] = {
-        "marine": lambda: marine.torque_indicators(times * marine.SETTLE),
-        "set1": lambda: _route(pair24.MODEL, pair24.SPEEDS, times * pair24.SETTLE),
-        "set2": lambda: _route(pair24.SECOND, pair24.SPEEDS_2, times * pair24.SETTLE_2),
-        "way": lambda: _way(30e3, times) | _way(35e3, times),
-        "trends": lambda: _trends(times),
-    }
-    return runs[name]()  # type: ignore[return-value]
+    """Every label of a route or a set of points at so many times the settling of the page, by place; what was run is kept."""
+    pieces = {f"{name}-{times}": lambda: RUNS[name](times)}
+    return dict(kept.piece("settling", f"{name}-{times}", pieces)["values"])
 
 
-def _route(model: str, speeds: tuple[float, ...], settle: int) -> dict[str, float | str]:
-    result = pair24.route(model, speeds, settle)
+def _torques(total: float, times: int) -> Values:
+    settle = times * marine.SETTLE
+    return dict(marine.indicators(marine.swept(list(marine.PRINTED.values()), total, settle=settle), "", settle=settle))
+
+
+def _route(model: str, speeds: Sequence[float], settle: int, times: int) -> Values:
+    result = pair24.route(model, speeds, times * settle)
     return {f"{rpm:.0f} rpm": result.motion_at(p) for p, rpm in enumerate(speeds)}
 
 
-def _way(total: float, times: int) -> dict[str, float | str]:
+def _way(total: float, times: int) -> Values:
     result = marine.way(total, times * marine.SETTLE)
-    found = [result.motion_at(p) for p in range(len(result.values))]
-    return {
-        f"{total / 1e3:.0f} kN m, load ratio {at[0]:.2f}": kind for at, kind in zip(result.values, found, strict=True)
-    }
+    return {f"load ratio {at[0]:.2f}": result.motion_at(p) for p, at in enumerate(result.values)}
 
 
-def _trends(times: int) -> dict[str, float | str]:
-    found: dict[str, float | str] = {}
-    for name, over in pair24.TRENDS.items():
-        result = pair24.apart(**over, settle=times * pair24.LONG_SETTLE)  # type: ignore[arg-type]
-        found |= {f"{name} {p}": ", ".join(sorted(kinds(result, p))) for p in range(len(result.values))}
-    return found
+def _trend(name: str, times: int) -> Values:
+    result = pair24.apart(**pair24.TRENDS[name], settle=times * pair24.LONG_SETTLE)  # type: ignore[arg-type]
+    return {f"{name} {p}": ", ".join(sorted(kinds(result, p))) for p in range(len(result.values))}
 
 
-NAMES = ("marine", "set1", "set2", "way", "trends")
+# What is run, at so many times the settling.
+RUNS: dict[str, Callable[[int], Values]] = {
+    "marine_30": partial(_torques, 30e3),
+    "marine_35": partial(_torques, 35e3),
+    "way_30": partial(_way, 30e3),
+    "way_35": partial(_way, 35e3),
+    "set1": partial(_route, pair24.MODEL, pair24.SPEEDS, pair24.SETTLE),
+    **{
+        f"set2_{1 + begin // _PART}": partial(
+            _route, pair24.SECOND, pair24.SPEEDS_2[begin : begin + _PART], pair24.SETTLE_2
+        )
+        for begin in range(0, len(pair24.SPEEDS_2), _PART)
+    },
+    **{name: partial(_trend, name) for name in pair24.TRENDS},
+}
+NAMES = tuple(RUNS)
+
+
+def times_of(name: str) -> int:
+    """How many times the settling of the page the longer run takes."""
+    return TIMES_2 if name.startswith("set2") else TIMES
 
 
 def main() -> None:
     """Compare what is named, or all."""
     parser = argparse.ArgumentParser(
         prog="python -m validation.seeds.settling",
-        description="Labels of the five systems after ten times the settling.",
+        description="Labels of the five systems after ten times the settling, of set 2 thirty times.",
     )
     parser.add_argument("names", nargs="*", metavar="NAME", choices=[*NAMES, []], help=", ".join(NAMES))
     for name in parser.parse_args().names or NAMES:
         first = labels(name, 1)
-        found = list(changes(first, labels(name, TIMES)))
+        found = list(changes(first, labels(name, times_of(name))))
         unsettled = [key for key, value in first.items() if value == "not settled"]
         print(f"{name}: {len(first)} values, {len(unsettled)} not settled, {len(found)} differ", flush=True)
         for line in found:

@@ -1,0 +1,47 @@
+"""What takes runs, piece by piece: values that the same sources have computed before are read, not computed again.
+
+Values are kept in validation/seeds/.kept/ by a digest of the package, of these scripts and of the models: after any change to
+them all are computed anew. A run that was interrupted goes on with the first piece that is missing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import time
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = Path(__file__).resolve().parent / ".kept"
+_SOURCES = ("rotorgear/**/*.py", "validation/seeds/*.py", "validation/T1/*.py", "models/*.toml", "models/*.csv")
+
+Pieces = Mapping[str, Callable[[], Mapping[str, Any]]]
+
+
+@cache
+def digest() -> str:
+    """Of all that the values follow from."""
+    found = hashlib.sha256()
+    for pattern in _SOURCES:
+        for file in sorted(ROOT.glob(pattern)):
+            found.update(str(file.relative_to(ROOT)).encode())
+            found.update(file.read_bytes())
+    return found.hexdigest()[:16]
+
+
+def piece(system: str, name: str, pieces: Pieces) -> dict[str, Any]:
+    """The values of a piece, with its "CPU seconds"."""
+    file = FOLDER / digest() / f"{system}.{name}.json"
+    if not file.exists():
+        begun = time.process_time()
+        values = dict(pieces[name]())
+        file.parent.mkdir(parents=True, exist_ok=True)
+        unfinished = file.with_suffix(f".{os.getpid()}")
+        text = json.dumps({"values": values, "cpu_s": time.process_time() - begun})
+        unfinished.write_text(text, encoding="utf-8")
+        unfinished.replace(file)
+    return dict(json.loads(file.read_text(encoding="utf-8")))
