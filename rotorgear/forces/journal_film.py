@@ -1,7 +1,7 @@
 """Journal bearing of finite length, plain or with lobes: Reynolds' equation on a grid, as journal_pressure.py solves it.
 
 A plain bearing needs a line where fresh oil comes in at p = 0. It stands at `inlet`, or follows the widest gap: then statics look
-for the equilibrium with it, and linear analyses take it to stay there.
+for the equilibrium with it, and linear analyses and motions in time take it to stay there.
 
 Lobes: c_p = c/(1 - m), preload m, and the gap of the centred journal is least at `offset` of the arc of a lobe in the sense of
 rotation.

@@ -20,10 +20,12 @@ _SIZE = (7.5, 6.0)
 def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: int | None = None) -> np.ndarray:
     """Draw the peak to peak of a contact's approach over the parameter: solid where stable, dashed where unstable.
 
+    Of a model without meshes it is that of the displacement across a bearing, a nonlinear element or at an unbalance.
+
     Args:
         result: periodic motions over a parameter.
         fig: figure to draw on; a new one for None.
-        contact: its number, counted from 0; the one that moves most where not given.
+        contact: its number, counted from 0, or that of the displacement; the one that moves most where not given.
 
     Returns:
         The axes: peak to peak, the largest Floquet multiplier below it, and the curves of special points where there are any.
@@ -37,7 +39,8 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
     rows = 3 if result.curves else 2
     size = (_SIZE[0], _SIZE[1] * (1.4 if result.curves else 1.0))
     axes = figure_for(fig, size, "").subplots(rows, 1, sharex=True, height_ratios=(3, 1, 2)[:rows])
-    sizes = 1e6 * result.peak_to_peak_approach
+    told = result.shown()
+    sizes = 1e6 * told.peak_to_peak(result)
     c = int(np.argmax(sizes.max(axis=0))) if contact is None else contact
     x = result.value / result.per_unit[0]
     largest = np.nanmax(np.abs(result.multipliers), axis=1)
@@ -58,11 +61,11 @@ def orbits(result: OrbitsResult | TransientResult, fig: Any = None, *, contact: 
         points = [one for one in result.special_points if one.kind == kind]
         if points:
             at = [one.value / result.per_unit[0] for one in points]
-            height = [1e6 * float(np.ptp(one.approach_extremes[c])) for one in points]
+            height = [1e6 * float(told.peak_to_peak(one)[c]) for one in points]
             axes[0].plot(at, height, marker, color="k", mfc="w", ms=6, ls="none", label=kind, zorder=5)
     axes[1].axhline(1.0, color="k", lw=0.6)
-    axes[0].set_ylabel("approach, peak to peak, um")
-    axes[0].set_title(f"{result.contact[c]}: periodic motions", fontsize=9)
+    axes[0].set_ylabel(f"{told.what}, peak to peak, u{told.unit}")
+    axes[0].set_title(f"{told.label[c]}: periodic motions", fontsize=9)
     axes[0].legend(fontsize=7)
     axes[1].set_ylabel("largest |mu|")
     for curve in result.curves:

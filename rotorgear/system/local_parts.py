@@ -89,6 +89,7 @@ def expansion_stiffness(law: ForceLaw, load: float, speed: float) -> np.ndarray:
     if np.any(given):
         return np.asarray(given)
     largest = np.zeros(law.components)
+    carries = False
     law = law.rough()
     for size in np.logspace(-8.0, -2.0, 25):  # metres or radians
         for side in (size, -size):
@@ -96,8 +97,10 @@ def expansion_stiffness(law: ForceLaw, load: float, speed: float) -> np.ndarray:
             stiffness = np.diag(about.stiffness)
             if not (np.all(np.isfinite(stiffness)) and np.all(np.isfinite(about.force))):
                 continue
-            largest = np.maximum(largest, stiffness)
-            if np.all(largest > 0.0) and np.abs(about.force).max() >= load:
+            # Beyond the load only what nothing has held so far counts: a wall is stiffer by orders than what carries.
+            largest = np.where(carries & (largest > 0.0), largest, np.maximum(largest, stiffness))
+            carries = carries or bool(np.abs(about.force).max() >= load)
+            if carries and np.all(largest > 0.0):
                 return np.diag(largest)
     return np.diag(largest)
 

@@ -52,7 +52,7 @@ ROOMS = {
         "sweep": {"common", "static", "transient"},
         "orbits": {"common", "static", "sweep", "transient"},
         "teeth": {"common"},
-        "bearing": {"common", "modal", "static"},
+        "bearing": {"campbell", "common", "modal", "static"},
         "scatter": {"common", "modal", "static", "transient"},
         "rig": {"common", "modal", "static"},
         "updating": {"common", "rig"},

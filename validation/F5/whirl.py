@@ -11,14 +11,14 @@ import rotorgear as rg
 
 VISCOSITY, RADIUS, LENGTH, CLEARANCE, MASS, GRAVITY = 0.06, 0.05, 0.01, 1e-4, 20.0, 9.81
 REVOLUTIONS = 150
-_SHORT = f"""
+SHORT = f"""
 [nonlinear_elements.film]
 law = "journal_bearing"
 shaft = "rotor"
 at = "start"
 parameters = {{ viscosity = {VISCOSITY}, radius = {RADIUS}, length = {LENGTH}, clearance = {CLEARANCE} }}
 """
-_FINITE = f"""
+FINITE = f"""
 [bearings.film]
 shaft = "rotor"
 at = "start"
@@ -97,7 +97,7 @@ def growth(share: float) -> float:
     speed = share * closed_form()[0]
     turn = 2.0 * np.pi / speed
     run = rg.transient(
-        model(_SHORT, "1 g mm"),
+        model(SHORT, "1 g mm"),
         speed=speed,
         time=REVOLUTIONS * turn,
         discard=0.0,
@@ -115,7 +115,7 @@ def growth(share: float) -> float:
 def measure(quantity: str, mode: str) -> float:
     """Threshold or frequency of the whirl over the closed form; `mode`: "campbell", "sheet" or "transient", and the law."""
     way, law = mode.split(", ")
-    text = _SHORT if law == "short" else _FINITE
+    text = SHORT if law == "short" else FINITE
     speed, ratio = closed_form()
     if way == "transient":
         low, high = growth(0.98), growth(1.02)

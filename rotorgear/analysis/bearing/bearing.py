@@ -4,26 +4,26 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import fields
-from itertools import pairwise
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
+from rotorgear.analysis.bearing.stability import Decrements
 from rotorgear.analysis.bearing.state import (
     Carried,
     address_of,
     by_its_law,
     carried,
     change_of_tangents,
+    equilibrium_of,
+    law_at,
     on_grid,
     relative,
-    state_of,
 )
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si
-from rotorgear.analysis.modal.modal import modal
+from rotorgear.analysis.static.solve import Equilibrated, LawState
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.inside import FilmField, RollingLoads, ThrustField
 from rotorgear.forces.law import CYCLE_POINTS
@@ -34,11 +34,6 @@ from rotorgear.results.parts.bearing import BearingSheet, BearingSpeed, FilmStat
 
 # Of the operating speed, where no speeds are given.
 _SHARES = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
-_MODES = 24
-# Smaller damping ratios are rounding of a mode that nothing damps.
-_UNDAMPED = 1e-9
-# The threshold is found to this share of its speed.
-_THRESHOLD = 1e-5
 
 
 @recorded
@@ -73,7 +68,7 @@ def bearing(
     if not given and address in _films(own):
         raise AnalysisError(f"{address}: a film carries where its journal turns; give a speed")
     progress(0.0, "equilibrium of the gearbox")
-    state = state_of(own, address, given)
+    state = law_at(equilibrium_of(own, given), address)
     law = state.part.law
     started = time.process_time()
     here = carried(law, state.force, state.d, given)
@@ -87,8 +82,17 @@ def bearing(
     asked = (
         [speed_in_si(one) for one in speeds] if speeds is not None else [share * given for share in _SHARES if given]
     )
-    rows, notes = _over_speeds(own, address, sorted(asked, key=abs), ratio, stability, progress)
-    threshold = _threshold(own, rows, progress) if stability else None
+    found, notes = _states(own, sorted(asked, key=abs), progress)
+    rows = [_row(speed, law_at(equilibrium, address), ratio * speed) for speed, equilibrium in found.items()]
+    threshold = None
+    if stability and found:
+        progress(0.5, "stability")
+        laws = [equilibrium.laws for equilibrium in found.values()]
+        decrements = Decrements(own, list(found))
+        least = [decrements.at(speed, near)[0] for speed, near in zip(found, laws, strict=True)]
+        rows = [replace(row, log_decrement=one) for row, one in zip(rows, least, strict=True)]
+        progress(0.85, "threshold")
+        threshold = decrements.threshold(list(found), least, laws)
     progress(1.0, "done")
     return BearingSheet(
         model=model,
@@ -107,7 +111,7 @@ def bearing(
         rolling_elements=_elements(inside) if isinstance(inside, RollingLoads) else (),
         film=_film(inside, here, ratio * given) if isinstance(inside, FilmField) else None,
         thrust_film=_thrust(inside, here) if isinstance(inside, ThrustField) else None,
-        over_speed=rows,
+        over_speed=tuple(rows),
         threshold_speed=threshold[0] if threshold else None,
         threshold_frequency_hz=threshold[1] if threshold else None,
         consistency=consistency,
@@ -171,34 +175,36 @@ def _thrust(inside: ThrustField, here: Carried) -> ThrustState:
     )
 
 
-def _over_speeds(
-    model: Model, address: str, speeds: list[float], ratio: float, stability: bool, progress: Progress
-) -> tuple[tuple[BearingSpeed, ...], list[str]]:
-    """The rows over speed; a speed without an equilibrium is a warning."""
-    rows = []
+def _states(model: Model, speeds: list[float], progress: Progress) -> tuple[dict[float, Equilibrated], list[str]]:
+    """The equilibria at speeds, each begun where the one before stands; a speed without one is a warning."""
+    found: dict[float, Equilibrated] = {}
     notes = []
-    for number, speed in enumerate(speeds):
-        progress(0.3 + 0.5 * number / len(speeds), f"{speed * RPM_PER_RAD_S:.6g} rpm")
+    near: Sequence[LawState] = ()
+    for number, speed in enumerate(dict.fromkeys(speeds)):
+        progress(0.3 + 0.2 * number / len(speeds), f"{speed * RPM_PER_RAD_S:.6g} rpm")
         try:
-            state = state_of(model, address, speed)
+            found[speed] = equilibrium_of(model, speed, near)
         except AnalysisError as error:
             notes.append(f"{speed * RPM_PER_RAD_S:.6g} rpm is left out: {error}")
             continue
-        mass, whirl = rigid_threshold(state.stiffness[:2, :2], state.damping[:2, :2], ratio * speed)
-        rows.append(
-            BearingSpeed(
-                speed=speed,
-                load=state.force,
-                displacement=state.d,
-                stiffness=state.stiffness,
-                damping=state.damping,
-                critical_mass=mass,
-                whirl_ratio=whirl,
-                film_temperature=getattr(state.part.law, "temperature", None),
-                log_decrement=_least_decrement(model, speed)[0] if stability else None,
-            )
-        )
-    return tuple(rows), notes
+        near = found[speed].laws
+    return found, notes
+
+
+def _row(speed: float, state: LawState, shaft_speed: float) -> BearingSpeed:
+    """A row over speed but for its decrement."""
+    mass, whirl = rigid_threshold(state.stiffness[:2, :2], state.damping[:2, :2], shaft_speed)
+    return BearingSpeed(
+        speed=speed,
+        load=state.force,
+        displacement=state.d,
+        stiffness=state.stiffness,
+        damping=state.damping,
+        critical_mass=mass,
+        whirl_ratio=whirl,
+        film_temperature=getattr(state.part.law, "temperature", None),
+        log_decrement=None,
+    )
 
 
 def rigid_threshold(K: np.ndarray, C: np.ndarray, speed: float) -> tuple[float | None, float | None]:
@@ -219,32 +225,6 @@ def rigid_threshold(K: np.ndarray, C: np.ndarray, speed: float) -> tuple[float |
     if square <= 0.0 or k <= 0.0:
         return None, None
     return float(k / square), float(np.sqrt(square) / abs(speed))
-
-
-def _least_decrement(model: Model, speed: float) -> tuple[float | None, float]:
-    """Smallest logarithmic decrement of what oscillates and is damped in the gearbox at a speed, and its frequency in Hz."""
-    modes = modal(model, speed=speed, modes=_MODES)
-    s = modes.eigenvalues
-    s = s[(s.imag > 0.0) & ~modes.rigid & (np.abs(s.real) > _UNDAMPED * np.abs(s))]
-    if not s.size:
-        return None, 0.0
-    least = s[np.argmax(s.real / s.imag)]
-    return float(-2.0 * np.pi * least.real / least.imag), float(least.imag / (2.0 * np.pi))
-
-
-def _threshold(model: Model, rows: tuple[BearingSpeed, ...], progress: Progress) -> tuple[float, float] | None:
-    """Speed and frequency where the least logarithmic decrement falls through zero first, solved at its own equilibria."""
-    for low, high in pairwise(rows):
-        if low.log_decrement is None or high.log_decrement is None or not low.log_decrement > 0.0 >= high.log_decrement:
-            continue
-        progress(0.85, "threshold")
-        speed = float(
-            brentq(
-                lambda one: _least_decrement(model, one)[0], low.speed, high.speed, xtol=_THRESHOLD * abs(high.speed)
-            )
-        )
-        return speed, _least_decrement(model, speed)[1]
-    return None
 
 
 def _left_out(model: Model, address: str, law: object, inside: object) -> list[str]:

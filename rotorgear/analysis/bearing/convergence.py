@@ -12,8 +12,9 @@ from rotorgear.analysis.bearing.state import (
     by_its_law,
     carried,
     change_of_tangents,
+    equilibrium_of,
+    law_at,
     on_grid,
-    state_of,
 )
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si
@@ -58,7 +59,7 @@ def bearing_convergence_study(
     if given is None:
         given = (model.operation.speed if model.operation else None) or 0.0
     progress(0.0, "equilibrium of the gearbox")
-    state = state_of(by_its_law(model, address), address, given)
+    state = law_at(equilibrium_of(by_its_law(model, address), given), address)
     law = state.part.law
     film = hasattr(law, "around")
     if not film and not (law.cycle() and given):

@@ -11,7 +11,7 @@ import numpy as np
 from rotorgear.analysis.common.request import direction_of
 from rotorgear.analysis.static.cycle import over_cycle
 from rotorgear.analysis.static.film_heat import in_heat_balance
-from rotorgear.analysis.static.solve import LawState, equilibrate
+from rotorgear.analysis.static.solve import Equilibrated, LawState, equilibrate
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.law import CYCLE_POINTS
 from rotorgear.model.model import Model
@@ -69,14 +69,18 @@ def by_its_law(model: Model, address: str) -> Model:
     return model.with_({f"{address}.stiffness": None})
 
 
-def state_of(model: Model, address: str, speed: float) -> LawState:
-    """A bearing in the equilibrium of the whole gearbox at a speed of the input shaft in rad/s.
+def equilibrium_of(model: Model, speed: float, near: Sequence[LawState] = ()) -> Equilibrated:
+    """The equilibrium of the whole gearbox at a speed of the input shaft in rad/s, looked for from a known one.
 
     Raises:
         AnalysisError: there is no equilibrium.
     """
     system = System(model, load=model.mean_load(direction_of(speed)).of_kind("static"))
-    equilibrium, _ = over_cycle(equilibrate(system, speed), speed)
+    return over_cycle(equilibrate(system, speed, near=near), speed)[0]
+
+
+def law_at(equilibrium: Equilibrated, address: str) -> LawState:
+    """A bearing in an equilibrium."""
     return next(law for law in equilibrium.laws if law.part.part == address)
 
 

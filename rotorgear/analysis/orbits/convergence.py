@@ -11,8 +11,8 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import speed_in_si
 from rotorgear.analysis.common.study import REPEAT, Judged, Setting, Study
 from rotorgear.analysis.orbits.family import SPEED, SystemFamily, range_of
-from rotorgear.analysis.orbits.gather import contacts_of
 from rotorgear.analysis.orbits.orbits import HARMONICS, INSTANTS, equations_of, scale_of
+from rotorgear.analysis.orbits.places import told_of
 from rotorgear.analysis.orbits.refined import change, finer_of
 from rotorgear.analysis.orbits.start import run_periods
 from rotorgear.errors import AnalysisError
@@ -78,7 +78,7 @@ def orbits_convergence_study(
     if min(densities, default=INSTANTS) < 5:
         raise AnalysisError(f"densities: got {min(densities)}, expected 5 instants a harmonic or more")
     family = SystemFamily(model, [range_of(model, SPEED, [given, _RANGE * given])], excite, None)
-    contacts = contacts_of(family)
+    contacts = told_of(family).contacts
     if not contacts.column.size:
         raise AnalysisError("the convergence study of orbits compares displacements of contacts: the model has no mesh")
     plant = family.plant(0.0)

@@ -211,14 +211,18 @@ def _keep_sums(own: LocalSystem, turned: LocalSystem) -> None:
 
 
 def _only_turns(model: Model) -> bool:
-    """Whether another speed changes nothing but the rotation: no power, tables, internal damping or torque over speed."""
+    """Whether another speed changes nothing but the rotation: nothing else of the model goes with it."""
     assert model.operation is not None
     loads = model.loads.values()
     powers = [model.operation.power, *(load.power for load in loads)]
     over_speed = any(load.speed_power for load in loads)
     tables = any(bearing.table for bearing in model.bearings.values())
     inner = any(shaft.internal_damping for shaft in model.shafts.values())
-    return all(power is None for power in powers) and not (over_speed or tables or inner or model.nonlinear_elements)
+    # The place of a journal goes with the speed: its heat balance, and the teeth that feel the tilt of its shaft.
+    films = [bearing.film for bearing in model.bearings.values() if bearing.film is not None]
+    settled = any(film.settles for film in films) or (films and model.meshes)
+    others = over_speed or tables or inner or settled or model.nonlinear_elements
+    return all(power is None for power in powers) and not others
 
 
 def _keeps(law: LocalLaw, order: float) -> bool:

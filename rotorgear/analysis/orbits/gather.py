@@ -3,46 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from rotorgear.analysis.orbits.curves import Curve
-from rotorgear.analysis.orbits.family import Range, SystemFamily
+from rotorgear.analysis.orbits.family import Range
 from rotorgear.analysis.orbits.follow import Branch
+from rotorgear.analysis.orbits.places import Told
 from rotorgear.results.motion.orbits import OrbitBranch, SpecialCurve, SpecialPoint
 from rotorgear.solvers.periodic.cycle import Cycle
-from rotorgear.solvers.periodic.special import Certified
 
 # Multipliers of a point that are kept.
 _MULTIPLIERS = 12
 
 
-@dataclass(frozen=True)
-class Contacts:
-    """Places of the mesh contacts among the local displacements and laws, cos(beta_b), labels."""
-
-    column: np.ndarray
-    law: np.ndarray
-    transverse: np.ndarray
-    label: tuple[str, ...]
-
-
-def contacts_of(family: SystemFamily) -> Contacts:
-    """The mesh contacts of a family."""
-    parts = family.parts
-    law = np.array([i for i, part in enumerate(parts) if part.is_mesh], int)
-    return Contacts(
-        family.plant(0.0).forces.first[law],
-        law,
-        np.array([parts[i].transverse for i in law]),
-        tuple(parts[i].label for i in law),
-    )
-
-
-def gathered(
-    branches: list[Branch], contacts: Contacts, family: SystemFamily, along: Range, harmonics: int
-) -> dict[str, object]:
+def gathered(branches: list[Branch], told: Told, along: Range, harmonics: int) -> dict[str, object]:
     """The fields of a result that belong to points and special points."""
     rows: dict[str, list[object]] = {
         name: []
@@ -61,6 +36,8 @@ def gathered(
             "back",
             "force_harmonics",
             "displacement_harmonics",
+            "place_extremes",
+            "place_harmonics",
         )
     }
     special = []
@@ -73,11 +50,12 @@ def gathered(
             rows["value"].append(along.at(one.node.p))
             rows["stable"].append(one.stable)
             rows["multipliers"].append(padded(one.multipliers))
-            for name, value in read(cycle, contacts, harmonics, branch.periods).items():
+            for name, value in read(cycle, told, harmonics, branch.periods).items():
                 rows[name].append(value)
         for point in branch.special:
             cycle = branch.orbits.cycle(point.at.node.y, point.at.node.p)
             mu = point.at.multipliers[:_MULTIPLIERS]
+            approach, moved = _extremes(cycle, told)
             special.append(
                 SpecialPoint(
                     point.kind,
@@ -86,48 +64,63 @@ def gathered(
                     cycle.period,
                     mu.real.copy(),
                     mu.imag.copy(),
-                    cycle.extremes()[contacts.column] / contacts.transverse[:, None],
+                    approach,
+                    moved,
                 )
             )
     fields: dict[str, object] = {name: np.array(values) for name, values in rows.items()}
     return fields | {"branches": tuple(listed), "special_points": tuple(special)}
 
 
-def gathered_curves(curves: list[Curve], contacts: Contacts, ranges: Sequence[Range]) -> tuple[SpecialCurve, ...]:
+def gathered_curves(curves: list[Curve], told: Told, ranges: Sequence[Range]) -> tuple[SpecialCurve, ...]:
     """The curves of special points as a result has them."""
-    return tuple(
-        SpecialCurve(
-            curve.kind,
-            curve.branch,
-            np.array([ranges[0].at(point.p) for point in curve.points]),
-            np.array([ranges[1].at(point.q) for point in curve.points]),
-            np.array([point.cycle.period for point in curve.points]),
-            np.array(
-                [point.cycle.extremes()[contacts.column] / contacts.transverse[:, None] for point in curve.points]
-            ),
-            curve.ended,
+    found = []
+    for curve in curves:
+        extremes = [_extremes(point.cycle, told) for point in curve.points]
+        found.append(
+            SpecialCurve(
+                curve.kind,
+                curve.branch,
+                np.array([ranges[0].at(point.p) for point in curve.points]),
+                np.array([ranges[1].at(point.q) for point in curve.points]),
+                np.array([point.cycle.period for point in curve.points]),
+                np.array([approach for approach, _ in extremes]),
+                curve.ended,
+                np.array([moved for _, moved in extremes]),
+            )
         )
-        for curve in curves
-    )
+    return tuple(found)
 
 
-def read(cycle: Cycle, contacts: Contacts, harmonics: int, periods: int) -> dict[str, object]:
+def _extremes(cycle: Cycle, told: Told) -> tuple[np.ndarray, np.ndarray]:
+    """Least and largest approach of the contacts, (c, 2), and displacements of the places, (k, 2)."""
+    both = cycle.extremes()
+    return both[told.contacts.column] / told.contacts.transverse[:, None], both[told.places.column]
+
+
+def read(cycle: Cycle, told: Told, harmonics: int, periods: int) -> dict[str, object]:
     """What a result tells of one motion."""
+    contacts = told.contacts
     at = cycle.at
     side = at.side[:, contacts.law]
     F = at.F[:, contacts.column]
+    approach, moved = _extremes(cycle, told)
+    # Harmonics of the base period: of a motion of k periods every k-th.
+    force = cycle.force[::periods][: harmonics + 1]
+    displacement = cycle.displacement[::periods][: harmonics + 1]
     return {
         "period": cycle.period,
-        "approach_extremes": cycle.extremes()[contacts.column] / contacts.transverse[:, None],
+        "approach_extremes": approach,
         "peak_to_peak_transmission_error": np.ptp(cycle.watched[:, : len(contacts.column)], axis=0),
         "mean_force": F.mean(axis=0),
         "rms_force": F.std(axis=0),
         "largest_force": F.max(axis=0),
         "apart": (side == 0.0).mean(axis=0),
         "back": (side < 0.0).mean(axis=0),
-        # Harmonics of the base period: of a motion of k periods every k-th.
-        "force_harmonics": cycle.force[::periods][: harmonics + 1, contacts.column],
-        "displacement_harmonics": cycle.displacement[::periods][: harmonics + 1, contacts.column],
+        "force_harmonics": force[:, contacts.column],
+        "displacement_harmonics": displacement[:, contacts.column],
+        "place_extremes": moved,
+        "place_harmonics": displacement[:, told.places.column],
     }
 
 
@@ -137,9 +130,3 @@ def padded(multipliers: np.ndarray) -> np.ndarray:
     kept = multipliers[:_MULTIPLIERS]
     out[: kept.size] = kept
     return out
-
-
-def peak_to_peak(one: Certified, branch: Branch, contacts: Contacts) -> float:
-    """Largest peak to peak of a contact's displacement."""
-    ends = branch.orbits.cycle(one.node.y, one.node.p).extremes()[contacts.column]
-    return float((ends[:, 1] - ends[:, 0]).max(initial=0.0))

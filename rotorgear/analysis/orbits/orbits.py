@@ -14,13 +14,15 @@ from rotorgear.analysis.common.request import check_whole, missed
 from rotorgear.analysis.orbits.curves import Curve, special_curves
 from rotorgear.analysis.orbits.family import SystemFamily, range_of
 from rotorgear.analysis.orbits.follow import AnyOrbits, Branch, doubled_branches, main_branches
-from rotorgear.analysis.orbits.gather import contacts_of, gathered, gathered_curves
+from rotorgear.analysis.orbits.gather import gathered, gathered_curves
+from rotorgear.analysis.orbits.places import told_of
 from rotorgear.analysis.orbits.refined import largest_error
 from rotorgear.analysis.orbits.start import first_node
 from rotorgear.analysis.orbits.verify import verified
 from rotorgear.analysis.static.ground import mean_torsion_notes
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.errors import AnalysisError
+from rotorgear.forces.oil_film import OilFilm
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.motion.orbits import OrbitsResult
@@ -76,8 +78,8 @@ def orbits(
         progress: callable that is told fraction and step.
 
     Raises:
-        AnalysisError: no mesh, nothing repeats, a least common period that is too long, laws without periodic motions, or a
-            request that makes no sense.
+        AnalysisError: nothing repeats, or only after too long a time; nothing tells motions apart; laws without periodic
+            motions; or a request that makes no sense.
     """
     begun = clock.perf_counter()
     _check(over, harmonics, instants, method, accuracy, step, points)
@@ -86,12 +88,7 @@ def orbits(
     with single_thread(0):
         progress(0.0, "model")
         family = SystemFamily(model, ranges, excite, elements)
-        contacts = contacts_of(family)
-        if not contacts.label:
-            raise AnalysisError(
-                "the model has no mesh, and orbits tells motions by their mesh contacts: transient follows a rotor on its "
-                "bearings, and sweep its motions over speed"
-            )
+        told = told_of(family)
         scale = scale_of(family.plant(0.0))
         H = harmonics or HARMONICS
         laps = {"model": clock.perf_counter() - begun}
@@ -107,15 +104,15 @@ def orbits(
                     branches += doubled_branches(branch, Walk(longest=step, most=points), progress)
             used = clock.process_time() - used
             progress(0.95, "error estimate")
-            error = largest_error(branches[0], contacts.column)
+            error = largest_error(branches[0], told.columns)
             if accuracy is None or error <= accuracy or doublings >= 2 or isinstance(problem, ShootingOrbits):
                 break
             doublings += 1
             H *= 2
         curves = special_curves(branches, family, Walk(longest=step, most=points), progress) if len(ranges) > 1 else []
         laps["branches"] = clock.perf_counter() - begun - laps["model"]
-        fields = gathered(branches, contacts, family, along, H)
-        checks = verified(branches, family, contacts, along) if verify else ()
+        fields = gathered(branches, told, along, H)
+        checks = verified(branches, family, told.columns, along) if verify else ()
     laps["total"] = clock.perf_counter() - begun
     short = missed(accuracy, error, "ask for more harmonics (--harmonics) or instants (--instants)")
     progress(1.0, "done")
@@ -127,9 +124,11 @@ def orbits(
         per_unit=np.array([one.per_unit for one in ranges]),
         excited=family.label,
         order=family.order,
-        contact=contacts.label,
+        contact=told.contacts.label,
+        place=told.places.label,
+        place_unit=told.places.unit,
         **fields,  # type: ignore[arg-type]
-        curves=gathered_curves(curves, contacts, ranges),
+        curves=gathered_curves(curves, told, ranges),
         verifications=checks,
         harmonics=H,
         instants=N,
@@ -204,7 +203,9 @@ def equations_of(method: str, family: SystemFamily, grid: Grid, scale: np.ndarra
     plant = family.plant(0.0)
     coordinates = plant.M.shape[0] - plant.free.shape[1]
     small = coordinates <= MOST_COORDINATES
-    if method != "harmonic balance" and small:
+    # A film on a grid has a kink wherever a node begins or ends to cavitate: too many for steps that end at each.
+    gridded = method == "auto" and any(isinstance(law, OilFilm) for law in plant.forces.laws)
+    if method != "harmonic balance" and small and not gridded:
         w = grid.frequency(plant.speed)
         trial = HarmonicOrbits(family.plant, grid, scale)
         ratio = trial.modes(0.0).highest / w

@@ -13,6 +13,8 @@ from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
 
 # Points of a branch that are solved anew.
 _POINTS = 3
+# Of the largest displacement: what moves less has no accuracy of its own.
+_STILL = 1e-6
 
 
 def largest_error(branch: Branch, columns: np.ndarray) -> float:
@@ -22,7 +24,7 @@ def largest_error(branch: Branch, columns: np.ndarray) -> float:
     instants, another method: their difference is the larger error of both.
 
     Args:
-        branch: a branch. columns: of the mesh contacts among the local displacements.
+        branch: a branch. columns: local displacements that are compared.
     """
     orbits = branch.orbits
     numbers = np.unique(np.linspace(0, len(branch.nodes) - 1, _POINTS + 2).round().astype(int)[1:-1])
@@ -46,11 +48,15 @@ def largest_error(branch: Branch, columns: np.ndarray) -> float:
 
 
 def change(coarse: np.ndarray, better: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Largest difference of coefficients (h + 1, m) in each column, over the largest harmonic of the better ones."""
+    """Largest difference of coefficients (h + 1, m) in each column, over the largest harmonic of the better ones.
+
+    One that hardly moves beside the others is measured by the largest of them.
+    """
     both = np.zeros((2, max(len(coarse), len(better)), len(columns)), complex)
     both[0, : len(coarse)] = coarse[:, columns]
     both[1, : len(better)] = better[:, columns]
     size = np.abs(both[1, 1:]).max(axis=0)
+    size = np.maximum(size, _STILL * size.max(initial=0.0))
     return np.asarray(np.abs(both[0] - both[1]).max(axis=0) / size)
 
 

@@ -6,7 +6,6 @@ import numpy as np
 
 from rotorgear.analysis.orbits.family import Range, SystemFamily
 from rotorgear.analysis.orbits.follow import AnyOrbits, Branch
-from rotorgear.analysis.orbits.gather import Contacts
 from rotorgear.analysis.orbits.start import run_periods
 from rotorgear.results.motion.orbits import OrbitVerification
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
@@ -21,10 +20,10 @@ _LEAST_PERIODS = 4
 
 
 def verified(
-    branches: list[Branch], family: SystemFamily, contacts: Contacts, along: Range
+    branches: list[Branch], family: SystemFamily, column: np.ndarray, along: Range
 ) -> tuple[OrbitVerification, ...]:
-    """Start transients on a motion of each stretch of the branches, in its middle."""
-    return tuple(_verified(branch, one, family, contacts, along) for branch in branches for one in _middles(branch))
+    """Start transients on a motion of each stretch of the branches, in its middle; `column`: displacements that are compared."""
+    return tuple(_verified(branch, one, family, column, along) for branch in branches for one in _middles(branch))
 
 
 def _middles(branch: Branch) -> list[Certified]:
@@ -38,7 +37,7 @@ def _middles(branch: Branch) -> list[Certified]:
 
 
 def _verified(
-    branch: Branch, one: Certified, family: SystemFamily, contacts: Contacts, along: Range
+    branch: Branch, one: Certified, family: SystemFamily, column: np.ndarray, along: Range
 ) -> OrbitVerification:
     orbits = branch.orbits
     node = one.node
@@ -47,19 +46,18 @@ def _verified(
     q, v = state_on(orbits, node.y, node.p)
     cycle = orbits.cycle(node.y, node.p)
     ends = cycle.extremes()
-    size = float(np.ptp(ends[contacts.column], axis=1).max(initial=0.0)) or 1.0
+    size = float(np.ptp(ends[column], axis=1).max(initial=0.0)) or 1.0
     k = branch.periods
     periods = _PERIODS * k
-    exact = cycle.at.d[:, contacts.column]
+    exact = cycle.at.d[:, column]
     # Steps so that every instant of the orbit is the end of one.
     each = int(np.ceil(_STEPS * k / len(exact)))
     steps = each * len(exact) // k
     _, d = run_periods(system, family.order, periods, q, v, steps)
     push = plant.still.X @ np.ones(plant.m)
-    moved = float(np.abs((plant.B.T @ push)[contacts.column]).max(initial=0.0)) or 1.0
+    moved = float(np.abs((plant.B.T @ push)[column]).max(initial=0.0)) or 1.0
     _, other = run_periods(system, family.order, periods, q + push * (_PUSH * size / moved), v, steps)
     per = steps * k
-    column = contacts.column
     # Records stand at the ends of steps: the first period is rows 0 to per - 1.
     start = (plant.B.T @ q)[column]
     after_one = d[:per][:, column]

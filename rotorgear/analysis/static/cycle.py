@@ -73,7 +73,7 @@ def over_cycle(equilibrium: Equilibrated, speed: float) -> tuple[Equilibrated, J
             return equilibrium, None
         load = equilibrium.system.load.about_cycle(joint.force, joint.stiffness, joint.start, joint.faces)
         closed = np.where(joint.own >= 0, joint.force > 0.0, equilibrium.closed)
-        settled = equilibrate(equilibrium.system.with_load(load), speed, closed)
+        settled = equilibrate(equilibrium.system.with_load(load), speed, closed, equilibrium.laws)
         change = float(np.abs(settled.force - equilibrium.force).max())
         equilibrium = settled
         if not equilibrium.laws or change <= _AGREED * float(np.abs(settled.force).max()):

@@ -74,13 +74,16 @@ class Equilibrated:
     laws: tuple[LawState, ...] = ()
 
 
-def equilibrate(system: System, speed: float, closed: np.ndarray | None = None) -> Equilibrated:
+def equilibrate(
+    system: System, speed: float, closed: np.ndarray | None = None, near: Sequence[LawState] = ()
+) -> Equilibrated:
     """Return the equilibrium under torques, forces and moments from outside, weight and index errors.
 
     Args:
         system: about a mean load.
         speed: of the reference shaft in rad/s.
         closed: (c,) contacts that are taken to carry first; None: all.
+        near: the laws in a known equilibrium, such as that at a speed near by, from which this one is looked for.
 
     Raises:
         AnalysisError: no loads, a motion that nothing holds and the loads push, or flanks that can't be settled.
@@ -95,7 +98,7 @@ def equilibrate(system: System, speed: float, closed: np.ndarray | None = None) 
                 f"no set of flanks carries the loads: meshes {names} open and close in turn; check index errors and loads"
             )
         tried.add(state)
-        equilibrium = _solve(system, speed, closed)
+        equilibrium = _solve(system, speed, closed, near)
         size = _PULLS * float(np.max(np.abs(equilibrium.force), initial=0.0))
         pressed = equilibrium.lines.force(equilibrium.q)
         worst = int(np.argmin(equilibrium.force)) if equilibrium.force.size else -1
@@ -104,17 +107,19 @@ def equilibrate(system: System, speed: float, closed: np.ndarray | None = None) 
             closed = closed.copy()
             closed[through[0]] = True
         elif worst >= 0 and equilibrium.force[worst] < -size:
-            system, closed = _released(system, speed, closed, worst)
+            system, closed = _released(system, speed, closed, worst, near)
         else:
             return equilibrium
 
 
-def _released(system: System, speed: float, closed: np.ndarray, worst: int) -> tuple[System, np.ndarray]:
+def _released(
+    system: System, speed: float, closed: np.ndarray, worst: int, near: Sequence[LawState]
+) -> tuple[System, np.ndarray]:
     """Open a contact that pulls, or let its mesh carry on the other flank where the loads can't do without it."""
     opened = closed.copy()
     opened[worst] = False
     try:
-        _solve(system, speed, opened)
+        _solve(system, speed, opened, near)
     except _PushedMotionError:
         mesh = system.load.forces[worst].contact.mesh
         opened[worst] = True
@@ -126,7 +131,7 @@ class _PushedMotionError(AnalysisError):
     """The loads push a motion that nothing holds."""
 
 
-def _solve(system: System, speed: float, closed: np.ndarray) -> Equilibrated:
+def _solve(system: System, speed: float, closed: np.ndarray, near: Sequence[LawState]) -> Equilibrated:
     lines = contact_lines(system)
     meshes = iter(closed)
     groups = [
@@ -146,7 +151,7 @@ def _solve(system: System, speed: float, closed: np.ndarray) -> Equilibrated:
     about = [expansion_stiffness(part.law, size, speed) for part in parts]
     K, R = _held(system, [*groups, *map(law_group, parts, about)], speed)
     solver = Equilibrium(K, R)
-    laws = _laws_at_rest(system, parts, about, solver, f, speed)
+    laws = _laws_at_rest(system, parts, about, solver, f, speed, near)
     # Of a model without such laws this is the one linear solution.
     pushed = sum((part.columns @ (k @ law.d - law.force) for part, k, law in zip(parts, about, laws, strict=True)), 0.0)
     try:
@@ -181,7 +186,13 @@ def law_group(part: LocalPart, stiffness: np.ndarray) -> ElementGroup:
 
 
 def _laws_at_rest(
-    system: System, parts: list[LocalPart], about: list[np.ndarray], solver: Equilibrium, f: np.ndarray, speed: float
+    system: System,
+    parts: list[LocalPart],
+    about: list[np.ndarray],
+    solver: Equilibrium,
+    f: np.ndarray,
+    speed: float,
+    known: Sequence[LawState],
 ) -> list[LawState]:
     """Find the displacements at which the laws and the structure are in equilibrium.
 
@@ -196,7 +207,9 @@ def _laws_at_rest(
     k = la.block_diag(*about)
 
     solved = solver.solve(np.column_stack([f, B]), carried=True)
-    near: list[np.ndarray | None] = [None]
+    places = {state.part.part: state for state in known}
+    begun = [places[part.part] for part in parts if part.part in places]
+    near = [np.concatenate([state.d for state in begun]) if len(begun) == len(parts) else None]
 
     def settled(laws: Sequence[ForceLaw]) -> tuple[np.ndarray, list[np.ndarray]]:
         def forces(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -214,7 +227,7 @@ def _laws_at_rest(
         near[0] = found.d
         return found.d, [found.d[a:b] for a, b in pairwise(ends)]
 
-    warmed, found = in_heat_balance([part.law for part in parts], speed, settled)
+    warmed, found = in_heat_balance([_warm(part.law, places.get(part.part)) for part in parts], speed, settled)
     states = []
     for part, law, (a, b) in zip(parts, warmed, pairwise(ends), strict=True):
         d = found[a:b]
@@ -224,6 +237,13 @@ def _laws_at_rest(
         own = replace(part, law=law)
         states.append(LawState(own, d, tangent.force, tangent.stiffness, tangent.damping, speed != 0.0))
     return states
+
+
+def _warm(law: ForceLaw, known: LawState | None) -> ForceLaw:
+    """A film in heat balance with the viscosity of a known equilibrium."""
+    if known is None or not getattr(law, "heats", False):
+        return law
+    return replace(law, viscosity=known.part.law.viscosity)  # type: ignore[call-arg, attr-defined]
 
 
 def outer_loads(system: System) -> np.ndarray:

@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 _CONSTANT = 1e-9
 
 
-def about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Model, tuple[str, ...]]:
+def about_equilibrium(
+    model: Model, speeds: Sequence[float | None], near: Sequence[LawState] = ()
+) -> tuple[Model, tuple[str, ...]]:
     """Return the linear model about its static equilibrium, and a sentence on each nonlinear part.
 
     A model without such parts, or whose parts all give a stiffness, comes back as it is.
@@ -37,17 +39,20 @@ def about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Mod
         model: a checked model.
         speeds: of the reference shaft in rad/s, of one sense, at which tangents are taken; None stands for standstill, where
             films have none, so that the operating speed serves.
+        near: the laws in a known equilibrium near the first of them, from which it is looked for.
 
     Raises:
         AnalysisError: there is no equilibrium at one of the speeds.
     """
     key = tuple(speeds)
     if key not in model.linear_models:
-        model.linear_models[key] = _about_equilibrium(model, speeds)
+        model.linear_models[key] = _about_equilibrium(model, speeds, near)
     return model.linear_models[key]
 
 
-def _about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Model, tuple[str, ...]]:
+def _about_equilibrium(
+    model: Model, speeds: Sequence[float | None], near: Sequence[LawState]
+) -> tuple[Model, tuple[str, ...]]:
     notes = [
         f"the law of nonlinear_elements.{name}: the stiffness given beside it is taken"
         for name, element in model.nonlinear_elements.items()
@@ -77,7 +82,11 @@ def _about_equilibrium(model: Model, speeds: Sequence[float | None]) -> tuple[Mo
     at = sorted({(operating or 0.0) if speed is None else float(speed) for speed in speeds}, key=abs)
     load = model.mean_load(-1 if min(at) < 0.0 else 1).of_kind("static")
     system = System(model, load=load)
-    states = [{law.part.part: law for law in equilibrate(system, speed).laws} for speed in at]
+    # Each begins where the one before stands.
+    states: list[dict[str, LawState]] = []
+    for speed in at:
+        near = equilibrate(system, speed, near=near).laws
+        states.append({law.part.part: law for law in near})
     changed: dict[str, dict[str, Any]] = {}
     for part in sorted(wanted):
         table, _, name = part.partition(".")

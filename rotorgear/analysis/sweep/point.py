@@ -10,8 +10,8 @@ import numpy as np
 from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.common.notes import left_out
 from rotorgear.analysis.static.along_faces import about_faces
-from rotorgear.analysis.static.film_temperatures import at_film_temperatures
 from rotorgear.analysis.static.ground import mean_torsion_notes, springs_about_mean
+from rotorgear.analysis.static.settled_films import with_settled_films
 from rotorgear.analysis.sweep.period import common_period, orders_of, refuse_long
 from rotorgear.analysis.sweep.reduce import MOST_COORDINATES, MOST_WITH_BODIES, Large, Reduced, Wanted
 from rotorgear.analysis.transient.notes import transient_left_out
@@ -133,7 +133,7 @@ class PointMaker:
         return replace(known, speed=speed) if isinstance(known, Large) else ready(known, speed, modal_ratio)
 
     def _still(self, model: Model, speed: float) -> Still | Large:
-        warm = at_film_temperatures(model, speed)
+        warm = with_settled_films(model, speed)
         system = System(about_faces(warm, [speed])[0], plan=plan_in_time(self._elements))
         if system.n == 0:
             raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")

@@ -9,8 +9,8 @@ import numpy as np
 
 from rotorgear.analysis.common.discretise import plan_in_time
 from rotorgear.analysis.static.along_faces import about_faces
-from rotorgear.analysis.static.film_temperatures import at_film_temperatures
 from rotorgear.analysis.static.ground import springs_about_mean
+from rotorgear.analysis.static.settled_films import with_settled_films
 from rotorgear.analysis.static.tangent import about_state_of
 from rotorgear.analysis.transient.channels import Channels, channels
 from rotorgear.analysis.transient.histories import Histories, Stream, integrate
@@ -68,7 +68,7 @@ def prepare(
     direction = -1 if largest < 0.0 else 1
     if direction != given.direction:
         given = given.with_load(given.model.mean_load(direction))
-    given = about_state_of(given, about_faces(at_film_temperatures(given.model, largest), [largest])[0])
+    given = about_state_of(given, about_faces(with_settled_films(given.model, largest), [largest])[0])
     if given.n == 0:
         raise AnalysisError("the model has no free degree of freedom: its supports and motions hold everything")
     local = springs_about_mean(local_model(given, rotation, largest, along_faces=True), largest)

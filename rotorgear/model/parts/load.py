@@ -111,7 +111,7 @@ def parse_history(text: str, name: str) -> dict[str, Any]:
     Raises:
         PydanticCustomError: what is wrong, with its line.
     """
-    rows = csv_rows(text, name, "a row, such as time_s,force_y_N")
+    rows = csv_rows(text, name, "row, such as time_s,force_y_N")
     columns = [_column(cell, f"{name}:{rows[0][0]}") for cell in rows[0][1]]
     names = [column for column, _, _ in columns]
     over = [column for column in ("time", "angle") if column in names]
@@ -131,11 +131,20 @@ def parse_history(text: str, name: str) -> dict[str, Any]:
                 ]
             )
         except (ValueError, QuantityError):
-            raise refuse(f"a finite number in each cell; {name}:{number} has '{', '.join(cells)}'") from None
+            raise refuse(
+                "a finite number with a decimal point in each cell (leave rows without a value out); "
+                f"{name}:{number} has '{'; '.join(cells)}'"
+            ) from None
     by_name = dict(zip(names, zip(*table, strict=True), strict=True))
     places = by_name.pop(over[0])
-    if len(places) < 2 or any(b <= a for a, b in pairwise(places)):
-        raise refuse(f"at least two rows, with rising {over[0]}s; {name} has others")
+    if len(places) < 2:
+        raise refuse(f"at least two rows; {name} has one")
+    for (a, b), (number, _) in zip(pairwise(places), rows[2:], strict=True):
+        if b <= a:
+            how = "the same as" if b == a else "below that of"
+            raise refuse(
+                f"rising {over[0]}s; that of {name}:{number} is {how} the row before: sort the rows, each once"
+            )
     if over[0] == "angle":
         places, by_name = _one_turn(places, by_name, name)
     return {"over": over[0], "places": places, "components": tuple(by_name), "values": tuple(by_name.values())}

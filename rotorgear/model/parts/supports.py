@@ -221,6 +221,16 @@ class Oil(Part):
         return self.oil is not None and self.heat_share > 0.0
 
     @property
+    def follows(self) -> bool:
+        """Whether the oil flows in where the gap is widest."""
+        return False
+
+    @property
+    def settles(self) -> bool:
+        """Whether something of the film follows from the equilibrium that it is in."""
+        return self.heats or self.follows
+
+    @property
     def grade(self) -> float:
         """Kinematic viscosity at 40 deg C in m^2/s; 0 where the viscosity is given."""
         return 1e-6 * float(self.oil.removeprefix("VG ")) if self.oil else 0.0
@@ -241,7 +251,8 @@ class JournalGeometry(Oil):
     )
     inlet: Angle | None = Field(
         None,
-        description="angle of the oil inlet of a plain bearing, from +x about +z; default: where the gap is widest",
+        description="angle of the oil inlet of a plain bearing, from +x about +z; default: where the gap is widest in the "
+        "static equilibrium at the speed",
     )
     lobes: Whole = Field(1, description="number of lobes; 1: a plain bearing")
     lobe_arc: Angle | None = Field(None, description="extent of a lobe; default: its share of the circle")
@@ -265,6 +276,11 @@ class JournalGeometry(Oil):
     )
     around: Whole = Field(240, description="cells of the grid around the circle")
     along: Whole = Field(12, description="cells of the grid over half the length")
+
+    @property
+    def follows(self) -> bool:
+        """Whether the oil flows in where the gap is widest: a plain bearing whose inlet is not given."""
+        return self.inlet is None and self.lobes == 1 and self.pads is None
 
 
 class ThrustGeometry(Oil):

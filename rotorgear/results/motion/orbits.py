@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from rotorgear.results.result import ModelResult
@@ -19,6 +21,9 @@ class SpecialPoint(Record):
     multiplier_imaginary: np.ndarray = of("imaginary part of the Floquet multipliers", "", "multiplier")
     approach_extremes: np.ndarray = of(
         "least and largest approach of the flanks", "m", "contact", "extreme", json="approach_extremes_m"
+    )
+    place_extremes: np.ndarray = of(
+        "least and largest displacement at a place", "", "place", "extreme", default_factory=lambda: np.zeros((0, 2))
     )
 
 
@@ -47,6 +52,14 @@ class SpecialCurve(Record):
         json="approach_extremes_m",
     )
     ended: str = of("why it ended")
+    place_extremes: np.ndarray = of(
+        "least and largest displacement at a place",
+        "",
+        "curve_point",
+        "place",
+        "extreme",
+        default_factory=lambda: np.zeros((0, 0, 2)),
+    )
 
 
 class OrbitVerification(Record):
@@ -63,7 +76,10 @@ class OrbitVerification(Record):
 
 
 class OrbitsResult(ModelResult, kind="orbits"):
-    """p points on b branches, c mesh contacts, H harmonics of the base period, k multipliers a point (NaN where fewer)."""
+    """p points on b branches, c mesh contacts, places, H harmonics of the base period, k multipliers a point (NaN where fewer).
+
+    Places are the displacements across bearings of rolling elements or oil films, across nonlinear elements, and at unbalances.
+    """
 
     address: tuple[str, ...] = of("address of a parameter", "", "parameter", note=": what was changed")
     unit: tuple[str, ...] = of("unit", "", "parameter", note=' the range was given in, or `""` for SI')
@@ -122,6 +138,33 @@ class OrbitsResult(ModelResult, kind="orbits"):
         default=float("nan"),
     )
     cpu_per_point: float = of("CPU time of a point", "s", json="cpu_seconds_per_point", default=float("nan"))
+    place: tuple[str, ...] = of(
+        "displacement that is told",
+        "",
+        "place",
+        note=' across a bearing, a nonlinear element or at an unbalance, as `"bearings.front x"`',
+        default=(),
+    )
+    place_unit: tuple[str, ...] = of(
+        "unit of the displacement at a place", "", "place", note=', `"m"` or `"rad"`', default=()
+    )
+    place_extremes: np.ndarray = of(
+        "least and largest displacement at a place",
+        "",
+        "point",
+        "place",
+        "extreme",
+        default_factory=lambda: np.zeros((0, 0, 2)),
+    )
+    place_harmonics: np.ndarray = of(
+        "coefficients of the displacement at a place",
+        "",
+        "point",
+        "harmonic",
+        "place",
+        json=None,
+        default_factory=lambda: np.zeros((0, 0, 0), complex),
+    )
 
     @derived("real part of the Floquet multipliers", "", "point", "multiplier", note=", largest first")
     def multiplier_real(self) -> np.ndarray:
@@ -142,3 +185,36 @@ class OrbitsResult(ModelResult, kind="orbits"):
     def first_harmonic(self) -> np.ndarray:
         """Of each point: of the harmonic that the base period brings."""
         return np.abs(self.force_harmonics[:, 1])
+
+    @derived("displacement at a place, peak to peak", "", "point", "place")
+    def place_peak_to_peak(self) -> np.ndarray:
+        """Of each point."""
+        return np.asarray(np.ptp(self.place_extremes, axis=-1))
+
+    def shown(self) -> Shown:
+        """What tables and pictures show of the motions."""
+        if self.contact:
+            return Shown("approach", self.contact, "m", np.arange(len(self.contact)), of_contacts=True)
+        unit = "m" if "m" in self.place_unit else "rad"
+        own = np.array([k for k, one in enumerate(self.place_unit) if one == unit], int)
+        return Shown("displacement", tuple(self.place[k] for k in own), unit, own, of_contacts=False)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """The approach of the contacts; without any, the displacements of the places, in metres where there are such.
+
+    Attributes:
+        what: the quantity. label, unit: of each, and of all. number: among contacts or places.
+    """
+
+    what: str
+    label: tuple[str, ...]
+    unit: str
+    number: np.ndarray
+    of_contacts: bool
+
+    def peak_to_peak(self, motions: OrbitsResult | SpecialPoint | SpecialCurve) -> np.ndarray:
+        """Over what is shown in the last place, in its unit."""
+        extremes = motions.approach_extremes if self.of_contacts else motions.place_extremes
+        return np.asarray(np.ptp(extremes[..., self.number, :], axis=-1))

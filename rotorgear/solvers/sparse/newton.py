@@ -16,7 +16,7 @@ Kelley and Keyes, Convergence analysis of pseudo-transient continuation, SIAM J.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -60,7 +60,7 @@ def settle(d0: np.ndarray, A: np.ndarray, k: np.ndarray, laws: Laws, near: np.nd
         A: (m, m) receptance of the local displacements with the laws linear at k.
         k: (m, m) that stiffness.
         laws: forces and tangents.
-        near: (m,) where the solution is looked for; None: d0.
+        near: (m,) where the solution is looked for first; None: d0.
     """
     size = float(np.abs(d0).max(initial=0.0))
 
@@ -72,13 +72,15 @@ def settle(d0: np.ndarray, A: np.ndarray, k: np.ndarray, laws: Laws, near: np.nd
         noise = _ROUNDING * (np.abs(d) + np.abs(A) @ (np.abs(F) + np.abs(k) @ np.abs(d))).max(initial=0.0)
         return bool(noise <= _WORST * largest and np.abs(r).max(initial=0.0) <= max(_TOLERANCE * largest, noise))
 
-    found = _newton(d0 if near is None else near, A, k, laws, residual, small)
-    if found.converged:
-        return found
+    steps = 0
+    for start in (d0,) if near is None else (near, d0):
+        found = _newton(start, A, k, laws, residual, small)
+        steps += found.steps
+        if found.converged:
+            return replace(found, steps=steps)
 
     d = d0
     s = 1.0
-    steps = found.steps
     for crept in range(1, _STEPS + 1):
         last = d
 

@@ -9,6 +9,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import ModelError
+from rotorgear.model.checks.plausibility.machine import implausible
 
 TURN = 2.0 * np.pi
 CANTILEVER = """
@@ -287,7 +288,18 @@ def test_a_mistake_in_a_load_is_told_with_address_and_remedy(load, said):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("time_s,force_x_N\n0,1\n0,2", "rising"),
+        ("time_s,force_x_N\n0,1\n0,2", "h.csv:3 is the same as the row before"),
+        ("time_s,force_x_N\n0,1\n\n2,1\n1,2", "h.csv:5 is below that of the row before"),
+        ("time_s,force_x_N\n0,1", "at least two rows; h.csv has one"),
+        ("time_s,force_x_N\n", "a header and at least one row"),
+        ("", "a header and at least one row"),
+        ("time_s,force_x_N\n0,1\n1,\n2,3", "leave rows without a value out.*h.csv:3"),
+        ("time_s,force_x_N\n0,1\n1,nan\n2,3", "a finite number.*h.csv:3"),
+        ("time_s,force_x_N\n0,1\n1,1e400", "a finite number.*h.csv:3"),
+        ("time_s,force_x_N\n0,1\n1", "2 cells in each row; h.csv:3 has 1"),
+        ("time_s;force_x_N\n0;1\n0,5;2", "a decimal point.*h.csv:3"),
+        ("time_s,force_x_m\n0,1\n1,2", "the unit of 'force_x' in its header"),
+        ("time_s,angle_deg,force_x_N\n0,0,1\n1,1,2", "one column of time or angle"),
         ("time_s,force_x\n0,1\n1,2", "unit"),
         ("angle_deg,force_x_N\n0,1\n400,2", "beyond"),
         ("angle_deg,force_x_N\n0,1\n360,2", "same values"),
@@ -298,3 +310,12 @@ def test_a_mistake_in_a_history_names_the_file(tmp_path, text, said):
     (tmp_path / "h.csv").write_text(text)
     with pytest.raises(ModelError, match=said):
         _with(CANTILEVER, 'point = "tip"\nhistory = "h.csv"', tmp_path)
+
+
+def test_missing_rows_and_impossible_forces_of_a_history_are_asked_about(tmp_path):
+    rows = [(0.001 * k, float(k % 7)) for k in (*range(30), *range(300, 330))]
+    (tmp_path / "h.csv").write_text("time_s,force_x_MN\n" + "\n".join(f"{t:.3f},{1e3 * x}" for t, x in rows))
+    model = _with(CANTILEVER, 'shaft = "rotor"\nat = "end"\nhistory = "h.csv"', tmp_path)
+    found = list(implausible(model.layout))
+    assert any("history: no row from 0.029 to 0.3 s; usual is one every 0.001 s" in one for one in found)
+    assert any("history: 6e+09 N" in one for one in found)

@@ -9,6 +9,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.forces.thrust_film import ThrustFilm
+from rotorgear.system.local_parts import expansion_stiffness
 
 FIXED = ThrustFilm(0.03, 40e-3, 70e-3, 60e-6, pads=6, arc=0.9, taper=40e-6, around=20, across=8)
 TILTING = replace(FIXED, taper=0.0, pivot=0.6)
@@ -155,3 +156,11 @@ def test_a_rotor_stands_on_its_films_and_its_axial_mode_has_their_stiffness(kind
 def test_pads_that_do_not_carry_or_fit_are_refused(keys, said):
     with pytest.raises(rg.RotorgearError, match=said):
         rg.loads((ROTOR % keys).replace(",  }", " }"))
+
+
+def test_solvers_expand_a_collar_about_what_carries_its_load_not_about_its_wall():
+    for law in ThrustFilm.examples():
+        about = expansion_stiffness(law, 1000.0, 600.0)
+        carrying = 1000.0 / law.clearance
+        # Its wall is stiffer by a million.
+        assert carrying < about[2, 2] < 1e3 * carrying

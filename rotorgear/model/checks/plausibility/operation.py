@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from functools import lru_cache
+from itertools import pairwise
 from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import BaseModel
@@ -32,6 +33,9 @@ _PERCENT = ("", "percent meant?")
 _ALPHA = 1e4
 _BETA = 1e-2
 _RIPPLE = 3.0
+# A file of so many rows is sampled; a gap of so many of their spacings is one of missing rows.
+_MANY = 20
+_GAP = 10.0
 # Two turns: more is no angle of a drawing, nor a phase that one would write.
 _ANGLE = 4.0 * math.pi
 
@@ -56,6 +60,8 @@ def operation(layout: Layout) -> Iterator[str]:
     yield from _speed(layout)
     yield from _weight(layout)
     yield from _loads(layout)
+    for name, load in model.loads.items():
+        yield from _history(layout, f"loads.{name}.history", load)
     for table in type(model).model_fields:
         parts = getattr(model, table)
         for address, part in parts.items() if isinstance(parts, dict) else ():
@@ -148,11 +154,9 @@ def _loads(layout: Layout) -> Iterator[str]:
         yield from outside(f"{address}.ripple", ripple, (0.0, _RIPPLE), (f"{ripple:.4g}", "0 to 1"), _PERCENT)
         if not thinnest:
             continue
-        force = math.sqrt(sum(x * x for x in getattr(part, "force", None) or ()))
-        along = 4.0 * force / (math.pi * thinnest**2)
         thick = f"in a shaft of {1e3 * thinnest:.3g} mm"
-        words = (f"{force:.4g} N, a stress of {1e-6 * along:.3g} MPa {thick}", "up to 1500 MPa")
-        yield from outside(f"{address}.force", along, (0.0, _STRESS), words, ("", "is its unit right?"))
+        force = math.sqrt(sum(x * x for x in getattr(part, "force", None) or ()))
+        yield from _along(f"{address}.force", force, thinnest)
         turning = abs(speed * layout.train.ratio(shaft)) if speed else 0.0
         torque = part.torque or (part.power / turning if part.power and turning else 0.0)
         if not torque:
@@ -161,6 +165,38 @@ def _loads(layout: Layout) -> Iterator[str]:
         words = (f"{torque:.4g} N m, a shear stress of {1e-6 * stress:.3g} MPa {thick}", "0.03 to 1500 MPa")
         slips = ("kN m or kW meant?", "N mm or W meant?")
         yield from outside(f"{address}.{'torque' if part.torque else 'power'}", stress, _SHEAR, words, slips)
+
+
+def _along(address: str, force: float, thickness: float) -> Iterator[str]:
+    """A force against the strength of a shaft of a thickness along its axis."""
+    stress = 4.0 * force / (math.pi * thickness**2)
+    words = (
+        f"{force:.4g} N, a stress of {1e-6 * stress:.3g} MPa in a shaft of {1e3 * thickness:.3g} mm",
+        "up to 1500 MPa",
+    )
+    yield from outside(address, stress, (0.0, _STRESS), words, ("", "is its unit right?"))
+
+
+def _history(layout: Layout, address: str, load: Load) -> Iterator[str]:
+    """Forces of a file against the strength of their shaft, and rows that are missing among many."""
+    history = load.history
+    if history is None:
+        return
+    sections = layout.model.shafts[load.shaft].sections if load.shaft is not None else ()
+    thinnest = min((section.outer_diameter for section in sections if not section.rigid), default=0.0)
+    forces = [
+        abs(x) for name, row in zip(history.components, history.values, strict=True) if name[0] == "f" for x in row
+    ]
+    if thinnest and forces:
+        yield from _along(address, max(forces), thinnest)
+    spacings = [b - a for a, b in pairwise(history.places)]
+    usual = sorted(spacings)[len(spacings) // 2]
+    widest = max(spacings)
+    if len(spacings) >= _MANY and widest > _GAP * usual:
+        begin = history.places[spacings.index(widest)]
+        unit = "s" if history.over == "time" else "rad"
+        words = (f"no row from {begin:.6g} to {begin + widest:.6g} {unit}", f"one every {usual:.4g} {unit}")
+        yield said(address, *words, "are rows missing? it is taken as linear between them")
 
 
 @lru_cache

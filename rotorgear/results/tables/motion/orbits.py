@@ -32,7 +32,7 @@ def orbits_table(result: OrbitsResult) -> RenderableType:
         parts += [*lines("", "Transients started on orbits"), _verifications(result)]
     notes = [
         "",
-        "|mu|: largest Floquet multiplier; p-p: approach of the flanks, peak to peak, F max, loss: of the worst contact",
+        _legend(result),
         f"{result.dofs} dofs; {result.method}",
         f"{result.cpu_per_point:.3g} s a point, {result.seconds['total']:.2f} s in all",
     ]
@@ -41,6 +41,12 @@ def orbits_table(result: OrbitsResult) -> RenderableType:
     notes += [f"left out: {note}" for note in result.left_out]
     notes += [f"Warning: {note}" for note in result.warnings]
     return Group(*parts, *lines(*notes, ""))
+
+
+def _legend(result: OrbitsResult) -> str:
+    if result.contact:
+        return "|mu|: largest Floquet multiplier; p-p: approach of the flanks, peak to peak, F max, loss: of the worst contact"
+    return f"|mu|: largest Floquet multiplier; p-p: largest peak to peak of {', '.join(result.shown().label)}"
 
 
 def _value(result: OrbitsResult, si: float, parameter: int = 0) -> str:
@@ -75,14 +81,16 @@ def _branch(result: OrbitsResult, number: int) -> Any:
     own = np.flatnonzero(result.branch == number)
     branch = result.branches[number]
     text = f"Branch {branch.name}: {len(own)} points, {int(result.stable[own].sum())} stable, to {branch.ended}"
-    out = table(_column(result), "stable", "|mu|", "p-p\num", "F mean\nN", "F max\nN", "loss\n%", left=0)
-    shown = own[np.unique(np.linspace(0, len(own) - 1, min(_SHOWN, len(own))).round().astype(int))]
-    for i in shown:
-        worst = int(np.argmax(result.peak_to_peak_approach[i])) if result.contact else 0
-        cells = ["-"] * 4
+    shown = result.shown()
+    forces = ("F mean\nN", "F max\nN", "loss\n%") if result.contact else ()
+    out = table(_column(result), "stable", "|mu|", f"p-p\nu{shown.unit}", *forces, left=0)
+    sizes = shown.peak_to_peak(result)
+    listed = own[np.unique(np.linspace(0, len(own) - 1, min(_SHOWN, len(own))).round().astype(int))]
+    for i in listed:
+        worst = int(np.argmax(sizes[i]))
+        cells = [f"{1e6 * sizes[i, worst]:.4g}"]
         if result.contact:
-            cells = [
-                f"{1e6 * result.peak_to_peak_approach[i, worst]:.4g}",
+            cells += [
                 f"{result.mean_force[i, worst]:.4g}",
                 f"{result.largest_force[i, worst]:.4g}",
                 f"{100.0 * result.apart[i, worst]:.1f}",
@@ -97,10 +105,11 @@ def _curve(result: OrbitsResult, curve: SpecialCurve) -> Any:
 
     name = result.branches[curve.branch].name
     text = f"Curve of the {curve.kind} of branch {name}: {len(curve.value)} points, to {curve.ended}"
-    out = table(_column(result), _column(result, 1), "period\nms", "p-p\num", left=0)
+    shown = result.shown()
+    out = table(_column(result), _column(result, 1), "period\nms", f"p-p\nu{shown.unit}", left=0)
+    sizes = shown.peak_to_peak(curve)
     for i in np.unique(np.linspace(0, len(curve.value) - 1, min(_SHOWN, len(curve.value))).round().astype(int)):
-        sizes = np.ptp(curve.approach_extremes[i], axis=1)
-        cells = [f"{1e3 * curve.period[i]:.4g}", f"{1e6 * sizes.max():.4g}" if sizes.size else "-"]
+        cells = [f"{1e3 * curve.period[i]:.4g}", f"{1e6 * sizes[i].max():.4g}"]
         out.add_row(_value(result, float(curve.value[i])), _value(result, float(curve.second[i]), 1), *cells)
     return Group(*lines(text), out)
 

@@ -11,6 +11,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.solvers.periodic.floquet import basis_of
 from tests.paths import MODELS
 from validation.dead_zone import HALF_BACKLASH, DeadZone, jumps
+from validation.F5.whirl import FINITE, SHORT, closed_form, model
 
 
 def test_shooting_finds_the_fold_of_an_oscillator_with_a_dead_zone() -> None:
@@ -101,9 +102,59 @@ def test_requests_that_make_no_sense_are_refused(over: dict[str, str], options: 
         rg.orbits(rg.load(MODELS / "backlash_pair.toml"), over, **options)  # type: ignore[arg-type]
 
 
-def test_a_rotor_without_a_mesh_is_refused_before_anything_is_computed() -> None:
-    rotor = rg.load(MODELS / "jeffcott.toml").with_(
-        "unbalances", {"u": {"shaft": "rotor", "at": "start", "magnitude": "1 g mm"}}
+def shaken(magnitude: str) -> rg.Model:
+    """The Jeffcott rotor with an unbalance on its disk."""
+    return rg.load(MODELS / "jeffcott.toml").with_(
+        "unbalances", {"u": {"shaft": "rotor", "at": "400 mm", "magnitude": magnitude}}
     )
-    with pytest.raises(AnalysisError, match="the model has no mesh"):
+
+
+def test_orbits_of_a_linear_rotor_are_its_response_to_unbalance() -> None:
+    found = rg.orbits(shaken("500 g mm"), {"operation.speed": "1000 rpm:1040 rpm"}, harmonics=3, step=0.5, elements=1)
+    assert found.contact == ()
+    assert found.place == ("unbalances.u x", "unbalances.u y")
+    assert found.place_unit == ("m", "m")
+    response = rg.response(shaken("500 g mm"), speeds=found.value, elements=1)
+    frequency = found.value[:, None]  # the probes are on the same disk
+    amplitude = np.abs(response.acceleration[0]) / frequency**2
+    np.testing.assert_allclose(np.abs(found.place_harmonics[:, 1]), amplitude, rtol=1e-9)
+    np.testing.assert_allclose(found.place_peak_to_peak, 2.0 * amplitude, rtol=1e-6)
+    assert found.stable.all()
+
+
+def test_an_unbalanced_rotor_on_a_short_film_begins_to_whirl_at_the_closed_forms_threshold() -> None:
+    threshold, ratio = closed_form()
+    rotor = model(SHORT, "1 g mm")
+    found = rg.orbits(rotor, {"operation.speed": [0.95 * threshold, 1.05 * threshold]}, harmonics=4, step=0.5)
+    (onset,) = found.special_points
+    assert onset.kind == "Neimark-Sacker"
+    assert onset.value == pytest.approx(threshold, rel=1e-5)
+    # The whirl's own frequency shows as the angle of the multiplier in a turn, modulo a turn.
+    turned = np.angle(onset.multiplier_real[0] + 1j * abs(onset.multiplier_imaginary[0])) / (2.0 * np.pi)
+    assert 1.0 - turned == pytest.approx(ratio, rel=1e-4)
+    assert found.place == tuple(
+        f"{part} {axis}" for part in ("nonlinear_elements.film", "unbalances.u") for axis in "xy"
+    )
+    assert list(found.stable) == list(found.value < onset.value)
+
+
+def test_a_model_whose_motions_nothing_tells_apart_is_refused_with_the_remedy() -> None:
+    rotor = rg.load(MODELS / "jeffcott.toml").with_(
+        "loads", {"shake": {"shaft": "rotor", "at": "400 mm", "force": [1.0, 0.0, 0.0], "order": 1}}
+    )
+    with pytest.raises(AnalysisError, match=r"nothing tells one motion from another.*response"):
         rg.orbits(rotor, {"operation.speed": "1000 rpm:1100 rpm"})
+
+
+@pytest.mark.long
+def test_multipliers_on_a_film_of_finite_length_are_those_of_the_damped_modes() -> None:
+    speed = closed_form()[0]
+    found = rg.orbits(
+        model(FINITE, "1 g mm"), {"operation.speed": [speed, 1.03 * speed]}, harmonics=4, instants=256, step=0.5
+    )
+    assert "harmonic balance" in found.method
+    mu = np.abs(found.multipliers[[0, -1], 0])
+    s = [rg.modal(model(FINITE), speed=float(one), modes=4).eigenvalues for one in found.value[[0, -1]]]
+    exact = [np.exp(2.0 * np.pi / one * modes.real.max()) for one, modes in zip(found.value[[0, -1]], s, strict=True)]
+    np.testing.assert_allclose(mu, exact, rtol=2e-4)
+    assert found.special_points[0].kind == "Neimark-Sacker"
