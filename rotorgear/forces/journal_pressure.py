@@ -6,18 +6,19 @@ On each pad (one of 360 deg of a plain bearing, or a lobe), with the gap h = c_p
 
 in finite volumes of second order, on one half of the length; from the last cell to the end at half a cell the flow is that which
 makes the mean of a parabola exact, the profile of a short bearing. Cavitation "reynolds" (Swift and Stieber): p >= 0, and where
-p = 0 the film does not have to push; the linear complementarity problem is solved exactly by changes of the active set.
+p = 0 the film does not have to push (film_grid.py).
 "half_sommerfeld" (Guembel) cuts the negative pressure of the full film. The force is F = int p n dA, and its tangents are those
 of the discrete film: A dp = -(dA p + db) where the film carries.
 
 Pinkus and Sternlicht, Theory of Hydrodynamic Lubrication (1961); Lund and Thomsen, in Topics in Fluid Film Bearing and Rotor
-Bearing System Design (ASME 1978); Murty, Linear Complementarity (1988).
+Bearing System Design (ASME 1978).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.forces.film_grid import applied, carried, solve
 from rotorgear.forces.shell import add_wall, place_in_shell
 from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
 
@@ -26,7 +27,6 @@ VISCOSITY, RADIUS, LENGTH, CLEARANCE, ORDER, CONTACT, WALL, PRELOAD, AROUND, ALO
     14
 )
 SPEED = 0  # of the state
-_MOST_CHANGES = 200
 
 
 @schedule_function
@@ -36,75 +36,18 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def factor(A, n, width):  # type: ignore[no-untyped-def]
-    """L D L^T of a symmetric band matrix A (n, width + 1), A[k, j] the entry (k, k - j), in place."""
-    for k in range(n):
-        first = max(0, k - width)
-        for j in range(first, k):
-            total = A[k, k - j]
-            for i in range(max(first, j - width), j):
-                total -= A[k, k - i] * A[i, 0] * A[j, j - i]
-            A[k, k - j] = total / A[j, 0]
-        total = A[k, 0]
-        for i in range(first, k):
-            total -= A[k, k - i] ** 2 * A[i, 0]
-        A[k, 0] = total
-
-
-@compiled
-def solve(A, n, width, b):  # type: ignore[no-untyped-def]
-    """Solve with the factors, b (n,) in place."""
-    for k in range(n):
-        for i in range(max(0, k - width), k):
-            b[k] -= A[k, k - i] * b[i]
-    for k in range(n):
-        b[k] /= A[k, 0]
-    for k in range(n - 1, -1, -1):
-        for i in range(max(0, k - width), k):
-            b[i] -= A[k, k - i] * b[k]
-
-
-@compiled
-def assemble(A, h, middle, free, around, along, per_t, per_z):  # type: ignore[no-untyped-def]
-    """Fill the band of -div(h^3 grad) of the free nodes; the others are held at 0."""
-    width = along
-    end = 2.0 / (1.0 - 1.0 / (3.0 * along))
-    for k in range((around - 1) * along):
-        for j in range(width + 1):
-            A[k, j] = 0.0
-    for i in range(around - 1):
-        back = middle[i] ** 3 * per_t
-        forth = middle[i + 1] ** 3 * per_t
-        side = h[i + 1] ** 3 * per_z
-        for j in range(along):
-            k = i * along + j
-            if not free[k]:
-                A[k, 0] = 1.0
-                continue
-            A[k, 0] = back + forth + (side if j > 0 else 0.0) + (side if j < along - 1 else end * side)
-            if j > 0 and free[k - 1]:
-                A[k, 1] = -side
-            if i > 0 and free[k - along]:
-                A[k, along] += -back
-
-
-@compiled
-def applied(h3, middle3, q, out, around, along, per_t, per_z):  # type: ignore[no-untyped-def]
-    """-div(w grad q) with any weights w (`h3` at nodes, `middle3` between them)."""
+def stencil(h3, middle3, around, along, per_t, per_z, a, b, c):  # type: ignore[no-untyped-def]
+    """Fill a, b, c (n,) of film_grid.py with -div(w grad) of any weights w: `h3` at nodes, `middle3` between them."""
     end = 2.0 / (1.0 - 1.0 / (3.0 * along))
     for i in range(around - 1):
+        back = middle3[i] * per_t
+        forth = middle3[i + 1] * per_t
+        side = h3[i + 1] * per_z
         for j in range(along):
             k = i * along + j
-            total = (middle3[i] + middle3[i + 1]) * per_t * q[k]
-            if i > 0:
-                total -= middle3[i] * per_t * q[k - along]
-            if i < around - 2:
-                total -= middle3[i + 1] * per_t * q[k + along]
-            side = h3[i + 1] * per_z
-            if j > 0:
-                total += side * (q[k] - q[k - 1])
-            total += side * (q[k] - q[k + 1]) if j < along - 1 else end * side * q[k]
-            out[k] = total
+            a[k] = back + forth + (side if j > 0 else 0.0) + (side if j < along - 1 else end * side)
+            b[k] = side if j > 0 else 0.0
+            c[k] = back if i > 0 else 0.0
 
 
 @compiled
@@ -144,29 +87,11 @@ def pad_film(p, omega, x, y, vx, vy, start, extent, least, F, Kd, Kv, pressure):
     free = np.ones(n, dtype=np.bool_)
     A = np.zeros((n, along + 1))
     q = np.zeros(n)
-    left = np.zeros(n)
-    h3 = h**3
-    middle3 = middle**3
-    for _ in range(_MOST_CHANGES):
-        assemble(A, h, middle, free, around, along, per_t, per_z)
-        factor(A, n, along)
-        for k in range(n):
-            q[k] = push[k] if free[k] else 0.0
-        solve(A, n, along, q)
-        if p[CUT] > 0.0:
-            break
-        applied(h3, middle3, q, left, around, along, per_t, per_z)
-        changed = False
-        for k in range(n):
-            if free[k]:
-                if q[k] < 0.0:
-                    free[k] = False
-                    changed = True
-            elif left[k] < push[k]:
-                free[k] = True
-                changed = True
-        if not changed:
-            break
+    diagonal = np.zeros(n)
+    beside = np.zeros(n)
+    behind = np.zeros(n)
+    stencil(h**3, middle**3, around, along, per_t, per_z, diagonal, beside, behind)
+    carried(diagonal, beside, behind, along, push, p[CUT] > 0.0, A, free, q)
     area = 2.0 * p[RADIUS] * dt * dz
     weight_c = np.zeros(n)
     weight_s = np.zeros(n)
@@ -179,11 +104,13 @@ def pad_film(p, omega, x, y, vx, vy, start, extent, least, F, Kd, Kv, pressure):
             pressure[i, j] = q[k] if carries else 0.0
     F[0] += np.sum(weight_c * q)
     F[1] += np.sum(weight_s * q)
+    left = np.zeros(n)
     change = np.zeros(n)
     for which in range(2):
         c = cosine if which == 0 else sine
         mc = middle_c if which == 0 else middle_s
-        applied(-3.0 * h**2 * c, -3.0 * middle**2 * mc, q, left, around, along, per_t, per_z)
+        stencil(-3.0 * h**2 * c, -3.0 * middle**2 * mc, around, along, per_t, per_z, diagonal, beside, behind)
+        applied(diagonal, beside, behind, along, q, left)
         for i in range(around - 1):
             for j in range(along):
                 k = i * along + j

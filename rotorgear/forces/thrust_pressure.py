@@ -7,7 +7,7 @@ With p = 0 on all edges of a pad,
 
 in finite volumes of second order. Forces are int p phi dA, tangents those of the discrete film. A tilting pad has one more field,
 phi_3 = r sin(t - t_p) about the radius through its pivot at t_p, and stands where G_3 = int p phi_3 dA = 0. Below the least gap
-h_c the gap goes on as h_c exp(h/h_c - 1): the film becomes a wall. p >= 0 by changes of the active set (journal_pressure.py).
+h_c the gap goes on as h_c exp(h/h_c - 1): the film becomes a wall. p >= 0 by changes of the active set (film_grid.py).
 
 Pinkus and Sternlicht, Theory of Hydrodynamic Lubrication (1961), chs. 3 and 4.
 """
@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.forces.journal_pressure import factor, solve
+from rotorgear.forces.film_grid import applied, carried, solve
 from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
 
 # Of the parameters, then middle and side of each pad; and of the state.
@@ -37,7 +37,6 @@ from rotorgear.solvers.time.compiled import compiled, force_function, schedule_f
     FIRST,
 ) = range(14)
 SPEED = 0
-_MOST_CHANGES = 200
 _ITERATIONS = 60
 _LEVEL = 1e-12
 _DEEPEST_EXPONENT = -12.0
@@ -88,25 +87,22 @@ def field_at(which, t, r, pivot):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def weighted(theta, radial, x, out, rows, columns, r, dr, dt):  # type: ignore[no-untyped-def]
-    """-div(w grad x) with weights w between the nodes: `theta` (rows + 1, columns), `radial` (rows, columns + 1)."""
+def stencil(theta, radial, r, dr, dt, a, b, c):  # type: ignore[no-untyped-def]
+    """Fill a, b, c (n,) of film_grid.py with -div(w grad): weights between the nodes, along the arc and the radius.
+
+    theta (rows + 1, columns), radial (rows, columns + 1).
+    """
+    rows = radial.shape[0]
+    columns = theta.shape[1]
     for i in range(rows):
         for j in range(columns):
             k = i * columns + j
             per_t = 1.0 / (r[j] * dt * dt)
-            total = (theta[i, j] + theta[i + 1, j]) * per_t * x[k]
-            if i > 0:
-                total -= theta[i, j] * per_t * x[k - columns]
-            if i < rows - 1:
-                total -= theta[i + 1, j] * per_t * x[k + columns]
             back = radial[i, j] * (r[j] - 0.5 * dr) / dr**2
             forth = radial[i, j + 1] * (r[j] + 0.5 * dr) / dr**2
-            total += (back + forth) * x[k]
-            if j > 0:
-                total -= back * x[k - 1]
-            if j < columns - 1:
-                total -= forth * x[k + 1]
-            out[k] = total
+            a[k] = (theta[i, j] + theta[i + 1, j]) * per_t + back + forth
+            b[k] = back if j > 0 else 0.0
+            c[k] = theta[i, j] * per_t if i > 0 else 0.0
 
 
 @compiled
@@ -162,38 +158,11 @@ def sector_film(p, omega, start, q, v, first, fields, G, K, C, pressure):  # typ
     A = np.zeros((n, columns + 1))
     x = np.zeros(n)
     left = np.zeros(n)
-    for _ in range(_MOST_CHANGES):
-        A[:] = 0.0
-        for i in range(rows):
-            for j in range(columns):
-                k = i * columns + j
-                if not free[k]:
-                    A[k, 0] = 1.0
-                    continue
-                per_t = 1.0 / (r[j] * dt * dt)
-                back = radial_3[i, j] * (r[j] - 0.5 * dr) / dr**2
-                forth = radial_3[i, j + 1] * (r[j] + 0.5 * dr) / dr**2
-                A[k, 0] = (theta_3[i, j] + theta_3[i + 1, j]) * per_t + back + forth
-                if j > 0 and free[k - 1]:
-                    A[k, 1] = -back
-                if i > 0 and free[k - columns]:
-                    A[k, columns] += -theta_3[i, j] * per_t
-        factor(A, n, columns)
-        for k in range(n):
-            x[k] = push[k] if free[k] else 0.0
-        solve(A, n, columns, x)
-        weighted(theta_3, radial_3, x, left, rows, columns, r, dr, dt)
-        changed = False
-        for k in range(n):
-            if free[k]:
-                if x[k] < 0.0:
-                    free[k] = False
-                    changed = True
-            elif left[k] < push[k]:
-                free[k] = True
-                changed = True
-        if not changed:
-            break
+    diagonal = np.zeros(n)
+    beside = np.zeros(n)
+    behind = np.zeros(n)
+    stencil(theta_3, radial_3, r, dr, dt, diagonal, beside, behind)
+    carried(diagonal, beside, behind, columns, push, False, A, free, x)
     weight = np.zeros((4, n))
     for i in range(rows):
         for j in range(columns):
@@ -216,7 +185,8 @@ def sector_film(p, omega, start, q, v, first, fields, G, K, C, pressure):  # typ
                 phi_r[i, j] = radial_c[i, j] * field_at(m, start + (i + 1.0) * dt, p[INNER] + (j + 0.5) * dr, pivot)
             phi_r[i, 0] *= rim
             phi_r[i, columns] *= rim
-        weighted(-3.0 * theta_h**2 * phi_t, -3.0 * radial_h**2 * phi_r, x, left, rows, columns, r, dr, dt)
+        stencil(-3.0 * theta_h**2 * phi_t, -3.0 * radial_h**2 * phi_r, r, dr, dt, diagonal, beside, behind)
+        applied(diagonal, beside, behind, columns, x, left)
         for i in range(rows):
             for j in range(columns):
                 k = i * columns + j

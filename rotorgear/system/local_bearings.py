@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rotorgear.errors import AnalysisError
 from rotorgear.model.parts.supports import Bearing, JournalGeometry, Oil, RollingElements, ThrustGeometry
 
 if TYPE_CHECKING:
@@ -13,6 +14,25 @@ if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw
     from rotorgear.forces.thrust_film import ThrustFilm
     from rotorgear.forces.tilting_pads import TiltingPads
+
+
+# Temperatures in deg C beyond which mineral oil is no liquid, and Vogel's equation no viscosity.
+_CELSIUS = 273.15
+_LIQUID = (-60.0, 200.0)
+
+
+def check_oil(address: str, bearing: Bearing) -> None:
+    """The oil of a film in heat balance flows in as a liquid.
+
+    Raises:
+        AnalysisError: it does not.
+    """
+    given = bearing.film.inlet_temperature if bearing.film is not None else None
+    if given is not None and not _LIQUID[0] <= given - _CELSIUS <= _LIQUID[1]:
+        raise AnalysisError(
+            f"{address}: the oil would flow in at {given - _CELSIUS:.4g} degC, where mineral oil is no liquid "
+            f"({_LIQUID[0]:g} to {_LIQUID[1]:g} degC); check inlet_temperature and its unit"
+        )
 
 
 def _oil_of(film: Oil) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from rotorgear.model.parts.nonlinear_element import element_law
 from rotorgear.solvers.time.motion import Rotation
 from rotorgear.system.groups import ElementGroup, node_dofs
 from rotorgear.system.loads import wrench_load
-from rotorgear.system.local_bearings import bearing_law
+from rotorgear.system.local_bearings import bearing_law, check_oil
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -123,6 +123,7 @@ def bearing_parts(system: System) -> Iterator[LocalPart]:
     for name, bearing in system.model.bearings.items():
         if not bearing.has_law:
             continue
+        check_oil(f"bearings.{name}", bearing)
         law = bearing_law(bearing, float(system.train.ratio(bearing.shaft)), built_for)
         rows = np.eye(6)[: law.components]
         dofs = node_dofs(system.nodes.at(*system.layout.place(f"bearings.{name}")))[0]

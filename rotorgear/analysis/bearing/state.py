@@ -110,6 +110,8 @@ def _under(law: ForceLaw, load: np.ndarray, start: np.ndarray, speed: float, poi
         rest = load - about.force
         if float(np.abs(rest).max(initial=0.0)) <= _TOLERANCE * max(size, 1e-300):
             return d
+        if not (np.all(np.isfinite(rest)) and np.all(np.isfinite(about.stiffness))):
+            break
         # What nothing loads (a motion along a film) has no stiffness: least squares leaves it where it is.
         d = d + np.linalg.lstsq(about.stiffness, rest, rcond=1e-13)[0]
     raise AnalysisError("the bearing's own equilibrium was not found on another grid; check its load")

@@ -20,7 +20,24 @@ class RollingElementRow(Record):
     outer_pressure: float = of("largest Hertz pressure at the outer ring", "Pa", json="outer_pressure_pa")
 
 
-class FilmState(Record):
+class OilState(Record):
+    """What every oil film has under its load."""
+
+    largest_pressure: float = of("largest pressure", "Pa", json="largest_pressure_pa")
+    power_loss: float = of("power loss", "W", json="power_loss_w")
+    film_temperature: float | None = of(
+        "mean temperature of the film", "K", json="film_temperature_k", note="; `null` where the viscosity is given"
+    )
+    outlet_temperature: float | None = of(
+        "temperature of the oil that leaves",
+        "K",
+        json="outlet_temperature_k",
+        note="; `null` where the viscosity is given",
+    )
+    film_viscosity: float = of("dynamic viscosity of the film", "Pa s", json="film_viscosity_pa_s")
+
+
+class FilmState(OilState):
     """The film under its load. Angles are from +x about +z."""
 
     eccentricity: float = of("eccentricity over the clearance", form=".4f")
@@ -32,19 +49,7 @@ class FilmState(Record):
     )
     minimum_gap: float = of("smallest gap of the film", "m", json="minimum_gap_m")
     sommerfeld: float = of("Sommerfeld number", note=" mu N L D / W (R/c)^2", form=".4g")
-    largest_pressure: float = of("largest pressure", "Pa", json="largest_pressure_pa")
     side_flow: float = of("oil that leaves at both ends", "m^3/s", json="side_flow_m3_per_s")
-    power_loss: float = of("power loss", "W", json="power_loss_w")
-    film_temperature: float | None = of(
-        "mean temperature of the film", "K", json="film_temperature_k", note="; `null` where the viscosity is given"
-    )
-    outlet_temperature: float | None = of(
-        "temperature of the oil that leaves",
-        "K",
-        json="outlet_temperature_k",
-        note="; `null` where the viscosity is given",
-    )
-    film_viscosity: float = of("dynamic viscosity of the film", "Pa s", json="film_viscosity_pa_s")
     angle: np.ndarray = of("angle of the grid", "rad", "angle", json="angle_rad")
     z: np.ndarray = of("place along the shaft from the middle of the bearing", "m", "place", json="z_m")
     gap: np.ndarray = of("gap of the film", "m", "angle", json="gap_m")
@@ -53,23 +58,11 @@ class FilmState(Record):
     )
 
 
-class ThrustState(Record):
+class ThrustState(OilState):
     """The films of a thrust bearing under its load. Angles are from +x about +z."""
 
     minimum_gap: float = of("smallest gap of the films", "m", json="minimum_gap_m")
-    largest_pressure: float = of("largest pressure", "Pa", json="largest_pressure_pa")
     side_flow: float = of("oil that leaves at the inner and the outer radius", "m^3/s", json="side_flow_m3_per_s")
-    power_loss: float = of("power loss", "W", json="power_loss_w")
-    film_temperature: float | None = of(
-        "mean temperature of the film", "K", json="film_temperature_k", note="; `null` where the viscosity is given"
-    )
-    outlet_temperature: float | None = of(
-        "temperature of the oil that leaves",
-        "K",
-        json="outlet_temperature_k",
-        note="; `null` where the viscosity is given",
-    )
-    film_viscosity: float = of("dynamic viscosity of the film", "Pa s", json="film_viscosity_pa_s")
     side: np.ndarray = of("sense of the push that the pad takes", "", "angle", note=", 1 towards +z, -1 towards -z")
     angle: np.ndarray = of("angle of the grid", "rad", "angle", json="angle_rad", note=", over all pads")
     radius: np.ndarray = of("radius of the grid", "m", "radius", json="radius_m")

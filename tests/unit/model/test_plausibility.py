@@ -103,6 +103,12 @@ SLIPS += [
         "bearings.held.damping",
         "unit right",
     ),
+    (
+        {"bearings.collar": {**AT, "thrust": {**COLLAR, "pivot": None, "taper": 0.04}}},
+        "bearings.collar.thrust.taper",
+        "um",
+    ),
+    ({"bearings.film": {**AT, "journal": {**FILM, "diameter": 0.6}}}, "bearings.film.journal.diameter", "mm meant"),
     ({"damping.rayleigh_beta": 2.0}, "damping.rayleigh_beta", "us meant"),
     (
         {"loads.pull": {"shaft": "input", "at": "start", "force": [0.0, 5e9, 0.0]}},

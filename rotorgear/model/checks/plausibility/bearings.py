@@ -18,8 +18,10 @@ _VISCOSITY = (5e-5, 3.0)
 _CELSIUS = 273.15
 _INLET = (233.15, 423.15)
 _OIL = (500.0, 2000.0)
+# Depth of the taper of thrust pads over their clearance.
+_TAPER = (0.02, 50.0)
 # What surrounds a shaft over its diameters; damping of a bearing over the critical one.
-_FITS = (0.3, 12.0)
+_FITS = {"rolling": (0.3, 12.0), "journal": (0.3, 3.0), "thrust": (0.3, 12.0)}
 _OVERDAMPED = 1e3
 # Of the diameter of an element: clearance and preload; share of its circle that the elements of a row fill; length of a roller.
 _CLEARANCE = 0.05
@@ -68,6 +70,10 @@ def _films(address: str, bearing: Bearing) -> Iterator[str]:
             words = (f"{film.inlet_temperature - _CELSIUS:.4g} degC", "-40 to 150 degC")
             slips = ("degC meant, not K?", "is its unit right?")
             yield from outside(f"{address}.{key}.inlet_temperature", film.inlet_temperature, _INLET, words, slips)
+        if key == "thrust" and film.taper is not None:
+            share = film.taper / film.clearance
+            words = (f"{film.taper:.4g} m, {share:.3g} of the clearance", f"{_TAPER[0]:g} to {_TAPER[1]:g} of it")
+            yield from outside(f"{address}.thrust.taper", share, _TAPER, words, ("is its unit right?", "um meant?"))
         words = (f"{film.density:.4g} kg/m^3", f"{_OIL[0]:g} to {_OIL[1]:g} kg/m^3")
         yield from outside(
             f"{address}.{key}.density", film.density, _OIL, words, ("g/cm^3 meant?", "is its unit right?")
@@ -84,7 +90,7 @@ def _fits(address: str, bearing: Bearing, layout: Layout) -> Iterator[str]:
             continue
         thick = max(section.outer_diameter for section in sections)
         thin = min(section.outer_diameter for section in sections)
-        share = (_FITS[0] * thin, _FITS[1] * thick)
+        share = (_FITS[key][0] * thin, _FITS[key][1] * thick)
         size = getattr(part, name)
         words = (f"{size:.4g} m on a shaft of {thin:.4g} to {thick:.4g} m", f"{share[0]:.2g} to {share[1]:.2g} m")
         yield from outside(f"{address}.{key}.{name}", size, share, words, ("is its unit right?", "mm meant?"))

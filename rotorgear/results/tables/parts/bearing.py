@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rotorgear.quantity import RPM_PER_RAD_S
-from rotorgear.results.parts.bearing import BearingSheet, FilmState, ThrustState
+from rotorgear.results.parts.bearing import BearingSheet, OilState
 from rotorgear.results.tables.common import error_words, heading, lines, plain_table, table
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ def _thrust(sheet: BearingSheet) -> Any:
     return out
 
 
-def _heat(film: FilmState | ThrustState) -> list[tuple[str, str]]:
+def _heat(film: OilState) -> list[tuple[str, str]]:
     """Temperatures of a film in heat balance, and its viscosity there."""
     if film.film_temperature is None or film.outlet_temperature is None:
         return []

@@ -11,6 +11,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.forces.hertz import line_pressure, point_pressure
 from rotorgear.forces.journal_film import JournalFilm
 from rotorgear.system.local_bearings import journal_law
+from tests.disk_in_bearing import disk_in_bearing
 from tests.paths import ROOT
 from tests.unit.analysis.static.test_bearing_states import BALLS, ROLLERS, rotor
 
@@ -20,31 +21,7 @@ FILM = 'journal = {{ diameter = "60 mm", length = "30 mm", clearance = "60 um", 
 
 def journal_rotor(around: int = 60) -> rg.Model:
     """A rigid disk on one film, pulled across."""
-    text = FILM.format(around)
-    return rg.loads(f"""
-[operation]
-input_shaft = "rotor"
-speed = "3000 rpm"
-[shafts.rotor]
-[bearings.front]
-shaft = "rotor"
-at = "start"
-{text}
-[supports.guide]
-shaft = "rotor"
-at = "start"
-fixed = ["z", "tilt_x", "tilt_y"]
-[disks.d]
-shaft = "rotor"
-at = "start"
-mass = 10
-polar_inertia = 0.1
-diametral_inertia = 0.1
-[loads.pull]
-shaft = "rotor"
-at = "start"
-force = ["300 N", "400 N", "0 N"]
-""")
+    return disk_in_bearing(FILM.format(around), '["300 N", "400 N", "0 N"]')
 
 
 def test_a_ball_on_a_plane_and_a_roller_on_a_plane_have_hertz_pressure() -> None:

@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 
 import rotorgear as rg
 from rotorgear.forces.ball_bearing import BallBearing
+from tests.disk_in_bearing import disk_in_bearing
 
 BALLS = 'kind = "ball", elements = 7, element_diameter = "11.5 mm", pitch_diameter = "43.5 mm"'
 ROLLERS = 'kind = "roller", elements = 15, element_diameter = "11 mm", pitch_diameter = "65.5 mm", length = "12 mm"'
@@ -15,30 +16,7 @@ ROLLERS = 'kind = "roller", elements = 15, element_diameter = "11 mm", pitch_dia
 
 def rotor(rolling: str, load: str, speed: str = "0 rpm") -> rg.Model:
     """A rigid disk in one bearing, which can move across only."""
-    return rg.loads(f"""
-[operation]
-input_shaft = "rotor"
-speed = "{speed}"
-[shafts.rotor]
-[bearings.front]
-shaft = "rotor"
-at = "start"
-rolling = {{ {rolling} }}
-[supports.guide]
-shaft = "rotor"
-at = "start"
-fixed = ["z", "tilt_x", "tilt_y"]
-[disks.d]
-shaft = "rotor"
-at = "start"
-mass = 10
-polar_inertia = 0.1
-diametral_inertia = 0.1
-[loads.pull]
-shaft = "rotor"
-at = "start"
-force = {load}
-""")
+    return disk_in_bearing(f"rolling = {{ {rolling} }}", load, speed=speed)
 
 
 def test_a_ball_bearing_under_a_ball_has_the_deflection_of_the_standard():

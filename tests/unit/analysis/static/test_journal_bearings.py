@@ -7,6 +7,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.errors import AnalysisError, ModelError
+from tests.disk_in_bearing import disk_in_bearing
 
 FRISWELL = {"diameter": 0.1, "length": 0.03, "clearance": 1e-4, "viscosity": 0.1}
 
@@ -14,30 +15,9 @@ FRISWELL = {"diameter": 0.1, "length": 0.03, "clearance": 1e-4, "viscosity": 0.1
 def rotor(journal: dict[str, object], load: float, rpm: float, mass: float = 20.0) -> rg.Model:
     """A rigid disk in one film, which moves across only; the load is along +x."""
     given = ", ".join(f"{key} = {value}" for key, value in journal.items())
-    return rg.loads(f"""
-[operation]
-input_shaft = "rotor"
-speed = "{rpm} rpm"
-[shafts.rotor]
-[bearings.left]
-shaft = "rotor"
-at = "start"
-journal = {{ {given} }}
-[supports.guide]
-shaft = "rotor"
-at = "start"
-fixed = ["z", "tilt_x", "tilt_y"]
-[disks.d]
-shaft = "rotor"
-at = "start"
-mass = {mass}
-polar_inertia = 0.1
-diametral_inertia = 0.1
-[loads.pull]
-shaft = "rotor"
-at = "start"
-force = [{load}, 0.0, 0.0]
-""")
+    return disk_in_bearing(
+        f"journal = {{ {given} }}", f"[{load}, 0.0, 0.0]", name="left", speed=f"{rpm} rpm", mass=mass
+    )
 
 
 def test_the_bearing_of_friswell_has_its_finite_length_values():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from tests.disk_in_bearing import disk_in_bearing
 
 BALLS = 'rolling = { kind = "ball", elements = 7, element_diameter = "11.5 mm", pitch_diameter = "43.5 mm" }'
 ROLLERS = (
@@ -39,31 +40,7 @@ SPEED = 3000.0
 
 
 def rotor(bearing: str, motions: str = '"bending"', fixed: str = '"tilt_x", "tilt_y"', along: float = 0.0) -> rg.Model:
-    return rg.loads(f"""
-motions = [{motions}]
-[operation]
-input_shaft = "rotor"
-speed = "{SPEED} rpm"
-[shafts.rotor]
-[bearings.front]
-shaft = "rotor"
-at = "start"
-{bearing}
-[supports.guide]
-shaft = "rotor"
-at = "start"
-fixed = [{fixed}]
-[disks.d]
-shaft = "rotor"
-at = "start"
-mass = 10
-polar_inertia = 0.1
-diametral_inertia = 0.1
-[loads.pull]
-shaft = "rotor"
-at = "start"
-force = [600.0, 800.0, {along}]
-""")
+    return disk_in_bearing(bearing, f"[600.0, 800.0, {along}]", speed=f"{SPEED} rpm", motions=motions, fixed=fixed)
 
 
 @pytest.mark.parametrize(
