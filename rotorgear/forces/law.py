@@ -186,6 +186,8 @@ class ForceLaw(ABC):
     conserves: ClassVar[bool] = False
     # Whether it carries a load while its shaft stands still; a film does not.
     carries_at_rest: ClassVar[bool] = True
+    # Whether its force has kinks at many places, as a film has wherever a node of its grid begins to cavitate.
+    many_kinks: ClassVar[bool] = False
     # Name of the parameter that holds the turns of the law's shaft for each turn of the reference; a model file fills it in.
     shaft_ratio: ClassVar[str] = ""
 

@@ -24,6 +24,7 @@ class OilFilm(ForceLaw):
     passive: ClassVar[bool] = False
     shaft_ratio: ClassVar[str] = "order"
     carries_at_rest: ClassVar[bool] = False
+    many_kinks: ClassVar[bool] = True
 
     viscosity: float = parameter("Pa s", "dynamic viscosity mu; with a grade that of the film's temperature", above=0.0)
     _: KW_ONLY

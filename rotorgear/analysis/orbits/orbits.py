@@ -22,7 +22,6 @@ from rotorgear.analysis.orbits.verify import verified
 from rotorgear.analysis.static.ground import mean_torsion_notes
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.errors import AnalysisError
-from rotorgear.forces.oil_film import OilFilm
 from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.motion.orbits import OrbitsResult
@@ -203,9 +202,9 @@ def equations_of(method: str, family: SystemFamily, grid: Grid, scale: np.ndarra
     plant = family.plant(0.0)
     coordinates = plant.M.shape[0] - plant.free.shape[1]
     small = coordinates <= MOST_COORDINATES
-    # A film on a grid has a kink wherever a node begins or ends to cavitate: too many for steps that end at each.
-    gridded = method == "auto" and any(isinstance(law, OilFilm) for law in plant.forces.laws)
-    if method != "harmonic balance" and small and not gridded:
+    # Steps of shooting would end at each kink.
+    kinked = method == "auto" and any(part.law.many_kinks for part in family.parts)
+    if method != "harmonic balance" and small and not kinked:
         w = grid.frequency(plant.speed)
         trial = HarmonicOrbits(family.plant, grid, scale)
         ratio = trial.modes(0.0).highest / w
