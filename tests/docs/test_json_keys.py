@@ -109,10 +109,18 @@ def test_the_keys_of_transient_are_documented(tmp_path: Path, rig: str) -> None:
 def test_the_keys_of_orbits_are_documented(tmp_path: Path) -> None:
     pair = str(ROOT / "models" / "backlash_pair.toml")
     data = written(tmp_path, "orbits", pair, "--over", "operation.speed=4000 rpm:4200 rpm", "--step", "0.5", "--verify")
+    # The bearings of this pair are linear: no displacement is watched but that of the mesh.
+    data |= {
+        "place": ["bearings.front x"],
+        "place_unit": ["m"],
+        "place_extremes": [[[0.0, 1.0]]],
+        "place_peak_to_peak": [[1.0]],
+    }
+    extremes = {"approach_extremes_m": [[0.0, 1.0]], "place_extremes": [[0.0, 1.0]]}
     point = {"kind": "fold", "value": 1.0, "branch": 0, "period_s": 1.0, "multiplier_real": [1.0]}
-    data["special_points"] = [point | {"multiplier_imaginary": [0.0], "approach_extremes_m": [[0.0, 1.0]]}]
+    data["special_points"] = [point | {"multiplier_imaginary": [0.0]} | extremes]
     curve = {"kind": "fold", "branch": 0, "value": [1.0], "second": [1.0], "period_s": [1.0], "ended": "the end"}
-    data["curves"] = [curve | {"approach_extremes_m": [[[0.0, 1.0]]]}]  # of two parameters
+    data["curves"] = [curve | {name: [value] for name, value in extremes.items()}]  # of two parameters
     data["warnings"] = ["one"]  # these motions have none, or one
     assert differences(data, documented("orbits")) == NONE
 

@@ -65,8 +65,8 @@ _IN_SPACE = (
 _NEAR_IN_SPACE = (*_UP_TO_WORKING, (1.12, 1.25, 1.4), (1.6, 1.8, 2.0))
 # Slices reach as far beyond the line of action as corners touch, and the six of a corner that is followed farther than it
 # touches move the approach by 0.03 %: groups up to so many times the working load have slices of their own. Above, where teeth
-# that parted meet again, smooth curves take every other position: at five times the load the approach of a helical pair is
-# within 0.03 %, and its harmonics within 0.6 % of the largest.
+# that parted meet again, smooth curves take every other position: at five times the load the approach of stage 1 of the
+# split-torque gearbox is within 0.03 %, and its harmonics within 0.6 % of the largest.
 _MODERATE = 2.5
 # Positions that tell this reach. Where corners touch farther than was thought, they are followed a little farther still.
 _TELLING = 12

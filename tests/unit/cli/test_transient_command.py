@@ -66,6 +66,7 @@ def test_a_result_is_saved_read_again_and_drawn(shaken: str, tmp_path: Path) -> 
     assert names >= {"mesh_forces.png", "transmission_error.png", "spectra.png", "energy.png", "shaft_orbits.png"}
 
 
+@pytest.mark.long
 def test_a_run_up_draws_a_spectrogram(shaken: str, tmp_path: Path) -> None:
     code, text = run(
         shaken,

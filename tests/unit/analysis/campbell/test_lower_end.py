@@ -75,6 +75,7 @@ def test_an_empty_range_is_refused(turbine):
             rg.critical(turbine, start=start, stop="6 krpm")
 
 
+@pytest.mark.long
 def test_rules_and_diagrams_take_a_rotor_on_films(turbine):
     rules = rg.standards(turbine)
     assert rules.curve_speeds.min() >= lowest_speed(turbine, None, 1.5 * turbine.operation.speed)[0] * (1.0 - 1e-12)

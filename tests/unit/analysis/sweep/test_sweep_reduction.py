@@ -252,7 +252,7 @@ def test_probes_hold_the_harmonics_of_all_meshes_up_to_the_highest_tabulated() -
     "changes",
     [
         pytest.param({"bearings__a__rolling": ROLLING, "bearings__b__rolling": ROLLING}, marks=pytest.mark.long),
-        {"meshes__pair__friction_coefficient": 0.06},
+        pytest.param({"meshes__pair__friction_coefficient": 0.06}, marks=pytest.mark.long),
     ],
     ids=["rolling", "friction"],
 )

@@ -21,7 +21,14 @@ def key_of(body: str, *, space: bool) -> ComplianceKey:
 
 
 @pytest.mark.parametrize(
-    ("body", "space"), [("rim", False), ("rim", True), ("ring", False), ("ring", True), ("wheel", True)]
+    ("body", "space"),
+    [
+        ("rim", False),
+        ("rim", True),
+        ("ring", False),
+        ("ring", True),
+        pytest.param("wheel", True, marks=pytest.mark.long),
+    ],
 )
 def test_the_flanks_move_as_the_condensed_compliance_says(body: str, space: bool) -> None:
     key = key_of(body, space=space)
