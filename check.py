@@ -43,8 +43,8 @@ FORMAT = Step("format", ("-m", "ruff", "format", "--check", "."), ("-m", "ruff",
 LINT = Step("lint", ("-m", "ruff", "check", "."), ("-m", "ruff", "check", "--fix", "."))
 TYPES = Step("types", ("-m", "mypy"))
 DOCS = Step("docs", (*PYTEST, "tests/docs"))
-# The tests of a file stay together: they share models and compiled code, and the blocks of a page share variables.
-TESTS = Step("tests", (*PYTEST, "tests", "-n", "2", "--dist", "loadfile"))
+# Tests of a file mostly stay together, for they share models and compiled code; a worker without work takes half of another's.
+TESTS = Step("tests", (*PYTEST, "tests", "-n", "2", "--dist", "worksteal"))
 FAST_TESTS = Step("tests", (*PYTEST, "tests/unit", "tests/contract"))
 # On their own: they want an index of packages, or a browser.
 WHEEL = Step("wheel", (*PYTEST, "tests/installed", "-m", "long"))

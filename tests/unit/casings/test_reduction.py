@@ -199,7 +199,7 @@ def test_a_joint_of_given_stiffness_per_area_adds_its_flexibility(tmp_path: Path
 
 
 @pytest.mark.parametrize("kind", ["tetra10", "hexahedron20"])
-@pytest.mark.parametrize("clamped", [False, True])
+@pytest.mark.parametrize("clamped", [pytest.param(False, marks=pytest.mark.long), True])
 def test_the_error_of_the_mesh_is_estimated_to_a_factor(tmp_path: Path, kind: str, clamped: bool) -> None:
     file = (held_at_its_foot if clamped else settings)(tmp_path, counts=(2, 1, 3), kind=kind)
     modes_of = held_modes if clamped else free_modes

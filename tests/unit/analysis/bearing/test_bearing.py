@@ -130,7 +130,9 @@ def test_both_kinds_have_a_convergence_study() -> None:
         'contact_angle = "35 deg" }',
         'thrust = { inner_diameter = "80 mm", outer_diameter = "140 mm", clearance = "60 um", viscosity = "0.03 Pa s", pads = 4, '
         "pivot = 0.6, around = 24, across = 8 }",
-        FILM.format(120).replace("along = 4", "along = 6, pads = 5, preload = 0.3"),
+        pytest.param(
+            FILM.format(120).replace("along = 4", "along = 6, pads = 5, preload = 0.3"), marks=pytest.mark.long
+        ),
         FILM.format(96).replace('viscosity = "20 mPa s"', 'oil = "VG 46", inlet_temperature = "45 degC"'),
     ],
     ids=["tapered", "four-point", "thrust", "tilting pads", "heat balance"],

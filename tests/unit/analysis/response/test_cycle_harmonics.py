@@ -57,7 +57,7 @@ def test_weak_harmonics_do_not_count() -> None:
     ],
     ids=["series", "impact", "list"],
 )
-@pytest.mark.parametrize("pinion_drives", [True, False])
+@pytest.mark.parametrize("pinion_drives", [True, pytest.param(False, marks=pytest.mark.long)])
 def test_the_response_is_that_of_the_transient(mesh: dict[str, Any], pinion_drives: bool) -> None:
     changes = {f"meshes__pair__{key}": value for key, value in mesh.items()}
     if not pinion_drives:

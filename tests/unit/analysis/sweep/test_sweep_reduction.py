@@ -121,7 +121,7 @@ def test_a_large_model_agrees_with_its_own_transient_where_teeth_part() -> None:
     assert swept.static_force[0, 0] == pytest.approx(row["static_force_n"], rel=1e-9)
 
 
-@pytest.mark.parametrize("rpm", [2400.0, 6000.0])
+@pytest.mark.parametrize("rpm", [2400.0, pytest.param(6000.0, marks=pytest.mark.long)])
 def test_without_clearance_the_amplitude_is_that_of_the_harmonic_response(rpm: float) -> None:
     model = rg.load(FLEXIBLE)
     table = model.meshes["stage"].model_dump(mode="json", exclude_none=True)

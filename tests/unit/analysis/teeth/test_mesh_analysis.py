@@ -157,6 +157,7 @@ def test_pitch_errors_are_followed_until_all_have_passed() -> None:
     assert len(found.harmonics(5)) == 5
 
 
+@pytest.mark.long
 def test_an_accuracy_takes_the_cheapest_preset_that_is_estimated_to_reach_it() -> None:
     text = pair_file(mesh='stiffness = "tooth_fe"')
     rough = mesh_of(text, accuracy=0.05)

@@ -61,6 +61,7 @@ def test_a_full_disc_as_a_wheel_is_the_ring(space: bool, helix: float, nu: float
         assert difference(wheel, ring, tooth) <= 4e-3
 
 
+@pytest.mark.long
 def test_polynomials_along_the_face_give_what_layers_give() -> None:
     blank = webbed()
     layers = compliance(blank, space=True)
