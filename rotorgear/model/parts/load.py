@@ -68,7 +68,7 @@ class LoadHistory(Part):
                 mean = float(np.interp(0.0, self.places, values))
             else:
                 angles, turned = self.whole_turn(values)
-                mean = float(np.trapezoid(turned, angles)) / _TURN
+                mean = 0.5 * float(np.diff(angles) @ (turned[1:] + turned[:-1])) / _TURN
             found[COMPONENTS.index(name)] = mean
         return found
 
