@@ -39,14 +39,16 @@ TRENDS: dict[str, dict[str, tuple[float, ...]]] = {
 }
 
 
-def route(name: str, speeds: Sequence[float], settle: int = SETTLE, *, starts: int = 1) -> rg.SweepResult:
+def route(
+    name: str, speeds: Sequence[float], settle: int = SETTLE, *, count: int = KEPT, starts: int = 1
+) -> rg.SweepResult:
     """Motions over speeds in rpm, the first run of each from its own static start."""
     return rg.sweep(
         loaded(name),
         {"operation.speed": [f"{rpm} rpm" for rpm in speeds]},
         steps=STEPS,
         discard=settle,
-        sample=KEPT,
+        sample=count,
         initial_conditions=starts,
     )
 

@@ -50,8 +50,9 @@ def orbits_convergence_study(
 ) -> ConvergenceStudy:
     """Solve for one periodic motion with series of harmonics and of instants, by harmonic balance.
 
-    Errors and estimates are those of the displacements of every mesh contact: the largest difference of their coefficients over
-    the largest harmonic of that contact; the estimate is the change with twice the harmonics and instants, as `orbits` states it.
+    Errors and estimates are those of the displacements of every mesh contact (without meshes, of those across bearings, nonlinear
+    elements and at unbalances): the largest difference of their coefficients over the largest harmonic of that displacement; the
+    estimate is the change with twice the harmonics and instants, as `orbits` states it.
     Small systems are compared with shooting, another method. Larger ones are compared with harmonic balance of more harmonics; a
     transient that starts on that motion tells how near it comes back after one period.
 
@@ -67,7 +68,7 @@ def orbits_convergence_study(
         progress: callable that is told fraction and step.
 
     Raises:
-        AnalysisError: no speed, no mesh, fewer than 5 instants a harmonic, or a model without periodic motions.
+        AnalysisError: no speed, nothing that tells motions apart, fewer than 5 instants a harmonic, or no periodic motions.
         ConvergenceError: the static state does not lead to a motion at this speed.
     """
     given = speed_in_si(speed)
@@ -78,9 +79,8 @@ def orbits_convergence_study(
     if min(densities, default=INSTANTS) < 5:
         raise AnalysisError(f"densities: got {min(densities)}, expected 5 instants a harmonic or more")
     family = SystemFamily(model, [range_of(model, SPEED, [given, _RANGE * given])], excite, None)
-    contacts = told_of(family).contacts
-    if not contacts.column.size:
-        raise AnalysisError("the convergence study of orbits compares displacements of contacts: the model has no mesh")
+    told = told_of(family)
+    columns = told.columns
     plant = family.plant(0.0)
     scale = scale_of(plant)
 
@@ -104,16 +104,16 @@ def orbits_convergence_study(
             node = at_value(other, other.from_motion(*motion, plant), 0.0)
             balance = truth
             truth = other.cycle(node.y, 0.0).displacement
-            gap = float(change(balance, truth, contacts.column).max())
+            gap = float(change(balance, truth, columns).max())
             # Shooting is the better of the two by far: their difference is more than it is off by.
             doubt = max(0.1 * gap, _ROUNDING)
             words = f"{method}, {gap:.0e} from harmonic balance with {finest} harmonics"
         else:
             # From order 2 on a third of the last change is more than the finer one is off by.
-            doubt = max(float(change(coarser, truth, contacts.column).max()) / 3.0, _ROUNDING)
+            doubt = max(float(change(coarser, truth, columns).max()) / 3.0, _ROUNDING)
             _, d = run_periods(family.system([0.0]), order, 1, *motion, _STEPS)
-            seen = d[:, contacts.column]
-            missed = np.abs(seen[-1] - (plant.B.T @ motion[0])[contacts.column]) / np.ptp(seen, axis=0)
+            seen = d[:, columns]
+            missed = np.abs(seen[-1] - (plant.B.T @ motion[0])[columns]) / np.ptp(seen, axis=0)
             words = (
                 f"harmonic balance with {finest} harmonics; a transient that starts there comes back to "
                 f"{missed.max():.0e} of its peak to peak after a period"
@@ -129,7 +129,7 @@ def orbits_convergence_study(
         c = orbits.coefficients(y)
         finer = finer_of(orbits)
         better = finer.coefficients(at_value(finer, finer.unknowns(_cut(c, finer.grid.harmonics)), 0.0).y)
-        return Judged(orbits.size, change(c, truth, contacts.column), change(c, better, contacts.column))
+        return Judged(orbits.size, change(c, truth, columns), change(c, better, columns))
 
     settings = [
         Setting(f"{h} harmonics, {INSTANTS * h} instants", "harmonics", h, {"harmonics": h, "instants": INSTANTS * h})
@@ -143,13 +143,14 @@ def orbits_convergence_study(
     ]
     study = Study(run, judge, doubt, rising=("harmonics", "instants"), repeat=repeat)
     rungs = study.rungs(settings, part_of(progress, 0.3, 1.0))
+    compared = "contacts" if told.contacts.column.size else "bearings, elements and unbalances"
     return ConvergenceStudy(
         model.title or "model",
         "orbits",
         words,
-        contacts.column.size,
+        columns.size,
         rungs,
-        compared="displacements of the contacts",
+        compared=f"displacements of the {compared}",
         resolution=doubt,
     )
 

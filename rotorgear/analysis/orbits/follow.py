@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -80,16 +81,43 @@ def followed(
     return Branch(orbits, name, periods, nodes, special, words.get(ended, ended))
 
 
-def main_branches(orbits: AnyOrbits, first: Node, plan: Walk, progress: Progress) -> list[Branch]:
-    """The branch from the begin of the range; and the one from its end, where the first does not come there."""
+def main_branches(
+    orbits: AnyOrbits,
+    first: Node,
+    plan: Walk,
+    progress: Progress,
+    settled: Callable[[float], np.ndarray] | None = None,
+) -> list[Branch]:
+    """The branch through a first solution; and those through other solutions at the ends of the range that it does not come to.
+
+    Args:
+        orbits: the equations. first: a solution. plan: how far to go. progress: is told where it is.
+        settled: gives the unknowns of what a transient settles on at a value, for ends where Newton's method fails from rest.
+    """
     found = [followed(orbits, first, _FIRST_STEP, plan, "1T", 1, progress, 0.05, both=True)]
-    if not any(one.node.p >= 1.0 - 1e-9 for one in found[0].nodes):
-        try:
-            last = at_value(orbits, orbits.start(1.0), 1.0, -1.0)
-        except ConvergenceError:
-            return found
-        found.append(followed(orbits, last, _FIRST_STEP, plan, "1T from the end", 1, progress, 0.1))
+    for end, name in ((0.0, "1T from the begin"), (1.0, "1T from the end")):
+        other = _at_end(orbits, end, settled)
+        if other is not None and not any(_passes(branch, other) for branch in found):
+            found.append(followed(orbits, other, _FIRST_STEP, plan, name, 1, progress, 0.1))
     return found
+
+
+def _at_end(orbits: AnyOrbits, end: float, settled: Callable[[float], np.ndarray] | None) -> Node | None:
+    """A solution at an end of the range, from rest or else from a transient; none where neither leads to one."""
+    inwards = 1.0 if end == 0.0 else -1.0
+    for begin in (orbits.start, settled):
+        try:
+            if begin is not None:
+                return at_value(orbits, begin(end), end, inwards)
+        except ConvergenceError:
+            continue
+    return None
+
+
+def _passes(branch: Branch, node: Node) -> bool:
+    """Whether a branch has this solution among its own."""
+    size = _SAME * (1.0 + float(np.linalg.norm(node.z)))
+    return any(float(np.linalg.norm(one.node.z - node.z)) < size for one in branch.nodes)
 
 
 def doubled_branches(branch: Branch, plan: Walk, progress: Progress) -> list[Branch]:

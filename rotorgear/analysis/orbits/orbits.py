@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from rotorgear.analysis.orbits.follow import AnyOrbits, Branch, doubled_branches
 from rotorgear.analysis.orbits.gather import gathered, gathered_curves
 from rotorgear.analysis.orbits.places import told_of
 from rotorgear.analysis.orbits.refined import largest_error
-from rotorgear.analysis.orbits.start import first_node
+from rotorgear.analysis.orbits.start import first_node, settled
 from rotorgear.analysis.orbits.verify import verified
 from rotorgear.analysis.static.ground import mean_torsion_notes
 from rotorgear.analysis.transient.notes import transient_left_out
@@ -95,9 +96,10 @@ def orbits(
         while True:
             N = _even(instants * 2**doublings if instants else INSTANTS * H)
             problem, why = equations_of(method, family, Grid(H, N, family.order), scale)
+            from_rest = partial(settled, problem, family, progress=progress) if _small(family.plant(0.0)) else None
             used = clock.process_time()
             first = first_node(problem, family, from_transient=from_transient, progress=progress)
-            branches = main_branches(problem, first, Walk(longest=step, most=points), progress)
+            branches = main_branches(problem, first, Walk(longest=step, most=points), progress, from_rest)
             if switch:
                 for branch in list(branches):
                     branches += doubled_branches(branch, Walk(longest=step, most=points), progress)
@@ -200,11 +202,9 @@ def equations_of(method: str, family: SystemFamily, grid: Grid, scale: np.ndarra
         AnalysisError: shooting was asked for, and the system is too large for it.
     """
     plant = family.plant(0.0)
-    coordinates = plant.M.shape[0] - plant.free.shape[1]
-    small = coordinates <= MOST_COORDINATES
     # Steps of shooting would end at each kink.
     kinked = method == "auto" and any(part.law.many_kinks for part in family.parts)
-    if method != "harmonic balance" and small and not kinked:
+    if method != "harmonic balance" and _small(plant) and not kinked:
         w = grid.frequency(plant.speed)
         trial = HarmonicOrbits(family.plant, grid, scale)
         ratio = trial.modes(0.0).highest / w
@@ -213,13 +213,22 @@ def equations_of(method: str, family: SystemFamily, grid: Grid, scale: np.ndarra
             return own, f"shooting with steps to the switches of the laws, {own.size} states"
     if method == "shooting":
         raise AnalysisError(
-            f"method: shooting serves up to {MOST_COORDINATES} coordinates that are not stiff, this model has {coordinates}; "
-            "take harmonic balance"
+            f"method: shooting serves up to {MOST_COORDINATES} coordinates that are not stiff, this model has "
+            f"{_coordinates(plant)}; take harmonic balance"
         )
     return (
         HarmonicOrbits(family.plant, grid, scale),
         f"harmonic balance of {plant.m} local displacements, {grid.harmonics} harmonics at {grid.instants} instants, arc length",
     )
+
+
+def _coordinates(plant: Plant) -> int:
+    return int(plant.M.shape[0] - plant.free.shape[1])
+
+
+def _small(plant: Plant) -> bool:
+    """Whether shooting and transients from rest cost little."""
+    return _coordinates(plant) <= MOST_COORDINATES
 
 
 def _modes_left_out(problem: AnyOrbits) -> tuple[str, ...]:

@@ -55,7 +55,7 @@ def first_node(orbits: AnyOrbits, family: SystemFamily, *, from_transient: bool,
     why = ""
     for p, settling in ways:
         try:
-            y = _settled(orbits, family, p, progress) if settling else orbits.start(p)
+            y = settled(orbits, family, p, progress) if settling else orbits.start(p)
             return at_value(orbits, y, p, -1.0 if p == 1.0 else 1.0)
         except ConvergenceError as error:
             why = str(error)
@@ -65,7 +65,7 @@ def first_node(orbits: AnyOrbits, family: SystemFamily, *, from_transient: bool,
     )
 
 
-def _settled(orbits: AnyOrbits, family: SystemFamily, p: float, progress: Progress) -> np.ndarray:
+def settled(orbits: AnyOrbits, family: SystemFamily, p: float, progress: Progress) -> np.ndarray:
     """Unknowns of the motion at the end of a transient from rest."""
     progress(0.02, "settling by a transient")
     shares = family.shares_at(p)

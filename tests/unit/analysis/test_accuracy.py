@@ -161,6 +161,17 @@ def test_a_motion_too_large_for_shooting_is_checked_by_a_transient() -> None:
     assert study.rungs[-1].error < 1e-9
 
 
+def test_orbits_of_a_rotor_without_meshes_are_compared_by_its_own_displacements() -> None:
+    rotor = rg.load(ROOT / "models" / "jeffcott.toml").with_(
+        "unbalances", {"u": {"shaft": "rotor", "at": "400 mm", "magnitude": "500 g mm"}}
+    )
+    study = rg.orbits_convergence_study(rotor, speed="1000 rpm", harmonics=(5, 10), densities=(), repeat=0)
+    assert study.compared == "displacements of the bearings, elements and unbalances"
+    assert study.modes == 2
+    # A linear rotor has one harmonic: nothing is cut off.
+    assert max(rung.error for rung in study.rungs) < 1e-9
+
+
 @pytest.mark.parametrize("analysis", ["scatter", "update", "optimise", "compare", "sensors", "standards", "gear"])
 def test_a_verb_without_a_discretisation_says_where_its_errors_stand(analysis: str) -> None:
     with pytest.raises(AnalysisError, match=f"{analysis} has no study of its own: it"):

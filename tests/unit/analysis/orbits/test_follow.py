@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rotorgear.analysis.orbits.follow import Branch, certified, followed
+from rotorgear.analysis.orbits.follow import Branch, certified, followed, main_branches
+from rotorgear.errors import ConvergenceError
 from rotorgear.progress import silent
 from rotorgear.solvers.periodic.arclength import Linear, Node, Walk, at_value
 from rotorgear.solvers.periodic.special import DOUBLING, FOLD, NEIMARK_SACKER, Certified, located
@@ -71,3 +72,37 @@ def test_a_test_function_that_does_not_cross_zero_has_no_special_point() -> None
 def test_a_pair_that_comes_into_being_outside_the_circle_has_not_crossed_it() -> None:
     equations = Cubic(-1.0, lambda y, p: [0.5, 0.5] if p < 0.5 else [1.2 * np.exp(1j), 1.2 * np.exp(-1j)])
     assert not _branch(equations, -0.4, 0.0).special
+
+
+@dataclass(frozen=True)
+class Apart:
+    """r = y (p - .6 - (y - 1)^2): y = 0 over the whole range, and beside it a branch that comes in and goes out at its end."""
+
+    at_rest: float | None
+
+    def start(self, p: float) -> np.ndarray:
+        if p == 1.0 and self.at_rest is None:
+            raise ConvergenceError("nothing near rest")
+        return np.array([self.at_rest if p == 1.0 and self.at_rest is not None else 0.0])
+
+    def residual(self, y: np.ndarray, p: float) -> np.ndarray:
+        return y * (p - 0.6 - (y - 1.0) ** 2)
+
+    def linear(self, y: np.ndarray, p: float) -> Linear:
+        return Linear(self.residual(y, p), np.diag(p - 0.6 - (y - 1.0) ** 2 - 2.0 * y * (y - 1.0)), y)
+
+    def settle_on(self, p: float) -> None:
+        pass
+
+    def multipliers(self, y: np.ndarray, p: float) -> np.ndarray:
+        return np.array([0.5], complex)
+
+
+@pytest.mark.parametrize(("at_rest", "count"), [(0.0, 1), (1.6, 2), (None, 2)])
+def test_a_branch_that_comes_in_at_the_other_end_is_followed_too(at_rest: float | None, count: int) -> None:
+    equations: Any = Apart(at_rest)
+    first = at_value(equations, np.zeros(1), 0.0)
+    found = main_branches(equations, first, Walk(longest=0.1), silent, lambda p: np.array([1.6]))
+    assert [branch.name for branch in found] == ["1T", "1T from the end"][:count]
+    assert [branch.ended for branch in found] == ["the end of the range"] * count
+    assert [one.at.node.p for one in found[-1].special] == ([pytest.approx(0.6, abs=1e-9)] if count == 2 else [])
