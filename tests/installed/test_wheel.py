@@ -40,9 +40,11 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("wheel")
     run(sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", folder, ROOT, cwd=folder)
     wheel = next(folder.glob("rotorgear-*.whl"))
-    venv.create(folder / "venv", with_pip=True)
+    # This environment's pip fills the empty one: a pip of its own, and byte code of all packages, cost a minute and prove nothing.
+    venv.create(folder / "venv", with_pip=False)
     where = folder / "venv" / ("Scripts" if os.name == "nt" else "bin")
-    run(where / "python", "-m", "pip", "install", "--quiet", f"{wheel}[report]", cwd=folder)
+    pip = (sys.executable, "-m", "pip", "--python", where / "python")
+    run(*pip, "install", "--quiet", "--no-compile", f"{wheel}[report]", cwd=folder)
     return where
 
 

@@ -19,14 +19,13 @@ import scipy.linalg as la
 from numpy.typing import NDArray
 
 from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS
+from rotorgear.solvers.eigen.skew import largest_pairs, times
 
 # Shapes of modes in columns, complex where the system rotates.
 Shapes: TypeAlias = NDArray[np.complex128] | NDArray[np.float64]
 
 # Elastic are modes above this share of the scale of the first elastic one of the nominal model.
 _RIGID = 1e-4
-# Pairs of states beyond those that are wanted, among which the farthest gap is sought.
-_BEYOND = 4
 
 
 @dataclass(frozen=True)
@@ -77,32 +76,12 @@ def _rotating(root: NDArray[np.float64], g: NDArray[np.float64], count: int) -> 
     """The lowest `count` positive w (m,) with their orthonormal states y (2 m, count), from L^(1/2) (m,) and g (m, m).
 
     The matrix is i A with a real skew A = [0  -L^(1/2); L^(1/2)  g], whose inverse B = [b g b  b; -b  0], b = L^(-1/2), needs no
-    solution. B^T B, real at less than half the cost, holds each 1/w^2 twice. Its highest vectors span the states of +-w; within
-    them -i B itself is solved, so that neither squares nor frequencies that meet cost accuracy.
+    solution.
     """
     m = len(root)
     b = np.diag(1.0 / root)
-    B = np.block([[b @ g @ b, b], [-b, np.zeros((m, m))]])
-    squares, X = la.eigh(B.T @ B, driver="evd", check_finite=False)
-    # The span ends where the next pair is farthest off, so that it parts no two frequencies that meet.
-    pairs = np.append(squares[::-2], 0.0)
-    ends = np.arange(count, min(count + _BEYOND, m) + 1)
-    end = int(ends[np.argmin(pairs[ends] / pairs[ends - 1])])
-    X = X[:, 2 * (m - end) :]
-    inverse, c = la.eigh(-1j * (X.T @ B @ X), driver="evd", check_finite=False)
-    # They come in pairs +-1/w: the lowest w stand last.
-    lowest = slice(None, -count - 1, -1)
-    return 1.0 / inverse[lowest], times(X, c[:, lowest])
-
-
-def times(A: NDArray[np.float64], Q: Shapes) -> Shapes:
-    """A Q of a real A: real and imaginary parts stand side by side, at half the cost of a complex A."""
-    product: Shapes
-    if np.isrealobj(Q):
-        product = np.matmul(A, Q)
-        return product
-    product = np.matmul(A, np.ascontiguousarray(Q).view(np.float64)).view(np.complex128)
-    return product
+    inverse, y = largest_pairs(np.block([[b @ g @ b, b], [-b, np.zeros((m, m))]]), count)
+    return 1.0 / inverse, y
 
 
 def overlaps(K: NDArray[np.float64], M: NDArray[np.float64], first: FormModes, second: FormModes) -> Shapes:

@@ -18,6 +18,7 @@ import numpy as np
 import scipy.linalg as la
 
 from rotorgear.errors import ConvergenceError
+from rotorgear.solvers.eigen.skew import largest_pairs
 from rotorgear.solvers.sparse.factor import single_thread
 
 # Eigenvalues this close to each other are one cluster, whose vectors are made biorthogonal together.
@@ -117,11 +118,12 @@ def eigen(pencil: Pencil, shift: float, smallest: float, count: int) -> Eigen:
 def gyroscopic_pairs(M: np.ndarray, G: np.ndarray, K: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
     """The lowest `most` frequencies w (m,) of K + i w G - w^2 M with G skew, in rad/s, and vectors (r, m).
 
-    With K = L L^T, u = L^T v, A = L^-1 i G L^-T and N^2 = L^-1 M L^-T it is Hermitian, several times cheaper than a general one:
+    With K = L L^T, u = L^T v, g = L^-1 G L^-T and N^2 = L^-1 M L^-T it is that of a skew matrix, several times cheaper than a
+    general one:
 
-        [ -A  N ] [ u ]     1  [ u ]
-        [  N  0 ] [ z ]  =  -  [ z ].
-                            w
+           [  g  N ] [ u ]     1  [ u ]
+        -i [ -N  0 ] [ z ]  =  -  [ z ].
+                               w
 
     Raises:
         LinAlgError: K is not positive definite.
@@ -135,16 +137,11 @@ def gyroscopic_pairs(M: np.ndarray, G: np.ndarray, K: np.ndarray, most: int) -> 
     squares, Q = np.linalg.eigh(reduced(M))
     N = (Q * np.sqrt(np.maximum(squares, 0.0))) @ Q.T
     r = len(N)
-    H = np.zeros((2 * r, 2 * r), complex)
-    H[:r, :r] = -1j * reduced(G)
-    H[:r, r:] = N
-    H[r:, :r] = N
-    last = 2 * r - 1
-    first = last - min(most, r) + 1
-    inverse, U = la.eigh(H, subset_by_index=(first, last), overwrite_a=True, check_finite=False)
-    found = inverse[::-1] > 0.0
-    vectors = la.solve_triangular(L, U[:r, ::-1][:, found], lower=True, trans="T", check_finite=False)
-    return 1.0 / inverse[::-1][found], np.asarray(vectors)
+    g = reduced(G)
+    inverse, U = largest_pairs(np.block([[0.5 * (g - g.T), N], [-N, np.zeros((r, r))]]), min(most, r))
+    found = inverse > 0.0
+    vectors = la.solve_triangular(L, U[:r, found], lower=True, trans="T", check_finite=False)
+    return 1.0 / inverse[found], np.asarray(vectors)
 
 
 # The Hermitian problem gives 1/w to the rounding of the largest: w errs by eps w/w_min, here 2e-11.
