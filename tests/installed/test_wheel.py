@@ -40,7 +40,7 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("wheel")
     run(sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", folder, ROOT, cwd=folder)
     wheel = next(folder.glob("rotorgear-*.whl"))
-    # This environment's pip fills the empty one: a pip of its own, and byte code of all packages, cost a minute and prove nothing.
+    # This environment's pip fills the empty one: a pip of its own and byte code of all packages would cost a minute for nothing.
     venv.create(folder / "venv", with_pip=False)
     where = folder / "venv" / ("Scripts" if os.name == "nt" else "bin")
     pip = (sys.executable, "-m", "pip", "--python", where / "python")
