@@ -219,6 +219,8 @@ def infinite_states(quadratic: Quadratic) -> np.ndarray:
 
 # Largest step of a refinement relative to the eigenvalue.
 _LONGEST_STEP = 0.1
+# Convergence is quadratic: after a step as small as this only rounding is left.
+_LAST_STEP = 1e-10
 
 
 def newton(quadratic: Quadratic, value: complex, vector: np.ndarray) -> tuple[complex, np.ndarray, int]:
@@ -243,8 +245,8 @@ def newton(quadratic: Quadratic, value: complex, vector: np.ndarray) -> tuple[co
             break
         z = z - step
         v = u
-        if abs(step) <= 1e-14 * abs(z):
-            break  # convergence is quadratic, so a smaller step is rounding
+        if abs(step) <= _LAST_STEP * abs(z):
+            break
     return complex(z), v / np.linalg.norm(v) + 0j, spent
 
 

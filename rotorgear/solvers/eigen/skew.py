@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 # Pairs beyond those that are wanted, among which the farthest gap is sought.
 _BEYOND = 4
-# Share of the largest square below which rounding mixes a vector with its neighbours: eps over this is what mixes.
-_LEAST_SQUARE = 1e-7
+# Least gap between squares, of the largest, that parts a span from the rest: rounding turns vectors by eps over it.
+_GAP = 1e-9
 
 
 def largest_pairs(B: NDArray[np.float64], count: int) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
@@ -35,16 +35,17 @@ def largest_pairs(B: NDArray[np.float64], count: int) -> tuple[NDArray[np.float6
 
 
 def _span(B: NDArray[np.float64], count: int) -> NDArray[np.float64] | None:
-    """Real orthonormal vectors (2 m, k) that span the states of the `count` largest pairs; None where all are as good."""
+    """Real orthonormal vectors (2 m, k) that span the states of the `count` largest pairs; None where no gap parts them."""
     m = len(B) // 2
     if count >= m:
         return None
     squares, X = la.eigh(B.T @ B, driver="evd", check_finite=False)
-    # The span ends where the next pair is farthest off, so that it parts no two that meet.
+    # The span ends where the next pair is farthest off: part of an eigenspace of squares is none of B.
     pairs = np.append(squares[::-2], 0.0)
     ends = np.arange(count, min(count + _BEYOND, m) + 1)
-    end = int(ends[np.argmin(pairs[ends] / pairs[ends - 1])])
-    if pairs[end - 1] < _LEAST_SQUARE * pairs[0]:
+    gaps = pairs[ends - 1] - pairs[ends]
+    end = int(ends[np.argmax(gaps)])
+    if gaps.max() < _GAP * pairs[0]:
         return None
     return np.asarray(X[:, 2 * (m - end) :])
 
