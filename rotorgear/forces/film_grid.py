@@ -16,7 +16,7 @@ from rotorgear.solvers.time.compiled import compiled
 _MOST_CHANGES = 200
 
 
-@compiled
+@compiled(entry=False)
 def factor(A, n, width):  # type: ignore[no-untyped-def]
     """L D L^T of a symmetric band matrix A (n, width + 1), A[k, j] the entry (k, k - j), in place."""
     for k in range(n):
@@ -32,7 +32,7 @@ def factor(A, n, width):  # type: ignore[no-untyped-def]
         A[k, 0] = total
 
 
-@compiled
+@compiled(entry=False)
 def solve(A, n, width, b):  # type: ignore[no-untyped-def]
     """Solve with the factors, b (n,) in place."""
     for k in range(n):
@@ -45,7 +45,7 @@ def solve(A, n, width, b):  # type: ignore[no-untyped-def]
             b[i] -= A[k, k - i] * b[k]
 
 
-@compiled
+@compiled(entry=False)
 def applied(a, b, c, columns, x, out):  # type: ignore[no-untyped-def]
     """Fill out (n,) with A x."""
     n = a.size
@@ -58,7 +58,7 @@ def applied(a, b, c, columns, x, out):  # type: ignore[no-untyped-def]
         out[k] = total
 
 
-@compiled
+@compiled(entry=False)
 def carried(a, b, c, columns, push, cut, A, free, p):  # type: ignore[no-untyped-def]
     """Fill the factors A (n, columns + 1), which nodes are free to carry, and p (n,); `cut`: all are, and p has any sign."""
     n = a.size

@@ -35,7 +35,7 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
     s[SPEED] = p[ORDER] * speed
 
 
-@compiled
+@compiled(entry=False)
 def stencil(h3, middle3, around, along, per_t, per_z, a, b, c):  # type: ignore[no-untyped-def]
     """Fill a, b, c (n,) of film_grid.py with -div(w grad) of any weights w: `h3` at nodes, `middle3` between them."""
     end = 2.0 / (1.0 - 1.0 / (3.0 * along))

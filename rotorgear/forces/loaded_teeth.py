@@ -64,7 +64,7 @@ NEAREST = 4
 FLANK_STATE = ABOUT + ROW * NEAREST
 
 
-@compiled
+@compiled(entry=False)
 def place_flank(angle, speed, p, s):  # type: ignore[no-untyped-def]
     """Fill e + delta_0, its rate, and the rows of the map about the position."""
     rate = p[ORDER] * speed
@@ -121,7 +121,7 @@ def schedule(angle, speed, time, p, s):  # type: ignore[no-untyped-def]
         place_flank(angle, speed, p[coast:], s[FLANK_STATE:])
 
 
-@compiled
+@compiled(entry=False)
 def press_flank(p, s, d, v):  # type: ignore[no-untyped-def]
     """Contact of one side of the teeth at its approach, its energy, and the power that the passing of the map puts in."""
     x = d - s[E_NOW]

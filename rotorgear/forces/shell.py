@@ -12,7 +12,7 @@ import numpy as np
 from rotorgear.solvers.time.compiled import compiled
 
 
-@compiled
+@compiled(entry=False)
 def place_in_shell(d, limit, place):  # type: ignore[no-untyped-def]
     """Fill place with x, y of the journal in the film and P = [[p0, p1], [p1, p2]]; return whether the wall carries."""
     radius = np.hypot(d[0], d[1])
@@ -32,7 +32,7 @@ def place_in_shell(d, limit, place):  # type: ignore[no-untyped-def]
     return True
 
 
-@compiled
+@compiled(entry=False)
 def add_wall(d, place, wall, film, k, F, Kd):  # type: ignore[no-untyped-def]
     """Fill F (2,) and Kd (4,) from the film's force (2,) and tangent (4,) at its place, and the wall; return its energy."""
     x, y, pxx, pxy, pyy = place[0], place[1], place[2], place[3], place[4]

@@ -74,7 +74,7 @@ def gap_at(p, omega, start, t, r, q, out):  # type: ignore[no-untyped-def]
             out[1] = 0.0
 
 
-@compiled
+@compiled(entry=False)
 def field_at(which, t, r, pivot):  # type: ignore[no-untyped-def]
     """phi_which at an angle and a radius."""
     if which == 0:
@@ -86,7 +86,7 @@ def field_at(which, t, r, pivot):  # type: ignore[no-untyped-def]
     return r * np.sin(t - pivot)
 
 
-@compiled
+@compiled(entry=False)
 def stencil(theta, radial, r, dr, dt, a, b, c):  # type: ignore[no-untyped-def]
     """Fill a, b, c (n,) of film_grid.py with -div(w grad): weights between the nodes, along the arc and the radius.
 

@@ -1,5 +1,8 @@
 """What acts locally beside the teeth's normal contact: rolling bearings, nonlinear elements, tooth friction, unbalances, and
-torques that vary."""
+torques that vary.
+
+A law is imported where a model has it, for its import compiles it.
+"""
 
 from __future__ import annotations
 
@@ -147,13 +150,13 @@ def friction_part(
     column: np.ndarray,
 ) -> LocalPart | None:
     """Friction of one helix; None where the mesh has none."""
-    from rotorgear.forces.mesh_friction import MeshFriction
-
     both = system.layout.mesh(force.contact.mesh)
     mesh = both.part
     pair = both.pair
     if not (mesh.friction_coefficient or mesh.lubricant_viscosity) or pair is None:
         return None
+    from rotorgear.forces.mesh_friction import MeshFriction
+
     teeth = both.pinion.geometry
     assert teeth is not None
     # With the gear driving, the contacts run from the end of the path to its start: mirror them.
@@ -180,6 +183,8 @@ def friction_part(
 
 def unbalance_parts(system: System, rotation: Rotation) -> Iterator[LocalPart]:
     """Yield the unbalances: two components that turn with their shaft, accelerated along their path where its speed changes."""
+    if not system.model.unbalances:
+        return
     from rotorgear.forces.rotating_force import RotatingForce
 
     times, accelerations = rotation.accelerations
@@ -199,14 +204,14 @@ def unbalance_parts(system: System, rotation: Rotation) -> Iterator[LocalPart]:
 
 def load_parts(system: System) -> Iterator[LocalPart]:
     """Yield the loads that vary with time or speed."""
+    varying = [(item, load) for item in system.load.applied if (load := varying_load(system, item.name)) is not None]
+    if not varying:
+        return
     from rotorgear.forces.torque_curve import TorqueCurve
 
     operation = system.model.operation
     speed = abs(operation.speed) if operation and operation.speed else 0.0
-    for item in system.load.applied:
-        load = varying_load(system, item.name)
-        if load is None:
-            continue
+    for item, load in varying:
         ratio = float(system.train.ratio(item.shaft))
         law = TorqueCurve(
             item.torque,
@@ -229,6 +234,8 @@ def load_parts(system: System) -> Iterator[LocalPart]:
 
 def external_parts(system: System) -> Iterator[LocalPart]:
     """Yield the forces and moments from outside that vary: each along its own direction in the space of the dofs."""
+    if not system.layout.external_loads:
+        return
     from rotorgear.forces.rotating_force import RotatingForce
     from rotorgear.forces.tabulated_force import TabulatedForce
 

@@ -189,3 +189,10 @@ def work(rows):
     raw = np.zeros(rows * LANES + 8)
     at = ((-raw.ctypes.data) % 64) // 8
     return raw[at : at + rows * LANES].reshape(rows, LANES)
+
+
+@compiled(inner=True)
+def copy_rows(source, begin, into, at, number):
+    """Copy a number of rows of an array from `begin` on to rows of another from `at` on."""
+    for i in range(number):
+        put(into, at + i, get(source, begin + i))

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rotorgear.solvers.contact.vectors import LANES, fill, get, put, work
+from rotorgear.solvers.contact.vectors import LANES, copy_rows, fill, get, put, work
 from rotorgear.solvers.lanes.arguments import TangentWork
-from rotorgear.solvers.lanes.columns import STIFFNESS
+from rotorgear.solvers.lanes.columns import STIFFNESS, TABLE_ROWS
 from rotorgear.solvers.lanes.kernel_jumps import add_used_along, missing, missing_along, push
 from rotorgear.solvers.lanes.kernel_laws import SPACE, force_laws, laws_along, schedule_laws
 from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, contacts, count, product, read_table, widen
@@ -201,8 +201,9 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
     impulse = work(m)
     F = stage[2 * n : 2 * n + m]
     F_ahead = ahead[2 * n : 2 * n + m]
-    stage[: 2 * n] = state
-    moved[:, : 2 * n] = tangents
+    copy_rows(state, 0, stage, 0, 2 * n)
+    for k in range(t):
+        copy_rows(tangents, 2 * n * k, moved, rows * k, 2 * n)
     for period in range(growth.shape[0]):
         for step in range(turns * steps):
             for number in range(4):
@@ -224,7 +225,8 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
                     if number == 0:
                         enter(columns, now, d, found, entered)
                     elif number == 1:
-                        entered[:, MIDDLE] = now[:, STIFFNESS]
+                        for j in range(m):
+                            put(entered, ENTERED * j + MIDDLE, get(now, TABLE_ROWS * j + STIFFNESS))
                     tangent_stage(number, h, system, columns, laws, found, kept, moved, moved_ahead, tangents, along)
                 stage, ahead, moved, moved_ahead, F, F_ahead = ahead, stage, moved_ahead, moved, F_ahead, F
             if jumping or t:
@@ -239,6 +241,7 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
                     end_tangents(system, columns, kept, moved, tangents, impulse, along)
             if t and (step + 1) % steps == 0:
                 orthonormal(tangents, weighed, system.root, system.rigid, growth[period])
-                moved[:, : 2 * n] = tangents
+                for k in range(t):
+                    copy_rows(tangents, 2 * n * k, moved, rows * k, 2 * n)
         for j in range(2 * m):
             put(section, 2 * m * period + j, slope_of(j, across.first, across.column, across.value, state, 0))

@@ -154,7 +154,8 @@ def trajectory(span, system, columns, table, laws, state, out):
     condition = np.zeros(laws.state_first[-1])
     work = PathWork(local, condition, np.zeros(SPACE))
     for step in range(out.shape[0] * every):
-        y[:] = state
+        for i in range(2 * n):
+            y[i] = state[i]
         total[:] = 0.0
         used[:] = 0.0
         for stage in range(4):
@@ -164,7 +165,9 @@ def trajectory(span, system, columns, table, laws, state, out):
             now = table[2 * (step % period) + half]
             slopes(system, columns, now, laws, work, y, a)
             if stage == 0 and step % every == 0:
-                out[step // every] = local[:, :3]
+                for j in range(m):
+                    for i in range(3):
+                        out[step // every, j, i] = local[j, i]
             weight = (1.0 if stage in (0, 3) else 2.0) * h / 6.0
             for j in range(m):
                 used[j] += weight * local[j, 3]
@@ -181,7 +184,8 @@ def trajectory(span, system, columns, table, laws, state, out):
                 y[i] = state[i] + share * y[n + i]
             for i in range(n):
                 y[n + i] = state[n + i] + share * a[i]
-        state += total
+        for i in range(2 * n):
+            state[i] += total[i]
         for j in range(m):
             if jumps[j]:
                 d = 0.0

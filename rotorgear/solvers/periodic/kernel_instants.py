@@ -60,7 +60,7 @@ def laws_at(laws, instants, answer):
         )
 
 
-@compiled
+@compiled(entry=False)
 def motion_at(real, imaginary, w, phase, d, v):
     """Fill d and v (m,) of the coefficients (H + 1, m) at one phase w t."""
     d[:] = 0.0
@@ -77,7 +77,7 @@ def motion_at(real, imaginary, w, phase, d, v):
         c, s = c * c1 - s * s1, s * c1 + c * s1
 
 
-@compiled
+@compiled(entry=False)
 def law_at(laws, motion, phase, law, full, work):
     """Fill the answers of all laws at one phase, and tell which smooth piece of its force the law with this number is on.
 

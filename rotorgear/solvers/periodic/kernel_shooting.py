@@ -13,12 +13,13 @@ import numpy as np
 from rotorgear.solvers.time.arguments import Answer
 from rotorgear.solvers.time.compiled import compiled
 from rotorgear.solvers.time.kernel_contact import ENERGIES, force_all, schedule_all
+from rotorgear.solvers.time.kernel_gather import set_row
 
 _STAGES = 7
 _SMALLEST = 1e-13
 
 
-@compiled
+@compiled(entry=False)
 def rates(small, laws, tau, x, work, out):
     """Rates (2 n, 1 + c) of state and tangents x over tau; the first column is the state."""
     n = small.K.shape[0]
@@ -81,7 +82,7 @@ def flow(small, laws, tableau, x, work, outputs, tolerance, kept, most):
     trial = np.empty((rows, columns))
     tau = outputs[0]
     end = outputs[-1]
-    kept[0] = x[:, 0]
+    set_row(kept, 0, x[:, 0])
     number = 1
     h = 0.01
     rates(small, laws, tau, x, work, k[0])
@@ -123,7 +124,7 @@ def flow(small, laws, tableau, x, work, outputs, tolerance, kept, most):
                     x[i, c] = trial[i, c]
                     k[0, i, c] = k[6, i, c]
             if last:
-                kept[number] = x[:, 0]
+                set_row(kept, number, x[:, 0])
                 number += 1
             factor = 5.0 if scaled < 1e-4 else min(5.0, 0.9 * scaled ** (-0.2))
             # A step cut short by an output says nothing against the length before it.

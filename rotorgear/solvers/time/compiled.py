@@ -88,6 +88,7 @@ def compiled(
     fast: bool = False,
     free: bool = False,
     inner: bool = False,
+    entry: bool = True,
 ) -> Any:
     """Compile a function with numba and keep the result on disk.
 
@@ -98,17 +99,20 @@ def compiled(
         free: other threads may run beside it.
         inner: compiled functions alone call it, and it becomes part of each of them. Otherwise the linker takes the first copy of
             it that the process has loaded, and with reordered sums the last bit would depend on what the process did before.
+        entry: Python calls it, or its address is handed over. Without, it is compiled once, not three times; Python must not call
+            it.
     """
     if function is None:
-        return lambda given: compiled(given, signature=signature, fast=fast, free=free, inner=inner)
+        return lambda given: compiled(given, signature=signature, fast=fast, free=free, inner=inner, entry=entry)
     if numba.config.DISABLE_JIT:
         return function
     options: dict[str, Any] = {"fastmath": FAST} if fast else {}
     if free:
         options["nogil"] = True
     if inner:
-        # Python never calls it: without its two entries from outside it is compiled once, not three times.
-        options |= {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+        options["forceinline"] = True
+    if inner or not entry:
+        options |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     folder = cache_folder()
     made = None if folder is None else _kept(function, folder, options)
     if made is None:

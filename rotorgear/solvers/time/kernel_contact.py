@@ -36,7 +36,7 @@ def no_force(parameters, state, d, v, force, in_d, in_v, energy):
     """No force."""
 
 
-@compiled
+@compiled(entry=False)
 def schedule_all(laws, angle, speed, time, state):
     """Fill the state of all laws at a time."""
     schedules = laws.schedules
@@ -54,7 +54,7 @@ def schedule_all(laws, angle, speed, time, state):
         )
 
 
-@compiled
+@compiled(entry=False)
 def force_all(laws, state, d, v, answer):
     """Fill the answer of all laws to d and v (m,)."""
     forces = laws.forces
@@ -85,7 +85,7 @@ def force_all(laws, state, d, v, answer):
         )
 
 
-@compiled
+@compiled(entry=False)
 def force_conserving(laws, state, d, v, answer):
     """Fill the answer of those laws whose stored energy is their potential."""
     forces = laws.forces
@@ -129,7 +129,7 @@ def evaluate_instants(schedules, forces, parameters, state, instants, answer):
         )
 
 
-@compiled
+@compiled(entry=False)
 def solve_small(A, b, n):
     """Solve A x = b in place by Gauss with row exchanges; False where A is singular."""
     for k in range(n):
@@ -158,14 +158,14 @@ def solve_small(A, b, n):
     return True
 
 
-@compiled
+@compiled(entry=False)
 def blank_answer(laws, m):
     """Arrays for an answer of all laws."""
     blocks = laws.block_first[-1]
     return Answer(np.zeros(m), np.zeros(blocks), np.zeros(blocks), np.zeros(ENERGIES * laws.kind.size))
 
 
-@compiled
+@compiled(entry=False)
 def contact_work(laws, m):
     """Arrays for `contact_step`."""
     return ContactWork(
@@ -187,7 +187,7 @@ def contact_work(laws, m):
     )
 
 
-@compiled
+@compiled(entry=False)
 def answer_to(laws, compliance, work, F, h):
     """Fill d, v and the answer of the laws to forces F: at the step's end, or of the whole step of h > 0.
 
@@ -246,7 +246,7 @@ def answer_to(laws, compliance, work, F, h):
     return worst, floor, size
 
 
-@compiled
+@compiled(entry=False)
 def contact_step(laws, compliance, work, F, tolerance, h):
     """Find F with F = law(d_free - Ad F, v_free - Av F), from the guess in F; d, v and the answer in `work` are filled.
 
@@ -308,7 +308,7 @@ def contact_step(laws, compliance, work, F, tolerance, h):
     return one_by_one(laws, compliance, work, F, tolerance, h)
 
 
-@compiled
+@compiled(entry=False)
 def one_by_one(laws, compliance, work, F, tolerance, h):
     """The forces of `contact_step` one after the other, by bisection."""
     m = F.size

@@ -25,7 +25,7 @@ def take_account(energy, h, carried):
     take_events(energy, carried)
 
 
-@compiled
+@compiled(entry=False)
 def take_energies(energy, h, carried):
     """Sum up energies put in and dissipated."""
     sums = carried.sums
@@ -34,7 +34,7 @@ def take_energies(energy, h, carried):
         sums[law, 1] += h * energy[ENERGIES * law + DISSIPATED]
 
 
-@compiled
+@compiled(entry=False)
 def take_events(energy, carried):
     """Count steps on the front side, apart and on the back, and contact losses."""
     last = carried.last
@@ -95,7 +95,7 @@ def gather(gathered, values, forces, whole):
     gathered.steps[0] = count + 1
 
 
-@compiled
+@compiled(entry=False)
 def peak(a, b, c, x):
     """Extreme between b and c of the cubic through four values at equal distances (Bessel's formula); b where none is smooth."""
     left = a - 2.0 * b + c
@@ -113,11 +113,18 @@ def peak(a, b, c, x):
     return b + t * (c - b) + 0.5 * t * (t - 1.0) * (bend + (t - 0.5) / 3.0 * third)
 
 
-@compiled
+@compiled(entry=False)
+def set_row(rows, r, values):
+    """Write a row. numba compiles the message of an assignment whose shapes don't match, which takes longer than a loop."""
+    for i in range(values.size):
+        rows[r, i] = values[i]
+
+
+@compiled(entry=False)
 def record_forces(r, h, work, carried, kept):
     """Record local displacements, forces and energies at a step's end, whose sums follow the trapezoidal rule."""
-    kept.d[r] = work.d
-    kept.F[r] = carried.F
+    set_row(kept.d, r, work.d)
+    set_row(kept.F, r, carried.F)
     energy = work.answer.energy
     for law in range(carried.last.size):
         kept.energy[r, law, 0] = energy[ENERGIES * law + STORED]
@@ -125,18 +132,18 @@ def record_forces(r, h, work, carried, kept):
         kept.energy[r, law, 2] = carried.sums[law, 1] - 0.5 * h * energy[ENERGIES * law + DISSIPATED]
 
 
-@compiled
+@compiled(entry=False)
 def record_whole(r, answer, work, carried, kept):
     """Record local displacements, and the answer of the laws at a step's end, where sums are over whole steps."""
-    kept.d[r] = work.d
-    kept.F[r] = answer.F
+    set_row(kept.d, r, work.d)
+    set_row(kept.F, r, answer.F)
     for law in range(carried.last.size):
         kept.energy[r, law, 0] = answer.energy[ENERGIES * law + STORED]
         kept.energy[r, law, 1] = carried.sums[law, 0]
         kept.energy[r, law, 2] = carried.sums[law, 1]
 
 
-@compiled
+@compiled(entry=False)
 def add_rows(matrix, x, out, at):
     """Add a sparse matrix times x to out, from `at` on."""
     first = matrix.first

@@ -20,7 +20,7 @@ from rotorgear.solvers.time.kernel_gather import DISSIPATED, ENERGIES, POWER_IN,
 _ROUNDING = 16.0 * 2.220446049250313e-16
 
 
-@compiled
+@compiled(entry=False)
 def all_straight(laws, work):
     """Whether no law needs more than its force half way: all are apart, or touch by one and the same spring, over the step."""
     middle = work.answer
@@ -36,7 +36,7 @@ def all_straight(laws, work):
     return True
 
 
-@compiled
+@compiled(entry=False)
 def whole_step(laws, work, h):
     """Turn the answer half way into that of the whole step, for laws whose stored energy is their potential.
 
