@@ -48,7 +48,7 @@ _EDGE = 0.02
 _LEVEL = 1e-12
 
 
-@compiled(entry=False)
+@compiled
 def tilted(p, omega, xi, v_xi, start, extent, pivot, F, K, C, pressure, slope):  # type: ignore[no-untyped-def]
     """Tilt a pad until F_t = 0; fill its force and tangents in (e_r, e_t) and its pressure, and return eta.
 

@@ -6,15 +6,18 @@ or one that was compiled alone. Without reordered sums all copies give the same 
 
 from __future__ import annotations
 
+import ast
 import dis
 import importlib
 import pkgutil
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from numba.core.registry import CPUDispatcher
 
 from rotorgear.solvers.time.compiled import COMPILED
+from tests.paths import ROOT
 
 
 def compiled_functions() -> dict[str, Any]:
@@ -50,3 +53,39 @@ def test_what_reorders_sums_becomes_part_of_who_calls_it() -> None:
     ]
     assert sum(map(reorders, functions.values())) > 20, "none found: this test looks in the wrong place"
     assert shared == []
+
+
+def has_entry(function: Any) -> bool:
+    return not function.targetoptions.get("no_cpython_wrapper")
+
+
+def named_in_python(path: Path) -> Iterator[tuple[str, str]]:
+    """Names that the plain Python functions of a file use, with the function; those of functions that are compiled not."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef) and not any(map(compiles, node.decorator_list)):
+            for inside in ast.walk(node):
+                if isinstance(inside, ast.Name):
+                    yield inside.id, node.name
+
+
+def compiles(decorator: ast.expr) -> bool:
+    made = decorator.func if isinstance(decorator, ast.Call) else decorator
+    return isinstance(made, ast.Name) and made.id in {
+        "compiled",
+        "formula",
+        "intrinsic",
+        "force_function",
+        "schedule_function",
+    }
+
+
+def test_python_calls_no_function_that_has_no_entry_for_it() -> None:
+    # Some versions of numba end the process where it does.
+    without = [name for name, each in compiled_functions().items() if not has_entry(each)]
+    assert len(without) > 50, "none found: this test looks in the wrong place"
+    for place in COMPILED:
+        for file in (ROOT / "rotorgear" / place).glob("*.py"):
+            module = importlib.import_module(f"rotorgear.{place.replace('/', '.')}.{file.stem}")
+            for name, function in named_in_python(file):
+                used = getattr(module, name, None)
+                assert not isinstance(used, CPUDispatcher) or has_entry(used), f"{file.name}: {function} calls {name}"
