@@ -110,8 +110,10 @@ def solve_teeth(
     pitch = inside.pitch
     near = min(_NEIGHBOURS, ((key.arc or key.geometry.teeth) - 1) // 2)
     teeth = np.arange(min(loads) - near, max(loads) + near + 1)
-    moved = _moved_wheel if key.blank else _moved_pitches
-    at_ends = moved(key, inside, teeth, loads, part_of(progress, 0.4, 0.7))
+    if key.blank:
+        at_ends = _moved_wheel(key, inside, teeth, loads, part_of(progress, 0.4, 0.7))
+    else:
+        at_ends = _moved_pitches(key, inside, teeth, loads)
 
     # Inside of each pitch: K_rr u_r = f_r - K_rh u_h, with the cuts and the inner circle moved.
     d = pitch.dimension
@@ -133,7 +135,6 @@ def _moved_pitches(
     inside: ToothInside,
     teeth: np.ndarray,
     loads: dict[int, np.ndarray],
-    progress: Progress,
 ) -> np.ndarray:
     """Displacements (teeth, ...) at the cuts and on the held circle of each pitch in a rim or a ring."""
     pitch = inside.pitch
