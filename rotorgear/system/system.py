@@ -66,6 +66,7 @@ class System:
         self._last: tuple[float, Matrices] | None = None
         self._last_damping: tuple[float, sp.csc_array] | None = None
         self._last_stiffness: tuple[float, sp.csc_array] | None = None
+        self._last_strain: tuple[float, sp.csr_array | None] | None = None
 
     def with_plan(self, plan: Plan) -> System:
         """The same model under the same load on another mesh."""
@@ -90,7 +91,7 @@ class System:
         """Number of degrees of freedom."""
         return self.dofs.n
 
-    @property
+    @cached_property
     def has_tables(self) -> bool:
         """Whether stiffness or damping of some part depends on speed in another way than in proportion: tables, gear bodies."""
         model = self.model
@@ -113,6 +114,15 @@ class System:
         return self._sum(self.groups, lambda g: g.matrices.mass)
 
     @cached_property
+    def nodal_inertia(self) -> np.ndarray:
+        """Diagonal of the mass matrix over all six dofs of the p nodes, (6 p,), tied and held ones too."""
+        diagonal = np.zeros(self.dofs.transform.shape[0])
+        for group in self.groups:
+            if group.matrices.mass is not None:
+                np.add.at(diagonal, group.dofs, np.diagonal(group.matrices.mass, axis1=1, axis2=2))
+        return diagonal[: 6 * len(self.nodes)]
+
+    @cached_property
     def gyroscopic(self) -> sp.csc_array:
         """Gyroscopic matrix for unit spin of the reference shaft, sparse (n, n), skew."""
         return self._sum(
@@ -129,16 +139,20 @@ class System:
 
     def stiffness(self, speed: float = 0.0) -> sp.csc_array:
         """Symmetric part of the stiffness at a reference speed in rad/s, sparse (n, n); that of the last speed is kept."""
+        speed = self._that_counts(speed)
         if self._last_stiffness is None or self._last_stiffness[0] != speed:
             self._last_stiffness = (speed, self._sum(self.groups_at(speed), lambda g: g.matrices.stiffness))
         return self._last_stiffness[1]
 
     def circulatory(self, speed: float = 0.0) -> sp.csc_array:
         """Non-symmetric stiffness of cross-coupled bearings and of internal damping at speed, sparse (n, n)."""
+        if not (self.has_tables or self._circulates):
+            return sp.csc_array((self.n, self.n))
         return self._sum(self.groups_at(speed), lambda g: g.circulatory_at(speed))
 
     def damping(self, speed: float = 0.0) -> sp.csc_array:
         """Damping matrix with the proportional part, sparse (n, n); that of the last speed is kept."""
+        speed = self._that_counts(speed)
         if self._last_damping is not None and self._last_damping[0] == speed:
             return self._last_damping[1]
         C = self._sum(self.groups_at(speed), lambda g: g.matrices.damping)
@@ -155,8 +169,11 @@ class System:
         return self._sum(self.groups_at(speed), lambda g: without_negative(g.matrices))
 
     def strain_factor(self, speed: float = 0.0) -> sp.csr_array | None:
-        """S with K = S^T S from element strains, sparse (s, n); None where a spring's matrix is not positive."""
-        return strain_factor(self.groups_at(speed), self.dofs)
+        """S with K = S^T S from element strains, sparse (s, n), None where a spring's matrix is not positive; the last is kept."""
+        speed = self._that_counts(speed)
+        if self._last_strain is None or self._last_strain[0] != speed:
+            self._last_strain = (speed, strain_factor(self.groups_at(speed), self.dofs))
+        return self._last_strain[1]
 
     def strain_forms(self, speed: float = 0.0) -> StrainForms:
         """Stiffness, damping and circulatory terms at a reference speed in rad/s as strains and what acts on them."""
@@ -164,7 +181,8 @@ class System:
 
     def inertial_terms(self, speed: float = 0.0) -> sp.csc_array:
         """Part of the velocity terms that comes from inertia, alpha M + W G, sparse (n, n)."""
-        return sp.csc_array(self.model.damping.rayleigh_alpha * self.mass + speed * self.gyroscopic)
+        alpha = self.model.damping.rayleigh_alpha
+        return sp.csc_array(alpha * self.mass + speed * self.gyroscopic if alpha else speed * self.gyroscopic)
 
     def velocity_terms(self, speed: float | None) -> sp.csc_array | None:
         """C + W G at a speed, sparse (n, n); None where there is nothing of it, or at standstill without damping (speed None)."""
@@ -194,6 +212,16 @@ class System:
         """x, y, z of all nodes in m, shape (p, 3); shafts without positions lie at x = y = 0."""
         axes = {name: shaft.position or (0.0, 0.0) for name, shaft in self.model.shafts.items()}
         return np.array([[*axes[shaft], z] for shaft, z in zip(self.nodes.shaft, self.nodes.z, strict=True)])
+
+    @cached_property
+    def _circulates(self) -> bool:
+        """Whether a group without a table has a non-symmetric stiffness."""
+        every = (group.matrices for group in self.groups)
+        return any(m.circulation is not None or m.circulation_per_speed is not None for m in every)
+
+    def _that_counts(self, speed: float) -> float:
+        """The speed where stiffness and damping have tables of it, else one for all: what is kept serves any speed then."""
+        return speed if self.has_tables else 0.0
 
     def _sum(self, groups: list[ElementGroup], term: Callable[[ElementGroup], np.ndarray | None]) -> sp.csc_array:
         return assemble(groups, self.dofs, term)

@@ -20,8 +20,8 @@ from rotorgear.system.system import System
 from validation.peers import ross_geared, ross_modal
 from validation.peers.comparison import AGREEMENT, ross
 
-SINGLE = 60.0
-GEARED = 8.0
+SINGLE = 100.0
+GEARED = 12.0
 
 
 def timed(run: Callable[[], Any], repetitions: int) -> tuple[float, Any]:

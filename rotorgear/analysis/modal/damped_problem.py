@@ -12,6 +12,7 @@ import scipy.sparse as sp
 from rotorgear.solvers.eigen.damped import DampedModes
 from rotorgear.solvers.eigen.eigen import UndampedModes
 from rotorgear.solvers.eigen.quadratic import corrected
+from rotorgear.solvers.sparse.entries import magnitudes
 from rotorgear.solvers.sparse.pencil import rounding_noise
 from rotorgear.system.strain_forms import StrainForms
 
@@ -69,7 +70,7 @@ def by_strains(problem: DampedProblem, found: DampedModes) -> DampedModes:
 
 def relative_noise(problem: DampedProblem, size: np.ndarray, V: np.ndarray) -> np.ndarray:
     """Rounding that K q and s C q carry, relative to |s|^2 q^H M q, for |s| = size (m,) and M-normal V (n, m)."""
-    K = sp.csr_array(abs(problem.K_symmetric))
-    C = sp.csr_array(abs(problem.D - problem.inertial))
+    K = magnitudes(problem.K_symmetric)
+    C = magnitudes(sp.csc_array(problem.D - problem.inertial))
     size = np.maximum(size, 1e-150)  # its square is still a number
     return np.asarray(rounding_noise(K, V) / size**2 + rounding_noise(C, V) / size)

@@ -75,7 +75,7 @@ def _near_undamped(problem: DampedProblem, count: int | None, below: float | Non
     S = problem.strain
     if S is None or problem.K.shape[0] <= _ALL_UP_TO or (count is None and below is None):
         return None
-    if abs(problem.K - problem.K_symmetric).nnz:
+    if problem.K is not problem.K_symmetric and (problem.K - problem.K_symmetric).nnz:
         return None
     # Gyroscopic moments bring modes down from above those that are asked for.
     spare = None if count is None else int(_REACH * count) + _MORE
@@ -98,7 +98,7 @@ def _near_undamped(problem: DampedProblem, count: int | None, below: float | Non
         modes=modes,
         rigid=undamped.vectors[:, :first],
     )
-    if abs(problem.D + problem.D.T).nnz:
+    if near.damping.nnz:
         return locally_damped_modes(near, count, below)
     found = gyroscopic_modes(near, count, below)
     return None if found is None else by_strains(problem, found)

@@ -40,6 +40,8 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
     Twice the kinetic energy of an element is |s|^2 q^H M q, twice its strain energy (B q)^H D (B q); |s|^2 cancels in the shares.
     """
     modes = q.shape[1]
+    # |q|^2 = (Re q)^2 + (Im q)^2: with twice as many real columns the matrices stay real.
+    halves = np.hstack([q.real, q.imag]) if np.iscomplexobj(q) else q
     kinetic: dict[str, np.ndarray] = {}
     strain: dict[str, np.ndarray] = {}
     motions_of_all = (
@@ -51,7 +53,7 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
     strain_by_motion: dict[str, np.ndarray] = {}
     kinetic_by_shaft: dict[tuple[str, str], np.ndarray] = {}
     for group in system.groups_at(speed):
-        local = q[group.dofs]  # (e, d, m)
+        local = halves[group.dofs]  # (e, d, m or 2 m)
         M = group.matrices.mass
         motions = np.array(group.dof_motions)
         for motion in motions_of_all:
@@ -61,12 +63,12 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
             if not dofs.any():
                 continue
             part = local[:, dofs]
-            energy = np.real(np.einsum("edm,edm->m", part.conj(), M[:, dofs][:, :, dofs] @ part))
+            energy = _by_mode(np.einsum("edm,edm->m", part, M[:, dofs][:, :, dofs] @ part), modes)
             _add(kinetic, group.part, energy)
             _add(kinetic_by_shaft, ("", group.part) if motion in (CASING, GEAR_BODY) else (group.shaft, motion), energy)
             kinetic_by_motion[motion] += energy
         for label, energy in _strain_energies(group, local):
-            elastic = np.where(rigid, 0.0, energy)
+            elastic = np.where(rigid, 0.0, _by_mode(energy, modes))
             _add(strain, group.part, elastic)
             _add(strain_by_motion, label, elastic)
     kinetic_total = sum(kinetic_by_motion.values(), np.zeros(modes))
@@ -80,14 +82,20 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
     )
 
 
+def _by_mode(energy: np.ndarray, modes: int) -> np.ndarray:
+    """Energies (m,) from those of real columns, or of real and imaginary ones (2 m,)."""
+    return energy.reshape(-1, modes).sum(axis=0) if modes else energy
+
+
 def _strain_energies(group: ElementGroup, local: np.ndarray) -> Iterable[tuple[str, np.ndarray]]:
-    """Yield twice the strain energy (m,) of a group's elements: of a shaft by motion, of springs under their kind."""
+    """Yield twice the strain energy of a group's elements in each real column: of a shaft by motion, of springs under their kind.
+    """
     B = group.matrices.strain
     D = group.matrices.modulus
     if B is None or D is None:
         return
     strains = B @ local
-    energy = np.real(np.sum(strains.conj() * (D @ strains), axis=0))  # (s, m), by strain
+    energy = np.sum(strains * (D @ strains), axis=0)  # (s, m), by strain
     if group.strain_motions:
         for motion in dict.fromkeys(group.strain_motions):
             rows = [k for k, name in enumerate(group.strain_motions) if name == motion]

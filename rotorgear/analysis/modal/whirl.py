@@ -52,15 +52,6 @@ def orbits(system: System, inertia: np.ndarray, shapes: np.ndarray, shaft: str) 
     return swept, size
 
 
-def diagonal_inertia(system: System) -> np.ndarray:
-    """Diagonal of the mass matrix over all dofs of the nodes, (6 p,)."""
-    diagonal = np.zeros(system.dofs.transform.shape[0])
-    for group in system.groups:
-        if group.matrices.mass is not None:
-            np.add.at(diagonal, group.dofs, np.diagonal(group.matrices.mass, axis1=1, axis2=2))
-    return diagonal[: 6 * len(system.nodes)]
-
-
 def whirl_of(system: System, shapes: np.ndarray, speed: float) -> Whirl:
     """Whirl of modes with shapes (p, 6, m) at a speed of the input shaft.
 
@@ -72,7 +63,7 @@ def whirl_of(system: System, shapes: np.ndarray, speed: float) -> Whirl:
     numbers = {name: np.zeros(modes, np.int8) for name in system.model.shafts}
     if not speed or not system.model.has("bending"):
         return Whirl(net, numbers)
-    inertia = diagonal_inertia(system)
+    inertia = system.nodal_inertia
     for name in system.model.shafts:
         spin = np.sign(system.train.ratio(name) * speed)
         if spin == 0.0:

@@ -119,7 +119,7 @@ def lowest_modes(
         # Compute and refine, then count below a gap above the last mode; with more pairs while there is no gap, or while the
         # count finds modes that are missing.
         limit = np.inf if below is None else below**2 * (1.0 + _EDGE)
-        spare = _SPARE
+        spare = _SPARE if counted else 0
         modes = None
         for _ in range(_ATTEMPTS):
             pairs = _candidates(operator, massless, target, spare, strain)
@@ -182,8 +182,8 @@ def _candidates(
         sure = finite = V.shape[1]
         V = V[:, : target + 10 * spare]
     else:
-        V = lanczos_modes(operator, target + 1, spare)  # one more must be converged: the gap lies below it
-        sure = target + 1
+        sure = target + 1 if spare else target  # one more must be converged: the gap lies below it
+        V = lanczos_modes(operator, sure, spare)
         finite = n - massless.size
     V = orthonormalised(operator.mass, V)
     values, V = stiffness_ritz(operator.K, V, operator.sigma) if strain is None else strain_ritz(strain, V)

@@ -17,7 +17,6 @@ import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.damped import DampedModes
-from rotorgear.solvers.eigen.quadratic import scaled
 from rotorgear.solvers.eigen.reduced_pencil import gyroscopic_pairs
 from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis
 from rotorgear.solvers.sparse.factor import Factor, factor_symmetric, single_thread
@@ -111,7 +110,7 @@ def counted_modes(problem: NearUndamped, s: np.ndarray, V: np.ndarray, count: in
     rigid = problem.rigid[:, :count]
     values = np.concatenate([np.zeros(rigid.shape[1]), s])
     V = np.hstack([rigid, V])
-    quadratic = scaled(problem.M, problem.D, problem.K, float(problem.frequencies[0]))
+    quadratic = problem.quadratic
     return DampedModes(
         eigenvalues=values,
         vectors=V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])],

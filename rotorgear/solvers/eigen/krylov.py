@@ -7,6 +7,7 @@ Golub and Van Loan, Matrix Computations, 4th ed., sections 10.3.6 and 10.5.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -155,13 +156,21 @@ def _compressed(gram: np.ndarray, shortest: float) -> tuple[np.ndarray, np.ndarr
     scale = np.sqrt(np.maximum(np.diag(gram), 0.0))
     kept = np.flatnonzero(scale > shortest)
     scale = scale[kept]
-    values, vectors = np.linalg.eigh(gram[np.ix_(kept, kept)] / scale / scale[:, None])
+    chosen = gram if kept.size == gram.shape[0] else gram[np.ix_(kept, kept)]
+    values, vectors = np.linalg.eigh(chosen / scale / scale[:, None])
     # The eigenvalues of unit columns' products err by some eps of the largest: a direction below that is rounding.
     strong = values > 1e-14 * values.max(initial=0.0)
     roots = np.sqrt(values[strong])
+    if roots.size == gram.shape[0]:
+        return vectors / roots / scale[:, None], roots[:, None] * vectors.T * scale, _spread(roots)
     vectors = vectors[:, strong]
     Q = np.zeros((gram.shape[0], roots.size))
     R = np.zeros((roots.size, gram.shape[0]))
     Q[kept] = vectors / roots / scale[:, None]
     R[:, kept] = roots[:, None] * vectors.T * scale
-    return Q, R, float(np.ptp(np.log(roots))) if roots.size else 0.0
+    return Q, R, _spread(roots) if roots.size else 0.0
+
+
+def _spread(roots: np.ndarray) -> float:
+    """Log of the ratio of the largest of ascending roots (m,) to the least."""
+    return math.log(roots[-1] / roots[0])

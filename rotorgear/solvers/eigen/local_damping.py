@@ -28,6 +28,7 @@ from rotorgear.solvers.eigen.damped import DampedModes
 from rotorgear.solvers.eigen.gyroscopic import counted_modes
 from rotorgear.solvers.eigen.reduced_pencil import Pencil, clusters, eigen
 from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis
+from rotorgear.solvers.sparse.entries import times
 from rotorgear.solvers.sparse.factor import Factor, factor_symmetric, single_thread
 
 # Dofs on which dampers act: so many at most, and this share of all.
@@ -86,12 +87,13 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
                 return None
             pairs = _Pairs(found.s[:wanted], basis @ found.q[:, :wanted], basis @ found.y[:, :wanted])
             corrected, e, unsure = _corrected(problem, factor, pairs)
-            modes = _result(problem, corrected, count) if unsure <= _SETTLED else None
-            if modes is not None and modes.backward_error.max(initial=0.0) > _SOUND:
-                modes = _result(problem, _polished(problem, factor, corrected), count)
-            if modes is not None and modes.backward_error.max(initial=0.0) <= _SOUND:
-                last = float(size[wanted - 1]) if wanted else float(problem.frequencies[0]) / _COUNT_AT[-1]
-                return modes if _none_is_missing(problem, small, last) else None
+            if unsure <= _SETTLED:
+                modes = _result(problem, corrected, count)
+                if modes.backward_error.max(initial=0.0) > _SOUND:
+                    modes = _result(problem, _polished(problem, factor, corrected), count)
+                if modes.backward_error.max(initial=0.0) <= _SOUND:
+                    last = float(size[wanted - 1]) if wanted else float(problem.frequencies[0]) / _COUNT_AT[-1]
+                    return modes if _none_is_missing(problem, small, last) else None
             space.add(e, space.sizes(pairs.v), _COARSE)
     return None
 
@@ -107,8 +109,7 @@ class _Pairs:
 
 def _places(problem: NearUndamped) -> np.ndarray | None:
     """Unit forces P (n, p) of the dampers, whose damping matrix is P c P^T; None where they are everywhere."""
-    C = sp.csc_array(0.5 * (problem.D + problem.D.T))
-    C.eliminate_zeros()
+    C = problem.damping
     touched = np.unique(C.indices)
     if len(touched) > min(_MOST_PLACES, _MOST_OF * C.shape[0]):
         return None
@@ -135,34 +136,32 @@ def _corrected(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> tuple[_P
     """The pairs with both corrections, e (n, m), and the largest difference of the two corrections of an eigenvalue over |s|."""
     z = pairs.s
     m = len(z)
-    backwards = sp.csc_array(problem.D.T)
-
-    def applied(D: sp.csc_array, s: np.ndarray, X: np.ndarray) -> np.ndarray:
-        return np.asarray((problem.M @ X) * s**2 + (D @ X) * s + problem.K @ X)
-
-    right = applied(problem.D, z, pairs.v)
-    left = applied(backwards, z.conj(), pairs.y)
+    right = problem.applied(z, pairs.v)
+    left = problem.applied(z.conj(), pairs.y, transposed=True)
     both = problem.without_rigid(factor.solve(np.hstack([right, left])))
     e = both[:, :m]
     f = both[:, m:]
-    onward = applied(problem.D, z, e)
     values = z.copy()
     v = pairs.v - e
     y = pairs.y - f
+    # y_i^H ((s_i + s_j) M + D) v_j: the product in which left and right vectors of a pencil are biorthogonal.
+    heavy = pairs.y.conj().T @ times(problem.M, pairs.v)
+    product = pairs.y.conj().T @ times(problem.D, pairs.v) + heavy * z + z[:, None] * heavy
+    once = left.conj().T @ e
+    twice = f.conj().T @ problem.applied(z, e)
+    slope = np.diag(product)
+    steps = 2.0 * np.diag(once) - np.diag(twice)
     unsure = 0.0
     for close in clusters(z, _CLOSE):
-        V = pairs.v[:, close]
-        Y = pairs.y[:, close]
-        # y_i^H ((s_i + s_j) M + D) v_j: the product in which left and right vectors of a pencil are biorthogonal.
-        product = Y.conj().T @ ((problem.M @ V) * z[close] + problem.D @ V) + z[close][:, None] * (
-            Y.conj().T @ (problem.M @ V)
-        )
-        first = np.linalg.solve(product, left[:, close].conj().T @ e[:, close])
-        second = 2.0 * first - np.linalg.solve(product, f[:, close].conj().T @ onward[:, close])
-        unsure = max(unsure, float((np.abs(second - first) / np.abs(z[close])[:, None]).max()))
         if len(close) == 1:
-            values[close] = z[close] + second[0]
+            values[close] += steps[close] / slope[close]
+            differ = steps[close] - np.diag(once)[close]
+            unsure = max(unsure, float(np.abs(differ / slope[close] / z[close])[0]))
             continue
+        block = np.ix_(close, close)
+        first = np.linalg.solve(product[block], once[block])
+        second = 2.0 * first - np.linalg.solve(product[block], twice[block])
+        unsure = max(unsure, float((np.abs(second - first) / np.abs(z[close])[:, None]).max()))
         values[close], turn = np.linalg.eig(np.diag(z[close]) + second)
         v[:, close] = v[:, close] @ turn
     order = np.argsort(np.abs(values), kind="stable")
@@ -174,9 +173,8 @@ def _polished(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> _Pairs:
 
     Along X, where r of the projection was zero, it is the eigenvalue that decides, and A would mistake s: that part is not taken.
     """
-    r = (problem.M @ pairs.v) * pairs.s**2 + (problem.D @ pairs.v) * pairs.s + problem.K @ pairs.v
-    e = problem.without_rigid(factor.solve(r))
-    e = e - problem.modes @ (problem.modes.T @ (problem.M @ e))
+    e = problem.without_rigid(factor.solve(problem.applied(pairs.s, pairs.v)))
+    e = e - problem.modes @ (problem.modes.T @ times(problem.M, e))
     return _Pairs(pairs.s, pairs.v - e, pairs.y)
 
 

@@ -9,13 +9,14 @@ Tisseur and Meerbergen, SIAM Review 43 (2001) 235, sections 3.4 and 5.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.solvers.sparse.entries import norm_1, scaled_on_both_sides
+from rotorgear.solvers.sparse.entries import norm_1, scaled_on_both_sides, times
 from rotorgear.solvers.sparse.factor import Factor, factor_general
 from rotorgear.solvers.sparse.nullspace import SupportedSolver, left_null_space
 from rotorgear.solvers.sparse.pencil import EPS, LooseDofError
@@ -36,6 +37,11 @@ class Quadratic:
         """Number of dofs."""
         return int(self.K.shape[0])
 
+    @cached_property
+    def _norms(self) -> tuple[float, float, float]:
+        """||M||_1, ||D||_1 and ||K||_1."""
+        return norm_1(self.M), norm_1(self.D), norm_1(self.K)
+
     def at(self, z: complex) -> sp.csc_array:
         """Q(z) = z^2 M + z D + K; real for a real z."""
         return sp.csc_array(z * z * self.M + z * self.D + self.K)
@@ -47,9 +53,9 @@ class Quadratic:
 
     def residuals(self, values: np.ndarray, V: np.ndarray) -> np.ndarray:
         """Backward errors ||Q(z) v|| / ((|z|^2 ||M||_1 + |z| ||D||_1 + ||K||_1) ||v||) of scaled pairs: (m,)."""
-        left = (self.M @ V) * values**2 + (self.D @ V) * values + self.K @ V
-        norms = [norm_1(A) for A in (self.M, self.D, self.K)]
-        size = np.abs(values) ** 2 * norms[0] + np.abs(values) * norms[1] + norms[2]
+        left = times(self.M, V) * values**2 + times(self.D, V) * values + times(self.K, V)
+        mass, velocity, stiffness = self._norms
+        size = np.abs(values) ** 2 * mass + np.abs(values) * velocity + stiffness
         size = np.maximum(size * np.linalg.norm(V, axis=0), np.finfo(float).tiny)  # K = 0 leaves no residual either
         errors: np.ndarray = np.linalg.norm(left, axis=0) / size
         return errors

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
+from scipy.linalg.lapack import dgeev, dgeev_lwork
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.skew import largest_pairs
@@ -91,7 +92,12 @@ def eigen(pencil: Pencil, shift: float, smallest: float, count: int) -> Eigen:
         PD = P @ (D + M)
         PM = P @ M
         T = np.block([[-PD, -PM], [np.eye(r) - PD, -PM]])
-        mu, L, X = la.eig(T, left=True, right=True, check_finite=False)
+        real_part, imaginary_part, left, right, failed = dgeev(
+            T, lwork=int(dgeev_lwork(2 * r)[0]), overwrite_a=True
+        )
+    if failed:
+        raise ConvergenceError("The eigenvalues of a reduced problem did not converge.")
+    mu = real_part + 1j * imaginary_part
 
     # s = sigma + sigma / mu in these units; mu = 0, to the rounding of T, is a massless coordinate. Rigid
     # motions are too small to count.
@@ -104,15 +110,21 @@ def eigen(pencil: Pencil, shift: float, smallest: float, count: int) -> Eigen:
     chosen = chosen[np.argsort(size[chosen], kind="stable")][:count]
 
     # Right vectors are the upper half of x, left ones follow from l; both go back to the coordinates of the pencil.
-    q = X[:r, chosen]
-    l1 = L[:r, chosen]
-    l2 = L[r:, chosen]
-    y = -P.T @ (l1 + l2) / np.conj(mu[chosen])
+    q = _of_pairs(right, mu, chosen)[:r]
+    both = _of_pairs(left, mu, chosen)
+    y = -P.T @ (both[:r] + both[r:]) / np.conj(mu[chosen])
     s = s[chosen]
     y = scale[:, None] * y
     q = scale[:, None] * q
     q = q / np.linalg.norm(q, axis=0)
     return Eigen(s, q, _biorthogonal(pencil, s, q, y), np.sort(shift * (1.0 + 1.0 / mu[real]).real), pencil)
+
+
+def _of_pairs(V: np.ndarray, mu: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Complex vectors from LAPACK's real ones: of a pair, the column of Im mu > 0 holds the real part, the next one the imaginary."""
+    upper = mu[chosen].imag > 0.0
+    first = np.where(upper, chosen, chosen - 1)
+    return np.asarray(V[:, first] + 1j * np.where(upper, 1.0, -1.0) * V[:, first + 1])
 
 
 def gyroscopic_pairs(M: np.ndarray, G: np.ndarray, K: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:

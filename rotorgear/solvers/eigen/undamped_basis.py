@@ -9,8 +9,9 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
+from rotorgear.solvers.eigen.quadratic import Quadratic, scaled
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
-from rotorgear.solvers.sparse.entries import norm_1, scaled_on_both_sides
+from rotorgear.solvers.sparse.entries import norm_1, scaled_on_both_sides, times
 
 Strain = Callable[[np.ndarray], np.ndarray]
 
@@ -47,6 +48,21 @@ class NearUndamped:
         size = np.sqrt(self.K.diagonal() + self.shift**2 * self.M.diagonal())
         return np.where(size > 0.0, size, 1.0)
 
+    @cached_property
+    def damping(self) -> sp.csc_array:
+        """(D + D^T) / 2, sparse (n, n): what takes energy out."""
+        return sp.csc_array(0.5 * (self.D + self.D.T))
+
+    @cached_property
+    def quadratic(self) -> Quadratic:
+        """The pencil in scaled dofs and time, for backward errors."""
+        return scaled(self.M, self.D, self.K, float(self.frequencies[0]))
+
+    def applied(self, s: np.ndarray, V: np.ndarray, transposed: bool = False) -> np.ndarray:
+        """Q(s_j) v_j (n, m) for s (m,) and V (n, m), or Q(s_j)^T v_j."""
+        D = self.D.T if transposed else self.D
+        return times(self.M, V) * s**2 + times(D, V) * s + times(self.K, V)
+
     def moves_rigid_bodies(self) -> bool:
         """Whether D acts on a rigid-body motion, which then does not stand apart from the other modes."""
         if not self.rigid.shape[1]:
@@ -58,7 +74,7 @@ class NearUndamped:
 
     def without_rigid(self, X: np.ndarray) -> np.ndarray:
         """X (n, m) without its part in the rigid-body motions, which have none in elastic modes."""
-        return X - self.rigid @ (self.rigid.T @ (self.M @ X)) if self.rigid.shape[1] else X
+        return X - self.rigid @ (self.rigid.T @ times(self.M, X)) if self.rigid.shape[1] else X
 
 
 class UndampedBasis:

@@ -19,6 +19,18 @@ def scaled_on_both_sides(A: sp.csc_array, scale: np.ndarray) -> sp.csc_array:
     return scaled
 
 
+def magnitudes(A: sp.csc_array) -> sp.csc_array:
+    """|A|, entry by entry."""
+    return sp.csc_array((np.abs(A.data), A.indices, A.indptr), shape=A.shape)
+
+
+def times(A: sp.csc_array | sp.csr_array, X: np.ndarray) -> np.ndarray:
+    """A X (n, m) of a real A: complex columns as twice as many real ones, for scipy would make A complex first."""
+    if not np.iscomplexobj(X):
+        return np.asarray(A @ X)
+    return np.asarray((A @ np.ascontiguousarray(X).view(float)).view(complex))
+
+
 def _columns(A: sp.csc_array | sp.csr_array) -> np.ndarray:
     """The column of each entry."""
     return A.indices if A.format == "csr" else np.repeat(np.arange(A.shape[1]), np.diff(A.indptr))

@@ -75,7 +75,7 @@ def _is_symmetric(A: sp.csc_array) -> bool:
     return not np.any(skew.data > _SYMMETRY * (scale[skew.row] * scale[skew.col]))
 
 
-def rounding_noise(size_K: sp.csr_array, V: np.ndarray, shift: float = 0.0) -> np.ndarray:
+def rounding_noise(size_K: sp.csr_array | sp.csc_array, V: np.ndarray, shift: float = 0.0) -> np.ndarray:
     """Noise of the Rayleigh quotients (m,) of M-normal columns of V (n, m) for a K of doubles, size_K = |K|."""
     size = np.ascontiguousarray(np.abs(V))
     noise: np.ndarray = EPS * (np.einsum("ij,ij->j", size, size_K @ size) + abs(shift))
