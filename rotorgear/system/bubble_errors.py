@@ -17,11 +17,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import scipy.linalg as la
 
 from rotorgear.elements.by_content import ByContent, read_only
 from rotorgear.elements.shaft import ShaftElements, distinct_elements
 from rotorgear.elements.shaft_bubbles import bubble_motions, bubble_places
+from rotorgear.solvers.eigen.shift_invert import symmetric_pair
 from rotorgear.system.groups import alike, element_data, shaft_dofs
 from rotorgear.system.left_shapes import left_shapes
 from rotorgear.system.nodes import Element
@@ -174,7 +174,7 @@ def _computed(kinds: ShaftElements, order: int, shear: bool, lumped: bool, motio
     stiffness = []
     gyroscopic = []
     for k in range(len(kinds.length)):
-        values, modes = la.eigh(K[k][np.ix_(used, used)], rich.mass[k][np.ix_(used, used)])
+        values, modes = symmetric_pair(K[k][np.ix_(used, used)], rich.mass[k][np.ix_(used, used)])
         taken = modes[new].T  # the residual against bubbles that are there already is zero
         squared.append(values)
         mass.append(taken @ rich.mass[k][np.ix_(used[new], present)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -81,6 +82,12 @@ class ElementGroup:
         if turning is None or not self.spin * speed:
             return plain
         return self.spin * speed * turning if plain is None else plain + self.spin * speed * turning
+
+    @cached_property
+    def dofs_of_motions(self) -> dict[str, np.ndarray]:
+        """Which of the d dofs move in each motion."""
+        motions = self.dof_motions
+        return {motion: np.flatnonzero([own == motion for own in motions]) for motion in dict.fromkeys(motions)}
 
     @property
     def dof_motions(self) -> tuple[str, ...]:

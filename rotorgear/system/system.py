@@ -169,7 +169,7 @@ class System:
         return self._sum(self.groups_at(speed), lambda g: without_negative(g.matrices))
 
     def strain_factor(self, speed: float = 0.0) -> sp.csr_array | None:
-        """S with K = S^T S from element strains, sparse (s, n), None where a spring's matrix is not positive; the last is kept."""
+        """S with K = S^T S from element strains, sparse (s, n); None where a modulus is not positive. The last is kept."""
         speed = self._that_counts(speed)
         if self._last_strain is None or self._last_strain[0] != speed:
             self._last_strain = (speed, strain_factor(self.groups_at(speed), self.dofs))

@@ -24,7 +24,7 @@ from typing import Any
 
 from rotorgear.errors import RotorgearError
 from tests.fuzz.mutate import model_mutations, option_mutations, rig_mutations
-from tests.fuzz.verbs import ALL, QUICK, Verb, not_finite
+from tests.fuzz.verbs import ALL, QUICK, Verb, drawn, not_finite
 from tests.fuzz.write_toml import toml_text
 from tests.paths import ROOT
 
@@ -148,12 +148,17 @@ def _command(arguments: list[str]) -> None:
                 raise AssertionError(f"exit code {end.code}: {said.getvalue()}") from None
 
 
+def chosen(verbs: str, seed: int) -> dict[str, Verb]:
+    """The verbs of a seed: all, the quick ones, or the quick ones and one that is drawn."""
+    return drawn(seed) if verbs == "drawn" else ALL if verbs == "all" else QUICK
+
+
 def _work(pipe: Connection, verbs: str, limit: float) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
     with tempfile.TemporaryDirectory() as folder:
         while (seed := pipe.recv()) is not None:
             start = time.process_time()
-            findings, ends = run_seed(seed, ALL if verbs == "all" else QUICK, Path(folder), limit)
+            findings, ends = run_seed(seed, chosen(verbs, seed), Path(folder), limit)
             pipe.send((seed, findings, ends, time.process_time() - start))
 
 
@@ -167,7 +172,10 @@ def main() -> int:
     )
     parser.add_argument("--jobs", type=int, default=1, help="worker processes (default 1)")
     parser.add_argument(
-        "--verbs", choices=["all", "quick"], default="all", help="quick: check, modes, statics and gear sheets only"
+        "--verbs",
+        choices=["all", "drawn", "quick"],
+        default="all",
+        help="quick: check, modes, statics and gear sheets only; drawn: these and one more, slow ones rarely",
     )
     parser.add_argument("--report", type=Path, help="write the findings to this file, as JSON lines")
     parser.add_argument("--show", type=int, metavar="SEED", help="print the mutant of a seed and stop")

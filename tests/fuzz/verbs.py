@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import random
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -91,6 +92,30 @@ ALL: dict[str, Verb] = {
     "sweep": _sweep,
     "transient": lambda model: rg.transient(model, steps=20, error_estimate=False, time=0.01),
 }
+# How often a verb is drawn beside the quick ones: those of seconds rarely, so that thousands of files are a matter of an hour.
+WEIGHTS: dict[str, float] = {
+    "modal at speed": 8.0,
+    "campbell": 8.0,
+    "response": 4.0,
+    "frf": 8.0,
+    "state space": 8.0,
+    "bearing": 8.0,
+    "sensors": 4.0,
+    "critical": 0.5,
+    "mesh": 0.5,
+    "scatter": 0.2,
+    "orbits": 0.2,
+    "sweep": 0.2,
+    "transient": 0.2,
+}
+
+
+def drawn(seed: int) -> dict[str, Verb]:
+    """The quick verbs and one more for a seed, by weight."""
+    verb = random.Random(f"verb {seed}").choices(list(WEIGHTS), list(WEIGHTS.values()))[0]
+    return QUICK | {verb: ALL[verb]}
+
+
 # Numbers of each result that must be finite wherever it is returned; others have NaN as a word for "not there".
 FINITE: dict[str, tuple[str, ...]] = {
     "modal": ("eigenvalues", "shapes", "backward_error"),

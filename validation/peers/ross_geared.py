@@ -81,7 +81,9 @@ def main() -> int:
     worst = print_frequencies("ROSS", others, np.sort(ours.frequency_hz[~ours.rigid])[:MODES])
     print(f"\n{rotor.ndof} dofs in ROSS, {ours.dofs} in rotorgear, {MODES} modes at 1500 rpm, processor time in s")
     print(f"ROSS {ross.__version__}   run_modal {solve:.4f}, with building the rotor {whole:.4f}")
-    print(f"rotorgear   modal {plain:.4f}, with error estimate {full:.4f}, with assembly {assembled:.4f}, from the file {total:.4f}")
+    print(
+        f"rotorgear   modal {plain:.4f}, with error estimate {full:.4f}, and assembly {assembled:.4f}, and file {total:.4f}"
+    )
     print(f"            ratios {solve / plain:.1f}, {solve / full:.1f}, from building on {whole / total:.1f}")
     return verdict(worst, solve / plain, TARGET)
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from rotorgear.analysis.campbell.speed_family import ReducedFamily, SpeedFamily
 from rotorgear.analysis.modal.modes import Modes, Wanted
-from rotorgear.analysis.modal.solve import group_notes, solve, with_modal_damping
+from rotorgear.analysis.modal.solve import Kept, group_notes, solve, with_modal_damping
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -27,7 +27,7 @@ TOLERANCE = 1e-9
 _NEGLIGIBLE = 1e-8
 _MOST_SNAPSHOTS = 65
 # More modes than asked for at every snapshot, so that those which come down with speed are known before they arrive.
-_SPARE = 6
+_SPARE = 4
 _SPARE_SHARE = 0.25
 _BEYOND_LIMIT = 1.15
 _STILL = 1e-5
@@ -89,6 +89,8 @@ class SpeedModes:
         weight = np.sqrt(_size(system, low))
         self._parts = [_Group(dofs, Subspace(weight[dofs], _NEGLIGIBLE)) for dofs in self.family.groups]
         self._known: dict[float, list[Eigen]] = {}
+        self._undamped: Kept | None = None if system.has_tables else {}
+        self._still = 0  # rigid motions and overdamped ones among the lowest, as far as they are known
         self._build(low, high, progress)
 
     @property
@@ -171,14 +173,15 @@ class SpeedModes:
         spare = max(_SPARE, int(_SPARE_SHARE * (wish.modes or 0)))
         count = None if wish.modes is None else wish.modes + spare
         limit = None if wish.limit is None else wish.limit * _BEYOND_LIMIT
-        ask = count
+        ask = None if count is None else count + self._still
         while True:
-            found: Modes = solve(self.system, Wanted(speed, ask, limit, wish.only))
+            found: Modes = solve(self.system, Wanted(speed, ask, limit, wish.only), self._undamped)
             s = found.eigenvalues
             moving = np.flatnonzero(~found.rigid & (s.imag > 1e-9 * np.abs(s)))
             if count is None or ask is None or len(moving) >= count or len(s) < ask:
                 break
             ask += count - len(moving)
+            self._still = ask - count
         kept = moving[:count]
         return Snapshot(speed, s[kept], found.vectors[:, kept], found.vectors[:, found.rigid].real)
 

@@ -55,13 +55,10 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
     for group in system.groups_at(speed):
         local = halves[group.dofs]  # (e, d, m or 2 m)
         M = group.matrices.mass
-        motions = np.array(group.dof_motions)
         for motion in motions_of_all:
-            if M is None:
-                break
-            dofs = motions == motion
-            if not dofs.any():
+            if M is None or motion not in group.dofs_of_motions:
                 continue
+            dofs = group.dofs_of_motions[motion]
             part = local[:, dofs]
             energy = _by_mode(np.einsum("edm,edm->m", part, M[:, dofs][:, :, dofs] @ part), modes)
             _add(kinetic, group.part, energy)
@@ -88,8 +85,7 @@ def _by_mode(energy: np.ndarray, modes: int) -> np.ndarray:
 
 
 def _strain_energies(group: ElementGroup, local: np.ndarray) -> Iterable[tuple[str, np.ndarray]]:
-    """Yield twice the strain energy of a group's elements in each real column: of a shaft by motion, of springs under their kind.
-    """
+    """Yield twice the strain energy of a group in each real column: of a shaft by motion, of springs under their kind."""
     B = group.matrices.strain
     D = group.matrices.modulus
     if B is None or D is None:

@@ -30,13 +30,17 @@ _RESOLVED = 1e-12
 _LARGE = 20_000  # dofs above which a look at the coarsest mesh costs nothing beside the rest
 
 
+# Undamped modes by the dofs of their group, how many, up to which frequency, and whether they are counted.
+Kept = dict[tuple[bytes, int | None, float | None, bool], UndampedModes]
+
+
 @dataclass(frozen=True)
 class _Problem:
     """M, D (None without such terms) and K of one group of dofs, and its strain factor S (None where a spring is indefinite).
 
     `inertial` is the part alpha M + spin G of D and `forms()` what the rest of D and K are made of, both None without D and
     circulatory terms. `symmetric` says whether K is, `damped` whether anything takes energy out, `guess` where the first elastic
-    eigenvalue may be.
+    eigenvalue may be, `dofs` names the dofs of a group, all of them where it is empty.
     """
 
     M: sp.csc_array
@@ -49,6 +53,7 @@ class _Problem:
     inertial: sp.csc_array | None = None
     forms: Callable[[], StrainForms] | None = None
     guess: float | None = None
+    dofs: bytes = b""
 
     def cut(self, group: np.ndarray) -> _Problem:
         """The problem of one group of dofs."""
@@ -78,15 +83,17 @@ class _Problem:
         damped = self.damped and D is not None and bool((D + D.T).nnz)
         M = cut_out(self.M)
         if D is None and symmetric:
-            return _Problem(M, D, K, K_symmetric, S, symmetric, damped, guess=self.guess)
+            return _Problem(M, D, K, K_symmetric, S, symmetric, damped, guess=self.guess, dofs=group.tobytes())
         inertial = None if self.inertial is None else cut_out(self.inertial)
         whole = self.forms
         forms = None if whole is None else cache(lambda: whole().cut(group))
-        return _Problem(M, D, K, K_symmetric, S, symmetric, damped, inertial, forms, self.guess)
+        return _Problem(M, D, K, K_symmetric, S, symmetric, damped, inertial, forms, self.guess, group.tobytes())
 
 
-def solve(system: System, wanted: Wanted) -> Modes:
+def solve(system: System, wanted: Wanted, kept: Kept | None = None) -> Modes:
     """Return the lowest modes of all groups that are asked for, lowest |s| first, rigid ones at the front.
+
+    `kept` holds undamped modes from one speed to the next, of a system whose stiffness does not depend on it.
 
     Raises:
         AnalysisError: a dof has neither inertia nor stiffness, or no group has a motion that is asked for.
@@ -105,7 +112,8 @@ def solve(system: System, wanted: Wanted) -> Modes:
         solved: list[Modes] = []
         for group in chosen:
             problem = whole.cut(group)
-            solved.append(_solve_group(problem, replace(wanted, limit=_reach(problem, solved, wanted)), system))
+            here = replace(wanted, limit=_reach(problem, solved, wanted))
+            solved.append(_solve_group(problem, here, system, kept))
     except LooseDofError as error:
         # The solver knows the number of a dof within its group; the whole pencil tells which dofs of the model they are.
         try:
@@ -191,7 +199,7 @@ def _conservative(system: System, speed: float) -> _Problem:
     )
 
 
-def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
+def _solve_group(problem: _Problem, wanted: Wanted, system: System, kept: Kept | None) -> Modes:
     if problem.D is None and problem.symmetric:
         modes = _lowest(problem, wanted.modes, wanted.limit)
         rigid = np.arange(len(modes.eigenvalues)) < modes.rigid_count
@@ -202,7 +210,7 @@ def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
         errors = modes.backward_error
         available: int | None = modes.available
     else:
-        s, vectors, rigid, errors, available, method = _damped(problem, wanted)
+        s, vectors, rigid, errors, available, method = _damped(problem, wanted, kept)
     zeta = system.model.damping.modal_ratio
     if zeta and wanted.speed is not None and wanted.damped:
         s = with_modal_damping(s, zeta)
@@ -223,7 +231,7 @@ def _lowest(problem: _Problem, modes: int | None, limit: float | None, counted: 
 
 
 def _damped(
-    problem: _Problem, wanted: Wanted
+    problem: _Problem, wanted: Wanted, kept: Kept | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, int | None, str]:
     """Eigenvalues, vectors of modal mass 1, rigid ones, backward errors, number of modes there are, and the method in words."""
     # Most models at standstill need none of these solvers.
@@ -232,6 +240,15 @@ def _damped(
 
     assert problem.forms is not None
     assert problem.inertial is not None
+
+    def lowest(count: int | None, below: float | None, counted: bool = True) -> UndampedModes:
+        if kept is None:
+            return _lowest(problem, count, below, counted)
+        request = (problem.dofs, count, below, counted)
+        if request not in kept:
+            kept[request] = _lowest(problem, count, below, counted)
+        return kept[request]
+
     modes, coordinates = damped_group(
         DampedProblem(
             M=problem.M,
@@ -241,7 +258,7 @@ def _damped(
             inertial=problem.inertial,
             strain=problem.S,
             make_forms=problem.forms,
-            lowest=lambda count, below, counted=True: _lowest(problem, count, below, counted),
+            lowest=lowest,
         ),
         wanted.modes,
         wanted.limit,

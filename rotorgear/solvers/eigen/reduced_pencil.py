@@ -92,9 +92,7 @@ def eigen(pencil: Pencil, shift: float, smallest: float, count: int) -> Eigen:
         PD = P @ (D + M)
         PM = P @ M
         T = np.block([[-PD, -PM], [np.eye(r) - PD, -PM]])
-        real_part, imaginary_part, left, right, failed = dgeev(
-            T, lwork=int(dgeev_lwork(2 * r)[0]), overwrite_a=True
-        )
+        real_part, imaginary_part, left, right, failed = dgeev(T, lwork=int(dgeev_lwork(2 * r)[0]), overwrite_a=True)
     if failed:
         raise ConvergenceError("The eigenvalues of a reduced problem did not converge.")
     mu = real_part + 1j * imaginary_part
@@ -121,7 +119,7 @@ def eigen(pencil: Pencil, shift: float, smallest: float, count: int) -> Eigen:
 
 
 def _of_pairs(V: np.ndarray, mu: np.ndarray, chosen: np.ndarray) -> np.ndarray:
-    """Complex vectors from LAPACK's real ones: of a pair, the column of Im mu > 0 holds the real part, the next one the imaginary."""
+    """Complex vectors from LAPACK's real ones: the column of Im mu > 0 of a pair is the real part, the next one the imaginary."""
     upper = mu[chosen].imag > 0.0
     first = np.where(upper, chosen, chosen - 1)
     return np.asarray(V[:, first] + 1j * np.where(upper, 1.0, -1.0) * V[:, first + 1])

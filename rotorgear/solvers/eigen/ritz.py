@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
-from scipy.linalg.lapack import dgejsv
+from scipy.linalg.lapack import dgejsv, dtrtri
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.shift_invert import Modes, ShiftInvert
@@ -36,7 +36,8 @@ def orthonormalised(M: sp.csr_array, V: np.ndarray) -> np.ndarray:
         raise ConvergenceError(
             "Inertias of the model are too many decades apart: those of some motions are rounding of the largest."
         ) from None
-    result: np.ndarray = V @ (scale[:, None] * la.solve_triangular(triangle, np.eye(scale.size)))
+    inverse, _ = dtrtri(triangle)
+    result: np.ndarray = V @ (scale[:, None] * inverse)
     return result
 
 
