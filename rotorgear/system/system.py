@@ -211,7 +211,7 @@ class System:
     def positions(self) -> np.ndarray:
         """x, y, z of all nodes in m, shape (p, 3); shafts without positions lie at x = y = 0."""
         axes = {name: shaft.position or (0.0, 0.0) for name, shaft in self.model.shafts.items()}
-        return np.array([[*axes[shaft], z] for shaft, z in zip(self.nodes.shaft, self.nodes.z, strict=True)])
+        return np.column_stack([np.array([axes[shaft] for shaft in self.nodes.shaft]).reshape(-1, 2), self.nodes.z])
 
     @cached_property
     def _circulates(self) -> bool:

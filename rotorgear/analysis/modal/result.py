@@ -30,7 +30,7 @@ def modal_result(
     """Return the result of the modes `found` with all displacements q (a, m); `wanted` is modes and highest frequency in Hz."""
     asked, fmax = wanted
     nodes, displaced = shapes_at_stations(system, q)
-    everywhere = _turned(displaced.astype(complex))
+    everywhere = _turned(displaced)
     shapes = everywhere[: len(system.nodes)]
     energies = mode_energies(system, speed or 0.0, q, found.rigid)
     whirl = whirl_of(system, shapes, speed or 0.0)
@@ -67,19 +67,21 @@ def modal_result(
 
 
 def _turned(shapes: np.ndarray) -> np.ndarray:
-    """Turn each mode's phase so that its largest displacement is real and positive.
+    """Complex shapes, each mode's phase turned so that its largest displacement is real and positive.
 
     An eigenvector has no phase of its own; without this choice the same mode would look different from run to run.
     """
     if shapes.shape[2] == 0:
-        return shapes
+        return shapes.astype(complex)
     mode = np.arange(shapes.shape[2])
-    everything = shapes.reshape(-1, len(mode))
     rows = shapes[:, :3].reshape(-1, len(mode))
-    size = np.abs(everything)
-    along = np.abs(rows)
+    size = np.abs(shapes)
+    along = size[:, :3].reshape(-1, len(mode))
+    peak = rows[along.argmax(axis=0), mode]
     # A mode that only tilts or twists has no displacement to speak of: its largest rotation is turned then.
-    moving = along.max(axis=0, initial=0.0) > 1e-9 * size.max(axis=0, initial=0.0)
-    peak = np.where(moving, rows[along.argmax(axis=0), mode], everything[size.argmax(axis=0), mode])
-    shapes *= np.where(peak != 0.0, np.conj(peak) / np.where(peak != 0.0, np.abs(peak), 1.0), 1.0)
-    return shapes
+    still = np.abs(peak) <= 1e-9 * size.max(axis=(0, 1), initial=0.0)
+    if np.any(still):
+        everything = shapes[:, :, still].reshape(-1, np.count_nonzero(still))
+        peak[still] = everything[np.abs(everything).argmax(axis=0), np.arange(everything.shape[1])]
+    turn = np.where(peak != 0.0, np.conj(peak) / np.where(peak != 0.0, np.abs(peak), 1.0), 1.0)
+    return (shapes * turn).astype(complex)

@@ -129,14 +129,15 @@ def lowest_modes(
             gap = (_gap_above(pairs, keep) if counted else _UNCOUNTED) if keep <= pairs.sure else None
             if gap is not None:
                 sturm_shift, expected = gap
-                errors = backward_errors(operator.mass, operator.stiffness, pairs.values, pairs.vectors)
+                V = pairs.vectors[:, :keep]
+                errors = backward_errors(operator.mass, operator.stiffness, pairs.values[:keep], V)
                 sturm_count = count_below(operator.M, operator.K, sturm_shift) if counted else expected
                 operator.factorisations += counted
                 modes = UndampedModes(
                     eigenvalues=pairs.values[:keep],
-                    vectors=pairs.vectors[:, :keep],
+                    vectors=V,
                     rigid_count=min(pairs.rigid, keep),
-                    backward_error=errors[:keep],
+                    backward_error=errors,
                     available=pairs.finite,
                     sturm_shift=sturm_shift,
                     sturm_count=sturm_count,
