@@ -168,9 +168,9 @@ def _compressed(gram: np.ndarray, shortest: float) -> tuple[np.ndarray, np.ndarr
     R = np.zeros((roots.size, gram.shape[0]))
     Q[kept] = vectors / roots / scale[:, None]
     R[:, kept] = roots[:, None] * vectors.T * scale
-    return Q, R, _spread(roots) if roots.size else 0.0
+    return Q, R, _spread(roots)
 
 
 def _spread(roots: np.ndarray) -> float:
-    """Log of the ratio of the largest of ascending roots (m,) to the least."""
-    return math.log(roots[-1] / roots[0])
+    """Log of the ratio of the largest of ascending roots (m,) to the least; 0 of none."""
+    return math.log(roots[-1] / roots[0]) if roots.size else 0.0
