@@ -7,8 +7,7 @@ import io
 import statistics
 import time
 import warnings
-from collections.abc import Callable
-from typing import TypeVar
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -16,22 +15,29 @@ warnings.filterwarnings("ignore")
 with contextlib.redirect_stdout(io.StringIO()):  # a library of its prints a notice
     import ross
 
-T = TypeVar("T")
 AGREEMENT = 1e-5
+_TURN = 0.1  # s
 
 
-def median_time(run: Callable[[float], T], speed: float, repetitions: int) -> tuple[float, T]:
-    """Median processor time in s of run(speed) after a first one that is not counted, and the result at `speed` itself.
+def median_times(runs: Sequence[Callable[[float], object]], speed: float, turns: int) -> list[float]:
+    """Median processor times in s of each run(speed) after a first one that is not counted.
 
-    The speed changes a little from one repetition to the next, so that nothing can be remembered.
+    They take turns, so that a busy machine is as busy for all of them; a quick one is repeated for a tenth of a second in each.
+    The speed changes a little from one to the next, so that nothing can be remembered.
     """
-    result = run(speed)
-    times = []
-    for k in range(repetitions):
-        start = time.process_time()
-        run(speed * (1.0 + 1e-6 * (k + 1)))
-        times.append(time.process_time() - start)
-    return statistics.median(times), result
+    times: list[list[float]] = [[] for _ in runs]
+    for run in runs:
+        run(speed)
+    count = 0
+    for _ in range(turns):
+        for run, own in zip(runs, times, strict=True):
+            before = len(own)
+            while sum(own[before:]) < _TURN:
+                count += 1
+                start = time.process_time()
+                run(speed * (1.0 + 1e-6 * count))
+                own.append(time.process_time() - start)
+    return [statistics.median(own) for own in times]
 
 
 def print_frequencies(name: str, theirs: np.ndarray, ours: np.ndarray) -> float:
@@ -50,4 +56,4 @@ def verdict(worst: float, ratio: float, target: float) -> int:
     return 0 if good else 1
 
 
-__all__ = ["AGREEMENT", "median_time", "print_frequencies", "ross", "verdict"]
+__all__ = ["AGREEMENT", "median_times", "print_frequencies", "ross", "verdict"]

@@ -13,12 +13,13 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.system.system import System
-from validation.peers.comparison import median_time, print_frequencies, ross, verdict
+from validation.peers.comparison import median_times, print_frequencies, ross, verdict
 
 FILE = Path(__file__).resolve().parents[2] / "models" / "geared_pair.toml"
 REFINE = 9
 SPEED = 1500 * np.pi / 30
 MODES = 13
+TURNS = 9
 TARGET = 10.0
 FIRST = ((0.1, 0.3), (4.24, 0.3), (1.16, 0.22), (0.3, 0.22))  # length and diameter of the segments in m
 SECOND = ((0.3, 0.15), (5.0, 0.15), (0.1, 0.15))
@@ -70,12 +71,20 @@ def main() -> int:
     rotor = ross_rotor()
     model = rg.load(FILE)
     system = System(model, REFINE)
-    solve, theirs = median_time(lambda speed: rotor.run_modal(speed, num_modes=2 * MODES), SPEED, 9)
-    whole, _ = median_time(lambda speed: ross_rotor().run_modal(speed, num_modes=2 * MODES), SPEED, 5)
-    plain, ours = median_time(lambda speed: own_modes(system, speed, False), SPEED, 25)
-    full, _ = median_time(lambda speed: own_modes(system, speed, True), SPEED, 25)
-    assembled, _ = median_time(lambda speed: own_modes(System(model, REFINE), speed, True), SPEED, 15)
-    total, _ = median_time(lambda speed: own_modes(System(rg.load(FILE), REFINE), speed, True), SPEED, 15)
+    solve, whole, plain, full, assembled, total = median_times(
+        (
+            lambda speed: rotor.run_modal(speed, num_modes=2 * MODES),
+            lambda speed: ross_rotor().run_modal(speed, num_modes=2 * MODES),
+            lambda speed: own_modes(system, speed, False),
+            lambda speed: own_modes(system, speed, True),
+            lambda speed: own_modes(System(model, REFINE), speed, True),
+            lambda speed: own_modes(System(rg.load(FILE), REFINE), speed, True),
+        ),
+        SPEED,
+        TURNS,
+    )
+    theirs = rotor.run_modal(SPEED, num_modes=2 * MODES)
+    ours = own_modes(system, SPEED, False)
     others = np.sort(theirs.wd) / (2 * np.pi)
     others = others[others > 1e-2][:MODES]  # should it list a rigid mode
     worst = print_frequencies("ROSS", others, np.sort(ours.frequency_hz[~ours.rigid])[:MODES])

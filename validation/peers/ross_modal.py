@@ -12,12 +12,13 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.system.system import System
-from validation.peers.comparison import median_time, print_frequencies, ross, verdict
+from validation.peers.comparison import median_times, print_frequencies, ross, verdict
 
 ELEMENTS = 200
 LENGTH = 1.5
 SPEED = 100.0
 MODES = 22
+TURNS = 5
 TARGET = 40.0
 DISKS = ((67, 0.28), (133, 0.35))  # node and outer diameter in m
 STIFFNESS = {"x": 1e6, "y": 0.8e6}
@@ -64,12 +65,20 @@ def main() -> int:
     rotor = ross_rotor()
     model = own_model()
     system = System(model, 1)
-    solve, theirs = median_time(lambda speed: rotor.run_modal(speed, num_modes=2 * MODES), SPEED, 7)
-    whole, _ = median_time(lambda speed: ross_rotor().run_modal(speed, num_modes=2 * MODES), SPEED, 5)
-    plain, ours = median_time(lambda speed: own_modes(system, speed, False), SPEED, 15)
-    full, _ = median_time(lambda speed: own_modes(system, speed, True), SPEED, 15)
-    assembled, _ = median_time(lambda speed: own_modes(System(model, 1), speed, True), SPEED, 15)
-    total, _ = median_time(lambda speed: own_modes(System(own_model(), 1), speed, True), SPEED, 15)
+    solve, whole, plain, full, assembled, total = median_times(
+        (
+            lambda speed: rotor.run_modal(speed, num_modes=2 * MODES),
+            lambda speed: ross_rotor().run_modal(speed, num_modes=2 * MODES),
+            lambda speed: own_modes(system, speed, False),
+            lambda speed: own_modes(system, speed, True),
+            lambda speed: own_modes(System(model, 1), speed, True),
+            lambda speed: own_modes(System(own_model(), 1), speed, True),
+        ),
+        SPEED,
+        TURNS,
+    )
+    theirs = rotor.run_modal(SPEED, num_modes=2 * MODES)
+    ours = own_modes(system, SPEED, False)
     elastic = np.sort(ours.natural_frequency_hz[~ours.rigid])
     others = np.sort(theirs.wn) / (2 * np.pi)
     others = others[others > 1e-2][:MODES]  # should it list a rigid mode
