@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.fuzz.runner import MODELS, mutant, run_seed
-from tests.fuzz.verbs import QUICK
+from tests.fuzz.verbs import ALL, QUICK, WEIGHTS, drawn
 from tests.fuzz.write_toml import toml_text
 
 
@@ -30,3 +30,10 @@ def test_a_model_is_written_as_it_was_read() -> None:
 def test_the_same_seed_gives_the_same_mutant() -> None:
     seed = random.Random(1).randrange(10**6)
     assert mutant(seed) == mutant(seed)
+
+
+def test_a_seed_draws_the_quick_verbs_and_one_more() -> None:
+    rows = [drawn(seed) for seed in range(400)]
+    assert all(len(row) == len(QUICK) + 1 and row.items() >= QUICK.items() for row in rows)
+    assert set(WEIGHTS) == set(ALL) - set(QUICK)
+    assert all(drawn(seed).keys() == row.keys() for seed, row in enumerate(rows[:20]))
