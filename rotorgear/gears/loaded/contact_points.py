@@ -27,9 +27,12 @@ _SLIVER = 0.03
 # How much finer they are there: 0 for equal slices, 1 for those of a half circle. Against three times as many slices, ripples of
 # six helical pairs err by half to a ninth of what equal slices of one length did, whose number changed with u.
 _GRADING = 0.4
-# A corner contact beyond either end of a contact line is cut into so many slices, whatever its length: with two, stiffness and
-# transmission error depend on how far corners are followed (1 % and more at light loads), with six they do not (0.03 %).
-_CORNER_SLICES = 6
+# Corner contacts are followed up to this share of the base pitch beyond either end of a contact line. That stretch is cut into so
+# many slices, finer towards the line, where light loads touch. Their borders are the same whatever the load and wherever the face
+# ends, so that nothing depends on how far corners are followed: six slices of the stretch that touches moved harmonics by 3 nm.
+MOST_BEYOND = 0.45
+_CORNER_SLICES = 14
+_CORNER_GRADING = 1.5
 
 
 @dataclass(frozen=True)
@@ -100,20 +103,9 @@ def contact_slices(
     tangent = float(np.tan(line.base_helix_angle))
     half = 0.5 * width
 
-    # Zone 0: the gear's tip corner before the start of contact; 1: the line of action; 2: the pinion's corner after its end.
-    first = line.start - beyond[0]
-    last = line.end + beyond[1]
-    zones = [(first, line.start), (line.start, line.end), (line.end, last)]
-    pieces: list[tuple[int, int, int, np.ndarray, float]] = []
-    for p, u in enumerate(positions):
-        low = (first - tangent * half - line.pitch_point) / line.base_pitch - u
-        high = (last + tangent * half - line.pitch_point) / line.base_pitch - u
-        for k in range(int(np.ceil(low)), int(np.floor(high)) + 1):
-            middle = line.pitch_point + (u + k) * line.base_pitch
-            for number, ends in enumerate(zones):
-                for z, length in _cut(middle, tangent, ends, half, slices, stations, closed=number == 1):
-                    pieces.append((p, k, number, z, length))
-    weight = np.array([1.0]) if (tangent == 0.0 and slices == 1) or stations else _legendre()[1]
+    whole = (tangent == 0.0 and slices == 1) or stations
+    along, weight = (np.array([0.0]), np.array([1.0])) if whole else _legendre()
+    pieces = _pieces(line, positions, half, slices, beyond, along, stations=stations)
     position, pair, zone = (np.array([piece[i] for piece in pieces], int) for i in range(3))
     z = np.array([piece[3] for piece in pieces]).reshape(len(pieces), len(weight))
 
@@ -140,6 +132,43 @@ def contact_slices(
     )
 
 
+def _pieces(
+    line: LineOfAction,
+    positions: np.ndarray,
+    half: float,
+    slices: int,
+    beyond: tuple[float, float],
+    along: np.ndarray,
+    *,
+    stations: bool,
+) -> list[tuple[int, int, int, np.ndarray, float]]:
+    """Number of position, pair and zone, places along the face and length of each slice.
+
+    Zone 0: the gear's tip corner before the start of contact; 1: the line of action; 2: the pinion's corner after its end.
+    """
+    tangent = float(np.tan(line.base_helix_angle))
+    first = line.start - beyond[0]
+    last = line.end + beyond[1]
+    zones = [(first, line.start), (line.start, line.end), (line.end, last)]
+    away = _corner_borders(MOST_BEYOND * line.base_pitch, 4.0 * tangent * half / slices)
+    borders = {0: line.start - away[::-1], 2: line.end + away}
+    pieces: list[tuple[int, int, int, np.ndarray, float]] = []
+    for p, u in enumerate(positions):
+        low = (first - tangent * half - line.pitch_point) / line.base_pitch - u
+        high = (last + tangent * half - line.pitch_point) / line.base_pitch - u
+        for k in range(int(np.ceil(low)), int(np.floor(high)) + 1):
+            middle = line.pitch_point + (u + k) * line.base_pitch
+            for number, ends in enumerate(zones):
+                if tangent == 0.0 or stations:
+                    cut = _stations(middle, tangent, ends, half, slices, along, closed=number == 1)
+                elif number == 1:
+                    cut = _line_pieces(middle, tangent, ends, half, slices)
+                else:
+                    cut = _corner_pieces(middle, tangent, ends, half, slices, borders[number])
+                pieces += [(p, k, number, z, length) for z, length in cut]
+    return pieces
+
+
 @cache
 def _legendre() -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Legendre places on -1 ... 1 along a slice, and their shares of it."""
@@ -147,33 +176,74 @@ def _legendre() -> tuple[np.ndarray, np.ndarray]:
     return x, 0.5 * w
 
 
-def _cut(
-    middle: float, tangent: float, ends: tuple[float, float], half: float, slices: int, stations: bool, *, closed: bool
+def _stations(
+    middle: float,
+    tangent: float,
+    ends: tuple[float, float],
+    half: float,
+    slices: int,
+    along: np.ndarray,
+    *,
+    closed: bool,
 ) -> list[tuple[np.ndarray, float]]:
-    """Places and lengths of the slices of one contact line inside a zone of the line of action."""
+    """Places and lengths of slices at fixed places of the face that lie inside a zone of the line of action."""
     step = 2.0 * half / slices
-    if tangent == 0.0 or stations:
-        z = -half + step * (np.arange(slices) + 0.5)
-        # The ends of the line of action belong to it, not to the corners: no slice is counted twice.
-        roll = middle + z * tangent
-        inside = (roll >= ends[0]) & (roll <= ends[1]) if closed else (roll > ends[0]) & (roll < ends[1])
-        places = np.array([0.0]) if slices == 1 or stations else _legendre()[0]
-        return [(centre + 0.5 * step * places, step) for centre in z[inside]]
+    z = -half + step * (np.arange(slices) + 0.5)
+    # The ends of the line of action belong to it, not to the corners: no slice is counted twice.
+    roll = middle + z * tangent
+    inside = (roll >= ends[0]) & (roll <= ends[1]) if closed else (roll > ends[0]) & (roll < ends[1])
+    return [(centre + 0.5 * step * along, step) for centre in z[inside]]
+
+
+def _line_pieces(
+    middle: float, tangent: float, ends: tuple[float, float], half: float, slices: int
+) -> list[tuple[np.ndarray, float]]:
+    """Places and lengths of the slices of an oblique contact line on the line of action, as many as the longest line has."""
+    step = 2.0 * half / slices
     low = max(-half, (ends[0] - middle) / tangent)
     high = min(half, (ends[1] - middle) / tangent)
     length = high - low
     if length < _SLIVER * step:
         return []
-    if closed:
-        # As many as the longest line has, whose slices are no shorter than a step.
-        longest = min(2.0 * half, (ends[1] - ends[0]) / tangent)
-        places = np.linspace(-1.0, 1.0, max(1, int(longest / step + 1e-9)) + 1)
-        places = (1.0 - _GRADING) * places + _GRADING * np.sin(0.5 * np.pi * places)
-    else:
-        places = np.linspace(-1.0, 1.0, _CORNER_SLICES + 1)
-    borders = 0.5 * (low + high) + 0.5 * length * places
+    longest = min(2.0 * half, (ends[1] - ends[0]) / tangent)  # its slices are no shorter than a step
+    places = np.linspace(-1.0, 1.0, max(1, int(longest / step + 1e-9)) + 1)
+    places = (1.0 - _GRADING) * places + _GRADING * np.sin(0.5 * np.pi * places)
+    return _between(0.5 * (low + high) + 0.5 * length * places, 0.0)
+
+
+def _corner_borders(reach: float, longest: float) -> np.ndarray:
+    """Rising borders from 0 to `reach` on the line of action, no farther than `longest` apart where that is not 0 (m)."""
+    borders = reach * (np.arange(_CORNER_SLICES + 1) / _CORNER_SLICES) ** _CORNER_GRADING
+    if not longest:
+        return borders
+    parts = np.ceil(np.diff(borders) / longest).astype(int)
+    pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(borders, borders[1:], parts, strict=False)]
+    return np.append(np.concatenate(pieces), reach)
+
+
+def _corner_pieces(
+    middle: float, tangent: float, ends: tuple[float, float], half: float, slices: int, borders: np.ndarray
+) -> list[tuple[np.ndarray, float]]:
+    """Places and lengths of the slices of an oblique corner contact between borders on the line of action.
+
+    Those that begin farther out than corners are followed, outside `ends`, are left out.
+    """
+    followed = (borders[1:] > ends[0]) & (borders[:-1] < ends[1])
+    chosen = np.flatnonzero(followed)
+    if not len(chosen):
+        return []
+    places = np.clip((borders[chosen[0] : chosen[-1] + 2] - middle) / tangent, -half, half)
+    return _between(places, _SLIVER * 2.0 * half / slices)
+
+
+def _between(borders: np.ndarray, least: float) -> list[tuple[np.ndarray, float]]:
+    """Places and lengths of the slices between rising borders that are longer than `least`."""
     along = _legendre()[0]
-    return [(0.5 * (first + last) + 0.5 * (last - first) * along, last - first) for first, last in pairwise(borders)]
+    return [
+        (0.5 * (first + last) + 0.5 * (last - first) * along, last - first)
+        for first, last in pairwise(borders)
+        if last - first > least
+    ]
 
 
 @dataclass(frozen=True)

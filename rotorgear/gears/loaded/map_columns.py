@@ -13,7 +13,6 @@ import numpy as np
 from rotorgear.gears.loaded.contact_points import Slices
 from rotorgear.gears.loaded.loaded_contact import ContactState, PositionContact, solve_contact, solve_many
 from rotorgear.gears.loaded.settled_contacts import Settled
-from rotorgear.gears.stiffness.cycle_curve import CycleCurve
 
 # Change of the forces over the load in the last round: 1e-7 of the approach is left at most, and loads and positions lie farther
 # apart than that.
@@ -100,13 +99,6 @@ def _row(
         at = load
         found.append((state.approach, 1.0 / state.tangent, float(state.force @ place[near])))
     return found[::-1]
-
-
-def between(column: Column, known: np.ndarray, positions: np.ndarray) -> Column:
-    """A smooth column known at some positions of a base pitch, by periodic cubics at others."""
-    values = np.stack([column.approach, column.slope, column.moment], axis=1)
-    found = CycleCurve(known, values, 1.0, np.zeros(len(known), bool)).at(positions)
-    return Column(*found.T)
 
 
 def faded(columns: list[Column], below: Column, factors: list[float]) -> list[Column]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotorgear.gears.loaded.contact_points import Slices, contact_slices
+from rotorgear.gears.loaded.contact_points import MOST_BEYOND, Slices, contact_slices
 from rotorgear.gears.loaded.loaded_contact import (
     ContactState,
     PositionContact,
@@ -21,8 +21,6 @@ from rotorgear.gears.loaded.settled_contacts import PASSES, settled
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
 from rotorgear.progress import Progress, silent
 
-# Corner contacts are followed up to this share of the base pitch.
-_MOST_BEYOND = 0.45
 # They are followed a little farther than they touch, so that the next pass does not ask for more.
 _MORE_BEYOND = 1.05
 # Passes for the reach of corners.
@@ -250,7 +248,7 @@ def _followed(
 
 def beyond_line(problem: ContactProblem, approach: float) -> tuple[float, float]:
     """How far corners can touch for an approach along the line of action: there the gap has become as large."""
-    grid = np.linspace(0.0, _MOST_BEYOND * problem.line.base_pitch, 401)
+    grid = np.linspace(0.0, MOST_BEYOND * problem.line.base_pitch, 401)
 
     def reach(gear: int) -> float:
         wide = problem.line.corner(gear, grid)[0] >= approach
@@ -329,13 +327,13 @@ def _notes(
             f"a contact pressure of {1e-9 * pressure.max():.2g} GPa is beyond any gear steel; the result is elastic"
         )
     # Loaded slices whose kinematic gap is near that of the last place where corners were looked for.
-    most = _MOST_BEYOND * problem.line.base_pitch
+    most = MOST_BEYOND * problem.line.base_pitch
     cosine = np.cos(problem.line.base_helix_angle)
     widest = min(float(problem.line.corner(gear, np.array([0.9 * most]))[0][0]) for gear in (0, 1)) * cosine
     far = (slices.gap @ slices.weight >= widest) & (force > 0.0)
     if max(beyond) >= most * (1.0 - 1e-9) and far.any():
         notes.append(
-            f"tip corners were followed to {_MOST_BEYOND:g} base pitches beyond the line of action only; at this load they may "
+            f"tip corners were followed to {MOST_BEYOND:g} base pitches beyond the line of action only; at this load they may "
             "touch farther out"
         )
     if np.any(slices.corner & (force > 0.0)):

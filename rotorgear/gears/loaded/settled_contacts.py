@@ -18,9 +18,13 @@ from rotorgear.gears.loaded.slice_compliance import SliceCompliance, slice_compl
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
 from rotorgear.progress import Progress, silent
 
-# In space each patch stays wider than its Hertz strip by this factor; all are wider than this in normal modules.
+# In space each patch stays wider than its Hertz strip by this factor; all are wider than these in normal modules. Lines of spur
+# teeth pass a tip all at once, and patches as narrow as that are as good as plane elements. Of oblique lines a small part is near
+# a tip, where elements do not resolve narrower patches: with these the compliance is the same for all loads whose strips are
+# narrower than 0.3 modules. (23/61, 12 deg, against twice as fine elements: largest pressure -1 %, with 0.08 +7 %.)
 _STRIP_MARGIN = 1.3
 _LEAST_PATCH = 0.08
+_LEAST_OBLIQUE_PATCH = 0.2
 # A patch that has to grow becomes so much wider than its strip asks for.
 _WIDENING = 1.05
 # In the plane a slice is a tooth pair's whole line. Its own compliance is seven times K / l and more, so that C + dg/dF stays
@@ -74,7 +78,7 @@ def settled(
     numbers = [slices.at(i) for i in range(int(slices.position[-1]) + 1)]
     count = len(numbers)
     cosine = float(np.cos(problem.line.base_helix_angle))
-    patch = np.full(len(slices), _LEAST_PATCH) if known is None else known.patch.copy()
+    patch = _least_patches(problem, slices) if known is None else known.patch.copy()
     contacts: dict[int, PositionContact] = {}
     start: dict[int, np.ndarray] = {}
     if known is None:
@@ -104,12 +108,24 @@ def settled(
     return Settled(tuple(contacts[i] for i in range(count)), tuple(states[i] for i in range(count)), patch)
 
 
+def same_patches(first: Settled, second: Settled) -> bool:
+    """Whether both have the same compliances, the second having grown from the first or the other way round."""
+    both = zip(first.contacts, second.contacts, strict=True)
+    return all(one.compliance is other.compliance for one, other in both)
+
+
 def with_least_patches(problem: ContactProblem, slices: Slices, gap: np.ndarray, known: Settled) -> Settled:
     """Known contacts with the narrowest patches, as smaller loads begin with: only rows that change are spread anew."""
-    patch = np.full(len(slices), _LEAST_PATCH)
+    patch = _least_patches(problem, slices)
     count = len(known.contacts)
     contacts = _with_patches(problem, slices, gap, range(count), patch, dict(enumerate(known.contacts)))
     return Settled(tuple(contacts[i] for i in range(count)), known.states, patch)
+
+
+def _least_patches(problem: ContactProblem, slices: Slices) -> np.ndarray:
+    """Least half-widths (n,) in normal modules that patches begin with."""
+    oblique = not problem.plane and problem.line.base_helix_angle > 0.0
+    return np.full(len(slices), _LEAST_OBLIQUE_PATCH if oblique else _LEAST_PATCH)
 
 
 def _with_patches(

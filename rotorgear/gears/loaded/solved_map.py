@@ -1,7 +1,8 @@
 """The contact map of a tooth pair: its loads, the contact solved for all of them, and the periods that pitch errors make differ.
 
-Slices and compliances of a position serve several loads. In space they serve those between two bounds, since patches and reach of
-corners follow the load; what the change of patches moves at such a bound fades away towards the next one.
+Slices and compliances of a position serve several loads. In space those of a spur pair serve the loads between two bounds, since
+patches follow the load; what their change moves at such a bound fades away towards the next one. Those of a helical pair serve
+all loads: its patches grow only where strips are wider, and slices of its corners are the same under all loads.
 
 In the plane positions are even and dense, for solutions are cheap. In space those of a spur pair are chosen where pairs come and
 go and where the curve of the working load needs them; those of a helical pair, whose curves are smooth, are even. Either is read
@@ -21,13 +22,14 @@ import numpy as np
 from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.contact_map import ContactMap
 from rotorgear.gears.loaded.contact_points import Slices, contact_slices
-from rotorgear.gears.loaded.map_columns import Column, between, faded, map_columns, with_start
+from rotorgear.gears.loaded.map_columns import Column, faded, map_columns, with_start
 from rotorgear.gears.loaded.map_positions import MapPositions, even_positions, map_positions
 from rotorgear.gears.loaded.map_store import kept_map
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, beyond_line, corner_reach, mesh_cycle
 from rotorgear.gears.loaded.settled_contacts import (
     Settled,
     WideContactError,
+    same_patches,
     settled,
     with_least_patches,
 )
@@ -44,14 +46,15 @@ _WITH_ODD_TEETH = 96
 # Loads as multiples of the working load: resonances with contact loss reach four to five times it. In the plane pairs come and go
 # suddenly with the load too, and solutions are cheap.
 _IN_PLANE = ((0.003, 0.01, *(0.025 * np.arange(1, 81)), *(2.0 + 0.05 * np.arange(1, 61))),)
-# In space the largest load of each group decides patches and corners, so that there the contact is as `rotorgear mesh` solves it
-# at that load; the working load is such a one. Patches of three times the load would move the approach by 0.2 % and its
-# harmonics by 1.4 %; with these groups 0.4 % are left. Where crowned or misaligned flanks carry, slices that touch change with
-# the load: between loads 1.5 apart the curve over u is up to 10 % off, between these 1 %.
+# In space the largest load of each group decides the patches of a spur pair, so that there the contact is as `rotorgear mesh`
+# solves it at that load; the working load is such a one. Patches of three times the load would move the approach by 0.2 % and its
+# harmonics by 1.4 %; with these groups 0.4 % are left. Helices and branches need not share alike: some carry a third of the
+# working load, others twice as much. Where flanks are crowned or misaligned, slices that touch change with the load: between
+# loads 1.5 apart the curve over u is up to 10 % off, 1.2 apart 3 %, 1.1 apart 0.1 %.
 _UP_TO_WORKING = (
-    (0.04, 0.05, 0.06, 0.07, 0.09, 0.11, 0.13, 0.16, 0.19, 0.23, 0.28),
-    (0.33, 0.4, 0.48, 0.58),
-    (0.7, 0.83, 1.0),
+    (0.04, 0.05, 0.06, 0.07, 0.09, 0.11, 0.13, 0.16, 0.19, 0.23, 0.255, 0.28),
+    (0.305, 0.33, 0.365, 0.4, 0.44, 0.48, 0.53, 0.58),
+    (0.64, 0.7, 0.765, 0.83, 0.915, 1.0),
 )
 _IN_SPACE = (
     (0.01, 0.02, *_UP_TO_WORKING[0]),
@@ -60,13 +63,10 @@ _IN_SPACE = (
     (1.6, 1.9, 2.2),
     (2.7, 3.3, 4.1, 5.0),
 )
-# Linear analyses stay near the mean load of a contact, but helices and branches need not share alike: some carry a third of the
-# working load, others twice as much.
+# Linear analyses stay near the mean load of a contact.
 _NEAR_IN_SPACE = (*_UP_TO_WORKING, (1.12, 1.25, 1.4), (1.6, 1.8, 2.0))
-# Slices reach as far beyond the line of action as corners touch, and the six of a corner that is followed farther than it
-# touches move the approach by 0.03 %: groups up to so many times the working load have slices of their own. Above, where teeth
-# that parted meet again, smooth curves take every other position: at five times the load the approach of stage 1 of the
-# split-torque gearbox is within 0.03 %, and its harmonics within 0.6 % of the largest.
+# Slices of a spur pair reach as far beyond the line of action as corners touch: groups up to the working load, up to so many
+# times it and above have slices of their own.
 _MODERATE = 2.5
 # Positions that tell this reach. Where corners touch farther than was thought, they are followed a little farther still.
 _TELLING = 12
@@ -128,42 +128,43 @@ def solved_map(
     common = of_period.index(max(kinds, key=of_period.count))
     place = common + positions.position
     few = problem.plane and not problem.uncoupled
-    smooth = len(kinds) == 1 and positions.event is not None and not positions.event.any()
     solved: list[list[Column]] = [[] for _ in kinds]
+    below: dict[int, Settled] = {}
     touch: list[np.ndarray] = []
     notes: list[str] = []
     factors: list[float] = []
-    families = _families(groups)
+    oblique = not problem.plane and problem.line.base_helix_angle > 0.0
+    families = [groups] if oblique else _families(groups)
     for number, family in enumerate(families):
         told = part_of(progress, number / len(families), (number + 1) / len(families))
         tops = [load * group[-1] for group in family]
         try:
-            if not factors:
+            if not factors and positions.cycle is not None:
+                notes += positions.cycle.warnings
+            if not factors and not oblique:
                 known = None if common or family[-1][-1] != 1.0 else positions.cycle
                 cycle = known or mesh_cycle(problem, tops[-1] * _cosine(problem), place, told)
                 notes += cycle.warnings
                 slices = cycle.slices
                 contacts = _up_to(problem, cycle, tops)
             else:
-                sparse = smooth and family[0][-1] > _MODERATE
-                slices, contacts = _above(problem, tops, place[::2] if sparse else place, told)
+                slices, contacts = _above(problem, tops, place, told, needed=load)
         except WideContactError:
             if not factors:
                 raise
             contacts = []
         for group, commonest in zip(family, contacts, strict=False):
-            bound = factors[-1:]
-            loads_of = [load * f for f in (*bound, *group)]
             for kind, errors in enumerate(kinds):
-                found = _of_kind(problem, slices, commonest, loads_of[-1], of_period.index(errors) - common)
-                columns = map_columns(slices, found, loads_of, few=few)
-                if len(found.contacts) < len(place):
-                    columns = [between(column, place[::2], place) for column in columns]
+                found = _of_kind(problem, slices, commonest, load * group[-1], of_period.index(errors) - common)
+                # Where patches are those of the group below, its last load needs no second solution.
+                bound = factors[-1:] if factors and not same_patches(found, below[kind]) else []
+                columns = map_columns(slices, found, [load * f for f in (*bound, *group)], few=few)
                 if bound:
                     columns = faded(columns, solved[kind][-1], [*bound, *group])
-                else:
+                if not factors:
                     touch.append(np.array([contact.gap.min() for contact in found.contacts]))
                 solved[kind] += columns
+                below[kind] = found
                 told((kind + 1) / len(kinds), f"teeth {kind + 1} of {len(kinds)}")
             factors += group
         if len(contacts) < len(family):
@@ -228,14 +229,14 @@ def _up_to(problem: ContactProblem, cycle: MeshCycle, loads: list[float]) -> lis
 
 
 def _above(
-    problem: ContactProblem, loads: list[float], place: np.ndarray, progress: Progress
+    problem: ContactProblem, loads: list[float], place: np.ndarray, progress: Progress, needed: float
 ) -> tuple[Slices, list[Settled]]:
     """Slices that reach as far as corners touch under the largest of rising normal forces (N), and contacts under each.
 
     Forces end before the first one under which the contact is no line.
 
     Raises:
-        WideContactError: there is none.
+        WideContactError: there is none, or it is no larger than `needed` (N).
     """
     cosine = _cosine(problem)
     reach = corner_reach(problem, loads[-1] * cosine, place[:: max(1, len(place) // _TELLING)])
@@ -249,7 +250,7 @@ def _above(
                 last = settled(problem, slices, gap, load, progress, last)
                 found.append(last)
             except WideContactError:
-                if not found:
+                if not found or load <= needed * (1.0 + 1e-9):
                     raise
                 break
         deflection = max(state.approach for state in found[-1].states) - float(gap.min())

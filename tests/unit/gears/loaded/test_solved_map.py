@@ -13,7 +13,6 @@ from rotorgear.gears.geometry.flank import FlankGrid, FlankModification
 from rotorgear.gears.loaded.contact_map import ContactMap
 from rotorgear.gears.loaded.loaded_contact import PositionContact, solve_contact, solve_many
 from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
-from rotorgear.gears.loaded.map_columns import Column, between
 from rotorgear.gears.loaded.map_store import kept_map
 from rotorgear.gears.loaded.solved_map import contact_map
 from rotorgear.gears.loaded.tooth_contact import contact_problem
@@ -164,16 +163,6 @@ def test_a_kept_map_is_read_again_and_another_key_is_not(tmp_path: Path, monkeyp
         file.write_bytes(b"broken")
     kept_map((pair(), 1.0, long), solve)
     assert len(calls) == 4
-
-
-def test_a_smooth_column_is_known_between_every_other_position() -> None:
-    u = np.arange(64) / 64
-    exact = Column(*(np.cos(2.0 * np.pi * (u - shift)) for shift in (0.0, 0.2, 0.5)))
-    half = Column(exact.approach[::2], exact.slope[::2], exact.moment[::2])
-    found = between(half, u[::2], u)
-    for name in ("approach", "slope", "moment"):
-        assert getattr(found, name)[::2] == pytest.approx(getattr(half, name), abs=1e-15)
-        assert getattr(found, name) == pytest.approx(getattr(exact, name), abs=2e-3)
 
 
 def test_periods_without_the_odd_tooth_are_solved_on_patches_of_their_own() -> None:
