@@ -13,7 +13,9 @@ from rotorgear.gears.geometry.flank import FlankModification
 from rotorgear.gears.loaded.contact_points import contact_slices
 from rotorgear.gears.loaded.loaded_contact import PositionContact, hertz_half_width, solve_contact
 from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
-from rotorgear.gears.loaded.tooth_contact import line_of_action
+from rotorgear.gears.loaded.mesh_cycle import corner_reach
+from rotorgear.gears.loaded.settled_contacts import settled
+from rotorgear.gears.loaded.tooth_contact import contact_problem, line_of_action
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.settings import ToothFe
 from tests.unit.gears.tooth_pairs import COARSE, LOAD, WIDTH, cycle, helical, pair, spur
@@ -88,6 +90,21 @@ def test_the_tangent_stiffness_over_a_cycle_is_the_slope_of_the_load() -> None:
     step = 1e-4
     low, middle, high = (cycle(spur(), load * (1.0 + s), 8) for s in (-step, 0.0, step))
     assert middle.tangent == pytest.approx(2.0 * step * load / (high.deflection - low.deflection), rel=1e-5)
+
+
+def test_how_far_corners_of_oblique_lines_are_followed_changes_nothing() -> None:
+    problem = contact_problem(helical())
+    positions = np.arange(4) / 4
+    reach = corner_reach(problem, LOAD, positions)
+    approach = []
+    for factor in (1.0, 1.5):
+        beyond = (factor * reach[0], factor * reach[1])
+        slices = contact_slices(problem.line, positions, problem.width, problem.slices, beyond)
+        found = settled(problem, slices, problem.gap(slices), LOAD)
+        force = np.concatenate([state.force for state in found.states])
+        assert np.any(force[slices.corner] > 0.0)
+        approach.append([state.approach for state in found.states])
+    assert approach[1] == pytest.approx(approach[0], rel=1e-9)
 
 
 @pytest.mark.parametrize("teeth", [spur(), helical()], ids=["spur", "helical"])

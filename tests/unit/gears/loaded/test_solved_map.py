@@ -39,8 +39,8 @@ def test_the_map_of_a_spur_pair_is_its_loaded_contact(factor: float) -> None:
 
 def test_the_map_of_a_helical_pair_is_its_loaded_contact() -> None:
     found = contact_map(helical(), LOAD, POSITIONS)
-    # At the working load it is solved in the same way; at others, patches and reach of corners are those of the next bound.
-    for factor, tolerance in ((1.0, 1e-9), (0.3, 3e-3), (1.5, 3e-3), (5.0, 1e-9)):
+    # Slices are the same under all loads; patches are where strips are narrower, between 1.4 and 2.2 times the load here.
+    for factor, tolerance in ((1.0, 1e-9), (0.3, 1e-6), (0.77, 1e-6), (1.5, 1e-3), (5.0, 1e-9)):
         exact = normal(helical(), found, factor)
         assert found.approach_at(factor * LOAD, found.position) == pytest.approx(exact, rel=tolerance)
 
