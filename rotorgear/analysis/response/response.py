@@ -11,6 +11,7 @@ import numpy as np
 from rotorgear.analysis.common.casings import serving
 from rotorgear.analysis.common.gear_bodies import body_notes
 from rotorgear.analysis.common.load_notes import load_notes
+from rotorgear.analysis.common.mesh_notes import map_errors
 from rotorgear.analysis.common.notes import rolling_notes
 from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
@@ -176,6 +177,7 @@ def response(
             *left,
             *weak,
             *setup.notes,
+            *_between_nodes(setup),
             *notes,
             *([begun] if begun else []),
             *body_notes(system),
@@ -191,6 +193,14 @@ def response(
         status=short or "success",
         method=f"{run.method} ({how}: {why})",
     )
+
+
+def _between_nodes(setup: Setup) -> list[str]:
+    """What the maps of loaded teeth leave out."""
+    if setup.joint is None:
+        return []
+    maps = zip(setup.lines.names, setup.joint.maps, setup.joint.face_maps, strict=True)
+    return list(map_errors((name, one or along) for name, one, along in maps))
 
 
 def _beyond_mesh(orders: list[Order], top: float, fastest: float) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
-from rotorgear.analysis.common.mesh_notes import unlike_teeth_left_out
+from rotorgear.analysis.common.mesh_notes import map_errors, unlike_teeth_left_out
 from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.motion.transient import TransientResult
@@ -51,6 +51,11 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
             notes.append(
                 f"meshes.{name}: the tilt of its gears along the face, which its teeth do not feel without tilt = true"
             )
+    for state in system.load.forces:
+        name = state.contact.mesh
+        along = law_of[f"meshes.{name}"].components == 2
+        of_teeth = system.load.face_map(state) if along else system.load.contact_map(state)
+        notes += [text for text in map_errors([(name, of_teeth)]) if text not in notes]
     notes += unlike_teeth_left_out(system)
     tilted = [name for name, mesh in meshes.items() if mesh.face_loads]
     follow = [name for name in tilted if law_of[f"meshes.{name}"].components == 2]

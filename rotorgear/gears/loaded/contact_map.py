@@ -39,6 +39,8 @@ class ContactMap:
         warnings: sentences.
         compliance: (p, l) d delta / dF in m/N at these loads; None: that of a monotone interpolation (PCHIP).
         moment: (p, l) M in N m of the forces about the middle of the face at these loads; None where nothing varies along it.
+        error: largest difference in m along the flank normal to contacts solved between its positions and loads; NaN without
+            any.
     """
 
     position: np.ndarray
@@ -48,6 +50,7 @@ class ContactMap:
     warnings: tuple[str, ...] = ()
     compliance: np.ndarray | None = None
     moment: np.ndarray | None = None
+    error: float = float("nan")
 
     @property
     def largest_load(self) -> float:

@@ -39,6 +39,7 @@ class FaceMap:
         approach: (k, p, l) in the middle of the face, in m, at these loads.
         moment: (k, p, l) about the middle of the face, in N m.
         warnings: sentences.
+        error: largest one of the maps at its tilts, in m.
     """
 
     tilt: np.ndarray
@@ -48,6 +49,7 @@ class FaceMap:
     approach: np.ndarray
     moment: np.ndarray
     warnings: tuple[str, ...] = ()
+    error: float = float("nan")
 
     @property
     def mirrored(self) -> FaceMap:
@@ -108,4 +110,5 @@ def face_map(teeth: ToothPair, load: float, asked: tuple[float, ...], given: flo
         approach=np.stack([one.approaches(loads) for one in maps]),
         moment=np.stack([PchipInterpolator(one.load, one.moment, axis=1)(loads) for one in maps]),
         warnings=tuple(dict.fromkeys(note for one in maps for note in one.warnings)),
+        error=max(one.error for one in maps),
     )

@@ -66,10 +66,11 @@ def _read(path: Path, text: str) -> ContactMap | None:
             }
             good = str(stored["key"]) == text and str(stored["checksum"]) == _checksum(values)
             periods = int(stored["periods"])
+            error = float(stored["error"])
             warnings = tuple(str(note) for note in stored["warnings"])
     except Exception:  # whatever is wrong with the file, the map is solved anew
         return None
-    return ContactMap(periods=periods, warnings=warnings, **values) if good else None
+    return ContactMap(periods=periods, warnings=warnings, error=error, **values) if good else None
 
 
 def _write(path: Path, text: str, found: ContactMap) -> None:
@@ -88,7 +89,7 @@ def _write(path: Path, text: str, found: ContactMap) -> None:
     store: Any = np.savez  # its stubs take names for options
     try:
         with scratch.open("wb") as file:
-            store(file, **values, **labels, periods=found.periods)
+            store(file, **values, **labels, periods=found.periods, error=found.error)
         os.replace(scratch, path)
     finally:
         scratch.unlink(missing_ok=True)

@@ -14,6 +14,7 @@ With pitch errors, period n has the pairs whose teeth are n ahead. Periods in wh
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
 
@@ -23,6 +24,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.gears.loaded.contact_map import ContactMap
 from rotorgear.gears.loaded.contact_points import Slices, contact_slices
 from rotorgear.gears.loaded.map_columns import Column, faded, map_columns, with_start
+from rotorgear.gears.loaded.map_error import map_error
 from rotorgear.gears.loaded.map_positions import MapPositions, even_positions, map_positions
 from rotorgear.gears.loaded.map_store import kept_map
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle, beyond_line, corner_reach, mesh_cycle
@@ -95,21 +97,26 @@ def contact_map(teeth: ToothPair, load: float, positions: int | None = None, nea
         MissingExtraError: scikit-fem is needed and not installed.
     """
 
+    def judged(found: ContactMap, problem: ContactProblem) -> ContactMap:
+        of_period = _errors_by_period(problem)
+        kinds = [of_period.index(errors) for errors in dict.fromkeys(of_period)]
+        return replace(found, error=map_error(problem, found, load, kinds))
+
     def solve() -> ContactMap:
         progress = listener()
         problem = contact_problem(teeth, part_of(progress, 0.0, 0.5))
         told = part_of(progress, 0.5, 1.0)
         if problem.plane and not problem.uncoupled:
             # One slice for a tooth pair: cheap, with patches that follow no load, so that one group has all loads.
-            return solved_map(problem, load, even_positions(positions or POSITIONS), _IN_PLANE, told)
+            return judged(solved_map(problem, load, even_positions(positions or POSITIONS), _IN_PLANE, told), problem)
         groups = _NEAR_IN_SPACE if near else _IN_SPACE
         if positions:
-            return solved_map(problem, load, even_positions(positions), groups, told)
+            return judged(solved_map(problem, load, even_positions(positions), groups, told), problem)
         count = _IN_SPACE_POSITIONS["helical" if teeth.first.helix_angle else "spur"]
         if any(flank.single_teeth for flank in problem.flanks):
             count = max(count, _WITH_ODD_TEETH)
         working = float(f"{load * _cosine(problem):.12g}")  # that of the mesh's stiffness, whose cycle is known
-        return solved_map(problem, load, map_positions(teeth, working, count), groups, told)
+        return judged(solved_map(problem, load, map_positions(teeth, working, count), groups, told), problem)
 
     return kept_map((teeth, load, positions, near), solve)
 
