@@ -82,6 +82,8 @@ def even_positions(count: int) -> MapPositions:
 
 def map_positions(teeth: ToothPair, load: float, count: int) -> MapPositions:
     """So many positions for F_bt = load (N): of a spur pair where its curve needs them, of a helical one even."""
+    if teeth.first.helix_angle:
+        return MapPositions(np.arange(count) / count, np.zeros(count, bool))
     found = helix_cycle(teeth, load, count)
     event = np.zeros(count, bool) if found.event is None else found.event
     return MapPositions(found.cycle.position, event, found.cycle)
