@@ -1,4 +1,8 @@
-"""Transients that start on an orbit: how far they leave it, and how fast a small deviation grows or dies out."""
+"""Transients that start on an orbit: how far they leave it, and how fast a small deviation grows or dies out.
+
+A transient on an unstable orbit is soon too far from it to tell its multipliers. So each period starts on the orbit again, with
+the deviation that the last one ended with, made small: the power method on the transient's own map over a period.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +13,16 @@ from rotorgear.analysis.orbits.follow import AnyOrbits, Branch
 from rotorgear.analysis.orbits.start import run_periods
 from rotorgear.results.motion.orbits import OrbitVerification
 from rotorgear.solvers.periodic.harmonic_orbits import HarmonicOrbits
+from rotorgear.solvers.periodic.plant import Plant
 from rotorgear.solvers.periodic.special import Certified
 
-_PERIODS = 40
-_STEPS = 2000
-# Size of the deviation, over the peak to peak; between these sizes its growth is read.
-_PUSH = 1e-7
-_LARGEST = 1e-3
-_LEAST_PERIODS = 4
+_PERIODS = 36
+_STEPS = 4000
+# Size of the deviation at the begin of each period, over the peak to peak: contacts then close a step earlier or later.
+_PUSH = 1e-4
+# Of so many last periods the growth is told: the other multipliers have died out there.
+_TOLD = 18
+_OTHERS = 3e-3
 
 
 def verified(
@@ -48,33 +54,62 @@ def _verified(
     ends = cycle.extremes()
     size = float(np.ptp(ends[column], axis=1).max(initial=0.0)) or 1.0
     k = branch.periods
-    periods = _PERIODS * k
     exact = cycle.at.d[:, column]
     # Steps so that every instant of the orbit is the end of one.
     each = int(np.ceil(_STEPS * k / len(exact)))
     steps = each * len(exact) // k
-    _, d = run_periods(system, family.order, periods, q, v, steps)
-    push = plant.still.X @ np.ones(plant.m)
-    moved = float(np.abs((plant.B.T @ push)[column]).max(initial=0.0)) or 1.0
-    _, other = run_periods(system, family.order, periods, q + push * (_PUSH * size / moved), v, steps)
-    per = steps * k
-    # Records stand at the ends of steps: the first period is rows 0 to per - 1.
-    start = (plant.B.T @ q)[column]
-    after_one = d[:per][:, column]
+
+    def period_from(q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        state, d = run_periods(system, family.order, k, q, v, steps)
+        return state.q, state.v, d[:, column]
+
+    end_q, end_v, after_one = period_from(q, v)
+    # Records stand at the ends of steps: the period is rows 0 to the last.
     orbit = np.vstack([after_one[-1:], after_one[:-1]])
     deviation = float(np.abs(orbit[::each][1:] - exact[1:]).max() / size)
-    deviation = max(deviation, float(np.abs(after_one[-1] - start).max() / size))
-    away = np.linalg.norm((other - d)[:, column].reshape(_PERIODS, per, -1), axis=(1, 2)) / np.sqrt(per) / size
-    left = np.abs(d[:, column].reshape(_PERIODS, per, -1) - after_one).max(axis=(1, 2)) / size
-    sound = np.flatnonzero((away < _LARGEST) & (away > 1e-3 * _PUSH) & (left < 1e-2))
-    sound = sound[sound == np.arange(sound.size)]  # up to the first that is not
-    late = sound[len(sound) // 2 :]
-    growth = float("nan")
-    if late.size >= _LEAST_PERIODS:
-        growth = float(np.exp(np.polyfit(late, np.log(away[late]), 1)[0]))
+    deviation = max(deviation, float(np.abs(after_one[-1] - (plant.B.T @ q)[column]).max() / size))
+    push = plant.still.X @ np.ones(plant.m)
+    moved = float(np.abs((plant.B.T @ push)[column]).max(initial=0.0)) or 1.0
+    dq = push * (_PUSH * size / moved)
+    dv = np.zeros(q.size)
+    waves: list[np.ndarray] = []
+    shares: list[float] = []
+    for _ in range(_PERIODS):
+        other_q, other_v, other = period_from(q + dq, v + dv)
+        waves.append((other - after_one).ravel())
+        away = float(np.abs(waves[-1]).max()) / size
+        if not 0.0 < away < np.inf:
+            break
+        shares.append(_PUSH / away)
+        # Motions without strain neither grow nor move the contacts.
+        dq = shares[-1] * _strained(plant, other_q - end_q)
+        dv = shares[-1] * _strained(plant, other_v - end_v)
     return OrbitVerification(
-        along.at(node.p), one.stable, deviation, growth, float(np.abs(one.multipliers[0])), periods
+        along.at(node.p), one.stable, deviation, _growth(waves, shares), float(np.abs(one.multipliers[0])), _PERIODS * k
     )
+
+
+def _growth(waves: list[np.ndarray], shares: list[float]) -> float:
+    """Modulus of the multipliers that deviations (r,) of one period after the other show; each begins as a share of the last end.
+
+    Where one pair outlasts all others, A^2 w = a A w + b w for all deviations w: a real multiplier or both of a complex pair are
+    roots of x^2 = a x + b.
+    """
+    last = range(max(len(shares) - _TOLD, 0), len(shares) - 2)
+    if not last:
+        return float("nan")
+    here, once, twice = (
+        np.concatenate([waves[j + ahead] / np.prod(shares[j : j + ahead]) / np.abs(waves[j]).max() for j in last])
+        for ahead in range(3)
+    )
+    # What is left of other multipliers, and of powers of the deviation, is no second direction.
+    a, b = np.linalg.lstsq(np.column_stack([once, here]), twice, rcond=_OTHERS)[0]
+    return float(np.abs(np.roots([1.0, -a, -b])).max())
+
+
+def _strained(plant: Plant, q: np.ndarray) -> np.ndarray:
+    """Displacements or velocities (n,) without their part in motions that strain nothing."""
+    return np.asarray(q - plant.free @ (plant.free.T @ (plant.M @ q)))
 
 
 def state_on(orbits: AnyOrbits, y: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
