@@ -11,7 +11,7 @@ import io
 import json
 import struct
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -84,9 +84,7 @@ def _from_xml(data: bytes) -> Document:
         raise _UnreadableError(f"not well-formed XML: {error}") from None
     if _tag(root) != "model":
         raise _UnreadableError(f"its root is <{_tag(root)}>, not <model>")
-    components = {}
-    for node in _inside(root, "components", "component"):
-        components[_needed(node, "id")] = _component(node)
+    components = _by_id(_component(node) for node in _inside(root, "components", "component"))
     relations = [
         Relation(node.get("type", ""), tuple((ref.get("role", ""), _needed(ref, "id")) for ref in _all(node, "ref")))
         for node in _inside(root, "relations", "relation")
@@ -97,6 +95,18 @@ def _from_xml(data: bytes) -> Document:
         cases.append((node.get("id", str(len(cases) + 1)), {_needed(part, "id"): _attributes(part) for part in parts}))
     application = " ".join(filter(None, (root.get("applicationId"), root.get("applicationVersion"))))
     return Document(root.get("version", ""), application, components, tuple(relations), tuple(cases))
+
+
+def _by_id(components: Iterable[Component]) -> dict[str, Component]:
+    """Components by their id, which no two may share: relations would mean one or the other."""
+    found: dict[str, Component] = {}
+    for one in components:
+        other = found.setdefault(one.id, one)
+        if other is not one:
+            raise _UnreadableError(
+                f"two components have the id {one.id}: {other.type} '{other.name}' and {one.type} '{one.name}'"
+            )
+    return found
 
 
 def _refuse_entities(data: bytes) -> None:
@@ -169,12 +179,10 @@ def _from_json(data: bytes) -> Document:
     try:
         whole = json.loads(data.decode("utf-8-sig"))
         root = whole["model"]
-        components = {}
-        for item in root.get("components", ()):
-            number = str(item["id"])
-            components[number] = Component(
-                number, str(item.get("type", "")), str(item.get("name") or ""), _entries(item)
-            )
+        components = _by_id(
+            Component(str(item["id"]), str(item.get("type", "")), str(item.get("name") or ""), _entries(item))
+            for item in root.get("components", ())
+        )
         relations = [
             Relation(
                 str(item.get("type", "")), tuple((str(ref.get("role", "")), str(ref["id"])) for ref in item["refs"])

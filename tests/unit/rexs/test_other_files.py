@@ -194,6 +194,14 @@ def test_a_bearing_without_plausible_size_takes_that_of_its_seat(tmp_path: Path)
     assert "diameter of the shaft" in imported(other, tmp_path).toml.partition("id 33)")[2].partition("stiffness =")[0]
 
 
+def test_two_components_of_one_id_are_refused_by_their_names(tmp_path: Path) -> None:
+    text = SAMPLE.read_text(encoding="utf-8")
+    path = tmp_path / "twice.rexs"
+    path.write_text(text.replace('<component id="6"', '<component id="23"', 1), encoding="utf-8")
+    with pytest.raises(rg.RotorgearError, match="two components have the id 23: cylindrical_"):
+        rg.import_rexs(path)
+
+
 def test_the_files_in_the_tests_are_those_of_their_sources() -> None:
     for path in (SAMPLE, BEARINX):
         assert "Apache" in path.read_text(encoding="utf-8")[:900]
