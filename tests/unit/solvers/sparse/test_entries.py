@@ -17,7 +17,8 @@ def test_the_norm_is_the_largest_sum_of_a_column(kind: type) -> None:
 
 
 def test_scaling_on_both_sides_leaves_the_matrix_itself_alone() -> None:
-    A = sp.csc_array(sp.random_array((7, 7), density=0.4, rng=1))
+    rows, columns = np.nonzero(np.random.default_rng(1).random((7, 7)) < 0.4)
+    A = sp.csc_array((1.0 + rows + 7.0 * columns, (rows, columns)), shape=(7, 7))
     before = A.toarray()
     scale = np.linspace(0.5, 3.0, 7)
     scaled = scaled_on_both_sides(A, scale)
