@@ -21,6 +21,8 @@ def independent_groups(matrices: Iterable[sp.csc_array]) -> list[np.ndarray]:
     for A in matrices:
         own = sp.csc_array((np.ones(A.nnz), A.indices, A.indptr), shape=A.shape)
         own.data[A.data == 0.0] = 0.0
+        if connected_components(own, directed=False, return_labels=False) == 1:
+            return [np.arange(A.shape[0])]  # others can't part what one holds together
         pattern = own if pattern is None else pattern + own
     if pattern is None:
         return []

@@ -101,7 +101,7 @@ def solve(system: System, wanted: Wanted, kept: Kept | None = None) -> Modes:
     """
     whole = _problem(system, wanted.speed) if wanted.damped else _conservative(system, wanted.speed or 0.0)
     # Groups of dofs that no entry of M, D or K couples are eigenproblems of their own.
-    matrices = [A for A in (whole.M, whole.D, whole.K) if A is not None]
+    matrices = [A for A in (whole.K, whole.M, whole.D) if A is not None]
     groups = independent_groups(matrices) if wanted.pruning else [np.arange(system.n)]
     groups, still = groups_with_inertia(system, groups, whole.D)
     motions = dof_motions(system)
