@@ -24,11 +24,11 @@ def measure(quantity: str, mode: str) -> float:
     return float(np.isfinite(beside.frequency_hz).sum())
 
 
-def excited() -> rg.Model:
-    """The gearbox with the printed transmission error in every mesh."""
+def excited(stiffness: str = "potential_energy") -> rg.Model:
+    """The gearbox with the printed transmission error in every mesh, and a stiffness model."""
     model = rg.load(_MODELS / "split_torque.toml")
     harmonics = tuple(ErrorHarmonic(harmonic=n + 1, amplitude=a) for n, a in enumerate(_HARMONICS))
-    changed = {"stiffness": "potential_energy", "transmission_error": harmonics}
+    changed = {"stiffness": stiffness, "transmission_error": harmonics}
     meshes = {name: mesh.model_copy(update=changed) for name, mesh in model.meshes.items()}
     data = model.model_dump(exclude_none=True)
     data["meshes"] = {name: mesh.model_dump(exclude_none=True) for name, mesh in meshes.items()}
@@ -36,8 +36,10 @@ def excited() -> rg.Model:
 
 
 @cache
-def run() -> tuple[SpectralLines, RigSpectrum]:
+def run(stiffness: str = "potential_energy") -> tuple[SpectralLines, RigSpectrum]:
     """Lines of the spectrum with the printed harmonics of the transmission error, and the rig lines beside them."""
-    result = rg.transient(excited(), modal_damping=0.02, steps=80, discard="20 ms", time="60 ms", error_estimate=False)
+    result = rg.transient(
+        excited(stiffness), modal_damping=0.02, steps=80, discard="20 ms", time="60 ms", error_estimate=False
+    )
     lines = rg.spectral_lines(result, _NAME)
     return lines, rg.compare_spectrum(result, lines, rg.read_rig_lines(_MODELS / "split_torque_rig.csv"))

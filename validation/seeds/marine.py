@@ -7,11 +7,13 @@ teeth carry on the back flanks.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import rotorgear as rg
+from validation.seeds import kept
 from validation.seeds.motions import STARTS, ends, kinds, number, route
 from validation.seeds.rows import changed, loaded
 
@@ -28,6 +30,8 @@ STEPS = 40
 RATIOS = tuple(round(0.1 + 0.05 * i, 2) for i in range(23))
 PRINTED = {"03": 0.3, "06": 0.6, "10": 1.0}
 NOMINAL = 15e3 / PITCH_RADIUS / STIFFNESS
+# Film damping has no number in the account.
+FILM = 1.5
 
 
 @dataclass(frozen=True)
@@ -43,16 +47,27 @@ class Contact:
     exponent_error: float
 
 
-def operating(gamma: float, total: float = 30e3, *, drag: float = DRAG, table_stiffness: bool = False) -> rg.Model:
-    """The model at a load ratio and a total torque (N m)."""
+def operating(
+    gamma: float,
+    total: float = 30e3,
+    *,
+    drag: float = DRAG,
+    table_stiffness: bool = False,
+    film: float = 1.0,
+) -> rg.Model:
+    """The model at a load ratio and a total torque (N m); `film` multiplies the damping of the teeth."""
     hp = total / (1.0 + gamma)
     meshes: dict[str, dict[str, object]] = {name: {} for name in ("first_hp", "first_lp", "second_hp", "second_lp")}
     if table_stiffness:
         for name, keys in meshes.items():
             k, m_e = (1.2e8, 87.5) if name.startswith("first") else (2.5e8, 280.0)
             keys |= {"stiffness": k, "damping": 0.14 * math.sqrt(k * m_e)}
+    base = loaded(MODEL)
+    if film != 1.0:
+        for name, keys in meshes.items():
+            keys["damping"] = film * (base.meshes[name].damping or 0.0)
     return changed(
-        loaded(MODEL),
+        base,
         meshes=meshes,
         loads={
             "hp": {"torque": hp},
@@ -151,15 +166,31 @@ def way_names(result: rg.SweepResult) -> list[str]:
     return [kind if kind in ("1T", "2T") else "others" for kind in found]
 
 
+def _way_values(total: float, suffix: str) -> dict[str, str]:
+    over = way(total)
+    return {f"way{suffix}": route(over, way_names(over), ".2f")}
+
+
+def _at_printed(suffix: str, nominal: float = NOMINAL, settle: int = SETTLE, **options: Any) -> dict[str, str]:
+    """Indicators at the printed load ratios with some options of `swept`."""
+    return indicators(swept(list(PRINTED.values()), settle=settle, **options), suffix, nominal, settle)
+
+
+# What takes runs; see kept.py.
+PIECES: dict[str, Callable[[], dict[str, str]]] = {
+    "torques": torque_indicators,
+    "way_30": lambda: _way_values(30e3, ""),
+    "way_35": lambda: _way_values(35e3, "_35"),
+    "regions": lambda: {"region": _region(30e3), "region_35": _region(35e3)},
+    "printed_stiffness": lambda: _at_printed("_soft", 100.0 * NOMINAL, starts=1, table_stiffness=True),
+    "film": lambda: _at_printed("_film", starts=4, film=FILM),
+}
+
+
 @cache
 def values() -> dict[str, float | str]:
     """What takes runs."""
-    ratios = list(PRINTED.values())
-    found: dict[str, float | str] = dict(torque_indicators())
-    for total, suffix in ((30e3, ""), (35e3, "_35")):
-        over = way(total)
-        found |= {f"region{suffix}": _region(total), f"way{suffix}": route(over, way_names(over), ".2f")}
-    return found | indicators(swept(ratios, starts=1, table_stiffness=True), "_soft", 100.0 * NOMINAL)
+    return kept.values("marine", PIECES)
 
 
 def _region(total: float) -> str:

@@ -6,6 +6,7 @@ What the text does not give is chosen, and drawn at random for its spread.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -14,6 +15,7 @@ import numpy as np
 import rotorgear as rg
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.pair import PairGeometry, pair_geometry
+from validation.seeds import kept
 from validation.seeds.corner import corner_contact, impact_force
 from validation.seeds.rows import changed, loaded
 
@@ -188,8 +190,7 @@ def quick() -> dict[str, float | str]:
     return found
 
 
-@cache
-def values() -> dict[str, float | str]:
+def _runs() -> dict[str, float | str]:
     """What takes runs."""
     found: dict[str, float | str] = {"backlash_effect": backlash_effect()}
     rms = sample()
@@ -229,3 +230,13 @@ def backlash_effect() -> float:
     """Largest change of the contact force over its mean when the backlash grows from 2 to 40 um, while contact is kept."""
     narrow, wide = (run(at_ratio(3.30, 6469.0, backlash=j)) for j in (2e-6, 40e-6))
     return float(np.abs(narrow.mesh_force - wide.mesh_force).max() / narrow.mesh_force.mean())
+
+
+# What takes runs; see kept.py.
+PIECES: dict[str, Callable[[], dict[str, float | str]]] = {"runs": _runs}
+
+
+@cache
+def values() -> dict[str, float | str]:
+    """What takes runs."""
+    return kept.values("pair12", PIECES)

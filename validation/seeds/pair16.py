@@ -7,6 +7,7 @@ lines, their ripple 2 sinc(n eps_alpha) sinc(n eps_beta), m_e of the half gears.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -16,6 +17,7 @@ import rotorgear as rg
 from rotorgear.gears.geometry.geometry import GearGeometry
 from rotorgear.gears.geometry.pair import PairGeometry, pair_geometry
 from rotorgear.gears.stiffness.dynamic_factor import simple_dynamic_factor
+from validation.seeds import kept
 from validation.seeds.rows import loaded
 
 MODEL = "herringbone_pair_16dof"
@@ -191,8 +193,7 @@ def _peak_to_peak(helix_deg: float, mesh: PairGeometry, width: float) -> float:
     return float(np.ptp(wave)) * mean_stiffness(helix_deg, mesh, width)
 
 
-@cache
-def values() -> dict[str, float | str]:
+def _runs() -> dict[str, float | str]:
     """What takes runs."""
     found: dict[str, float | str] = {}
     samples = {}
@@ -231,3 +232,13 @@ def _of_pair(name: str, sample: np.ndarray) -> dict[str, float]:
         "kv_flipped": run(pair(teeth, helix, 0.054, impact, flipped=True))[0],
         "kv_no_impact": run(pair(teeth, helix, 0.054, 1e-9))[0],
     }
+
+
+# What takes runs; see kept.py.
+PIECES: dict[str, Callable[[], dict[str, float | str]]] = {"runs": _runs}
+
+
+@cache
+def values() -> dict[str, float | str]:
+    """What takes runs."""
+    return kept.values("pair16", PIECES)

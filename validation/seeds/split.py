@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 
 import rotorgear as rg
+from validation.seeds import kept
 from validation.seeds.rows import entries, loaded
-from validation.T1.spectrum import excited
+from validation.T1.spectrum import excited, run
 
 MODEL = "split_torque"
 TOLERANCE = 0.07
@@ -54,8 +56,7 @@ def _nearest_tone(printed: float, hz: dict[str, float], turns: list[float]) -> f
     return min((f + sign * turn for f in meshes for turn in turns for sign in (-1, 1)), key=lambda f: abs(f - printed))
 
 
-@cache
-def values() -> dict[str, float | str]:
+def _modes() -> dict[str, float | str]:
     """Modes beside the printed frequencies and chance."""
     result = rg.modal(loaded(MODEL), fmax=RANGE)
     printed = printed_frequencies()
@@ -81,6 +82,24 @@ def values() -> dict[str, float | str]:
     return found
 
 
+def _lines() -> dict[str, float | str]:
+    """Harmonics of the second stage in the acceleration at the output bearing over their first one, two stiffness models."""
+    hz = {row["name"]: row["mesh_frequency_hz"] for row in rg.check(loaded(MODEL)).to_dict()["meshes"]}["stage_2a"]
+    found: dict[str, float | str] = {}
+    for model in ("potential_energy", "tooth_fe"):
+        lines, _ = run(model)
+        size = [
+            float(lines.amplitude[np.abs(lines.frequency_hz - n * hz) < 0.01 * hz].max(initial=0.0))
+            for n in range(1, 6)
+        ]
+        largest = int(np.argmax(size)) + 1
+        found |= {
+            f"fourth_{model}": size[3] / size[0],
+            f"largest_{model}": f"harmonic {largest}, {largest * hz:.0f} Hz, {size[largest - 1] / size[0]:.3g} times",
+        }
+    return found
+
+
 def _share(result: rg.ModalResult, mode: int, shaft: str) -> float:
     """Share of a shaft and what stands on it in the kinetic energy of a mode."""
     on_shaft = {f"shafts.{shaft}"}
@@ -93,3 +112,13 @@ def _branches(result: rg.ModalResult, mode: int) -> str:
     """Kinetic energies of both branches in the mode, in %."""
     shares = [100.0 * _share(result, mode, f"branch_{side}") for side in "ab"]
     return f"{shares[0]:.0f} % and {shares[1]:.0f} %" if all(map(math.isfinite, shares)) else "unknown"
+
+
+# What takes runs; see kept.py.
+PIECES: dict[str, Callable[[], dict[str, float | str]]] = {"modes": _modes, "lines": _lines}
+
+
+@cache
+def values() -> dict[str, float | str]:
+    """What takes runs."""
+    return kept.values("split", PIECES)
