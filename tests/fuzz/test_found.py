@@ -50,3 +50,8 @@ def test_a_reduced_system_that_is_singular_is_told(tmp_path: Path) -> None:
         rg.state_space(model, inputs=place, outputs=place, fmax=500.0, elements=1)
     with pytest.raises(RotorgearError, match="dynamic stiffness is singular at a frequency that counts"):
         rg.sweep(model, {"operation.speed": [model.operation.speed]}, discard=2, sample=9)
+
+
+def test_modes_up_to_a_frequency_of_300_digits_are_refused_as_too_many() -> None:  # seed 40018
+    with pytest.raises(AnalysisError, match="modes lie below 1e\\+300 Hz, more than"):
+        rg.campbell(rg.load(ROOT / "models" / "geared_pair.toml"), fmax=1e300)

@@ -13,6 +13,7 @@ import numpy as np
 from rotorgear.model.model import Model
 
 _SHEAR = 0.9  # coefficient of a round section: a count needs no more
+_HIGHEST = 1e30  # rad/s; its fourth power is still a number, and far fewer modes than up to there are too many
 
 
 def expected_modes(model: Model, limit: float) -> float:
@@ -29,7 +30,7 @@ def expected_modes(model: Model, limit: float) -> float:
             E = material.youngs_modulus
             G = material.g
             rho = material.density
-            w = limit
+            w = min(limit, _HIGHEST)
             # a (k^2)^2 - b k^2 + c = 0 for the wave numbers of bending
             a = E * inertia * _SHEAR * G * area
             b = (E * inertia * rho * area + _SHEAR * G * area * rho * inertia) * w**2
