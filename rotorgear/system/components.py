@@ -19,14 +19,14 @@ def independent_groups(matrices: Iterable[sp.csc_array]) -> list[np.ndarray]:
     """Return the dofs of each independent group, largest group first; `matrices` are sparse (n, n)."""
     pattern: sp.csc_array | None = None
     for A in matrices:
-        own = sp.csc_array((np.ones(A.nnz), A.indices, A.indptr), shape=A.shape)
-        own.data[A.data == 0.0] = 0.0
+        own = A.copy()
+        own.eliminate_zeros()
+        own.data = np.ones(own.nnz)  # values of either sign could cancel in the sum
         if connected_components(own, directed=False, return_labels=False) == 1:
             return [np.arange(A.shape[0])]  # others can't part what one holds together
         pattern = own if pattern is None else pattern + own
     if pattern is None:
         return []
-    pattern.eliminate_zeros()
     count, label = connected_components(pattern, directed=False)
     order = np.argsort(label, kind="stable")
     groups = np.split(order, np.cumsum(np.bincount(label, minlength=count))[:-1])
