@@ -126,7 +126,7 @@ def test_a_picture_is_drawn_on_its_own_figure_and_on_the_callers(
     else:
         part = figure.subfigures(1, 2)[0]
         drawn = np.asarray(draw(results[verb], part)).flat[0]
-        assert drawn.get_figure(root=False) in (part, *part.subfigs)
+        assert drawn.figure in (part, *part.subfigs)
     figure.savefig(tmp_path / "callers.png", dpi=30)
     assert figure.get_suptitle() == "", "the title of a caller's figure is the caller's"
 

@@ -24,16 +24,15 @@ def found(**given: Any) -> rg.MeshOptimum:
     return rg.optimise_flanks(rg.loads(TEXT), **settings)
 
 
+def best_height(**given: Any) -> rg.MeshOptimum:
+    """Height of the relief at a given length; its valley has one bottom."""
+    length = {"tip_relief_length": ["7.99 mm", "8 mm"]}
+    return found(variables=["tip_relief", "tip_relief_length"], bounds=length, **given)
+
+
 @pytest.fixture(scope="module")
 def best() -> rg.MeshOptimum:
-    """Height of the relief at a given length; its valley has one bottom."""
-    return found(
-        variables=["tip_relief", "tip_relief_length"],
-        bounds={"tip_relief_length": ["7.99 mm", "8 mm"]},
-        evaluations=40,
-        samples=8,
-        tolerance={"tip_relief": "4 um", "tip_relief_length": 0.0},
-    )
+    return best_height(evaluations=40)
 
 
 def test_no_relief_on_a_fine_line_does_better(best: rg.MeshOptimum) -> None:
@@ -57,10 +56,12 @@ def test_its_lines_in_the_file_give_what_it_says(best: rg.MeshOptimum) -> None:
     assert tables["gears"]["pinion"]["tip_relief"] == best.changes["gears.pinion.tip_relief"]
 
 
-def test_the_band_holds_ninety_percent_of_what_the_tolerances_allow(best: rg.MeshOptimum) -> None:
+def test_the_band_holds_ninety_percent_of_what_the_tolerances_allow() -> None:
     """A tolerance about the bottom of the valley makes it worse on either side, and none leaves it where it is."""
-    assert best.mean_band is not None
-    assert best.mean * (1.0 - 1e-9) <= best.mean_band[0] < best.mean_band[1]
+    # After 40 flanks the search of some versions of scipy is still above the bottom.
+    wide = best_height(evaluations=60, samples=8, tolerance={"tip_relief": "4 um", "tip_relief_length": 0.0})
+    assert wide.mean_band is not None
+    assert wide.mean * (1.0 - 1e-9) <= wide.mean_band[0] < wide.mean_band[1]
     none = {"tip_relief": 0.0, "tip_relief_length": 0.0}
     fixed = found(
         variables=["tip_relief", "tip_relief_length"],
