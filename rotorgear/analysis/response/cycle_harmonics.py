@@ -21,6 +21,9 @@ SEEN = 100
 _MINOR = 0.004
 _PEAK_TO_PEAK = 0.005
 _SMALL_CURVE = 0.1
+# So many orders of the mesh, and of a cycle in which teeth differ, are what is looked at by themselves: none of them is left out
+# that reaches the first share of the largest among them, however small they all are beside the others.
+_FIRST = 5
 # Teeth that differ have orders without end; no more than so many are taken.
 _MOST = 1024
 _NODES = 256
@@ -100,16 +103,20 @@ class Needed:
     change: float = 0.0
 
 
-def that_matter(values: np.ndarray) -> Needed:
-    """Which harmonics of values (p, c) over a cycle are needed for their peak to peak."""
+def that_matter(values: np.ndarray, periods: int = 1) -> Needed:
+    """Which harmonics of values (p, c) over a cycle of so many mesh periods are needed for their peak to peak.
+
+    The first orders of the mesh and of the cycle are among them, too.
+    """
     spectrum = np.fft.rfft(values, axis=0)
     spectrum[0] = 0.0
     size = np.abs(spectrum).max(axis=1)
     largest = float(size.max(initial=0.0))
     if not largest:
         return Needed()
-    order = np.argsort(-size, kind="stable")
-    least = min(int(np.count_nonzero(size > _MINOR * largest)), _MOST)
+    first = _first_orders(np.abs(spectrum), periods)
+    order = np.lexsort((-size, ~first))
+    least = min(int(np.count_nonzero(first | (size > _MINOR * largest))), _MOST)
     whole = np.ptp(values, axis=0)
     scale = np.maximum(whole, _SMALL_CURVE * whole.max())
 
@@ -128,3 +135,12 @@ def that_matter(values: np.ndarray) -> Needed:
     weak = float(np.delete(size, numbers).max(initial=0.0)) / largest
     some = weak > 1e-9
     return Needed(tuple(numbers), major, weak if some else 0.0, change(count) if some else 0.0)
+
+
+def _first_orders(size: np.ndarray, periods: int) -> np.ndarray:
+    """Which of the harmonics (h, c) are among the first of the mesh or of the cycle, and not minor among them in every curve."""
+    found = np.zeros(len(size), dtype=bool)
+    for step in {1, periods}:
+        own = size[step : _FIRST * step + 1 : step]
+        found[step : _FIRST * step + 1 : step] |= np.any(own > _MINOR * own.max(axis=0, initial=0.0), axis=1)
+    return found

@@ -263,7 +263,7 @@ def _loaded_teeth(setup: Setup, left: list[str]) -> Iterable[tuple[str, str, int
         # helices share a load these are two curves.
         k = np.where(joint.stiffness > 0.0, joint.stiffness, np.inf)
         approach = np.where(joint.own >= 0, joint.pressed(cycle), 0.0)
-        needed = that_matter(np.hstack([f / k, approach - approach.mean(axis=0)]))
+        needed = that_matter(np.hstack([f / k, approach - approach.mean(axis=0)]), cycle.periods)
         if needed.weak > 0.0:
             left.append(
                 f"meshes {', '.join(cycle.meshes)}: orders of their loaded teeth of up to {100.0 * needed.weak:.2g} % of the "

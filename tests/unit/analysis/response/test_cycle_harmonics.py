@@ -113,5 +113,16 @@ def test_a_lone_blow_in_a_long_cycle_takes_the_orders_that_its_peak_to_peak_need
     assert len(needed.major) < len(needed.numbers)
 
 
+def test_the_first_orders_of_the_mesh_are_kept_beside_larger_ones_of_the_shaft() -> None:
+    """The fourth order of the mesh is half a percent of its second, and a 2000th of what an odd tooth does."""
+    u = 34.0 * np.arange(34 * 64) / (34 * 64)
+    mesh = sum(a * np.cos(2.0 * np.pi * n * u) for n, a in ((1, 0.14), (2, 0.15), (3, 0.07), (4, 0.0008)))
+    x = mesh + 1.6 * np.cos(2.0 * np.pi * u / 34.0)
+    needed = that_matter(x[:, None], 34)
+    assert needed.numbers == (1, 34, 68, 102, 136)
+    assert 136 not in needed.major
+    assert needed.weak == 0.0
+
+
 def test_a_constant_has_no_harmonics() -> None:
     assert that_matter(np.full((64, 2), 3.0)) == Needed()
