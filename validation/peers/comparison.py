@@ -11,12 +11,23 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from rotorgear.model.model import Model
+from rotorgear.system.system import System
+
 warnings.filterwarnings("ignore")
 with contextlib.redirect_stdout(io.StringIO()):  # a library of its prints a notice
     import ross
 
 AGREEMENT = 1e-5
 _TURN = 0.1  # s
+
+
+def assembled_system(model: Model, elements: int) -> System:
+    """The system of a model with the matrices that a rotor of ROSS has when it is built."""
+    system = System(model, elements)
+    system.matrices()
+    system.strain_factor()
+    return system
 
 
 def median_times(runs: Sequence[Callable[[float], object]], speed: float, turns: int) -> list[float]:
@@ -56,4 +67,4 @@ def verdict(worst: float, ratio: float, target: float) -> int:
     return 0 if good else 1
 
 
-__all__ = ["AGREEMENT", "median_times", "print_frequencies", "ross", "verdict"]
+__all__ = ["AGREEMENT", "assembled_system", "median_times", "print_frequencies", "ross", "verdict"]

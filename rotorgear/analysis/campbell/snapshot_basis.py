@@ -13,7 +13,7 @@ import numpy as np
 
 from rotorgear.analysis.campbell.speed_family import ReducedFamily, SpeedFamily
 from rotorgear.analysis.modal.modes import Modes, Wanted
-from rotorgear.analysis.modal.solve import Kept, group_notes, solve, with_modal_damping
+from rotorgear.analysis.modal.solve import group_notes, solve, with_modal_damping
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.progress import Progress, silent
 from rotorgear.quantity import RPM_PER_RAD_S
@@ -89,7 +89,6 @@ class SpeedModes:
         weight = np.sqrt(_size(system, low))
         self._parts = [_Group(dofs, Subspace(weight[dofs], _NEGLIGIBLE)) for dofs in self.family.groups]
         self._known: dict[float, list[Eigen]] = {}
-        self._undamped: Kept | None = None if system.has_tables else {}
         self._still = 0  # rigid motions and overdamped ones among the lowest, as far as they are known
         self._build(low, high, progress)
 
@@ -175,7 +174,7 @@ class SpeedModes:
         limit = None if wish.limit is None else wish.limit * _BEYOND_LIMIT
         ask = None if count is None else count + self._still
         while True:
-            found: Modes = solve(self.system, Wanted(speed, ask, limit, wish.only), self._undamped)
+            found: Modes = solve(self.system, Wanted(speed, ask, limit, wish.only))
             s = found.eigenvalues
             moving = np.flatnonzero(~found.rigid & (s.imag > 1e-9 * np.abs(s)))
             if count is None or ask is None or len(moving) >= count or len(s) < ask:

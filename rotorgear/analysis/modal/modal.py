@@ -14,10 +14,10 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, direction_of, speed_in_si
 from rotorgear.analysis.modal.conditioning import too_far_apart
 from rotorgear.analysis.modal.enriched_error import enriched_errors
+from rotorgear.analysis.modal.mode_count import MOST_MODES, check_count
 from rotorgear.analysis.modal.modes import Modes, Wanted
 from rotorgear.analysis.modal.reach import Reach
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY, START, all_finer, errors_of, refined, total_error
-from rotorgear.analysis.modal.request import MOST_MODES, check_count
 from rotorgear.analysis.modal.result import modal_result
 from rotorgear.analysis.modal.solve import solve
 from rotorgear.analysis.static.tangent import about_equilibrium, about_state_of

@@ -10,7 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
+
+# More modes than this are a slip of the pen, and their shapes would fill the memory.
+MOST_MODES = 2000
 
 _SHEAR = 0.9  # coefficient of a round section: a count needs no more
 _HIGHEST = 1e30  # rad/s; its fourth power is still a number, and far fewer modes than up to there are too many
@@ -42,3 +46,16 @@ def expected_modes(model: Model, limit: float) -> float:
             wave_number = {"bending": bending, "axial": w * np.sqrt(rho / E), "torsion": w * np.sqrt(rho / G)}
             count += sum(wave_number[motion] for motion in model.motions) * section.length / np.pi
     return count
+
+
+def check_count(model: Model, fmax: float) -> None:
+    """Refuse a frequency in Hz below which there are more modes than anyone reads, before they are sought.
+
+    Raises:
+        AnalysisError: more than `MOST_MODES` are expected.
+    """
+    expected = expected_modes(model, 2.0 * np.pi * fmax)
+    if expected > MOST_MODES:
+        raise AnalysisError(
+            f"about {expected:.2g} modes lie below {fmax:g} Hz, more than {MOST_MODES}; ask for a lower frequency (--fmax)"
+        )

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 
 from rotorgear.analysis.modal.modes import Modes, Wanted
 from rotorgear.analysis.modal.rigid_basis import sorted_rigid
+from rotorgear.analysis.modal.undamped import kept_undamped
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen.eigen import UndampedModes, lowest_modes
 from rotorgear.solvers.eigen.shift_invert import shifted_operator
@@ -28,10 +29,6 @@ _LARGEST_RESIDUAL = 1e-8
 _BEYOND = 1.0 + 1e-6
 _RESOLVED = 1e-12
 _LARGE = 20_000  # dofs above which a look at the coarsest mesh costs nothing beside the rest
-
-
-# Undamped modes by the dofs of their group, how many, up to which frequency, and whether they are counted.
-Kept = dict[tuple[bytes, int | None, float | None, bool], UndampedModes]
 
 
 @dataclass(frozen=True)
@@ -90,10 +87,8 @@ class _Problem:
         return _Problem(M, D, K, K_symmetric, S, symmetric, damped, inertial, forms, self.guess, group.tobytes())
 
 
-def solve(system: System, wanted: Wanted, kept: Kept | None = None) -> Modes:
+def solve(system: System, wanted: Wanted) -> Modes:
     """Return the lowest modes of all groups that are asked for, lowest |s| first, rigid ones at the front.
-
-    `kept` holds undamped modes from one speed to the next, of a system whose stiffness does not depend on it.
 
     Raises:
         AnalysisError: a dof has neither inertia nor stiffness, or no group has a motion that is asked for.
@@ -113,7 +108,7 @@ def solve(system: System, wanted: Wanted, kept: Kept | None = None) -> Modes:
         for group in chosen:
             problem = whole.cut(group)
             here = replace(wanted, limit=_reach(problem, solved, wanted))
-            solved.append(_solve_group(problem, here, system, kept))
+            solved.append(_solve_group(problem, here, system))
     except LooseDofError as error:
         # The solver knows the number of a dof within its group; the whole pencil tells which dofs of the model they are.
         try:
@@ -199,7 +194,7 @@ def _conservative(system: System, speed: float) -> _Problem:
     )
 
 
-def _solve_group(problem: _Problem, wanted: Wanted, system: System, kept: Kept | None) -> Modes:
+def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
     if problem.D is None and problem.symmetric:
         modes = _lowest(problem, wanted.modes, wanted.limit)
         rigid = np.arange(len(modes.eigenvalues)) < modes.rigid_count
@@ -210,7 +205,7 @@ def _solve_group(problem: _Problem, wanted: Wanted, system: System, kept: Kept |
         errors = modes.backward_error
         available: int | None = modes.available
     else:
-        s, vectors, rigid, errors, available, method = _damped(problem, wanted, kept)
+        s, vectors, rigid, errors, available, method = _damped(problem, wanted, system)
     zeta = system.model.damping.modal_ratio
     if zeta and wanted.speed is not None and wanted.damped:
         s = with_modal_damping(s, zeta)
@@ -231,7 +226,7 @@ def _lowest(problem: _Problem, modes: int | None, limit: float | None, counted: 
 
 
 def _damped(
-    problem: _Problem, wanted: Wanted, kept: Kept | None
+    problem: _Problem, wanted: Wanted, system: System
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, int | None, str]:
     """Eigenvalues, vectors of modal mass 1, rigid ones, backward errors, number of modes there are, and the method in words."""
     # Most models at standstill need none of these solvers.
@@ -242,12 +237,10 @@ def _damped(
     assert problem.inertial is not None
 
     def lowest(count: int | None, below: float | None, counted: bool = True) -> UndampedModes:
-        if kept is None:
+        if problem.S is None:  # the stiffness of other springs is made definite, at some speeds
             return _lowest(problem, count, below, counted)
         request = (problem.dofs, count, below, counted)
-        if request not in kept:
-            kept[request] = _lowest(problem, count, below, counted)
-        return kept[request]
+        return kept_undamped(system, request, lambda: _lowest(problem, count, below, counted))
 
     modes, coordinates = damped_group(
         DampedProblem(
