@@ -14,11 +14,9 @@ Eng. Ind. 98, 1976).
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 
-from rotorgear.elements.by_content import ByContent, read_only
+from rotorgear.elements.by_content import kept_by_content
 from rotorgear.elements.matrices import ElementMatrices
 from rotorgear.elements.shaft_bubbles import bubble_motions, shaft_bubbles
 from rotorgear.elements.shaft_section import (
@@ -41,8 +39,6 @@ __all__ = [
     "torsional_flexibility",
 ]
 
-# A mesh of more kinds is not kept in memory.
-_KEPT_UP_TO = 32
 _NODAL_STRAINS = ("axial", "torsion", "bending", "bending", "bending", "bending")
 
 
@@ -64,21 +60,11 @@ def shaft_elements(
     return ElementMatrices(**{name: None if term is None else term[which] for name, term in terms.items()})
 
 
+@kept_by_content(rows=32, results=128)
 def distinct_elements(
     kinds: ShaftElements, *, order: int = 1, lumped: bool = False, internal_damping: float = 0.0
 ) -> ElementMatrices:
     """The same as `shaft_elements`, computed for every element as if no two were equal; known kinds are not computed again."""
-    if len(kinds.length) > _KEPT_UP_TO:
-        return _computed(kinds, order, lumped, internal_damping)
-    return _known(ByContent(kinds), order, lumped, internal_damping)
-
-
-@lru_cache(maxsize=128)
-def _known(kinds: ByContent[ShaftElements], order: int, lumped: bool, internal_damping: float) -> ElementMatrices:
-    return read_only(_computed(kinds.record, order, lumped, internal_damping))
-
-
-def _computed(kinds: ShaftElements, order: int, lumped: bool, internal_damping: float) -> ElementMatrices:
     points = point_count(kinds, order)
     strain, modulus, fields, weights = _statics(kinds, points)
 

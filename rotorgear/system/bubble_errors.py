@@ -14,11 +14,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
-from rotorgear.elements.by_content import ByContent, read_only
+from rotorgear.elements.by_content import kept_by_content
 from rotorgear.elements.shaft import ShaftElements, distinct_elements
 from rotorgear.elements.shaft_bubbles import bubble_motions, bubble_places
 from rotorgear.solvers.eigen.shift_invert import symmetric_pair
@@ -28,8 +27,6 @@ from rotorgear.system.nodes import Element
 from rotorgear.system.plan import PieceKey
 from rotorgear.system.system import System
 
-# A mesh of more kinds is not kept in memory.
-_KEPT_UP_TO = 32
 # Orders added for the estimate: two, so that an even and an odd polynomial of each field take part.
 _RICHER = 2
 # An element whose own bubbles vibrate below this multiple of a mode's frequency squared is too coarse for any estimate.
@@ -148,19 +145,9 @@ def _moved(
     return np.where(coarse & (moved != 0.0), np.inf, moved)
 
 
+@kept_by_content(rows=32, results=128)
 def _bubble_modes(kinds: ShaftElements, order: int, shear: bool, lumped: bool, motions: tuple[str, ...]) -> Bubbles:
     """Modes of the bubbles of an element that is two orders richer, between fixed nodes, for each different element."""
-    if len(kinds.length) > _KEPT_UP_TO:
-        return _computed(kinds, order, shear, lumped, motions)
-    return _known(ByContent(kinds), order, shear, lumped, motions)
-
-
-@lru_cache(maxsize=128)
-def _known(kinds: ByContent[ShaftElements], order: int, shear: bool, lumped: bool, motions: tuple[str, ...]) -> Bubbles:
-    return read_only(_computed(kinds.record, order, shear, lumped, motions))
-
-
-def _computed(kinds: ShaftElements, order: int, shear: bool, lumped: bool, motions: tuple[str, ...]) -> Bubbles:
     rich = distinct_elements(kinds, order=order + _RICHER)
     assert rich.mass is not None
     assert rich.gyroscopic is not None

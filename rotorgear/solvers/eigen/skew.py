@@ -10,6 +10,8 @@ import numpy as np
 import scipy.linalg as la
 from numpy.typing import NDArray
 
+from rotorgear.solvers.sparse.entries import times
+
 # Pairs beyond those that are wanted, among which the farthest gap is sought.
 _BEYOND = 4
 # Least gap between squares, of the largest, that parts a span from the rest: rounding turns vectors by eps over it.
@@ -48,12 +50,3 @@ def _span(B: NDArray[np.float64], count: int) -> NDArray[np.float64] | None:
     if gaps.max() < _GAP * pairs[0]:
         return None
     return np.asarray(X[:, 2 * (m - end) :])
-
-
-def times(
-    A: NDArray[np.float64], Q: NDArray[np.complex128] | NDArray[np.float64]
-) -> NDArray[np.complex128] | NDArray[np.float64]:
-    """A Q of a real A: real and imaginary parts stand side by side, at half the cost of a complex A."""
-    if np.isrealobj(Q):
-        return np.asarray(np.matmul(A, Q))
-    return np.asarray(np.matmul(A, np.ascontiguousarray(Q).view(np.float64)).view(np.complex128))

@@ -1,4 +1,4 @@
-"""Undamped modes that a system keeps from one speed to the next: the same numbers, found once, and no longer than the system lives."""
+"""Undamped modes that a system keeps from one speed to the next: the same numbers, found once, kept while the system lives."""
 
 from __future__ import annotations
 

@@ -1,30 +1,70 @@
-"""Elements that were computed before are not computed again, and nobody can change what others share."""
+"""Results kept by the content of the arrays they were computed of."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
-from rotorgear.elements.shaft import ShaftElements, distinct_elements
+from rotorgear.elements.by_content import kept_by_content
 
 
-def kinds(density: float) -> ShaftElements:
-    one = np.ones(1)
-    sizes = np.array([[0.04, 0.0, 0.04, 0.0]])
-    return ShaftElements(0.1 * one, sizes, sizes, 2.1e11 * one, 8.1e10 * one, 0.3 * one, density * one, np.nan * one)
+@dataclass(frozen=True)
+class Sizes:
+    length: np.ndarray
+    width: np.ndarray
 
 
-def test_equal_kinds_share_their_matrices_and_others_do_not():
-    first = distinct_elements(kinds(7850.0), order=3)
-    assert distinct_elements(kinds(7850.0), order=3) is first
-    assert distinct_elements(kinds(7851.0), order=3).mass == pytest.approx(first.mass * 7851.0 / 7850.0, rel=1e-14)
-    assert distinct_elements(kinds(7850.0), order=4).mass.shape != first.mass.shape
+@dataclass(frozen=True)
+class Areas:
+    area: np.ndarray
+    unit: str
 
 
-def test_what_is_shared_is_read_only():
-    shared = distinct_elements(kinds(7850.0), order=3)
+@pytest.fixture
+def calls() -> list[int]:
+    return []
+
+
+@pytest.fixture
+def areas(calls):
+    @kept_by_content(rows=3, results=2)
+    def computed(sizes: Sizes, *, factor: float = 1.0) -> Areas:
+        calls.append(len(sizes.length))
+        return Areas(factor * sizes.length * sizes.width, "m^2")
+
+    return computed
+
+
+def test_equal_arrays_are_computed_once(areas, calls):
+    one = areas(Sizes(np.array([1.0, 2.0]), np.array([3.0, 4.0])))
+    same = areas(Sizes(np.array([1.0, 2.0]), np.array([3.0, 4.0])))
+    assert same is one
+    assert len(calls) == 1
     with pytest.raises(ValueError, match="read-only"):
-        shared.mass[0, 0, 0] = 0.0
-    assert replace(shared, mass=shared.mass * 2.0).mass is not shared.mass
+        one.area[0] = 0.0
+
+
+@pytest.mark.parametrize(
+    ("other", "options"),
+    [
+        (Sizes(np.array([1.0, 2.0]), np.array([3.0, 5.0])), {}),
+        (Sizes(np.array([1.0, 2.0]), np.array([[3.0, 4.0]])), {}),
+        (Sizes(np.array([1.0, 2.0]), np.array([3.0, 4.0]).view(np.int64)), {}),
+        (Sizes(np.array([1.0, 2.0]), np.array([3.0, 4.0])), {"factor": 2.0}),
+    ],
+    ids=["value", "shape", "type", "option"],
+)
+def test_what_differs_is_computed(areas, calls, other, options):
+    areas(Sizes(np.array([1.0, 2.0]), np.array([3.0, 4.0])))
+    found = areas(other, **options)
+    assert len(calls) == 2
+    np.testing.assert_array_equal(found.area, options.get("factor", 1.0) * other.length * other.width)
+
+
+def test_many_rows_are_not_kept(areas, calls):
+    many = Sizes(np.ones(4), np.ones(4))
+    assert areas(many) is not areas(many)
+    assert len(calls) == 2
+    areas(many).area[0] = 0.0
