@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import groupby
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -246,8 +248,8 @@ def alike(model: Tables, nodes: Nodes, shaft: str) -> Iterator[tuple[bool, int, 
     """Yield (rigid, order, elements) for the elements of a shaft that share both."""
     sections = model.shafts[shaft].sections
     found: dict[tuple[bool, int], list[Element]] = {}
-    for element in nodes.elements[shaft]:
-        found.setdefault((sections[element.section].rigid, element.order), []).append(element)
+    for (section, order), run in groupby(nodes.elements[shaft], key=attrgetter("section", "order")):
+        found.setdefault((sections[section].rigid, order), []).extend(run)
     for (rigid, order), chosen in found.items():
         yield rigid, order, chosen
 

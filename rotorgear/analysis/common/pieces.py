@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from itertools import groupby
+from operator import attrgetter
+
 from rotorgear.results.steady.modal import Piece
-from rotorgear.system.nodes import Element
 from rotorgear.system.system import System
+
+_PIECE = attrgetter("piece")
 
 
 def pieces(system: System) -> tuple[Piece, ...]:
     """Say how each shaft segment was cut."""
     found = []
     for shaft, elements in system.nodes.elements.items():
-        of_piece: dict[int, list[Element]] = {}
-        for element in elements:
-            of_piece.setdefault(element.piece, []).append(element)
-        for _, cut in sorted(of_piece.items()):
+        for _, of_piece in groupby(sorted(elements, key=_PIECE), key=_PIECE):
+            cut = list(of_piece)
             start = system.nodes.z[cut[0].left]
             end = system.nodes.z[cut[-1].right]
             found.append(Piece(shaft, start, end, len(cut), cut[0].order))

@@ -84,4 +84,4 @@ def _turned(shapes: np.ndarray) -> np.ndarray:
         everything = shapes[:, :, still].reshape(-1, np.count_nonzero(still))
         peak[still] = everything[np.abs(everything).argmax(axis=0), np.arange(everything.shape[1])]
     turn = np.where(peak != 0.0, np.conj(peak) / np.where(peak != 0.0, np.abs(peak), 1.0), 1.0)
-    return (shapes * turn).astype(complex)
+    return np.multiply(shapes, turn, dtype=complex)
