@@ -43,6 +43,10 @@ class JournalOil(OilFilm):
         """Two."""
         return 2
 
+    def parts_of_force(self, stiffness: np.ndarray) -> np.ndarray:
+        """Pressures around the journal: what a motion by the clearance would change."""
+        return np.asarray(np.abs(stiffness).sum(axis=1) * self.clearance)
+
     @property
     def pad_clearance(self) -> float:
         """Radius of a lobe or pad less that of the journal, c/(1 - m) in m."""

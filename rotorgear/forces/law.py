@@ -263,6 +263,13 @@ class ForceLaw(ABC):
             values.force.mean(axis=0), values.in_displacement.mean(axis=0), values.in_velocity.mean(axis=0)
         )
 
+    def parts_of_force(self, stiffness: np.ndarray) -> np.ndarray:
+        """Sizes (k,) of the parts that cancel in the force, as pressures around a centred journal do, where it is `stiffness` (k, k).
+
+        Below their rounding a force means nothing. 0 where no parts cancel.
+        """
+        return np.zeros(self.components)
+
     def settled(self, d: Any) -> ForceLaw:
         """The law as it stays for small motions about displacements d (k,): an inlet that statics place stays there then."""
         return self

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import rotorgear as rg
 from rotorgear.analysis.response.run_up import choose_method
+from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
+from rotorgear.system.system import System
 from tests.fuzz.runner import mutant
 from tests.paths import ROOT
 
@@ -55,3 +58,13 @@ def test_a_reduced_system_that_is_singular_is_told(tmp_path: Path) -> None:
 def test_modes_up_to_a_frequency_of_300_digits_are_refused_as_too_many() -> None:  # seed 40018
     with pytest.raises(AnalysisError, match="modes lie below 1e\\+300 Hz, more than"):
         rg.campbell(rg.load(ROOT / "models" / "geared_pair.toml"), fmax=1e300)
+
+
+@pytest.mark.parametrize("seed", [40023, 40063])  # modal: a minute and more
+def test_a_film_that_carries_nothing_is_in_equilibrium_where_it_is_centred(seed: int, tmp_path: Path) -> None:
+    model = model_of("geared_pair", seed, tmp_path)
+    assert model.operation is not None
+    speed = model.operation.speed
+    [law] = equilibrate(System(model, load=model.mean_load(speed).of_kind("static")), speed).laws
+    assert np.abs(law.force).max() < 1e-9
+    assert np.hypot(*law.d) < 1e-12 * law.part.law.clearance

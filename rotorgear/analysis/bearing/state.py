@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 _ITERATIONS = 40
 _TOLERANCE = 1e-11
+# Of the parts that cancel in a force.
+_ROUNDING = 16.0 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
@@ -108,7 +110,7 @@ def _under(law: ForceLaw, load: np.ndarray, start: np.ndarray, speed: float, poi
     for _ in range(_ITERATIONS):
         about = law.linearised(d, speed=speed, points=points)
         rest = load - about.force
-        if float(np.abs(rest).max(initial=0.0)) <= _TOLERANCE * max(size, 1e-300):
+        if np.all(np.abs(rest) <= _TOLERANCE * size + _ROUNDING * law.parts_of_force(about.stiffness)):
             return d
         if not (np.all(np.isfinite(rest)) and np.all(np.isfinite(about.stiffness))):
             break

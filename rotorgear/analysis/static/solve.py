@@ -21,7 +21,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.model.parts.fields import DOF_NAMES
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.solvers.sparse.equilibrium import Equilibrium
-from rotorgear.solvers.sparse.newton import settle
+from rotorgear.solvers.sparse.newton import EVALUATIONS, settle
 from rotorgear.solvers.sparse.static import UnbalancedLoadError
 from rotorgear.system.assembly import assemble
 from rotorgear.system.contacts import ContactLines, contact_lines
@@ -217,7 +217,21 @@ def _laws_at_rest(
             tangents = la.block_diag(*(state.stiffness for state in states))
             return np.concatenate([state.force for state in states]), tangents
 
-        found = settle(B.T @ solved[:, 0], B.T @ solved[:, 1:], k, forces, near[0])
+        def cancelling(tangent: np.ndarray) -> np.ndarray:
+            return np.concatenate(
+                [law.parts_of_force(tangent[a:b, a:b]) for law, (a, b) in zip(laws, pairwise(ends), strict=True)]
+            )
+
+        films = sum(law.many_kinks for law in laws)
+        found = settle(
+            B.T @ solved[:, 0],
+            B.T @ solved[:, 1:],
+            k,
+            forces,
+            near[0],
+            parts=cancelling,
+            evaluations=EVALUATIONS // max(films, 1),
+        )
         if not found.converged:
             names = ", ".join(part.part for part in parts)
             raise AnalysisError(

@@ -10,6 +10,9 @@ Where Newton's method stops short, as with contacts that stand apart (nothing pu
 laws get dampers in proportion to k and d creeps to rest: with s = (time step)^-1 each step solves r(d) + s A k (d - d_last) = 0
 and s falls until nothing of it is left. A gap is crossed however soft or stiff its walls are, because a tenfold step
 is taken with each solution. A stable equilibrium is reached, an unstable one is left.
+
+Forces may be small differences of large parts, as pressures around a centred journal are: without a load F is rounding of these
+parts, and no iteration brings it to a share of itself. Who knows the parts says so.
 Kelley and Keyes, Convergence analysis of pseudo-transient continuation, SIAM J. Numer. Anal. 35 (1998) 508.
 """
 
@@ -22,6 +25,9 @@ import numpy as np
 
 # Forces (m,) and tangents (m, m) at local displacements (m,).
 Laws = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+# Residual (m,) of displacements and forces (m,), and whether it is small with tangents (m, m) there.
+Residual = Callable[[np.ndarray, np.ndarray], np.ndarray]
+Small = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], bool]
 
 _ITERATIONS = 80
 _TOLERANCE = 1e-10
@@ -35,6 +41,8 @@ _STUCK = 3
 _STEPS = 120
 _LONGER = 10.0
 _SHORTER = 5.0
+# Evaluations of the laws after which the search ends: more than three times what any equilibrium was seen to take.
+EVALUATIONS = 3000
 
 
 @dataclass(frozen=True)
@@ -52,7 +60,16 @@ class Settled:
     crept: int = 0
 
 
-def settle(d0: np.ndarray, A: np.ndarray, k: np.ndarray, laws: Laws, near: np.ndarray | None = None) -> Settled:
+def settle(
+    d0: np.ndarray,
+    A: np.ndarray,
+    k: np.ndarray,
+    laws: Laws,
+    near: np.ndarray | None = None,
+    *,
+    parts: Callable[[np.ndarray], np.ndarray] | None = None,
+    evaluations: int = EVALUATIONS,
+) -> Settled:
     """Return the local displacements in equilibrium.
 
     Args:
@@ -61,17 +78,50 @@ def settle(d0: np.ndarray, A: np.ndarray, k: np.ndarray, laws: Laws, near: np.nd
         k: (m, m) that stiffness.
         laws: forces and tangents.
         near: (m,) where the solution is looked for first; None: d0.
+        parts: sizes (m,) of what cancels in the forces, from their tangents (m, m); None: nothing does.
+        evaluations: of the laws, after which the search ends.
     """
     size = float(np.abs(d0).max(initial=0.0))
+    left = iter(range(evaluations))
+
+    def counted(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if next(left, None) is None:
+            raise _SpentError
+        return laws(d)
 
     def residual(d: np.ndarray, F: np.ndarray) -> np.ndarray:
         return np.asarray(d - d0 + A @ (F - k @ d))
 
-    def small(d: np.ndarray, F: np.ndarray, r: np.ndarray) -> bool:
+    def small(d: np.ndarray, F: np.ndarray, tangent: np.ndarray, r: np.ndarray) -> bool:
         largest = size + np.abs(A @ F).max(initial=0.0)
-        noise = _ROUNDING * (np.abs(d) + np.abs(A) @ (np.abs(F) + np.abs(k) @ np.abs(d))).max(initial=0.0)
-        return bool(noise <= _WORST * largest and np.abs(r).max(initial=0.0) <= max(_TOLERANCE * largest, noise))
+        worst = np.abs(r).max(initial=0.0)
+        terms = np.abs(d) + np.abs(A) @ (np.abs(F) + np.abs(k) @ np.abs(d))
+        noise = _ROUNDING * terms.max(initial=0.0)
+        if noise <= _WORST * largest and worst <= max(_TOLERANCE * largest, noise):
+            return True
+        return parts is not None and bool(worst <= _ROUNDING * (terms + np.abs(A) @ parts(tangent)).max(initial=0.0))
 
+    try:
+        return _search(d0, A, k, counted, near, residual, small)
+    except _SpentError:
+        F, tangent = laws(d0)
+        return Settled(d0, F, tangent, False)
+
+
+class _SpentError(Exception):
+    """The laws were evaluated as often as they may be."""
+
+
+def _search(
+    d0: np.ndarray,
+    A: np.ndarray,
+    k: np.ndarray,
+    laws: Laws,
+    near: np.ndarray | None,
+    residual: Residual,
+    small: Small,
+) -> Settled:
+    """Newton's method from near and from d0, then the continuation."""
     steps = 0
     for start in (d0,) if near is None else (near, d0):
         found = _newton(start, A, k, laws, residual, small)
@@ -93,7 +143,7 @@ def settle(d0: np.ndarray, A: np.ndarray, k: np.ndarray, laws: Laws, near: np.nd
             s *= _SHORTER
             continue
         d = step.d
-        if small(d, step.force, residual(d, step.force)):
+        if small(d, step.force, step.tangent, residual(d, step.force)):
             return Settled(d, step.force, step.tangent, True, steps, crept)
         s /= _LONGER
     F, tangent = laws(d0)
@@ -105,8 +155,8 @@ def _newton(
     A: np.ndarray,
     k: np.ndarray,
     laws: Laws,
-    residual: Callable[[np.ndarray, np.ndarray], np.ndarray],
-    small: Callable[[np.ndarray, np.ndarray, np.ndarray], bool],
+    residual: Residual,
+    small: Small,
 ) -> Settled:
     """Newton's method for a residual of derivative 1 + A (dF/dd - k); a step is halved until it brings the residual down."""
     d = start.copy()
@@ -116,7 +166,7 @@ def _newton(
     for steps in range(_ITERATIONS):
         if not np.all(np.isfinite(r)):
             break
-        if small(d, F, r):
+        if small(d, F, tangent, r):
             return Settled(d, F, tangent, True, steps)
         # Least squares: contacts that stand apart leave directions in which nothing changes.
         step = np.linalg.lstsq(np.eye(d.size) + A @ (tangent - k), -r, rcond=1e-14)[0]
@@ -134,4 +184,4 @@ def _newton(
         stuck = stuck + 1 if not np.linalg.norm(r) <= (1.0 - 1e-6) * before else 0
         if stuck == _STUCK:
             break
-    return Settled(d, F, tangent, small(d, F, r) if np.all(np.isfinite(r)) else False, _ITERATIONS)
+    return Settled(d, F, tangent, small(d, F, tangent, r) if np.all(np.isfinite(r)) else False, _ITERATIONS)

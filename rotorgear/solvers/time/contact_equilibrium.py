@@ -62,8 +62,11 @@ def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibr
 
     q0 = settled(system.load)
     X = settled(B) if system.m else np.zeros((system.n, 0))
-    k = system.forces.reference_stiffness
-    found = settle(np.asarray(B.T @ q0), B.T @ X, k, lambda d: local_tangent(system, d, 0.0))
+    forces = system.forces
+    k = forces.reference_stiffness
+    found = settle(
+        np.asarray(B.T @ q0), B.T @ X, k, lambda d: local_tangent(system, d, 0.0), parts=forces.parts_of_force
+    )
     if not found.converged:
         return Equilibrium(q0, False, R, R.T @ system.load, found.force)
     q = q0 + X @ (k @ found.d - found.force)

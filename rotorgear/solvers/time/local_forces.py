@@ -62,6 +62,9 @@ class LocalLaw(Protocol):
     def closed_stiffness(self) -> np.ndarray:
         """Mean stiffness (k, k) with all contacts closed."""
 
+    def parts_of_force(self, stiffness: np.ndarray) -> np.ndarray:
+        """Sizes (k,) of what cancels in the force where it is `stiffness` (k, k)."""
+
     def mean(self) -> LocalLaw:
         """Return the law without anything that varies in time."""
 
@@ -117,6 +120,11 @@ class LocalForces:
     def m(self) -> int:
         """Number of relative displacements."""
         return int(self.first[-1])
+
+    def parts_of_force(self, tangent: np.ndarray) -> np.ndarray:
+        """Sizes (m,) of what cancels in the forces where their tangent is (m, m)."""
+        ends = zip(self.laws, self.first[:-1], self.first[1:], strict=True)
+        return np.concatenate([*(law.parts_of_force(tangent[a:b, a:b]) for law, a, b in ends), np.zeros(0)])
 
     def arguments(self) -> Laws:
         """What the compiled loops take."""

@@ -79,3 +79,32 @@ def test_an_equilibrium_that_does_not_exist_is_said_not_to_be_found() -> None:
         np.array([2.0]), np.eye(1), k, lambda d: (np.tanh(d), np.diag(1.0 / np.cosh(np.clip(d, -50, 50)) ** 2))
     )
     assert not found.converged
+
+
+def test_forces_that_are_rounding_of_their_parts_are_settled() -> None:
+    pull = 1e6
+    k = np.diag([1e7])
+
+    def laws(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        # Two sides that pull against each other; what they leave is never nothing at all.
+        left = pull + 0.5e7 * d
+        right = pull * (1.0 + 1e-15) - 0.5e7 * d
+        return left - right, k
+
+    d0, A = condensed(np.array([[1e7]]), k, np.zeros(1))
+    assert not settle(d0, A, k, laws, evaluations=200).converged
+    found = settle(d0, A, k, laws, parts=lambda tangent: np.array([2.0 * pull]))
+    assert found.converged
+    assert abs(found.d[0]) <= 1e-15 * pull / 1e7
+
+
+def test_the_search_ends_after_its_evaluations() -> None:
+    asked = []
+
+    def laws(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        asked.append(d)
+        return 2.0 - d + np.copysign(1.0, d - 0.3), np.zeros((1, 1))  # 1 N too much on one side, too little on the other
+
+    d0, A = condensed(np.array([[1.0]]), np.eye(1), np.array([2.0]))
+    assert not settle(d0, A, np.eye(1), laws, evaluations=50).converged
+    assert len(asked) == 51  # and where it began, whose forces are told
