@@ -103,7 +103,9 @@ def test_the_search_ends_after_its_evaluations() -> None:
 
     def laws(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         asked.append(d)
-        return 2.0 - d + np.copysign(1.0, d - 0.3), np.zeros((1, 1))  # 1 N too much on one side, too little on the other
+        return 2.0 - d + np.copysign(1.0, d - 0.3), np.zeros(
+            (1, 1)
+        )  # 1 N too much on one side, too little on the other
 
     d0, A = condensed(np.array([[1.0]]), np.eye(1), np.array([2.0]))
     assert not settle(d0, A, np.eye(1), laws, evaluations=50).converged
