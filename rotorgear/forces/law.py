@@ -264,7 +264,7 @@ class ForceLaw(ABC):
         )
 
     def parts_of_force(self, stiffness: np.ndarray) -> np.ndarray:
-        """Sizes (k,) of the parts that cancel in the force, as pressures around a centred journal do, where its stiffness is (k, k).
+        """Sizes (k,) of the parts that cancel in the force, as pressures around a centred journal do; `stiffness` (k, k): there.
 
         Below their rounding a force means nothing. 0 where no parts cancel.
         """
