@@ -7,6 +7,7 @@ import collections
 import contextlib
 import io
 import json
+import math
 import multiprocessing
 import resource
 import signal
@@ -170,6 +171,12 @@ def main() -> int:
     parser.add_argument(
         "--limit", type=float, default=TIME_LIMIT, help="CPU seconds of one verb on one file (default 60)"
     )
+    parser.add_argument(
+        "--seconds",
+        type=float,
+        default=math.inf,
+        help="begin no more files after this time (default: all are gone through)",
+    )
     parser.add_argument("--jobs", type=int, default=1, help="worker processes (default 1)")
     parser.add_argument(
         "--verbs",
@@ -184,21 +191,22 @@ def main() -> int:
         text = mutant(asked.show)[1] if kind_of(asked.show) == "model" else " ".join(option_mutations(asked.show))
         sys.stdout.write(text + "\n")
         return 0
-    findings, ends, slowest = run(asked)
+    done, findings, ends, slowest = run(asked)
     groups = collections.Counter((found.verb.split(" ")[0], found.what) for found in findings)
     for (verb, what), count in groups.most_common():
         first = next(found for found in findings if (found.verb.split(" ")[0], found.what) == (verb, what))
         print(f"{count:4} x {verb}: {what} (seed {first.seed}, {first.verb}): {first.details[:160]}")
     total = ", ".join(f"{count} {name}" for name, count in sorted(ends.items()))
     print(
-        f"{asked.files} files from seed {asked.seed}: {total}; {len(findings)} findings; "
+        f"{done} files from seed {asked.seed}: {total}; {len(findings)} findings; "
         f"slowest file {slowest[0]:.1f} CPU s (seed {slowest[1]})"
     )
     return 1 if findings else 0
 
 
-def run(asked: argparse.Namespace) -> tuple[list[Finding], collections.Counter, tuple[float, int]]:
-    """Findings of all seeds, how the runs ended, and the slowest seed; a worker that dies is replaced."""
+def run(asked: argparse.Namespace) -> tuple[int, list[Finding], collections.Counter, tuple[float, int]]:
+    """Number of seeds gone through, findings, how the runs ended, and the slowest seed; a worker that dies is replaced."""
+    last = time.monotonic() + asked.seconds
     context = multiprocessing.get_context("spawn")
     waiting = collections.deque(range(asked.seed, asked.seed + asked.files))
     findings: list[Finding] = []
@@ -215,7 +223,7 @@ def run(asked: argparse.Namespace) -> tuple[list[Finding], collections.Counter, 
         give(ours, process)
 
     def give(pipe: Connection, process: Any) -> None:
-        seed = waiting.popleft() if waiting else None
+        seed = waiting.popleft() if waiting and time.monotonic() < last else None
         pipe.send(seed)
         if seed is None:
             workers.pop(pipe, None)
@@ -239,7 +247,7 @@ def run(asked: argparse.Namespace) -> tuple[list[Finding], collections.Counter, 
                     {"found": 1},
                     0.0,
                 )
-                if waiting:
+                if waiting and time.monotonic() < last:
                     begin()
             else:
                 give(pipe, process)
@@ -253,4 +261,4 @@ def run(asked: argparse.Namespace) -> tuple[list[Finding], collections.Counter, 
                     report.flush()
             if sys.stderr.isatty():
                 sys.stderr.write(f"\r{done} of {asked.files} files, {len(findings)} findings")
-    return findings, ends, slowest
+    return done, findings, ends, slowest
