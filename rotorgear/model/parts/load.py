@@ -62,13 +62,15 @@ class LoadHistory(Part):
     @property
     def mean(self) -> np.ndarray:
         """The part (6,) that statics take: the mean over a turn, or the values at time 0, from which a transient starts."""
+        from scipy.integrate import trapezoid  # here: most models have no tables
+
         found = np.zeros(6)
         for name, values in zip(self.components, self.values, strict=True):
             if self.over == "time":
                 mean = float(np.interp(0.0, self.places, values))
             else:
                 angles, turned = self.whole_turn(values)
-                mean = 0.5 * float(np.diff(angles) @ (turned[1:] + turned[:-1])) / _TURN
+                mean = float(trapezoid(turned, angles)) / _TURN
             found[COMPONENTS.index(name)] = mean
         return found
 
