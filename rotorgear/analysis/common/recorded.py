@@ -13,6 +13,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
+from rotorgear.errors import AnalysisError
 from rotorgear.model.checks.estimates import estimated
 from rotorgear.model.checks.plausibility.machine import implausible
 from rotorgear.model.model import Model
@@ -30,16 +31,23 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
     """Wrap an analysis so that its result carries settings, model hash and seconds.
 
     The first argument is what is analysed (a model, a system, or another result) and no setting.
+
+    Raises:
+        AnalysisError: by the analysis, if a model is to be analysed and the first argument is none.
     """
     signature = inspect.signature(analysis)
+    first = next(iter(signature.parameters.values()))
+    analysed = {name.strip() for name in str(first.annotation).split("|")}
 
     @wraps(analysis)
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
         start = time.perf_counter()
-        result = analysis(*args, **kwargs)
         bound = signature.bind(*args, **kwargs)
         bound.apply_defaults()
         (_, subject), *given = bound.arguments.items()
+        if "Model" in analysed and not any(kind.__name__ in analysed for kind in type(subject).__mro__):
+            raise AnalysisError(f"{analysis.__name__}: {_no_model(subject)}")
+        result = analysis(*args, **kwargs)
         settings = {name: setting(value) for name, value in given if name not in _NOT_SETTINGS}
         seconds = {"total": time.perf_counter() - start} | result.seconds
         doubts = (*implausible(subject.layout), *estimated(subject.layout)) if isinstance(subject, Model) else ()
@@ -47,6 +55,16 @@ def recorded(analysis: Callable[P, R]) -> Callable[P, R]:
         return replace(result, settings=settings, model_hash=hash_of(subject), seconds=seconds, warnings=warnings)
 
     return run
+
+
+def _no_model(subject: Any) -> str:
+    """What was given in place of a model, and how to get one from it."""
+    if isinstance(subject, str | Path):
+        return f"got the text '{subject}', expected a model; read its file first: rotorgear.load('{subject}')"
+    kind = type(subject).__name__
+    if isinstance(getattr(subject, "model", None), Model):
+        return f"got the {kind}, expected the model in it (.model)"
+    return f"got {kind}, expected a model, as rotorgear.load gives it"
 
 
 def hash_of(subject: Any) -> str:

@@ -7,7 +7,6 @@ file over time or over the angle of a shaft.
 from __future__ import annotations
 
 from itertools import pairwise
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -28,7 +27,7 @@ from rotorgear.model.parts.fields import (
     Unit,
     refuse,
 )
-from rotorgear.model.parts.topography import csv_rows
+from rotorgear.model.parts.topography import csv_rows, from_csv
 from rotorgear.quantity import QuantityError, nearest, parse_quantity
 
 COMPONENTS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
@@ -83,22 +82,6 @@ class LoadHistory(Part):
             np.concatenate([[0.0], angles[inner], [_TURN]]),
             np.concatenate([[start], np.array(values)[inner], [start]]),
         )
-
-
-def _read(value: Any) -> Any:
-    """A path becomes the contents of its file; numbers stay."""
-    if not isinstance(value, str):
-        return value
-    file = Path(value)
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise refuse(f"a CSV file of a load over time or angle; there is no '{value}'") from None
-    except UnicodeDecodeError:
-        raise refuse(f"a CSV file in UTF-8, which '{file.name}' is not") from None
-    except (OSError, ValueError) as error:
-        raise refuse(f"a CSV file that can be read: {error}") from None
-    return parse_history(text, file.name)
 
 
 def parse_history(text: str, name: str) -> dict[str, Any]:
@@ -185,7 +168,7 @@ def _column(cell: str, line: str) -> tuple[str, str, str]:
 
 HistoryFile = Annotated[
     LoadHistory,
-    BeforeValidator(_read),
+    BeforeValidator(lambda value: from_csv(value, "a load over time or angle", parse_history)),
     WithJsonSchema({"type": "string", "description": "CSV file over time or angle, beside the model file"}),
 ]
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -47,22 +48,6 @@ class Topography(Part):
 
     by: Literal["roll_length", "diameter"] = Field(description="what the places of the grids are")
     grids: tuple[MeasuredGrid, ...] = Field(description="one for each tooth and side that was measured")
-
-
-def _read(value: Any) -> Any:
-    """A path becomes the contents of its file; numbers stay."""
-    if not isinstance(value, str):
-        return value
-    file = Path(value)
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise refuse(f"a CSV file of measured flanks; there is no '{value}'") from None
-    except UnicodeDecodeError:
-        raise refuse(f"a CSV file in UTF-8, which '{file.name}' is not") from None
-    except (OSError, ValueError) as error:
-        raise refuse(f"a CSV file that can be read: {error}") from None
-    return parse_topography(text, file.name)
 
 
 def parse_topography(text: str, name: str) -> dict[str, Any]:
@@ -104,6 +89,22 @@ def parse_topography(text: str, name: str) -> dict[str, Any]:
         points[place] = found["deviation"]
     grids = [_grid(tooth, side, points, name) for (tooth, side), points in flanks.items()]
     return {"by": by[0], "grids": grids}
+
+
+def from_csv(value: Any, what: str, parse: Callable[[str, str], Any]) -> Any:
+    """A path becomes what `parse(text, name)` makes of its file; numbers stay. `what` the file holds is for the error."""
+    if not isinstance(value, str):
+        return value
+    file = Path(value)
+    try:
+        text = file.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise refuse(f"a CSV file of {what}; there is no '{value}'") from None
+    except UnicodeDecodeError:
+        raise refuse(f"a CSV file in UTF-8, which '{file.name}' is not") from None
+    except (OSError, ValueError) as error:
+        raise refuse(f"a CSV file that can be read: {error}") from None
+    return parse(text, file.name)
 
 
 def csv_rows(text: str, name: str, example: str) -> list[tuple[int, list[str]]]:
@@ -177,6 +178,6 @@ def _grid(tooth: int | None, side: str | None, points: dict[tuple[float, float],
 
 TopographyFile = Annotated[
     Topography,
-    BeforeValidator(_read),
+    BeforeValidator(lambda value: from_csv(value, "measured flanks", parse_topography)),
     WithJsonSchema({"type": "string", "description": "CSV file of measured flanks, beside the model file"}),
 ]
