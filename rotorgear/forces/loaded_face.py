@@ -20,8 +20,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from rotorgear.forces.law import parameter, refuse
-from rotorgear.forces.loaded_map import LoadedMap
-from rotorgear.forces.loaded_teeth import (
+from rotorgear.forces.loaded_map import (
     ABOUT,
     BEGIN,
     E_NOW,
@@ -38,8 +37,10 @@ from rotorgear.forces.loaded_teeth import (
     ROWS,
     SERIES,
     SPACING,
+    STEPS,
     WEIGHT,
     C,
+    LoadedMap,
     place_flank,
 )
 from rotorgear.forces.mesh_contact import DAMPINGS
@@ -48,9 +49,6 @@ from rotorgear.solvers.contact.kinds import PENETRATION
 from rotorgear.solvers.lanes.columns import OWN_LAW, Column
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
-# Steps of x up to the largest load, and loads between which a map is turned over.
-STEPS = 192
-_LOADS = 1500
 # At each step of x of one tilt: force, tangent stiffness, energy, dM/dx and moment.
 FORCE, TANGENT, ENERGY, LIFT, MOMENT = range(5)
 NODE = 5
@@ -231,9 +229,7 @@ class LoadedFace(LoadedMap):
     @cached_property
     def rows(self) -> np.ndarray:
         """The maps turned over, (p, 1 + 5 k (STEPS + 1)): delta_0, the first touch at any tilt, then all steps of x."""
-        share = np.linspace(0.0, 1.0, _LOADS)
-        # Dense where little carries: half of the loads up to a fiftieth of the largest.
-        loads = self.load[-1] * np.concatenate([0.02 * share[:-1], 0.02 + 0.98 * share])
+        loads = self.loads_between()
         curve = PchipInterpolator(self.load, self.approach, axis=2)
         touch = self.approach[:, :, 0].min(axis=0)
         deflections = curve(loads) - touch[:, None]
@@ -261,29 +257,8 @@ class LoadedFace(LoadedMap):
         return found
 
     def parameters(self) -> np.ndarray:
-        """Return the head, the series of e, the rows of the map, and the tilts."""
-        count = max(len(self.error_cos), len(self.error_sin))
-        series = np.zeros((count, 2))
-        series[: len(self.error_cos), 0] = self.error_cos
-        series[: len(self.error_sin), 1] = self.error_sin
-        head = [
-            self.spacing,
-            self.damping / self.stiffness,
-            self.damping,
-            DAMPINGS[self.contact_damping],
-            1.0 / self.reference,
-            self.order,
-            self.phase,
-            self.path_phase,
-            self.forward,
-            self.periods,
-            self.approach.shape[1],
-            count,
-            self.error_mean,
-            0,
-            self.rows.shape[1],
-        ]
-        return np.concatenate([head, series.ravel(), self.rows.ravel(), [self.place, len(self.tilt)], self.tilt])
+        """Return those of the map, and the place and the tilts behind them."""
+        return np.concatenate([self.of_the_map(), [self.place, len(self.tilt)], self.tilt])
 
     def closed_stiffness(self) -> np.ndarray:
         """k_0 at its place, and what resists a tilt about it."""

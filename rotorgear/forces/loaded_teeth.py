@@ -21,95 +21,35 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from rotorgear.forces.law import parameter, refuse
-from rotorgear.forces.loaded_map import LoadedMap
+from rotorgear.forces.loaded_map import (
+    ABOUT,
+    BEGIN,
+    COAST,
+    E_NOW,
+    E_RATE,
+    FLANK_STATE,
+    MODE,
+    NEAREST,
+    PER_DEPTH,
+    PER_K,
+    RATE,
+    ROW,
+    SPACING,
+    STEPS,
+    WEIGHT,
+    C,
+    LoadedMap,
+    place_flank,
+)
 from rotorgear.forces.mesh_contact import DAMPINGS
 from rotorgear.solvers.contact.gap_contact import curve_contact
 from rotorgear.solvers.contact.kinds import PENETRATION
 from rotorgear.solvers.lanes.columns import ERROR, OWN_LAW, SLOPE, STIFFNESS, TABLE_ROWS, Column
 from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
 
-# Steps of x up to the largest load, and loads between which the map is turned over.
-STEPS = 192
-_LOADS = 1500
-_TURN = 2.0 * np.pi
-# Places of the parameters, which cosine and sine of each harmonic of e follow, and then the rows of the map; COAST is where the
-# parameters of the coast flanks begin, or 0; LENGTH the numbers in a row.
-(
-    SPACING,
-    PER_K,
-    C,
-    MODE,
-    PER_DEPTH,
-    ORDER,
-    PHASE,
-    PATH_PHASE,
-    FORWARD,
-    PERIODS,
-    ROWS,
-    HARMONICS,
-    E_MEAN,
-    COAST,
-    LENGTH,
-    SERIES,
-) = range(16)
 # A row: delta_0, then at each step of x the force, the tangent stiffness and the energy.
 FORCE, TANGENT, ENERGY = range(3)
 NODE = 3
-# Places of the state: e + delta_0 and its rate, then for each of the four rows about the position where it begins, its weight,
-# and the rate of that.
-E_NOW, E_RATE, ABOUT = range(3)
-BEGIN, WEIGHT, RATE = range(3)
-ROW = 3
-NEAREST = 4
-FLANK_STATE = ABOUT + ROW * NEAREST
-
-
-@compiled(entry=False)
-def place_flank(angle, speed, p, s):  # type: ignore[no-untyped-def]
-    """Fill e + delta_0, its rate, and the rows of the map about the position."""
-    rate = p[ORDER] * speed
-    phase = p[ORDER] * angle + p[PHASE]
-    error = p[E_MEAN]
-    slope = 0.0
-    count = int(p[HARMONICS])
-    for n in range(1, count + 1):
-        a = p[SERIES + 2 * n - 2]
-        b = p[SERIES + 2 * n - 1]
-        error += a * np.cos(n * phase) + b * np.sin(n * phase)
-        slope += n * (b * np.cos(n * phase) - a * np.sin(n * phase))
-    rows = int(p[ROWS])
-    first = SERIES + 2 * count
-    length = int(p[LENGTH])
-    turns = p[FORWARD] * (p[ORDER] * angle + p[PATH_PHASE]) / _TURN / p[PERIODS]
-    at = (turns - np.floor(turns)) * rows
-    i = min(int(at), rows - 1)
-    x = at - i
-    # Cubic with the slopes of central differences (Catmull and Rom): rates without jumps, for work is done by them.
-    weights = (
-        0.5 * x * (2.0 * x - x * x - 1.0),
-        0.5 * (2.0 + x * x * (3.0 * x - 5.0)),
-        0.5 * x * (1.0 + 4.0 * x - 3.0 * x * x),
-        0.5 * x * x * (x - 1.0),
-    )
-    slopes = (
-        0.5 * (4.0 * x - 3.0 * x * x - 1.0),
-        0.5 * x * (9.0 * x - 10.0),
-        0.5 * (1.0 + 8.0 * x - 9.0 * x * x),
-        0.5 * x * (3.0 * x - 2.0),
-    )
-    passing = rows * p[FORWARD] * rate / _TURN / p[PERIODS]
-    touch = 0.0
-    touch_rate = 0.0
-    for k in range(NEAREST):
-        begin = first + ((i + k - 1) % rows) * length
-        own = ABOUT + ROW * k
-        s[own + BEGIN] = begin
-        s[own + WEIGHT] = weights[k]
-        s[own + RATE] = slopes[k] * passing
-        touch += weights[k] * p[begin]
-        touch_rate += slopes[k] * passing * p[begin]
-    s[E_NOW] = error + touch
-    s[E_RATE] = slope * rate + touch_rate
 
 
 @schedule_function
@@ -239,9 +179,7 @@ class LoadedTeeth(LoadedMap):
     @cached_property
     def rows(self) -> np.ndarray:
         """The map turned over, (p, 1 + 3 (STEPS + 1)): delta_0, then force, tangent stiffness and energy at each step of x."""
-        # Dense where little carries: half of the loads up to a fiftieth of the largest.
-        share = np.linspace(0.0, 1.0, _LOADS)
-        loads = self.load[-1] * np.concatenate([0.02 * share[:-1], 0.02 + 0.98 * share])
+        loads = self.loads_between()
         curve = PchipInterpolator(self.load, self.approach, axis=1)
         deflections = curve(loads) - self.approach[:, :1]
         softness = np.maximum(curve(loads, 1), 1e-6 / self.stiffness)
@@ -260,30 +198,12 @@ class LoadedTeeth(LoadedMap):
         return found
 
     def parameters(self) -> np.ndarray:
-        """Return the head, the series of e, and the rows of the map."""
-        count = max(len(self.error_cos), len(self.error_sin))
-        series = np.zeros((count, 2))
-        series[: len(self.error_cos), 0] = self.error_cos
-        series[: len(self.error_sin), 1] = self.error_sin
-        head = [
-            self.spacing,
-            self.damping / self.stiffness,
-            self.damping,
-            DAMPINGS[self.contact_damping],
-            1.0 / self.reference,
-            self.order,
-            self.phase,
-            self.path_phase,
-            self.forward,
-            self.periods,
-            len(self.approach),
-            count,
-            self.error_mean,
-            0 if self.coast is None else SERIES + series.size + self.rows.size,
-            self.rows.shape[1],
-        ]
-        behind = np.zeros(0) if self.coast is None else self.coast.parameters()
-        return np.concatenate([head, series.ravel(), self.rows.ravel(), behind])
+        """Return those of the map, and those of the coast flanks behind them."""
+        own = self.of_the_map()
+        if self.coast is None:
+            return own
+        own[COAST] = len(own)
+        return np.concatenate([own, self.coast.parameters()])
 
     def closed_stiffness(self) -> np.ndarray:
         """k."""
@@ -325,9 +245,9 @@ class LoadedTeeth(LoadedMap):
     def examples(cls) -> tuple[LoadedTeeth, ...]:
         """A Hertzian pair whose stiffness varies, with each damping; one over two base pitches that runs the other way."""
         load = 1000.0 * np.array([0.0, 0.01, 0.03, 0.08, 0.15, 0.3, 0.6, 1.0, 1.6, 2.5, 5.0])
-        u = np.arange(64)[:, None] / 64
-        soft = (1.0 + 0.2 * np.cos(_TURN * u)) / 3e8
-        approach = 2e-6 * np.sin(_TURN * u) + soft * load + 1e-6 * (load / 1000.0) ** 0.7
+        turn = 2.0 * np.pi * np.arange(64)[:, None] / 64
+        soft = (1.0 + 0.2 * np.cos(turn)) / 3e8
+        approach = 2e-6 * np.sin(turn) + soft * load + 1e-6 * (load / 1000.0) ** 0.7
         ripple: dict[str, Any] = {"order": 20.0, "phase": 0.3, "path_phase": 0.7, "error_cos": (1e-6,)}
         return (
             cls(load, approach, 3e8, 900.0, **ripple),

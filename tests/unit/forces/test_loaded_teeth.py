@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from rotorgear.errors import AnalysisError
-from rotorgear.forces.loaded_teeth import STEPS, LoadedTeeth
+from rotorgear.forces.loaded_map import STEPS
+from rotorgear.forces.loaded_teeth import LoadedTeeth
 from validation.oscillators import integrate, local_system
 
 LAW = LoadedTeeth.examples()[0]
