@@ -166,14 +166,15 @@ def with_more(
     problem: ContactProblem, cycle: MeshCycle, positions: np.ndarray, progress: Progress = silent
 ) -> MeshCycle:
     """The cycle with more positions (m,), solved with slices as far beyond the line of action as those that are there."""
-    more = _swept(problem, cycle.load, positions, cycle.beyond, progress, PASSES)
+    widest = float(cycle.patch.max())
+    more = _swept(problem, cycle.load, positions, cycle.beyond, progress, PASSES, widest)
     wanted = beyond_line(problem, float((more.deflection - more.no_load).max()) + problem.largest_gap)
-    if any(np.array(wanted) > cycle.beyond):
-        # Rare, since a little more was followed than touched: all positions get the same reach.
+    wider = problem.oblique and more.patch.max() > widest
+    if wider or any(np.array(wanted) > cycle.beyond):
+        # Rare, since a little more was followed than touched: all positions get the same reach, and oblique lines one width.
         farther = (max(cycle.beyond[0], _MORE_BEYOND * wanted[0]), max(cycle.beyond[1], _MORE_BEYOND * wanted[1]))
-        return _swept(
-            problem, cycle.load, np.sort(np.concatenate([cycle.position, positions])), farther, silent, PASSES
-        )
+        every = np.sort(np.concatenate([cycle.position, positions]))
+        return _swept(problem, cycle.load, every, farther, silent, PASSES)
     return _joined(cycle, more)
 
 
@@ -264,12 +265,13 @@ def _swept(
     beyond: tuple[float, float],
     progress: Progress,
     passes: int,
+    least: float = 0.0,
 ) -> MeshCycle:
-    """One sweep over all positions; passes: for the widths of patches at most."""
+    """One sweep over all positions; passes: for the widths of patches at most; least: of oblique lines, in normal modules."""
     cosine = float(np.cos(problem.line.base_helix_angle))
     slices = contact_slices(problem.line, positions, problem.width, problem.slices, beyond, stations=problem.uncoupled)
     gap = problem.gap(slices)
-    found = settled(problem, slices, gap, load / cosine, progress, passes=passes)
+    found = settled(problem, slices, gap, load / cosine, progress, passes=passes, least=least)
     states = found.states
     force = np.concatenate([state.force for state in states])
     strip = np.concatenate([state.strip for state in states])

@@ -1,7 +1,8 @@
 """Contacts at positions of the mesh cycle under one load, with patches wider than the strips under them.
 
 Patches replace the Hertz strips in the finite elements (`loaded_contact.py`), and a strip must not be wider than its patch. Each
-position is solved, patches that its strips outgrow are widened, and only their rows of the compliance are spread anew.
+position is solved, patches that its strips outgrow are widened, and only their rows of the compliance are spread anew. Patches of
+oblique lines are all as wide as each other.
 """
 
 from __future__ import annotations
@@ -18,16 +19,18 @@ from rotorgear.gears.loaded.slice_compliance import SliceCompliance, slice_compl
 from rotorgear.gears.loaded.tooth_contact import ContactProblem
 from rotorgear.progress import Progress, silent
 
-# In space each patch stays wider than its Hertz strip by this factor; all are wider than these in normal modules. Lines of spur
-# teeth pass a tip all at once, and patches as narrow as that are as good as plane elements. Of oblique lines a small part is near
-# a tip, where elements do not resolve narrower patches: with these the compliance is the same for all loads whose strips are no
-# wider. Above 0.154 modules the tangent of a strip is held, which is 1 % of what its slice gives way at most. (23/61, 12 deg,
-# against 1.5 times as fine elements: largest pressure -1 %, with 0.08 +7 %.)
+# In space each patch of a spur pair stays wider than its Hertz strip by this factor; all are wider than this in normal modules.
+# Lines of spur teeth pass a tip all at once, and patches as narrow as that are as good as plane elements. A patch that has to
+# grow becomes so much wider than its strip asks for.
 _STRIP_MARGIN = 1.3
 _LEAST_PATCH = 0.08
-_LEAST_OBLIQUE_PATCH = 0.2
-# A patch that has to grow becomes so much wider than its strip asks for.
 _WIDENING = 1.05
+# Of oblique lines a small part is near a tip, where elements do not resolve narrower patches than this. (23/61, 12 deg, against
+# 1.5 times as fine elements: largest pressure -1 %, with 0.08 +7 %.) Patches that grow slice by slice, from load to load, make
+# ripples of some nm: so all of a cycle have one width, the first of 0.2, 0.25, ... that no strip on it exceeds. Where a
+# strip is wider than 0.78 of it, its tangent is held, which is 1 % of what its slice gives way at most.
+_LEAST_OBLIQUE_PATCH = 0.2
+_NEXT_OBLIQUE_PATCH = 1.25
 # In the plane a slice is a tooth pair's whole line. Its own compliance is seven times K / l and more, so that C + dg/dF stays
 # positive definite for strips up to six times as wide as their patches.
 _LEAST_TANGENT_IN_PLANE = -2.0
@@ -64,6 +67,7 @@ def settled(
     progress: Progress = silent,
     known: Settled | None = None,
     passes: int = PASSES,
+    least: float = 0.0,
 ) -> Settled:
     """Contacts and states at all positions, with patches wider than the strips under them.
 
@@ -75,11 +79,12 @@ def settled(
         progress: told how far it is.
         known: of the same slices with other gaps or under another load: patches grow from these, forces begin with these.
         passes: for the widths at most.
+        least: where patches of oblique lines begin, in normal modules, in place of the narrowest.
     """
     numbers = [slices.at(i) for i in range(int(slices.position[-1]) + 1)]
     count = len(numbers)
     cosine = float(np.cos(problem.line.base_helix_angle))
-    patch = _least_patches(problem, slices) if known is None else known.patch.copy()
+    patch = _least_patches(problem, slices, least) if known is None else known.patch.copy()
     contacts: dict[int, PositionContact] = {}
     start: dict[int, np.ndarray] = {}
     if known is None:
@@ -88,7 +93,7 @@ def settled(
         contacts = {i: replace(one, gap=gap[numbers[i]]) for i, one in enumerate(known.contacts)}
         start = {i: one.force for i, one in enumerate(known.states)}
     states: dict[int, ContactState] = {}
-    margin = 1.0 if _oblique(problem) else _STRIP_MARGIN
+    margin = 1.0 if problem.oblique else _STRIP_MARGIN
     unsettled = list(range(count))
     for number in range(passes):
         for i in unsettled:
@@ -103,9 +108,15 @@ def settled(
         unsettled = [i for i in unsettled if np.any(wanted[i] > patch[numbers[i]])]
         if not unsettled or number + 1 == passes:
             break
-        for i in unsettled:
-            short = wanted[i] > patch[numbers[i]]
-            patch[numbers[i][short]] = _WIDENING * _STRIP_MARGIN / margin * wanted[i][short]
+        if problem.oblique:
+            # One after the other: strips on too narrow patches are wider than on those that they ask for.
+            patch *= _NEXT_OBLIQUE_PATCH
+            unsettled = list(range(count))
+            contacts = {}  # all rows are new
+        else:
+            for i in unsettled:
+                short = wanted[i] > patch[numbers[i]]
+                patch[numbers[i][short]] = _WIDENING * wanted[i][short]
         contacts |= _with_patches(problem, slices, gap, unsettled, patch, contacts)
     return Settled(tuple(contacts[i] for i in range(count)), tuple(states[i] for i in range(count)), patch)
 
@@ -124,14 +135,9 @@ def with_least_patches(problem: ContactProblem, slices: Slices, gap: np.ndarray,
     return Settled(tuple(contacts[i] for i in range(count)), known.states, patch)
 
 
-def _least_patches(problem: ContactProblem, slices: Slices) -> np.ndarray:
+def _least_patches(problem: ContactProblem, slices: Slices, least: float = 0.0) -> np.ndarray:
     """Least half-widths (n,) in normal modules that patches begin with."""
-    return np.full(len(slices), _LEAST_OBLIQUE_PATCH if _oblique(problem) else _LEAST_PATCH)
-
-
-def _oblique(problem: ContactProblem) -> bool:
-    """Whether contact lines are oblique, on elements in space."""
-    return not problem.plane and problem.line.base_helix_angle > 0.0
+    return np.full(len(slices), max(least, _LEAST_OBLIQUE_PATCH) if problem.oblique else _LEAST_PATCH)
 
 
 def _with_patches(

@@ -76,6 +76,11 @@ class ContactProblem:
         return z if gear == 0 else -z
 
     @property
+    def oblique(self) -> bool:
+        """Whether contact lines are oblique, on elements in space."""
+        return not self.plane and self.line.base_helix_angle > 0.0
+
+    @property
     def largest_gap(self) -> float:
         """Upper bound of all gaps from deviations (m)."""
         return sum(flank.largest for flank in self.flanks) + abs(self.misalignment)
