@@ -52,8 +52,8 @@ from rotorgear.system.system import System
 if TYPE_CHECKING:
     from rotorgear.forces.loaded_teeth import LoadedTeeth
     from rotorgear.forces.mesh_contact import MeshContact
-    from rotorgear.gears.loaded.contact_map import ContactMap
-    from rotorgear.gears.loaded.face_map import FaceMap
+    from rotorgear.gears.maps.contact_map import ContactMap
+    from rotorgear.gears.maps.face_map import FaceMap
 
 # Depth over which damping grows from zero, and the reference depth of penetration damping, relative to the mean deflection.
 _RAMP = 0.02

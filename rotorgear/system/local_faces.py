@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw
-    from rotorgear.gears.loaded.face_map import FaceMap
+    from rotorgear.gears.maps.face_map import FaceMap
 
 
 def face_law(face_map: FaceMap, stiffness: float, gap: float, **more: Any) -> ForceLaw:

@@ -67,6 +67,7 @@ ROOMS = {
         "tooth_fe": {"geometry"},
         "stiffness": {"geometry", "tooth_fe"},
         "loaded": {"geometry", "stiffness", "tooth_fe"},
+        "maps": {"geometry", "loaded", "stiffness", "tooth_fe"},
         "": {"geometry", "loaded", "stiffness", "tooth_fe"},
     },
     "model": {"parts": set(), "layout": {"parts"}, "checks": {"layout", "parts"}, "": {"checks", "layout", "parts"}},

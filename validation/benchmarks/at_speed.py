@@ -22,10 +22,10 @@ import numpy as np
 
 import rotorgear as rg
 from rotorgear.analysis.sweep import portrait
-from rotorgear.gears.loaded.contact_map import ContactMap
-from rotorgear.gears.loaded.map_positions import even_positions
-from rotorgear.gears.loaded.solved_map import solved_map
 from rotorgear.gears.loaded.tooth_contact import contact_problem
+from rotorgear.gears.maps.contact_map import ContactMap
+from rotorgear.gears.maps.map_positions import even_positions
+from rotorgear.gears.maps.solved_map import solved_map
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.progress import silent
 from validation.benchmarks.crawl import FLANKS, TORQUE, case

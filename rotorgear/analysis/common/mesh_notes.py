@@ -11,8 +11,8 @@ from rotorgear.model.layout.tooth_numbers import unlike_gears
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
-    from rotorgear.gears.loaded.contact_map import ContactMap
-    from rotorgear.gears.loaded.face_map import FaceMap
+    from rotorgear.gears.maps.contact_map import ContactMap
+    from rotorgear.gears.maps.face_map import FaceMap
     from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness
 
 

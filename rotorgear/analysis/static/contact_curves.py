@@ -10,7 +10,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw
-    from rotorgear.gears.loaded.contact_map import ContactMap
+    from rotorgear.gears.maps.contact_map import ContactMap
 
 # A curve F(delta) at one position is straight between so many points to each step of load of its map.
 _FINER = 8

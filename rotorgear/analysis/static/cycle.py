@@ -39,8 +39,8 @@ from rotorgear.system.system import System
 
 if TYPE_CHECKING:
     from rotorgear.forces.law import ForceLaw
-    from rotorgear.gears.loaded.contact_map import ContactMap
-    from rotorgear.gears.loaded.face_map import FaceMap
+    from rotorgear.gears.maps.contact_map import ContactMap
+    from rotorgear.gears.maps.face_map import FaceMap
 
 # Positions in a base pitch at least; a map that knows more is followed.
 _POSITIONS = 128

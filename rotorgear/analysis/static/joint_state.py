@@ -22,8 +22,8 @@ from rotorgear.model.parts.helix_state import FaceState
 from rotorgear.system.local_faces import face_law
 
 if TYPE_CHECKING:
-    from rotorgear.gears.loaded.contact_map import ContactMap
-    from rotorgear.gears.loaded.face_map import FaceMap
+    from rotorgear.gears.maps.contact_map import ContactMap
+    from rotorgear.gears.maps.face_map import FaceMap
 
 
 @dataclass(frozen=True)

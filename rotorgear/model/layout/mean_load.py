@@ -31,8 +31,8 @@ from rotorgear.model.layout.torsion_network import contact_forces
 from rotorgear.model.parts.helix_state import FaceState, HelixState
 
 if TYPE_CHECKING:
-    from rotorgear.gears.loaded.contact_map import ContactMap
-    from rotorgear.gears.loaded.face_map import FaceMap
+    from rotorgear.gears.maps.contact_map import ContactMap
+    from rotorgear.gears.maps.face_map import FaceMap
     from rotorgear.gears.stiffness.face_load import FaceLoad
     from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness
 

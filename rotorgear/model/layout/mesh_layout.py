@@ -23,8 +23,8 @@ from rotorgear.model.layout.train import Train
 from rotorgear.model.parts.mesh import Mesh
 
 if TYPE_CHECKING:
-    from rotorgear.gears.loaded.contact_map import ContactMap
-    from rotorgear.gears.loaded.face_map import FaceMap
+    from rotorgear.gears.maps.contact_map import ContactMap
+    from rotorgear.gears.maps.face_map import FaceMap
     from rotorgear.gears.stiffness.face_load import FaceLoad
     from rotorgear.gears.stiffness.mesh_stiffness import MeshStiffness, ToothPair
 
@@ -376,7 +376,7 @@ class MeshLayout:
         """
         if self.part.stiffness != "tooth_fe" or not self.part.face_loads or not normal_force:
             return None
-        from rotorgear.gears.loaded.face_map import face_map, misalignments
+        from rotorgear.gears.maps.face_map import face_map, misalignments
 
         face = self.part.face_loads[helix]
         teeth = self.working_teeth(sense)
@@ -403,11 +403,11 @@ class MeshLayout:
         """F(delta, u) of one helix about a mean force (N) along the flank normal; None where its teeth are not loaded ones.
 
         `sense` is that of the torque on the pinion about +z; `near` gives the map for linear analyses. Raises what
-        `rotorgear.gears.loaded.contact_map` raises.
+        `rotorgear.gears.maps.contact_map` raises.
         """
         if self.part.stiffness != "tooth_fe" or not normal_force:
             return None
-        from rotorgear.gears.loaded.solved_map import contact_map
+        from rotorgear.gears.maps.solved_map import contact_map
 
         try:
             # Rounding of the torque flow must not make another load: equal meshes are solved once.

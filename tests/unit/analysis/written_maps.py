@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rotorgear.gears.loaded.contact_map import ContactMap
+from rotorgear.gears.maps.contact_map import ContactMap
 from rotorgear.model.layout.mesh_layout import MeshLayout
 
 LOADS = (0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 0.9, 1.0, 1.1, 1.2, 1.5, 2.0, 3.0)

@@ -19,8 +19,8 @@ from rotorgear.analysis.transient.request import rotation_of
 from rotorgear.errors import AnalysisError
 from rotorgear.forces.loaded_face import LoadedFace
 from rotorgear.forces.loaded_teeth import LoadedTeeth
-from rotorgear.gears.loaded import solved_map
-from rotorgear.gears.loaded.contact_map import ContactMap
+from rotorgear.gears.maps import solved_map
+from rotorgear.gears.maps.contact_map import ContactMap
 from rotorgear.model.layout.mesh_layout import MeshLayout
 from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.system import System

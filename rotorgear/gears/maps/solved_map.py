@@ -18,16 +18,16 @@ from functools import lru_cache
 
 import numpy as np
 
-from rotorgear.gears.loaded.contact_map import ContactMap
-from rotorgear.gears.loaded.map_columns import Column, faded, map_columns, with_start
-from rotorgear.gears.loaded.map_contacts import above, cosine, of_period_ahead, up_to
-from rotorgear.gears.loaded.map_loads import families, load_groups
-from rotorgear.gears.loaded.map_periods import errors_by_period
-from rotorgear.gears.loaded.map_positions import MapPositions, even_positions, map_positions
-from rotorgear.gears.loaded.map_store import kept_map
 from rotorgear.gears.loaded.mesh_cycle import mesh_cycle
 from rotorgear.gears.loaded.settled_contacts import Settled, WideContactError, same_patches
 from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
+from rotorgear.gears.maps.contact_map import ContactMap
+from rotorgear.gears.maps.map_columns import Column, faded, map_columns, with_start
+from rotorgear.gears.maps.map_contacts import above, cosine, of_period_ahead, up_to
+from rotorgear.gears.maps.map_loads import families, load_groups
+from rotorgear.gears.maps.map_periods import errors_by_period
+from rotorgear.gears.maps.map_positions import MapPositions, even_positions, map_positions
+from rotorgear.gears.maps.map_store import kept_map
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.progress import Progress, listener, part_of
 

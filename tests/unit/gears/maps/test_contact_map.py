@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rotorgear.gears.loaded.contact_map import ContactMap
+from rotorgear.gears.maps.contact_map import ContactMap
 
 
 @pytest.fixture(scope="module")

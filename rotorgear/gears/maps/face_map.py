@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from rotorgear.gears.loaded.solved_map import contact_map
+from rotorgear.gears.maps.solved_map import contact_map
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 
 # Misalignments that are solved, about that of the state, in units of its spread: none at the state itself, so that tangents are

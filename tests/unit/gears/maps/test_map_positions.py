@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rotorgear.gears.loaded.map_positions import MapPositions
+from rotorgear.gears.maps.map_positions import MapPositions
 
 LOADS = 5
 WORKING = 3

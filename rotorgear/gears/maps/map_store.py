@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from rotorgear.fingerprint import fingerprint
-from rotorgear.gears.loaded.contact_map import ContactMap
+from rotorgear.gears.maps.contact_map import ContactMap
 from rotorgear.gears.tooth_fe.compliance_cache import cache_folder
 
 # Maps of other sources are passed over.
