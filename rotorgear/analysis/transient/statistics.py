@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -27,9 +27,16 @@ class Statistics:
 
 
 def of_forces(found: Histories, task: Any) -> StepStatistics:
-    """Statistics of the mesh contacts' forces over all steps that count."""
+    """Statistics of the mesh contacts' forces over all steps that count.
+
+    Forces of steps are means, half a step away from the end of the time: where one rises until there, its last record counts.
+    """
     columns = [int(task.local.local.forces.first[i]) for i, part in enumerate(task.local.parts) if part.is_mesh]
-    return StepStatistics.of(found.state.gathered).chosen(np.array(columns, dtype=int))
+    steps = StepStatistics.of(found.state.gathered).chosen(np.array(columns, dtype=int))
+    if not steps.steps:
+        return steps
+    last = found.table("F")[-1, columns]
+    return replace(steps, least=np.minimum(steps.least, last), largest=np.maximum(steps.largest, last))
 
 
 def of_channels(found: Histories, task: Any) -> StepStatistics:
@@ -44,7 +51,9 @@ def statistics(found: Histories, task: Any) -> Statistics:
     labels = [part.label for part in task.local.parts if part.is_mesh]
     names = [f"{what} force {label}" for label in labels for what in ("mean", "rms", "largest")]
     data = np.column_stack([force.mean, force.rms, force.largest]).ravel().tolist()
-    scale = np.repeat(np.sqrt(force.mean**2 + force.rms**2), 3).tolist()
+    size = np.sqrt(force.mean**2 + force.rms**2)
+    # A largest force is as large as it is: of impacts that last a thousandth of a period, many times the root mean square.
+    scale = np.column_stack([size, size, np.maximum(size, np.abs(force.largest))]).ravel().tolist()
     still = bool(data) and all(data[i + 1] <= _STILL * scale[i] for i in range(0, len(data), 3))
     rms = of_channels(found, task).rms
     units = np.array(task.channels.units)

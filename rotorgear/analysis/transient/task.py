@@ -15,8 +15,7 @@ from rotorgear.analysis.static.tangent import about_state_of
 from rotorgear.analysis.transient.channels import Channels, channels
 from rotorgear.analysis.transient.histories import Histories, Stream, integrate
 from rotorgear.analysis.transient.request import Grid, mesh_frequencies, rotation_of
-from rotorgear.analysis.transient.statistics import Statistics, compared, statistics
-from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.model.model_hash import model_hash
 from rotorgear.progress import Progress
@@ -25,13 +24,6 @@ from rotorgear.solvers.time.local_system import Integrator, state_at_rest
 from rotorgear.solvers.time.run import Schedule
 from rotorgear.system.local import LocalModel, local_model
 from rotorgear.system.system import System
-
-_HALVINGS = 6
-# So many halvings in a row that leave more than this share of the error are given up.
-_FRUITLESS = 2
-_FALLS = 0.5
-# The search for a step runs over so many steps at most.
-_PROBE = 60_000
 
 
 @dataclass(frozen=True)
@@ -136,46 +128,3 @@ def run_task(
 def skipping(grid: Grid) -> Grid:
     """The grid of twice the step where every step is recorded: every second record is missing."""
     return replace(grid, spacing=2.0 * grid.spacing, records=grid.records // 2, settled=grid.settled // 2)
-
-
-def fine_enough(task: Task, integrator: Integrator, grid: Grid, accuracy: float, progress: Progress) -> Grid:
-    """Halve the step until the statistics of a run, or of its beginning, agree with those of twice the step."""
-    records = min(grid.records, max(_PROBE // grid.every, 8))
-    probe = replace(grid, records=records, settled=min(grid.settled, records // 2))
-    last = _probed(task, integrator, probe, progress)
-    errors: list[float] = []
-    for _ in range(_HALVINGS):
-        finer = replace(probe, every=2 * probe.every)
-        now = _probed(task, integrator, finer, progress)
-        error = compared(now, last)[1] if now and last else np.inf
-        errors.append(error)
-        # What the finer of the two was found to be good for.
-        if error <= accuracy:
-            # The coarser one is four times worse, and no better than its own comparison with twice its step, which is stated.
-            first = len(errors) == 1 and 4.0 * error <= accuracy
-            enough = first and _is_enough(task, integrator, probe, last, accuracy, progress)
-            return replace(grid, every=probe.every if enough else finer.every)
-        if len(errors) > _FRUITLESS and min(errors[-_FRUITLESS:]) > _FALLS * errors[-1 - _FRUITLESS] < np.inf:
-            # Steps four times finer give other statistics, no better ones: the motion is chaotic, or the time too short for it.
-            return grid
-        probe = finer
-        last = now
-    return replace(grid, every=probe.every)
-
-
-def _is_enough(
-    task: Task, integrator: Integrator, grid: Grid, found: Statistics | None, accuracy: float, progress: Progress
-) -> bool:
-    """Whether the statistics of a run agree with those of twice its step, as its own error will be stated."""
-    double = replace(grid, every=grid.every // 2) if grid.every > 1 else skipping(grid)
-    coarser = _probed(task, integrator, double, progress)
-    return found is not None and coarser is not None and compared(found, coarser)[1] <= accuracy
-
-
-def _probed(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> Statistics | None:
-    """Statistics of a run that helps to choose the step; None where so large a step did not get through."""
-    try:
-        found = run_task(task, integrator, grid, progress, text="choosing the step")
-    except ConvergenceError:
-        return None
-    return statistics(found, task) if found.status == "success" else None

@@ -14,6 +14,7 @@ from rotorgear.analysis.common.request import missed
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.static.ground import mean_torsion_notes
 from rotorgear.analysis.transient.balance import unbalanced
+from rotorgear.analysis.transient.choice_of_step import Choice, fine_enough
 from rotorgear.analysis.transient.histories import Histories, Stream
 from rotorgear.analysis.transient.notes import transient_left_out, transient_warnings
 from rotorgear.analysis.transient.request import Grid, base_frequencies, grid_of, integrator_of, quantity, run_up
@@ -25,7 +26,7 @@ from rotorgear.analysis.transient.statistics import (
     of_forces,
     statistics,
 )
-from rotorgear.analysis.transient.task import Task, damped, fine_enough, prepare, run_task, skipping
+from rotorgear.analysis.transient.task import Task, damped, prepare, run_task, skipping
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
@@ -71,7 +72,7 @@ def transient(
         speed_to: run up (or down) from `speed` to this one within the duration that is evaluated, which `time` has to say.
         time: duration that is evaluated, in s or as a text; 30 periods of the slowest mesh where it is not given.
         discard: duration of the transient before it, which is computed but not evaluated.
-        steps: steps in a period of the fastest mesh; without it the step is halved until the accuracy is reached.
+        steps: steps in a period of the fastest mesh; without it the step is halved until the accuracy is reached or out of reach.
         records: records in a period of the fastest mesh; 40 where not given.
         accuracy: wanted relative accuracy of the statistics; 0.01 where neither it nor `steps` is given.
         method: auto, newmark, hht, generalised-alpha, exponential or explicit.
@@ -101,9 +102,8 @@ def transient(
     if speed_to is not None:
         speed = run_up(model, speed, speed_to, *duration)
     task = prepare(damped(model, modal_damping), speed, elements)
-    grid = grid_of(
-        task.local.local, base_frequencies(task.local.system, task.largest), duration[0], duration[1], steps, records
-    )
+    frequencies = base_frequencies(task.local.system, task.largest)
+    grid = grid_of(task.local.local, frequencies, duration[0], duration[1], steps, records)
     integrator, reason = integrator_of(
         method,
         task.local.local,
@@ -115,10 +115,12 @@ def transient(
         gamma=gamma,
     )
     laps = {"model": clock.perf_counter() - begun}
+    choice = Choice(grid)
     if isinstance(integrator, Explicit):
         check_length(task.local.local, grid.records * grid.spacing)
     elif steps is None:
-        grid = fine_enough(task, integrator, grid, accuracy or DEFAULT_ACCURACY, progress)
+        choice = fine_enough(task, integrator, grid, accuracy or DEFAULT_ACCURACY, progress)
+        grid = choice.grid
     laps["choice of step"] = clock.perf_counter() - begun - sum(laps.values())
     others = _comparisons(task, integrator, grid, progress) if error_estimate else []
     laps["error estimate"] = clock.perf_counter() - begun - sum(laps.values())
@@ -135,11 +137,13 @@ def transient(
     laps["total"] = clock.perf_counter() - begun
     progress(1.0, "done")
     result = _result(task, grid, integrator, reason, found, others, laps, estimated=error_estimate)
-    wanted = (accuracy or DEFAULT_ACCURACY) if steps is None else None
     # A run without an estimate, or one that ended early, has said so already.
-    if result.status != "success" or not np.isfinite(result.error_estimate):
+    if steps is not None or result.status != "success" or not np.isfinite(result.error_estimate):
         return result
-    short = missed(wanted, result.error_estimate, "take more steps in a mesh period (--steps)")
+    wanted = accuracy or DEFAULT_ACCURACY
+    fastest = max(frequencies.values(), default=np.nan)
+    remedy = choice.remedy(result.error_estimate, wanted, fastest, integrator.name)
+    short = missed(wanted, result.error_estimate, remedy)
     return replace(result, status=short, warnings=(*result.warnings, short)) if short else result
 
 
@@ -231,12 +235,13 @@ def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progr
     """Worse or better runs, each with the factor by which the run that counts is nearer to the truth, less 1.
 
     Twice the step is four times worse, less a margin. An explicit method chooses its own steps: there a hundred times the
-    tolerance takes their place. Where modes are cut, a run has half as many more.
+    tolerance takes their place, looked at half as often, for means and extremes hang on that. Where modes are cut, a run has half
+    as many more.
     """
+    double = replace(grid, every=grid.every // 2) if grid.every > 1 else skipping(grid)
     if isinstance(integrator, Explicit):
         loose = Explicit(100.0 * integrator.relative)
-        return [(run_task(task, loose, grid, progress, text="looser tolerance"), 1.0)]
-    double = replace(grid, every=grid.every // 2) if grid.every > 1 else skipping(grid)
+        return [(run_task(task, loose, double, progress, text="looser tolerance"), 1.0)]
     try:
         found = [(run_task(task, integrator, double, progress, text="twice the step"), HALF_THE_STEP)]
     except ConvergenceError:

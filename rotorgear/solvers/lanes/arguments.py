@@ -61,7 +61,8 @@ class ColumnValues(NamedTuple):
 
 
 class ActingLaws(NamedTuple):
-    """l laws that act by functions of their own, see kernel_laws.py; of lanes, `parameters` are (w, p) and `clock` is (2, w).
+    """l laws that act by functions of their own, see kernel_laws.py; of lanes, `parameters` are (s, p) of s systems
+    and `clock` is (2, w).
 
     Attributes:
         place: (2, l) first of the local displacements of each, and how many it takes.

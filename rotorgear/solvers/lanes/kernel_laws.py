@@ -1,7 +1,8 @@
 """Compiled: force laws that run one system at a time: rolling elements, friction, torques over speed.
 
 The laws work in SI: displacements of the lanes are metres already, velocities are multiplied and forces divided by powers of the
-rad/s of the fastest excitation, which the lanes use as unit of time.
+rad/s of the fastest excitation, which the lanes use as unit of time. There are as many rows of parameters as systems; the lanes
+after those repeat the last one, and take its answers over.
 """
 
 from __future__ import annotations
@@ -17,14 +18,14 @@ SPACE = 3 * _MOST_COMPONENTS + 2 * _MOST_COMPONENTS**2 + 4
 
 @compiled(inner=True)
 def schedule_laws(laws, time, state):
-    """Fill the state (w, s) of the laws in all lanes at a time in radians of the fastest excitation."""
+    """Fill the state (w, s) of the laws in the lanes of all systems at a time in radians of the fastest excitation."""
     schedules = laws.schedules
     kind = laws.kind
     parameters = laws.parameters
     parameters_first = laws.parameters_first
     state_first = laws.state_first
     clock = laws.clock
-    for w in range(LANES if kind.size else 0):
+    for w in range(parameters.shape[0] if kind.size else 0):
         angle = time * clock[0, w]
         speed = clock[1, w] * clock[0, w]
         for i in range(kind.size):
@@ -52,6 +53,7 @@ def force_laws(laws, state, d, F, found, tangents, work):
     state_first = laws.state_first
     block_first = laws.block_first
     clock = laws.clock
+    systems = parameters.shape[0]
     for i in range(kind.size):
         a = place[0, i]
         k = place[1, i]
@@ -62,7 +64,7 @@ def force_laws(laws, state, d, F, found, tangents, work):
         in_d = rest[: k * k]
         in_v = rest[k * k : 2 * k * k]
         energy = rest[2 * k * k : 2 * k * k + 4]
-        for w in range(LANES):
+        for w in range(systems):
             rate = clock[1, w]
             for j in range(k):
                 own_d[j] = d[2 * (a + j), w]
@@ -83,6 +85,13 @@ def force_laws(laws, state, d, F, found, tangents, work):
             for j in range(k * k):
                 tangents[0, block_first[i] + j, w] = in_d[j] / (rate * rate)
                 tangents[1, block_first[i] + j, w] = in_v[j] / rate
+        for w in range(systems, LANES):
+            for j in range(k):
+                F[a + j, w] = F[a + j, systems - 1]
+                found[a + j, SIDE, w] = found[a + j, SIDE, systems - 1]
+            for j in range(k * k):
+                tangents[0, block_first[i] + j, w] = tangents[0, block_first[i] + j, systems - 1]
+                tangents[1, block_first[i] + j, w] = tangents[1, block_first[i] + j, systems - 1]
 
 
 @compiled(fast=True, inner=True)

@@ -117,7 +117,7 @@ def run_block(
     wide = tables if len(tables) == 1 else [*tables, *[tables[-1]] * (LANES - count)]
     pushed = any(np.any(s.columns.push) for s in systems)
     table = _stacked([one[:, :, : 4 if pushed else 3] for one in wide])
-    parameters = np.ascontiguousarray(np.stack([s.own.forces.parameters for s in filled]))
+    parameters = np.ascontiguousarray(np.stack([s.own.forces.parameters for s in systems]))
     laws = acting_laws(first.own, parameters, _stacked([np.array([s.own.turn, s.w]) for s in filled]))
     begins = [*starts, *[starts[-1]] * (LANES - count)]
     motion = LaneMotion(

@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 import rotorgear as rg
+from rotorgear.analysis.transient.choice_of_step import Choice
 from rotorgear.cli.main import app
 from rotorgear.errors import RotorgearError
 from tests.paths import MODELS
@@ -121,11 +123,15 @@ def test_the_convergence_study_of_a_transient_shows_second_order(tmp_path: Path)
 def test_an_accuracy_that_is_missed_is_a_warning_and_a_status(shaken: str, monkeypatch: pytest.MonkeyPatch) -> None:
     # The step is chosen from the beginning of the run: here it is not allowed to get finer.
     monkeypatch.setattr(
-        "rotorgear.analysis.transient.transient.fine_enough", lambda task, integrator, grid, *rest: grid
+        "rotorgear.analysis.transient.transient.fine_enough", lambda task, integrator, grid, *rest: Choice(grid, 0.25)
     )
     result = rg.transient(rg.load(shaken), time="4 ms", discard=0.0, accuracy=1e-7)
     assert result.error_estimate > 1e-7
     assert result.status.startswith("accuracy 1e-07 not reached: the error is estimated at")
+    # With second order an error so many times as large takes as many steps as its root tells.
+    steps = 1.0 / (result.step * max(result.mesh_frequency.values()))
+    needed = float(result.status.split("; about ")[1].split(" steps")[0])
+    assert needed == pytest.approx(steps * np.sqrt(result.error_estimate / 1e-7), rel=0.05)
     assert result.status in result.warnings
     assert not result.ended_early
 
