@@ -7,7 +7,6 @@ the z-axis.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.response.response import response
+from rotorgear.analysis.rig.csv_rows import csv_rows
 from rotorgear.analysis.rig.sensor_table import read_sensor_table
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.model.model import Model
@@ -161,21 +161,14 @@ def _match(cut: OrderCut, order: str, own: NDArray[np.float64]) -> OrderMatch:
 
 
 def _cuts_of_csv(file: Path) -> tuple[OrderCut, ...]:
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise ModelError([Problem(str(file), "", "a table of order cuts (CSV)", reason)], str(file)) from None
-    rows = [(k, row) for k, row in enumerate(text.splitlines(), start=1) if row.strip() and not row.startswith("#")]
-    delimiter = max(",;\t", key=rows[0][1].count) if rows else ","
-    header = [cell.strip() for cell in rows[0][1].split(delimiter)] if rows else []
+    delimiter, rows = csv_rows(file, "a table of order cuts (CSV)")
+    header = rows[0][1] if rows else []
     if header[:2] != ["speed_rpm", "order"] or len(header) < 3 or len(rows) < 2:
         expected = "a header speed_rpm,order and the names of points, and rows below it"
         raise ModelError([Problem(f"{file.name}:1", repr(",".join(header)), expected)], str(file))
     table = []
     problems = []
-    for number, row in rows[1:]:
-        cells = [cell.strip() for cell in next(csv.reader([row], delimiter=delimiter, skipinitialspace=True))]
+    for number, cells in rows[1:]:
         try:
             values = [float(cell) if cell else np.nan for cell in cells]
         except ValueError:
@@ -186,7 +179,7 @@ def _cuts_of_csv(file: Path) -> tuple[OrderCut, ...]:
             or min(values[2:], default=0.0) < 0.0
         ):
             expected = f"{len(header)} numbers: speed and order above 0, amplitudes from 0"
-            problems.append(Problem(f"{file.name}:{number}", repr(row.strip()[:60]), expected))
+            problems.append(Problem(f"{file.name}:{number}", repr(delimiter.join(cells)[:60]), expected))
         table.append(values)
     if problems:
         raise ModelError(problems, str(file))

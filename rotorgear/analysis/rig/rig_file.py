@@ -9,11 +9,11 @@ and a damping ratio as a fraction.
 
 from __future__ import annotations
 
-import csv
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from rotorgear.analysis.rig.csv_rows import csv_rows
 from rotorgear.errors import ModelError, Problem
 from rotorgear.quantity import QuantityError, nearest, parse_quantity
 from rotorgear.results.rig.comparison import RigLine
@@ -60,7 +60,7 @@ def read_rig_lines(path: str | Path) -> tuple[RigLine, ...]:
             lines at all.
     """
     file = Path(path)
-    delimiter, rows = _rows(file)
+    delimiter, rows = csv_rows(file, "a readable CSV file in UTF-8")
     if not rows:
         raise _one_problem(file, "", "a header row and at least one line, such as 'frequency_hz' and below it '361'")
     (header_line, header), *body = rows
@@ -75,29 +75,6 @@ def read_rig_lines(path: str | Path) -> tuple[RigLine, ...]:
 
 def _one_problem(file: Path, value: str, expected: str, hint: str = "") -> ModelError:
     return ModelError([Problem(file.name, value, expected, hint)], str(file))
-
-
-def _rows(file: Path) -> tuple[str, list[tuple[int, list[str]]]]:
-    """Return the delimiter, and (line number, stripped cells) of every row that says something."""
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-        # A comment becomes an empty line, so that the reader's line numbers stay those of the file.
-        lines = ["" if line.lstrip().startswith("#") else line for line in text.splitlines()]
-        # The header tells the delimiter: below it, commas may also stand in numbers and labels.
-        delimiter = max(",;\t", key=next((line for line in lines if line.strip()), "").count)
-        rows = []
-        for number, line in enumerate(lines, start=1):
-            # Line by line: no cell goes on over the next one, so a quote that is not closed can't swallow the rest of the file.
-            try:
-                cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True, strict=True), [])
-            except csv.Error:
-                expected = "every quote closed in its line, and nothing behind it in its cell"
-                raise ModelError([Problem(f"{file.name}:{number}", repr(line), expected)], str(file)) from None
-            rows.append((number, [cell.strip() for cell in cells]))
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise _one_problem(file, "", "a readable CSV file in UTF-8", reason) from error
-    return delimiter, [(number, cells) for number, cells in rows if any(cells)]
 
 
 def _columns(header: list[str], where: str, file: Path) -> list[_Column | None]:

@@ -8,7 +8,6 @@ that start with # are skipped.
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -18,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.analysis.common.points import coordinates
+from rotorgear.analysis.rig.csv_rows import csv_rows
 from rotorgear.errors import AnalysisError, ModelError, Problem
 from rotorgear.model.checks.references import ON_SHAFTS
 from rotorgear.model.model import Model
@@ -77,16 +77,10 @@ def read_sensor_table(file: Path) -> list[Sensor]:
     Raises:
         ModelError: all mistakes at once, each with its line and column.
     """
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise ModelError([Problem(str(file), "", "a table of sensors (CSV)", reason)]) from None
-    rows = [(k, row) for k, row in enumerate(text.splitlines(), start=1) if row.strip() and not row.startswith("#")]
+    _, rows = csv_rows(file, "a table of sensors (CSV)")
     if not rows:
         raise ModelError([Problem(str(file), "", "a header row point,node,direction and a row for each sensor")])
-    delimiter = max(",;\t", key=rows[0][1].count)
-    header = [cell.strip().lower() for cell in rows[0][1].split(delimiter)]
+    header = [cell.lower() for cell in rows[0][1]]
     missing = [name for name in _COLUMNS if name not in header]
     if missing:
         raise ModelError(
@@ -94,8 +88,7 @@ def read_sensor_table(file: Path) -> list[Sensor]:
         )
     found: dict[str, Sensor] = {}
     problems = []
-    for number, row in rows[1:]:
-        cells = [cell.strip() for cell in next(csv.reader([row], delimiter=delimiter, skipinitialspace=True))]
+    for number, cells in rows[1:]:
         given = dict(zip(header, cells, strict=False))
         address = f"{file.name}:{number}"
         direction = given.get("direction", "").lower()
