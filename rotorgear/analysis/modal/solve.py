@@ -151,6 +151,11 @@ def _problem(system: System, speed: float | None) -> _Problem:
         K_symmetric = system.definite_stiffness(at)
     D = system.velocity_terms(speed)
     is_plain = D is None and not circulatory.nnz
+
+    @cache
+    def forms() -> StrainForms:
+        return system.strain_forms(at) if D is not None else _without_viscosity(system.strain_forms(at))
+
     guess = None
     if system.n >= _LARGE:
         # The first elastic eigenvalue of the coarsest mesh saves the search for a shift, which costs a factorisation here.
@@ -164,8 +169,8 @@ def _problem(system: System, speed: float | None) -> _Problem:
         S=S,
         symmetric=not circulatory.nnz,
         damped=speed is not None and bool(system.damping(at).nnz),
-        inertial=None if is_plain else system.inertial_terms(at),
-        forms=None if is_plain else cache(lambda: system.strain_forms(at)),
+        inertial=None if is_plain else system.inertial_terms(at) if D is not None else sp.csc_array(K.shape),
+        forms=None if is_plain else forms,
         guess=guess,
     )
 
@@ -178,8 +183,8 @@ def _conservative(system: System, speed: float) -> _Problem:
 
     @cache
     def forms() -> StrainForms:
-        whole = system.strain_forms(speed)
-        return replace(whole, viscosity=0.0 * whole.viscosity, circulation=0.0 * whole.circulation)
+        whole = _without_viscosity(system.strain_forms(speed))
+        return replace(whole, circulation=0.0 * whole.circulation)
 
     return _Problem(
         M=system.mass,
@@ -192,6 +197,11 @@ def _conservative(system: System, speed: float) -> _Problem:
         inertial=G if turns else None,
         forms=forms if turns else None,
     )
+
+
+def _without_viscosity(forms: StrainForms) -> StrainForms:
+    """The same strains, and nothing that damps them."""
+    return replace(forms, viscosity=0.0 * forms.viscosity)
 
 
 def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
