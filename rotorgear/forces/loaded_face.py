@@ -37,7 +37,6 @@ from rotorgear.forces.loaded_map import (
     ROWS,
     SERIES,
     SPACING,
-    STEPS,
     WEIGHT,
     C,
     LoadedMap,
@@ -49,6 +48,8 @@ from rotorgear.solvers.contact.kinds import PENETRATION
 from rotorgear.solvers.lanes.columns import OWN_LAW, Column
 from rotorgear.solvers.time.compiled import force_function, schedule_function
 
+# Steps of x up to the largest load: half of those of a map without tilt, for there are as many maps as tilts.
+STEPS = 192
 # At each step of x of one tilt: force, tangent stiffness, energy, dM/dx and moment.
 FORCE, TANGENT, ENERGY, LIFT, MOMENT = range(5)
 NODE = 5

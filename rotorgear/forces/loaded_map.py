@@ -15,8 +15,7 @@ from rotorgear.solvers.time.compiled import compiled
 
 # Harmonics of a base pitch that count: teeth part, and corners strike.
 _HARMONICS = 10
-# Steps of x up to the largest load, and loads between which a map is turned over.
-STEPS = 192
+# Loads between which a map is turned over.
 _LOADS = 1500
 _TURN = 2.0 * np.pi
 # Places of the parameters, which cosine and sine of each harmonic of e follow, and then the rows of the map; COAST is where the

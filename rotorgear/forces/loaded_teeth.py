@@ -35,7 +35,6 @@ from rotorgear.forces.loaded_map import (
     RATE,
     ROW,
     SPACING,
-    STEPS,
     WEIGHT,
     C,
     LoadedMap,
@@ -47,6 +46,9 @@ from rotorgear.solvers.contact.kinds import PENETRATION
 from rotorgear.solvers.lanes.columns import ERROR, OWN_LAW, SLOPE, STIFFNESS, TABLE_ROWS, Column
 from rotorgear.solvers.time.compiled import compiled, force_function, schedule_function
 
+# Steps of x up to the largest load. With half as many the curve of a helix in a loop, of 0.02 um on 9 um, was 2.4 % off, and is
+# 0.3 % with these.
+STEPS = 384
 # A row: delta_0, then at each step of x the force, the tangent stiffness and the energy.
 FORCE, TANGENT, ENERGY = range(3)
 NODE = 3
