@@ -2,26 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from rotorgear.cli.common import (
-    JsonOption,
-    ModelFile,
-    console,
-    picture_name,
-    progress_bar,
-    vtk_folder,
-    words_of,
-    write_json,
-)
+from rotorgear.cli.common import JsonOption, ModelFile, picture_name, vtk_folder, words_of
+from rotorgear.cli.mesh_tasks import MeshCase, show_best_flanks, show_cycle, show_map, show_root_stress, write_teeth
+from rotorgear.cli.mesh_texts import pairs_of, parse_factors, parse_over
 from rotorgear.errors import AnalysisError
-
-if TYPE_CHECKING:
-    from rotorgear.results.parts.mesh_map import MeshMap
 
 
 def mesh(
@@ -154,117 +143,60 @@ def mesh(
     """Print stiffness, transmission error, load sharing and pressure of one mesh over its cycle."""
     import rotorgear as rg
 
-    checked = rg.load(model)
+    case = MeshCase(rg.load(model), mesh, torque, preset, body, positions)
+    only_of_a_cycle = {
+        "stiffness": stiffness,
+        "accuracy": accuracy,
+        "periods": periods,
+        "load_factors": load_factors,
+        "vtk": vtk,
+    }
     if root_stress:
-        refuse_beside(
-            "--root-stress", stiffness=stiffness, accuracy=accuracy, periods=periods, load_factors=load_factors
-        )
-        refuse_beside("--root-stress", vtk=vtk, over=over, optimise=optimise, csv=csv)
-        with progress_bar("root stress") as progress:
-            roots = rg.root_stress(
-                checked,
-                mesh,
-                torque=torque,
-                preset=preset,
-                body=body,
-                positions=24 if positions is None else positions,
-                progress=progress,
-            )
-        console().print(roots.table())
-        write_json(roots.to_dict(), json)
-        if plot:
-            console().print(f"drawn: {rg.plot.save(rg.plot.root_stress(roots), plot)}")
+        refuse_beside("--root-stress", **only_of_a_cycle, over=over, optimise=optimise, csv=csv)
+        show_root_stress(case, plot, json)
         return
     if optimise is not None:
-        refuse_beside(
-            "--optimise", stiffness=stiffness, accuracy=accuracy, periods=periods, load_factors=load_factors, vtk=vtk
+        refuse_beside("--optimise", **only_of_a_cycle, csv=csv, plot=plot)
+        show_best_flanks(
+            case,
+            words_of(optimise),
+            over=parse_over(over or []),
+            bounds={name: text.split(":") for name, text in pairs_of("--bounds", bounds).items()},
+            tolerance=pairs_of("--tolerance", tolerance),
+            weights=None if weights is None else parse_factors(weights, "--weights"),
+            pressure_limit=pressure_limit,
+            samples=64 if samples is None else samples,
+            evaluations=evaluations,
+            json=json,
         )
-        refuse_beside("--optimise", csv=csv, plot=plot)
-        with progress_bar("optimise") as progress:
-            best = rg.optimise_flanks(
-                checked,
-                mesh,
-                variables=words_of(optimise),
-                over=parse_over(over or []),
-                bounds={name: text.split(":") for name, text in pairs_of("--bounds", bounds).items()},
-                tolerance=pairs_of("--tolerance", tolerance),
-                weights=None if weights is None else parse_factors(weights, "--weights"),
-                pressure_limit=pressure_limit,
-                samples=64 if samples is None else samples,
-                evaluations=evaluations,
-                torque=torque,
-                preset=preset,
-                body=body,
-                positions=64 if positions is None else positions,
-                progress=progress,
-            )
-        console().print(best.table())
-        write_json(best.to_dict(), json)
         return
-    for name, given in {
-        "--bounds": bounds,
-        "--tolerance": tolerance,
-        "--weights": weights,
-        "--pressure-limit": pressure_limit,
-        "--evaluations": evaluations,
-        "--samples": samples,
-    }.items():
-        if given is not None:
-            raise AnalysisError(f"{name} belongs to --optimise: give that too.")
+    refuse_without(
+        "--optimise",
+        bounds=bounds,
+        tolerance=tolerance,
+        weights=weights,
+        pressure_limit=pressure_limit,
+        evaluations=evaluations,
+        samples=samples,
+    )
     if over:
-        refuse_beside(
-            "--over", stiffness=stiffness, accuracy=accuracy, periods=periods, load_factors=load_factors, vtk=vtk
-        )
-        with progress_bar("mesh") as progress:
-            points = rg.mesh_map(
-                checked,
-                mesh,
-                over=parse_over(over),
-                torque=torque,
-                preset=preset,
-                body=body,
-                positions=64 if positions is None else positions,
-                progress=progress,
-            )
-        console().print(points.table())
-        write_json(points.to_dict(), json)
-        if csv:
-            from rotorgear.export.csv_file import write_csv
-
-            console().print(f"wrote {write_csv(map_rows(points), csv)}")
-        if plot:
-            console().print(f"drawn: {rg.plot.save(rg.plot.mesh_map(points), plot)}")
+        refuse_beside("--over", **only_of_a_cycle)
+        show_map(case, parse_over(over), csv, plot, json)
         return
     if csv:
         raise AnalysisError("--csv writes the points of --over: give --over too.")
-    with progress_bar("mesh") as progress:
-        result = rg.mesh(
-            checked,
-            mesh,
-            stiffness=stiffness,
-            torque=torque,
-            preset=preset,
-            body=body,
-            accuracy=accuracy,
-            positions=64 if positions is None else positions,
-            periods=periods,
-            load_factors=parse_factors(load_factors),
-            progress=progress,
-        )
-    console().print(result.table(harmonics=harmonics))
-    write_json(result.to_dict(max(harmonics, 8)), json)
-    if plot:
-        console().print(f"drawn: {rg.plot.save(rg.plot.mesh(result), plot)}")
+    result = show_cycle(
+        case,
+        stiffness=stiffness,
+        accuracy=accuracy,
+        periods=periods,
+        load_factors=parse_factors(load_factors),
+        harmonics=harmonics,
+        plot=plot,
+        json=json,
+    )
     if vtk:
-        from rotorgear.analysis.teeth.tooth_field import tooth_fields
-        from rotorgear.export.tooth_vtk import write_tooth_vtk
-
-        with progress_bar("vtk") as progress:
-            fields = tooth_fields(
-                checked, result.mesh, torque=torque, preset=result.preset, body=body, at=at, progress=progress
-            )
-        for path in write_tooth_vtk(fields, vtk):
-            console().print(f"wrote {path}")
+        write_teeth(case, result, vtk, at)
 
 
 def refuse_beside(option: str, **given: object) -> None:
@@ -274,80 +206,8 @@ def refuse_beside(option: str, **given: object) -> None:
             raise AnalysisError(f"--{name.replace('_', '-')} does not go with {option}.")
 
 
-def pairs_of(option: str, texts: list[str] | None) -> dict[str, str]:
-    """Texts by name from 'name=text', several of them with commas or in several options.
-
-    Raises:
-        AnalysisError: something else.
-    """
-    found = {}
-    for text in ",".join(texts).split(",") if texts else ():
-        name, equals, value = (part.strip() for part in text.partition("="))
-        if not equals or not name or not value:
-            raise AnalysisError(f"{option}: got '{text}', expected a name and its value, such as tip_relief=5 um")
-        found[name] = value
-    return found
-
-
-def parse_over(texts: list[str]) -> dict[str, list[float]]:
-    """Values in SI by axis from texts such as 'torque=500 N m:2000 N m:4,misalignment=0 um:10 um:20 um'.
-
-    Raises:
-        AnalysisError: no such axis, or values that are none.
-    """
-    from rotorgear.quantity import QuantityError, parse_quantity
-
-    found: dict[str, list[float]] = {}
-    for text in ",".join(texts).split(",") if texts else ():
-        name, equals, values = (part.strip() for part in text.partition("="))
-        dimension = {"torque": "torque", "misalignment": "length"}.get(name)
-        if not equals or dimension is None:
-            raise AnalysisError(f"--over: got '{text}', expected torque=... or misalignment=...")
-        if name in found:
-            raise AnalysisError(f"--over: '{name}' is given twice.")
-        parts = [part.strip() for part in values.split(":")]
-        count = int(parts.pop()) if len(parts) == 3 and parts[2].isdigit() else None
-        try:
-            numbers = [parse_quantity(part, dimension) for part in parts]
-        except QuantityError as error:
-            raise AnalysisError(
-                f"--over {name}: got '{values}', expected {error}, such as '500 N m:2000 N m:4'"
-            ) from None
-        if count is None:
-            found[name] = numbers
-        elif 2 <= count <= 1000:
-            first, last = numbers
-            found[name] = [first + (last - first) * i / (count - 1) for i in range(count)]
-        else:
-            raise AnalysisError(f"--over {name}: got {count} values, expected 2 to 1000")
-    return found
-
-
-def map_rows(points: MeshMap) -> Iterator[dict[str, float]]:
-    """One row a point of a map, in the order of its table."""
-    for i, torque in enumerate(points.pinion_torque):
-        for j, misalignment in enumerate(points.misalignment):
-            orders = {f"ste_order_{n + 1}_m": float(value) for n, value in enumerate(points.ste_harmonics[i, j])}
-            yield {
-                "pinion_torque_n_m": float(torque),
-                "misalignment_m": float(misalignment),
-                "ste_peak_to_peak_m": float(points.ste_peak_to_peak[i, j]),
-                **orders,
-                "largest_pressure_pa": float(points.largest_pressure[i, j]),
-                "face_load_factor": float(points.face_load_factor[i, j]),
-                "mean_stiffness_n_per_m": float(points.mean_stiffness[i, j]),
-            }
-
-
-def parse_factors(text: str | None, option: str = "--load-factors") -> tuple[float, ...]:
-    """Positive factors from a list with commas.
-
-    Raises:
-        AnalysisError: something else.
-    """
-    if text is None:
-        return ()
-    try:
-        return tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise AnalysisError(f"{option}: got '{text}', expected factors with commas, such as 0.1,0.5,2") from None
+def refuse_without(option: str, **given: object) -> None:
+    """AnalysisError for options that say nothing without another one."""
+    for name, value in given.items():
+        if value is not None:
+            raise AnalysisError(f"--{name.replace('_', '-')} belongs to {option}: give that too.")

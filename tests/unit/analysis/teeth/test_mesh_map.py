@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 import rotorgear as rg
 from rotorgear.cli.main import app
-from rotorgear.cli.mesh import parse_over
+from rotorgear.cli.mesh_texts import parse_over
 from tests.unit.analysis.geared import pair_file
 
 PREVIEW = 'stiffness = "tooth_fe"\ntooth_fe = { preset = "preview" }'
