@@ -43,9 +43,10 @@ class JournalOil(OilFilm):
         """Two."""
         return 2
 
-    def parts_of_force(self, stiffness: np.ndarray) -> np.ndarray:
-        """Pressures around the journal: what a motion by the clearance would change."""
-        return np.asarray(np.abs(stiffness).sum(axis=1) * self.clearance)
+    @property
+    def extents(self) -> np.ndarray:
+        """The clearance, over which pressures around the journal change."""
+        return np.full(2, self.clearance)
 
     @property
     def pad_clearance(self) -> float:

@@ -215,6 +215,14 @@ class ForceLaw(ABC):
         """Whether force or energy depend on the velocities v."""
         return True
 
+    @property
+    def extents(self) -> np.ndarray:
+        """Displacements (k,) that change the force by the size of its parts, where these cancel; 0: no parts do.
+
+        The clearance of a film: without a load its force is rounding of pressures of this size times the tangent.
+        """
+        return np.zeros(self.components)
+
     # The compiled side.
 
     @abstractmethod
@@ -262,13 +270,6 @@ class ForceLaw(ABC):
         return Linearised(
             values.force.mean(axis=0), values.in_displacement.mean(axis=0), values.in_velocity.mean(axis=0)
         )
-
-    def parts_of_force(self, stiffness: np.ndarray) -> np.ndarray:
-        """Sizes (k,) of the parts that cancel in the force, as pressures around a centred journal do; `stiffness` (k, k): there.
-
-        Below their rounding a force means nothing. 0 where no parts cancel.
-        """
-        return np.zeros(self.components)
 
     def settled(self, d: Any) -> ForceLaw:
         """The law as it stays for small motions about displacements d (k,): an inlet that statics place stays there then."""

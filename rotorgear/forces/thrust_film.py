@@ -70,10 +70,11 @@ class ThrustFilm(OilFilm):
         """Five."""
         return 5
 
-    def parts_of_force(self, stiffness: np.ndarray) -> np.ndarray:
-        """Pressures on both sides of the collar and around it: what a motion by the clearance would change."""
-        motion = self.clearance * np.array([0.0, 0.0, 1.0, 1.0 / self.outer_radius, 1.0 / self.outer_radius])
-        return np.asarray(np.abs(stiffness) @ motion)
+    @property
+    def extents(self) -> np.ndarray:
+        """The clearance, over which pressures on both sides of the collar and around it change."""
+        tilt = 1.0 / self.outer_radius
+        return self.clearance * np.array([0.0, 0.0, 1.0, tilt, tilt])
 
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""

@@ -110,7 +110,7 @@ def _under(law: ForceLaw, load: np.ndarray, start: np.ndarray, speed: float, poi
     for _ in range(_ITERATIONS):
         about = law.linearised(d, speed=speed, points=points)
         rest = load - about.force
-        if np.all(np.abs(rest) <= _TOLERANCE * size + _ROUNDING * law.parts_of_force(about.stiffness)):
+        if np.all(np.abs(rest) <= _TOLERANCE * size + _ROUNDING * np.abs(about.stiffness) @ law.extents):
             return d
         if not (np.all(np.isfinite(rest)) and np.all(np.isfinite(about.stiffness))):
             break

@@ -217,11 +217,6 @@ def _laws_at_rest(
             tangents = la.block_diag(*(state.stiffness for state in states))
             return np.concatenate([state.force for state in states]), tangents
 
-        def cancelling(tangent: np.ndarray) -> np.ndarray:
-            return np.concatenate(
-                [law.parts_of_force(tangent[a:b, a:b]) for law, (a, b) in zip(laws, pairwise(ends), strict=True)]
-            )
-
         films = sum(law.many_kinks for law in laws)
         found = settle(
             B.T @ solved[:, 0],
@@ -229,7 +224,7 @@ def _laws_at_rest(
             k,
             forces,
             near[0],
-            parts=cancelling,
+            extents=np.concatenate([law.extents for law in laws]),
             evaluations=EVALUATIONS // max(films, 1),
         )
         if not found.converged:

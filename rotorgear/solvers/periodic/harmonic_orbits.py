@@ -251,7 +251,7 @@ def static_displacements(plant: Plant) -> np.ndarray:
         K[a, b] = now.Kd[0, flat]
         return now.F[0], K
 
-    found = settle(still.d, still.R, plant.forces.reference_stiffness, tangent, parts=mean.parts_of_force)
+    found = settle(still.d, still.R, plant.forces.reference_stiffness, tangent, extents=mean.extents)
     return np.asarray(found.d if found.converged else still.d)
 
 

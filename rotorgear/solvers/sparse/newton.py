@@ -67,7 +67,7 @@ def settle(
     laws: Laws,
     near: np.ndarray | None = None,
     *,
-    parts: Callable[[np.ndarray], np.ndarray] | None = None,
+    extents: np.ndarray | None = None,
     evaluations: int = EVALUATIONS,
 ) -> Settled:
     """Return the local displacements in equilibrium.
@@ -78,7 +78,7 @@ def settle(
         k: (m, m) that stiffness.
         laws: forces and tangents.
         near: (m,) where the solution is looked for first; None: d0.
-        parts: sizes (m,) of what cancels in the forces, from their tangents (m, m); None: nothing does.
+        extents: displacements (m,) that change the forces by the size of what cancels in them; None: nothing does.
         evaluations: of the laws, after which the search ends.
     """
     size = float(np.abs(d0).max(initial=0.0))
@@ -99,7 +99,10 @@ def settle(
         noise = _ROUNDING * terms.max(initial=0.0)
         if noise <= _WORST * largest and worst <= max(_TOLERANCE * largest, noise):
             return True
-        return parts is not None and bool(worst <= _ROUNDING * (terms + np.abs(A) @ parts(tangent)).max(initial=0.0))
+        if extents is None:
+            return False
+        parts = np.abs(A) @ (np.abs(tangent) @ extents)
+        return bool(worst <= _ROUNDING * (terms + parts).max(initial=0.0))
 
     try:
         return _search(d0, A, k, counted, near, residual, small)

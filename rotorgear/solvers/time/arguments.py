@@ -22,6 +22,7 @@ class Laws(NamedTuple):
     state_first: np.ndarray
     block_first: np.ndarray
     conserves: np.ndarray
+    extents: np.ndarray
 
 
 class Instants(NamedTuple):

@@ -64,9 +64,7 @@ def equilibrium(system: LocalSystem, free: np.ndarray | None = None) -> Equilibr
     X = settled(B) if system.m else np.zeros((system.n, 0))
     forces = system.forces
     k = forces.reference_stiffness
-    found = settle(
-        np.asarray(B.T @ q0), B.T @ X, k, lambda d: local_tangent(system, d, 0.0), parts=forces.parts_of_force
-    )
+    found = settle(np.asarray(B.T @ q0), B.T @ X, k, lambda d: local_tangent(system, d, 0.0), extents=forces.extents)
     if not found.converged:
         return Equilibrium(q0, False, R, R.T @ system.load, found.force)
     q = q0 + X @ (k @ found.d - found.force)

@@ -239,7 +239,8 @@ def answer_to(laws, compliance, work, F, h):
             rounding = 0.0
             for j in range(k):
                 reach = abs(d_free[a + j]) + abs(d[a + j])
-                rounding += (abs(answer.Kd[block + i * k + j]) + abs(work.ended.Kd[block + i * k + j])) * reach
+                Kd = abs(answer.Kd[block + i * k + j]) + abs(work.ended.Kd[block + i * k + j])
+                rounding += Kd * (reach + laws.extents[a + j])
                 if h > 0.0:
                     rounding += abs(answer.Kv[block + i * k + j]) * reach / h
             floor = max(floor, 8.0 * _EPS * rounding)

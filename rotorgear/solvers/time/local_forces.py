@@ -8,6 +8,7 @@ energy = [stored, power put in by what is prescribed, power dissipated, contact:
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
@@ -44,6 +45,10 @@ class LocalLaw(Protocol):
     def uses_velocity(self) -> bool:
         """Whether force or energy depend on the velocities."""
 
+    @property
+    def extents(self) -> np.ndarray:
+        """Displacements (k,) that change the force by the size of what cancels in it; 0: nothing does."""
+
     def functions(self) -> tuple[Any, Any]:
         """Return the compiled functions schedule and force."""
 
@@ -61,9 +66,6 @@ class LocalLaw(Protocol):
 
     def closed_stiffness(self) -> np.ndarray:
         """Mean stiffness (k, k) with all contacts closed."""
-
-    def parts_of_force(self, stiffness: np.ndarray) -> np.ndarray:
-        """Sizes (k,) of what cancels in the force where it is `stiffness` (k, k)."""
 
     def mean(self) -> LocalLaw:
         """Return the law without anything that varies in time."""
@@ -121,10 +123,10 @@ class LocalForces:
         """Number of relative displacements."""
         return int(self.first[-1])
 
-    def parts_of_force(self, tangent: np.ndarray) -> np.ndarray:
-        """Sizes (m,) of what cancels in the forces where their tangent is (m, m)."""
-        ends = zip(self.laws, self.first[:-1], self.first[1:], strict=True)
-        return np.concatenate([*(law.parts_of_force(tangent[a:b, a:b]) for law, a, b in ends), np.zeros(0)])
+    @cached_property
+    def extents(self) -> np.ndarray:
+        """Displacements (m,) that change the forces by the size of what cancels in them."""
+        return np.concatenate([*(law.extents for law in self.laws), np.zeros(0)])
 
     def arguments(self) -> Laws:
         """What the compiled loops take."""
@@ -140,6 +142,7 @@ class LocalForces:
             self.state_first,
             self.block_first,
             self.conserves,
+            self.extents,
         )
 
 

@@ -93,7 +93,7 @@ def test_forces_that_are_rounding_of_their_parts_are_settled() -> None:
 
     d0, A = condensed(np.array([[1e7]]), k, np.zeros(1))
     assert not settle(d0, A, k, laws, evaluations=200).converged
-    found = settle(d0, A, k, laws, parts=lambda tangent: np.array([2.0 * pull]))
+    found = settle(d0, A, k, laws, extents=np.array([2.0 * pull / 1e7]))
     assert found.converged
     assert abs(found.d[0]) <= 1e-15 * pull / 1e7
 

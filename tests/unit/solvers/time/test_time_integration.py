@@ -7,6 +7,7 @@ import pytest
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
+from rotorgear.forces.journal_film import JournalFilm
 from rotorgear.forces.law import ForceLaw, parameter
 from rotorgear.forces.mesh_contact import MeshContact
 from rotorgear.forces.plain_spring import PlainSpring
@@ -106,6 +107,18 @@ def test_the_equilibrium_holds_still_in_every_method() -> None:
     for name in METHODS:
         motion = integrate(system, name, 0.05, 200, list(rest.q), [0.0, 0.0])
         assert motion.q == pytest.approx(np.tile(rest.q, (201, 1)), abs=1e-9)
+
+
+def test_a_film_that_nothing_loads_takes_no_search_in_any_step() -> None:
+    """Its force is rounding of its pressures: no share of itself can be met, and forces would be bisected in each step."""
+    law = JournalFilm(0.02, 0.03, 0.04, 60e-6, lobes=3, preload=0.4, around=72, along=6)
+    system = local_system(
+        np.diag([1.0, 2.0]), 100.0 * np.eye(2), 1e7 * np.eye(2), [0.0, 0.0], [(law, np.eye(2))], 200.0
+    )
+    assert equilibrium(system).converged
+    start = state_at_rest(system, 1e-4, np.zeros(2))
+    cost = run(system, Newmark(), Schedule(1e-4, 5, 1), start, lambda *_: None)
+    assert cost.solutions <= 2 * cost.steps
 
 
 def test_the_equilibrium_finds_the_flank_that_carries() -> None:
