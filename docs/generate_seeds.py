@@ -67,7 +67,11 @@ Over the load ratio at both total torques, and the three regions with the fitted
 
 ![Poincare points, exponent and shares of time over the load ratio at 30 and 35 kN m](pictures/seeds_marine_ratio.png)
 
-![Exponent, amplitude and back-side share over the load ratio with both stiffnesses](pictures/seeds_marine_regions.png)""",
+![Exponent, amplitude and back-side share over the load ratio with both stiffnesses](pictures/seeds_marine_regions.png)
+
+The regions over torque and load ratio (`python -m validation.seeds.pictures seeds_marine_map`):
+
+![Regions I, II and III over total torque and load ratio](pictures/seeds_marine_map.png)""",
     ),
     "pair24": (
         "Herringbone pair of 24 degrees of freedom",

@@ -14,7 +14,7 @@ from typing import Any
 
 import rotorgear as rg
 from validation.seeds import kept
-from validation.seeds.motions import STARTS, ends, kinds, number, route
+from validation.seeds.motions import CHAOTIC, STARTS, ends, kinds, number, route
 from validation.seeds.rows import changed, loaded
 
 MODEL = "marine_dual_turbine"
@@ -26,12 +26,17 @@ STIFFNESS = 1.2e10
 SETTLE = 2000
 COUNT = 200
 STEPS = 40
-# Load ratios looked at for the regions, those with printed numbers.
+# Load ratios looked at for the regions, those with printed numbers, and total torques (N m) of the map.
 RATIOS = tuple(round(0.1 + 0.05 * i, 2) for i in range(23))
 PRINTED = {"03": 0.3, "06": 0.6, "10": 1.0}
+TOTALS = tuple(1e3 * total for total in (15, 20, 25, 30, 35, 40, 50, 60))
 NOMINAL = 15e3 / PITCH_RADIUS / STIFFNESS
-# Film damping has no number in the account.
+# Friction and film damping have no numbers in the account; friction needs teeth, which it does not give either.
+FRICTION = 0.05
 FILM = 1.5
+# Super-periods that settle with friction, whose law takes ten times as long as the teeth, and at the many points of the map.
+_SHORT_FRICTION = 200
+_SHORT = 400
 
 
 @dataclass(frozen=True)
@@ -53,6 +58,7 @@ def operating(
     *,
     drag: float = DRAG,
     table_stiffness: bool = False,
+    friction: float = 0.0,
     film: float = 1.0,
 ) -> rg.Model:
     """The model at a load ratio and a total torque (N m); `film` multiplies the damping of the teeth."""
@@ -66,8 +72,11 @@ def operating(
     if film != 1.0:
         for name, keys in meshes.items():
             keys["damping"] = film * (base.meshes[name].damping or 0.0)
+    if friction:
+        for keys in meshes.values():
+            keys["friction_coefficient"] = friction
     return changed(
-        base,
+        _with_teeth(base) if friction else base,
         meshes=meshes,
         loads={
             "hp": {"torque": hp},
@@ -76,6 +85,32 @@ def operating(
             "lp_drag": {"torque": drag},
         },
     )
+
+
+def _with_teeth(base: rg.Model) -> rg.Model:
+    """The gears by teeth that have the printed base radii: 20 deg at the printed helix of 25 deg, and so 21.88 deg transverse.
+
+    In torsion they act as spur teeth of that transverse section: friction then turns its sense on all of the face at once, which
+    is the most that it can excite.
+    """
+    helix = math.radians(25.0)
+    angle = math.atan(math.tan(math.radians(20.0)) / math.cos(helix))
+    module = 2.0 * PITCH_RADIUS / 25.0 / math.cos(angle)
+    gears = {
+        name: {
+            "base_radius": None,
+            "normal_module": module,
+            "normal_pressure_angle": angle,
+            # Addendum of the normal module.
+            "addendum_factor": math.cos(helix),
+            "dedendum_factor": 1.25 * math.cos(helix),
+            "width": 0.2,
+            "mass": 1.0,
+            "diametral_inertia": 1.0,
+        }
+        for name in base.gears
+    }
+    return changed(base, gears=gears)
 
 
 def contact(
@@ -166,6 +201,39 @@ def way_names(result: rg.SweepResult) -> list[str]:
     return [kind if kind in ("1T", "2T") else "others" for kind in found]
 
 
+def torque_map(totals: Sequence[float] = TOTALS, ratios: Sequence[float] = RATIOS) -> list[list[str]]:
+    """Region of each total torque and load ratio, from the static start.
+
+    I: the LP first stage is on its back side for most of the time in contact, and not chaotic. II: chaotic, with an amplitude
+    above 3. III: all others. "-": weak chaos.
+    """
+    rows = []
+    for total in totals:
+        result = swept(ratios, total, settle=_SHORT, starts=1)
+        i = result.contact.index("first_lp")
+        row = []
+        for p in range(len(ratios)):
+            chaotic = result.motion_at(p) == CHAOTIC
+            large = result.peak_to_peak[p, 0, i] > 3.0 * NOMINAL
+            back = result.back[p, 0, i] > result.driving[p, 0, i]
+            row.append(("II" if large else "-") if chaotic else "I" if back else "III")
+        rows.append(row)
+    return rows
+
+
+def map_words(rows: Sequence[Sequence[str]], ratios: Sequence[float] = RATIOS) -> dict[str, str]:
+    """Load ratios of region II at each total torque, and whether each row has all three regions in their order."""
+    spans = []
+    in_order = 0
+    for total, row in zip(TOTALS, rows, strict=True):
+        chaos = [gamma for gamma, region in zip(ratios, row, strict=True) if region == "II"]
+        spans.append(f"{total / 1e3:.0f}: " + (f"{chaos[0]:.2f} to {chaos[-1]:.2f}" if chaos else "none"))
+        kept = [region for region in row if region != "-"]
+        first = [kept.index(name) if name in kept else -1 for name in ("I", "II", "III")]
+        in_order += -1 < first[0] < first[1] and "III" in kept[first[1] :]
+    return {"map_chaos": ", ".join(spans), "map_order": f"{in_order} of {len(rows)}"}
+
+
 def _way_values(total: float, suffix: str) -> dict[str, str]:
     over = way(total)
     return {f"way{suffix}": route(over, way_names(over), ".2f")}
@@ -183,7 +251,9 @@ PIECES: dict[str, Callable[[], dict[str, str]]] = {
     "way_35": lambda: _way_values(35e3, "_35"),
     "regions": lambda: {"region": _region(30e3), "region_35": _region(35e3)},
     "printed_stiffness": lambda: _at_printed("_soft", 100.0 * NOMINAL, starts=1, table_stiffness=True),
+    "friction": lambda: _at_printed("_rub", settle=_SHORT_FRICTION, starts=4, friction=FRICTION),
     "film": lambda: _at_printed("_film", starts=4, film=FILM),
+    "map": lambda: map_words(torque_map()),
 }
 
 

@@ -96,6 +96,36 @@ def draw_marine_regions(figure: Any) -> None:
     axes[2].set_xlabel(r"load ratio $T_\mathrm{LP}/T_\mathrm{HP}$ at 30 kN m")
 
 
+def draw_marine_map(figure: Any) -> None:
+    """Regions of the LP first stage over total torque and load ratio."""
+    axes = figure.subplots()
+    colours = {"I": COLOURS[0], "II": COLOURS[1], "-": COLOURS[4], "III": COLOURS[2]}
+    words = {
+        "I": "I: back side, not chaotic",
+        "II": "II: chaotic, amplitude above 3",
+        "-": "weak chaos",
+        "III": "III: driving side",
+    }
+    rows = marine.torque_map()
+    for name, colour in colours.items():
+        places = [
+            (gamma, 1e-3 * total)
+            for total, row in zip(marine.TOTALS, rows, strict=True)
+            for gamma, region in zip(marine.RATIOS, row, strict=True)
+            if region == name
+        ]
+        if places:
+            axes.plot(*zip(*places, strict=True), "s", ms=9, mew=0, color=colour, label=words[name])
+    totals = np.linspace(min(marine.TOTALS), max(marine.TOTALS), 200)
+    change = marine.DRAG / (totals - marine.DRAG)
+    shown = change <= marine.RATIOS[-1]
+    axes.plot(change[shown], 1e-3 * totals[shown], "k--", lw=0.9, label="no net torque of the LP branch")
+    axes.plot((0.3, 0.6, 1.0), (30.0, 30.0, 30.0), "kx", ms=7, label="printed as I, II, III")
+    axes.set_xlabel(r"load ratio $T_\mathrm{LP}/T_\mathrm{HP}$")
+    axes.set_ylabel("total torque, kN m")
+    axes.legend(fontsize=7, loc="upper center", bbox_to_anchor=(0.5, 1.2), ncols=3)
+
+
 def pair24_over(name: str) -> tuple[np.ndarray, rg.SweepResult]:
     """Set 1 of the 24-dof pair at 6000 rpm over its torque (N m), damping ratio, backlash (um) or stiffness (N/m)."""
     base = loaded(pair24.MODEL)
@@ -232,6 +262,7 @@ def draw_pair16_factors(figure: Any) -> None:
 PICTURES: dict[str, tuple[Callable[[Any], None], tuple[float, float]]] = {
     "seeds_marine_ratio": (draw_marine_ratio, (9.0, 6.0)),
     "seeds_marine_regions": (draw_marine_regions, (7.0, 6.0)),
+    "seeds_marine_map": (draw_marine_map, (7.5, 4.5)),
     "seeds_pair24_studies": (draw_pair24_studies, (9.0, 6.5)),
     "seeds_pair24_set2": (draw_pair24_set2, (8.0, 5.0)),
     "seeds_split_spectrum": (draw_split_spectrum, (8.0, 4.5)),
