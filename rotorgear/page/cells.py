@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 Path = tuple[str | int, ...]
+# Where the results of all analyses stand in the JSON output of a report.
+RESULTS = "results"
 
 
 @dataclass(frozen=True)

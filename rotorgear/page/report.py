@@ -19,7 +19,7 @@ from rotorgear.extras import require
 from rotorgear.model.load import load
 from rotorgear.model.model import Model
 from rotorgear.model.model_hash import model_hash
-from rotorgear.page.cells import Numbers
+from rotorgear.page.cells import RESULTS, Numbers
 from rotorgear.page.contents import computed, error_of
 from rotorgear.page.sections import sections
 from rotorgear.progress import Progress, silent
@@ -106,7 +106,7 @@ def report(
         "cpu_seconds_of_all": time.process_time() - start,
         "largest_error_estimate": {name: error_of(result) for name, result in found.results.items()},
         "missing": dict(found.missing),
-        "results": {name: result.to_dict() for name, result in found.results.items()},
+        RESULTS: {name: result.to_dict() for name, result in found.results.items()},
     }
     progress(0.9, "page")
     text = _page(built, numbers, list(sections(found, Numbers(numbers), studies)), _turntable(found.results, turntable))
