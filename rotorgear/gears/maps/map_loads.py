@@ -31,8 +31,8 @@ _IN_SPACE = (
     (1.6, 1.9, 2.2),
     (2.7, 3.3, 4.1, 5.0),
 )
-# Linear analyses stay near the mean load of a contact, but helices and branches need not share alike: some carry a third of the
-# working load, others twice as much.
+# Linear analyses of spur pairs stay near the mean load of a contact, but helices and branches need not share alike: some carry a
+# third of the working load, others twice as much.
 _NEAR_IN_SPACE = (*_UP_TO_WORKING, (1.12, 1.25, 1.4), (1.6, 1.8, 2.0))
 # Loads of helical pairs are closer in this range: they share slices and patches, so that one costs little, and curves of
 # herringbone pairs and loops are as small as 0.02 um. In two parts each step missed 3.8 % of such a one, in three 0.15 %.

@@ -20,7 +20,7 @@ import numpy as np
 
 from rotorgear.gears.loaded.mesh_cycle import mesh_cycle
 from rotorgear.gears.loaded.settled_contacts import Settled, WideContactError, same_patches
-from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem
+from rotorgear.gears.loaded.tooth_contact import ContactProblem, contact_problem, in_space
 from rotorgear.gears.maps.contact_map import ContactMap
 from rotorgear.gears.maps.map_columns import Column, faded, map_columns, with_start
 from rotorgear.gears.maps.map_contacts import above, cosine, of_period_ahead, up_to
@@ -45,7 +45,6 @@ _FILLING = (0.7548776662466927, 0.5698402909980532)
 _LOADS = (0.32, 5.0)
 
 
-@lru_cache(maxsize=32)  # the helices of a model and its analyses ask for the same maps again and again
 def contact_map(teeth: ToothPair, load: float, positions: int | None = None, near: bool = False) -> ContactMap:
     """Solve the loaded contact over the mesh cycle for loads up to five times the working one.
 
@@ -54,7 +53,8 @@ def contact_map(teeth: ToothPair, load: float, positions: int | None = None, nea
         load: working force (N) along the flank normal.
         positions: so many even ones in a base pitch, and the map keeps these; default 512 even ones in the plane, and in space
             128 of a spur pair where the curves need them, and 96 of a helical one, or 128 where single teeth differ.
-        near: for linear analyses: in space fewer loads, up to about twice the working one.
+        near: for linear analyses: of spur pairs in space fewer loads, up to about twice the working one. Helical pairs have one
+            map for all analyses: theirs have most of their loads there, and a transient asks for both.
 
     Raises:
         AnalysisError: teeth that can't be made, meshed or brought into contact; pitch errors that make too many periods differ.
@@ -62,6 +62,13 @@ def contact_map(teeth: ToothPair, load: float, positions: int | None = None, nea
         ConvergenceError: a position has no solution to the tolerance.
         MissingExtraError: scikit-fem is needed and not installed.
     """
+    uncoupled = in_space(teeth)[1]
+    return _kept(teeth, load, positions, near and (uncoupled or not teeth.first.helix_angle))
+
+
+@lru_cache(maxsize=32)  # the helices of a model and its analyses ask for the same maps again and again
+def _kept(teeth: ToothPair, load: float, positions: int | None, near: bool) -> ContactMap:
+    """The map from disk, or solved and kept."""
 
     def judged(found: ContactMap, problem: ContactProblem) -> ContactMap:
         return replace(found, error=_error(problem, found, load))
