@@ -11,6 +11,7 @@ import rotorgear as rg
 from rotorgear.analysis.response.run_up import choose_method
 from rotorgear.analysis.static.solve import equilibrate
 from rotorgear.errors import AnalysisError, ConvergenceError, RotorgearError
+from rotorgear.gears.loaded.loaded_contact import PositionContact, solve_contact
 from rotorgear.system.system import System
 from tests.fuzz.runner import mutant
 from tests.paths import ROOT
@@ -68,3 +69,18 @@ def test_a_film_that_carries_nothing_is_in_equilibrium_where_it_is_centred(seed:
     [law] = equilibrate(System(model, load=model.mean_load(speed).of_kind("static")), speed).laws
     assert np.abs(law.force).max() < 1e-9
     assert np.hypot(*law.d) < 1e-12 * law.part.law.clearance
+
+
+def test_teeth_under_a_load_that_is_lost_in_their_gaps_are_refused() -> None:  # seed 101511: a torque of 2e-27 N m
+    slices = PositionContact(
+        gap=np.array([1.001e-5, 1e-5]),
+        compliance=np.array([[2e-9, 1e-9], [1e-9, 2e-9]]),
+        length=np.full(2, 1e-3),
+        local=np.full(2, 1.4e-12),
+        log_width=np.full((2, 2), np.log(2e-4)),
+        radius=np.full(2, 1e-2),
+        modulus=2e11,
+    )
+    with pytest.raises(ConvergenceError, match="by less than the rounding of their gaps; give a larger torque"):
+        solve_contact(slices, 1e-26)
+    assert solve_contact(slices, 1.0).force.sum() == pytest.approx(1.0)

@@ -97,8 +97,13 @@ def solve_contact(
         tolerance: change of the forces over the load in the last round.
 
     Raises:
-        ConvergenceError: the compliance is not positive definite, or the forces don't come to rest.
+        ConvergenceError: the compliance is not positive definite, the load is lost in the gaps, or the forces don't come to rest.
     """
+    if total * contact.compliance.diagonal().max() <= np.finfo(float).eps * np.abs(contact.gap).max():
+        raise ConvergenceError(
+            f"The load of {total:.3g} N presses the teeth together by less than the rounding of their gaps; "
+            "give a larger torque, or a mesh stiffness that does not follow the load"
+        )
     force = np.full(len(contact.gap), total / len(contact.gap)) if start is None else start * (total / start.sum())
     added, tangent = _local(contact, force, total)
     for _ in range(_ROUNDS):
