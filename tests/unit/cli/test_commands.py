@@ -13,7 +13,7 @@ from rotorgear.cli.main import app
 from tests.paths import ROOT
 
 # Files of cli/ beside the commands.
-SHARED = {"__init__", "commands", "common", "main", "old_options", "speed_options"}
+SHARED = {"mesh_tasks", "mesh_texts", "__init__", "commands", "common", "main", "old_options", "speed_options"}
 
 
 @pytest.mark.parametrize("name", HELP)
