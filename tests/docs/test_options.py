@@ -29,7 +29,7 @@ OTHER_TOOLS = ("docs/", "python", "pytest", "dask", "check.py", "pip ", "octave"
 # Those of benchmarks of the repository that stand apart from the word python.
 OF_BENCHMARKS = {
     "casings.md": {"--large"},
-    "response.md": {"--form"},
+    "response.md": {"--form", "--flank"},
     "run_time.md": {"--repetitions", "--longest"},
 }
 # Pages that tell what former options are called now.
