@@ -16,6 +16,7 @@ from rotorgear.errors import AnalysisError
 from rotorgear.forces.law import CYCLE_POINTS
 from rotorgear.model.model import Model
 from rotorgear.quantity import nearest
+from rotorgear.solvers.sparse.newton import ROUNDING
 from rotorgear.system.system import System
 
 if TYPE_CHECKING:
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
 
 _ITERATIONS = 40
 _TOLERANCE = 1e-11
-# Of the parts that cancel in a force.
-_ROUNDING = 16.0 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
@@ -110,7 +109,7 @@ def _under(law: ForceLaw, load: np.ndarray, start: np.ndarray, speed: float, poi
     for _ in range(_ITERATIONS):
         about = law.linearised(d, speed=speed, points=points)
         rest = load - about.force
-        if np.all(np.abs(rest) <= _TOLERANCE * size + _ROUNDING * np.abs(about.stiffness) @ law.extents):
+        if np.all(np.abs(rest) <= _TOLERANCE * size + ROUNDING * np.abs(about.stiffness) @ law.extents):
             return d
         if not (np.all(np.isfinite(rest)) and np.all(np.isfinite(about.stiffness))):
             break

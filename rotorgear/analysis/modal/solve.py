@@ -151,10 +151,12 @@ def _problem(system: System, speed: float | None) -> _Problem:
         K_symmetric = system.definite_stiffness(at)
     D = system.velocity_terms(speed)
     is_plain = D is None and not circulatory.nnz
+    inertial = sp.csc_array(K.shape) if D is None else system.inertial_terms(at)
 
     @cache
     def forms() -> StrainForms:
-        return system.strain_forms(at) if D is not None else _without_viscosity(system.strain_forms(at))
+        whole = system.strain_forms(at)
+        return _without_viscosity(whole) if D is None else whole
 
     guess = None
     if system.n >= _LARGE:
@@ -169,7 +171,7 @@ def _problem(system: System, speed: float | None) -> _Problem:
         S=S,
         symmetric=not circulatory.nnz,
         damped=speed is not None and bool(system.damping(at).nnz),
-        inertial=None if is_plain else system.inertial_terms(at) if D is not None else sp.csc_array(K.shape),
+        inertial=None if is_plain else inertial,
         forms=None if is_plain else forms,
         guess=guess,
     )

@@ -91,6 +91,7 @@ def read_sensor_table(file: Path) -> list[Sensor]:
     for number, cells in rows[1:]:
         given = dict(zip(header, cells, strict=False))
         address = f"{file.name}:{number}"
+        point = given.get("point", "")
         direction = given.get("direction", "").lower()
         if not given.get("node", "").isdecimal():
             problems.append(Problem(f"{address}:node", repr(given.get("node", "")), "the number of a node"))
@@ -101,10 +102,10 @@ def read_sensor_table(file: Path) -> list[Sensor]:
             continue
         axis = AXES.index(direction.lstrip("+-"))
         sign = -1.0 if direction.startswith("-") else 1.0
-        sensor = Sensor(place_text(given["point"], axis), int(given["node"]), axis, sign)
+        sensor = Sensor(place_text(point, axis), int(given["node"]), axis, sign)
         key = sensor.place or f"{sensor.node}:{axis}"
         if key in found:
-            problems.append(Problem(f"{address}:point", repr(given["point"]), "every point once"))
+            problems.append(Problem(f"{address}:point", repr(point), "every point once"))
         found[key] = sensor
     if not found and not problems:
         problems.append(Problem(file.name, "", "a row for each sensor below the header"))

@@ -31,8 +31,8 @@ Small = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], bool]
 
 _ITERATIONS = 80
 _TOLERANCE = 1e-10
-# Rounding of d - d0 + A (F - k d) in units of its terms: no iteration gets below.
-_ROUNDING = 16.0 * np.finfo(float).eps
+# Rounding of d - d0 + A (F - k d), or of a force, in units of its terms: no iteration gets below.
+ROUNDING = 16.0 * np.finfo(float).eps
 # Where rounding would hide more than this share of the forces there is no equilibrium: displacements run away.
 _WORST = 1e-4
 # Iterations in a row that do not bring the residual down.
@@ -96,13 +96,13 @@ def settle(
         largest = size + np.abs(A @ F).max(initial=0.0)
         worst = np.abs(r).max(initial=0.0)
         terms = np.abs(d) + np.abs(A) @ (np.abs(F) + np.abs(k) @ np.abs(d))
-        noise = _ROUNDING * terms.max(initial=0.0)
+        noise = ROUNDING * terms.max(initial=0.0)
         if noise <= _WORST * largest and worst <= max(_TOLERANCE * largest, noise):
             return True
         if extents is None:
             return False
         parts = np.abs(A) @ (np.abs(tangent) @ extents)
-        return bool(worst <= _ROUNDING * (terms + parts).max(initial=0.0))
+        return bool(worst <= ROUNDING * (terms + parts).max(initial=0.0))
 
     try:
         return _search(d0, A, k, counted, near, residual, small)
