@@ -61,6 +61,15 @@ def test_modes_up_to_a_frequency_of_300_digits_are_refused_as_too_many() -> None
         rg.campbell(rg.load(ROOT / "models" / "geared_pair.toml"), fmax=1e300)
 
 
+def test_more_modes_than_lie_below_a_frequency_are_those_below_it() -> None:  # seeds 102328 and 103338
+    pair = rg.load(ROOT / "models" / "torsion_chain.toml")
+    first = rg.modal(pair, modes=2)
+    both = rg.modal(pair, fmax=float(1.01 * first.frequency_hz[-1]), modes=12)
+    assert np.allclose(both.frequency_hz, first.frequency_hz, rtol=1e-3)
+    endless = rg.modal(pair, fmax=1e300, modes=2, elements=3, error_estimate=False)
+    assert np.allclose(endless.frequency_hz, rg.modal(pair, modes=2, elements=3).frequency_hz, rtol=1e-12)
+
+
 @pytest.mark.parametrize("seed", [40023, 40063])  # modal: a minute and more
 def test_a_film_that_carries_nothing_is_in_equilibrium_where_it_is_centred(seed: int, tmp_path: Path) -> None:
     model = model_of("geared_pair", seed, tmp_path)

@@ -107,7 +107,8 @@ def modal(
                 estimate = enriched_errors(system, Wanted(speed, None, None, tuple(only), pruning), found, estimate)
             break
         size = np.abs(found.eigenvalues)
-        if reach.modes is not None and len(size) < reach.modes and parts:
+        ended = reach.limit is not None and not found.is_complete  # by the highest frequency, not by the mesh
+        if reach.modes is not None and len(size) < reach.modes and parts and not ended:
             # The mesh has fewer modes than asked for: every piece must be finer before any error can be estimated.
             if reach.modes > 2 * MOST_MODES:
                 raise AnalysisError(

@@ -74,14 +74,17 @@ def _turned(shapes: np.ndarray) -> np.ndarray:
     if shapes.shape[2] == 0:
         return shapes.astype(complex)
     mode = np.arange(shapes.shape[2])
-    rows = shapes[:, :3].reshape(-1, len(mode))
     size = np.abs(shapes)
-    along = size[:, :3].reshape(-1, len(mode))
-    peak = rows[along.argmax(axis=0), mode]
+    node, direction = np.divmod(size[:, :3].reshape(-1, len(mode)).argmax(axis=0), 3)
+    peak = shapes[node, direction, mode]
     # A mode that only tilts or twists has no displacement to speak of: its largest rotation is turned then.
-    still = np.abs(peak) <= 1e-9 * size.max(axis=(0, 1), initial=0.0)
+    still = np.abs(peak) <= 1e-9 * size.max(axis=0).max(axis=0)
     if np.any(still):
         everything = shapes[:, :, still].reshape(-1, np.count_nonzero(still))
         peak[still] = everything[np.abs(everything).argmax(axis=0), np.arange(everything.shape[1])]
     turn = np.where(peak != 0.0, np.conj(peak) / np.where(peak != 0.0, np.abs(peak), 1.0), 1.0)
-    return np.multiply(shapes, turn, dtype=complex)
+    if np.iscomplexobj(shapes):
+        return np.asarray(shapes * turn)
+    turned = np.zeros(shapes.shape, dtype=complex)
+    np.multiply(shapes, turn, out=turned.real)
+    return turned

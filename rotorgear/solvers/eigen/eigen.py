@@ -26,6 +26,7 @@ _GAP = 1e-3  # least relative gap in lambda in which a Sturm count is placed
 _UNCOUNTED = (0.0, 0)  # a shift below which there is nothing to count
 _ATTEMPTS = 6  # each with three times the spare pairs of the one before
 _UNSTABLE = 100.0  # multiple of the rounding of K below which an eigenvalue is negative in earnest
+_ENDLESS = 1e100  # rad/s; no limit at all, and its square is still a number
 _EDGE = 1e-9  # a mode this close above the limit `below` counts as on it
 
 
@@ -101,6 +102,8 @@ def lowest_modes(
         raise AnalysisError(f"The number of modes must be at least 1, got {count}.")
     if below is not None and not below > 0.0:
         raise AnalysisError(f"The highest frequency wanted must be positive, got {below} rad/s.")
+    if below is not None and below > _ENDLESS:
+        below = None
     M = sp.csc_array(M, dtype=float)
     K = sp.csc_array(K, dtype=float)
     with single_thread(K.shape[0]):

@@ -8,7 +8,7 @@ Golub and Van Loan, Matrix Computations, 4th ed., sections 10.3.6 and 10.5.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -35,7 +35,8 @@ class BlockKrylov:
         self._size = 0
         self._border = np.zeros((0, 0))
         self._border_start = 0
-        self._block, _ = self._orthonormal(self._fresh(self._width))
+        self._block, _, self._weighted_block = self._orthonormal(self._fresh(self._width))
+        self._weighted_before = self._weighted_block[:, :0]
 
     @property
     def width(self) -> int:
@@ -69,9 +70,11 @@ class BlockKrylov:
         self._reserve(new + self._block.shape[1])
         self._V[:, old:new] = self._block
         self._size = new
+        weighted = self._weighted_block
         # Symmetric T couples a block to its neighbours only: one full pass is then left to remove rounding.
-        since = self._border_start if self._inner is not None else 0
-        self._block, coefficients = self._orthonormal(self._apply(self._block), since)
+        near = [] if self._inner is None else [self._weighted_before, weighted]
+        self._block, coefficients, self._weighted_block = self._orthonormal(self._apply(weighted), near)
+        self._weighted_before = weighted
         self._H[:new, old:new] = coefficients[:new]
         self._border = coefficients[new:]
         self._border_start = old
@@ -86,7 +89,7 @@ class BlockKrylov:
 
     def _fresh(self, count: int) -> np.ndarray:
         """T applied to random directions (n, count): what T maps to zero is left out from the start."""
-        return self._apply(self._random.standard_normal((self._V.shape[0], count)))
+        return self._apply(self._weighted(self._random.standard_normal((self._V.shape[0], count))))
 
     def _inject(self, count: int) -> None:
         """Add fresh directions to the newest block, orthogonal to it and to the basis."""
@@ -95,9 +98,10 @@ class BlockKrylov:
         self._reserve(held + pending)
         self._V[:, held : held + pending] = self._block
         self._size = held + pending  # for the orthogonalisation only: the images of these are not known yet
-        fresh, _ = self._orthonormal(self._fresh(count))
+        fresh, _, weighted = self._orthonormal(self._fresh(count))
         self._size = held
         self._block = np.hstack([self._block, fresh])
+        self._weighted_block = np.hstack([self._weighted_block, weighted])
 
     def residuals(self, Y: np.ndarray) -> np.ndarray:
         """Norms ||T v - theta v||_W of the Ritz vectors v = V Y, with Y (m, k) eigenvectors of H."""
@@ -107,7 +111,8 @@ class BlockKrylov:
     def polished(self, Y: np.ndarray) -> np.ndarray:
         """T V Y (n, k) without another application of T: stiff parts that V Y still holds are scaled down by it."""
         last = self._border @ Y[self._border_start :]
-        image: np.ndarray = self.basis @ (self.projection @ Y) + self._block[:, : last.shape[0]] @ last
+        image = _product(self.basis, self.projection @ Y)
+        image += _product(self._block[:, : last.shape[0]], last)
         return image
 
     def _reserve(self, size: int) -> None:
@@ -121,33 +126,43 @@ class BlockKrylov:
             self._V = V
             self._H = H
 
-    def _orthonormal(self, X: np.ndarray, since: int = 0) -> tuple[np.ndarray, np.ndarray]:
-        """Q (n, r) orthonormal and orthogonal to V, and the coefficients (m + r, b) with X = [V, Q] coefficients.
+    def _orthonormal(self, X: np.ndarray, near: Sequence[np.ndarray] = ()) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Q (n, r) orthonormal and orthogonal to V, the coefficients (m + r, b) with X = [V, Q] coefficients, and W Q.
 
-        X is known to be orthogonal, but for rounding, to the first `since` columns of V.
+        X is known to be orthogonal, but for rounding, to all columns of V but the last ones, whose images under W are `near`;
+        to none of them where there are no such images.
         """
         V = self.basis
-        WX = self._weighted(X)
-        length = np.sqrt(np.maximum(np.einsum("ij,ij->j", X, WX), 0.0)).max(initial=0.0)
+        first = np.vstack([part.T @ X for part in near]) if near else (self._weighted(X).T @ V).T
+        since = V.shape[1] - first.shape[0]
         above = np.zeros((V.shape[1], X.shape[1]))
-        above[since:] = (WX.T @ V[:, since:]).T
+        above[since:] = first
         below = np.eye(X.shape[1])
-        X = X - V[:, since:] @ above[since:] if V.shape[1] else X
+        X = X - _product(V[:, since:], first)
+        WX = self._weighted(X)
+        # Of the longest column as it came in; what is left of it in the passes is measured against unit vectors.
+        length = math.sqrt(float((np.einsum("ij,ij->j", X, WX) + np.sum(above**2, axis=0)).max(initial=0.0)))
         for _ in range(4):  # twice is enough (Kahan and Parlett) unless the block itself is nearly dependent
-            WX = self._weighted(X)
             overlap = (WX.T @ V).T  # faster than V.T @ WX for a narrow WX
             gram = X.T @ WX - overlap.T @ overlap
             Q, triangle, spread = _compressed(gram, _DEPENDENT * length)
-            X = (X - V @ overlap) @ Q if V.shape[1] else X @ Q
+            X -= _product(V, overlap)
+            X = _product(X, Q)
+            WX = self._weighted(X)
             above += overlap @ below
             below = triangle @ below
             length = 1.0
             if spread < _WELL_SPREAD or X.shape[1] == 0:
                 break
-        return X, np.vstack([above, below])
+        return X, np.vstack([above, below]), WX
 
     def _weighted(self, X: np.ndarray) -> np.ndarray:
         return X if self._inner is None else self._inner(X)
+
+
+def _product(V: np.ndarray, C: np.ndarray) -> np.ndarray:
+    """V C (n, b) of a tall V (n, m) that is stored by columns; BLAS is three times as slow on V @ C itself, for few columns."""
+    return (C.T @ V.T).T
 
 
 def _compressed(gram: np.ndarray, shortest: float) -> tuple[np.ndarray, np.ndarray, float]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
-from scipy.linalg.lapack import dgejsv, dtrtri
+from scipy.linalg.lapack import dgejsv, dgeqrf, dtrtri
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.shift_invert import Modes, ShiftInvert
@@ -81,8 +81,8 @@ def _triangle(A: np.ndarray) -> np.ndarray:
     m = A.shape[1]
     rows = max(_ROWS, 4 * m)
     while A.shape[0] > 2 * rows:
-        A = np.vstack([la.qr(A[k : k + rows], mode="r", check_finite=False)[0][:m] for k in range(0, A.shape[0], rows)])
-    return np.asarray(la.qr(A, mode="r", check_finite=False)[0][:m])
+        A = np.vstack([np.triu(dgeqrf(A[k : k + rows])[0][:m]) for k in range(0, A.shape[0], rows)])
+    return np.triu(dgeqrf(A)[0][:m])
 
 
 def count_rigid(operator: ShiftInvert, values: np.ndarray, V: np.ndarray, noise: np.ndarray, with_strain: bool) -> int:

@@ -47,7 +47,7 @@ class ShiftInvert:
         self._start()
 
     def _start(self) -> None:
-        self.krylov = BlockKrylov(self.apply, self.K.shape[0], _BLOCK, lambda X: self.mass @ X)
+        self.krylov = BlockKrylov(self.factor.solve, self.K.shape[0], _BLOCK, lambda X: self.mass @ X)
 
     def move(self, sigma: float) -> None:
         """Factor at another shift and start the Krylov basis anew."""
@@ -149,8 +149,9 @@ def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarr
                 # One more solve for the modes below |sigma| takes the rounding in stiff modes out of soft ones.
                 V = krylov.polished(Y)
                 low = values < -operator.sigma
-                V[:, low] = operator.apply(V[:, low])
-                return V
+                if np.any(low):
+                    V[:, low] = operator.apply(V[:, low])
+                return np.ascontiguousarray(V)  # by rows, as all the sparse products to come take it
             # Soft and stiff modes too far apart for one shift: move it up, where the stiff ones are seen.
             operator.move(-1e-4 * highest)
             krylov = operator.krylov

@@ -85,10 +85,16 @@ def rounding_noise(size_K: sp.csr_array | sp.csc_array, V: np.ndarray, shift: fl
 def backward_errors(M: sp.csr_array, K: sp.csr_array, values: np.ndarray, V: np.ndarray) -> np.ndarray:
     """||K v - lambda M v|| / ((||K||_1 + |lambda| ||M||_1) ||v||) of each pair: (m,)."""
     V = np.ascontiguousarray(V)
-    residual = np.linalg.norm(K @ V - M @ (V * values), axis=0)
-    size = (norm_1(K) + np.abs(values) * norm_1(M)) * np.linalg.norm(V, axis=0)
-    errors: np.ndarray = residual / np.maximum(size, np.finfo(float).tiny)  # K = 0 leaves no residual either
+    residual = K @ V
+    residual -= M @ (V * values)
+    size = (norm_1(K) + np.abs(values) * norm_1(M)) * _lengths(V)
+    errors: np.ndarray = _lengths(residual) / np.maximum(size, np.finfo(float).tiny)  # K = 0 leaves no residual either
     return errors
+
+
+def _lengths(V: np.ndarray) -> np.ndarray:
+    """Euclidean lengths (m,) of the columns of V (n, m)."""
+    return np.sqrt(np.einsum("ij,ij->j", V, V))
 
 
 def count_below(M: sp.csc_array, K: sp.csc_array, shift: float) -> int:
