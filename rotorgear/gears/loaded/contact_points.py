@@ -22,17 +22,21 @@ from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 # Quadrature points of a patch across and along a slice.
 _ACROSS = 24
 _ALONG = 3
-# Pieces of a contact line shorter than this share of a slice are dropped: they carry nothing and spoil the conditioning.
-_SLIVER = 0.03
+# Pieces of a contact line shorter than this share of a slice are dropped, for they carry nothing. At the end of a misaligned face
+# pieces of 0.03 carry 80 N, and where they were dropped the approach jumped by 0.02 um.
+_SLIVER = 0.001
 # How much finer they are there: 0 for equal slices, 1 for those of a half circle. Against three times as many slices, ripples of
 # six helical pairs err by half to a ninth of what equal slices of one length did, whose number changed with u.
 _GRADING = 0.4
 # Corner contacts are followed up to this share of the base pitch beyond either end of a contact line. That stretch is cut into so
-# many slices, finer towards the line, where light loads touch. Their borders are the same whatever the load and wherever the face
-# ends, so that nothing depends on how far corners are followed: six slices of the stretch that touches moved harmonics by 3 nm.
+# many slices, finer towards its nearest place, where it touches first: where the line ends, or the face. Their borders are the
+# same whatever the load, so that nothing depends on how far corners are followed: six slices of the stretch that touches moved
+# harmonics by 3 nm. Borders that stood still while the face's end passed over them gave a misaligned helix, whose corner touches
+# there first, a peak to peak that was 4 % off and a largest pressure 14 % off; with these it is 0.4 and 0.7 % against seven times
+# as many slices.
 MOST_BEYOND = 0.45
-_CORNER_SLICES = 14
-_CORNER_GRADING = 1.5
+_CORNER_SLICES = 12
+_CORNER_GRADING = 2.0
 
 
 @dataclass(frozen=True)
@@ -151,7 +155,6 @@ def _pieces(
     last = line.end + beyond[1]
     zones = [(first, line.start), (line.start, line.end), (line.end, last)]
     away = _corner_borders(MOST_BEYOND * line.base_pitch, 4.0 * tangent * half / slices)
-    borders = {0: line.start - away[::-1], 2: line.end + away}
     pieces: list[tuple[int, int, int, np.ndarray, float]] = []
     for p, u in enumerate(positions):
         low = (first - tangent * half - line.pitch_point) / line.base_pitch - u
@@ -164,7 +167,7 @@ def _pieces(
                 elif number == 1:
                     cut = _line_pieces(middle, tangent, ends, half, slices)
                 else:
-                    cut = _corner_pieces(middle, tangent, ends, half, slices, borders[number])
+                    cut = _corner_pieces(middle, tangent, ends, half, slices, away, after=number == 2)
                 pieces += [(p, k, number, z, length) for z, length in cut]
     return pieces
 
@@ -222,12 +225,16 @@ def _corner_borders(reach: float, longest: float) -> np.ndarray:
 
 
 def _corner_pieces(
-    middle: float, tangent: float, ends: tuple[float, float], half: float, slices: int, borders: np.ndarray
+    middle: float, tangent: float, ends: tuple[float, float], half: float, slices: int, away: np.ndarray, *, after: bool
 ) -> list[tuple[np.ndarray, float]]:
-    """Places and lengths of the slices of an oblique corner contact between borders on the line of action.
+    """Places and lengths of the slices of an oblique corner contact, whose borders are so far `away` from its nearest place.
 
-    Those that begin farther out than corners are followed, outside `ends`, are left out.
+    That is the end of the line of action, or of the face. Slices that begin farther out than corners are followed, outside
+    `ends`, are left out.
     """
+    before = min(ends[1], middle + tangent * half) - away[::-1]
+    behind = max(ends[0], middle - tangent * half) + away
+    borders = behind if after else before
     followed = (borders[1:] > ends[0]) & (borders[:-1] < ends[1])
     chosen = np.flatnonzero(followed)
     if not len(chosen):

@@ -13,7 +13,7 @@ from rotorgear.gears.geometry.flank import FlankModification
 from rotorgear.gears.loaded.contact_points import contact_slices
 from rotorgear.gears.loaded.loaded_contact import PositionContact, hertz_half_width, solve_contact
 from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
-from rotorgear.gears.loaded.mesh_cycle import corner_reach
+from rotorgear.gears.loaded.mesh_cycle import corner_reach, mesh_cycle
 from rotorgear.gears.loaded.settled_contacts import settled
 from rotorgear.gears.loaded.tooth_contact import contact_problem, line_of_action
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
@@ -105,6 +105,15 @@ def test_how_far_corners_of_oblique_lines_are_followed_changes_nothing() -> None
         assert np.any(force[slices.corner] > 0.0)
         approach.append([state.approach for state in found.states])
     assert approach[1] == pytest.approx(approach[0], rel=1e-9)
+
+
+def test_a_corner_comes_into_contact_without_a_jump_of_the_approach() -> None:
+    """The face's end passes the borders of corner slices: where these stood still the approach jumped by 0.2 um here."""
+    u = np.linspace(0.4, 0.6, 41)
+    found = mesh_cycle(contact_problem(helical(misalignment=60e-6)), LOAD, u)
+    corners = np.bincount(found.slices.position, found.slices.corner & (found.force > 0.0), len(u))
+    assert len(set(corners)) > 1
+    assert np.abs(np.diff(found.deflection, 2)).max() < 0.04e-6
 
 
 @pytest.mark.parametrize("teeth", [spur(), helical()], ids=["spur", "helical"])
