@@ -35,8 +35,8 @@ NOMINAL = 15e3 / PITCH_RADIUS / STIFFNESS
 FRICTION = 0.05
 FILM = 1.5
 # Super-periods that settle with friction, whose law takes ten times as long as the teeth, and at the many points of the map.
-_SHORT_FRICTION = 200
-_SHORT = 400
+SETTLE_FRICTION = 200
+SETTLE_MAP = 400
 
 
 @dataclass(frozen=True)
@@ -201,7 +201,9 @@ def way_names(result: rg.SweepResult) -> list[str]:
     return [kind if kind in ("1T", "2T") else "others" for kind in found]
 
 
-def torque_map(totals: Sequence[float] = TOTALS, ratios: Sequence[float] = RATIOS) -> list[list[str]]:
+def torque_map(
+    totals: Sequence[float] = TOTALS, ratios: Sequence[float] = RATIOS, settle: int = SETTLE_MAP
+) -> list[list[str]]:
     """Region of each total torque and load ratio, from the static start.
 
     I: the LP first stage is on its back side for most of the time in contact, and not chaotic. II: chaotic, with an amplitude
@@ -209,7 +211,7 @@ def torque_map(totals: Sequence[float] = TOTALS, ratios: Sequence[float] = RATIO
     """
     rows = []
     for total in totals:
-        result = swept(ratios, total, settle=_SHORT, starts=1)
+        result = swept(ratios, total, settle=settle, starts=1)
         i = result.contact.index("first_lp")
         row = []
         for p in range(len(ratios)):
@@ -239,7 +241,7 @@ def _way_values(total: float, suffix: str) -> dict[str, str]:
     return {f"way{suffix}": route(over, way_names(over), ".2f")}
 
 
-def _at_printed(suffix: str, nominal: float = NOMINAL, settle: int = SETTLE, **options: Any) -> dict[str, str]:
+def at_printed(suffix: str, nominal: float = NOMINAL, settle: int = SETTLE, **options: Any) -> dict[str, str]:
     """Indicators at the printed load ratios with some options of `swept`."""
     return indicators(swept(list(PRINTED.values()), settle=settle, **options), suffix, nominal, settle)
 
@@ -249,10 +251,10 @@ PIECES: dict[str, Callable[[], dict[str, str]]] = {
     "torques": torque_indicators,
     "way_30": lambda: _way_values(30e3, ""),
     "way_35": lambda: _way_values(35e3, "_35"),
-    "regions": lambda: {"region": _region(30e3), "region_35": _region(35e3)},
-    "printed_stiffness": lambda: _at_printed("_soft", 100.0 * NOMINAL, starts=1, table_stiffness=True),
-    "friction": lambda: _at_printed("_rub", settle=_SHORT_FRICTION, starts=4, friction=FRICTION),
-    "film": lambda: _at_printed("_film", starts=4, film=FILM),
+    "regions": lambda: {"region": region(30e3), "region_35": region(35e3)},
+    "printed_stiffness": lambda: at_printed("_soft", 100.0 * NOMINAL, starts=1, table_stiffness=True),
+    "friction": lambda: at_printed("_rub", settle=SETTLE_FRICTION, starts=4, friction=FRICTION),
+    "film": lambda: at_printed("_film", starts=4, film=FILM),
     "map": lambda: map_words(torque_map()),
 }
 
@@ -263,11 +265,11 @@ def values() -> dict[str, float | str]:
     return kept.values("marine", PIECES)
 
 
-def _region(total: float) -> str:
+def region(total: float, settle: int = SETTLE) -> str:
     """Load ratios with an exponent above 0.1 and an amplitude indicator above 3, from the static start."""
     large = [
         gamma
-        for gamma, run in zip(RATIOS, contact(RATIOS, total), strict=True)
+        for gamma, run in zip(RATIOS, contact(RATIOS, total, settle=settle), strict=True)
         if run.peak_to_peak > 3.0 * NOMINAL and run.exponent > 0.1
     ]
     return f"{large[0]:.2f} to {large[-1]:.2f}"

@@ -8,6 +8,7 @@ then is that of the periods counted.
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Sequence
 
@@ -17,11 +18,20 @@ import rotorgear as rg
 
 STARTS = 8
 CHAOTIC = "chaotic"
+# Chaos from one start where another start ends in a motion that repeats: it may fall onto that one after a longer time.
+SO_FAR = "chaotic so far"
 
 
 def kinds(result: rg.SweepResult, point: int) -> list[str]:
     """Response types of all runs of a point."""
     return [result.motion_at(point, run) for run in range(len(result.run))]
+
+
+def kinds_so_far(result: rg.SweepResult, point: int) -> list[str]:
+    """Response types of all runs of a point, where chaos beside a motion that repeats counts as open."""
+    found = kinds(result, point)
+    repeats = any(re.fullmatch(r"\d+T", kind) for kind in found)
+    return [SO_FAR if kind == CHAOTIC and repeats else kind for kind in found]
 
 
 def most(found: Sequence[str]) -> str:

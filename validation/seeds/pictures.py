@@ -174,7 +174,7 @@ def draw_pair24_studies(figure: Any) -> None:
 def draw_pair24_set2(figure: Any) -> None:
     """Set 2 over the speed."""
     speeds = np.linspace(3000.0, 40000.0, 371)
-    result = pair24.route(pair24.SECOND, speeds, 200)
+    result = pair24.route(pair24.SECOND, speeds, pair24.SETTLE_2, pair24.KEPT_2)
     top, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
     dots(top, speeds, result, 0, 1.6)
     top.set_ylabel("deflection at the section, um")

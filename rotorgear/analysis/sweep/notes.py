@@ -53,19 +53,30 @@ def notes(
             "exponents agreed"
         )
     runs = len(motion) // max(1, len(points))
-    several = sum(
-        len({kind for kind in motion[i * runs : (i + 1) * runs] if kind not in ("not settled", "failed")}) > 1
-        for i in range(len(points))
-    )
-    if several:
-        sentences.append(
-            f"different responses coexist at {several} of {len(points)} points: --initial-conditions shows what share of the "
-            "starts goes to each"
-        )
+    sentences += _coexisting([set(motion[i * runs : (i + 1) * runs]) for i in range(len(points))])
     sentences += [
         f"{axis.address} has no effect on this model: all its points are the same" for axis in idle(axes, points)
     ]
-    return (*sentences, *_slow(motion, orbits, len(motion) // max(1, len(points))))
+    return (*sentences, *_slow(motion, orbits, runs))
+
+
+def _coexisting(kinds: Sequence[set[str]]) -> list[str]:
+    """Warnings where the runs of a point end in different responses, from the response types of each point."""
+    several = [found - {"not settled", "failed"} for found in kinds if len(found - {"not settled", "failed"}) > 1]
+    if not several:
+        return []
+    sentences = [
+        f"different responses coexist at {len(several)} of {len(kinds)} points: --initial-conditions shows what share of the "
+        "starts goes to each"
+    ]
+    # Chaos that a crisis has opened stays for thousands of periods, with the exponents of lasting chaos, and then leaves at once.
+    transient = sum("chaotic" in found and any(kind.endswith("T") for kind in found) for found in several)
+    if transient:
+        sentences.append(
+            f"at {transient} of them a chaotic response stands beside one that repeats: it may be a long transient that ends in "
+            "that one; run it with ten times the --discard"
+        )
+    return sentences
 
 
 def coarse_shafts(model: Model, elements: int | None) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ import rotorgear as rg
 from rotorgear.analysis.sweep.axes import Family, axis_of, axis_of_option, number_places, points_of
 from rotorgear.analysis.sweep.blocks import waves
 from rotorgear.analysis.sweep.classify import classify, exponents, period_of
+from rotorgear.analysis.sweep.notes import notes
 from rotorgear.analysis.sweep.period import common_period
 from rotorgear.analysis.sweep.point import ready, still, table_of
 from rotorgear.errors import AnalysisError
@@ -194,6 +195,23 @@ def test_many_starts_show_coexisting_motions() -> None:
     assert result.run[:2] == ("static", "start 2")
     sizes = result.peak_to_peak[0, :, 0]
     assert sizes.max() > 2.0 * sizes.min()
+
+
+@pytest.mark.parametrize(
+    ("motion", "told"),
+    [
+        (["chaotic", "1T"], True),
+        (["2T", "chaotic"], True),
+        (["chaotic", "quasi-periodic"], False),
+        (["1T", "2T"], False),
+        (["chaotic", "not settled"], False),
+        (["chaotic", "chaotic"], False),
+    ],
+)
+def test_chaos_beside_a_response_that_repeats_may_be_a_transient(motion: list[str], *, told: bool) -> None:
+    warnings = notes((), [None], [""], motion, 100, {})
+    assert any("long transient" in text for text in warnings) == told
+    assert any("coexist" in text for text in warnings) == (len(set(motion) - {"not settled"}) > 1)
 
 
 def test_two_parameters_and_points_that_fail_stay_in_their_places() -> None:
