@@ -84,9 +84,10 @@ speed starts from its own static equilibrium, and for the share of starts in set
 (set 2) mesh periods settle and 640 or 64 count, 160 steps each, and more where the motion has not settled
 ([sweeps](sweep.md#response-types)); for the rows of table 3 on trends 3000 and 8000, four
 starts: the motion of most, and the mean of their shares, good to about 10 %. Shorter runs of set 1 take transients for chaos:
-after 250 and 64 periods the exponent at 5950 rpm, say, is not yet that of the motion that stays. Between 11000 and 13500 rpm set 2 has a motion of
-one period that a symmetric start stays on for thousands of periods, though it is unstable: its largest multiplier, by Newton's
-method and the map over a period, is e^0.0217 at 11000 rpm and e^0.0021 at 13000 rpm, in deviations in which the helices differ.
+after 250 and 64 periods the exponent at 5950 rpm, say, is not yet that of the motion that stays.
+Between 11000 and 13500 rpm set 2 has a motion of one period that a symmetric start stays on for thousands of periods, though
+it is unstable: its largest multiplier, by Newton's method and the map over a period, is e^0.0217 at 11000 rpm and e^0.0021 at
+13000 rpm, in deviations in which the helices differ.
 "kT" says that points k mesh periods apart agree to 2 % of the
 peak to peak deflection, "chaotic" that the largest Lyapunov exponent is above 0.02 per mesh period, as in `rotorgear sweep`.
 
