@@ -29,7 +29,8 @@ are not printed in the account but follow from its data; rows at "equations" nam
 [tests/validation/test_seeds.py](../tests/validation/test_seeds.py); rows at "claim" are statements and figures without a
 number. A row on a motion tells where it starts, how long it settles and counts, and how many of its starts end in it: the
 static equilibrium and random states about it (`--initial-conditions 8`, say). Numbers of chaotic motions are means over the
-starts that end in chaos, with three standard errors; another processor gives others within them.
+starts that end in chaos, with Student's interval of 99.7 % (4.5 standard errors for 8 starts); another processor gives others
+within it.
 `python -m validation.seeds.kept` computes what takes runs piece by piece, tells the CPU seconds of each and goes on where it
 was interrupted. `python -m validation.seeds.settling` runs every labelled motion again after ten times the settling and tells
 which labels change and which numbers leave their error. Chaos from one start beside a motion that repeats from another may be a

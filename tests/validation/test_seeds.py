@@ -165,11 +165,11 @@ def test_a_tip_corner_meets_early_with_the_root_of_the_gap_and_on_the_line_witho
     assert slow.arm == pytest.approx(second.base_radius, rel=0.01)
 
 
-def test_numbers_of_chaos_stand_with_three_standard_errors_and_one_digit_of_them() -> None:
+def test_numbers_of_chaos_stand_with_students_interval_and_one_digit_of_it() -> None:
     assert motions.stated(0.2071, 0.0123) == "0.21 +- 0.02"
     values = np.array([0.19, 0.20, 0.21, 0.20])
-    # 3 x 0.00816/2
-    assert motions.number(values, ["chaotic"] * 4, 3) == "0.20 +- 0.02"
+    # 9.22 x 0.00816/2
+    assert motions.number(values, ["chaotic"] * 4, 3) == "0.20 +- 0.04"
     assert motions.number(np.array([1.5, 9.0, 1.5]), ["2T", "chaotic", "2T"], 2) == "1.50"
     assert motions.ends(["2T", "chaotic", "2T"]) == "2T 2 of 3, chaotic 1"
 

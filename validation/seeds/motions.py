@@ -1,8 +1,8 @@
 """Motions of a sweep from several starts, in words: what most starts end in, and numbers of chaos with their error.
 
 A run on a regular motion gives the same number from every start of its basin. A chaotic one gives a sample: its mean over the
-starts stands with three standard errors. The largest value in a chaotic motion grows with the length of the run; what stands
-then is that of the periods counted.
+starts stands with the half-width of Student's interval of 99.73 %, that of three standard errors of a large sample. The largest
+value in a chaotic motion grows with the length of the run; what stands then is that of the periods counted.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.stats import norm
+from scipy.stats import t as student
 
 import rotorgear as rg
 
@@ -47,7 +49,7 @@ def ends(found: Sequence[str]) -> str:
 
 
 def number(values: np.ndarray, found: Sequence[str], digits: int) -> str:
-    """A number of the motion that most runs end in; of chaos its mean over them, with three standard errors.
+    """A number of the motion that most runs end in; of chaos its mean over them, with its error.
 
     Args:
         values: (r,) of each run. found: response types of the runs. digits: behind the point, where the motion is regular.
@@ -58,7 +60,12 @@ def number(values: np.ndarray, found: Sequence[str], digits: int) -> str:
         return f"{np.median(own):.{digits}f}".replace("-0." + "0" * digits, "0." + "0" * digits)
     if len(own) < 3:
         return f"{own.mean():.1g} (too few starts for an error)"
-    return stated(float(own.mean()), 3.0 * float(own.std(ddof=1)) / math.sqrt(len(own)))
+    return stated(float(own.mean()), _factor(len(own)) * float(own.std(ddof=1)) / math.sqrt(len(own)))
+
+
+def _factor(count: int) -> float:
+    """Standard errors on either side of the mean in Student's interval of 99.73 %: 9.2 for 4 runs, 4.5 for 8, 3 for many."""
+    return float(student.ppf(norm.cdf(3.0), count - 1))
 
 
 def stated(value: float, error: float) -> str:

@@ -127,7 +127,7 @@ def _region(total: float, times: int) -> Values:
 
 
 def _map(times: int) -> Values:
-    rows = marine.torque_map(settle=times * marine.SETTLE_MAP)
+    rows = marine.torque_map(settle=times * marine.SETTLE)
     return {
         f"{total / 1e3:.0f} kN m, load ratio {ratio:.2f}": region
         for total, row in zip(marine.TOTALS, rows, strict=True)
@@ -137,7 +137,7 @@ def _map(times: int) -> Values:
 
 def _friction(times: int) -> Values:
     return dict(
-        marine.at_printed("", settle=times * marine.SETTLE_FRICTION, starts=4, friction=marine.FRICTION),
+        marine.at_printed("", settle=times * marine.SETTLE, starts=4, friction=marine.FRICTION),
     )
 
 
