@@ -15,6 +15,10 @@ from rotorgear.model.model import Model
 from rotorgear.model.parts.helix_state import HelixState
 from rotorgear.system.system import System
 
+# A helix that carries less than this share of the force of the torque flow is as good as open, as between two shafts that are
+# held: its tangent would be that of a few newtons, which the rounding of the map decides.
+_CARRIES = 1e-3
+
 
 def state_speed(model: Model, speeds: Sequence[float | None]) -> float:
     """Speed in rad/s of the static state that analyses at some speeds of one sense are about.
@@ -55,18 +59,18 @@ def about_cycle(model: Model, speeds: Sequence[float | None]) -> tuple[Model, tu
         return model, ()
     meshes = dict(model.meshes)
     for name in teeth:
-        if states := _states_of(equilibrium, name):
+        if states := _states_of(equilibrium, name, [abs(force.normal_force) for force in load.forces]):
             meshes[name] = meshes[name].about_cycle(states)
     return model.model_copy(update={"meshes": meshes}), ()
 
 
-def _states_of(equilibrium: Equilibrated, mesh: str) -> tuple[HelixState, ...]:
-    """State of each helix of a mesh; none where one of them is open or without a state."""
+def _states_of(equilibrium: Equilibrated, mesh: str, flow: Sequence[float]) -> tuple[HelixState, ...]:
+    """State of each helix of a mesh, given all forces (N) of the torque flow; none where one carries nothing or has no state."""
     found = []
-    for state, closed in zip(equilibrium.lines.states, equilibrium.closed, strict=True):
+    for state, closed, carried in zip(equilibrium.lines.states, equilibrium.closed, flow, strict=True):
         if state.contact.mesh != mesh:
             continue
-        if not closed or state.start is None:
+        if not closed or state.start is None or state.normal_force <= _CARRIES * carried:
             return ()
         found.append(
             HelixState(

@@ -52,3 +52,16 @@ def test_helices_that_carry_unlike_shares_have_stiffnesses_of_their_own(pair: rg
     assert flow[0].contact.stiffness == pytest.approx(flow[1].contact.stiffness, rel=1e-9)
     heavy = 0 if settled[0].normal_force > settled[1].normal_force else 1
     assert settled[heavy].contact.stiffness > 1.003 * settled[1 - heavy].contact.stiffness
+
+
+def test_a_mesh_between_held_shafts_has_the_tangent_of_the_torque_flow(tmp_path: Path) -> None:
+    path = tmp_path / "pair.toml"
+    path.write_text(pair_file(mesh=PREVIEW, torque="300 N m"))
+    held = {"shaft": "one", "at": "150 mm", "fixed": ["torsion"]}
+    supports = {"pinion": held, "wheel": {**held, "shaft": "two"}}
+    # A web at the end of the face lets the rim tilt, so that light contacts touch there only.
+    web = {"rim_thickness": "8 mm", "web_thickness": "4 mm", "web_position": "6 mm"}
+    model = rg.load(path).with_({"motions": ["torsion"], "supports": supports, "gears.wheel.body": web})
+    linear, _ = about_equilibrium(model, [None])
+    expected = model.mean_load(1).forces[0].contact.stiffness
+    assert linear.mean_load(1).forces[0].contact.stiffness == pytest.approx(expected, rel=1e-9)
