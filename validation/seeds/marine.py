@@ -201,23 +201,24 @@ def way_names(result: rg.SweepResult) -> list[str]:
 def torque_map(
     totals: Sequence[float] = TOTALS, ratios: Sequence[float] = RATIOS, settle: int = SETTLE
 ) -> list[list[str]]:
-    """Region of each total torque and load ratio, from the static start.
+    """Region of each total torque and load ratio, from the static start."""
+    return [regions_of(swept(ratios, total, settle=settle, starts=1)) for total in totals]
+
+
+def regions_of(result: rg.SweepResult) -> list[str]:
+    """Region of each point.
 
     I: the LP first stage is on its back side for most of the time in contact, and not chaotic. II: chaotic, with an amplitude
     above 3. III: all others. "-": weak chaos.
     """
-    rows = []
-    for total in totals:
-        result = swept(ratios, total, settle=settle, starts=1)
-        i = result.contact.index("first_lp")
-        row = []
-        for p in range(len(ratios)):
-            chaotic = result.motion_at(p) == CHAOTIC
-            large = result.peak_to_peak[p, 0, i] > 3.0 * NOMINAL
-            back = result.back[p, 0, i] > result.driving[p, 0, i]
-            row.append(("II" if large else "-") if chaotic else "I" if back else "III")
-        rows.append(row)
-    return rows
+    i = result.contact.index("first_lp")
+    row = []
+    for p in range(len(result.values)):
+        chaotic = result.motion_at(p) == CHAOTIC
+        large = result.peak_to_peak[p, 0, i] > 3.0 * NOMINAL
+        back = result.back[p, 0, i] > result.driving[p, 0, i]
+        row.append(("II" if large else "-") if chaotic else "I" if back else "III")
+    return row
 
 
 def map_words(rows: Sequence[Sequence[str]], ratios: Sequence[float] = RATIOS) -> dict[str, str]:

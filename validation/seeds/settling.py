@@ -25,12 +25,13 @@ _PART = 25
 _UNSETTLED = "not settled"
 # What a run says itself that more time may change.
 _OPEN = (_UNSETTLED, SO_FAR)
+_STABLE = ("1T", "2T", "3T", "4T")
 
 Values = dict[str, float | str]
 
 
 def changes(first: Mapping[str, float | str], later: Mapping[str, float | str]) -> Iterator[str]:
-    """Yield what differs between the values of two runs; counts of starts and settling are no results."""
+    """Yield what differs between the values of two runs; what is told of the runs themselves ("runs") is no result."""
     for key, one in first.items():
         other = later[key]
         is_open = any(label in str(one) for label in _OPEN)
@@ -127,12 +128,19 @@ def _region(total: float, times: int) -> Values:
 
 
 def _map(times: int) -> Values:
-    rows = marine.torque_map(settle=times * marine.SETTLE)
-    return {
-        f"{total / 1e3:.0f} kN m, load ratio {ratio:.2f}": region
-        for total, row in zip(marine.TOTALS, rows, strict=True)
-        for ratio, region in zip(marine.RATIOS, row, strict=True)
-    }
+    """Regions and, with keys that are not compared, motions.
+
+    A longer run leaves out the points at which the shorter one ended on a periodic orbit up to 4T that its exponent or its
+    multipliers call stable: a motion stays there.
+    """
+    found = dict(labels("map", 1)) if times > 1 else {}
+    for total in marine.TOTALS:
+        keys = {ratio: f"{total / 1e3:.0f} kN m, load ratio {ratio:.2f}" for ratio in marine.RATIOS}
+        ratios = [ratio for ratio, key in keys.items() if found.get(f"runs, {key}") not in _STABLE]
+        result = marine.swept(ratios, total, settle=times * marine.SETTLE, starts=1)
+        for p, (ratio, region) in enumerate(zip(ratios, marine.regions_of(result), strict=True)):
+            found |= {keys[ratio]: region, f"runs, {keys[ratio]}": result.motion_at(p)}
+    return found
 
 
 def _friction(times: int) -> Values:
