@@ -120,3 +120,36 @@ def test_a_bearing_that_is_too_long_or_whose_lobes_overlap_is_refused():
         JournalFilm(VISCOSITY, RADIUS, 0.21, CLEARANCE)
     with pytest.raises(AnalysisError, match="lobes that fit"):
         JournalFilm(VISCOSITY, RADIUS, 0.1, CLEARANCE, lobes=3, arc=2.2)
+
+
+@pytest.mark.parametrize("speed", [157.0, -157.0, 0.0])
+@pytest.mark.parametrize("v", [(0.0, 0.0), (1e-2, 1e-2), (-3e-3, 1e-3)])
+@pytest.mark.parametrize("lobes", [1, 3])
+def test_the_film_carries_where_it_must_and_nowhere_else(lobes: int, v: tuple[float, float], speed: float) -> None:
+    # p >= 0, A p >= push, p (A p - push) = 0 of the discrete film, built anew: whatever set of nodes the solution began with.
+    law = JournalFilm(0.02, 30e-3, 40e-3, 60e-6, lobes=lobes, preload=0.4 if lobes > 1 else 0.0, around=60, along=4)
+    d = (20e-6, -10e-6)
+    pressure = law.pressure(d, v, speed=speed)[2].reshape(lobes, -1, law.along)
+    pads = law.parameters()[13:].reshape(lobes, 3)
+    rows = pressure.shape[1]
+    step = 2.0 * np.pi / lobes / (rows + 1)
+    dz = 0.5 * law.length / law.along
+    for p, (start, _, least) in zip(pressure, pads, strict=True):
+
+        def gap(t: np.ndarray, least: float = least) -> np.ndarray:
+            own = law.pad_clearance
+            return own - d[0] * np.cos(t) - d[1] * np.sin(t) - law.preload * own * np.cos(t - least)
+
+        t = start + step * np.arange(1, rows + 1)
+        between = gap(start + step * (np.arange(rows + 1) + 0.5))
+        around = np.diff(between[:, None] ** 3 * np.diff(np.pad(p, ((1, 1), (0, 0))), axis=0), axis=0)
+        ends = -2.0 * p[:, -1:] / (1.0 - 1.0 / (3.0 * law.along))
+        slope = np.hstack([np.zeros((rows, 1)), np.diff(p, axis=1), ends])
+        flow = -around / (law.radius * step) ** 2 - gap(t)[:, None] ** 3 * np.diff(slope, axis=1) / dz**2
+        squeeze = 12.0 * law.viscosity * (v[0] * np.cos(t) + v[1] * np.sin(t))
+        left = flow - (squeeze - 6.0 * law.viscosity * speed * np.diff(between) / step)[:, None]
+        size = np.abs(flow).max() + np.abs(squeeze).max() + 1e-300
+        assert p.min() >= 0.0
+        assert np.abs(left[p > 0.0]).max(initial=0.0) < 1e-9 * size
+        assert left.min() > -1e-9 * size
+    assert (pressure.max() > 0.0) == (speed != 0.0 or any(v))
