@@ -212,12 +212,14 @@ def _joined(lower: np.ndarray, upper: np.ndarray, i: int, k: int) -> np.ndarray:
     second = len(upper) - 2 * i
     size = 3 * i + first + second - k
     whole = np.zeros((size, size))
-    shared = 0
-    bottom = i
-    top = 2 * i
-    kept = 3 * i
-    here = np.r_[bottom : bottom + i, shared : shared + i, kept : kept + first]
-    whole[np.ix_(here, here)] = lower
-    here = np.r_[shared : shared + i, top : top + i, kept + first - k : kept + first - k + second]
-    whole[np.ix_(here, here)] += upper
+    shared = slice(0, i)
+    bottom = slice(i, 2 * i)
+    top = slice(2 * i, 3 * i)
+    low = slice(3 * i, 3 * i + first)
+    high = slice(size - second, size)
+    for block, places in ((lower, (bottom, shared, low)), (upper, (shared, top, high))):
+        parts = (slice(0, i), slice(i, 2 * i), slice(2 * i, None))
+        for row, rows in zip(parts, places, strict=True):
+            for column, columns in zip(parts, places, strict=True):
+                whole[rows, columns] += block[row, column]
     return _condensed(whole, i)

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
+from scipy.linalg.blas import zherk
 
 from rotorgear.gears.tooth_fe.blank_section import BlankSection
 from rotorgear.gears.tooth_fe.wheel_sector import SEATS, WheelSector, seat_shapes
@@ -24,26 +25,38 @@ from rotorgear.progress import Progress, silent
 _ALIASES = 2
 # Gauss points of each seat element for its Fourier coefficients: exact to rounding up to the harmonics above.
 _POINTS = 12
+# With seats at rest pitches feel each other less by a factor of 2.5 and more from one to the next: of half so many on, of a seat
+# three modules deep, 1e-12 of the compliance is left.
+_ANGLES = 65
+_HARMONICS_TOGETHER = 8
 
 
 def wheel_flexibility(
     sector: WheelSector, blank: BlankSection, teeth: int, reach: int, progress: Progress = silent
 ) -> tuple[np.ndarray, float]:
-    """Flexibility (2 reach + 1, f, f) of the flanks of a wheel loaded on one tooth, and its asymmetry by rounding."""
-    h = 2 * sector.cut + sector.middle
-    G = np.zeros((2 * reach + 1, sector.flank, sector.flank))
-    G[reach] = la.inv(sector.stiffness[h:, h:])  # S_ff^-1: the loaded tooth with its cuts and its seat at rest
-    for harmonic in _harmonics(sector, blank, teeth, progress):
-        # Positive definite and Hermitian: G_n = W^H W with W = L^-1 load.
-        W = la.solve_triangular(harmonic.factor, harmonic.load, lower=True, check_finite=False)
-        G_n = W.conj().T @ W
-        for o in range(-reach, reach + 1):
-            phase = harmonic.share * harmonic.turn**o
-            G[reach + o] += phase.real * G_n.real - phase.imag * G_n.imag
+    """Flexibility (2 reach + 1, f, f) of the flanks of a wheel loaded on one tooth, and its asymmetry by rounding.
 
-    mirrored = G[::-1].transpose(0, 2, 1)
-    asymmetry = float(np.abs(G - mirrored).max()) / float(np.abs(G).max())
-    return 0.5 * (G + mirrored), asymmetry
+    The rest of the cuts is eliminated before the seats: pitches that feel each other through their cuts only, on seats at rest,
+    are alike after some pitches, whatever goes round the wheel.
+    """
+    pitch = _JoinedPitches.of(sector)
+    circle = _Circle(sector, blank, teeth)
+    total = _HermitianSum(sector.flank, reach)
+    seats = _on_seats(pitch, circle.column, min(teeth, _ANGLES), total)
+    u = len(circle.column)
+    last = teeth // 2
+    for first in range(0, last + 1, _HARMONICS_TOGETHER):
+        some = np.arange(first, min(first + _HARMONICS_TOGETHER, last + 1))
+        for n, reduced in zip(some, seats.at(2.0 * np.pi * some / teeth), strict=True):
+            progress(2.0 * n / teeth, f"harmonic {n} of {last} round the wheel")
+            system = reduced[:, :u] + circle.stiffness(int(n))
+            factor = la.cholesky(system, lower=True, check_finite=False)
+            carried = la.solve_triangular(factor, reduced[:, u:], lower=True, check_finite=False)
+            total.add(zherk(1.0, carried, trans=2, lower=1), *_turn_and_share(int(n), teeth))
+    G = total.matrices()
+    held = la.inv(sector.stiffness[-sector.flank :, -sector.flank :])  # S_ff^-1: with its cuts and its seat at rest
+    G[reach] += 0.5 * (held + held.T)
+    return G, float(np.abs(held - held.T).max()) / float(np.abs(G).max())
 
 
 def wheel_motions(
@@ -85,30 +98,155 @@ class _Harmonic:
 
 def _harmonics(sector: WheelSector, blank: BlankSection, teeth: int, progress: Progress) -> Iterator[_Harmonic]:
     """The harmonics n = 0 ... z/2; n and z - n are conjugate."""
-    c = sector.cut
-    h = 2 * c + sector.middle
-    S = sector.stiffness
-    factor = la.cho_factor(S[h:, h:], lower=True, check_finite=False)
-    load = la.cho_solve(factor, S[h:, :h]).T
-    K = S[:h, :h] - S[:h, h:] @ load.T
+    pitch = _JoinedPitches.of(sector)
     circle = _Circle(sector, blank, teeth)
+    on_seat = np.ix_(circle.column, circle.column)
     for n in range(teeth // 2 + 1):
         progress(2.0 * n / teeth, f"harmonic {n} of {teeth // 2} round the wheel")
-        turn = np.exp(2j * np.pi * n / teeth)
-        back = np.conj(turn)
-        system = np.zeros((c + sector.middle, c + sector.middle), complex)
-        system[:c, :c] = K[:c, :c] + K[c : 2 * c, c : 2 * c] + turn * K[:c, c : 2 * c] + back * K[c : 2 * c, :c]
-        system[:c, c:] = K[:c, 2 * c :] + back * K[c : 2 * c, 2 * c :]
-        system[c:, :c] = system[:c, c:].conj().T
-        system[c:, c:] = K[2 * c :, 2 * c :]
-        circle.add(system, n)
-        alone = n == 0 or 2 * n == teeth
-        yield _Harmonic(
-            turn=complex(turn),
-            share=(1.0 if alone else 2.0) / teeth,
-            factor=la.cholesky(system, lower=True, check_finite=False),
-            load=np.concatenate([load[:c] + back * load[c : 2 * c], load[2 * c :]]),
-        )
+        turn, share = _turn_and_share(n, teeth)
+        system, load = pitch.at(turn)
+        system[on_seat] += circle.stiffness(n)
+        yield _Harmonic(turn, share, la.cholesky(system, lower=True, check_finite=False), load)
+
+
+def _turn_and_share(n: int, count: int) -> tuple[complex, float]:
+    """e^(i n a) of the n-th of so many harmonics, a = 2 pi / count, and its share in a load on one pitch."""
+    alone = n == 0 or 2 * n == count
+    return complex(np.exp(2j * np.pi * n / count)), (1.0 if alone else 2.0) / count
+
+
+@dataclass(frozen=True)
+class _JoinedPitches:
+    """Equal pitches joined at their cuts, without a blank, in the unknowns (cut, middle of the seat) of one.
+
+    Where the right cut moves by e^(i t) times the left one, E^H K E = K_0 + K_c cos t + i K_s sin t, and so the loads.
+
+    Attributes:
+        stiffness: (3, c + m, c + m) K_0, K_c, K_s of pitches with free flanks.
+        load: (3, c + m, f) what unit forces on the flank put on them, which has e^(-i t).
+    """
+
+    stiffness: np.ndarray
+    load: np.ndarray
+
+    @classmethod
+    def of(cls, sector: WheelSector) -> _JoinedPitches:
+        """With the flank condensed."""
+        c = sector.cut
+        h = 2 * c + sector.middle
+        S = sector.stiffness
+        factor = la.cho_factor(S[h:, h:], lower=True, check_finite=False)
+        of_pitch = la.cho_solve(factor, S[h:, :h]).T
+        K = S[:h, :h] - S[:h, h:] @ of_pitch.T
+        size = c + sector.middle
+        stiffness = np.zeros((3, size, size))
+        stiffness[0, :c, :c] = K[:c, :c] + K[c : 2 * c, c : 2 * c]
+        stiffness[0, :c, c:] = K[:c, 2 * c :]
+        stiffness[0, c:, :c] = stiffness[0, :c, c:].T
+        stiffness[0, c:, c:] = K[2 * c :, 2 * c :]
+        ahead = np.zeros((size, size))  # times e^(i t), and its transpose times e^(-i t)
+        ahead[:c, :c] = K[:c, c : 2 * c]
+        ahead[c:, :c] = K[2 * c :, c : 2 * c]
+        stiffness[1] = ahead + ahead.T
+        stiffness[2] = ahead - ahead.T
+        load = np.zeros((3, size, sector.flank))
+        load[0, :c] = of_pitch[:c]
+        load[0, c:] = of_pitch[2 * c :]
+        load[1, :c] = of_pitch[c : 2 * c]
+        load[2] = -load[1]
+        return cls(stiffness, load)
+
+    def ordered(self, order: np.ndarray) -> _JoinedPitches:
+        """The same with unknowns in another order."""
+        return _JoinedPitches(self.stiffness[:, order[:, None], order], self.load[:, order])
+
+    def at(self, turn: complex) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness (c + m, c + m) and load (c + m, f), where the right cut moves by `turn` times the left one."""
+        found = []
+        for even, cosine, sine in (self.stiffness, self.load):
+            values = np.empty(even.shape, complex)
+            values.real = even + turn.real * cosine
+            values.imag = turn.imag * sine
+            found.append(values)
+        return found[0], found[1]
+
+
+@dataclass(frozen=True)
+class _OnSeats:
+    """What is left on the seat's unknowns, as a sum over pitches k of R_k e^(i k angle): stiffness (u, u) beside load (u, f).
+
+    Attributes:
+        pitches: (p,) numbers k.
+        reduced: (p, u, u + f) R_k.
+    """
+
+    pitches: np.ndarray
+    reduced: np.ndarray
+
+    def at(self, angles: np.ndarray) -> np.ndarray:
+        """Values (a, u, u + f) at angles (a,) from pitch to pitch."""
+        flat = self.reduced.reshape(len(self.pitches), -1)
+        phase = angles[:, None] * self.pitches
+        found = np.empty((len(angles), flat.shape[1]), complex)
+        found.real = np.cos(phase) @ flat
+        found.imag = np.sin(phase) @ flat
+        return found.reshape(len(angles), *self.reduced.shape[1:])
+
+
+def _on_seats(pitch: _JoinedPitches, seat: np.ndarray, count: int, total: _HermitianSum) -> _OnSeats:
+    """Eliminate the rest of the cuts at `count` angles; what loads move with seats at rest is added to `total`."""
+    r = len(pitch.load[0]) - len(seat)
+    ordered = pitch.ordered(np.concatenate([np.setdiff1d(np.arange(len(pitch.load[0])), seat), seat]))
+    u = len(seat)
+    samples = np.empty((count // 2 + 1, u, u + pitch.load.shape[2]), complex)
+    for j, sample in enumerate(samples):
+        turn, share = _turn_and_share(j, count)
+        system, load = ordered.at(turn)
+        factor = la.cholesky(system[:r, :r], lower=True, check_finite=False)
+        right = np.hstack([system[:r, r:], load[:r]])
+        carried = la.solve_triangular(factor, right, lower=True, overwrite_b=True, check_finite=False)
+        total.add(zherk(1.0, carried[:, u:], trans=2, lower=1), turn, share)
+        sample[:, :u] = system[r:, r:]
+        sample[:, u:] = load[r:]
+        sample -= carried[:, :u].conj().T @ carried
+    # R(-angle) is conjugate to R(angle), so that all R_k are real.
+    values = np.fft.irfft(np.conjugate(samples, out=samples), count, axis=0)
+    pitches = np.arange(count)
+    return _OnSeats(np.where(pitches > count // 2, pitches - count, pitches), values)
+
+
+class _HermitianSum:
+    """Sum over harmonics of share turn^o G_n for pitches o apart, of matrices whose lower triangles are given.
+
+    Those of -o are the transposes, and the real part is symmetric, the imaginary one antisymmetric.
+    """
+
+    def __init__(self, size: int, reach: int) -> None:
+        self._reach = reach
+        self._real = np.zeros((reach + 1, size, size))
+        self._imag = np.zeros((reach + 1, size, size))
+
+    def add(self, matrix: np.ndarray, turn: complex, share: float) -> None:
+        """Add a harmonic's matrix (f, f)."""
+        real = np.ascontiguousarray(matrix.real.T)
+        imag = np.ascontiguousarray(matrix.imag.T)
+        for o in range(self._reach + 1):
+            phase = share * turn**o
+            self._real[o] += phase.real * real
+            if o:
+                self._imag[o] += phase.imag * imag
+
+    def matrices(self) -> np.ndarray:
+        """Real parts (2 reach + 1, f, f) of the sums for pitches -reach ... reach apart."""
+        reach = self._reach
+        found = np.empty((2 * reach + 1, *self._real.shape[1:]))
+        for o in range(reach + 1):
+            # Kept with rows and columns exchanged: the upper triangle.
+            real = np.triu(self._real[o]) + np.triu(self._real[o], 1).T
+            imag = np.triu(self._imag[o], 1).T - np.triu(self._imag[o], 1)
+            found[reach + o] = real - imag
+            found[reach - o] = found[reach + o].T
+        return found
 
 
 class _Circle:
@@ -123,10 +261,11 @@ class _Circle:
         # Radial, tangential and axial unknowns of the seat that there are: node, function along the face, component.
         self._used = np.argwhere(sector.seat >= 0)
         place = sector.seat[sector.seat >= 0]
-        self._column = np.where(self._used[:, 0] == 0, place, sector.cut + place)
+        # Where they stand in the system of one cut and the middle (u,).
+        self.column = np.where(self._used[:, 0] == 0, place, sector.cut + place)
 
-    def add(self, system: np.ndarray, n: int) -> None:
-        """Add the blank's stiffness for the harmonic n of the pitches."""
+    def stiffness(self, n: int) -> np.ndarray:
+        """The blank's stiffness (u, u) in the seat's unknowns for the harmonic n of the pitches."""
         teeth = self._teeth
         node, function, component = self._used.T
         total = np.zeros((len(self._used), len(self._used)), complex)
@@ -145,7 +284,7 @@ class _Circle:
                 sign = np.tile([1.0, -1.0, 1.0], len(self._z))
                 K = sign[:, None] * K * sign
             total += 2.0 * np.pi / teeth * (flat.conj().T @ (K @ flat))
-        system[np.ix_(self._column, self._column)] += total
+        return total
 
     def _fourier(self, m: int, n: int) -> np.ndarray:
         """Coefficients (2 SEATS,) of e^(i m p) for a unit motion of the end and of each middle node of the seat."""

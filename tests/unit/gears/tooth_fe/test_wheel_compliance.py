@@ -9,10 +9,12 @@ import pytest
 
 from rotorgear.gears.geometry.blank import BlankShape, solid_blank
 from rotorgear.gears.geometry.geometry import GearGeometry
-from rotorgear.gears.tooth_fe.compliance_model import compliance_key, gear_compliance, wind_up
+from rotorgear.gears.tooth_fe.blank_section import BlankSection
+from rotorgear.gears.tooth_fe.compliance_model import compliance_key, gear_compliance, pitch_of, wheel_sector, wind_up
 from rotorgear.gears.tooth_fe.gear_compliance import GearCompliance
 from rotorgear.gears.tooth_fe.points import MeshSize
 from rotorgear.gears.tooth_fe.settings import ToothFe
+from rotorgear.gears.tooth_fe.wheel_compliance import wheel_flexibility, wheel_motions
 from validation.benchmarks.cyclic_wheel import WHEELS, cyclic_deflection, program_deflection
 from validation.benchmarks.wheel_compliance import TABLE, Expected, found
 
@@ -74,6 +76,26 @@ def test_polynomials_along_the_face_give_what_layers_give() -> None:
         G = layers.response(tooth).reshape(planes, len(even.roll), planes, len(even.roll))
         flat = WIDTH * np.einsum("h,hrks,k->rs", along, G, along)
         assert np.abs(flat - even.response(tooth)).max() <= 0.015 * np.abs(even.response(0)).max()
+
+
+def test_seats_of_pitches_far_apart_feel_each_other_through_the_blank_only() -> None:
+    """More teeth than angles at which cuts are eliminated; beside motions that are solved harmonic by harmonic."""
+    teeth = 90
+    blank = BlankShape(20.0, 0.5 * teeth - 1.25 - 3.0, 1.5, 0.0, 25.0, WIDTH)
+    gear = GearGeometry(teeth, 1.0, math.radians(20.0), 0.0)
+    key = compliance_key(gear, ToothFe(body="wheel", size=EVEN), 0.3, WIDTH, 20.0, space=False, blank=blank)
+    assert key.blank is not None
+    sector = wheel_sector(key, pitch_of(key)[1])
+    section = BlankSection(key.blank, key.face, key.inner_radius, key.poisson_ratio, 1.0)
+    G, _ = wheel_flexibility(sector, section, teeth, 2)
+    force = np.linspace(1.0, 2.0, sector.flank)
+    pitches = np.arange(-2, 3)
+    moved = wheel_motions(sector, section, teeth, force, pitches)
+    h = 2 * sector.cut + sector.middle
+    S = sector.stiffness
+    loads = np.where(pitches[:, None] == 0, force, 0.0)
+    expected = np.linalg.solve(S[h:, h:], (loads - moved @ S[:h, h:]).T).T
+    assert G @ force == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
 
 
 def test_thinner_rims_and_webs_give_more() -> None:
