@@ -13,7 +13,7 @@ import numpy as np
 import rotorgear as rg
 from rotorgear.plots.colours import COLOURS
 from rotorgear.plots.figure import new_figure, save
-from validation.seeds import marine, pair12, pair16, pair24
+from validation.seeds import kept, marine, pair12, pair16, pair24
 from validation.seeds.rows import changed, loaded
 from validation.T1.spectrum import run as split_torque
 
@@ -106,7 +106,8 @@ def draw_marine_map(figure: Any) -> None:
         "-": "weak chaos",
         "III": "III: driving side",
     }
-    rows = marine.torque_map()
+    known = kept.piece("marine", "map", marine.PIECES)["values"]
+    rows = [known[f"map_{total / 1e3:.0f}"].split() for total in marine.TOTALS]
     for name, colour in colours.items():
         places = [
             (gamma, 1e-3 * total)

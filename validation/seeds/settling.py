@@ -3,8 +3,8 @@
 Of set 2 of the 24-dof pair it is thirty times. Where the longer run of set 2 has not settled by its own account, which 64
 periods may be too few to tell, one that also counts so many times more periods decides. Prints each label that differs between
 both runs, unless the shorter one says itself that it is open (not settled, or chaos beside a motion that repeats), and each
-number of chaos that leaves the root of the sum of squares of both stated errors. Long: each name takes one to twenty minutes of
-a core. What has been run is kept (kept.py), so that an interrupted run goes on where it was.
+number of chaos that leaves the root of the sum of squares of both stated errors. Long: most names take one to twenty minutes of
+a core, the map and friction two hours. What has been run is kept (kept.py), so that an interrupted run goes on where it was.
 """
 
 from __future__ import annotations
@@ -25,7 +25,6 @@ _PART = 25
 _UNSETTLED = "not settled"
 # What a run says itself that more time may change.
 _OPEN = (_UNSETTLED, SO_FAR)
-_STABLE = ("1T", "2T", "3T", "4T")
 
 Values = dict[str, float | str]
 
@@ -128,24 +127,17 @@ def _region(total: float, times: int) -> Values:
 
 
 def _map(times: int) -> Values:
-    """Regions and, with keys that are not compared, motions.
-
-    A longer run leaves out the points at which the shorter one ended on a periodic orbit up to 4T that its exponent or its
-    multipliers call stable: a motion stays there.
-    """
-    found = dict(labels("map", 1)) if times > 1 else {}
-    for total in marine.TOTALS:
-        keys = {ratio: f"{total / 1e3:.0f} kN m, load ratio {ratio:.2f}" for ratio in marine.RATIOS}
-        ratios = [ratio for ratio, key in keys.items() if found.get(f"runs, {key}") not in _STABLE]
-        result = marine.swept(ratios, total, settle=times * marine.SETTLE, starts=1)
-        for p, (ratio, region) in enumerate(zip(ratios, marine.regions_of(result), strict=True)):
-            found |= {keys[ratio]: region, f"runs, {keys[ratio]}": result.motion_at(p)}
-    return found
+    rows = marine.torque_map(settle=times * marine.SETTLE)
+    return {
+        f"{total / 1e3:.0f} kN m, load ratio {ratio:.2f}": region
+        for total, row in zip(marine.TOTALS, rows, strict=True)
+        for ratio, region in zip(marine.RATIOS, row, strict=True)
+    }
 
 
 def _friction(times: int) -> Values:
     return dict(
-        marine.at_printed("", settle=times * marine.SETTLE, starts=4, friction=marine.FRICTION),
+        marine.at_printed("", settle=times * marine.LONG, starts=4, friction=marine.FRICTION),
     )
 
 
