@@ -257,9 +257,14 @@ class LoadedFace(LoadedMap):
             nodes[:, :, 1:, whole] = self.spacing * np.cumsum(means, axis=2)
         return found
 
+    @cached_property
+    def _parameters(self) -> np.ndarray:
+        # Kept: statics over a cycle evaluate one law a thousand times, and the whole map is copied into them.
+        return np.concatenate([self.of_the_map(), [self.place, len(self.tilt)], self.tilt])
+
     def parameters(self) -> np.ndarray:
         """Return those of the map, and the place and the tilts behind them."""
-        return np.concatenate([self.of_the_map(), [self.place, len(self.tilt)], self.tilt])
+        return self._parameters
 
     def closed_stiffness(self) -> np.ndarray:
         """k_0 at its place, and what resists a tilt about it."""
