@@ -28,6 +28,9 @@ _CHORDS = 6
 # Positions that judge the others: this share of theirs, and until so many are solved in a period.
 _JUDGES = 0.25
 _LEAST_SOLVED = 48
+# They halve intervals down to this, in base pitches, first. The largest pressure of helical teeth stands where a corner
+# touches at the end of a face, on a twentieth of a base pitch, and judges that look for events alone pass it by.
+_WIDE = 0.05
 # New positions of one round, as a share of those that are there: later ones know more, earlier ones cost less together.
 _ROUND = 0.15
 # What is left of an error after its interval is halved: for a kink between the positions up to the whole of it, and no less than
@@ -116,7 +119,9 @@ def sampled(
     search.fill(count)
     kept = search.curve()
     if judged:
-        search.fill(max(count + int(_JUDGES * count), round(_LEAST_SOLVED * period)))
+        most = max(count + int(_JUDGES * count), round(_LEAST_SOLVED * period))
+        search.halve_wide(most)
+        search.fill(most)
     return SampledCurves(kept, search.curve(), search.error)
 
 
@@ -149,6 +154,16 @@ class _Search:
             self._mark_events()
             self.add(self._next(count - len(self.position)))
         self._mark_events()
+
+    def halve_wide(self, count: int) -> None:
+        """Halve wide intervals, the widest first, until none is left or there are `count` positions."""
+        while len(self.position) < count:
+            width = self.curve().width
+            widest = np.argsort(-width, kind="stable")[: count - len(self.position)]
+            chosen = widest[width[widest] > _WIDE]
+            if not len(chosen):
+                break
+            self.add(np.mod(self.position[chosen] + 0.5 * width[chosen], self.period))
 
     def _new(self, positions: np.ndarray) -> np.ndarray:
         """Those of some positions that are not solved yet, each once, rising."""
