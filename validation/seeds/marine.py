@@ -13,8 +13,9 @@ from functools import cache
 from typing import Any
 
 import rotorgear as rg
+from rotorgear.analysis.sweep.classify import CHAOTIC
 from validation.seeds import kept
-from validation.seeds.motions import CHAOTIC, STARTS, ends, kinds, number, route
+from validation.seeds.motions import STARTS, ends, kinds, number, route
 from validation.seeds.rows import changed, loaded
 
 MODEL = "marine_dual_turbine"
@@ -263,6 +264,11 @@ def at_printed(suffix: str, nominal: float = NOMINAL, settle: int = SETTLE, **op
     return indicators(swept(list(PRINTED.values()), settle=settle, **options), suffix, nominal, settle)
 
 
+def with_friction(suffix: str, settle: int = LONG) -> dict[str, str]:
+    """The same with friction between the teeth."""
+    return at_printed(suffix, settle=settle, starts=4, friction=FRICTION)
+
+
 # What takes runs; see kept.py.
 PIECES: dict[str, Callable[[], dict[str, str]]] = {
     "torques": torque_indicators,
@@ -270,7 +276,7 @@ PIECES: dict[str, Callable[[], dict[str, str]]] = {
     "way_35": lambda: _way_values(35e3, "_35"),
     "regions": lambda: {"region": region(30e3), "region_35": region(35e3)},
     "printed_stiffness": lambda: at_printed("_soft", 100.0 * NOMINAL, starts=1, table_stiffness=True),
-    "friction": lambda: at_printed("_rub", settle=LONG, starts=4, friction=FRICTION),
+    "friction": lambda: with_friction("_rub"),
     "film": lambda: at_printed("_film", starts=4, film=FILM),
     "map": lambda: map_words(torque_map()),
 }

@@ -8,7 +8,6 @@ value in a chaotic motion grows with the length of the run; what stands then is 
 from __future__ import annotations
 
 import math
-import re
 from collections import Counter
 from collections.abc import Sequence
 
@@ -17,9 +16,9 @@ from scipy.stats import norm
 from scipy.stats import t as student
 
 import rotorgear as rg
+from rotorgear.analysis.sweep.classify import CHAOTIC, repeats
 
 STARTS = 8
-CHAOTIC = "chaotic"
 # Chaos from one start where another start ends in a motion that repeats: it may fall onto that one after a longer time.
 SO_FAR = "chaotic so far"
 
@@ -32,8 +31,8 @@ def kinds(result: rg.SweepResult, point: int) -> list[str]:
 def kinds_so_far(result: rg.SweepResult, point: int) -> list[str]:
     """Response types of all runs of a point, where chaos beside a motion that repeats counts as open."""
     found = kinds(result, point)
-    repeats = any(re.fullmatch(r"\d+T", kind) for kind in found)
-    return [SO_FAR if kind == CHAOTIC and repeats else kind for kind in found]
+    beside = any(map(repeats, found))
+    return [SO_FAR if kind == CHAOTIC and beside else kind for kind in found]
 
 
 def most(found: Sequence[str]) -> str:

@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 
 import rotorgear as rg
+from rotorgear.analysis.sweep.classify import CHAOTIC
 from validation.seeds import kept
-from validation.seeds.motions import CHAOTIC, ends, kinds, kinds_so_far, least_share, most, number, static_share
+from validation.seeds.motions import ends, kinds, kinds_so_far, least_share, most, number, static_share
 from validation.seeds.motions import route as stretches
 from validation.seeds.rows import changed, loaded
 

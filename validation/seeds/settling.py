@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 
 import rotorgear as rg
+from rotorgear.analysis.sweep.classify import NOT_SETTLED
 from validation.seeds import kept, marine, pair24
 from validation.seeds.motions import SO_FAR, kinds_so_far
 
@@ -22,9 +23,8 @@ TIMES = 10
 TIMES_2 = 30
 # Speeds of set 2 in one run.
 _PART = 25
-_UNSETTLED = "not settled"
 # What a run says itself that more time may change.
-_OPEN = (_UNSETTLED, SO_FAR)
+_OPEN = (NOT_SETTLED, SO_FAR)
 
 Values = dict[str, float | str]
 
@@ -88,7 +88,7 @@ def _set_2(name: str, speeds: Sequence[float], times: int) -> Values:
     found = _labels(speeds, times, 1)
     if times > 1:
         shorter = labels(name, 1)
-        unclear = [rpm for rpm in speeds if found[f"{rpm:.0f} rpm"] == _UNSETTLED != shorter[f"{rpm:.0f} rpm"]]
+        unclear = [rpm for rpm in speeds if found[f"{rpm:.0f} rpm"] == NOT_SETTLED != shorter[f"{rpm:.0f} rpm"]]
         if unclear:
             found |= _labels(unclear, times, times)
     return found
@@ -136,9 +136,7 @@ def _map(times: int) -> Values:
 
 
 def _friction(times: int) -> Values:
-    return dict(
-        marine.at_printed("", settle=times * marine.LONG, starts=4, friction=marine.FRICTION),
-    )
+    return dict(marine.with_friction("", times * marine.LONG))
 
 
 # What is run, at so many times the settling.

@@ -98,7 +98,12 @@ def period_of(x: np.ndarray, extent: np.ndarray, tolerance: float = TOLERANCE) -
 
 def period_in(kind: str) -> int:
     """Least common periods after which a response type repeats; 1 where it does not."""
-    return int(kind[:-1]) if kind.endswith("T") else 1
+    return int(kind[:-1]) if repeats(kind) else 1
+
+
+def repeats(kind: str) -> bool:
+    """Whether a response type is one that repeats, kT."""
+    return kind.endswith("T")
 
 
 def _grows(x: np.ndarray) -> bool:

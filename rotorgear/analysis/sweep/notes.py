@@ -9,7 +9,7 @@ import numpy as np
 
 from rotorgear.analysis.common.casings import time_warnings
 from rotorgear.analysis.sweep.axes import Axis
-from rotorgear.analysis.sweep.classify import period_in
+from rotorgear.analysis.sweep.classify import CHAOTIC, FAILED, NOT_SETTLED, period_in, repeats
 from rotorgear.analysis.sweep.point import Point
 from rotorgear.model.model import Model
 from rotorgear.solvers.lanes.lanes import Orbit
@@ -41,7 +41,7 @@ def notes(
         sentences.append(
             "bearing cages never repeat with the teeth: a response that rolling elements drive shows as quasi-periodic"
         )
-    unsettled = sum(kind == "not settled" for kind in motion)
+    unsettled = sum(kind == NOT_SETTLED for kind in motion)
     if unsettled:
         sentences.append(
             f"{unsettled} of {len(motion)} runs had not settled: ask for more periods (--discard, --sample)"
@@ -62,7 +62,8 @@ def notes(
 
 def _coexisting(kinds: Sequence[set[str]]) -> list[str]:
     """Warnings where the runs of a point end in different responses, from the response types of each point."""
-    several = [found - {"not settled", "failed"} for found in kinds if len(found - {"not settled", "failed"}) > 1]
+    told = [found - {NOT_SETTLED, FAILED} for found in kinds]
+    several = [found for found in told if len(found) > 1]
     if not several:
         return []
     sentences = [
@@ -70,7 +71,7 @@ def _coexisting(kinds: Sequence[set[str]]) -> list[str]:
         "starts goes to each"
     ]
     # Chaos that a crisis has opened stays for thousands of periods, with the exponents of lasting chaos, and then leaves at once.
-    transient = sum("chaotic" in found and any(kind.endswith("T") for kind in found) for found in several)
+    transient = sum(CHAOTIC in found and any(map(repeats, found)) for found in several)
     if transient:
         sentences.append(
             f"at {transient} of them a chaotic response stands beside one that repeats: it may be a long transient that ends in "
