@@ -37,9 +37,8 @@ NOMINAL = 15e3 / PITCH_RADIUS / STIFFNESS
 # Friction and film damping have no numbers in the account; friction needs teeth, which it does not give either.
 FRICTION = 0.05
 FILM = 1.5
-# Super-periods that settle with friction, and on the map where a motion is not on a periodic orbit after SETTLE: with friction at
-# a load ratio of 0.3 three of four starts are 4T after 2000 super-periods, and all are 2T after 20000.
-LONG = 20000
+# Super-periods that settle on the map; those of the second number where a motion is not on a periodic orbit after the first.
+MAP_SETTLE = (SETTLE, 10 * SETTLE)
 
 
 @dataclass(frozen=True)
@@ -205,23 +204,29 @@ def way_names(result: rg.SweepResult) -> list[str]:
 
 
 def torque_map(
-    totals: Sequence[float] = TOTALS, ratios: Sequence[float] = RATIOS, settle: int = SETTLE
+    totals: Sequence[float] = TOTALS, ratios: Sequence[float] = RATIOS, settle: Sequence[int] = MAP_SETTLE
 ) -> list[list[str]]:
     """Region of each total torque and load ratio, from the static start.
 
-    A motion that is not periodic up to 4T settles ten times as long.
+    What is on no stable periodic orbit after the first number of super-periods settles for the next one.
     """
-    rows = []
-    for total in totals:
-        first = swept(ratios, total, settle=settle, starts=1)
-        row = regions_of(first)
-        moving = [p for p in range(len(ratios)) if first.motion_at(p) not in STABLE]
-        if moving:
-            later = swept([ratios[p] for p in moving], total, settle=LONG // SETTLE * settle, starts=1)
-            for p, region in zip(moving, regions_of(later), strict=True):
-                row[p] = region
-        rows.append(row)
-    return rows
+    points = [(total, ratio) for total in totals for ratio in ratios]
+    region = dict.fromkeys(points, "")
+    moving = points
+    for each in settle:
+        result = rg.sweep(
+            loaded(MODEL),
+            {"point": list(range(len(moving)))},
+            steps=STEPS,
+            discard=each,
+            sample=COUNT,
+            change=lambda _, at, moving=moving: operating(moving[int(at[0])][1], moving[int(at[0])][0]),
+        )
+        region |= zip(moving, regions_of(result), strict=True)
+        moving = [point for p, point in enumerate(moving) if result.motion_at(p) not in STABLE]
+        if not moving:
+            break
+    return [[region[total, ratio] for ratio in ratios] for total in totals]
 
 
 def regions_of(result: rg.SweepResult) -> list[str]:
@@ -264,7 +269,7 @@ def at_printed(suffix: str, nominal: float = NOMINAL, settle: int = SETTLE, **op
     return indicators(swept(list(PRINTED.values()), settle=settle, **options), suffix, nominal, settle)
 
 
-def with_friction(suffix: str, settle: int = LONG) -> dict[str, str]:
+def with_friction(suffix: str, settle: int = SETTLE) -> dict[str, str]:
     """The same with friction between the teeth."""
     return at_printed(suffix, settle=settle, starts=4, friction=FRICTION)
 

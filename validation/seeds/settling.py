@@ -127,7 +127,8 @@ def _region(total: float, times: int) -> Values:
 
 
 def _map(times: int) -> Values:
-    rows = marine.torque_map(settle=times * marine.SETTLE)
+    settle = marine.MAP_SETTLE if times == 1 else (*marine.MAP_SETTLE, times * marine.MAP_SETTLE[-1])
+    rows = marine.torque_map(settle=settle)
     return {
         f"{total / 1e3:.0f} kN m, load ratio {ratio:.2f}": region
         for total, row in zip(marine.TOTALS, rows, strict=True)
@@ -136,7 +137,7 @@ def _map(times: int) -> Values:
 
 
 def _friction(times: int) -> Values:
-    return dict(marine.with_friction("", times * marine.LONG))
+    return dict(marine.with_friction("", times * marine.SETTLE))
 
 
 # What is run, at so many times the settling.

@@ -26,7 +26,7 @@ _MOST_TABLE = 30_000_000
 # Seconds between two words on the progress of blocks that take long.
 _EVERY = 1.0
 # What a stream keeps of an orbit beside its end.
-_OF_ORBIT = ("section", "growth", "sums", "extremes", "finite", "doubt", "settled", "multiplier")
+_OF_ORBIT = ("section", "growth", "sums", "extremes", "finite", "doubt", "settled", "multiplier", "repeats")
 # Least steps of the run that tells the error of exponents by half as many.
 _LEAST_HALF = 60
 
@@ -138,15 +138,15 @@ def _with_multipliers(
         periods, size = to_certify(orbits[i], points[i], plan.steps, judge)
         if not periods:
             continue
-        once = Plan(plan.steps, 0, periods, 0)
 
-        def advance(states: Sequence[Start], point: Point = points[i], once: Plan = once) -> list[Start]:
+        def advance(states: Sequence[Start], length: int, point: Point = points[i]) -> list[Start]:
+            once = Plan(plan.steps, 0, length, 0)
             cuts = (states[k : k + LANES] for k in range(0, len(states), LANES))
             return [one.end for own in cuts for one in _run([point] * len(own), own, once, go_on)]
 
-        certified = certificate(points[i].system, orbits[i].end, size, periods, advance)
+        certified = certificate(points[i].system, orbits[i].end, size, periods, advance, judge.tolerance)
         if certified is not None:
-            found[i] = replace(orbits[i], multiplier=certified.growth)
+            found[i] = replace(orbits[i], multiplier=certified.growth, repeats=certified.repeats)
             onward[i] = certified.onward
     return found, onward
 
@@ -249,8 +249,19 @@ def packed(orbits: Sequence[Orbit]) -> dict[str, np.ndarray]:
 def unpacked(chunk: dict[str, np.ndarray]) -> list[Orbit]:
     """The orbits back."""
     return [
-        Orbit(section, growth, sums, extremes, Start(z, dz), bool(finite), doubt, int(settled), float(multiplier))
-        for section, growth, sums, extremes, finite, doubt, settled, multiplier, z, dz in zip(
+        Orbit(
+            section,
+            growth,
+            sums,
+            extremes,
+            Start(z, dz),
+            bool(finite),
+            doubt,
+            int(settled),
+            float(multiplier),
+            int(repeats),
+        )
+        for section, growth, sums, extremes, finite, doubt, settled, multiplier, repeats, z, dz in zip(
             *(chunk[name] for name in (*_OF_ORBIT, "z", "dz")), strict=True
         )
     ]

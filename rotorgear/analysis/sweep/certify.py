@@ -7,8 +7,8 @@
     quasi-periodic  the largest exponent is zero within its error, and one standard error away from chaos
     chaotic         it is above that bound by a standard error
 
-A kT whose orbit Newton's method finds stands or falls with the multipliers of that orbit instead (multipliers.py); one that is
-unstable goes on from a small deviation in the direction that grows most.
+A kT whose orbit Newton's method finds stands or falls with the multipliers of that orbit instead, and with the period of that
+orbit (multipliers.py); one that is unstable goes on from a small deviation in the direction that grows most.
 
 What does not stand settles longer, in rounds of twice the length each, from where it got to. What still does not after the last
 of them is "not settled".
@@ -62,7 +62,7 @@ def judged(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[Motion
     motion = classify(x, extent, largest, error, judge.tolerance, judge.chaos)
     bound = max(2.0 * error, _ZERO)
     if motion.period and np.isfinite(orbit.multiplier):
-        return motion, orbit.multiplier < SURE and (motion.period == 1 or _stays(x))
+        return motion, orbit.multiplier < SURE and orbit.repeats == motion.period and (motion.period == 1 or _stays(x))
     if motion.period:
         # On an orbit that repeats, growth differs between batches only because tangents turn: that says little on its mean. What
         # repeats need not prove its sign then. But where flanks part, an unstable orbit may repeat for thousands of periods, and
@@ -80,10 +80,10 @@ def to_certify(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[in
     """Common periods after which a run repeats, and its size (m), where multipliers are to tell whether it is stable; else 0.
 
     What comes back fast needs none: growth that an exponent does not see in so many periods is slower than the bound of chaos.
-    Laws that do not repeat with the common period, such as cages, have no such map.
+    Cages do not repeat with the common period, and so a system with rolling elements has no such map.
     """
     system = point.system
-    if not orbit.growth.shape[1] or system.n > _MOST or system.own.forces.laws:
+    if not orbit.growth.shape[1] or system.n > _MOST or point.rolling:
         return 0, 0.0
     motion, _ = judged(orbit, point, steps, judge)
     means, _ = exponents(orbit.growth, float(system.turns))

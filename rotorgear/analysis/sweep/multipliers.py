@@ -4,6 +4,8 @@ An exponent from some hundred periods cannot see slow growth beside slow decay, 
 that is symmetric in the two helices stays so, on an orbit where they grow apart by 1 part in 250 in a period, until rounding has
 grown to its size. The map x -> P(x) over k common periods sees both. Its derivative M comes from central differences, which run
 side by side; Newton's method x <- x - (M - 1)^-1 (P(x) - x) goes onto the orbit. Motions without strain are left out.
+A run that spirals slowly onto an orbit of a shorter period looks like one of a longer period all the while, so the orbit itself
+tells after how many periods it repeats.
 Seydel, Practical Bifurcation and Stability Analysis (Springer 2010), ch. 7.
 """
 
@@ -29,7 +31,8 @@ SURE = 1e-4
 # How far along the most unstable direction a run begins anew, over the size of the motion.
 _PUSH = 1e-2
 
-Advance = Callable[[Sequence[Start]], list[Start]]
+# Where states are after so many common periods.
+Advance = Callable[[Sequence[Start], int], list[Start]]
 
 
 @dataclass(frozen=True)
@@ -38,20 +41,25 @@ class Certificate:
 
     Attributes:
         growth: ln|mu| of the largest multiplier in one common period.
+        repeats: common periods after which the orbit repeats; a divisor of those of the map.
         onward: where the run goes on from: its end; beside an unstable orbit moved along the direction that grows most, unless it
         is further along it already.
     """
 
     growth: float
+    repeats: int
     onward: Start
 
 
-def certificate(system: SmallSystem, end: Start, size: float, periods: int, advance: Advance) -> Certificate | None:
+def certificate(
+    system: SmallSystem, end: Start, size: float, periods: int, advance: Advance, tolerance: float
+) -> Certificate | None:
     """The orbit of so many common periods near a state, with its multipliers.
 
     Args:
         system: the small system. end: a state near the orbit. size: of the motion's local displacements (m), peak to peak.
-        periods: common periods after which it repeats. advance: runs states over them.
+        periods: common periods after which the run repeats. advance: runs states.
+        tolerance: share of the size by which displacements may differ that count as the same.
 
     Returns:
         The certificate; None where Newton's method finds no orbit near by, as where a contact only just closes.
@@ -62,8 +70,8 @@ def certificate(system: SmallSystem, end: Start, size: float, periods: int, adva
     scale = size / float(np.linalg.norm(system.B, axis=0).max())
     begun = np.concatenate([end.z, end.dz])
 
-    def after(states: Sequence[np.ndarray]) -> np.ndarray:
-        ends = advance([Start(state[:n], state[n:]) for state in states])
+    def after(states: Sequence[np.ndarray], length: int = periods) -> np.ndarray:
+        ends = advance([Start(state[:n], state[n:]) for state in states], length)
         return np.stack([np.concatenate([one.z, one.dz]) for one in ends])
 
     def slope(at: np.ndarray) -> np.ndarray:
@@ -83,8 +91,18 @@ def certificate(system: SmallSystem, end: Start, size: float, periods: int, adva
     mu, left, right = la.eig(M, left=True)
     most = int(np.argmax(np.abs(mu)))
     growth = float(np.log(max(abs(mu[most]), 1e-300))) / periods
+    counted = system.B[:, system.columns.counted].T
+    repeats = next(
+        length
+        for length in range(1, periods + 1)
+        if length == periods
+        or (
+            periods % length == 0
+            and np.abs(counted @ (after([x], length)[0] - x)[:n]).max(initial=0.0) <= tolerance * size
+        )
+    )
     if growth < SURE:
-        return Certificate(growth, end)
+        return Certificate(growth, repeats, end)
     # Slow motions may still be far from the orbit; only what lies along the direction of growth counts.
     along = right[:, most]
     beside = abs(np.vdot(left[:, most], U.T @ (begun - x)) / np.vdot(left[:, most], along)) * np.linalg.norm(
@@ -93,7 +111,7 @@ def certificate(system: SmallSystem, end: Start, size: float, periods: int, adva
     if beside < _PUSH * scale:
         direction = U @ np.real(along)
         begun = begun + _PUSH * scale * direction / np.linalg.norm(direction)
-    return Certificate(growth, Start(begun[:n], begun[n:]))
+    return Certificate(growth, repeats, Start(begun[:n], begun[n:]))
 
 
 def _on_orbit(

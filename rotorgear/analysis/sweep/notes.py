@@ -37,6 +37,11 @@ def notes(
         sentences.append(
             "the torques do not balance at some points: the shafts drift off the prescribed rotation there"
         )
+    if any(len(q.system.carried) for q in points if q):
+        sentences.append(
+            "the loads do not give the power that friction takes: the drive makes up for it on all shafts, in proportion to "
+            "their inertia, so that they keep their speed; with a drive at one end mean forces may be another by about that loss"
+        )
     if any(q.rolling for q in points if q):
         sentences.append(
             "bearing cages never repeat with the teeth: a response that rolling elements drive shows as quasi-periodic"

@@ -70,6 +70,7 @@ class Point:
             c.mode.tobytes(),
             c.counted.tobytes(),
             len(self.system.rigid),
+            len(self.system.carried),
             self.system.turns,
             self.contact,
             own.kind.tobytes(),
@@ -228,7 +229,11 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
         local, known.rest, columns, one_at_a_time, float(fastest) * abs(speed), turns, modal_ratio, known.shapes
     )
     drift = known.rest.drift
-    drifts = bool(drift.size and np.abs(drift).max() > 1e-6 * np.linalg.norm(system.load) * system.w**2)
+    # What the drive carries stays at its speed, whatever pushes on it.
+    drifts = bool(
+        len(system.carried) < len(system.rigid)
+        and np.abs(drift).max(initial=0.0) > 1e-6 * np.linalg.norm(system.load) * system.w**2
+    )
     shape = b"".join(law.table_key() for law in laws)
     counted = columns.counted
     return Point(

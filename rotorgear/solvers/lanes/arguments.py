@@ -33,7 +33,8 @@ class LaneSystem(NamedTuple):
     Attributes:
         matrix: z'' from (z, z', F, 1): -K, -D, -B, f by rows, (n, 2 n + m + 1).
         across: d and d' of each column from (z, z'), (2 m, 2 n). pushes: -B, (n, m). watched: W^T by rows, (p, n).
-        rigid: orthonormal motions without strain, (r, n, w); root: S with S^T S the mean stiffness, (n, n, w).
+        rigid: orthonormal motions without strain, (r, n, w); carried: those whose speed the drive keeps, (c, n, w).
+        root: S with S^T S the mean stiffness, (n, n, w).
     """
 
     matrix: SparseRows
@@ -41,6 +42,7 @@ class LaneSystem(NamedTuple):
     pushes: SparseRows
     watched: SparseRows
     rigid: np.ndarray
+    carried: np.ndarray
     root: np.ndarray
 
 

@@ -19,7 +19,7 @@ from rotorgear.solvers.lanes.kernel_jumps import add_used_along, missing, missin
 from rotorgear.solvers.lanes.kernel_laws import SPACE, force_laws, laws_along, schedule_laws
 from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, contacts, count, product, read_table, widen
 from rotorgear.solvers.lanes.kernel_switches import DONE, ENTERED, MIDDLE, correct, do, ended, enter
-from rotorgear.solvers.lanes.kernel_tangents import orthonormal
+from rotorgear.solvers.lanes.kernel_tangents import keep_speed, orthonormal
 from rotorgear.solvers.time.compiled import compiled
 
 
@@ -177,6 +177,7 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
     t = tangents.shape[0]
     rows = 2 * n + m + 1
     own = laws.kind.size > 0
+    carrying = system.carried.shape[0] > 0
     h = 2.0 * np.pi / steps
     now = work(4 * m).reshape(m, 4, LANES)
     found = work(FOUND * m).reshape(m, FOUND, LANES)
@@ -243,5 +244,8 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
                 orthonormal(tangents, weighed, system.root, system.rigid, growth[period])
                 for k in range(t):
                     copy_rows(tangents, 2 * n * k, moved, rows * k, 2 * n)
+        if carrying:
+            keep_speed(state, system.carried)
+            copy_rows(state, 0, stage, 0, 2 * n)
         for j in range(2 * m):
             put(section, 2 * m * period + j, slope_of(j, across.first, across.column, across.value, state, 0))

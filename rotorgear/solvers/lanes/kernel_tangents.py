@@ -22,6 +22,15 @@ def remove(part, part_at, along, along_at, measured, measured_at, unit, unit_at,
 
 
 @compiled(fast=True, inner=True)
+def keep_speed(state, carried):
+    """Bring z and z' (2 n, w) along the motions that the drive carries (c, n, w) back to where and how fast it has them: 0."""
+    n = state.shape[0] // 2
+    for r in range(carried.shape[0]):
+        for part in range(2):
+            remove(state, part * n, carried, r * n, state, part * n, carried, r * n, n)
+
+
+@compiled(fast=True, inner=True)
 def weigh(root, tangents, weighed, at):
     """Root of the stiffness times displacements, and velocities as they are: the energy of a tangent is the square of it."""
     n = root.shape[0]

@@ -70,6 +70,7 @@ class Orbit:
         doubt: (t,) what exponents per period change by in a run with other steps.
         settled: common periods before those that count.
         multiplier: ln|mu| in a common period of the orbit that it is on; nan where that is not asked for or not found.
+        repeats: common periods after which that orbit repeats; 0 where it is not known.
         end: state at the end. finite: whether everything stayed finite.
     """
 
@@ -82,6 +83,7 @@ class Orbit:
     doubt: np.ndarray
     settled: int
     multiplier: float = np.nan
+    repeats: int = 0
 
 
 def run_block(
@@ -231,6 +233,7 @@ def _matrices(systems: Sequence[SmallSystem]) -> LaneSystem:
         pushes=_sparse([-s.B for s in systems]),
         watched=_sparse([s.W.T for s in systems]),
         rigid=_stacked([s.rigid for s in systems]),
+        carried=_stacked([s.carried for s in systems]),
         root=_stacked([s.energy for s in systems]),
     )
 

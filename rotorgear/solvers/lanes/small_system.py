@@ -11,7 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
-from rotorgear.solvers.lanes.columns import Columns
+from rotorgear.solvers.lanes.columns import OWN_LAW, Columns
 from rotorgear.solvers.lanes.own_laws import OwnLaws, not_held, steepest
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium
 from rotorgear.solvers.time.local_system import LocalSystem
@@ -24,6 +24,8 @@ STABLE = 2.5
 ACCURATE = 0.35
 # The same above the frequencies that a reduced system follows: its stiffest shapes answer as if static.
 _STATIC = 1.5
+# Of all damping, or of all forces of laws, below which a motion meets none.
+_BRAKED = 1e-9
 # Of the largest stiffness, that every direction gets in the size of a tangent.
 _FLOOR = 1e-12
 
@@ -49,6 +51,7 @@ class SmallSystem:
     Attributes:
         K, D: (n, n); load: (n,); B: (n, m); W: (n, p) watched displacements.
         rigid: (r, n) orthonormal motions without strain; rest: z in equilibrium, (n,).
+        carried: (c, n) those of them whose speed nothing but the drive keeps, see `_carried`.
         root: L, (n, n). energy: S with S^T S the stiffness with all contacts closed, (n, n).
         columns: of the local forces; own: those that act by laws of their own.
         w: rad/s of the fastest excitation; turns: its periods in the common one.
@@ -62,6 +65,7 @@ class SmallSystem:
     B: np.ndarray
     W: np.ndarray
     rigid: np.ndarray
+    carried: np.ndarray
     rest: np.ndarray
     root: np.ndarray
     energy: np.ndarray
@@ -133,6 +137,7 @@ def small_system(
         _clean(B),
         _clean(inverse @ local.watched_vectors),
         rigid,
+        _carried(rigid, damped / w, B[:, columns.kind == OWN_LAW]),
         L.T @ rest.q,
         L,
         energy,
@@ -144,6 +149,26 @@ def small_system(
         float(followed.max(initial=0.0)),
         shapes,
     )
+
+
+def _carried(rigid: np.ndarray, D: np.ndarray, own: np.ndarray) -> np.ndarray:
+    """Motions without strain (r, n) that no damper brakes, but laws of their own push; orthonormal, (c, n).
+
+    A law that acts against sliding, such as friction between teeth, takes power on such a motion. Without the drive that makes up
+    for it the shafts would run down while all that depends on time keeps to its speed: after some thousand periods the teeth
+    would slide as those of a gearbox at another speed do.
+
+    Args:
+        rigid: orthonormal motions without strain, (r, n). D: damping about the mean state, (n, n). own: directions of the
+        laws, (n, l).
+    """
+    if not rigid.size or not own.size:
+        return np.zeros((0, len(D)))
+    braked = D @ rigid.T
+    _, sizes, right = np.linalg.svd(braked)
+    free = right[np.count_nonzero(sizes > _BRAKED * np.linalg.norm(D)) :] @ rigid
+    _, sizes, right = np.linalg.svd(own.T @ free.T, full_matrices=False)
+    return np.asarray(right[sizes > _BRAKED * np.linalg.norm(own)] @ free)
 
 
 def _rates(K: np.ndarray, D: np.ndarray) -> np.ndarray:

@@ -16,14 +16,14 @@ JUDGE = Judge(tolerance=0.02, chaos=0.02)
 POINT: Any = SimpleNamespace(system=SimpleNamespace(turns=1, columns=SimpleNamespace(counted=np.array([True]))))
 
 
-def run(x: np.ndarray, exponent: float, doubt: float = 0.0, scatter: float = 1e-4) -> Any:
+def run(x: np.ndarray, exponent: float, doubt: float = 0.0, scatter: float = 1e-4, **known: Any) -> Any:
     """A run with a section x in um of a motion 10 um from peak to peak, and an exponent that scatters."""
     section = np.zeros((len(x), 1, 2))
     section[:, 0, 0] = 1e-6 * x
     growth = exponent + scatter * np.random.default_rng(0).standard_normal((len(x), 1))
     sums = np.zeros((1, 14))
     sums[0, 7] = sums[0, 5] = 10e-6
-    orbit = Orbit(section, growth, sums, np.zeros((2, 2)), None, True, np.array([doubt]), 300)  # type: ignore[arg-type]
+    orbit = Orbit(section, growth, sums, np.zeros((2, 2)), None, True, np.array([doubt]), 300, **known)  # type: ignore[arg-type]
     motion, stands = judged(orbit, POINT, 200, JUDGE)
     return motion.kind, stands
 
@@ -47,6 +47,13 @@ def test_a_spiral_that_still_comes_down_is_no_long_period() -> None:
     turning = 2.0 * np.cos(2.0 * np.pi * n / 20.0)
     assert run(turning, -0.01) == ("20T", True)
     assert run(turning * np.exp(-0.001 * n), -0.01)[1] is False
+
+
+def test_a_period_stands_where_the_orbit_is_stable_and_repeats_as_the_run_does() -> None:
+    alternating = 3.0 + 1.0 * (-1.0) ** np.arange(200)
+    assert run(alternating, 0.0, multiplier=-1e-3, repeats=2) == ("2T", True)
+    assert run(alternating, 0.0, multiplier=-1e-3, repeats=1) == ("2T", False)
+    assert run(alternating, 0.0, multiplier=1e-3, repeats=2) == ("2T", False)
 
 
 def test_two_frequencies_have_no_exponent_but_zero() -> None:

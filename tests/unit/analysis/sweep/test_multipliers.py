@@ -17,9 +17,9 @@ ORBIT = 1e-5 * np.array([0.3, -0.2, 0.0, 0.1, 0.4, 0.0])
 
 
 def found(
-    multipliers: tuple[float, ...], begun: np.ndarray, periods: int = 1, curved: float = 1e3
+    multipliers: tuple[float, ...], begun: np.ndarray, periods: int = 1, curved: float = 1e3, other: float = 0.0
 ) -> Certificate | None:
-    """The certificate of a map with known multipliers, curved by a square term."""
+    """The certificate of a map with known multipliers, curved by a square term; half way it passes as far from its begin."""
     turned = np.linalg.qr(np.random.default_rng(0).standard_normal((4, 4)))[0]
     inner = turned @ np.diag(multipliers) @ turned.T
     elastic = [0, 1, 3, 4]
@@ -27,16 +27,19 @@ def found(
     M[np.ix_(elastic, elastic)] = inner
     M[2, 2] = M[5, 5] = M[2, 5] = 1.0
 
-    def advance(states: Any) -> list[Start]:
+    def advance(states: Any, length: int) -> list[Start]:
         ends = []
         for one in states:
             off = np.concatenate([one.z, one.dz]) - ORBIT
             end = ORBIT + M @ off + curved * off**2 * np.array([1, 1, 0, 1, 1, 0])
+            if length < periods:
+                end[0] += other
             ends.append(Start(end[:3], end[3:]))
         return ends
 
-    system: Any = SimpleNamespace(n=3, rigid=np.array([[0.0, 0.0, 1.0]]), B=np.eye(3)[:, :1])
-    return certificate(system, Start(begun[:3], begun[3:]), SIZE, periods, advance)
+    columns = SimpleNamespace(counted=np.array([True]))
+    system: Any = SimpleNamespace(n=3, rigid=np.array([[0.0, 0.0, 1.0]]), B=np.eye(3)[:, :1], columns=columns)
+    return certificate(system, Start(begun[:3], begun[3:]), SIZE, periods, advance, 0.02)
 
 
 @pytest.mark.parametrize("largest", [0.99, 1.004, -1.2])
@@ -61,3 +64,11 @@ def test_a_run_on_an_unstable_orbit_goes_on_beside_it_and_one_on_a_stable_orbit_
 
 def test_without_an_orbit_near_by_nothing_is_said() -> None:
     assert found((0.99, 0.5, -0.3, 0.1), ORBIT + 20.0 * SIZE) is None
+
+
+@pytest.mark.parametrize(("other", "repeats"), [(0.0, 1), (0.01 * SIZE, 1), (0.03 * SIZE, 2)])
+def test_an_orbit_tells_its_own_period_while_a_run_still_spirals_onto_it(other: float, repeats: int) -> None:
+    spiral = ORBIT + 0.05 * SIZE * np.array([1.0, 1.0, 0.0, 0.5, 0.3, 0.0])
+    own = found((-0.99, 0.5, -0.3, 0.1), spiral, periods=2, other=other)
+    assert own is not None
+    assert own.repeats == repeats
