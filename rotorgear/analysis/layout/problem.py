@@ -11,6 +11,7 @@ from rotorgear.analysis.layout.deviation import with_deviations
 from rotorgear.analysis.layout.penalty import near_modes, penalty, penalty_slopes
 from rotorgear.analysis.layout.state import State, state_of, total_mass
 from rotorgear.analysis.scatter.family import system_at
+from rotorgear.analysis.static.tangent import with_maps_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.numbers import Numbers
 from rotorgear.results.steady.campbell import ExcitationOrder
@@ -131,10 +132,8 @@ class Problem:
     def _beside(self, t: NDArray[np.float64], j: int, state: State) -> tuple[System, System, float]:
         step = np.zeros(len(t))
         step[j] = _STEP
-        above, below = (
-            system_at(self.numbers.at(self.low + (t + side * step) * (self.high - self.low)), state.speed, self.plan)
-            for side in (1.0, -1.0)
-        )
+        sides = (self.numbers.at(self.low + (t + side * step) * (self.high - self.low)) for side in (1.0, -1.0))
+        above, below = (system_at(with_maps_of(state.system.model, model), state.speed, self.plan) for model in sides)
         if not above.n == below.n == state.system.n:
             raise AnalysisError(
                 f"{self.numbers.addresses[j]}: its place is too near to another one to be differentiated"

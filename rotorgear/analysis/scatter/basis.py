@@ -13,7 +13,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from rotorgear.analysis.scatter.family import Family, system_at
+from rotorgear.analysis.scatter.family import Family, sampled_system
 from rotorgear.analysis.scatter.modes import FormModes
 from rotorgear.model.spreads import Spreads
 from rotorgear.solvers.eigen.eigen import lowest_modes
@@ -54,8 +54,8 @@ def basis_of(
     for j in range(len(spreads)):
         z = np.zeros(len(spreads))
         z[j] = _SIDE
-        above = system_at(spreads.at(z), speed, plan)
-        below = system_at(spreads.at(-z), speed, plan)
+        above = sampled_system(spreads, z, speed, plan)
+        below = sampled_system(spreads, -z, speed, plan)
         for other, sign in ((above, 1.0), (below, -1.0)):
             if other.n == system.n:
                 K = other.stiffness(speed or 0.0) - system.stiffness(speed or 0.0)

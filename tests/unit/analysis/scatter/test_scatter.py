@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.analysis.scatter import family
 from rotorgear.analysis.scatter.family import family_of, system_at
 from rotorgear.analysis.scatter.forms import FormNames, forms_of
 from rotorgear.analysis.scatter.modes import modes_of, overlaps
@@ -141,16 +142,41 @@ def test_forms_summed_over_numbers_are_those_of_whole_systems_and_numbers_that_m
     apart = spreads_of(
         pair, {"bearings.*.stiffness": Scatter(sigma="10 %"), "meshes.*.stiffness": Scatter(sigma="5 %")}
     )
-    family = family_of(apart, 100.0, Plan(1), V)
-    assert family.terms is not None
+    summed = family_of(apart, 100.0, Plan(1), V)
+    assert summed.terms is not None
     z = np.linspace(-2.0, 2.0, len(apart))
-    assert family.at(z) == pytest.approx(family.assembled(z), rel=1e-9, abs=1e-9 * np.abs(family.nominal).max())
+    assert summed.at(z) == pytest.approx(summed.assembled(z), rel=1e-9, abs=1e-9 * np.abs(summed.nominal).max())
     meeting = spreads_of(
         model("jeffcott"),
         {"disks.disk.width": Scatter(sigma="5 %"), "disks.disk.outer_diameter": Scatter(sigma="5 %")},
     )
     rotor = system_at(model("jeffcott"), 100.0, Plan(1))
     assert family_of(meeting, 100.0, Plan(1), np.eye(rotor.n)).terms is None
+
+
+def test_numbers_that_meet_are_found_out_by_one_system_for_each_and_one_for_all(monkeypatch: pytest.MonkeyPatch):
+    # Seed 201330: bearings beside teeth that feel the tilt of their shafts, 694 CPU s in place of 37.
+    meeting = spreads_of(
+        model("jeffcott"),
+        {"disks.disk.width": Scatter(sigma="5 %"), "disks.disk.outer_diameter": Scatter(sigma="5 %")},
+    )
+    rotor = system_at(model("jeffcott"), 100.0, Plan(1))
+    taken = []
+    linearised = family.about_equilibrium
+
+    def counted(model: rg.Model, speeds: list[float | None]) -> tuple[rg.Model, tuple[str, ...]]:
+        if model is not meeting.numbers.model:
+            taken.append(model)
+        return linearised(model, speeds)
+
+    monkeypatch.setattr(family, "about_equilibrium", counted)
+    found = family_of(meeting, 100.0, Plan(1), np.eye(rotor.n))
+    assert found.terms is None
+    assert len(taken) == len(meeting) + 1
+    z = np.array([0.3, -0.2])
+    assert np.array_equal(found.at(z), found.assembled(z))
+    found.system(z)
+    assert len(taken) == len(meeting) + 2  # an equilibrium is found once
 
 
 def test_samples_are_the_same_bit_for_bit_for_any_number_of_workers():
