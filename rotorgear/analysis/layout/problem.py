@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorgear.analysis.common.request import direction_of
 from rotorgear.analysis.layout.deviation import with_deviations
 from rotorgear.analysis.layout.penalty import near_modes, penalty, penalty_slopes
 from rotorgear.analysis.layout.state import State, state_of, total_mass
@@ -111,9 +112,7 @@ class Problem:
         """Mass of the rotors in kg and its derivatives (p,)."""
 
         def at(point: NDArray[np.float64]) -> float:
-            return total_mass(
-                system_at(self.numbers.at(self.low + point * (self.high - self.low)), self.speeds[0], self.plan)
-            )
+            return total_mass(self._at_rest(self.low + point * (self.high - self.low)))
 
         # Masses are polynomials of low degree: wide central differences are as good as exact.
         steps = 1e-3 * np.eye(len(t))
@@ -154,4 +153,9 @@ class Problem:
 
     def _size(self, t: NDArray[np.float64]) -> int:
         """Number of dofs at t: it changes where places part or come together."""
-        return system_at(self.numbers.at(self.values(t)), self.speeds[0], self.plan).n
+        return self._at_rest(self.values(t)).n
+
+    def _at_rest(self, values: NDArray[np.float64]) -> System:
+        """The system at some values (p,), for what no equilibrium changes: masses and places."""
+        model = self.numbers.at(values)
+        return System(model, plan=self.plan, load=model.mean_load(direction_of(self.speeds[0])))

@@ -12,6 +12,7 @@ from rotorgear.analysis.layout.bounds import bounds_of
 from rotorgear.analysis.layout.penalty import frequency_slopes, near_modes
 from rotorgear.analysis.layout.problem import Problem
 from rotorgear.analysis.layout.state import State, total_mass
+from rotorgear.analysis.scatter import family
 from rotorgear.analysis.scatter.family import system_at
 from rotorgear.analysis.scatter.forms import forms_of
 from rotorgear.analysis.scatter.modes import modes_of
@@ -243,6 +244,16 @@ def test_deviations_of_a_layout_are_the_bands_of_scatter():
 def test_the_mass_of_the_rotors_is_that_of_the_check():
     pair = model("geared_pair")
     assert total_mass(system_at(pair, None, Plan(1))) == pytest.approx(rg.check(pair).total_mass_kg, rel=1e-12)
+
+
+def test_a_mass_asks_for_no_equilibrium(monkeypatch):
+    numbers = numbers_of(model("geared_pair"), "shafts.rotor_1.sections.*.outer_diameter")
+    low, high, _ = bounds_of(numbers, {})
+    problem = Problem(numbers, low, high, (100.0,), (), PLAN, 150.0, 0.4, 0.4, 1e-3)
+    monkeypatch.setattr(family, "about_equilibrium", None)
+    mass, slopes = problem.mass(problem.start)
+    assert mass == pytest.approx(rg.check(model("geared_pair")).total_mass_kg, rel=1e-12)
+    assert np.all(slopes > 0.0)
 
 
 def test_places_stay_on_their_side_of_what_is_beside_them():
