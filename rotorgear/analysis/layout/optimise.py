@@ -337,10 +337,10 @@ def _result(problem: Problem, end: _End, objective: str) -> OptimiseResult:
 
 
 def _on_finer_mesh(problem: Problem) -> Problem:
-    """The problem on a finer mesh, by which it is judged."""
+    """The problem on a finer mesh and on maps of its own, by which it is judged."""
     plan = problem.plan
     finer = Plan(2 * plan.elements, plan.order) if plan.order == 1 else Plan(plan.elements, plan.order + 1)
-    return replace(problem, plan=finer, solutions=0, gradients=0)
+    return replace(problem, plan=finer, own_maps=True, solutions=0, gradients=0)
 
 
 def _margin_rows(problem: Problem, before: list[State], after: list[State]) -> list[LayoutMargin]:

@@ -12,7 +12,7 @@ from rotorgear.analysis.layout.deviation import with_deviations
 from rotorgear.analysis.layout.penalty import near_modes, penalty, penalty_slopes
 from rotorgear.analysis.layout.state import State, state_of, total_mass
 from rotorgear.analysis.scatter.family import system_at
-from rotorgear.analysis.static.tangent import with_maps_of
+from rotorgear.analysis.static.tangent import about_equilibrium, with_maps_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.numbers import Numbers
 from rotorgear.results.steady.campbell import ExcitationOrder
@@ -42,6 +42,8 @@ class Problem:
         least: least participation that counts.
         deviations: standard deviations of a mode's frequency that are added to its margin, by [scatter] of the model; None:
             scatter is not looked at.
+        own_maps: whether loaded teeth that tilt have their own face maps in each layout, which take nearly all the time; else
+            those of the file, as long as they hold.
         solutions, gradients: how many were needed so far.
     """
 
@@ -56,6 +58,7 @@ class Problem:
     asked: float
     least: float
     deviations: float | None = None
+    own_maps: bool = False
     solutions: int = field(default=0)
     gradients: int = field(default=0)
 
@@ -71,6 +74,9 @@ class Problem:
     def states(self, t: NDArray[np.float64]) -> list[State]:
         """The modes at every speed."""
         model = self.numbers.at(self.values(t))
+        if not self.own_maps:
+            start, _ = about_equilibrium(self.numbers.model, [self.speeds[0]])
+            model = with_maps_of(start, model)
         self.solutions += len(self.speeds)
         found = [
             state_of(model, speed, self.plan, self.lines, self.below_hz, margin=self.margin, least=self.least)
