@@ -115,7 +115,13 @@ def state_space(
     limit = 2.0 * np.pi * fmax
     B = np.array([ports.row(system, text) for text in inputs]).T
     C = np.array([ports.row(system, text) for text in outputs])
-    reached = np.arange(system.n) if full else _reached(system, turns, np.hstack([B, C.T]))
+    groups = _groups(system, turns)
+    unmoved = tuple(
+        f"no input moves {text}: its responses are 0"
+        for text, row in zip(outputs, C, strict=True)
+        if not _meet(groups, row, B)
+    )
+    reached = np.arange(system.n) if full else _reached(system, groups, np.hstack([B, C.T]))
     modes = (*damped_modes(system, DAMPED * limit, turns, reached), zeta) if zeta else None
     plant = Plant(system, contact_lines(system), modes)
     dynamics = plant.dynamics(turns).cut(reached)
@@ -163,7 +169,7 @@ def state_space(
             *mesh_stiffness_left_out(system),
             *_apart(system, reached),
         ),
-        warnings=(*(() if damped else (_UNDAMPED,)), *((short,) if short else ())),
+        warnings=(*(() if damped else (_UNDAMPED,)), *unmoved, *((short,) if short else ())),
         status=short or "success",
         method="all degrees of freedom" if full else "modes and static shapes",
     )
@@ -179,18 +185,29 @@ def linear_system(
     return System(linear, plan=plan, load=first.system.load.of_kind("dynamic")), (*first.notes, *notes)
 
 
-def _reached(system: System, turns: float, places: np.ndarray) -> np.ndarray:
-    """The dofs (r,) of the groups in which one of the places (n, p) is, ascending; groups do not act on each other.
+def _groups(system: System, turns: float) -> np.ndarray:
+    """The number of the group of each dof (n,); groups do not act on each other at a speed in rad/s."""
+    matrices = [system.mass, system.stiffness(turns), system.circulatory(turns), system.damping(turns)]
+    if turns:
+        matrices.append(system.gyroscopic)
+    number = np.zeros(system.n, dtype=int)
+    for k, group in enumerate(independent_groups(matrices)):
+        number[group] = k
+    return number
+
+
+def _meet(groups: np.ndarray, row: np.ndarray, B: np.ndarray) -> bool:
+    """Whether an output (n,) has a group with an input of B (n, i) in common."""
+    return bool(np.intersect1d(groups[row != 0.0], groups[np.any(B, axis=1)]).size)
+
+
+def _reached(system: System, groups: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """The dofs (r,) of the groups in which one of the places (n, p) is, ascending.
 
     Raises:
         AnalysisError: nothing has inertia there, so that there are no modes to reduce to.
     """
-    matrices = [system.mass, system.stiffness(turns), system.circulatory(turns), system.damping(turns)]
-    if turns:
-        matrices.append(system.gyroscopic)
-    at = set(np.flatnonzero(np.any(places, axis=1)).tolist())
-    groups = [group for group in independent_groups(matrices) if not at.isdisjoint(group.tolist())]
-    reached = np.sort(np.concatenate(groups))
+    reached = np.flatnonzero(np.isin(groups, groups[np.any(places, axis=1)]))
     if not np.any(system.mass.diagonal()[reached] > 0.0):
         raise AnalysisError(
             "nothing that has inertia moves with these inputs and outputs; give the body there its inertia, or write the full "

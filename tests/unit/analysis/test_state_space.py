@@ -88,6 +88,13 @@ def test_what_no_place_reaches_has_no_coordinates() -> None:  # seed 202267: 200
     assert whole.size == whole.dofs
 
 
+def test_an_output_that_no_input_moves_is_told() -> None:
+    rotor = rg.load(ROOT / "models" / "jeffcott.toml")
+    places = {"inputs": ["disks.disk:x"], "outputs": ["disks.disk:x", "disks.disk:y"], "fmax": 100.0, "elements": 1}
+    assert rg.state_space(rotor, **places).warnings == ("no input moves disks.disk:y: its responses are 0",)
+    assert not rg.state_space(rotor, speed="3000 rpm", **places).warnings  # gyroscopic moments join both
+
+
 def test_places_that_move_no_inertia_are_refused() -> None:
     massless = rg.Model(
         shafts={"one": {}, "two": {}},

@@ -256,6 +256,15 @@ def test_a_mass_asks_for_no_equilibrium(monkeypatch):
     assert np.all(slopes > 0.0)
 
 
+def test_a_margin_that_the_mesh_does_not_resolve_is_told():
+    given = {"free": "shafts.rotor.sections.*.outer_diameter", "margin": "20 %", "searches": 1}
+    # At 2 kHz with one element of order 4 a mode is not there that one of order 5 has.
+    [coarse] = rg.optimise(model("jeffcott"), speeds=["120000 rpm"], **given).warnings
+    assert "the margin of shaft rotor 1x changes by" in coarse
+    assert "ask for more elements" in coarse
+    assert not rg.optimise(model("jeffcott"), speeds=["1500 rpm"], **given).warnings
+
+
 def test_places_stay_on_their_side_of_what_is_beside_them():
     rotor = rg.loads(ROTOR)
     low, high, _ = bounds_of(numbers_of(rotor, "bearings.*.at"), {"bearings.*.at": "-400 mm:1000 mm"})
@@ -270,6 +279,7 @@ def test_places_stay_on_their_side_of_what_is_beside_them():
         ({"free": "bearings.nobody.at"}, "no 'nobody'"),
         ({"free": "bearings.*.at", "margin": "0 %"}, "margin"),
         ({"free": "bearings.*.at", "objective": "beauty"}, "change or mass or scatter"),
+        ({"free": "bearings.*.at, operation.speed"}, "operation.speed can't vary.*give --speeds"),
         ({"free": "bearings.*.at", "objective": "scatter"}, "nothing scatters"),
         ({"free": "bearings.*.at", "bounds": {"disks.*.at": "-1 mm:1 mm"}}, "none of the free numbers"),
         ({"free": "bearings.*.at", "bounds": {"bearings.left.at": "5 mm"}}, "LOW:HIGH"),

@@ -293,6 +293,7 @@ def test_a_uniform_tolerance_is_its_limits_and_a_normal_one_three_sigma():
         ({"free": "bearings.*.stiffness", "samples": 1}, "samples"),
         ({"free": "bearings.*.stiffness", "sampling": "halton"}, "sobol, latin"),
         ({"free": "bearings.*.stiffness", "margin": "150 %"}, "margin"),
+        ({"free": "operation.speed"}, "operation.speed can.t vary.*give --speed"),
         ({"free": "disks.disk.at", "sigma": "2 mm", "samples": 4, "elements": 1, "modes": 2}, "past another"),
     ],
 )
