@@ -28,16 +28,25 @@ _MOST = 80
 # What is left of a shape beside the others below this share is rounding.
 _SAME = 1e-7
 _STEPS = 6
+# Free motions of one body.
+_OF_A_BODY = 6
 _CONVERGED = 1e-11
 
 
 def nominal_modes(
     system: System, speed: float | None, count: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
-    """w^2 (m,), shapes (n, m) of modal mass 1 of the undamped system that does not rotate, and how many are rigid."""
+    """w^2 (m,), shapes (n, m) of modal mass 1 of the undamped system that does not rotate, and how many are rigid.
+
+    They are `count`, or more where bodies beside each other have more free motions than one.
+    """
     S = system.strain_factor(speed or 0.0)
     strain = None if S is None else (lambda X: S @ X)
-    found = lowest_modes(system.mass, system.stiffness(speed or 0.0), count=count, strain=strain)
+    asked = count
+    found = lowest_modes(system.mass, system.stiffness(speed or 0.0), count=asked, strain=strain)
+    while not found.complete and len(found.eigenvalues) - found.rigid_count < count - _OF_A_BODY:
+        asked = 2 * asked
+        found = lowest_modes(system.mass, system.stiffness(speed or 0.0), count=asked, strain=strain)
     return found.eigenvalues, found.vectors, found.rigid_count
 
 

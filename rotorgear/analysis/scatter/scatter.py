@@ -218,10 +218,15 @@ def _share(value: float | str, what: str) -> float:
 
 
 def _plan_of(model: Model, speed: float | None, modes: int, accuracy: float | None) -> Plan:
-    """The mesh on which so many modes are within an accuracy."""
+    """The mesh on which so many modes are within an accuracy, beside all rigid ones where these are more than the spare ones."""
+    found = modal(model, modes=modes, speed=speed, accuracy=accuracy)
+    asked = modes
+    while len(found.rigid) == asked and np.count_nonzero(~found.rigid) < modes - SPARE:
+        asked = 2 * asked
+        found = modal(model, modes=asked, speed=speed, accuracy=accuracy)
     cut = {}
     counted: dict[str, int] = {}
-    for piece in modal(model, modes=modes, speed=speed, accuracy=accuracy).discretisation:
+    for piece in found.discretisation:
         number = counted.get(piece.shaft, 0)
         counted[piece.shaft] = number + 1
         cut[piece.shaft, number] = (piece.elements, piece.order)

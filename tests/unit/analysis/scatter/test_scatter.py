@@ -20,6 +20,7 @@ from rotorgear.model.numbers import numbers_of
 from rotorgear.model.parts.scatter import Scatter
 from rotorgear.model.spreads import spreads_of
 from rotorgear.system.plan import Plan
+from tests.contract.small_models import STEEL
 from tests.paths import MODELS, ROOT
 
 PENDULUM = """
@@ -152,6 +153,22 @@ def test_forms_summed_over_numbers_are_those_of_whole_systems_and_numbers_that_m
     )
     rotor = system_at(model("jeffcott"), 100.0, Plan(1))
     assert family_of(meeting, 100.0, Plan(1), np.eye(rotor.n)).terms is None
+
+
+@pytest.mark.parametrize("loose", [1, 4])
+def test_free_motions_of_several_bodies_are_no_elastic_modes(loose: int):
+    # Ten and 28 motions without strain, before the first of the three modes that are asked for.
+    section = [{"length": 0.2, "outer_diameter": 0.03}]
+    shafts = {
+        "held": {"sections": section},
+        **{f"loose_{k}": {"start": 1.0 + k, "sections": section} for k in range(loose)},
+    }
+    bearing = {"shaft": "held", "at": "start", "stiffness": {"radial": 1e7}}
+    rotor = rg.Model(materials=STEEL, shafts=shafts, bearings={"left": bearing})
+    found = rg.scatter(rotor, "bearings.*.stiffness", samples=8, modes=3)
+    assert found.frequency_basis_error < 1e-4
+    exact = rg.modal(rotor, modes=6 * (loose + 1) + 4)
+    assert [row.nominal_hz for row in found.bands] == pytest.approx(exact.frequency_hz[~exact.rigid][:3], rel=1e-3)
 
 
 def test_numbers_that_meet_are_found_out_by_one_system_for_each_and_one_for_all(monkeypatch: pytest.MonkeyPatch):
