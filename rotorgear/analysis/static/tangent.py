@@ -112,13 +112,13 @@ def with_maps_of(linear: Model, model: Model) -> Model:
         linear: the other one, about its equilibrium.
         model: one with the same meshes.
     """
-    mapped = {}
-    for name, mesh in linear.meshes.items():
-        if mesh.stiffness == "tooth_fe" and mesh.face_loads:
-            layout = linear.layout.mesh(name)
-            misalignments = tuple(layout.map_misalignments(helix) for helix in range(len(mesh.face_loads)))
-            mapped[name] = model.meshes[name].mapped_at(misalignments)
-    return model.model_copy(update={"meshes": {**model.meshes, **mapped}}) if mapped else model
+    mapped = [name for name, mesh in linear.meshes.items() if mesh.stiffness == "tooth_fe" and mesh.face_loads]
+    meshes = dict(model.meshes)
+    for name in mapped:
+        layout = linear.layout.mesh(name)
+        helices = range(len(layout.part.face_loads))
+        meshes[name] = meshes[name].mapped_at(tuple(layout.map_misalignments(helix) for helix in helices))
+    return model.model_copy(update={"meshes": meshes}) if mapped else model
 
 
 def about_equilibrium_of(
