@@ -11,8 +11,7 @@ from rotorgear.analysis.common.request import direction_of
 from rotorgear.analysis.layout.deviation import with_deviations
 from rotorgear.analysis.layout.penalty import near_modes, penalty, penalty_slopes
 from rotorgear.analysis.layout.state import State, state_of, total_mass
-from rotorgear.analysis.scatter.family import system_at
-from rotorgear.analysis.static.tangent import about_equilibrium, with_maps_of
+from rotorgear.analysis.scatter.family import neighbour, system_at
 from rotorgear.errors import AnalysisError
 from rotorgear.model.numbers import Numbers
 from rotorgear.results.steady.campbell import ExcitationOrder
@@ -75,8 +74,7 @@ class Problem:
         """The modes at every speed."""
         model = self.numbers.at(self.values(t))
         if not self.own_maps:
-            start, _ = about_equilibrium(self.numbers.model, [self.speeds[0]])
-            model = with_maps_of(start, model)
+            model = neighbour(self.numbers.model, model, self.speeds[0])
         self.solutions += len(self.speeds)
         found = [
             state_of(model, speed, self.plan, self.lines, self.below_hz, margin=self.margin, least=self.least)
@@ -138,7 +136,8 @@ class Problem:
         step = np.zeros(len(t))
         step[j] = _STEP
         sides = (self.numbers.at(self.low + (t + side * step) * (self.high - self.low)) for side in (1.0, -1.0))
-        above, below = (system_at(with_maps_of(state.system.model, model), state.speed, self.plan) for model in sides)
+        beside = (neighbour(state.system.model, model, state.speed) for model in sides)
+        above, below = (system_at(model, state.speed, self.plan) for model in beside)
         if not above.n == below.n == state.system.n:
             raise AnalysisError(
                 f"{self.numbers.addresses[j]}: its place is too near to another one to be differentiated"

@@ -43,10 +43,15 @@ def system_at(model: Model, speed: float | None, plan: Plan) -> System:
     return System(linear, plan=plan, load=linear.mean_load(direction_of(speed)))
 
 
+def neighbour(near: Model, model: Model, speed: float | None) -> Model:
+    """A model with the face maps of another one next to it, as they are at a speed of the reference shaft."""
+    linear, _ = about_equilibrium(near, [speed])
+    return with_maps_of(linear, model)
+
+
 def sample_at(spreads: Spreads, z: NDArray[np.float64], speed: float | None) -> Model:
     """The model at z (p,), with the face maps of the nominal one."""
-    nominal, _ = about_equilibrium(spreads.numbers.model, [speed])
-    return with_maps_of(nominal, spreads.at(z))
+    return neighbour(spreads.numbers.model, spreads.at(z), speed)
 
 
 def sampled_system(spreads: Spreads, z: NDArray[np.float64], speed: float | None, plan: Plan) -> System:
