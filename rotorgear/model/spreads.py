@@ -31,7 +31,7 @@ _REACH = 4.5
 _INDEX_ERROR = ".index_error"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # arrays are compared entry by entry; what is kept of some spreads is theirs alone
 class Spreads:
     """p scattering numbers.
 

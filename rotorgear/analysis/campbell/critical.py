@@ -43,6 +43,7 @@ _ROUNDS = 4
 # Share of its own terms below which a strain energy may be rounding, and of that energy below which strains say that it is.
 _LOST = 1e-9
 _UNSTRAINED = 1e-3
+_ROUNDING = 1e-14
 
 
 @renamed_arguments(top_speed="stop")
@@ -182,7 +183,8 @@ def roots_of(system: System, family: SpeedFamily, order: float, top: float, damp
 def _is_rounding(system: System, speed: float, x: np.ndarray) -> bool:
     """Whether rounding alone holds a motion: a free rotation of a fine mesh meets any line near speed 0.
 
-    Its energy x^H K x is lost among its terms, and the strains S x, which lose nothing, have next to none of it.
+    Its energy x^H K x is lost among its terms, and the strains S x, which lose nothing, have next to none of it: of a coarse mesh
+    both may be the rounding of x itself.
     """
     K = system.stiffness(speed)
     energy = abs(np.vdot(x, K @ x))
@@ -190,7 +192,7 @@ def _is_rounding(system: System, speed: float, x: np.ndarray) -> bool:
     if energy > _LOST * terms:
         return False
     S = system.strain_factor(speed)
-    return S is not None and np.linalg.norm(S @ x) ** 2 < _UNSTRAINED * energy
+    return S is not None and np.linalg.norm(S @ x) ** 2 < max(_UNSTRAINED * energy, _ROUNDING**2 * terms)
 
 
 def affine_pieces(system: System, family: SpeedFamily, top: float, damped: bool) -> Iterator[Affine]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numbers
+from collections.abc import Iterable
 from typing import overload
 
 import numpy as np
@@ -63,6 +64,16 @@ def check_request(
         raise AnalysisError(f"the accuracy must lie between {FINEST:g} and 1 (1e-3 is 0.1 %), got {accuracy:g}")
     if fmax is not None and not (np.isfinite(fmax) and fmax > 0.0):
         raise AnalysisError(f"the highest frequency must be positive, got {fmax} Hz")
+
+
+def check_speed_is_fixed(addresses: Iterable[str], instead: str) -> None:
+    """Refuse the operating speed among numbers that vary: modes and excitations are those at the speed that is asked for.
+
+    Raises:
+        AnalysisError: with what to give in place of it.
+    """
+    if "operation.speed" in addresses:
+        raise AnalysisError(f"operation.speed can't vary: modes and excitations are those at one speed; give {instead}")
 
 
 def missed(wanted: float | None, estimate: float, remedy: str) -> str:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rotorgear.analysis.layout.penalty import complex_forms, spaces_of
 from rotorgear.analysis.layout.state import State
-from rotorgear.analysis.scatter.family import system_at
+from rotorgear.analysis.scatter.family import neighbour, system_at
 from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS, forms_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -67,7 +67,8 @@ def _coupling(state: State, spreads: Spreads, j: int, plan: Plan, modes: list[in
     X = np.hstack([shapes.real, shapes.imag])
     step = np.zeros(len(spreads))
     step[j] = _STEP
-    above, below = (system_at(spreads.at(side * step), state.speed, plan) for side in (1.0, -1.0))
+    sides = (neighbour(state.system.model, spreads.at(side * step), state.speed) for side in (1.0, -1.0))
+    above, below = (system_at(model, state.speed, plan) for model in sides)
     if not above.n == below.n == state.system.n:
         raise AnalysisError(
             f"[scatter] of {spreads.numbers.addresses[j]} moves a place past another one that it coincides with: move one of "

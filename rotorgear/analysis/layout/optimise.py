@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, check_whole, speed_in_si
+from rotorgear.analysis.common.request import check_request, check_speed_is_fixed, check_whole, speed_in_si
 from rotorgear.analysis.layout.bounds import bounds_of
 from rotorgear.analysis.layout.deviation import MARGINS, kept_deviations
 from rotorgear.analysis.layout.problem import Problem
@@ -49,6 +49,10 @@ _MOST_DEVIATIONS = 6.0
 # A number this near to a bound, as a share of their distance, stands at it.
 _AT_BOUND = 1e-4
 _ROUNDING = 1e-5
+# A margin that changes by more than this share of the one asked for on the finer mesh is said to be unresolved; those beyond so
+# many of it judge no layout.
+_UNRESOLVED = 0.1
+_NEAR = 2.0
 # Modes that take part by less than this are in no list.
 _NOTHING = 1e-5
 
@@ -125,6 +129,7 @@ def optimise(
     if not lines:
         raise AnalysisError("no excitation: the shafts stand still, or no orders are given")
     numbers = numbers_of(model, free)
+    check_speed_is_fixed(numbers.addresses, "--speeds: a layout keeps its margins at several")
     low, high, notes = bounds_of(numbers, bounds or {})
     top = max(line.frequency_hz(speed) for line in lines for speed in at)
     plan = Plan(elements) if elements else Plan(1, _ORDER)
@@ -312,6 +317,11 @@ def _result(problem: Problem, end: _End, objective: str) -> OptimiseResult:
                 float(pull[j]),
             )
         )
+    change, where = _change_of_mesh(problem, ((problem.start, before), (end.t, after)))
+    coarse = (
+        f"the margin of {where} changes by {100.0 * change:.2g} % of the excitation on the mesh of the table, one finer than "
+        "that of the search: ask for more elements",
+    )
     return OptimiseResult(
         model=numbers.model,
         numbers=tuple(rows),
@@ -332,15 +342,31 @@ def _result(problem: Problem, end: _End, objective: str) -> OptimiseResult:
         searches_reached=0,
         searches=0,
         dofs=after[0].system.n,
+        warnings=coarse if change > _UNRESOLVED * problem.asked else (),
         method="sequential quadratic programming on a penalty with exact gradients",
     )
 
 
 def _on_finer_mesh(problem: Problem) -> Problem:
-    """The problem on a finer mesh, by which it is judged."""
+    """The problem on a finer mesh and on maps of its own, by which it is judged."""
     plan = problem.plan
     finer = Plan(2 * plan.elements, plan.order) if plan.order == 1 else Plan(plan.elements, plan.order + 1)
-    return replace(problem, plan=finer, solutions=0, gradients=0)
+    return replace(problem, plan=finer, own_maps=True, solutions=0, gradients=0)
+
+
+def _change_of_mesh(problem: Problem, layouts: Iterable[tuple[NDArray[np.float64], list[State]]]) -> tuple[float, str]:
+    """Largest change of a margin from the mesh of the search to a finer one, on which states are known, and its excitation."""
+    largest = (0.0, "")
+    for t, states in layouts:
+        for coarse, fine in zip(problem.states(t), states, strict=True):
+            for k, line in enumerate(problem.lines):
+                # Without a mode that counts the margin is as good as the whole excitation.
+                one, other = (
+                    float(np.nan_to_num(abs(_nearest(state, k, problem)[1]), nan=1.0)) for state in (coarse, fine)
+                )
+                if min(one, other) < _NEAR * problem.asked:
+                    largest = max(largest, (abs(one - other), line.name))
+    return largest
 
 
 def _margin_rows(problem: Problem, before: list[State], after: list[State]) -> list[LayoutMargin]:

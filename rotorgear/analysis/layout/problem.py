@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorgear.analysis.common.request import direction_of
 from rotorgear.analysis.layout.deviation import with_deviations
 from rotorgear.analysis.layout.penalty import near_modes, penalty, penalty_slopes
 from rotorgear.analysis.layout.state import State, state_of, total_mass
-from rotorgear.analysis.scatter.family import system_at
+from rotorgear.analysis.scatter.family import neighbour, system_at
 from rotorgear.errors import AnalysisError
 from rotorgear.model.numbers import Numbers
 from rotorgear.results.steady.campbell import ExcitationOrder
@@ -40,6 +41,8 @@ class Problem:
         least: least participation that counts.
         deviations: standard deviations of a mode's frequency that are added to its margin, by [scatter] of the model; None:
             scatter is not looked at.
+        own_maps: whether loaded teeth that tilt have their own face maps in each layout, which take nearly all the time; else
+            those of the file, as long as they hold.
         solutions, gradients: how many were needed so far.
     """
 
@@ -54,6 +57,7 @@ class Problem:
     asked: float
     least: float
     deviations: float | None = None
+    own_maps: bool = False
     solutions: int = field(default=0)
     gradients: int = field(default=0)
 
@@ -69,6 +73,8 @@ class Problem:
     def states(self, t: NDArray[np.float64]) -> list[State]:
         """The modes at every speed."""
         model = self.numbers.at(self.values(t))
+        if not self.own_maps:
+            model = neighbour(self.numbers.model, model, self.speeds[0])
         self.solutions += len(self.speeds)
         found = [
             state_of(model, speed, self.plan, self.lines, self.below_hz, margin=self.margin, least=self.least)
@@ -110,9 +116,7 @@ class Problem:
         """Mass of the rotors in kg and its derivatives (p,)."""
 
         def at(point: NDArray[np.float64]) -> float:
-            return total_mass(
-                system_at(self.numbers.at(self.low + point * (self.high - self.low)), self.speeds[0], self.plan)
-            )
+            return total_mass(self._at_rest(self.low + point * (self.high - self.low)))
 
         # Masses are polynomials of low degree: wide central differences are as good as exact.
         steps = 1e-3 * np.eye(len(t))
@@ -131,10 +135,9 @@ class Problem:
     def _beside(self, t: NDArray[np.float64], j: int, state: State) -> tuple[System, System, float]:
         step = np.zeros(len(t))
         step[j] = _STEP
-        above, below = (
-            system_at(self.numbers.at(self.low + (t + side * step) * (self.high - self.low)), state.speed, self.plan)
-            for side in (1.0, -1.0)
-        )
+        sides = (self.numbers.at(self.low + (t + side * step) * (self.high - self.low)) for side in (1.0, -1.0))
+        beside = (neighbour(state.system.model, model, state.speed) for model in sides)
+        above, below = (system_at(model, state.speed, self.plan) for model in beside)
         if not above.n == below.n == state.system.n:
             raise AnalysisError(
                 f"{self.numbers.addresses[j]}: its place is too near to another one to be differentiated"
@@ -155,4 +158,9 @@ class Problem:
 
     def _size(self, t: NDArray[np.float64]) -> int:
         """Number of dofs at t: it changes where places part or come together."""
-        return system_at(self.numbers.at(self.values(t)), self.speeds[0], self.plan).n
+        return self._at_rest(self.values(t)).n
+
+    def _at_rest(self, values: NDArray[np.float64]) -> System:
+        """The system at some values (p,), for what no equilibrium changes: masses and places."""
+        model = self.numbers.at(values)
+        return System(model, plan=self.plan, load=model.mean_load(direction_of(self.speeds[0])))

@@ -17,6 +17,7 @@ class Wanted:
         only: motions that a group of dofs must have to be solved; empty for all.
         pruning: False solves all dofs as one group, for comparison.
         damped: False leaves out, at a speed, all that takes energy out or brings it in: what is left is gyroscopic.
+        dofs: of which a group must have one to be solved; None: all groups are.
     """
 
     speed: float | None
@@ -25,6 +26,7 @@ class Wanted:
     only: tuple[str, ...] = ()
     pruning: bool = True
     damped: bool = True
+    dofs: frozenset[int] | None = None
 
 
 @dataclass(frozen=True)

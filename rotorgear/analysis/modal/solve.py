@@ -101,6 +101,8 @@ def solve(system: System, wanted: Wanted) -> Modes:
     groups, still = groups_with_inertia(system, groups, whole.D)
     motions = dof_motions(system)
     chosen = [group for group in groups if not wanted.only or set(motions[group]) & set(wanted.only)]
+    if wanted.dofs is not None:
+        chosen = [group for group in chosen if not wanted.dofs.isdisjoint(group.tolist())]
     if not chosen:
         raise AnalysisError(f"no dof of the model moves in {' or '.join(wanted.only)}")
     try:

@@ -91,14 +91,18 @@ def _conservative(K: np.ndarray) -> np.ndarray:
     return np.asarray((directions * np.maximum(values, 0.0)) @ directions.T)
 
 
-def damped_modes(system: System, limit: float, speed: float) -> tuple[np.ndarray, np.ndarray]:
+def damped_modes(
+    system: System, limit: float, speed: float, dofs: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Undamped modes up to a frequency in rad/s: shapes (n, m) of modal mass 1, and w (m,), 0 where rigid.
 
-    They are those of the conservative part of the model at standstill, with bearings as at a speed of the reference shaft.
+    They are those of the conservative part of the model at standstill, with bearings as at a speed of the reference shaft; where
+    dofs are given, only of the groups that have one of these.
     """
     model = at_speed(system.model, speed)
     if model is not system.model:
         system = System(model, plan=system.plan, load=system.load)
-    found = solve(system, Wanted(None, None, limit))
+    among = None if dofs is None else frozenset(dofs.tolist())
+    found = solve(system, Wanted(None, None, limit, dofs=among))
     keep = np.flatnonzero(found.vectors.any(axis=0))
     return np.real(found.vectors[:, keep]), np.where(found.rigid, 0.0, np.abs(found.eigenvalues))[keep]

@@ -3,7 +3,8 @@
 Reduced coordinates are those of the undamped modes of the conservative part up to a multiple of the highest frequency, and of
 static shapes (K + s^2 M)^-1 [B C^T] under unit forces at inputs and outputs, which stand for the modes above (residual
 flexibility, R. R. Craig and A. J. Kurdila, Fundamentals of Structural Dynamics, 2nd ed., Wiley 2006, ch. 17); the shift s lets
-trains turn freely. Where gyroscopic moments and damping need more, whole displacements at single frequencies join them.
+trains turn freely. Where gyroscopic moments and damping need more, whole displacements at single frequencies join them. Motions
+that no matrix joins with an input or an output take part in no response, and have no coordinates.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ from rotorgear.progress import Progress, silent
 from rotorgear.results.steady.state_space import StateSpace
 from rotorgear.solvers.frequency.harmonic import Dynamics
 from rotorgear.solvers.sparse.factor import factor_general
+from rotorgear.system.components import dof_motions, independent_groups
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.system import System
 
@@ -111,11 +113,20 @@ def state_space(
             "reduced one, or write sparse matrices"
         )
     limit = 2.0 * np.pi * fmax
-    modes = (*damped_modes(system, DAMPED * limit, turns), zeta) if zeta else None
-    plant = Plant(system, contact_lines(system), modes)
-    dynamics = plant.dynamics(turns)
     B = np.array([ports.row(system, text) for text in inputs]).T
     C = np.array([ports.row(system, text) for text in outputs])
+    groups = _groups(system, turns)
+    unmoved = tuple(
+        f"no input moves {text}: its responses are 0"
+        for text, row in zip(outputs, C, strict=True)
+        if not _meet(groups, row, B)
+    )
+    reached = np.arange(system.n) if full else _reached(system, groups, np.hstack([B, C.T]))
+    modes = (*damped_modes(system, DAMPED * limit, turns, reached), zeta) if zeta else None
+    plant = Plant(system, contact_lines(system), modes)
+    dynamics = plant.dynamics(turns).cut(reached)
+    B = B[reached]
+    C = C[:, reached]
     progress(0.4, "matrices")
     damped = bool(zeta) or bool(system.damping(turns).nnz)
     if full:
@@ -123,9 +134,9 @@ def state_space(
         error = 0.0
         kept = 0
     else:
-        kept_modes, w = damped_modes(system, _KEPT * limit, turns)
+        kept_modes, w = damped_modes(system, _KEPT * limit, turns, reached)
         kept = len(w)
-        basis = _basis(dynamics, kept_modes, np.hstack([B, C.T]), _SHIFT * limit)
+        basis = _basis(dynamics, kept_modes[reached], np.hstack([B, C.T]), _SHIFT * limit)
         progress(0.6, "error of the reduction")
         made, error = _reduced(dynamics, B, C, basis, limit, damped, accuracy or ACCURACY)
     progress(1.0, "done")
@@ -156,8 +167,9 @@ def state_space(
             *rolling_notes(model, rolls=False),
             *load_notes(system, "frf"),
             *mesh_stiffness_left_out(system),
+            *_apart(system, reached),
         ),
-        warnings=(*(() if damped else (_UNDAMPED,)), *((short,) if short else ())),
+        warnings=(*(() if damped else (_UNDAMPED,)), *unmoved, *((short,) if short else ())),
         status=short or "success",
         method="all degrees of freedom" if full else "modes and static shapes",
     )
@@ -171,6 +183,48 @@ def linear_system(
     first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
     plan = plan_up_to(at_speed(linear, turns), MARGIN * fmax, elements, accuracy)
     return System(linear, plan=plan, load=first.system.load.of_kind("dynamic")), (*first.notes, *notes)
+
+
+def _groups(system: System, turns: float) -> np.ndarray:
+    """The number of the group of each dof (n,); groups do not act on each other at a speed in rad/s."""
+    matrices = [system.mass, system.stiffness(turns), system.circulatory(turns), system.damping(turns)]
+    if turns:
+        matrices.append(system.gyroscopic)
+    number = np.zeros(system.n, dtype=int)
+    for k, group in enumerate(independent_groups(matrices)):
+        number[group] = k
+    return number
+
+
+def _meet(groups: np.ndarray, row: np.ndarray, B: np.ndarray) -> bool:
+    """Whether an output (n,) has a group with an input of B (n, i) in common."""
+    return bool(np.intersect1d(groups[row != 0.0], groups[np.any(B, axis=1)]).size)
+
+
+def _reached(system: System, groups: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """The dofs (r,) of the groups in which one of the places (n, p) is, ascending.
+
+    Raises:
+        AnalysisError: nothing has inertia there, so that there are no modes to reduce to.
+    """
+    reached = np.flatnonzero(np.isin(groups, groups[np.any(places, axis=1)]))
+    if not np.any(system.mass.diagonal()[reached] > 0.0):
+        raise AnalysisError(
+            "nothing that has inertia moves with these inputs and outputs; give the body there its inertia, or write the full "
+            "system"
+        )
+    return reached
+
+
+def _apart(system: System, reached: np.ndarray) -> tuple[str, ...]:
+    """What is left out because no input moves it and no output sees it."""
+    rest = np.setdiff1d(np.arange(system.n), reached)
+    if not rest.size:
+        return ()
+    motions = ", ".join(dict.fromkeys(dof_motions(system)[rest]))
+    return (
+        f"motions that no input moves and no output sees: {len(rest)} of {system.n} degrees of freedom ({motions})",
+    )
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from rotorgear.analysis.scatter.family import Family, system_at
+from rotorgear.analysis.scatter.family import Family, sampled_system
 from rotorgear.analysis.scatter.modes import FormModes
 from rotorgear.model.spreads import Spreads
 from rotorgear.solvers.eigen.eigen import lowest_modes
@@ -28,16 +28,25 @@ _MOST = 80
 # What is left of a shape beside the others below this share is rounding.
 _SAME = 1e-7
 _STEPS = 6
+# Free motions of one body.
+_OF_A_BODY = 6
 _CONVERGED = 1e-11
 
 
 def nominal_modes(
     system: System, speed: float | None, count: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
-    """w^2 (m,), shapes (n, m) of modal mass 1 of the undamped system that does not rotate, and how many are rigid."""
+    """w^2 (m,), shapes (n, m) of modal mass 1 of the undamped system that does not rotate, and how many are rigid.
+
+    They are `count`, or more where bodies beside each other have more free motions than one.
+    """
     S = system.strain_factor(speed or 0.0)
     strain = None if S is None else (lambda X: S @ X)
-    found = lowest_modes(system.mass, system.stiffness(speed or 0.0), count=count, strain=strain)
+    asked = count
+    found = lowest_modes(system.mass, system.stiffness(speed or 0.0), count=asked, strain=strain)
+    while not found.complete and len(found.eigenvalues) - found.rigid_count < count - _OF_A_BODY:
+        asked = 2 * asked
+        found = lowest_modes(system.mass, system.stiffness(speed or 0.0), count=asked, strain=strain)
     return found.eigenvalues, found.vectors, found.rigid_count
 
 
@@ -54,8 +63,8 @@ def basis_of(
     for j in range(len(spreads)):
         z = np.zeros(len(spreads))
         z[j] = _SIDE
-        above = system_at(spreads.at(z), speed, plan)
-        below = system_at(spreads.at(-z), speed, plan)
+        above = sampled_system(spreads, z, speed, plan)
+        below = sampled_system(spreads, -z, speed, plan)
         for other, sign in ((above, 1.0), (below, -1.0)):
             if other.n == system.n:
                 K = other.stiffness(speed or 0.0) - system.stiffness(speed or 0.0)

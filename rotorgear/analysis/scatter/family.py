@@ -1,21 +1,23 @@
 """The forms of a model over one basis as functions of its scattering numbers.
 
 A number changes the forms of its own parts, so that F(z) = F(0) + sum_j [F_j(z_j) - F(0)] as long as no two numbers meet in one
-element. Each F_j is interpolated at Chebyshev points, which is exact for the powers 1 (stiffness) to 4 (diameter) in which
-numbers enter. Three points show which numbers enter by themselves, the others get all. Sum and interpolation are checked by
-whole systems at points of their own; where they do not hold, every sample is assembled.
+element, nor in an equilibrium that all of them move. One point shows whether the sum holds, before any interpolation. Each F_j
+is interpolated at Chebyshev points, which is exact for the powers 1 (stiffness) to 4 (diameter) in which numbers enter. Three
+points show which numbers enter by themselves, the others get all. Sum and interpolation are checked by whole systems at points
+of their own; where they do not hold, every sample is assembled.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rotorgear.analysis.common.request import direction_of
 from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS, forms_of
-from rotorgear.analysis.static.tangent import about_equilibrium
+from rotorgear.analysis.static.tangent import about_equilibrium, with_maps_of
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
 from rotorgear.model.spreads import Spreads
@@ -31,12 +33,37 @@ _TRIALS = 3
 _SUM_ERROR = 1e-8
 # Terms that are rounding are left out.
 _NOTHING = 1e-13
+# Samples that are asked for again: the outermost ones, and those that show which modes turn into each other.
+_KEPT = 96
 
 
 def system_at(model: Model, speed: float | None, plan: Plan) -> System:
     """The linear system of a model at a speed of the reference shaft, about its equilibrium, on the mesh of a plan."""
     linear, _ = about_equilibrium(model, [speed])
     return System(linear, plan=plan, load=linear.mean_load(direction_of(speed)))
+
+
+def neighbour(near: Model, model: Model, speed: float | None) -> Model:
+    """A model with the face maps of another one next to it, as they are at a speed of the reference shaft."""
+    linear, _ = about_equilibrium(near, [speed])
+    return with_maps_of(linear, model)
+
+
+def sample_at(spreads: Spreads, z: NDArray[np.float64], speed: float | None) -> Model:
+    """The model at z (p,), with the face maps of the nominal one."""
+    return neighbour(spreads.numbers.model, spreads.at(z), speed)
+
+
+def sampled_system(spreads: Spreads, z: NDArray[np.float64], speed: float | None, plan: Plan) -> System:
+    """`system_at` of the model at z (p,)."""
+    linear = _linear_at(spreads, tuple(map(float, z)), speed)
+    return System(linear, plan=plan, load=linear.mean_load(direction_of(speed)))
+
+
+@lru_cache(maxsize=_KEPT)
+def _linear_at(spreads: Spreads, z: tuple[float, ...], speed: float | None) -> Model:
+    """The linear model at z: where its equilibrium is that of loaded teeth, it takes longer than all else of a sample."""
+    return about_equilibrium(sample_at(spreads, np.array(z), speed), [speed])[0]
 
 
 @dataclass(frozen=True)
@@ -81,7 +108,7 @@ class Family:
         Raises:
             AnalysisError: a number moves a place past another one.
         """
-        system = system_at(self.spreads.at(z), self.speed, self.plan)
+        system = sampled_system(self.spreads, z, self.speed, self.plan)
         if system.n != self.V.shape[0]:
             names = ", ".join(
                 name for name in self.spreads.numbers.addresses if name.endswith((".at", ".start", ".length"))
@@ -114,6 +141,9 @@ def family_of(
     """Return the family over a basis V (n, r)."""
     nominal = forms_of(system_at(spreads.numbers.model, speed, plan), speed or 0.0, V)
     bare = Family(spreads, speed, plan, V, nominal, None)
+    trials = np.random.default_rng(0).uniform(-0.7, 0.7, (_TRIALS, len(spreads))) * spreads.reach
+    if not _adds_up(bare, trials[0]):
+        return bare
     changes = []
     for j in range(len(spreads)):
         progress(j / len(spreads), f"number {j + 1} of {len(spreads)}")
@@ -121,10 +151,17 @@ def family_of(
         linear = all(len(coefficients) < _FEW for coefficients in few.values())
         changes.append(few if linear else _interpolated(bare, j, _POINTS))
     whole = Family(spreads, speed, plan, V, nominal, _terms(changes))
-    trials = np.random.default_rng(0).uniform(-0.7, 0.7, (_TRIALS, len(spreads))) * spreads.reach
     if all(_error(whole.at(z), bare.assembled(z)) < _SUM_ERROR for z in trials):
         return whole
     return bare
+
+
+def _adds_up(bare: Family, z: NDArray[np.float64]) -> bool:
+    """Whether the change of the forms at z is the sum of those of each number by itself."""
+    if len(z) == 1:
+        return True
+    summed = bare.nominal + sum(bare.assembled(alone) - bare.nominal for alone in np.diag(z))
+    return _error(summed, bare.assembled(z)) < _SUM_ERROR
 
 
 def _interpolated(bare: Family, j: int, points: int) -> dict[int, NDArray[np.float64]]:
@@ -135,10 +172,12 @@ def _interpolated(bare: Family, j: int, points: int) -> dict[int, NDArray[np.flo
     fit = np.cos(np.outer(k, angles)) * (2.0 / points)
     fit[0] *= 0.5
     seen = []
-    for x in np.cos(angles):
+    for place, x in enumerate(np.cos(angles)):
         z = np.zeros(len(bare.spreads))
         z[j] = bare.spreads.reach[j] * x
-        seen.append(bare.assembled(z) - bare.nominal)
+        # The middle one of an odd number of points is the nominal model.
+        middle = 2 * place + 1 == points
+        seen.append(np.zeros_like(bare.nominal) if middle else bare.assembled(z) - bare.nominal)
     found = {}
     for form, nominal in enumerate(bare.nominal):
         change = np.array([forms[form] for forms in seen])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorgear.analysis.scatter.family import sample_at
 from rotorgear.analysis.scatter.forms import GYROSCOPIC, MASS, STIFFNESS
 from rotorgear.analysis.scatter.samples import Study, shares_at
 
@@ -49,6 +50,7 @@ def share_slopes(study: Study) -> NDArray[np.float64]:
         for j in range(len(spreads)):
             z = np.zeros(len(spreads))
             z[j] = _STATIC_STEP
-            above, below = (shares_at(spreads.at(side * z), study.family.speed, study.shared) for side in (1.0, -1.0))
+            sides = (sample_at(spreads, side * z, study.family.speed) for side in (1.0, -1.0))
+            above, below = (shares_at(model, study.family.speed, study.shared) for model in sides)
             found[:, j] = (above - below) / (2.0 * _STATIC_STEP)
     return found

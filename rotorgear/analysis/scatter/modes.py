@@ -49,7 +49,7 @@ def modes_of(forms: NDArray[np.float64], count: int, least: float, wide: int) ->
         forms: (a, r, r), the first three K, M and W G.
         count: how many.
         least: frequency in rad/s below which a motion is rigid.
-        wide: so many modes of K and M carry those of the rotating system.
+        wide: among so many modes of K and M they are looked for; these carry those of a rotating system.
     """
     K = forms[STIFFNESS]
     M = forms[MASS]
@@ -57,7 +57,7 @@ def modes_of(forms: NDArray[np.float64], count: int, least: float, wide: int) ->
     rotates = bool(np.any(forms[GYROSCOPIC]))
     # All modes of so small a problem by divide and conquer cost half of what the lowest cost one by one.
     values, T = la.eigh(0.5 * (K + K.T), 0.5 * (M + M.T), driver="gvd", check_finite=False)
-    last = min(r, wide if rotates else count + 6)
+    last = min(r, wide)
     values = values[:last]
     T = T[:, :last]
     elastic = values > least**2

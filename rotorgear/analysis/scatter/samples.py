@@ -14,7 +14,7 @@ import numpy as np
 import scipy.linalg as la
 from numpy.typing import NDArray
 
-from rotorgear.analysis.scatter.family import Family
+from rotorgear.analysis.scatter.family import Family, sample_at
 from rotorgear.analysis.scatter.forms import MASS, STIFFNESS, FormNames
 from rotorgear.analysis.scatter.modes import FormModes, modes_of, overlaps, times
 from rotorgear.analysis.static.shares import load_shares
@@ -214,7 +214,7 @@ def nearest_margin(hz: NDArray[np.float64], able: NDArray[np.bool_], line_hz: fl
 def _shares(study: Study, z: NDArray[np.float64]) -> NDArray[np.float64]:
     if not study.shared:
         return np.zeros(0)
-    return shares_at(study.family.spreads.at(z), study.family.speed, study.shared)
+    return shares_at(sample_at(study.family.spreads, z, study.family.speed), study.family.speed, study.shared)
 
 
 def shares_at(model: Model, speed: float | None, wanted: tuple[tuple[str, str], ...]) -> NDArray[np.float64]:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rotorgear.analysis.common.excitation import excitation_orders
 from rotorgear.analysis.common.pool import Pool, in_order
 from rotorgear.analysis.common.recorded import recorded
-from rotorgear.analysis.common.request import check_request, check_whole, speed_in_si
+from rotorgear.analysis.common.request import check_request, check_speed_is_fixed, check_whole, speed_in_si
 from rotorgear.analysis.modal.modal import modal
 from rotorgear.analysis.scatter.basis import basis_of, nominal_modes, whole_modes, with_shapes
 from rotorgear.analysis.scatter.family import Family, family_of, system_at
@@ -139,6 +139,7 @@ def scatter(
     if not 0.0 < participation < 1.0:
         raise AnalysisError(f"participation: got {participation:g}, expected a share between 0 and 1, such as 0.01")
     spreads = spreads_of(model, _given(model, free, sigma, tolerance, distribution, sharing))
+    check_speed_is_fixed(spreads.numbers.addresses, "--speed, and compare runs")
     begun = clock.perf_counter()
     with single_thread(0):
         plan = Plan(elements) if elements else _plan_of(model, at, modes + SPARE, accuracy)
@@ -217,10 +218,15 @@ def _share(value: float | str, what: str) -> float:
 
 
 def _plan_of(model: Model, speed: float | None, modes: int, accuracy: float | None) -> Plan:
-    """The mesh on which so many modes are within an accuracy."""
+    """The mesh on which so many modes are within an accuracy, beside all rigid ones where these are more than the spare ones."""
+    found = modal(model, modes=modes, speed=speed, accuracy=accuracy)
+    asked = modes
+    while len(found.rigid) == asked and np.count_nonzero(~found.rigid) < modes - SPARE:
+        asked = 2 * asked
+        found = modal(model, modes=asked, speed=speed, accuracy=accuracy)
     cut = {}
     counted: dict[str, int] = {}
-    for piece in modal(model, modes=modes, speed=speed, accuracy=accuracy).discretisation:
+    for piece in found.discretisation:
         number = counted.get(piece.shaft, 0)
         counted[piece.shaft] = number + 1
         cut[piece.shaft, number] = (piece.elements, piece.order)

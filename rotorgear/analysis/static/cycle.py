@@ -308,7 +308,7 @@ class _Problem:
         contact_map = self.maps[contact]
         if contact_map is not None:
             return float(contact_map.stiffness(cycle.approach[:, contact] - self.gap[contact], u).mean()), None
-        law = self._law_of(contact)
+        law = self.face_laws[contact]
         d = np.stack([cycle.approach[:, contact], cycle.tilt[:, contact]], axis=1)
         T = law.evaluate_many(d, 0.0 * d, angle=2.0 * math.pi * u).in_displacement.mean(axis=0)
         place = float(T[0, 1] / T[0, 0])
@@ -317,17 +317,22 @@ class _Problem:
         couple = float(cycle.moment[:, contact].mean() - place * cycle.force[:, contact].mean()) - against_tilt * tilt
         return float(T[0, 0]), FaceState(place, against_tilt, place * tilt, couple)
 
-    def _law_of(self, contact: int) -> ForceLaw:
-        face_map = self.face_maps[contact]
-        assert face_map is not None
-        return face_law(face_map, float(self.equilibrium.lines.stiffness[contact]), float(self.gap[contact]))
+    @cached_property
+    def face_laws(self) -> dict[int, ForceLaw]:
+        """The law of each contact that has a face map, by its number: to turn a map over takes as long as a cycle on it."""
+        stiffness = self.equilibrium.lines.stiffness
+        return {
+            i: face_law(face_map, float(stiffness[i]), float(self.gap[i]))
+            for i, face_map in enumerate(self.face_maps)
+            if face_map is not None
+        }
 
     def _table(self, contact: int, position: np.ndarray, runs: bool) -> MapTable | FaceTable:
         """The map of a contact at the positions of a cycle, or its mean over the map."""
         u = self.sense[contact] * (self.pitch[contact] + position) if runs else None
         face_map = self.face_maps[contact]
         if face_map is not None:
-            law = self._law_of(contact)
+            law = self.face_laws[contact]
             if u is None:
                 return FaceTable(law.mean(), np.zeros(len(position)), np.ones((len(position), 1)))
             rows = np.moveaxis(face_map.approaches(u), 1, 0).reshape(len(position), -1)

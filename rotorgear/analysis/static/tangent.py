@@ -102,6 +102,25 @@ def _about_equilibrium(
     return model.model_copy(update=changed), tuple(notes)
 
 
+def with_maps_of(linear: Model, model: Model) -> Model:
+    """A model with the face maps of another one next to it, as long as its state lies among their misalignments.
+
+    Maps of loaded teeth that feel the tilt of their shafts take nearly all the time of an equilibrium. And a map is known to a
+    few thousandths of its tangents only: were each model on a map of its own, the difference of two would be off by as much.
+
+    Args:
+        linear: the other one, about its equilibrium.
+        model: one with the same meshes.
+    """
+    mapped = [name for name, mesh in linear.meshes.items() if mesh.stiffness == "tooth_fe" and mesh.face_loads]
+    meshes = dict(model.meshes)
+    for name in mapped:
+        layout = linear.layout.mesh(name)
+        helices = range(len(layout.part.face_loads))
+        meshes[name] = meshes[name].mapped_at(tuple(layout.map_misalignments(helix) for helix in helices))
+    return model.model_copy(update={"meshes": meshes}) if mapped else model
+
+
 def about_equilibrium_of(
     model: Model | System, speeds: Sequence[float | None]
 ) -> tuple[Model | System, Model, tuple[str, ...]]:

@@ -83,6 +83,11 @@ def misalignments(state: float, given: float, deflection: float) -> tuple[float,
     return tuple(float(f"{state - place * spread:.9g}") for place in _PLACES)
 
 
+def holds(asked: tuple[float, ...], state: float) -> bool:
+    """Whether a map at misalignments (m), falling, is one about another state too: one cell at least on either side of it."""
+    return asked[-2] <= state <= asked[1]
+
+
 def face_map(teeth: ToothPair, load: float, asked: tuple[float, ...], given: float, near: bool = False) -> FaceMap:
     """Solve the map of a pair for some misalignments.
 

@@ -376,12 +376,11 @@ class MeshLayout:
         """
         if self.part.stiffness != "tooth_fe" or not self.part.face_loads or not normal_force:
             return None
-        from rotorgear.gears.maps.face_map import face_map, misalignments
+        from rotorgear.gears.maps.face_map import face_map
 
-        face = self.part.face_loads[helix]
         teeth = self.working_teeth(sense)
         given = self.part.misalignment
-        asked = misalignments(face.misalignment, given, face.force / face.static.stiffness)
+        asked = self.map_misalignments(helix)
         load = float(f"{normal_force:.12g}")
         try:
             if self.helix_senses(sense)[helix] > 0:
@@ -389,6 +388,15 @@ class MeshLayout:
             return face_map(mirrored(teeth), load, tuple(-f for f in reversed(asked)), -given, near).mirrored
         except AnalysisError as error:
             raise AnalysisError(f"meshes.{self.name}: {error}") from None
+
+    def map_misalignments(self, helix: int) -> tuple[float, ...]:
+        """Misalignments (m), falling, of the face map of a helix: about its state, or those of models next to this one."""
+        from rotorgear.gears.maps.face_map import holds, misalignments
+
+        face = self.part.face_loads[helix]
+        if self.part.map_misalignments and holds(self.part.map_misalignments[helix], face.misalignment):
+            return self.part.map_misalignments[helix]
+        return misalignments(face.misalignment, self.part.misalignment, face.force / face.static.stiffness)
 
     def coast_map(self, helix: int, normal_force: float, sense: int) -> ContactMap | None:
         """F(delta, u) of the flanks behind working ones that a torque of this sense about +z presses.

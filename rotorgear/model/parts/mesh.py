@@ -139,6 +139,20 @@ class Mesh(Part):
         settled._face_loads = face_loads
         return settled
 
+    # Where each helix is solved for its face map, where models next to each other share one: no file gives it either.
+    _map_misalignments: tuple[tuple[float, ...], ...] = PrivateAttr(())
+
+    @property
+    def map_misalignments(self) -> tuple[tuple[float, ...], ...]:
+        """Misalignments (m) of the face map of each helix, falling; empty where they are those about its own state."""
+        return self._map_misalignments
+
+    def mapped_at(self, misalignments: tuple[tuple[float, ...], ...]) -> Mesh:
+        """The same mesh with face maps at these misalignments (m) of each helix, as long as its states lie among them."""
+        shared = self.model_copy()
+        shared._map_misalignments = misalignments
+        return shared
+
     # The mean state of each helix over the mesh cycle, from all loaded teeth together; a linear analysis is about it.
     _helix_states: tuple[HelixState, ...] = PrivateAttr(())
 

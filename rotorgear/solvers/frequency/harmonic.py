@@ -7,7 +7,7 @@ below the tolerance. Greedy reduced basis: Hesthaven, Rozza and Stamm, Certified
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg as la
@@ -42,6 +42,12 @@ class Dynamics:
     D: sp.csc_array
     K: sp.csc_array
     low_rank: LowRankDamping | None = None
+
+    def cut(self, dofs: np.ndarray) -> Dynamics:
+        """Those of some dofs (k,) on which no others act."""
+        M, D, K = (sp.csc_array(A[dofs][:, dofs]) for A in (self.M, self.D, self.K))
+        low_rank = None if self.low_rank is None else replace(self.low_rank, vectors=self.low_rank.vectors[dofs])
+        return Dynamics(M, D, K, low_rank)
 
     def solve(self, w: float, f: np.ndarray) -> np.ndarray:
         """Solve at one frequency in rad/s: f (n, p) complex -> q (n, p).

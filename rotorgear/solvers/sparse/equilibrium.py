@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import ConvergenceError
-from rotorgear.solvers.sparse.nullspace import SupportedSolver
+from rotorgear.solvers.sparse.nullspace import SupportedSolver, orthonormal_motions
 from rotorgear.solvers.sparse.static import UnbalancedLoadError
 
 _BALANCE = 1e-8  # as in static.py: work relative to the sum of its absolute parts that counts as none
@@ -33,7 +33,7 @@ class Equilibrium:
         diagonal = np.abs(self._K.diagonal())
         typical = float(np.median(diagonal[diagonal > 0.0])) if np.any(diagonal > 0.0) else 1.0
         self._scale = np.sqrt(np.where(diagonal > 0.0, diagonal, typical))
-        self._R = np.linalg.qr(R * self._scale[:, None])[0]  # of q * scale
+        self._R = orthonormal_motions(R * self._scale[:, None])  # of q * scale
         self._solver = SupportedSolver(self._K, self._R, self._R)
 
     def solve(self, f: np.ndarray, *, carried: bool = False) -> np.ndarray:

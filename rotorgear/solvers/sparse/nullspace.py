@@ -2,6 +2,7 @@
 
 The support dofs come from a pivoted QR of R: R restricted to them is well conditioned, so K without them is regular.
 When f is orthogonal to the left null space the support carries no load, and the solution is exact.
+Bodies that nothing joins have no dof in common: each has its own QR, of its few motions.
 Golub and Van Loan, Matrix Computations, 4th ed., section 5.4 (column pivoting).
 """
 
@@ -10,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.sparse.factor import Factor, factor_general
@@ -20,11 +22,37 @@ _SLOW = 1e-10
 
 def support_dofs(R: np.ndarray) -> np.ndarray:
     """The r dofs (r,) whose fixing stops all motions R (n, r); scale the rows of R to comparable units first."""
-    if R.shape[1] == 0:
-        return np.zeros(0, dtype=int)
-    _, order = la.qr(R.T, mode="r", pivoting=True)
-    dofs: np.ndarray = np.sort(order[: R.shape[1]])
-    return dofs
+    chosen = [np.zeros(0, dtype=int)]
+    for dofs, motions in _bodies(R):
+        _, order = la.qr(R[np.ix_(dofs, motions)].T, mode="r", pivoting=True)
+        chosen.append(dofs[order[: len(motions)]])
+    return np.sort(np.concatenate(chosen))
+
+
+def orthonormal_motions(R: np.ndarray) -> np.ndarray:
+    """An orthonormal basis (n, r) of the motions R (n, r), in which those of a body move no dof of another one."""
+    Q = np.zeros(R.shape)
+    for dofs, motions in _bodies(R):
+        Q[np.ix_(dofs, motions)] = np.linalg.qr(R[np.ix_(dofs, motions)])[0]
+    return Q
+
+
+def _bodies(R: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Dofs and motions of the parts of R (n, r) that have no dof in common; all of R where one of them is not regular."""
+    n, r = R.shape
+    dof, motion = np.nonzero(R)
+    graph = sp.coo_array((np.ones(len(dof), dtype=np.int8), (dof, n + motion)), shape=(n + r, n + r))
+    label = connected_components(graph, directed=False)[1]
+    of_dofs = np.argsort(label[:n], kind="stable")
+    of_motions = np.argsort(label[n:], kind="stable")
+    values = np.unique(label[n:])
+    # The places of each number in both sorted lists.
+    first = [np.searchsorted(label[:n][of_dofs], values, side) for side in ("left", "right")]
+    second = [np.searchsorted(label[n:][of_motions], values, side) for side in ("left", "right")]
+    bodies = [(of_dofs[a:b], of_motions[c:d]) for a, b, c, d in zip(*first, *second, strict=True)]
+    if any(len(dofs) < len(motions) for dofs, motions in bodies):
+        return [(np.arange(n), np.arange(r))]
+    return bodies
 
 
 def in_comparable_units(R: np.ndarray, K: sp.csc_array, M: sp.csc_array) -> np.ndarray:
@@ -44,7 +72,7 @@ def left_null_space(K: sp.csc_array, M: sp.csc_array, R: np.ndarray) -> np.ndarr
     """Orthonormal L (n, r) with L^T K = 0, by inverse iteration; R itself when K is symmetric."""
     skew = abs(K - K.T)
     if R.shape[1] == 0 or skew.nnz == 0 or skew.max() <= 1e-14 * abs(K).max():
-        return np.linalg.qr(R)[0]
+        return orthonormal_motions(R)
     # Inverse iteration beside zero: each step shrinks all other left vectors by 1e-6 / |lambda|: four are plenty.
     factor = factor_general(sp.csc_array(K + 1e-6 * M))
     L = R

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import tomllib
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from scipy.io import loadmat
 from scipy.linalg import eigh
 
 import rotorgear as rg
+from rotorgear.errors import AnalysisError
 from tests.paths import ROOT
 
 PLACES: dict[str, Any] = {
@@ -67,6 +69,42 @@ def test_an_undamped_reduction_keeps_the_natural_frequencies() -> None:
     inside = exact[(exact > 1.0) & (exact < FMAX)]
     found = frequencies(system)
     assert found[found > 1.0][: len(inside)] == pytest.approx(inside, rel=1e-8)
+
+
+def test_what_no_place_reaches_has_no_coordinates() -> None:  # seed 202267: 200 loose shafts beside a pair
+    loose = {f"loose_{k}": {"sections": [{"length": 0.2, "outer_diameter": 0.03}]} for k in range(3)}
+    text = tomllib.loads((ROOT / "models" / "helical_pair.toml").read_text(encoding="utf-8"))
+    beside = rg.Model(**{**text, "shafts": {**text["shafts"], **loose}})
+    alone = rg.state_space(pair(), fmax=FMAX, modal_damping=0.02, elements=1, **PLACES)
+    system = rg.state_space(beside, fmax=FMAX, modal_damping=0.02, elements=1, **PLACES)
+    assert system.size == alone.size
+    assert system.kept_modes == alone.kept_modes
+    assert system.dofs == alone.dofs + 36
+    hz = np.linspace(7.0, FMAX, 23)
+    assert relative_difference(system.receptance(hz), alone.receptance(hz)) < 1e-9
+    [apart] = [note for note in system.left_out if note.startswith("motions that no input moves")]
+    assert apart.endswith(f"36 of {system.dofs} degrees of freedom (bending, axial, torsion)")
+    whole = rg.state_space(beside, fmax=FMAX, modal_damping=0.02, elements=1, full=True, **PLACES)
+    assert whole.size == whole.dofs
+
+
+def test_an_output_that_no_input_moves_is_told() -> None:
+    rotor = rg.load(ROOT / "models" / "jeffcott.toml")
+    places = {"inputs": ["disks.disk:x"], "outputs": ["disks.disk:x", "disks.disk:y"], "fmax": 100.0, "elements": 1}
+    assert rg.state_space(rotor, **places).warnings == ("no input moves disks.disk:y: its responses are 0",)
+    assert not rg.state_space(rotor, speed="3000 rpm", **places).warnings  # gyroscopic moments join both
+
+
+def test_places_that_move_no_inertia_are_refused() -> None:
+    massless = rg.Model(
+        shafts={"one": {}, "two": {}},
+        disks={"disk": {"shaft": "one", "at": "start", "mass": 1.0, "polar_inertia": 1e-3, "diametral_inertia": 1e-3}},
+        bearings={
+            name: {"shaft": name, "at": "start", "stiffness": {"radial": 1e6, "axial": 1e6}} for name in ("one", "two")
+        },
+    )
+    with pytest.raises(AnalysisError, match="nothing that has inertia moves with these inputs and outputs"):
+        rg.state_space(massless, inputs=["bearings.two:x"], outputs=["bearings.two:x"], fmax=100.0)
 
 
 @pytest.mark.parametrize("ending", ["mat", "npz"])

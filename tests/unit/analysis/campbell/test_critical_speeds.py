@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from tests.contract.small_models import STEEL
 from tests.paths import MODELS
 
 
@@ -97,3 +98,15 @@ def test_whirl_of_a_line_is_that_of_its_own_shaft() -> None:
     )
     assert {item.whirl for item in diagram.crossings if item.excited} == {"forward"}
     assert {item.whirl for item in diagram.margins if item.branch} == {"forward"}
+
+
+def test_free_rotations_of_shafts_that_nothing_joins_are_no_critical_speeds() -> None:
+    # One element each: their strains are rounding too.
+    section = [{"length": 0.2, "outer_diameter": 0.03}]
+    rotor = rg.Model(
+        materials=STEEL,
+        operation={"speed": 157.0, "input_shaft": "held"},
+        shafts={"held": {"sections": section}, "loose": {"start": 1.0, "sections": section}},
+        bearings={"left": {"shaft": "held", "at": "start", "stiffness": {"radial": 1e7}}},
+    )
+    assert rg.critical(rotor).speeds == ()

@@ -12,6 +12,7 @@ from rotorgear.analysis.layout.bounds import bounds_of
 from rotorgear.analysis.layout.penalty import frequency_slopes, near_modes
 from rotorgear.analysis.layout.problem import Problem
 from rotorgear.analysis.layout.state import State, total_mass
+from rotorgear.analysis.scatter import family
 from rotorgear.analysis.scatter.family import system_at
 from rotorgear.analysis.scatter.forms import forms_of
 from rotorgear.analysis.scatter.modes import modes_of
@@ -245,6 +246,25 @@ def test_the_mass_of_the_rotors_is_that_of_the_check():
     assert total_mass(system_at(pair, None, Plan(1))) == pytest.approx(rg.check(pair).total_mass_kg, rel=1e-12)
 
 
+def test_a_mass_asks_for_no_equilibrium(monkeypatch):
+    numbers = numbers_of(model("geared_pair"), "shafts.rotor_1.sections.*.outer_diameter")
+    low, high, _ = bounds_of(numbers, {})
+    problem = Problem(numbers, low, high, (100.0,), (), PLAN, 150.0, 0.4, 0.4, 1e-3)
+    monkeypatch.setattr(family, "about_equilibrium", None)
+    mass, slopes = problem.mass(problem.start)
+    assert mass == pytest.approx(rg.check(model("geared_pair")).total_mass_kg, rel=1e-12)
+    assert np.all(slopes > 0.0)
+
+
+def test_a_margin_that_the_mesh_does_not_resolve_is_told():
+    given = {"free": "shafts.rotor.sections.*.outer_diameter", "margin": "20 %", "searches": 1}
+    # At 2 kHz with one element of order 4 a mode is not there that one of order 5 has.
+    [coarse] = rg.optimise(model("jeffcott"), speeds=["120000 rpm"], **given).warnings
+    assert "the margin of shaft rotor 1x changes by" in coarse
+    assert "ask for more elements" in coarse
+    assert not rg.optimise(model("jeffcott"), speeds=["1500 rpm"], **given).warnings
+
+
 def test_places_stay_on_their_side_of_what_is_beside_them():
     rotor = rg.loads(ROTOR)
     low, high, _ = bounds_of(numbers_of(rotor, "bearings.*.at"), {"bearings.*.at": "-400 mm:1000 mm"})
@@ -259,6 +279,7 @@ def test_places_stay_on_their_side_of_what_is_beside_them():
         ({"free": "bearings.nobody.at"}, "no 'nobody'"),
         ({"free": "bearings.*.at", "margin": "0 %"}, "margin"),
         ({"free": "bearings.*.at", "objective": "beauty"}, "change or mass or scatter"),
+        ({"free": "bearings.*.at, operation.speed"}, "operation.speed can't vary.*give --speeds"),
         ({"free": "bearings.*.at", "objective": "scatter"}, "nothing scatters"),
         ({"free": "bearings.*.at", "bounds": {"disks.*.at": "-1 mm:1 mm"}}, "none of the free numbers"),
         ({"free": "bearings.*.at", "bounds": {"bearings.left.at": "5 mm"}}, "LOW:HIGH"),

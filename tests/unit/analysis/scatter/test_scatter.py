@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import rotorgear as rg
+from rotorgear.analysis.scatter import family
 from rotorgear.analysis.scatter.family import family_of, system_at
 from rotorgear.analysis.scatter.forms import FormNames, forms_of
 from rotorgear.analysis.scatter.modes import modes_of, overlaps
@@ -19,6 +20,7 @@ from rotorgear.model.numbers import numbers_of
 from rotorgear.model.parts.scatter import Scatter
 from rotorgear.model.spreads import spreads_of
 from rotorgear.system.plan import Plan
+from tests.contract.small_models import STEEL
 from tests.paths import MODELS, ROOT
 
 PENDULUM = """
@@ -141,16 +143,57 @@ def test_forms_summed_over_numbers_are_those_of_whole_systems_and_numbers_that_m
     apart = spreads_of(
         pair, {"bearings.*.stiffness": Scatter(sigma="10 %"), "meshes.*.stiffness": Scatter(sigma="5 %")}
     )
-    family = family_of(apart, 100.0, Plan(1), V)
-    assert family.terms is not None
+    summed = family_of(apart, 100.0, Plan(1), V)
+    assert summed.terms is not None
     z = np.linspace(-2.0, 2.0, len(apart))
-    assert family.at(z) == pytest.approx(family.assembled(z), rel=1e-9, abs=1e-9 * np.abs(family.nominal).max())
+    assert summed.at(z) == pytest.approx(summed.assembled(z), rel=1e-9, abs=1e-9 * np.abs(summed.nominal).max())
     meeting = spreads_of(
         model("jeffcott"),
         {"disks.disk.width": Scatter(sigma="5 %"), "disks.disk.outer_diameter": Scatter(sigma="5 %")},
     )
     rotor = system_at(model("jeffcott"), 100.0, Plan(1))
     assert family_of(meeting, 100.0, Plan(1), np.eye(rotor.n)).terms is None
+
+
+@pytest.mark.parametrize("loose", [1, 4])
+def test_free_motions_of_several_bodies_are_no_elastic_modes(loose: int):
+    # Ten and 28 motions without strain, before the first of the three modes that are asked for.
+    section = [{"length": 0.2, "outer_diameter": 0.03}]
+    shafts = {
+        "held": {"sections": section},
+        **{f"loose_{k}": {"start": 1.0 + k, "sections": section} for k in range(loose)},
+    }
+    bearing = {"shaft": "held", "at": "start", "stiffness": {"radial": 1e7}}
+    rotor = rg.Model(materials=STEEL, shafts=shafts, bearings={"left": bearing})
+    found = rg.scatter(rotor, "bearings.*.stiffness", samples=8, modes=3)
+    assert found.frequency_basis_error < 1e-4
+    exact = rg.modal(rotor, modes=6 * (loose + 1) + 4)
+    assert [row.nominal_hz for row in found.bands] == pytest.approx(exact.frequency_hz[~exact.rigid][:3], rel=1e-3)
+
+
+def test_numbers_that_meet_are_found_out_by_one_system_for_each_and_one_for_all(monkeypatch: pytest.MonkeyPatch):
+    # Seed 201330: bearings beside teeth that feel the tilt of their shafts, 694 CPU s in place of 37.
+    meeting = spreads_of(
+        model("jeffcott"),
+        {"disks.disk.width": Scatter(sigma="5 %"), "disks.disk.outer_diameter": Scatter(sigma="5 %")},
+    )
+    rotor = system_at(model("jeffcott"), 100.0, Plan(1))
+    taken = []
+    linearised = family.about_equilibrium
+
+    def counted(model: rg.Model, speeds: list[float | None]) -> tuple[rg.Model, tuple[str, ...]]:
+        if model is not meeting.numbers.model:
+            taken.append(model)
+        return linearised(model, speeds)
+
+    monkeypatch.setattr(family, "about_equilibrium", counted)
+    found = family_of(meeting, 100.0, Plan(1), np.eye(rotor.n))
+    assert found.terms is None
+    assert len(taken) == len(meeting) + 1
+    z = np.array([0.3, -0.2])
+    assert np.array_equal(found.at(z), found.assembled(z))
+    found.system(z)
+    assert len(taken) == len(meeting) + 2  # an equilibrium is found once
 
 
 def test_samples_are_the_same_bit_for_bit_for_any_number_of_workers():
@@ -267,6 +310,7 @@ def test_a_uniform_tolerance_is_its_limits_and_a_normal_one_three_sigma():
         ({"free": "bearings.*.stiffness", "samples": 1}, "samples"),
         ({"free": "bearings.*.stiffness", "sampling": "halton"}, "sobol, latin"),
         ({"free": "bearings.*.stiffness", "margin": "150 %"}, "margin"),
+        ({"free": "operation.speed"}, "operation.speed can.t vary.*give --speed"),
         ({"free": "disks.disk.at", "sigma": "2 mm", "samples": 4, "elements": 1, "modes": 2}, "past another"),
     ],
 )

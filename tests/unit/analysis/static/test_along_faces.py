@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 import rotorgear as rg
 from rotorgear.analysis.static.along_faces import about_faces, equilibrate_along_faces
 from rotorgear.analysis.static.mean_state import mean_state
+from rotorgear.analysis.static.tangent import with_maps_of
 from rotorgear.analysis.transient.notes import transient_left_out
 from rotorgear.analysis.transient.task import prepare
 from rotorgear.errors import ModelError
@@ -193,6 +194,22 @@ def test_teeth_of_an_overhung_pinion_rest_with_their_shafts() -> None:
     # What is found, given to the pair alone, is the same contact.
     alone = rg.mesh(model.with_("meshes.stage.misalignment", face.misalignment), estimate=False)
     assert alone.helix[0].largest_pressure_pa == pytest.approx(face.peak_pressure, rel=1e-6)
+
+
+def test_models_next_to_each_other_share_the_misalignments_of_their_maps() -> None:
+    model = pinion()
+    assert model.operation is not None
+    speed = model.operation.speed
+    about, _ = about_faces(model, [speed])
+    stiffer = with_maps_of(about, model.with_("bearings.input_left.stiffness.radial", 1.65e8))
+    beside, _ = about_faces(stiffer, [speed])
+    shared = about.layout.mesh("stage").map_misalignments(0)
+    assert beside.meshes["stage"].face_loads[0].misalignment != about.meshes["stage"].face_loads[0].misalignment
+    assert beside.layout.mesh("stage").map_misalignments(0) == shared
+    # A state beyond the second outermost of them has a map of its own.
+    away = tuple(f + shared[0] - shared[-1] for f in shared)
+    far = about.model_copy(update={"meshes": {"stage": about.meshes["stage"].mapped_at((away,))}})
+    assert far.layout.mesh("stage").map_misalignments(0) == shared
 
 
 @pytest.mark.long

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+import scipy.linalg as la
 import scipy.sparse as sp
 
-from rotorgear.solvers.sparse.nullspace import SupportedSolver, in_comparable_units, left_null_space
+from rotorgear.solvers.sparse import nullspace
+from rotorgear.solvers.sparse.nullspace import (
+    SupportedSolver,
+    in_comparable_units,
+    left_null_space,
+    orthonormal_motions,
+    support_dofs,
+)
 
 
 @pytest.mark.parametrize("rounding", [0.0, 1e-15])
@@ -25,3 +35,35 @@ def test_a_free_chain_is_supported_at_one_of_its_ends() -> None:
     R = np.full((2, 1), 0.5)
     found = SupportedSolver(K, in_comparable_units(R, K, M), left_null_space(K, M, R)).solve(np.array([1.0, -1.0]))
     assert found[0] - found[1] == pytest.approx(1e-6)
+
+
+def test_bodies_that_nothing_joins_are_supported_each_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Seed 202267: 200 loose shafts took 3 s for the QR of all their motions together.
+    draw = np.random.default_rng(0)
+    bodies = 40
+    order = draw.permutation(12 * bodies)
+    R = np.zeros((12 * bodies, 6 * bodies))
+    for k in range(bodies):
+        R[order[12 * k : 12 * k + 12], 6 * k : 6 * k + 6] = draw.normal(size=(12, 6))
+    R = R[:, draw.permutation(6 * bodies)]
+    shapes = []
+    qr = la.qr
+
+    def seen(A: np.ndarray, **options: Any) -> Any:
+        shapes.append(A.shape)
+        return qr(A, **options)
+
+    monkeypatch.setattr(nullspace.la, "qr", seen)
+    dofs = support_dofs(R)
+    assert set(shapes) == {(6, 12)}
+    assert [np.isin(order[12 * k : 12 * k + 12], dofs).sum() for k in range(bodies)] == [6] * bodies
+    Q = orthonormal_motions(R)
+    np.testing.assert_allclose(Q.T @ Q, np.eye(6 * bodies), atol=1e-13)
+    np.testing.assert_allclose(Q @ (Q.T @ R), R, atol=1e-12)
+    assert np.array_equal(Q != 0.0, R != 0.0)
+
+
+def test_a_motion_that_moves_nothing_is_no_body_of_its_own() -> None:
+    R = np.array([[1.0, 0.0], [1.0, 0.0], [0.0, 0.0]])
+    assert len(support_dofs(R)) == 2
+    assert orthonormal_motions(R).shape == (3, 2)
