@@ -30,6 +30,16 @@ def test_varying_stiffness_acts_to_first_order() -> None:
     assert two.mesh_force == pytest.approx(2.0 * one.mesh_force, rel=1e-9)
 
 
+def test_torques_balance_as_without_friction() -> None:
+    smooth, rough = (
+        spur_pair(motions=["torsion"], bearings=None, points=None, meshes__pair__friction_coefficient=mu)
+        for mu in (0.0, 0.1)
+    )
+    run = rg.transient(rough, time=1e-3, elements=1, error_estimate=False)
+    assert says(run, "what friction in pair takes of the torques: they balance as without it")
+    assert rg.check(rough).to_dict()["torques"] == rg.check(smooth).to_dict()["torques"]
+
+
 UNBALANCED = {"unbalances": {"u": {"shaft": "two", "at": 0.06, "magnitude": 1e-4}}}
 
 
