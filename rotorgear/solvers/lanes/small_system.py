@@ -154,9 +154,9 @@ def small_system(
 def _carried(rigid: np.ndarray, D: np.ndarray, own: np.ndarray) -> np.ndarray:
     """Motions without strain (r, n) that no damper brakes, but laws of their own push; orthonormal, (c, n).
 
-    A law that acts against sliding, such as friction between teeth, takes power on such a motion. Without the drive that makes up
-    for it the shafts would run down while all that depends on time keeps to its speed: after some thousand periods the teeth
-    would slide as those of a gearbox at another speed do.
+    A law that acts against sliding, such as friction, takes power on such a motion. Without the drive that makes up for it the
+    system would run down while all that depends on time keeps to its speed: after some thousand periods it would slide as one
+    at another speed does.
 
     Args:
         rigid: orthonormal motions without strain, (r, n). D: damping about the mean state, (n, n). own: directions of the
