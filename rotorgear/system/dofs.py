@@ -45,7 +45,12 @@ class DofMap:
 
     def expand(self, q: np.ndarray) -> np.ndarray:
         """All displacements from the free ones: (n, ...) -> (a, ...)."""
-        return self.transform @ q
+        if not self.selects:
+            return self.transform @ q
+        free = self.column >= 0
+        everything = np.zeros((len(free), *q.shape[1:]), dtype=q.dtype)
+        everything[free] = q
+        return everything
 
     def describe(self, dof: int, nodes: Nodes) -> str:
         """Say which displacement a free dof is, for messages."""

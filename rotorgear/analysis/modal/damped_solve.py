@@ -156,7 +156,9 @@ def _in_coordinates(
     S = problem.strain
     M = problem.M
     r = rigid.shape[1]
-    squares, X = strain_ritz(lambda V: S @ V, _independent(M, rigid, basis))
+    independent = _independent(M, rigid, basis)
+    squares, turn = strain_ritz(S, independent)
+    X = independent @ turn
     # A dof without inertia follows the others at once; no undamped mode holds that, so it is a coordinate of its own.
     massless = np.flatnonzero(M.diagonal() <= 0.0)
     N = np.zeros((M.shape[0], massless.size))
@@ -219,7 +221,7 @@ def _by_damping(forms: StrainForms, rigid: np.ndarray) -> np.ndarray:
         return rigid
     drag = np.sqrt(np.maximum(forms.viscosity.diagonal(), 0.0))[:, None]
     strained = drag * _without_rounding(forms, rigid, rigid.shape[1])
-    return strain_ritz(lambda _: strained, rigid)[1] if strained.any() else rigid
+    return rigid @ strain_ritz(lambda _: strained, rigid)[1] if strained.any() else rigid
 
 
 def _without_rounding(forms: StrainForms, whole: np.ndarray, rigid: int) -> np.ndarray:

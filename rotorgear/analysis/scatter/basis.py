@@ -35,8 +35,7 @@ def nominal_modes(
     system: System, speed: float | None, count: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
     """w^2 (m,), shapes (n, m) of modal mass 1 of the undamped system that does not rotate, and how many are rigid."""
-    S = system.strain_factor(speed or 0.0)
-    strain = None if S is None else (lambda X: S @ X)
+    strain = system.strain_factor(speed or 0.0)
     found = lowest_modes(system.mass, system.stiffness(speed or 0.0), count=count, strain=strain)
     return found.eigenvalues, found.vectors, found.rigid_count
 

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.solvers.eigen.ritz import count_rigid, orthonormalised, stiffness_ritz, strain_ritz
+from rotorgear.solvers.eigen.ritz import combine, count_rigid, orthonormalise, stiffness_ritz, strain_ritz
 from rotorgear.solvers.eigen.shift_invert import ShiftInvert, dense_modes, lanczos_modes, shifted_operator, unstable
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import Strain, backward_errors, check_pencil, count_below, rounding_noise
@@ -88,8 +88,8 @@ def lowest_modes(
         K: (n, n) symmetric positive semidefinite.
         count: number of modes; when fewer exist all are returned (`complete`). None with no `below`: all modes.
         below: only the modes with omega <= below [rad/s], and all of them (the lowest `count` when both are given).
-        strain: V (n, m) -> S V (p, m) with K = S^T S, each strain evaluated without forming K. It carries soft modes to
-            full precision and tells rigid from soft; without it a mode softer than the rounding of K counts as rigid.
+        strain: S (p, n) with K = S^T S, or V (n, m) -> S V (p, m), each strain evaluated without forming K. It carries soft
+            modes to full precision and tells rigid from soft; without it a mode softer than the rounding of K counts as rigid.
         guess: an eigenvalue [(rad/s)^2] near the first elastic one; saves the search for it, never changes the answer.
         counted: False leaves the Sturm count out, for a basis of other modes, which are counted themselves.
 
@@ -132,15 +132,14 @@ def lowest_modes(
             gap = (_gap_above(pairs, keep) if counted else _UNCOUNTED) if keep <= pairs.sure else None
             if gap is not None:
                 sturm_shift, expected = gap
-                V = pairs.vectors[:, :keep]
-                errors = backward_errors(operator.mass, operator.stiffness, pairs.values[:keep], V)
+                errors = backward_errors(operator.mass, operator.stiffness, pairs.values, pairs.vectors)
                 sturm_count = count_below(operator.M, operator.K, sturm_shift) if counted else expected
                 operator.factorisations += counted
                 modes = UndampedModes(
                     eigenvalues=pairs.values[:keep],
-                    vectors=V,
+                    vectors=pairs.vectors[:, :keep],
                     rigid_count=min(pairs.rigid, keep),
-                    backward_error=errors,
+                    backward_error=errors[:keep],
                     available=pairs.finite,
                     sturm_shift=sturm_shift,
                     sturm_count=sturm_count,
@@ -189,8 +188,12 @@ def _candidates(
         sure = target + 1 if spare else target  # one more must be converged: the gap lies below it
         V = lanczos_modes(operator, sure, spare)
         finite = n - massless.size
-    V = orthonormalised(operator.mass, V)
-    values, V = stiffness_ritz(operator.K, V, operator.sigma) if strain is None else strain_ritz(strain, V)
+    orthonormalise(operator.mass, V)
+    if strain is None:
+        values, V = stiffness_ritz(operator.K, V, operator.sigma)
+    else:
+        values, turn = strain_ritz(strain, V)
+        combine(V, turn)
     noise = rounding_noise(operator.size_K, V, operator.sigma)
     if values.size and values[0] < -_UNSTABLE * noise[0]:
         raise unstable(float(values[0]))

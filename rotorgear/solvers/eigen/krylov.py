@@ -12,9 +12,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from rotorgear.solvers.sparse.entries import stretches
+
 Apply = Callable[[np.ndarray], np.ndarray]
 _DEPENDENT = 1e-13  # a direction this much shorter than its block is rounding of the others
 _ROOM = 200  # columns reserved at first
+_CLEAN = 2.0 * float(np.finfo(float).eps)  # overlap of blocks after a pass over the whole basis
+_SEMI = 1e-9  # overlap that costs Ritz pairs nothing yet: below the root of eps they are those of an orthogonal basis
 _WELL_SPREAD = 3.0  # log of the ratio of singular values up to which one pass leaves an orthonormal block
 
 
@@ -35,6 +39,8 @@ class BlockKrylov:
         self._size = 0
         self._border = np.zeros((0, 0))
         self._border_start = 0
+        self._longest = 0.0
+        self._drift = (_CLEAN, _CLEAN)
         self._block, _, self._weighted_block = self._orthonormal(self._fresh(self._width))
         self._weighted_before = self._weighted_block[:, :0]
 
@@ -111,8 +117,13 @@ class BlockKrylov:
     def polished(self, Y: np.ndarray) -> np.ndarray:
         """T V Y (n, k) without another application of T: stiff parts that V Y still holds are scaled down by it."""
         last = self._border @ Y[self._border_start :]
-        image = _product(self.basis, self.projection @ Y)
-        image += _product(self._block[:, : last.shape[0]], last)
+        inner = self.projection @ Y
+        V = self.basis
+        block = self._block[:, : last.shape[0]]
+        image = np.empty((V.shape[0], Y.shape[1]))  # by rows, as sparse products take it
+        for rows in stretches(V.shape[0]):
+            np.matmul(V[rows], inner, out=image[rows])
+            image[rows] += block[rows] @ last
         return image
 
     def _reserve(self, size: int) -> None:
@@ -140,21 +151,39 @@ class BlockKrylov:
         below = np.eye(X.shape[1])
         X = X - _product(V[:, since:], first)
         WX = self._weighted(X)
+        gram = X.T @ WX
         # Of the longest column as it came in; what is left of it in the passes is measured against unit vectors.
-        length = math.sqrt(float((np.einsum("ij,ij->j", X, WX) + np.sum(above**2, axis=0)).max(initial=0.0)))
+        length = math.sqrt(float((np.diag(gram) + np.sum(above**2, axis=0)).max(initial=0.0)))
+        self._longest = max(self._longest, length)
+        drift = self._drift_of(gram) if near else math.inf
         for _ in range(4):  # twice is enough (Kahan and Parlett) unless the block itself is nearly dependent
-            overlap = (WX.T @ V).T  # faster than V.T @ WX for a narrow WX
-            gram = X.T @ WX - overlap.T @ overlap
+            if drift > _SEMI:
+                overlap = (WX.T @ V).T  # faster than V.T @ WX for a narrow WX
+                gram -= overlap.T @ overlap
+                X -= _product(V, overlap)
+                above += overlap @ below
             Q, triangle, spread = _compressed(gram, _DEPENDENT * length)
-            X -= _product(V, overlap)
             X = _product(X, Q)
-            WX = self._weighted(X)
-            above += overlap @ below
+            WX = self._weighted(X) if drift > _SEMI else _product(WX, Q)
             below = triangle @ below
-            length = 1.0
             if spread < _WELL_SPREAD or X.shape[1] == 0:
                 break
+            length = 1.0
+            gram = X.T @ WX
+            drift = math.inf
+        self._drift = (self._drift[1], _CLEAN if drift > _SEMI else drift)
         return X, np.vstack([above, below]), WX
+
+    def _drift_of(self, gram: np.ndarray) -> float:
+        """Estimated overlap of unit vectors along X with older blocks than its neighbours, from X^T W X.
+
+        X = T V_j - V_j A_j - V_{j-1} B^T, so the overlap of block j counts with the norms of T and A_j, that of block j - 1 with
+        the norm of B; both are divided by the length of X (Simon, Linear Algebra Appl. 61 (1984) 101).
+        """
+        before, last = self._drift
+        shortest = math.sqrt(max(float(np.diag(gram).min(initial=math.inf)), 0.0))
+        grown = 2.0 * self._longest * last + float(np.linalg.norm(self._border)) * before
+        return grown / shortest if shortest > 0.0 else math.inf
 
     def _weighted(self, X: np.ndarray) -> np.ndarray:
         return X if self._inner is None else self._inner(X)

@@ -16,6 +16,7 @@ from scipy.linalg.lapack import dsygvd
 
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen.krylov import BlockKrylov
+from rotorgear.solvers.sparse.entries import magnitudes
 from rotorgear.solvers.sparse.factor import SymmetricFactor, factor_symmetric
 from rotorgear.solvers.sparse.pencil import EPS, rounding_noise
 
@@ -42,12 +43,14 @@ class ShiftInvert:
     elastic: float = 0.0  # the first eigenvalue above rounding as the probe saw it; 0 when there is none
 
     def __post_init__(self) -> None:
-        self.size_K = sp.csr_array(abs(self.K))
-        self.mass, self.stiffness = sp.csr_array(self.M), sp.csr_array(self.K)
+        # By rows, which those of a symmetric matrix are as they stand: no copy.
+        self.mass = sp.csr_array(self.M.T)
+        self.stiffness = sp.csr_array(self.K.T)
+        self.size_K = magnitudes(self.stiffness)
         self._start()
 
     def _start(self) -> None:
-        self.krylov = BlockKrylov(self.factor.solve, self.K.shape[0], _BLOCK, lambda X: self.mass @ X)
+        self.krylov = BlockKrylov(self.factor.solve, self.K.shape[0], _BLOCK, self.mass.__matmul__)
 
     def move(self, sigma: float) -> None:
         """Factor at another shift and start the Krylov basis anew."""
@@ -151,7 +154,7 @@ def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarr
                 low = values < -operator.sigma
                 if np.any(low):
                     V[:, low] = operator.apply(V[:, low])
-                return np.ascontiguousarray(V)  # by rows, as all the sparse products to come take it
+                return V
             # Soft and stiff modes too far apart for one shift: move it up, where the stiff ones are seen.
             operator.move(-1e-4 * highest)
             krylov = operator.krylov

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from rotorgear.solvers.sparse.entries import norm_1, scaled_on_both_sides
+from rotorgear.solvers.sparse.entries import norm_1, row_products, scaled_on_both_sides, stretches
 
 
 @pytest.mark.parametrize("kind", [sp.csc_array, sp.csr_array])
@@ -26,3 +26,15 @@ def test_scaling_on_both_sides_leaves_the_matrix_itself_alone() -> None:
     scaled.data[:] = 0.0
     scaled.indices[:] = 0
     assert np.array_equal(A.toarray(), before)
+
+
+@pytest.mark.parametrize("rows", [0, 3, 4096, 4097, 10_000])
+def test_products_by_stretches_of_rows_are_the_product(rows: int) -> None:
+    rng = np.random.default_rng(2)
+    A = sp.csr_array(sp.random_array((rows, 50), density=0.1, rng=rng))
+    X = rng.standard_normal((50, 3))
+    product = np.full((rows, 3), np.nan)
+    for part, values in row_products(A, X):
+        product[part] = values
+    assert np.array_equal(product, A @ X)
+    assert [k for part in stretches(rows) for k in range(rows)[part]] == list(range(rows))
