@@ -12,6 +12,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from rotorgear.errors import AnalysisError
+from rotorgear.solvers.sparse.entries import without_zeros
 from rotorgear.system.system import System
 
 
@@ -19,9 +20,10 @@ def independent_groups(matrices: Iterable[sp.csc_array]) -> list[np.ndarray]:
     """Return the dofs of each independent group, largest group first; `matrices` are sparse (n, n)."""
     pattern: sp.csc_array | None = None
     for A in matrices:
-        own = A.copy()
-        own.eliminate_zeros()
-        own.data = np.ones(own.nnz)  # values of either sign could cancel in the sum
+        own = without_zeros(A)
+        own = sp.csc_array(
+            (np.ones(own.nnz), own.indices, own.indptr), shape=A.shape
+        )  # either sign could cancel in the sum
         if connected_components(own, directed=False, return_labels=False) == 1:
             return [np.arange(A.shape[0])]  # others can't part what one holds together
         pattern = own if pattern is None else pattern + own

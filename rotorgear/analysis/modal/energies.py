@@ -60,7 +60,7 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
                 continue
             dofs = group.dofs_of_motions[motion]
             part = local[:, dofs]
-            energy = _by_mode(np.einsum("edm,edm->m", part, M[:, dofs][:, :, dofs] @ part), modes)
+            energy = _by_mode(np.einsum("edm,edm->m", part, M[:, dofs[:, None], dofs] @ part), modes)
             _add(kinetic, group.part, energy)
             _add(kinetic_by_shaft, ("", group.part) if motion in (CASING, GEAR_BODY) else (group.shaft, motion), energy)
             kinetic_by_motion[motion] += energy

@@ -57,7 +57,7 @@ class _Problem:
         if len(group) == self.M.shape[0]:
             return self
 
-        place = np.full(self.M.shape[0], -1)
+        place = np.full(self.M.shape[0], -1, dtype=self.M.indices.dtype)
         place[group] = np.arange(len(group))
 
         def cut_out(A: sp.csc_array) -> sp.csc_array:

@@ -15,8 +15,16 @@ import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen.ritz import combine, count_rigid, orthonormalise, stiffness_ritz, strain_ritz
-from rotorgear.solvers.eigen.shift_invert import ShiftInvert, dense_modes, lanczos_modes, shifted_operator, unstable
-from rotorgear.solvers.sparse.factor import single_thread
+from rotorgear.solvers.eigen.shift_invert import (
+    BASIS,
+    CONVERGED,
+    ShiftInvert,
+    dense_modes,
+    lanczos_modes,
+    shifted_operator,
+    unstable,
+)
+from rotorgear.solvers.sparse.factor import SymmetricFactor, single_thread
 from rotorgear.solvers.sparse.pencil import Strain, backward_errors, check_pencil, count_below, rounding_noise
 
 _DENSE_UP_TO = 250  # unknowns up to which LAPACK is as fast
@@ -46,6 +54,8 @@ class UndampedModes:
         method: "dense" or "block Lanczos".
         shift: sigma.
         factorisations: how many matrices were factored.
+        noise: (m,) what rounding of the stored K does to Rayleigh quotients, in (rad/s)^2.
+        factor: that of K - sigma M, where the modes were not counted: a basis of other modes goes on with it.
     """
 
     eigenvalues: np.ndarray
@@ -59,6 +69,8 @@ class UndampedModes:
     method: str
     shift: float
     factorisations: int
+    noise: np.ndarray
+    factor: SymmetricFactor | None
 
     @property
     def sturm_count_ok(self) -> bool:
@@ -91,7 +103,8 @@ def lowest_modes(
         strain: S (p, n) with K = S^T S, or V (n, m) -> S V (p, m), each strain evaluated without forming K. It carries soft
             modes to full precision and tells rigid from soft; without it a mode softer than the rounding of K counts as rigid.
         guess: an eigenvalue [(rad/s)^2] near the first elastic one; saves the search for it, never changes the answer.
-        counted: False leaves the Sturm count out, for a basis of other modes, which are counted themselves.
+        counted: False leaves the Sturm count out and takes modes as converged earlier, with errors of 1e-12 in lambda: for a
+            basis of other modes, which are corrected and counted themselves.
 
     Raises:
         LooseDofError: a dof has neither inertia nor stiffness (`dofs`).
@@ -147,6 +160,8 @@ def lowest_modes(
                     method=pairs.method,
                     shift=operator.sigma,
                     factorisations=operator.factorisations,
+                    noise=pairs.noise[:keep],
+                    factor=None if counted else operator.factor,
                 )
                 if modes.sturm_count_ok:
                     return modes
@@ -186,7 +201,7 @@ def _candidates(
         V = V[:, : target + 10 * spare]
     else:
         sure = target + 1 if spare else target  # one more must be converged: the gap lies below it
-        V = lanczos_modes(operator, sure, spare)
+        V = lanczos_modes(operator, sure, spare, CONVERGED if spare else BASIS)
         finite = n - massless.size
     orthonormalise(operator.mass, V)
     if strain is None:

@@ -7,9 +7,8 @@ accuracy even when they differ by many decades (Demmel and Veselic, SIAM J. Matr
 from __future__ import annotations
 
 import numpy as np
-import scipy.linalg as la
 import scipy.sparse as sp
-from scipy.linalg.lapack import dgejsv, dgeqrf, dtrtri
+from scipy.linalg.lapack import dgejsv, dgeqrf, dpotrf, dtrtri
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.shift_invert import Modes, ShiftInvert
@@ -28,16 +27,14 @@ def orthonormalise(M: sp.csr_array, V: np.ndarray) -> None:
     gram = np.zeros((V.shape[1], V.shape[1]))
     for rows, heavy in row_products(M, V):
         gram += V[rows].T @ heavy
-    size = np.diag(gram)
-    try:
-        if not np.all(size > 0.0):
-            raise la.LinAlgError
-        scale = 1.0 / np.sqrt(size)
-        triangle = la.cholesky(0.5 * (gram + gram.T) * scale * scale[:, None])
-    except la.LinAlgError:
+    size = gram.diagonal()
+    positive = bool(np.all(size > 0.0))
+    scale = 1.0 / np.sqrt(np.where(size > 0.0, size, 1.0))
+    triangle, failed = dpotrf(0.5 * (gram + gram.T) * scale * scale[:, None])
+    if failed or not positive:
         raise ConvergenceError(
             "Inertias of the model are too many decades apart: those of some motions are rounding of the largest."
-        ) from None
+        )
     inverse, _ = dtrtri(triangle)
     combine(V, scale[:, None] * inverse)
 
@@ -101,7 +98,7 @@ def count_rigid(operator: ShiftInvert, values: np.ndarray, V: np.ndarray, noise:
     low = _leading(values <= 1e3 * noise)
     if low == 0:
         return 0
-    signs = np.random.default_rng(3).choice([-1.0, 1.0], size=(V.shape[0], low))
+    signs = np.where(np.random.default_rng(3).random((V.shape[0], low)) < 0.5, -1.0, 1.0)
     residual = EPS * (operator.size_K @ np.abs(V[:, :low])) * signs
     residual -= operator.mass @ (V @ (V.T @ residual))
     energy = np.einsum("ij,ij->j", residual, operator.factor.solve(residual))

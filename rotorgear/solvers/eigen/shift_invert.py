@@ -21,7 +21,8 @@ from rotorgear.solvers.sparse.factor import SymmetricFactor, factor_symmetric
 from rotorgear.solvers.sparse.pencil import EPS, rounding_noise
 
 _BLOCK = 4  # as many copies of an eigenvalue are found at once; more columns cost more than they bring
-_CONVERGED = 1e-9  # residual of T v = theta v relative to theta; its square is the error of the Rayleigh quotient
+CONVERGED = 1e-9  # residual of T v = theta v relative to theta; its square is the error of the Rayleigh quotient
+BASIS = 1e-6  # the same for modes that are only a basis of others
 _USEFUL = (1e-3, 10.0)  # |sigma| / first elastic eigenvalue: inside, the shift costs neither accuracy nor iterations
 _START = 1e-4  # |sigma| at first over the least k_ii / m_ii
 _SPREAD = 1e7  # highest eigenvalue / |sigma| up to which rounding in soft modes leaves the stiff ones alone
@@ -136,8 +137,11 @@ def unstable(eigenvalue: float) -> AnalysisError:
     )
 
 
-def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarray:
-    """M-orthogonal vectors (n, k) of at least the `converged` lowest eigenpairs and up to `spare` Ritz pairs more."""
+def lanczos_modes(operator: ShiftInvert, converged: int, spare: int, tolerance: float = CONVERGED) -> np.ndarray:
+    """M-orthogonal vectors (n, k) of at least the `converged` lowest eigenpairs and up to `spare` Ritz pairs more.
+
+    An eigenpair has converged where its residual, relative to theta, is below the `tolerance`.
+    """
     krylov = operator.krylov
     enough = converged + spare
     goal = 2 * enough
@@ -146,7 +150,7 @@ def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarr
             krylov.expand()
         values, Y, residuals = operator.ritz(enough)
         stagnant = krylov.size > 10 * enough + 200  # the Sturm count will tell whether it matters
-        if krylov.exhausted or stagnant or np.all(residuals[:converged] < _CONVERGED):
+        if krylov.exhausted or stagnant or np.all(residuals[:converged] < tolerance):
             highest = values[min(converged, values.size) - 1]
             if highest <= _SPREAD * -operator.sigma:
                 # One more solve for the modes below |sigma| takes the rounding in stiff modes out of soft ones.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -14,8 +14,14 @@ _ROWS = 4096  # some thirty columns of so many rows fill the cache of a core
 
 def norm_1(A: sp.csc_array | sp.csr_array) -> float:
     """||A||_1, the largest sum of magnitudes in a column."""
-    sums = np.bincount(_columns(A), np.abs(A.data), minlength=A.shape[1])
+    sums = np.bincount(columns_of(A), np.abs(A.data), minlength=A.shape[1])
     return float(sums.max(initial=0.0))
+
+
+def scaled_norm_1(A: sp.csc_array, scale: np.ndarray) -> float:
+    """||diag(scale) A diag(scale)||_1 for a positive scale (n,), without the scaled matrix."""
+    sums = np.bincount(columns_of(A), np.abs(A.data) * scale[A.indices], minlength=A.shape[1])
+    return float((sums * scale).max(initial=0.0))
 
 
 def scaled_on_both_sides(A: sp.csc_array, scale: np.ndarray) -> sp.csc_array:
@@ -28,6 +34,36 @@ def scaled_on_both_sides(A: sp.csc_array, scale: np.ndarray) -> sp.csc_array:
 def magnitudes(A: Compressed) -> Compressed:
     """|A|, entry by entry."""
     return type(A)((np.abs(A.data), A.indices, A.indptr), shape=A.shape)
+
+
+def without_zeros(A: sp.csc_array) -> sp.csc_array:
+    """A without stored entries that are zero."""
+    kept = A.data != 0.0
+    if kept.all():
+        return A
+    ends = np.concatenate([np.zeros(1, dtype=A.indptr.dtype), np.cumsum(kept, dtype=A.indptr.dtype)])
+    return sp.csc_array((A.data[kept], A.indices[kept], ends[A.indptr]), shape=A.shape)
+
+
+def halves(A: sp.csc_array, mirror: sp.csc_array) -> tuple[sp.csc_array, sp.csc_array]:
+    """(A + A^T)/2 and (A - A^T)/2 of A and its `mirror` A^T."""
+    if not (np.array_equal(mirror.indptr, A.indptr) and np.array_equal(mirror.indices, A.indices)):
+        return without_zeros(sp.csc_array(0.5 * (A + mirror))), without_zeros(sp.csc_array(0.5 * (A - mirror)))
+    even, odd = (
+        sp.csc_array((values, A.indices, A.indptr), shape=A.shape)
+        for values in (0.5 * (A.data + mirror.data), 0.5 * (A.data - mirror.data))
+    )
+    return without_zeros(even), without_zeros(odd)
+
+
+def stacked(parts: Sequence[sp.csr_array]) -> sp.csr_array:
+    """Matrices of as many columns below each other, so that one product serves for all."""
+    before = np.cumsum([0, *(part.nnz for part in parts)])
+    ends = [parts[0].indptr, *(part.indptr[1:] + n for part, n in zip(parts[1:], before[1:], strict=False))]
+    indices = np.concatenate([part.indices for part in parts])
+    data = np.concatenate([part.data for part in parts])
+    rows = sum(part.shape[0] for part in parts)
+    return sp.csr_array((data, indices, np.concatenate(ends).astype(indices.dtype)), shape=(rows, parts[0].shape[1]))
 
 
 def times(A: sp.csc_array | sp.csr_array | np.ndarray, X: np.ndarray) -> np.ndarray:
@@ -55,6 +91,6 @@ def row_products(A: sp.csr_array, X: np.ndarray) -> Iterator[tuple[slice, np.nda
         yield rows, part @ X
 
 
-def _columns(A: sp.csc_array | sp.csr_array) -> np.ndarray:
+def columns_of(A: sp.csc_array | sp.csr_array) -> np.ndarray:
     """The column of each entry."""
     return A.indices if A.format == "csr" else np.repeat(np.arange(A.shape[1]), np.diff(A.indptr))
