@@ -18,12 +18,11 @@ from rotorgear.system.system import System
 
 def independent_groups(matrices: Iterable[sp.csc_array]) -> list[np.ndarray]:
     """Return the dofs of each independent group, largest group first; `matrices` are sparse (n, n)."""
-    pattern: sp.csc_array | None = None
+    pattern: sp.csr_array | None = None
     for A in matrices:
-        own = without_zeros(A)
-        own = sp.csc_array(
-            (np.ones(own.nnz), own.indices, own.indptr), shape=A.shape
-        )  # either sign could cancel in the sum
+        there = without_zeros(A)
+        # Ones, since values of either sign could cancel in the sum; of the mirror image, by rows, as the search takes them.
+        own = sp.csr_array((np.ones(there.nnz), there.indices, there.indptr), shape=A.shape)
         if connected_components(own, directed=False, return_labels=False) == 1:
             return [np.arange(A.shape[0])]  # others can't part what one holds together
         pattern = own if pattern is None else pattern + own

@@ -47,6 +47,13 @@ def _numbers_by_motion(motions: tuple[str, ...]) -> dict[str, np.ndarray]:
     return {motion: np.flatnonzero([own == motion for own in motions]) for motion in dict.fromkeys(motions)}
 
 
+@lru_cache(maxsize=64)
+def _same_motion(motions: tuple[str, ...]) -> np.ndarray:
+    """Which of the dofs with these motions move in the same one, (d, d)."""
+    names = np.array(motions)
+    return np.asarray(names[:, None] == names)
+
+
 @dataclass(frozen=True)
 class ElementGroup:
     """Elements of one part.
@@ -95,6 +102,11 @@ class ElementGroup:
     def dofs_of_motions(self) -> dict[str, np.ndarray]:
         """Which of the d dofs move in each motion."""
         return _numbers_by_motion(self.dof_motions)
+
+    @property
+    def same_motion(self) -> np.ndarray:
+        """Which of the d dofs move in the same motion, (d, d)."""
+        return _same_motion(self.dof_motions)
 
     @property
     def dof_motions(self) -> tuple[str, ...]:

@@ -16,9 +16,8 @@ import scipy.sparse as sp
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen.ritz import combine, count_rigid, orthonormalise, stiffness_ritz, strain_ritz
 from rotorgear.solvers.eigen.shift_invert import (
-    BASIS,
-    CONVERGED,
     ShiftInvert,
+    basis_vectors,
     dense_modes,
     lanczos_modes,
     shifted_operator,
@@ -46,7 +45,7 @@ class UndampedModes:
         eigenvalues: (m,) lambda = omega^2 in (rad/s)^2, ascending, never negative.
         vectors: (n, m), V^T M V = identity.
         rigid_count: how many of the first modes have no strain beyond rounding.
-        backward_error: (m,) ||K v - lambda M v|| / ((||K||_1 + |lambda| ||M||_1) ||v||).
+        backward_error: (m,) ||K v - lambda M v|| / ((||K||_1 + |lambda| ||M||_1) ||v||); NaN where the modes were not counted.
         available: number of finite modes of the pencil; `complete` says that all of them are here.
         sturm_shift: lambda at which modes were counted.
         sturm_count: modes below it by pivot signs.
@@ -103,8 +102,8 @@ def lowest_modes(
         strain: S (p, n) with K = S^T S, or V (n, m) -> S V (p, m), each strain evaluated without forming K. It carries soft
             modes to full precision and tells rigid from soft; without it a mode softer than the rounding of K counts as rigid.
         guess: an eigenvalue [(rad/s)^2] near the first elastic one; saves the search for it, never changes the answer.
-        counted: False leaves the Sturm count out and takes modes as converged earlier, with errors of 1e-12 in lambda: for a
-            basis of other modes, which are corrected and counted themselves.
+        counted: False leaves the Sturm count out, and of the upper modes a part of their accuracy: for a basis of other modes,
+            which are corrected and counted themselves.
 
     Raises:
         LooseDofError: a dof has neither inertia nor stiffness (`dofs`).
@@ -145,7 +144,9 @@ def lowest_modes(
             gap = (_gap_above(pairs, keep) if counted else _UNCOUNTED) if keep <= pairs.sure else None
             if gap is not None:
                 sturm_shift, expected = gap
-                errors = backward_errors(operator.mass, operator.stiffness, pairs.values, pairs.vectors)
+                errors = np.full(len(pairs.values), np.nan)
+                if counted:
+                    errors = backward_errors(operator.mass, operator.stiffness, pairs.values, pairs.vectors)
                 sturm_count = count_below(operator.M, operator.K, sturm_shift) if counted else expected
                 operator.factorisations += counted
                 modes = UndampedModes(
@@ -200,8 +201,12 @@ def _candidates(
         sure = finite = V.shape[1]
         V = V[:, : target + 10 * spare]
     else:
-        sure = target + 1 if spare else target  # one more must be converged: the gap lies below it
-        V = lanczos_modes(operator, sure, spare, CONVERGED if spare else BASIS)
+        if spare:
+            sure = target + 1  # one more must be converged: the gap lies below it
+            V = lanczos_modes(operator, sure, spare)
+        else:
+            sure = target
+            V = basis_vectors(operator, target)
         finite = n - massless.size
     orthonormalise(operator.mass, V)
     if strain is None:

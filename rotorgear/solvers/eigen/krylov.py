@@ -149,7 +149,7 @@ class BlockKrylov:
         since = V.shape[1] - first.shape[0]
         above = np.zeros((V.shape[1], X.shape[1]))
         above[since:] = first
-        below = np.eye(X.shape[1])
+        below: np.ndarray | None = None
         X = X - _product(V[:, since:], first)
         WX = self._weighted(X)
         gram = X.T @ WX
@@ -163,11 +163,11 @@ class BlockKrylov:
                 overlap = (WX.T @ V).T  # faster than V.T @ WX for a narrow WX
                 gram -= overlap.T @ overlap
                 X -= _product(V, overlap)
-                above += overlap @ below
+                above += overlap if below is None else overlap @ below
             Q, triangle, spread = _compressed(gram, _DEPENDENT * length)
             X = _product(X, Q)
             WX = self._weighted(X) if drift > _SEMI else _product(WX, Q)
-            below = triangle @ below
+            below = triangle if below is None else triangle @ below
             if spread < _WELL_SPREAD or X.shape[1] == 0:
                 break
             length = 1.0

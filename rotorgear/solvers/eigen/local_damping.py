@@ -78,7 +78,7 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
             basis = space.basis
             small = space.pencil(basis)
             shift = float(np.sqrt(problem.frequencies[0] * problem.frequencies[-1]))
-            found = eigen(small, shift, _STILL * float(problem.frequencies[0]), most)
+            found = eigen(small, shift, _STILL * float(problem.frequencies[0]), most if below is not None else rows + 1)
             size = np.abs(found.s)
             wanted = min(rows, len(size))
             if below is not None:
@@ -89,10 +89,7 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
             pairs = _Pairs(found.s[:wanted], basis @ found.q[:, :wanted], basis @ found.y[:, :wanted])
             corrected, e, unsure = _corrected(problem, factor, pairs)
             if unsure <= _SETTLED:
-                left = problem.applied(corrected.s, corrected.v)
-                if problem.backward_errors(corrected.s, corrected.v, left).max(initial=0.0) > _SOUND:
-                    corrected = _polished(problem, factor, corrected, left)
-                modes = counted_modes(problem, corrected.s, corrected.v, count, _BASIS)
+                modes = counted_modes(problem, corrected.s, _polished(problem, factor, corrected), count, _BASIS)
                 if modes.backward_error.max(initial=0.0) <= _SOUND:
                     last = float(size[wanted - 1]) if wanted else float(problem.frequencies[0]) / _COUNT_AT[-1]
                     return modes if _none_is_missing(problem, small, last) else None
@@ -140,9 +137,10 @@ def _corrected(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> tuple[_P
     """The pairs with both corrections, e (n, m), and the largest difference of the two corrections of an eigenvalue over |s|."""
     z = pairs.s
     m = len(z)
-    products = problem.products(pairs.v)
+    of_both = problem.products(np.hstack([pairs.v, pairs.y]))
+    products = of_both[:, :, :m]
     right = forces(z, products)
-    left = problem.applied(z.conj(), pairs.y, transposed=True)
+    left = forces(z.conj(), problem.mirrored(pairs.y, of_both[:, :, m:]))
     both = problem.without_rigid(factor.solve(np.hstack([right, left])))
     e = both[:, :m]
     f = both[:, m:]
@@ -174,16 +172,13 @@ def _corrected(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> tuple[_P
     return _Pairs(values[order], v[:, order], y[:, order]), e, unsure
 
 
-def _polished(problem: NearUndamped, factor: Factor, pairs: _Pairs, left: np.ndarray) -> _Pairs:
-    """The pairs with right vectors that one more correction A^-1 Q(s) v frees of what lies beyond the undamped modes X.
-
-    `left` (n, m) is Q(s) v.
+def _polished(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> np.ndarray:
+    """Right vectors (n, m) that one more correction A^-1 Q(s) v frees of what lies beyond the undamped modes X.
 
     Along X, where r of the projection was zero, it is the eigenvalue that decides, and A would mistake s: that part is not taken.
     """
-    e = problem.without_rigid(factor.solve(left))
-    e = e - problem.modes @ (problem.modes.T @ times(problem.M, e))
-    return _Pairs(pairs.s, pairs.v - e, pairs.y)
+    e = problem.without_rigid(factor.solve(problem.applied(pairs.s, pairs.v)))
+    return np.asarray(pairs.v - e + problem.modes @ (problem.modes.T @ times(problem.M, e)))
 
 
 def _none_is_missing(problem: NearUndamped, small: Pencil, last: float) -> bool:

@@ -98,7 +98,7 @@ def count_rigid(operator: ShiftInvert, values: np.ndarray, V: np.ndarray, noise:
     low = _leading(values <= 1e3 * noise)
     if low == 0:
         return 0
-    signs = np.where(np.random.default_rng(3).random((V.shape[0], low)) < 0.5, -1.0, 1.0)
+    signs = np.sign(np.sin(np.arange(1.0, V.shape[0] * low + 1.0) ** 2)).reshape(-1, low)  # without a pattern
     residual = EPS * (operator.size_K @ np.abs(V[:, :low])) * signs
     residual -= operator.mass @ (V @ (V.T @ residual))
     energy = np.einsum("ij,ij->j", residual, operator.factor.solve(residual))

@@ -21,8 +21,11 @@ from rotorgear.solvers.sparse.factor import SymmetricFactor, factor_symmetric
 from rotorgear.solvers.sparse.pencil import EPS, rounding_noise
 
 _BLOCK = 4  # as many copies of an eigenvalue are found at once; more columns cost more than they bring
-CONVERGED = 1e-9  # residual of T v = theta v relative to theta; its square is the error of the Rayleigh quotient
-BASIS = 1e-6  # the same for modes that are only a basis of others
+_CONVERGED = 1e-9  # residual of T v = theta v relative to theta; its square is the error of the Rayleigh quotient
+# The same for a basis of other modes: of the lower ones, so large a part, that others are made of; the upper ones correct them.
+_CONVERGED_BASIS = 1e-6
+_LOWER = 0.7
+_BEGIN = 1.7  # Krylov vectors for each mode of a basis, before its residuals are first looked at; 2 for modes that are counted
 _USEFUL = (1e-3, 10.0)  # |sigma| / first elastic eigenvalue: inside, the shift costs neither accuracy nor iterations
 _START = 1e-4  # |sigma| at first over the least k_ii / m_ii
 _SPREAD = 1e7  # highest eigenvalue / |sigma| up to which rounding in soft modes leaves the stiff ones alone
@@ -137,14 +140,20 @@ def unstable(eigenvalue: float) -> AnalysisError:
     )
 
 
-def lanczos_modes(operator: ShiftInvert, converged: int, spare: int, tolerance: float = CONVERGED) -> np.ndarray:
-    """M-orthogonal vectors (n, k) of at least the `converged` lowest eigenpairs and up to `spare` Ritz pairs more.
+def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarray:
+    """M-orthogonal vectors (n, k) of at least the `converged` lowest eigenpairs and up to `spare` Ritz pairs more."""
+    return _ritz_vectors(operator, converged, converged + spare, 2 * (converged + spare), _CONVERGED)
 
-    An eigenpair has converged where its residual, relative to theta, is below the `tolerance`.
-    """
+
+def basis_vectors(operator: ShiftInvert, count: int) -> np.ndarray:
+    """M-orthogonal Ritz vectors (n, count) of the lowest eigenpairs, the upper ones less accurate."""
+    return _ritz_vectors(operator, int(_LOWER * count) + 1, count, int(_BEGIN * count) + 1, _CONVERGED_BASIS)
+
+
+def _ritz_vectors(operator: ShiftInvert, converged: int, enough: int, begin: int, tolerance: float) -> np.ndarray:
+    """Ritz vectors (n, enough), of which so many have residuals below a tolerance, from `begin` Krylov vectors or more."""
     krylov = operator.krylov
-    enough = converged + spare
-    goal = 2 * enough
+    goal = begin
     while True:
         while krylov.size < goal and not krylov.exhausted:
             krylov.expand()
@@ -162,7 +171,7 @@ def lanczos_modes(operator: ShiftInvert, converged: int, spare: int, tolerance: 
             # Soft and stiff modes too far apart for one shift: move it up, where the stiff ones are seen.
             operator.move(-1e-4 * highest)
             krylov = operator.krylov
-            goal = 2 * enough
+            goal = begin
             continue
         goal = krylov.size + 1 + krylov.size // 16
 

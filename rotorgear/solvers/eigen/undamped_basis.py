@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
-from rotorgear.solvers.sparse.entries import halves, scaled_norm_1, stacked, times
+from rotorgear.solvers.sparse.entries import halves, scaled_norm_1, stacked_columns, times
 from rotorgear.solvers.sparse.factor import Factor, factor_symmetric
 
 # sigma over the first frequency where no factor is there.
@@ -73,20 +73,22 @@ class NearUndamped:
         return halves(self.D, self._mirror)
 
     @cached_property
-    def _rows(self) -> tuple[sp.csr_array, sp.csr_array]:
-        """[M; D; K] and [M; D^T; K], sparse (3 n, n)."""
-        # The columns of a matrix are the rows of its mirror image, and those of M and K their own.
-        M = self.M.T
-        K = self.K.T
-        return stacked((M, self._mirror.T, K)), stacked((M, self.D.T, K))
+    def _rows(self) -> sp.csr_array:
+        """[M; D; K], sparse (3 n, n)."""
+        return stacked_columns((self.M, self._mirror, self.K))
 
-    def products(self, V: np.ndarray, transposed: bool = False) -> np.ndarray:
-        """M V, D V and K V, or M V, D^T V and K V: (3, n, m) for real or complex V (n, m)."""
-        return times(self._rows[transposed], V).reshape(3, *V.shape)
+    def products(self, V: np.ndarray) -> np.ndarray:
+        """M V, D V and K V: (3, n, m) for real or complex V (n, m)."""
+        return times(self._rows, V).reshape(3, *V.shape)
 
-    def applied(self, s: np.ndarray, V: np.ndarray, transposed: bool = False) -> np.ndarray:
-        """Q(s_j) v_j (n, m) for s (m,) and V (n, m), or Q(s_j)^T v_j."""
-        return forces(s, self.products(V, transposed))
+    def mirrored(self, V: np.ndarray, products: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """M V, D^T V and K V, (n, m) each, from the other `products` of V (n, m)."""
+        mass, velocity, stiffness = products
+        return mass, 2.0 * times(self.halves[0], V) - velocity, stiffness
+
+    def applied(self, s: np.ndarray, V: np.ndarray) -> np.ndarray:
+        """Q(s_j) v_j (n, m) for s (m,) and V (n, m)."""
+        return forces(s, self.products(V))
 
     @cached_property
     def _scaled_dofs(self) -> tuple[np.ndarray, float, float, float]:
@@ -117,8 +119,8 @@ class NearUndamped:
         return X - self.rigid @ (self.rigid.T @ times(self.M, X)) if self.rigid.shape[1] else X
 
 
-def forces(s: np.ndarray, products: np.ndarray) -> np.ndarray:
-    """s_j^2 M v_j + s_j D v_j + K v_j, (n, m), from the three products (3, n, m)."""
+def forces(s: np.ndarray, products: np.ndarray | tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
+    """s_j^2 M v_j + s_j D v_j + K v_j, (n, m), from the three products, (n, m) each."""
     mass, velocity, stiffness = products
     return np.asarray((mass * s + velocity) * s + stiffness)
 

@@ -56,14 +56,15 @@ def halves(A: sp.csc_array, mirror: sp.csc_array) -> tuple[sp.csc_array, sp.csc_
     return without_zeros(even), without_zeros(odd)
 
 
-def stacked(parts: Sequence[sp.csr_array]) -> sp.csr_array:
-    """Matrices of as many columns below each other, so that one product serves for all."""
-    before = np.cumsum([0, *(part.nnz for part in parts)])
-    ends = [parts[0].indptr, *(part.indptr[1:] + n for part, n in zip(parts[1:], before[1:], strict=False))]
+def stacked_columns(parts: Sequence[sp.csc_array]) -> sp.csr_array:
+    """A^T, B^T ... of matrices of as many rows, below each other and by rows, so that one product serves for all."""
+    ends = [parts[0].indptr]
+    for part in parts[1:]:
+        ends.append(part.indptr[1:] + ends[-1][-1])
     indices = np.concatenate([part.indices for part in parts])
     data = np.concatenate([part.data for part in parts])
-    rows = sum(part.shape[0] for part in parts)
-    return sp.csr_array((data, indices, np.concatenate(ends).astype(indices.dtype)), shape=(rows, parts[0].shape[1]))
+    rows = sum(part.shape[1] for part in parts)
+    return sp.csr_array((data, indices, np.concatenate(ends)), shape=(rows, parts[0].shape[0]))
 
 
 def times(A: sp.csc_array | sp.csr_array | np.ndarray, X: np.ndarray) -> np.ndarray:
