@@ -241,6 +241,8 @@ def read_only(value: Any) -> Any:
     import numpy as np
 
     if isinstance(value, np.ndarray):
+        if not value.flags.writeable:
+            return value
         view = value.view()
         view.flags.writeable = False
         return view

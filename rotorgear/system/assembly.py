@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.elements.matrices import ElementMatrices
-from rotorgear.system.dofs import DofMap
+from rotorgear.system.dofs import INDEX, DofMap
 from rotorgear.system.groups import ElementGroup
 
 Term = Callable[[ElementGroup], np.ndarray | None]
@@ -23,9 +23,10 @@ def assemble(groups: Iterable[ElementGroup], dofs: DofMap, term: Term) -> sp.csc
         block = term(group)
         if block is None:
             continue
-        d = group.dofs.shape[1]
-        rows.append(np.repeat(group.dofs, d, axis=1).ravel())
-        cols.append(np.tile(group.dofs, (1, d)).ravel())
+        numbers = group.dofs.astype(INDEX)
+        d = numbers.shape[1]
+        rows.append(np.repeat(numbers, d, axis=1).ravel())
+        cols.append(np.tile(numbers, (1, d)).ravel())
         values.append(block.ravel())
     if not rows:
         return sp.csc_array((dofs.n, dofs.n))
@@ -65,9 +66,9 @@ def strain_factor(groups: Iterable[ElementGroup], dofs: DofMap) -> sp.csr_array 
             return None
         factor = root @ strain
         e, s, d = factor.shape
-        number = first + np.arange(e * s).reshape(e, s, 1)
+        number = np.arange(first, first + e * s, dtype=INDEX).reshape(e, s, 1)
         rows.append(np.broadcast_to(number, (e, s, d)).ravel())
-        cols.append(np.broadcast_to(group.dofs[:, None, :], (e, s, d)).ravel())
+        cols.append(np.broadcast_to(group.dofs.astype(INDEX)[:, None, :], (e, s, d)).ravel())
         values.append(factor.ravel())
         first += e * s
     size = dofs.transform.shape[0]

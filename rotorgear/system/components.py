@@ -12,16 +12,17 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from rotorgear.errors import AnalysisError
+from rotorgear.solvers.sparse.entries import without_zeros
 from rotorgear.system.system import System
 
 
 def independent_groups(matrices: Iterable[sp.csc_array]) -> list[np.ndarray]:
     """Return the dofs of each independent group, largest group first; `matrices` are sparse (n, n)."""
-    pattern: sp.csc_array | None = None
+    pattern: sp.csr_array | None = None
     for A in matrices:
-        own = A.copy()
-        own.eliminate_zeros()
-        own.data = np.ones(own.nnz)  # values of either sign could cancel in the sum
+        there = without_zeros(A)
+        # Ones, since values of either sign could cancel in the sum; of the mirror image, by rows, as the search takes them.
+        own = sp.csr_array((np.ones(there.nnz), there.indices, there.indptr), shape=A.shape)
         if connected_components(own, directed=False, return_labels=False) == 1:
             return [np.arange(A.shape[0])]  # others can't part what one holds together
         pattern = own if pattern is None else pattern + own

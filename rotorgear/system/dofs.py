@@ -19,6 +19,8 @@ from rotorgear.model.parts.tables import Tables
 from rotorgear.system.nodes import CASING, FOLLOWS, GEAR_BODY, Nodes
 
 MOTION_DOFS = {"bending": (0, 1, 3, 4), "axial": (2,), "torsion": (5,)}
+# Rows and columns are numbered as SuperLU takes them: others are checked and copied at each factorisation.
+INDEX = np.int32
 _FIXED = {"x": (0,), "y": (1,), "z": (2,), "tilt_x": (3,), "tilt_y": (4,), "torsion": (5,), "all": (0, 1, 2, 3, 4, 5)}
 
 
@@ -45,7 +47,12 @@ class DofMap:
 
     def expand(self, q: np.ndarray) -> np.ndarray:
         """All displacements from the free ones: (n, ...) -> (a, ...)."""
-        return self.transform @ q
+        if not self.selects:
+            return self.transform @ q
+        free = self.column >= 0
+        everything = np.zeros((len(free), *q.shape[1:]), dtype=q.dtype)
+        everything[free] = q
+        return everything
 
     def describe(self, dof: int, nodes: Nodes) -> str:
         """Say which displacement a free dof is, for messages."""
@@ -94,9 +101,10 @@ def map_dofs(layout: Layout, nodes: Nodes) -> DofMap:
         return _with_feet(_tied(nodes, held, inside, groups, counts), layout, nodes)
     free = np.flatnonzero(~np.concatenate([held.ravel(), inside]))
     size = held.size + inside.size
-    column = np.full(size, -1)
+    column = np.full(size, -1, dtype=INDEX)
     column[free] = np.arange(free.size)
-    T = sp.csr_array((np.ones(free.size), (free, np.arange(free.size))), shape=(size, free.size))
+    starts = np.concatenate([np.zeros(1, dtype=INDEX), np.cumsum(column >= 0, dtype=INDEX)])
+    T = sp.csr_array((np.ones(free.size), np.arange(free.size, dtype=INDEX), starts), shape=(size, free.size))
     return DofMap(T, column, True, counts)
 
 
@@ -143,7 +151,8 @@ def _tied(
     values.append(np.ones(internal.size))
     n += internal.size
     size = held.size + inside.size
-    T = sp.csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(cols))), shape=(size, n))
+    places = (np.concatenate(rows).astype(INDEX), np.concatenate(cols).astype(INDEX))
+    T = sp.csr_array((np.concatenate(values), places), shape=(size, n))
     return DofMap(T, np.full(size, -1), False, counts)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import groupby
 from operator import attrgetter
 from typing import TYPE_CHECKING
@@ -39,6 +39,19 @@ if TYPE_CHECKING:
 
 # Motion of the six dofs of a node.
 _NODE_MOTIONS = ("bending", "bending", "axial", "bending", "bending", "torsion")
+
+
+@lru_cache(maxsize=64)  # most groups of a model have the dofs of two nodes
+def _numbers_by_motion(motions: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Which of the dofs with these motions move in each of them."""
+    return {motion: np.flatnonzero([own == motion for own in motions]) for motion in dict.fromkeys(motions)}
+
+
+@lru_cache(maxsize=64)
+def _same_motion(motions: tuple[str, ...]) -> np.ndarray:
+    """Which of the dofs with these motions move in the same one, (d, d)."""
+    names = np.array(motions)
+    return np.asarray(names[:, None] == names)
 
 
 @dataclass(frozen=True)
@@ -88,8 +101,12 @@ class ElementGroup:
     @cached_property
     def dofs_of_motions(self) -> dict[str, np.ndarray]:
         """Which of the d dofs move in each motion."""
-        motions = self.dof_motions
-        return {motion: np.flatnonzero([own == motion for own in motions]) for motion in dict.fromkeys(motions)}
+        return _numbers_by_motion(self.dof_motions)
+
+    @property
+    def same_motion(self) -> np.ndarray:
+        """Which of the d dofs move in the same motion, (d, d)."""
+        return _same_motion(self.dof_motions)
 
     @property
     def dof_motions(self) -> tuple[str, ...]:

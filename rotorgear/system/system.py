@@ -116,11 +116,15 @@ class System:
     @cached_property
     def nodal_inertia(self) -> np.ndarray:
         """Diagonal of the mass matrix over all six dofs of the p nodes, (6 p,), tied and held ones too."""
-        diagonal = np.zeros(self.dofs.transform.shape[0])
-        for group in self.groups:
-            if group.matrices.mass is not None:
-                np.add.at(diagonal, group.dofs, np.diagonal(group.matrices.mass, axis1=1, axis2=2))
-        return diagonal[: 6 * len(self.nodes)]
+        of_parts = [
+            (group.dofs.ravel(), np.diagonal(group.matrices.mass, axis1=1, axis2=2).ravel())
+            for group in self.groups
+            if group.matrices.mass is not None
+        ]
+        if not of_parts:
+            return np.zeros(6 * len(self.nodes))
+        dofs, inertia = (np.concatenate(every) for every in zip(*of_parts, strict=True))
+        return np.bincount(dofs, inertia, minlength=self.dofs.transform.shape[0])[: 6 * len(self.nodes)]
 
     @cached_property
     def gyroscopic(self) -> sp.csc_array:
@@ -182,7 +186,8 @@ class System:
     def inertial_terms(self, speed: float = 0.0) -> sp.csc_array:
         """Part of the velocity terms that comes from inertia, alpha M + W G, sparse (n, n)."""
         alpha = self.model.damping.rayleigh_alpha
-        return sp.csc_array(alpha * self.mass + speed * self.gyroscopic if alpha else speed * self.gyroscopic)
+        turning = self._spinning(speed)
+        return sp.csc_array(alpha * self.mass + turning) if alpha else turning
 
     def velocity_terms(self, speed: float | None) -> sp.csc_array | None:
         """C + W G at a speed, sparse (n, n); None where there is nothing of it, or at standstill without damping (speed None)."""
@@ -190,7 +195,7 @@ class System:
             return None
         D = self.damping(speed)
         if speed != 0.0:
-            D = sp.csc_array(D + speed * self.gyroscopic)
+            D = sp.csc_array(D + self._spinning(speed))
         return D if D.nnz and np.any(D.data) else None
 
     def matrices(self, speed: float = 0.0) -> Matrices:
@@ -218,6 +223,11 @@ class System:
         """Whether a group without a table has a non-symmetric stiffness."""
         every = (group.matrices for group in self.groups)
         return any(m.circulation is not None or m.circulation_per_speed is not None for m in every)
+
+    def _spinning(self, speed: float) -> sp.csc_array:
+        """W G at a speed W in rad/s, sparse (n, n)."""
+        G = self.gyroscopic
+        return sp.csc_array((speed * G.data, G.indices, G.indptr), shape=G.shape)
 
     def _that_counts(self, speed: float) -> float:
         """The speed where stiffness and damping have tables of it, else one for all: what is kept serves any speed then."""

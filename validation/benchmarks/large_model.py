@@ -64,7 +64,7 @@ def one(elements: int) -> dict[str, float]:
     before = megabytes() - start
     modes, result = timed(lambda: modal(system, modes=MODES, error_estimate=False))
     # as the analysis has them
-    strain = system.strain_factor().__matmul__
+    strain = system.strain_factor()
     guess = (2.0 * np.pi * LOWEST) ** 2
     solver, _ = timed(lambda: lowest_modes(M, K, count=MODES, strain=strain, guess=guess))
     memory = megabytes() - start

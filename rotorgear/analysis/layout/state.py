@@ -72,8 +72,7 @@ def state_of(
     are sharpened: one step of inverse iteration of each joins the shapes, which leaves the square of that.
     """
     system = system_at(model, speed, plan)
-    S = system.strain_factor(speed)
-    strain = None if S is None else (lambda X: S @ X)
+    strain = system.strain_factor(speed)
     found = lowest_modes(system.mass, system.stiffness(speed), below=2.0 * np.pi * below_hz, strain=strain)
     count = len(found.eigenvalues)
     first = found.eigenvalues[min(found.rigid_count, count - 1)]

@@ -71,6 +71,11 @@ def by_strains(problem: DampedProblem, found: DampedModes) -> DampedModes:
 def relative_noise(problem: DampedProblem, size: np.ndarray, V: np.ndarray) -> np.ndarray:
     """Rounding that K q and s C q carry, relative to |s|^2 q^H M q, for |s| = size (m,) and M-normal V (n, m)."""
     K = magnitudes(problem.K_symmetric)
-    C = magnitudes(sp.csc_array(problem.D - problem.inertial))
     size = np.maximum(size, 1e-150)  # its square is still a number
-    return np.asarray(rounding_noise(K, V) / size**2 + rounding_noise(C, V) / size)
+    return np.asarray(rounding_noise(K, V) / size**2 + damping_noise(problem, size, V))
+
+
+def damping_noise(problem: DampedProblem, size: np.ndarray, V: np.ndarray) -> np.ndarray:
+    """The part of s C q in it, (m,)."""
+    C = sp.csc_array(problem.D - problem.inertial)
+    return rounding_noise(magnitudes(C), V) / size if C.nnz else np.zeros(V.shape[1])

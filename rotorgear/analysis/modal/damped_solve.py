@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.analysis.modal.damped_problem import DampedProblem, by_strains, relative_noise
+from rotorgear.analysis.modal.damped_problem import DampedProblem, by_strains, damping_noise, relative_noise
 from rotorgear.solvers.eigen.damped import DampedModes, damped_modes
 from rotorgear.solvers.eigen.eigen import UndampedModes
 from rotorgear.solvers.eigen.gyroscopic import gyroscopic_modes
@@ -33,6 +33,9 @@ _ALL_UP_TO = 120
 _REACH = 1.35
 _MORE = 8
 _MOST_OF = 0.4
+# Shift over the first frequency within which the factor of the undamped modes serves for corrections as well.
+_LEAST_SHIFT = 0.03
+_MOST_SHIFT = 0.5
 # Residual in the dofs above which a mode that the matrices do resolve is refined on them.
 _POLISH = 1e-14
 # A refinement that moves s by more than this share of it has gone to another mode.
@@ -85,10 +88,13 @@ def _near_undamped(problem: DampedProblem, count: int | None, below: float | Non
     first = undamped.rigid_count
     frequencies = np.sqrt(undamped.eigenvalues[first:])
     modes = undamped.vectors[:, first:]
-    if undamped.complete or relative_noise(problem, frequencies, modes).max(initial=0.0) > _CLEAN_LARGE:
+    if undamped.complete or not len(frequencies):
         return None
-    if not len(frequencies):
+    noise = undamped.noise[first:] / frequencies**2 + damping_noise(problem, frequencies, modes)
+    if noise.max() > _CLEAN_LARGE:
         return None
+    shift = np.sqrt(-undamped.shift)
+    is_low = _LEAST_SHIFT * frequencies[0] <= shift <= _MOST_SHIFT * frequencies[0]
     near = NearUndamped(
         M=problem.M,
         D=problem.D,
@@ -97,8 +103,9 @@ def _near_undamped(problem: DampedProblem, count: int | None, below: float | Non
         frequencies=frequencies,
         modes=modes,
         rigid=undamped.vectors[:, :first],
+        factored=(shift, undamped.factor) if undamped.factor is not None and is_low else None,
     )
-    if near.damping.nnz:
+    if near.halves[0].nnz:
         return locally_damped_modes(near, count, below)
     found = gyroscopic_modes(near, count, below)
     return None if found is None else by_strains(problem, found)
@@ -156,7 +163,9 @@ def _in_coordinates(
     S = problem.strain
     M = problem.M
     r = rigid.shape[1]
-    squares, X = strain_ritz(lambda V: S @ V, _independent(M, rigid, basis))
+    independent = _independent(M, rigid, basis)
+    squares, turn = strain_ritz(S, independent)
+    X = independent @ turn
     # A dof without inertia follows the others at once; no undamped mode holds that, so it is a coordinate of its own.
     massless = np.flatnonzero(M.diagonal() <= 0.0)
     N = np.zeros((M.shape[0], massless.size))
@@ -219,7 +228,7 @@ def _by_damping(forms: StrainForms, rigid: np.ndarray) -> np.ndarray:
         return rigid
     drag = np.sqrt(np.maximum(forms.viscosity.diagonal(), 0.0))[:, None]
     strained = drag * _without_rounding(forms, rigid, rigid.shape[1])
-    return strain_ritz(lambda _: strained, rigid)[1] if strained.any() else rigid
+    return rigid @ strain_ritz(lambda _: strained, rigid)[1] if strained.any() else rigid
 
 
 def _without_rounding(forms: StrainForms, whole: np.ndarray, rigid: int) -> np.ndarray:

@@ -55,12 +55,11 @@ def mode_energies(system: System, speed: float, q: np.ndarray, rigid: np.ndarray
     for group in system.groups_at(speed):
         local = halves[group.dofs]  # (e, d, m or 2 m)
         M = group.matrices.mass
+        by_dof = None if M is None else np.einsum("edm,edm->dm", local, (M * group.same_motion) @ local)
         for motion in motions_of_all:
-            if M is None or motion not in group.dofs_of_motions:
+            if by_dof is None or motion not in group.dofs_of_motions:
                 continue
-            dofs = group.dofs_of_motions[motion]
-            part = local[:, dofs]
-            energy = _by_mode(np.einsum("edm,edm->m", part, M[:, dofs][:, :, dofs] @ part), modes)
+            energy = _by_mode(by_dof[group.dofs_of_motions[motion]].sum(axis=0), modes)
             _add(kinetic, group.part, energy)
             _add(kinetic_by_shaft, ("", group.part) if motion in (CASING, GEAR_BODY) else (group.shaft, motion), energy)
             kinetic_by_motion[motion] += energy
@@ -91,7 +90,7 @@ def _strain_energies(group: ElementGroup, local: np.ndarray) -> Iterable[tuple[s
     if B is None or D is None:
         return
     strains = B @ local
-    energy = np.sum(strains * (D @ strains), axis=0)  # (s, m), by strain
+    energy = np.einsum("esm,esm->sm", strains, D @ strains)  # by strain
     if group.strain_motions:
         for motion in dict.fromkeys(group.strain_motions):
             rows = [k for k, name in enumerate(group.strain_motions) if name == motion]

@@ -15,6 +15,7 @@ from rotorgear.analysis.modal.energies import mode_energies
 from rotorgear.analysis.modal.modes import Modes
 from rotorgear.analysis.modal.whirl import whirl_of, whirl_words
 from rotorgear.results.steady.modal import ModalResult
+from rotorgear.solvers.sparse.entries import stretches
 from rotorgear.system.system import System
 
 
@@ -66,6 +67,21 @@ def modal_result(
     )
 
 
+def _largest(shapes: np.ndarray) -> np.ndarray:
+    """The entry of the largest size, the first of such, in each mode (m,) of shapes (p, d, m)."""
+    modes = shapes.shape[2]
+    found = np.zeros(modes, dtype=shapes.dtype)
+    size = np.full(modes, -1.0)
+    for nodes in stretches(len(shapes)):
+        part = shapes[nodes].reshape(-1, modes)
+        sizes = np.abs(part)
+        place = (sizes.argmax(axis=0), np.arange(modes))
+        larger = sizes[place] > size
+        found = np.where(larger, part[place], found)
+        size = np.where(larger, sizes[place], size)
+    return found
+
+
 def _turned(shapes: np.ndarray) -> np.ndarray:
     """Complex shapes, each mode's phase turned so that its largest displacement is real and positive.
 
@@ -73,15 +89,10 @@ def _turned(shapes: np.ndarray) -> np.ndarray:
     """
     if shapes.shape[2] == 0:
         return shapes.astype(complex)
-    mode = np.arange(shapes.shape[2])
-    size = np.abs(shapes)
-    node, direction = np.divmod(size[:, :3].reshape(-1, len(mode)).argmax(axis=0), 3)
-    peak = shapes[node, direction, mode]
+    peak = _largest(shapes[:, :3])
+    rotation = _largest(shapes[:, 3:])
     # A mode that only tilts or twists has no displacement to speak of: its largest rotation is turned then.
-    still = np.abs(peak) <= 1e-9 * size.max(axis=0).max(axis=0)
-    if np.any(still):
-        everything = shapes[:, :, still].reshape(-1, np.count_nonzero(still))
-        peak[still] = everything[np.abs(everything).argmax(axis=0), np.arange(everything.shape[1])]
+    peak = np.where(np.abs(peak) <= 1e-9 * np.abs(rotation), rotation, peak)
     turn = np.where(peak != 0.0, np.conj(peak) / np.where(peak != 0.0, np.abs(peak), 1.0), 1.0)
     if np.iscomplexobj(shapes):
         return np.asarray(shapes * turn)

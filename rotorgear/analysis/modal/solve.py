@@ -57,7 +57,7 @@ class _Problem:
         if len(group) == self.M.shape[0]:
             return self
 
-        place = np.full(self.M.shape[0], -1)
+        place = np.full(self.M.shape[0], -1, dtype=self.M.indices.dtype)
         place[group] = np.arange(len(group))
 
         def cut_out(A: sp.csc_array) -> sp.csc_array:
@@ -227,13 +227,12 @@ def _solve_group(problem: _Problem, wanted: Wanted, system: System) -> Modes:
 
 
 def _lowest(problem: _Problem, modes: int | None, limit: float | None, counted: bool = True) -> UndampedModes:
-    S = problem.S
     return lowest_modes(
         problem.M,
         problem.K_symmetric,
         count=modes,
         below=limit,
-        strain=None if S is None else (lambda V: S @ V),
+        strain=problem.S,
         guess=problem.guess,
         counted=counted,
     )
@@ -306,8 +305,10 @@ def _merged(
     owner = np.concatenate([np.full(len(part.eigenvalues), k) for k, part in enumerate(solved)])
     column = np.concatenate([np.arange(len(part.eigenvalues)) for part in solved])
     order = np.lexsort((np.abs(s), ~rigid))[:most]
+    in_order = np.array_equal(order, np.arange(len(order)))
     if len(solved) == 1 and len(groups[0]) == system.n:
-        vectors = solved[0].vectors[:, order]
+        # Those of large models fill a good part of the memory: no copy without a reason.
+        vectors = solved[0].vectors[:, : len(order)] if in_order else solved[0].vectors[:, order]
     else:
         vectors = np.zeros((system.n, len(order)), dtype=np.result_type(*[part.vectors for part in solved]))
         for place, k in enumerate(order):

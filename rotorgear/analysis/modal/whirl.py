@@ -75,9 +75,12 @@ def whirl_of(system: System, shapes: np.ndarray, speed: float) -> Whirl:
         area = np.abs(swept).sum(axis=0)
         one_way = np.maximum(swept, 0.0).sum(axis=0)
         other_way = np.maximum(-swept, 0.0).sum(axis=0)
-        kinds = [~moves, area < _PLANAR * total, np.minimum(one_way, other_way) > _MIXED * area, net[name] > 0.0]
-        words = [WHIRL_WORDS.index(word) for word in ("", "planar", "mixed", "forward")]
-        numbers[name] = np.select(kinds, words, WHIRL_WORDS.index("backward")).astype(np.int8)
+        # The first that holds counts: later lines overrule.
+        found = np.where(net[name] > 0.0, WHIRL_WORDS.index("forward"), WHIRL_WORDS.index("backward"))
+        found[np.minimum(one_way, other_way) > _MIXED * area] = WHIRL_WORDS.index("mixed")
+        found[area < _PLANAR * total] = WHIRL_WORDS.index("planar")
+        found[~moves] = WHIRL_WORDS.index("")
+        numbers[name] = found.astype(np.int8)
     return Whirl(net, numbers)
 
 

@@ -40,8 +40,7 @@ def nominal_modes(
 
     They are `count`, or more where bodies beside each other have more free motions than one.
     """
-    S = system.strain_factor(speed or 0.0)
-    strain = None if S is None else (lambda X: S @ X)
+    strain = system.strain_factor(speed or 0.0)
     asked = count
     found = lowest_modes(system.mass, system.stiffness(speed or 0.0), count=asked, strain=strain)
     while not found.complete and len(found.eigenvalues) - found.rigid_count < count - _OF_A_BODY:

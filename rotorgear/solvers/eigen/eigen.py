@@ -14,9 +14,16 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.solvers.eigen.ritz import count_rigid, orthonormalised, stiffness_ritz, strain_ritz
-from rotorgear.solvers.eigen.shift_invert import ShiftInvert, dense_modes, lanczos_modes, shifted_operator, unstable
-from rotorgear.solvers.sparse.factor import single_thread
+from rotorgear.solvers.eigen.ritz import combine, count_rigid, orthonormalise, stiffness_ritz, strain_ritz
+from rotorgear.solvers.eigen.shift_invert import (
+    ShiftInvert,
+    basis_vectors,
+    dense_modes,
+    lanczos_modes,
+    shifted_operator,
+    unstable,
+)
+from rotorgear.solvers.sparse.factor import SymmetricFactor, single_thread
 from rotorgear.solvers.sparse.pencil import Strain, backward_errors, check_pencil, count_below, rounding_noise
 
 _DENSE_UP_TO = 250  # unknowns up to which LAPACK is as fast
@@ -38,7 +45,7 @@ class UndampedModes:
         eigenvalues: (m,) lambda = omega^2 in (rad/s)^2, ascending, never negative.
         vectors: (n, m), V^T M V = identity.
         rigid_count: how many of the first modes have no strain beyond rounding.
-        backward_error: (m,) ||K v - lambda M v|| / ((||K||_1 + |lambda| ||M||_1) ||v||).
+        backward_error: (m,) ||K v - lambda M v|| / ((||K||_1 + |lambda| ||M||_1) ||v||); NaN where the modes were not counted.
         available: number of finite modes of the pencil; `complete` says that all of them are here.
         sturm_shift: lambda at which modes were counted.
         sturm_count: modes below it by pivot signs.
@@ -46,6 +53,8 @@ class UndampedModes:
         method: "dense" or "block Lanczos".
         shift: sigma.
         factorisations: how many matrices were factored.
+        noise: (m,) what rounding of the stored K does to Rayleigh quotients, in (rad/s)^2.
+        factor: that of K - sigma M, where the modes were not counted: a basis of other modes goes on with it.
     """
 
     eigenvalues: np.ndarray
@@ -59,6 +68,8 @@ class UndampedModes:
     method: str
     shift: float
     factorisations: int
+    noise: np.ndarray
+    factor: SymmetricFactor | None
 
     @property
     def sturm_count_ok(self) -> bool:
@@ -88,10 +99,11 @@ def lowest_modes(
         K: (n, n) symmetric positive semidefinite.
         count: number of modes; when fewer exist all are returned (`complete`). None with no `below`: all modes.
         below: only the modes with omega <= below [rad/s], and all of them (the lowest `count` when both are given).
-        strain: V (n, m) -> S V (p, m) with K = S^T S, each strain evaluated without forming K. It carries soft modes to
-            full precision and tells rigid from soft; without it a mode softer than the rounding of K counts as rigid.
+        strain: S (p, n) with K = S^T S, or V (n, m) -> S V (p, m), each strain evaluated without forming K. It carries soft
+            modes to full precision and tells rigid from soft; without it a mode softer than the rounding of K counts as rigid.
         guess: an eigenvalue [(rad/s)^2] near the first elastic one; saves the search for it, never changes the answer.
-        counted: False leaves the Sturm count out, for a basis of other modes, which are counted themselves.
+        counted: False leaves the Sturm count out, and of the upper modes a part of their accuracy: for a basis of other modes,
+            which are corrected and counted themselves.
 
     Raises:
         LooseDofError: a dof has neither inertia nor stiffness (`dofs`).
@@ -132,15 +144,16 @@ def lowest_modes(
             gap = (_gap_above(pairs, keep) if counted else _UNCOUNTED) if keep <= pairs.sure else None
             if gap is not None:
                 sturm_shift, expected = gap
-                V = pairs.vectors[:, :keep]
-                errors = backward_errors(operator.mass, operator.stiffness, pairs.values[:keep], V)
+                errors = np.full(len(pairs.values), np.nan)
+                if counted:
+                    errors = backward_errors(operator.mass, operator.stiffness, pairs.values, pairs.vectors)
                 sturm_count = count_below(operator.M, operator.K, sturm_shift) if counted else expected
                 operator.factorisations += counted
                 modes = UndampedModes(
                     eigenvalues=pairs.values[:keep],
-                    vectors=V,
+                    vectors=pairs.vectors[:, :keep],
                     rigid_count=min(pairs.rigid, keep),
-                    backward_error=errors,
+                    backward_error=errors[:keep],
                     available=pairs.finite,
                     sturm_shift=sturm_shift,
                     sturm_count=sturm_count,
@@ -148,6 +161,8 @@ def lowest_modes(
                     method=pairs.method,
                     shift=operator.sigma,
                     factorisations=operator.factorisations,
+                    noise=pairs.noise[:keep],
+                    factor=None if counted else operator.factor,
                 )
                 if modes.sturm_count_ok:
                     return modes
@@ -186,11 +201,19 @@ def _candidates(
         sure = finite = V.shape[1]
         V = V[:, : target + 10 * spare]
     else:
-        sure = target + 1 if spare else target  # one more must be converged: the gap lies below it
-        V = lanczos_modes(operator, sure, spare)
+        if spare:
+            sure = target + 1  # one more must be converged: the gap lies below it
+            V = lanczos_modes(operator, sure, spare)
+        else:
+            sure = target
+            V = basis_vectors(operator, target)
         finite = n - massless.size
-    V = orthonormalised(operator.mass, V)
-    values, V = stiffness_ritz(operator.K, V, operator.sigma) if strain is None else strain_ritz(strain, V)
+    orthonormalise(operator.mass, V)
+    if strain is None:
+        values, V = stiffness_ritz(operator.K, V, operator.sigma)
+    else:
+        values, turn = strain_ritz(strain, V)
+        combine(V, turn)
     noise = rounding_noise(operator.size_K, V, operator.sigma)
     if values.size and values[0] < -_UNSTABLE * noise[0]:
         raise unstable(float(values[0]))

@@ -48,7 +48,7 @@ def gyroscopic_modes(problem: NearUndamped, count: int | None, below: float | No
         return None
     rows = None if count is None else max(count - problem.rigid.shape[1], 0)
     with single_thread(problem.K.shape[0]):
-        factor = factor_symmetric(sp.csc_array(problem.K + problem.shift**2 * problem.M))
+        factor = problem.factor
         space = UndampedBasis(problem)
         for _ in range(_ROUNDS):
             if space.size > _LARGEST_SHARE * problem.K.shape[0]:
@@ -110,12 +110,11 @@ def counted_modes(problem: NearUndamped, s: np.ndarray, V: np.ndarray, count: in
     rigid = problem.rigid[:, :count]
     values = np.concatenate([np.zeros(rigid.shape[1]), s])
     V = np.hstack([rigid, V])
-    quadratic = problem.quadratic
     return DampedModes(
         eigenvalues=values,
         vectors=V / V[np.argmax(np.abs(V), axis=0), np.arange(V.shape[1])],
         rigid=np.arange(len(values)) < rigid.shape[1],
-        backward_error=quadratic.residuals(values / quadratic.w0, V / quadratic.scale[:, None]),
+        backward_error=problem.backward_errors(values, V, problem.applied(values, V)),
         zero_count=2 * problem.rigid.shape[1],
         complete=False,
         method=f"{basis}, counted by pivot signs",

@@ -11,10 +11,15 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from scipy.linalg.lapack import dsyevd
+
+from rotorgear.solvers.sparse.entries import stretches
 
 Apply = Callable[[np.ndarray], np.ndarray]
 _DEPENDENT = 1e-13  # a direction this much shorter than its block is rounding of the others
 _ROOM = 200  # columns reserved at first
+_CLEAN = 2.0 * float(np.finfo(float).eps)  # overlap of blocks after a pass over the whole basis
+_SEMI = 1e-9  # overlap that costs Ritz pairs nothing yet: below the root of eps they are those of an orthogonal basis
 _WELL_SPREAD = 3.0  # log of the ratio of singular values up to which one pass leaves an orthonormal block
 
 
@@ -35,6 +40,8 @@ class BlockKrylov:
         self._size = 0
         self._border = np.zeros((0, 0))
         self._border_start = 0
+        self._longest = 0.0
+        self._drift = (_CLEAN, _CLEAN)
         self._block, _, self._weighted_block = self._orthonormal(self._fresh(self._width))
         self._weighted_before = self._weighted_block[:, :0]
 
@@ -111,8 +118,13 @@ class BlockKrylov:
     def polished(self, Y: np.ndarray) -> np.ndarray:
         """T V Y (n, k) without another application of T: stiff parts that V Y still holds are scaled down by it."""
         last = self._border @ Y[self._border_start :]
-        image = _product(self.basis, self.projection @ Y)
-        image += _product(self._block[:, : last.shape[0]], last)
+        inner = self.projection @ Y
+        V = self.basis
+        block = self._block[:, : last.shape[0]]
+        image = np.empty((V.shape[0], Y.shape[1]))  # by rows, as sparse products take it
+        for rows in stretches(V.shape[0]):
+            np.matmul(V[rows], inner, out=image[rows])
+            image[rows] += block[rows] @ last
         return image
 
     def _reserve(self, size: int) -> None:
@@ -133,28 +145,48 @@ class BlockKrylov:
         to none of them where there are no such images.
         """
         V = self.basis
-        first = np.vstack([part.T @ X for part in near]) if near else (self._weighted(X).T @ V).T
+        first = np.concatenate([part.T @ X for part in near]) if near else (self._weighted(X).T @ V).T
         since = V.shape[1] - first.shape[0]
         above = np.zeros((V.shape[1], X.shape[1]))
         above[since:] = first
-        below = np.eye(X.shape[1])
+        below: np.ndarray | None = None
         X = X - _product(V[:, since:], first)
         WX = self._weighted(X)
+        gram = X.T @ WX
         # Of the longest column as it came in; what is left of it in the passes is measured against unit vectors.
-        length = math.sqrt(float((np.einsum("ij,ij->j", X, WX) + np.sum(above**2, axis=0)).max(initial=0.0)))
+        squares = gram.diagonal() + np.einsum("ij,ij->j", first, first)
+        length = math.sqrt(max(squares.tolist(), default=0.0))
+        self._longest = max(self._longest, length)
+        drift = self._drift_of(gram) if near else math.inf
         for _ in range(4):  # twice is enough (Kahan and Parlett) unless the block itself is nearly dependent
-            overlap = (WX.T @ V).T  # faster than V.T @ WX for a narrow WX
-            gram = X.T @ WX - overlap.T @ overlap
+            if drift > _SEMI:
+                overlap = (WX.T @ V).T  # faster than V.T @ WX for a narrow WX
+                gram -= overlap.T @ overlap
+                X -= _product(V, overlap)
+                above += overlap if below is None else overlap @ below
             Q, triangle, spread = _compressed(gram, _DEPENDENT * length)
-            X -= _product(V, overlap)
             X = _product(X, Q)
-            WX = self._weighted(X)
-            above += overlap @ below
-            below = triangle @ below
-            length = 1.0
+            WX = self._weighted(X) if drift > _SEMI else _product(WX, Q)
+            below = triangle if below is None else triangle @ below
             if spread < _WELL_SPREAD or X.shape[1] == 0:
                 break
-        return X, np.vstack([above, below]), WX
+            length = 1.0
+            gram = X.T @ WX
+            drift = math.inf
+        self._drift = (self._drift[1], _CLEAN if drift > _SEMI else drift)
+        return X, np.concatenate([above, below]), WX
+
+    def _drift_of(self, gram: np.ndarray) -> float:
+        """Estimated overlap of unit vectors along X with older blocks than its neighbours, from X^T W X.
+
+        X = T V_j - V_j A_j - V_{j-1} B^T, so the overlap of block j counts with the norms of T and A_j, that of block j - 1 with
+        the norm of B; both are divided by the length of X (Simon, Linear Algebra Appl. 61 (1984) 101).
+        """
+        before, last = self._drift
+        shortest = min(gram.diagonal().tolist(), default=math.inf)
+        border = math.sqrt(float(np.vdot(self._border, self._border)))
+        grown = 2.0 * self._longest * last + border * before
+        return grown / math.sqrt(shortest) if shortest > 0.0 else math.inf
 
     def _weighted(self, X: np.ndarray) -> np.ndarray:
         return X if self._inner is None else self._inner(X)
@@ -166,26 +198,27 @@ def _product(V: np.ndarray, C: np.ndarray) -> np.ndarray:
 
 
 def _compressed(gram: np.ndarray, shortest: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Q, R, spread with X = (X Q) R and X Q orthonormal, from X^T W X; directions under `shortest` are left out."""
+    """Q, R, spread with X = (X Q) R and X Q orthonormal, from X^T W X; directions under `shortest` are left out.
+
+    The spread is the log of the ratio of the longest direction of unit columns to the shortest; 0 of none.
+    """
     # Unit columns first: directions of very different lengths then do not hide each other in the eigenvalues.
-    scale = np.sqrt(np.maximum(np.diag(gram), 0.0))
-    kept = np.flatnonzero(scale > shortest)
-    scale = scale[kept]
-    chosen = gram if kept.size == gram.shape[0] else gram[np.ix_(kept, kept)]
-    values, vectors = np.linalg.eigh(chosen / scale / scale[:, None])
+    scale = np.sqrt(np.maximum(gram.diagonal(), 0.0))
+    kept = scale > shortest
+    if not kept.all():
+        Q, R, spread = _compressed(gram[np.ix_(kept, kept)], shortest)
+        inside = np.zeros((len(kept), Q.shape[1]))
+        outside = np.zeros((Q.shape[1], len(kept)))
+        inside[kept] = Q
+        outside[:, kept] = R
+        return inside, outside, spread
+    if not len(scale):
+        return gram, gram, 0.0
+    values, vectors, _ = dsyevd(gram / scale / scale[:, None])  # in a fifth of the time of numpy's call of it
     # The eigenvalues of unit columns' products err by some eps of the largest: a direction below that is rounding.
-    strong = values > 1e-14 * values.max(initial=0.0)
-    roots = np.sqrt(values[strong])
-    if roots.size == gram.shape[0]:
-        return vectors / roots / scale[:, None], roots[:, None] * vectors.T * scale, _spread(roots)
-    vectors = vectors[:, strong]
-    Q = np.zeros((gram.shape[0], roots.size))
-    R = np.zeros((roots.size, gram.shape[0]))
-    Q[kept] = vectors / roots / scale[:, None]
-    R[:, kept] = roots[:, None] * vectors.T * scale
-    return Q, R, _spread(roots)
-
-
-def _spread(roots: np.ndarray) -> float:
-    """Log of the ratio of the largest of ascending roots (m,) to the least; 0 of none."""
-    return math.log(roots[-1] / roots[0]) if roots.size else 0.0
+    if values[0] <= 1e-14 * values[-1]:
+        strong = values > 1e-14 * values[-1]
+        values = values[strong]
+        vectors = vectors[:, strong]
+    roots = np.sqrt(values)
+    return vectors / roots / scale[:, None], roots[:, None] * vectors.T * scale, math.log(roots[-1] / roots[0])

@@ -27,10 +27,11 @@ from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.damped import DampedModes
 from rotorgear.solvers.eigen.gyroscopic import counted_modes
 from rotorgear.solvers.eigen.reduced_pencil import Pencil, clusters, eigen
-from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis
-from rotorgear.solvers.sparse.entries import times
-from rotorgear.solvers.sparse.factor import Factor, factor_symmetric, single_thread
+from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis, forces
+from rotorgear.solvers.sparse.entries import columns_of, times
+from rotorgear.solvers.sparse.factor import Factor, factor_symmetric, negative_eigenvalues, single_thread
 
+_BASIS = "basis of undamped modes and responses to dampers"
 # Dofs on which dampers act: so many at most, and this share of all.
 _MOST_PLACES = 96
 _MOST_OF = 0.2
@@ -69,7 +70,7 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
     most = len(problem.frequencies)
     rows = most if count is None else max(count - problem.rigid.shape[1], 0)
     with single_thread(problem.K.shape[0]):
-        factor = factor_symmetric(sp.csc_array(problem.K + problem.shift**2 * problem.M))
+        factor = problem.factor
         space = _begun(problem, factor, places, rows)
         for _ in range(_ROUNDS):
             if space.size > _LARGEST_SHARE * problem.K.shape[0]:
@@ -77,7 +78,7 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
             basis = space.basis
             small = space.pencil(basis)
             shift = float(np.sqrt(problem.frequencies[0] * problem.frequencies[-1]))
-            found = eigen(small, shift, _STILL * float(problem.frequencies[0]), most)
+            found = eigen(small, shift, _STILL * float(problem.frequencies[0]), most if below is not None else rows + 1)
             size = np.abs(found.s)
             wanted = min(rows, len(size))
             if below is not None:
@@ -88,9 +89,7 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
             pairs = _Pairs(found.s[:wanted], basis @ found.q[:, :wanted], basis @ found.y[:, :wanted])
             corrected, e, unsure = _corrected(problem, factor, pairs)
             if unsure <= _SETTLED:
-                modes = _result(problem, corrected, count)
-                if modes.backward_error.max(initial=0.0) > _SOUND:
-                    modes = _result(problem, _polished(problem, factor, corrected), count)
+                modes = counted_modes(problem, corrected.s, _polished(problem, factor, corrected), count, _BASIS)
                 if modes.backward_error.max(initial=0.0) <= _SOUND:
                     last = float(size[wanted - 1]) if wanted else float(problem.frequencies[0]) / _COUNT_AT[-1]
                     return modes if _none_is_missing(problem, small, last) else None
@@ -109,12 +108,14 @@ class _Pairs:
 
 def _places(problem: NearUndamped) -> np.ndarray | None:
     """Unit forces P (n, p) of the dampers, whose damping matrix is P c P^T; None where they are everywhere."""
-    C = problem.damping
+    C, _ = problem.halves
     touched = np.unique(C.indices)
     if len(touched) > min(_MOST_PLACES, _MOST_OF * C.shape[0]):
         return None
     scale = 1.0 / problem.weight[touched]
-    values, vectors = np.linalg.eigh(C[touched][:, touched].toarray() * scale * scale[:, None])
+    block = np.zeros((len(touched), len(touched)))
+    block[np.searchsorted(touched, C.indices), np.searchsorted(touched, columns_of(C))] = C.data
+    values, vectors = np.linalg.eigh(block * scale * scale[:, None])
     real = np.abs(values) > _RANK * np.abs(values).max(initial=0.0)
     P = np.zeros((C.shape[0], int(real.sum())))
     P[touched] = vectors[:, real] / scale[:, None]
@@ -136,8 +137,10 @@ def _corrected(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> tuple[_P
     """The pairs with both corrections, e (n, m), and the largest difference of the two corrections of an eigenvalue over |s|."""
     z = pairs.s
     m = len(z)
-    right = problem.applied(z, pairs.v)
-    left = problem.applied(z.conj(), pairs.y, transposed=True)
+    of_both = problem.products(np.hstack([pairs.v, pairs.y]))
+    products = of_both[:, :, :m]
+    right = forces(z, products)
+    left = forces(z.conj(), problem.mirrored(pairs.y, of_both[:, :, m:]))
     both = problem.without_rigid(factor.solve(np.hstack([right, left])))
     e = both[:, :m]
     f = both[:, m:]
@@ -145,18 +148,19 @@ def _corrected(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> tuple[_P
     v = pairs.v - e
     y = pairs.y - f
     # y_i^H ((s_i + s_j) M + D) v_j: the product in which left and right vectors of a pencil are biorthogonal.
-    heavy = pairs.y.conj().T @ times(problem.M, pairs.v)
-    product = pairs.y.conj().T @ times(problem.D, pairs.v) + heavy * z + z[:, None] * heavy
+    heavy = pairs.y.conj().T @ products[0]
+    product = pairs.y.conj().T @ products[1] + heavy * z + z[:, None] * heavy
     once = left.conj().T @ e
     twice = f.conj().T @ problem.applied(z, e)
-    slope = np.diag(product)
-    steps = 2.0 * np.diag(once) - np.diag(twice)
-    unsure = 0.0
-    for close in clusters(z, _CLOSE):
+    groups = clusters(z, _CLOSE)
+    alone = np.array([close[0] for close in groups if len(close) == 1], dtype=int)
+    change = once[alone, alone]
+    change_of_change = change - twice[alone, alone]
+    slope = product[alone, alone]
+    values[alone] += (change + change_of_change) / slope
+    unsure = float(np.abs(change_of_change / (slope * z[alone])).max(initial=0.0))
+    for close in groups:
         if len(close) == 1:
-            values[close] += steps[close] / slope[close]
-            differ = steps[close] - np.diag(once)[close]
-            unsure = max(unsure, float(np.abs(differ / slope[close] / z[close])[0]))
             continue
         block = np.ix_(close, close)
         first = np.linalg.solve(product[block], once[block])
@@ -168,26 +172,23 @@ def _corrected(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> tuple[_P
     return _Pairs(values[order], v[:, order], y[:, order]), e, unsure
 
 
-def _polished(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> _Pairs:
-    """The pairs with right vectors that one more correction A^-1 Q(s) v frees of what lies beyond the undamped modes X.
+def _polished(problem: NearUndamped, factor: Factor, pairs: _Pairs) -> np.ndarray:
+    """Right vectors (n, m) that one more correction A^-1 Q(s) v frees of what lies beyond the undamped modes X.
 
     Along X, where r of the projection was zero, it is the eigenvalue that decides, and A would mistake s: that part is not taken.
     """
     e = problem.without_rigid(factor.solve(problem.applied(pairs.s, pairs.v)))
-    e = e - problem.modes @ (problem.modes.T @ times(problem.M, e))
-    return _Pairs(pairs.s, pairs.v - e, pairs.y)
+    return np.asarray(pairs.v - e + problem.modes @ (problem.modes.T @ times(problem.M, e)))
 
 
 def _none_is_missing(problem: NearUndamped, small: Pencil, last: float) -> bool:
     """Whether the structure without its dampers has as many modes in the dofs as in the basis, up to a little above `last`."""
     G = 0.5j * (small.D - small.D.T)
-    scale = 1.0 / np.sqrt(np.diag(small.K) + problem.shift**2 * np.diag(small.M))
+    scale = 1.0 / np.sqrt(small.K.diagonal() + problem.shift**2 * small.M.diagonal())
 
     def below(w: float) -> int:
         """How many modes the basis has below w."""
-        return int(
-            np.count_nonzero(np.linalg.eigvalsh((small.K + w * G - w**2 * small.M) * scale * scale[:, None]) < 0.0)
-        )
+        return negative_eigenvalues((small.K + w * G - w**2 * small.M) * scale * scale[:, None])
 
     for place in _COUNT_AT:
         w = place * last
@@ -196,14 +197,11 @@ def _none_is_missing(problem: NearUndamped, small: Pencil, last: float) -> bool:
             break
     else:
         return False
-    hermitian = sp.csc_array(problem.K - w**2 * problem.M + 0.5j * w * (problem.D - problem.D.T))
+    G_of_dofs = problem.halves[1]
+    turning = sp.csc_array((1j * w * G_of_dofs.data, G_of_dofs.indices, G_of_dofs.indptr), shape=G_of_dofs.shape)
+    hermitian = sp.csc_array(problem.K - w**2 * problem.M + turning)
     try:
         counted = int(np.count_nonzero(factor_symmetric(hermitian).pivots.real < 0.0))
     except ConvergenceError:  # no factors without row exchanges: nothing to count with
         return False
     return counted == expected + problem.rigid.shape[1]
-
-
-def _result(problem: NearUndamped, pairs: _Pairs, count: int | None) -> DampedModes:
-    """Modes of pairs with their backward errors."""
-    return counted_modes(problem, pairs.s, pairs.v, count, "basis of undamped modes and responses to dampers")

@@ -86,12 +86,16 @@ def eigen(pencil: Pencil, shift: float, smallest: float, count: int) -> Eigen:
     K = pencil.K * scale[:, None] * scale
     with single_thread(2 * r):
         try:
-            P = la.inv(K + D + M, check_finite=False)
-        except la.LinAlgError:
+            P = np.linalg.inv(K + D + M)
+        except np.linalg.LinAlgError:
             raise ConvergenceError("A reduced problem is singular at its shift.") from None
         PD = P @ (D + M)
         PM = P @ M
-        T = np.block([[-PD, -PM], [np.eye(r) - PD, -PM]])
+        T = np.empty((2 * r, 2 * r), order="F")  # as LAPACK takes it, without a copy
+        T[:r, :r] = -PD
+        T[r:, :r] = np.eye(r) - PD
+        T[:r, r:] = -PM
+        T[r:, r:] = -PM
         real_part, imaginary_part, left, right, failed = dgeev(T, lwork=int(dgeev_lwork(2 * r)[0]), overwrite_a=True)
     if failed:
         raise ConvergenceError("The eigenvalues of a reduced problem did not converge.")
@@ -199,6 +203,8 @@ def clusters(s: np.ndarray, tolerance: float = _CLUSTER) -> list[np.ndarray]:
     # Ascending in size only, groups of one size and other phases interleave: each joins the latest group with a near member.
     near = np.tril(np.abs(s[:, None] - s) <= tolerance * np.abs(s)[:, None], -1)
     group = np.arange(len(s))
+    if not near.any():
+        return list(group[:, None])
     for k in np.flatnonzero(near.any(axis=1)):
         group[k] = group[near[k]].max()
     order = np.argsort(group, kind="stable")

@@ -7,38 +7,42 @@ accuracy even when they differ by many decades (Demmel and Veselic, SIAM J. Matr
 from __future__ import annotations
 
 import numpy as np
-import scipy.linalg as la
 import scipy.sparse as sp
-from scipy.linalg.lapack import dgejsv, dgeqrf, dtrtri
+from scipy.linalg.lapack import dgejsv, dgeqrf, dpotrf, dtrtri
 
 from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.shift_invert import Modes, ShiftInvert
+from rotorgear.solvers.sparse.entries import row_products, stretches
 from rotorgear.solvers.sparse.pencil import EPS, Strain
 
 _SAFETY = 10.0  # between a rounding estimate and the most that rounding was taken to do
-_ROWS = 2048  # rows of a tall matrix that are taken at a time
 
 
-def orthonormalised(M: sp.csr_array, V: np.ndarray) -> np.ndarray:
-    """V (n, m) made M-orthonormal by Cholesky: V^T M V = identity to rounding.
+def orthonormalise(M: sp.csr_array, V: np.ndarray) -> None:
+    """Make V (n, m) M-orthonormal in place by Cholesky: V^T M V = identity to rounding.
 
     Raises:
         ConvergenceError: the inertia of some combination of the vectors is rounding.
     """
-    gram = V.T @ (M @ V)
-    size = np.diag(gram)
-    try:
-        if not np.all(size > 0.0):
-            raise la.LinAlgError
-        scale = 1.0 / np.sqrt(size)
-        triangle = la.cholesky(0.5 * (gram + gram.T) * scale * scale[:, None])
-    except la.LinAlgError:
+    gram = np.zeros((V.shape[1], V.shape[1]))
+    for rows, heavy in row_products(M, V):
+        gram += V[rows].T @ heavy
+    size = gram.diagonal()
+    positive = bool(np.all(size > 0.0))
+    scale = 1.0 / np.sqrt(np.where(size > 0.0, size, 1.0))
+    triangle, failed = dpotrf(0.5 * (gram + gram.T) * scale * scale[:, None])
+    if failed or not positive:
         raise ConvergenceError(
             "Inertias of the model are too many decades apart: those of some motions are rounding of the largest."
-        ) from None
+        )
     inverse, _ = dtrtri(triangle)
-    result: np.ndarray = V @ (scale[:, None] * inverse)
-    return result
+    combine(V, scale[:, None] * inverse)
+
+
+def combine(V: np.ndarray, C: np.ndarray) -> None:
+    """Replace V (n, m) by V C, C (m, m), without another array of its size."""
+    for rows in stretches(V.shape[0]):
+        V[rows] = V[rows] @ C
 
 
 def stiffness_ritz(K: sp.csc_array, V: np.ndarray, shift: float) -> Modes:
@@ -58,31 +62,27 @@ def stiffness_ritz(K: sp.csc_array, V: np.ndarray, shift: float) -> Modes:
 
 
 def strain_ritz(strain: Strain, V: np.ndarray) -> Modes:
-    """Ritz values (m,) ascending and vectors (n, m) of S^T S on the M-orthonormal V (n, m)."""
-    stretched = np.asarray(strain(V), dtype=float)
-    short = V.shape[1] - stretched.shape[0]
-    if short > 0:
-        stretched = np.vstack([stretched, np.zeros((short, V.shape[1]))])
-    stretched = _triangle(stretched)
+    """Ritz values (m,) ascending and their coordinates (m, m) in the M-orthonormal V (n, m), of S^T S."""
+    pieces = [strain(V)] if callable(strain) else (piece for _, piece in row_products(strain, V))
+    triangle = _triangle(np.vstack([_triangle(np.asarray(piece, dtype=float)) for piece in pieces]))
+    stretched = np.zeros((V.shape[1], V.shape[1]))
+    stretched[: len(triangle)] = triangle
     # joba=0: accuracy not degraded by column scaling; jobu=3: no left vectors; jobv=0: right vectors
     scaled, _, W, work, _, info = dgejsv(stretched, joba=0, jobu=3, jobv=0, jobr=0, jobt=0, jobp=1)
     if info != 0:
         raise ConvergenceError(f"The Jacobi iteration on the strains of {V.shape[1]} modes did not converge.")
     singular = scaled[: V.shape[1]] * (work[0] / work[1])
     order = np.argsort(singular)
-    return singular[order] ** 2, V @ W[:, order]
+    return singular[order] ** 2, W[:, order]
 
 
 def _triangle(A: np.ndarray) -> np.ndarray:
-    """R (m, m) of A = Q R for a tall A (n, m), by stretches of rows that stay in the cache.
+    """R (m, m) of A = Q R for a tall A (n, m); A itself where it is not tall.
 
     Householder QR errs by eps times each column's own length, so it keeps the relative accuracy of short ones.
     """
     m = A.shape[1]
-    rows = max(_ROWS, 4 * m)
-    while A.shape[0] > 2 * rows:
-        A = np.vstack([np.triu(dgeqrf(A[k : k + rows])[0][:m]) for k in range(0, A.shape[0], rows)])
-    return np.triu(dgeqrf(A)[0][:m])
+    return np.triu(dgeqrf(A)[0][:m]) if A.shape[0] > m else A
 
 
 def count_rigid(operator: ShiftInvert, values: np.ndarray, V: np.ndarray, noise: np.ndarray, with_strain: bool) -> int:
@@ -98,7 +98,7 @@ def count_rigid(operator: ShiftInvert, values: np.ndarray, V: np.ndarray, noise:
     low = _leading(values <= 1e3 * noise)
     if low == 0:
         return 0
-    signs = np.random.default_rng(3).choice([-1.0, 1.0], size=(V.shape[0], low))
+    signs = np.sign(np.sin(np.arange(1.0, V.shape[0] * low + 1.0) ** 2)).reshape(-1, low)  # without a pattern
     residual = EPS * (operator.size_K @ np.abs(V[:, :low])) * signs
     residual -= operator.mass @ (V @ (V.T @ residual))
     energy = np.einsum("ij,ij->j", residual, operator.factor.solve(residual))

@@ -16,11 +16,16 @@ from scipy.linalg.lapack import dsygvd
 
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.solvers.eigen.krylov import BlockKrylov
+from rotorgear.solvers.sparse.entries import magnitudes
 from rotorgear.solvers.sparse.factor import SymmetricFactor, factor_symmetric
 from rotorgear.solvers.sparse.pencil import EPS, rounding_noise
 
 _BLOCK = 4  # as many copies of an eigenvalue are found at once; more columns cost more than they bring
 _CONVERGED = 1e-9  # residual of T v = theta v relative to theta; its square is the error of the Rayleigh quotient
+# The same for a basis of other modes: of the lower ones, so large a part, that others are made of; the upper ones correct them.
+_CONVERGED_BASIS = 1e-6
+_LOWER = 0.7
+_BEGIN = 1.7  # Krylov vectors for each mode of a basis, before its residuals are first looked at; 2 for modes that are counted
 _USEFUL = (1e-3, 10.0)  # |sigma| / first elastic eigenvalue: inside, the shift costs neither accuracy nor iterations
 _START = 1e-4  # |sigma| at first over the least k_ii / m_ii
 _SPREAD = 1e7  # highest eigenvalue / |sigma| up to which rounding in soft modes leaves the stiff ones alone
@@ -42,12 +47,14 @@ class ShiftInvert:
     elastic: float = 0.0  # the first eigenvalue above rounding as the probe saw it; 0 when there is none
 
     def __post_init__(self) -> None:
-        self.size_K = sp.csr_array(abs(self.K))
-        self.mass, self.stiffness = sp.csr_array(self.M), sp.csr_array(self.K)
+        # By rows, which those of a symmetric matrix are as they stand: no copy.
+        self.mass = sp.csr_array(self.M.T)
+        self.stiffness = sp.csr_array(self.K.T)
+        self.size_K = magnitudes(self.stiffness)
         self._start()
 
     def _start(self) -> None:
-        self.krylov = BlockKrylov(self.factor.solve, self.K.shape[0], _BLOCK, lambda X: self.mass @ X)
+        self.krylov = BlockKrylov(self.factor.solve, self.K.shape[0], _BLOCK, self.mass.__matmul__)
 
     def move(self, sigma: float) -> None:
         """Factor at another shift and start the Krylov basis anew."""
@@ -135,15 +142,24 @@ def unstable(eigenvalue: float) -> AnalysisError:
 
 def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarray:
     """M-orthogonal vectors (n, k) of at least the `converged` lowest eigenpairs and up to `spare` Ritz pairs more."""
+    return _ritz_vectors(operator, converged, converged + spare, 2 * (converged + spare), _CONVERGED)
+
+
+def basis_vectors(operator: ShiftInvert, count: int) -> np.ndarray:
+    """M-orthogonal Ritz vectors (n, count) of the lowest eigenpairs, the upper ones less accurate."""
+    return _ritz_vectors(operator, int(_LOWER * count) + 1, count, int(_BEGIN * count) + 1, _CONVERGED_BASIS)
+
+
+def _ritz_vectors(operator: ShiftInvert, converged: int, enough: int, begin: int, tolerance: float) -> np.ndarray:
+    """Ritz vectors (n, enough), of which so many have residuals below a tolerance, from `begin` Krylov vectors or more."""
     krylov = operator.krylov
-    enough = converged + spare
-    goal = 2 * enough
+    goal = begin
     while True:
         while krylov.size < goal and not krylov.exhausted:
             krylov.expand()
         values, Y, residuals = operator.ritz(enough)
         stagnant = krylov.size > 10 * enough + 200  # the Sturm count will tell whether it matters
-        if krylov.exhausted or stagnant or np.all(residuals[:converged] < _CONVERGED):
+        if krylov.exhausted or stagnant or np.all(residuals[:converged] < tolerance):
             highest = values[min(converged, values.size) - 1]
             if highest <= _SPREAD * -operator.sigma:
                 # One more solve for the modes below |sigma| takes the rounding in stiff modes out of soft ones.
@@ -151,11 +167,11 @@ def lanczos_modes(operator: ShiftInvert, converged: int, spare: int) -> np.ndarr
                 low = values < -operator.sigma
                 if np.any(low):
                     V[:, low] = operator.apply(V[:, low])
-                return np.ascontiguousarray(V)  # by rows, as all the sparse products to come take it
+                return V
             # Soft and stiff modes too far apart for one shift: move it up, where the stiff ones are seen.
             operator.move(-1e-4 * highest)
             krylov = operator.krylov
-            goal = 2 * enough
+            goal = begin
             continue
         goal = krylov.size + 1 + krylov.size // 16
 

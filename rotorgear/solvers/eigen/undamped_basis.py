@@ -9,10 +9,12 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from rotorgear.solvers.eigen.quadratic import Quadratic, scaled
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
-from rotorgear.solvers.sparse.entries import norm_1, scaled_on_both_sides, times
+from rotorgear.solvers.sparse.entries import halves, scaled_norm_1, stacked_columns, times
+from rotorgear.solvers.sparse.factor import Factor, factor_symmetric
 
+# sigma over the first frequency where no factor is there.
+_LOW = 0.3
 Strain = Callable[[np.ndarray], np.ndarray]
 
 # Part of a correction that is not worth a column of the basis, relative to its mode.
@@ -26,7 +28,9 @@ class NearUndamped:
     """(s^2 M + s D + K) v = 0 with K = S^T S, `strain(V)` = S V, and its undamped modes. M, D and K are (n, n).
 
     `modes` (n, k) are elastic and M-orthonormal, lowest first, none missing up to the last, with `frequencies` (k,) in rad/s;
-    `rigid` (n, r) are the rigid-body motions, M-orthonormal. There is one elastic mode at least.
+    `rigid` (n, r) are the rigid-body motions, M-orthonormal. There is one elastic mode at least. `factored` are sigma in rad/s
+    and the factor of K + sigma^2 M, where there is one already; sigma is low beside the first frequency, so that corrections
+    by that matrix are good ones of soft modes.
     """
 
     M: sp.csc_array
@@ -36,11 +40,21 @@ class NearUndamped:
     frequencies: np.ndarray
     modes: np.ndarray
     rigid: np.ndarray
+    factored: tuple[float, Factor] | None = None
 
     @property
     def shift(self) -> float:
-        """sigma in rad/s: low beside the first mode, so that corrections by (K + sigma^2 M)^-1 of soft modes are good ones."""
-        return 0.3 * float(self.frequencies[0])
+        """sigma in rad/s."""
+        return _LOW * float(self.frequencies[0]) if self.factored is None else self.factored[0]
+
+    @cached_property
+    def factor(self) -> Factor:
+        """Factor of K + sigma^2 M."""
+        return (
+            factor_symmetric(sp.csc_array(self.K + self.shift**2 * self.M))
+            if self.factored is None
+            else self.factored[1]
+        )
 
     @cached_property
     def weight(self) -> np.ndarray:
@@ -49,32 +63,66 @@ class NearUndamped:
         return np.where(size > 0.0, size, 1.0)
 
     @cached_property
-    def damping(self) -> sp.csc_array:
-        """(D + D^T) / 2, sparse (n, n): what takes energy out."""
-        return sp.csc_array(0.5 * (self.D + self.D.T))
+    def _mirror(self) -> sp.csc_array:
+        """D^T, sparse (n, n)."""
+        return sp.csc_array(self.D.T)
 
     @cached_property
-    def quadratic(self) -> Quadratic:
-        """The pencil in scaled dofs and time, for backward errors."""
-        return scaled(self.M, self.D, self.K, float(self.frequencies[0]))
+    def halves(self) -> tuple[sp.csc_array, sp.csc_array]:
+        """(D + D^T) / 2, what takes energy out, and (D - D^T) / 2, what does no work, sparse (n, n)."""
+        return halves(self.D, self._mirror)
 
-    def applied(self, s: np.ndarray, V: np.ndarray, transposed: bool = False) -> np.ndarray:
-        """Q(s_j) v_j (n, m) for s (m,) and V (n, m), or Q(s_j)^T v_j."""
-        D = self.D.T if transposed else self.D
-        return times(self.M, V) * s**2 + times(D, V) * s + times(self.K, V)
+    @cached_property
+    def _rows(self) -> sp.csr_array:
+        """[M; D; K], sparse (3 n, n)."""
+        return stacked_columns((self.M, self._mirror, self.K))
+
+    def products(self, V: np.ndarray) -> np.ndarray:
+        """M V, D V and K V: (3, n, m) for real or complex V (n, m)."""
+        return times(self._rows, V).reshape(3, *V.shape)
+
+    def mirrored(self, V: np.ndarray, products: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """M V, D^T V and K V, (n, m) each, from the other `products` of V (n, m)."""
+        mass, velocity, stiffness = products
+        return mass, 2.0 * times(self.halves[0], V) - velocity, stiffness
+
+    def applied(self, s: np.ndarray, V: np.ndarray) -> np.ndarray:
+        """Q(s_j) v_j (n, m) for s (m,) and V (n, m)."""
+        return forces(s, self.products(V))
+
+    @cached_property
+    def _scaled_dofs(self) -> tuple[np.ndarray, float, float, float]:
+        """1/sqrt(|k_ii| + w0 |d_ii| + w0^2 m_ii), (n,), and ||M||_1, ||D||_1, ||K||_1 in dofs scaled by it."""
+        w0 = float(self.frequencies[0])
+        diagonal = np.abs(self.K.diagonal()) + w0 * np.abs(self.D.diagonal()) + w0**2 * np.abs(self.M.diagonal())
+        scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+        return scale, scaled_norm_1(self.M, scale), scaled_norm_1(self.D, scale), scaled_norm_1(self.K, scale)
+
+    def backward_errors(self, s: np.ndarray, V: np.ndarray, left: np.ndarray) -> np.ndarray:
+        """||Q(s) v|| / ((|s|^2 ||M||_1 + |s| ||D||_1 + ||K||_1) ||v||) of each pair, (m,), in scaled dofs; `left` is Q(s) V."""
+        scale, mass, velocity, stiffness = self._scaled_dofs
+        size = np.abs(s)
+        size = ((size * mass + velocity) * size + stiffness) * np.linalg.norm(V / scale[:, None], axis=0)
+        return np.asarray(np.linalg.norm(left * scale[:, None], axis=0) / np.maximum(size, np.finfo(float).tiny))
 
     def moves_rigid_bodies(self) -> bool:
         """Whether D acts on a rigid-body motion, which then does not stand apart from the other modes."""
         if not self.rigid.shape[1]:
             return False
-        D = scaled_on_both_sides(self.D, 1.0 / self.weight)
-        R = self.rigid * self.weight[:, None]
-        R = R / np.linalg.norm(R, axis=0)
-        return float(max(np.abs(D @ R).max(), np.abs(D.T @ R).max())) > _ROUNDING * norm_1(D)
+        weight = self.weight[:, None]
+        R = self.rigid / np.linalg.norm(self.rigid * weight, axis=0)
+        moved = max(float(np.abs((A @ R) / weight).max()) for A in (self.D, self._mirror))
+        return moved > _ROUNDING * scaled_norm_1(self.D, 1.0 / self.weight)
 
     def without_rigid(self, X: np.ndarray) -> np.ndarray:
         """X (n, m) without its part in the rigid-body motions, which have none in elastic modes."""
         return X - self.rigid @ (self.rigid.T @ times(self.M, X)) if self.rigid.shape[1] else X
+
+
+def forces(s: np.ndarray, products: np.ndarray | tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
+    """s_j^2 M v_j + s_j D v_j + K v_j, (n, m), from the three products, (n, m) each."""
+    mass, velocity, stiffness = products
+    return np.asarray((mass * s + velocity) * s + stiffness)
 
 
 class UndampedBasis:

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from typing import TypeVar
+
 import numpy as np
 import scipy.sparse as sp
+
+Compressed = TypeVar("Compressed", sp.csc_array, sp.csr_array)
+_ROWS = 4096  # some thirty columns of so many rows fill the cache of a core
 
 
 def norm_1(A: sp.csc_array | sp.csr_array) -> float:
     """||A||_1, the largest sum of magnitudes in a column."""
-    sums = np.bincount(_columns(A), np.abs(A.data), minlength=A.shape[1])
+    sums = np.bincount(columns_of(A), np.abs(A.data), minlength=A.shape[1])
     return float(sums.max(initial=0.0))
+
+
+def scaled_norm_1(A: sp.csc_array, scale: np.ndarray) -> float:
+    """||diag(scale) A diag(scale)||_1 for a positive scale (n,), without the scaled matrix."""
+    sums = np.bincount(columns_of(A), np.abs(A.data) * scale[A.indices], minlength=A.shape[1])
+    return float((sums * scale).max(initial=0.0))
 
 
 def scaled_on_both_sides(A: sp.csc_array, scale: np.ndarray) -> sp.csc_array:
@@ -19,9 +31,40 @@ def scaled_on_both_sides(A: sp.csc_array, scale: np.ndarray) -> sp.csc_array:
     return scaled
 
 
-def magnitudes(A: sp.csc_array) -> sp.csc_array:
+def magnitudes(A: Compressed) -> Compressed:
     """|A|, entry by entry."""
-    return sp.csc_array((np.abs(A.data), A.indices, A.indptr), shape=A.shape)
+    return type(A)((np.abs(A.data), A.indices, A.indptr), shape=A.shape)
+
+
+def without_zeros(A: sp.csc_array) -> sp.csc_array:
+    """A without stored entries that are zero."""
+    kept = A.data != 0.0
+    if kept.all():
+        return A
+    ends = np.concatenate([np.zeros(1, dtype=A.indptr.dtype), np.cumsum(kept, dtype=A.indptr.dtype)])
+    return sp.csc_array((A.data[kept], A.indices[kept], ends[A.indptr]), shape=A.shape)
+
+
+def halves(A: sp.csc_array, mirror: sp.csc_array) -> tuple[sp.csc_array, sp.csc_array]:
+    """(A + A^T)/2 and (A - A^T)/2 of A and its `mirror` A^T."""
+    if not (np.array_equal(mirror.indptr, A.indptr) and np.array_equal(mirror.indices, A.indices)):
+        return without_zeros(sp.csc_array(0.5 * (A + mirror))), without_zeros(sp.csc_array(0.5 * (A - mirror)))
+    even, odd = (
+        sp.csc_array((values, A.indices, A.indptr), shape=A.shape)
+        for values in (0.5 * (A.data + mirror.data), 0.5 * (A.data - mirror.data))
+    )
+    return without_zeros(even), without_zeros(odd)
+
+
+def stacked_columns(parts: Sequence[sp.csc_array]) -> sp.csr_array:
+    """A^T, B^T ... of matrices of as many rows, below each other and by rows, so that one product serves for all."""
+    ends = [parts[0].indptr]
+    for part in parts[1:]:
+        ends.append(part.indptr[1:] + ends[-1][-1])
+    indices = np.concatenate([part.indices for part in parts])
+    data = np.concatenate([part.data for part in parts])
+    rows = sum(part.shape[1] for part in parts)
+    return sp.csr_array((data, indices, np.concatenate(ends)), shape=(rows, parts[0].shape[0]))
 
 
 def times(A: sp.csc_array | sp.csr_array | np.ndarray, X: np.ndarray) -> np.ndarray:
@@ -31,6 +74,24 @@ def times(A: sp.csc_array | sp.csr_array | np.ndarray, X: np.ndarray) -> np.ndar
     return np.asarray((A @ np.ascontiguousarray(X).view(float)).view(complex))
 
 
-def _columns(A: sp.csc_array | sp.csr_array) -> np.ndarray:
+def stretches(n: int) -> Iterator[slice]:
+    """Rows 0 to n in stretches that stay in the cache: a tall result is then written once, without temporaries of its size."""
+    for first in range(0, n, _ROWS):
+        yield slice(first, min(first + _ROWS, n))
+
+
+def row_products(A: sp.csr_array, X: np.ndarray) -> Iterator[tuple[slice, np.ndarray]]:
+    """A X by stretches of rows: which rows, and their product (r, m) with X (n, m), best stored by rows."""
+    if A.shape[0] <= _ROWS:
+        yield slice(None), A @ X
+        return
+    for rows in stretches(A.shape[0]):
+        ends = A.indptr[rows.start : rows.stop + 1]
+        entries = slice(ends[0], ends[-1])
+        part = sp.csr_array((A.data[entries], A.indices[entries], ends - ends[0]), shape=(len(ends) - 1, A.shape[1]))
+        yield rows, part @ X
+
+
+def columns_of(A: sp.csc_array | sp.csr_array) -> np.ndarray:
     """The column of each entry."""
     return A.indices if A.format == "csr" else np.repeat(np.arange(A.shape[1]), np.diff(A.indptr))

@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.linalg.lapack import zhetrf
 from scipy.sparse.linalg import SuperLU, splu
 from threadpoolctl import ThreadpoolController
 
@@ -30,7 +31,7 @@ def _controller() -> ThreadpoolController:
 
 def single_thread(n: int) -> AbstractContextManager[object]:
     """Limit BLAS to one thread while n < 2000 unknowns are solved: more threads only wait for each other."""
-    if n >= _THREADS_PAY_FROM:
+    if n >= _THREADS_PAY_FROM or all(library.num_threads == 1 for library in _controller().lib_controllers):
         return nullcontext()
     context: AbstractContextManager[object] = _controller().limit(limits=1)
     return context
@@ -51,9 +52,10 @@ class Factor:
     def solve(self, b: np.ndarray, *, transposed: bool = False) -> np.ndarray:
         """Solve A x = b, or A^T x = b when `transposed`. A real factor accepts a complex b."""
         trans: Literal["T", "N"] = "T" if transposed else "N"
-        if np.iscomplexobj(b) and not self._is_complex:
-            return self._solve(b.real, trans) + 1j * self._solve(b.imag, trans)
-        return self._solve(b, trans)
+        if not np.iscomplexobj(b) or self._is_complex:
+            return self._solve(b, trans)
+        parts = np.ascontiguousarray(b).view(float).reshape(b.shape[0], -1)  # twice as many real columns
+        return np.ascontiguousarray(self._solve(parts, trans)).view(complex).reshape(b.shape)
 
     def _solve(self, b: np.ndarray, trans: Literal["T", "N"]) -> np.ndarray:
         x: np.ndarray = self._lu.solve(np.ascontiguousarray(b) if b.ndim == 1 else np.asfortranarray(b), trans)
@@ -103,6 +105,16 @@ def symmetric_superlu(A: sp.csc_array, order: Literal["MMD_AT_PLUS_A", "NATURAL"
             f"The symmetric {A.shape[0]} x {A.shape[0]} matrix met a zero pivot; shift it away from its eigenvalues."
         )
     return lu
+
+
+def negative_eigenvalues(A: np.ndarray) -> int:
+    """How many eigenvalues of a dense Hermitian matrix (n, n) are negative, by the pivots of A = L D L^H of Bunch and Kaufman.
+
+    A pivot of two rows is one that has eigenvalues of either sign.
+    """
+    factored, rows, _ = zhetrf(A, lower=True)
+    alone = rows > 0
+    return int(np.count_nonzero(factored.diagonal().real[alone] < 0.0)) + int(np.count_nonzero(~alone)) // 2
 
 
 def factor_general(A: sp.csc_array) -> Factor:

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError, ConvergenceError
-from rotorgear.solvers.sparse.entries import norm_1
+from rotorgear.solvers.sparse.entries import norm_1, row_products
 from rotorgear.solvers.sparse.factor import SymmetricFactor, factor_symmetric, solve_error
 
 EPS = float(np.finfo(float).eps)
@@ -21,7 +21,10 @@ _LIFT = 4.0 * EPS  # added to diagonals, relative to them, so that an exactly ze
 _ZERO_PIVOT = 100.0 * EPS  # pivots below this share of the diagonal are rounding
 _DENSE_UP_TO = 250  # unknowns up to which all eigenvalues of one matrix cost milliseconds
 _ACCURATE = 1e-9  # backward error of a solve up to which the pivots' signs are believed
-Strain = Callable[[np.ndarray], np.ndarray]
+# Columns that are taken together of a matrix too tall for the cache, and the entries that it holds.
+_FEW_COLUMNS = 8
+_IN_CACHE = 100_000
+Strain = Callable[[np.ndarray], np.ndarray] | sp.csr_array  # V (n, m) -> S V (p, m), or S itself
 
 
 class LooseDofError(AnalysisError):
@@ -77,24 +80,24 @@ def _is_symmetric(A: sp.csc_array) -> bool:
 
 def rounding_noise(size_K: sp.csr_array | sp.csc_array, V: np.ndarray, shift: float = 0.0) -> np.ndarray:
     """Noise of the Rayleigh quotients (m,) of M-normal columns of V (n, m) for a K of doubles, size_K = |K|."""
-    size = np.ascontiguousarray(np.abs(V))
-    noise: np.ndarray = EPS * (np.einsum("ij,ij->j", size, size_K @ size) + abs(shift))
-    return noise
+    noise = np.zeros(V.shape[1])
+    together = max(_FEW_COLUMNS, _IN_CACHE // max(V.shape[0], 1))
+    for first in range(0, V.shape[1], together):
+        size = np.abs(V[:, first : first + together], order="C")
+        noise[first : first + together] = np.einsum("ij,ij->j", size, size_K @ size)
+    return np.asarray(EPS * (noise + abs(shift)))
 
 
 def backward_errors(M: sp.csr_array, K: sp.csr_array, values: np.ndarray, V: np.ndarray) -> np.ndarray:
     """||K v - lambda M v|| / ((||K||_1 + |lambda| ||M||_1) ||v||) of each pair: (m,)."""
-    V = np.ascontiguousarray(V)
-    residual = K @ V
-    residual -= M @ (V * values)
-    size = (norm_1(K) + np.abs(values) * norm_1(M)) * _lengths(V)
-    errors: np.ndarray = _lengths(residual) / np.maximum(size, np.finfo(float).tiny)  # K = 0 leaves no residual either
+    squares = np.zeros(V.shape[1])
+    for (_, force), (_, heavy) in zip(row_products(K, V), row_products(M, V), strict=True):
+        heavy *= values
+        force -= heavy
+        squares += np.einsum("ij,ij->j", force, force)
+    size = (norm_1(K) + np.abs(values) * norm_1(M)) * np.sqrt(np.einsum("ij,ij->j", V, V))
+    errors: np.ndarray = np.sqrt(squares) / np.maximum(size, np.finfo(float).tiny)  # K = 0 leaves no residual either
     return errors
-
-
-def _lengths(V: np.ndarray) -> np.ndarray:
-    """Euclidean lengths (m,) of the columns of V (n, m)."""
-    return np.sqrt(np.einsum("ij,ij->j", V, V))
 
 
 def count_below(M: sp.csc_array, K: sp.csc_array, shift: float) -> int:

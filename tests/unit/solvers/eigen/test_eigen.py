@@ -179,3 +179,30 @@ def test_senseless_requests_are_refused(asked, match):
     M, K, _ = _walls(5)
     with pytest.raises(AnalysisError, match=match):
         lowest_modes(M, K, **asked)
+
+
+def test_strains_by_stretches_of_rows_keep_soft_modes_of_a_tall_matrix():
+    n = 9000  # rows of several stretches
+    M, K, _ = bar(n, 1e6, 1.0, {0: 1e-3})
+    S = sp.diags_array([np.full(n - 1, -1e3), np.full(n - 1, 1e3)], offsets=[0, 1], shape=(n - 1, n))
+    S = sp.csr_array(sp.vstack([S, sp.csr_array(([np.sqrt(1e-3)], ([0], [0])), shape=(1, n))]))
+    as_matrix = lowest_modes(M, K, count=6, strain=S)
+    as_function = lowest_modes(M, K, count=6, strain=lambda V: S @ V)
+    # The whole bar on its soft spring, and a free bar as good as: closed forms.
+    assert as_matrix.rigid_count == 0
+    assert as_matrix.eigenvalues[0] == pytest.approx(1e-3 / n, rel=1e-5)
+    np.testing.assert_allclose(as_matrix.eigenvalues[1:], 1e6 * free_bar_frequencies(n)[1:6] ** 2, rtol=1e-5)
+    np.testing.assert_allclose(as_matrix.eigenvalues, as_function.eigenvalues, rtol=1e-9)
+
+
+@pytest.mark.parametrize("n", [400, 6000])
+def test_lower_modes_of_a_basis_are_accurate_and_its_factor_is_that_of_the_shift(n):
+    M, K, strain = bar(n, 1e6, 1.0, {0: 1e6, n - 1: 1e6})
+    basis = lowest_modes(M, K, count=26, strain=strain, counted=False)
+    exact = 1e6 * clamped_bar_frequencies(n)[:26] ** 2
+    np.testing.assert_allclose(basis.eigenvalues[:18], exact[:18], rtol=1e-10)
+    np.testing.assert_allclose(basis.eigenvalues, exact, rtol=0.05)
+    np.testing.assert_allclose(basis.vectors.T @ (M @ basis.vectors), np.eye(26), atol=1e-12)
+    b = np.random.default_rng(1).standard_normal(n)
+    np.testing.assert_allclose((K - basis.shift * M) @ basis.factor.solve(b), b, atol=1e-8)
+    assert lowest_modes(M, K, count=5, strain=strain).factor is None, "what nobody goes on with is not kept"

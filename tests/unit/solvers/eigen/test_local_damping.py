@@ -10,7 +10,9 @@ import scipy.sparse as sp
 
 from rotorgear.solvers.eigen.damped import DampedModes, damped_modes
 from rotorgear.solvers.eigen.local_damping import locally_damped_modes
+from rotorgear.solvers.eigen.quadratic import scaled
 from rotorgear.solvers.eigen.undamped_basis import NearUndamped
+from rotorgear.solvers.sparse.factor import factor_symmetric
 from tests.unit.solvers.eigen.test_gyroscopic import spinning_string
 
 N = 150
@@ -72,3 +74,29 @@ def test_what_a_basis_does_not_hold_is_left_to_the_general_solver() -> None:
     assert locally_damped_modes(everywhere, 12, None) is None
     assert locally_damped_modes(string_on_dampers(0.02, {30: 40.0}), 12, None) is None
     assert locally_damped_modes(string_on_dampers(0.0, {30: 0.1}, free=True), 12, None) is None
+
+
+def test_products_with_the_mirror_image_and_backward_errors_are_those_of_the_matrices_themselves() -> None:
+    problem = string_on_dampers(0.02, {30: 0.1, N + 71: 0.03})
+    rng = np.random.default_rng(8)
+    V = rng.standard_normal((2 * N, 3)) + 1j * rng.standard_normal((2 * N, 3))
+    products = problem.products(V)
+    for found, A in zip(products, (problem.M, problem.D, problem.K), strict=True):
+        np.testing.assert_allclose(found, A.toarray() @ V, atol=1e-13)
+    np.testing.assert_allclose(problem.mirrored(V, products)[1], problem.D.toarray().T @ V, atol=1e-13)
+    s = np.array([0.3j, -0.1 + 1.0j, 2.0])
+    scaling = scaled(problem.M, problem.D, problem.K, float(problem.frequencies[0]))
+    np.testing.assert_allclose(
+        problem.backward_errors(s, V, problem.applied(s, V)),
+        scaling.residuals(s / scaling.w0, V / scaling.scale[:, None]),
+        rtol=1e-12,
+    )
+
+
+def test_another_low_shift_gives_the_same_modes() -> None:
+    problem = string_on_dampers(0.02, {30: 0.1})
+    sigma = 0.05 * float(problem.frequencies[0])
+    factored = (sigma, factor_symmetric(sp.csc_array(problem.K + sigma**2 * problem.M)))
+    found = locally_damped_modes(replace(problem, factored=factored), 12, None)
+    assert found is not None
+    assert found.eigenvalues == pytest.approx(in_general(problem, 12).eigenvalues, rel=1e-9)

@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from rotorgear.solvers.sparse.entries import norm_1, scaled_on_both_sides
+from rotorgear.solvers.sparse.entries import (
+    halves,
+    norm_1,
+    row_products,
+    scaled_norm_1,
+    scaled_on_both_sides,
+    stacked_columns,
+    stretches,
+    without_zeros,
+)
 
 
 @pytest.mark.parametrize("kind", [sp.csc_array, sp.csr_array])
@@ -26,3 +35,40 @@ def test_scaling_on_both_sides_leaves_the_matrix_itself_alone() -> None:
     scaled.data[:] = 0.0
     scaled.indices[:] = 0
     assert np.array_equal(A.toarray(), before)
+
+
+@pytest.mark.parametrize("rows", [0, 3, 4096, 4097, 10_000])
+def test_products_by_stretches_of_rows_are_the_product(rows: int) -> None:
+    rng = np.random.default_rng(2)
+    A = sp.csr_array(sp.random_array((rows, 50), density=0.1, rng=rng))
+    X = rng.standard_normal((50, 3))
+    product = np.full((rows, 3), np.nan)
+    for part, values in row_products(A, X):
+        product[part] = values
+    assert np.array_equal(product, A @ X)
+    assert [k for part in stretches(rows) for k in range(rows)[part]] == list(range(rows))
+
+
+def test_halves_scaled_norms_and_stacked_columns_are_what_dense_matrices_give() -> None:
+    rng = np.random.default_rng(5)
+    for density in (0.1, 1.0):  # with one pattern for A and its mirror image, and with two
+        A = sp.csc_array(sp.random_array((9, 9), density=density, rng=rng))
+        dense = A.toarray()
+        even, odd = halves(A, sp.csc_array(A.T))
+        assert np.array_equal(even.toarray(), 0.5 * (dense + dense.T))
+        assert np.array_equal(odd.toarray(), 0.5 * (dense - dense.T))
+        assert odd.data.all(), "no zero is stored"
+        scale = np.geomspace(1e-3, 10.0, 9)
+        assert scaled_norm_1(A, scale) == pytest.approx(np.linalg.norm(scale[:, None] * dense * scale, 1), rel=1e-14)
+        B = sp.csc_array(sp.random_array((9, 4), density=0.5, rng=rng))
+        assert np.array_equal(stacked_columns((A, B, A)).toarray(), np.vstack([dense.T, B.toarray().T, dense.T]))
+
+
+def test_zeros_are_left_out_and_the_matrix_itself_stays() -> None:
+    A = sp.csc_array((np.array([1.0, 0.0, 2.0, 0.0]), np.array([0, 2, 1, 0]), np.array([0, 2, 3, 4])), shape=(3, 3))
+    before = A.toarray()
+    shorter = without_zeros(A)
+    assert shorter.nnz == 2
+    assert A.nnz == 4
+    assert np.array_equal(shorter.toarray(), before)
+    assert without_zeros(shorter) is shorter

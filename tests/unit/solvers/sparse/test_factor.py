@@ -4,7 +4,13 @@ import scipy.sparse as sp
 from threadpoolctl import threadpool_info
 
 from rotorgear.errors import ConvergenceError
-from rotorgear.solvers.sparse.factor import factor_general, factor_symmetric, single_thread, solve_error
+from rotorgear.solvers.sparse.factor import (
+    factor_general,
+    factor_symmetric,
+    negative_eigenvalues,
+    single_thread,
+    solve_error,
+)
 
 
 def _random_symmetric(n: int, seed: int) -> np.ndarray:
@@ -61,3 +67,15 @@ def test_small_problems_use_one_thread_and_give_the_threads_back():
     with single_thread(100):
         assert all(pool["num_threads"] == 1 for pool in threadpool_info() if pool["user_api"] == "blas")
     assert [pool["num_threads"] for pool in threadpool_info()] == before
+
+
+@pytest.mark.parametrize("n", [1, 2, 7, 41])
+@pytest.mark.parametrize("empty_diagonal", [False, True])
+def test_pivots_of_one_and_two_rows_count_the_negative_eigenvalues_of_a_dense_hermitian_matrix(n, empty_diagonal):
+    rng = np.random.default_rng(n)
+    for _ in range(20):
+        A = rng.standard_normal((n, n)) + 1j * rng.standard_normal((n, n))
+        A = A + A.conj().T
+        if empty_diagonal and n > 1:  # no pivot of one row to begin with
+            A[np.arange(n), np.arange(n)] = 0.0
+        assert negative_eigenvalues(A) == np.count_nonzero(np.linalg.eigvalsh(A) < 0.0)
