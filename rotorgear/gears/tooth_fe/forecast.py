@@ -1,7 +1,8 @@
 """What the compliance of a gear in space takes, known before it is computed: memory and seconds.
 
 Layers are stacked by dense Cholesky factorisations (`sector.py`): with i unknowns of a plane that are condensed and k that are
-kept, joining p and q layers takes a matrix of size N = 3 i + (2 (p + q) + 1) k, of which i unknowns are eliminated by
+kept, joining p and q layers takes a matrix of size N = 3 i + (2 (p + q) + 1) k, or less where an outer plane of theirs is one of
+the whole stack and is condensed before. Of that, i unknowns are eliminated by
 
     i^3/3 + i^2 (N - i) + 2 i (N - i)^2 operations.
 
@@ -67,31 +68,36 @@ class Stack:
 
     def forecast(self) -> Forecast:
         """What this machine needs for it."""
-        sizes = self._joined()
+        sizes = self._condensed()
         operations = sum(_eliminated(size, self.inside) for size in sizes)
         planes = 2 * self.layers + 1
-        last = 2 * self.inside + planes * self.kept
-        operations += _eliminated(last, 2 * self.inside) + (planes * self.flank) ** 3
+        operations += (planes * self.flank) ** 3
         operations += 4.0 * self.pitches * (planes * self.cut) ** 3
-        memory = _PROGRAM + _COPIES * 8.0 * max(*sizes, last) ** 2
+        memory = _PROGRAM + _COPIES * 8.0 * max(sizes) ** 2
         return Forecast(memory, operations / (_SHARE * _speed()))
 
-    def _joined(self) -> list[int]:
-        """Sizes of the matrices: one layer, then as layers are doubled, and joined for each binary digit that is 1."""
-        sizes = [3 * (self.inside + self.kept)]
+    def _condensed(self) -> list[int]:
+        """Sizes of the matrices, each of which loses the inside of one plane, in the order of `sector.stacked_layers`."""
+
+        def size(planes_inside: int, layers: int) -> int:
+            return planes_inside * self.inside + (2 * layers + 1) * self.kept
+
+        sizes = [size(3, 1)]
         block = 1
         stack = 0
         rest = self.layers
-        while rest:
+        while rest > 2 or (rest == 2 and stack):
             if rest % 2:
-                if stack:
-                    sizes.append(3 * self.inside + (2 * (stack + block) + 1) * self.kept)
+                sizes.append(size(2, stack + block))
                 stack += block
             rest //= 2
-            if rest:
-                block *= 2
-                sizes.append(3 * self.inside + (2 * block + 1) * self.kept)
-        return sizes
+            block *= 2
+            sizes.append(size(3, block))
+        if self.layers == 1:
+            return [*sizes, size(2, 1), size(1, 1)]
+        if not stack:
+            sizes.append(size(2, block))
+        return [*sizes, size(2, block), size(1, self.layers)]
 
 
 def _eliminated(size: int, inside: int) -> float:

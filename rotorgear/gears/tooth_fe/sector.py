@@ -183,20 +183,22 @@ def stacked_layers(
     order = np.concatenate([p + inside, inside, 2 * p + inside, keep, p + keep, 2 * p + keep])
     block = _condensed(K[order][:, order].toarray(), i)  # bottom and top inside, then what is kept of its planes
 
-    # Binary digits of the number of layers: `block` is doubled, and put below the stack for each digit that is 1.
+    # Binary digits of the number of layers: `block` is doubled, and put upon the stack for each digit that is 1. The stack's
+    # bottom and the last block's top meet no other layer: they are condensed before that block is joined, not after it.
     stack: np.ndarray | None = None
     rest = layers
-    done = 0
-    while rest:
-        progress(done / layers, f"{done} of {layers} layers")
+    while rest > 2 or (rest == 2 and stack is not None):
+        progress((layers - rest) / layers, f"{layers - rest} of {layers} layers")
         if rest % 2:
-            stack = block if stack is None else _joined(stack, block, i, k)
+            stack = _condensed(block, i) if stack is None else _joined(stack, block, i, k, bottom=0)
         rest //= 2
-        done = layers - rest
-        if rest:
-            block = _joined(block, block, i, k)
-    assert stack is not None
-    S = _condensed(stack, 2 * i)
+        block = _joined(block, block, i, k)
+    if layers == 1:
+        S = _condensed(block, 2 * i)
+    else:
+        lower = _condensed(block, i) if stack is None else stack
+        top_first = np.concatenate([np.arange(i, 2 * i), np.arange(i), np.arange(2 * i, len(block))])
+        S = _joined(lower, _condensed(block[np.ix_(top_first, top_first)], i), i, k, bottom=0, top=0)
     progress(1.0, "pitch condensed")
     planes = 2 * layers + 1
     number = np.arange(planes * k).reshape(planes, k)
@@ -206,19 +208,35 @@ def stacked_layers(
     return np.asarray(0.5 * (S + S.T))
 
 
-def _joined(lower: np.ndarray, upper: np.ndarray, i: int, k: int) -> np.ndarray:
-    """Two blocks of layers as one: the plane between them is condensed, except for its k kept unknowns."""
-    first = len(lower) - 2 * i
-    second = len(upper) - 2 * i
-    size = 3 * i + first + second - k
+def _joined(
+    lower: np.ndarray, upper: np.ndarray, i: int, k: int, *, bottom: int | None = None, top: int | None = None
+) -> np.ndarray:
+    """Two blocks of layers as one: the plane between them is condensed, except for its k kept unknowns.
+
+    Args:
+        lower: with the unknowns inside its bottom, those inside its top, and the kept ones; upper: likewise.
+        i: unknowns inside the plane between them.
+        k: kept ones of a plane.
+        bottom: unknowns that are left inside the bottom of `lower`; None: all i.
+        top: the same of the top of `upper`.
+    """
+    below = i if bottom is None else bottom
+    above = i if top is None else top
+    first = len(lower) - below - i
+    second = len(upper) - i - above
+    ends = i + below + above
+    size = ends + first + second - k
     whole = np.zeros((size, size))
     shared = slice(0, i)
-    bottom = slice(i, 2 * i)
-    top = slice(2 * i, 3 * i)
-    low = slice(3 * i, 3 * i + first)
+    low_end = slice(i, i + below)
+    high_end = slice(i + below, ends)
+    low = slice(ends, ends + first)
     high = slice(size - second, size)
-    for block, places in ((lower, (bottom, shared, low)), (upper, (shared, top, high))):
-        parts = (slice(0, i), slice(i, 2 * i), slice(2 * i, None))
+    for block, inside, places in (
+        (lower, (below, below + i), (low_end, shared, low)),
+        (upper, (i, i + above), (shared, high_end, high)),
+    ):
+        parts = (slice(0, inside[0]), slice(*inside), slice(inside[1], None))
         for row, rows in zip(parts, places, strict=True):
             for column, columns in zip(parts, places, strict=True):
                 whole[rows, columns] += block[row, column]
