@@ -2,9 +2,12 @@
 
 Elements: the same on a coarser mesh of the same kind, at some of the positions. The two differ by the error of the coarser one
 less that of the finer one; the share of it that remains on the finer mesh was measured (docs/mesh.md has both, side by side).
-In space an error falls with the thickness of a layer like h^p, p = 3/2, so that 1/((h_1/h)^p - 1) of the difference remains:
-narrow faces, whose layers can't be much thinner, keep more of it. Default and fine are compared with the same coarse mesh, so
-that the finer one never estimates worse. The blank of a wheel has elements of its own: in the comparison they are twice as large.
+In space errors of layers and of the section are apart. Of layers, an error falls with their thickness like h^p, p = 3/2, so that
+1/((h_1/h)^p - 1) of the difference remains: narrow faces, whose layers can't be much thinner, keep more of it. The presets are
+nearly alike in the section, whose error is as large as that of layers: it follows from two coarse sections in the same thick
+layers. Both parts add up by their squares, for one knows nothing of the other. Default and fine are compared with the same coarse
+meshes, so that the finer one never estimates worse. The blank of a wheel has elements of its own: in the comparison they are
+twice as large.
 Slices: the same elements with half as many slices again. Positions: contact solutions between those that are kept
 (`gears/loaded/cycle_positions`). What is printed is the sum.
 
@@ -14,7 +17,9 @@ than the standard deviation of d over the cycle.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -23,7 +28,7 @@ from rotorgear.analysis.teeth.request import MeshRequest
 from rotorgear.gears.loaded.tooth_contact import in_space
 from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
 from rotorgear.gears.tooth_fe.points import MeshSize
-from rotorgear.gears.tooth_fe.settings import coarser_size
+from rotorgear.gears.tooth_fe.settings import ToothFe, coarser_size
 from rotorgear.progress import Progress, part_of, silent
 from rotorgear.results.parts.mesh import MeshErrors
 
@@ -33,8 +38,12 @@ _ORDER = 1.5
 # The same of wheels: corners of rim, web and hub let the error of the blank's mesh fall with its side, not faster.
 _OF_WHEELS = {"preview": 1.5, "default": 0.7, "fine": 0.6}
 _COARSER_BLANK = 2.0
+# A section in space that is coarser than the coarser mesh, and the shares of what the two differ by that remain on a preset's:
+# of means and of ripples, which keep more. By 34/80 (20.86 degrees, two loads), 30/72 (33.27) and 32/64 (28).
+_ROUGH_SECTION = MeshSize(5, 2, 3, 2, 2)
+_OF_SECTION = {"default": (0.6, 1.0), "fine": (0.55, 0.8)}
 # The same of the largest pressure in space: it stands where contact lines end at the edge of a face, and comes to rest slowly.
-_OF_PRESSURE = {"preview": 3.0, "default": 1.5, "fine": 0.4}
+_OF_PRESSURE = {"preview": 3.0, "default": 1.5, "fine": 0.7}
 # Slices beside the usual ones.
 _MORE_SLICES = 1.5
 # Positions in a period at which other meshes are compared, beside the extremes of the curves.
@@ -78,18 +87,47 @@ def error_parts(
     coarser = replace(teeth, fe=replace(fe, size=size, blank_coarseness=_COARSER_BLANK * fe.blank_coarseness))
     share = 1.0 if fe.size is not None else _remaining(teeth, size, space)
     of_pressure = _OF_PRESSURE[fe.preset] if space and fe.size is None else share
-    elements = _apart(here, curves(coarser, part_of(progress, 0.0, 0.6)), share, of_pressure)
+    elements = _apart(here, curves(coarser, part_of(progress, 0.0, 0.4)), share, of_pressure)
+    if space and fe.size is None and fe.preset in _OF_SECTION and not _on_wheels(teeth):
+        elements = _combined(elements, _section_errors(coarser, curves), how=math.hypot)
     slices = None
     if space:
         more = replace(teeth, fe=replace(fe, slices=round(_MORE_SLICES * found.problem.slices)))
         slices = _apart(here, curves(more, part_of(progress, 0.6, 1.0)))
-    return ErrorParts(elements, slices, sampling, _sum(elements, slices, sampling))
+    return ErrorParts(elements, slices, sampling, _total(elements, slices, sampling))
+
+
+def _on_wheels(teeth: ToothPair) -> bool:
+    """Whether a gear of the pair is a wheel, whose blank has most of the elements' error."""
+    return any(teeth.fe.body_of(body.blank) == "wheel" for body in (teeth.first_body, teeth.second_body))
+
+
+def _section_errors(coarser: ToothPair, curves: Callable[[ToothPair, Progress], np.ndarray]) -> MeshErrors:
+    """Errors of a preset's section in space, from the coarser mesh and a rougher section in the same layers."""
+    fe = coarser.fe
+    assert fe.size is not None
+    # Wider patches hide a part of the section's error, so both presets are judged with those of the finer one.
+    narrow = replace(fe, patch=fe.patch or ToothFe(preset="fine").patch_width)
+    rough = replace(narrow, size=replace(_ROUGH_SECTION, face=fe.size.face))
+    here, there = (curves(replace(coarser, fe=one), silent) for one in (narrow, rough))
+    difference = there - here
+    mean, of_ripple = _OF_SECTION[fe.preset]
+    stiffness = mean * float(abs(difference[:, 1].mean()) / here[:, 1].mean())
+    # Twice the standard deviation, as for harmonics: peaks of so thick layers are not those of the preset's.
+    ripple = 2.0 * of_ripple * difference.std(axis=0) / np.maximum(np.ptp(here, axis=0), 1e-300)
+    return MeshErrors(
+        mean_stiffness=stiffness,
+        peak_to_peak_stiffness=max(float(ripple[1]), stiffness),
+        ste_peak_to_peak=max(float(ripple[0]), stiffness),
+        ste_harmonics=max(float(ripple[0]), stiffness),
+        largest_pressure=mean * float(abs(there[:, 2].max() / here[:, 2].max() - 1.0)),
+    )
 
 
 def _remaining(teeth: ToothPair, coarser: MeshSize, space: bool) -> float:
     """Share of the difference to a coarser mesh that remains on a preset's own."""
     fe = teeth.fe
-    on_wheels = any(fe.body_of(body.blank) == "wheel" for body in (teeth.first_body, teeth.second_body))
+    on_wheels = _on_wheels(teeth)
     if not space or fe.preset == "preview":
         return (_OF_WHEELS if on_wheels else _REMAINING)[fe.preset]
     layers = fe.mesh_size(teeth.width / teeth.first.normal_module, space=True).face
@@ -140,17 +178,11 @@ def sampling_errors(found: SolvedHelices) -> MeshErrors:
     )
 
 
-def _sum(*parts: MeshErrors | None) -> MeshErrors:
+def _total(*parts: MeshErrors | None) -> MeshErrors:
     known = [part for part in parts if part is not None]
-    return MeshErrors(
-        *(
-            max(_LEAST, sum(getattr(part, name) for part in known))
-            for name in (
-                "mean_stiffness",
-                "peak_to_peak_stiffness",
-                "ste_peak_to_peak",
-                "ste_harmonics",
-                "largest_pressure",
-            )
-        )
-    )
+    return _combined(*known, how=lambda *values: max(_LEAST, sum(values)))
+
+
+def _combined(*parts: MeshErrors, how: Callable[..., float]) -> MeshErrors:
+    """Estimates from those of parts, number by number."""
+    return MeshErrors(*(how(*(getattr(part, field.name) for part in parts)) for field in fields(MeshErrors)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,14 @@ import scipy.sparse.linalg as spl
 
 import rotorgear as rg
 from rotorgear.analysis.static.mean_state import mean_state
+from rotorgear.analysis.teeth.errors import error_parts
+from rotorgear.analysis.teeth.helices import Cycle, SolvedHelices, solve_helices
+from rotorgear.analysis.teeth.request import mesh_request
 from rotorgear.gears.loaded.loaded_cycle import loaded_cycle
 from rotorgear.gears.loaded.mesh_cycle import MeshCycle
+from rotorgear.gears.stiffness.mesh_stiffness import ToothPair
+from rotorgear.gears.tooth_fe.points import MeshSize
+from rotorgear.gears.tooth_fe.settings import ToothFe
 from rotorgear.system.system import System
 from tests.paths import MODELS
 from tests.unit.analysis.geared import pair_file
@@ -175,6 +182,35 @@ def test_estimates_are_larger_than_the_errors_against_a_finer_mesh() -> None:
         if rung.estimate is not None:
             for name in ("mean_stiffness", "peak_to_peak_stiffness", "ste_peak_to_peak"):
                 assert getattr(rung.error, name) <= 1.5 * getattr(rung.estimate, name)
+
+
+@pytest.mark.long
+def test_estimates_of_helical_teeth_are_larger_than_errors_against_thinner_layers_and_a_finer_profile() -> None:
+    """A face of 20 mm: 4 and 5 layers of the presets beside 14, whose profile has twice as many rows."""
+    text = pair_file(20.86, "helical", torque="400 N m").replace('width = "54 mm"', 'width = "20 mm"')
+    request = mesh_request(rg.loads(text), None, None, None, {})
+    assert request.teeth is not None
+    names = ("mean_stiffness", "peak_to_peak_stiffness", "ste_peak_to_peak")
+
+    def solved(fe: ToothFe) -> tuple[ToothPair, SolvedHelices]:
+        assert request.teeth is not None
+        teeth = replace(request.teeth, fe=fe)
+        return teeth, solve_helices(request, teeth, request.base_force, Cycle(32), judged=True)
+
+    def figures(found: SolvedHelices) -> np.ndarray:
+        return np.array([found.curve.mean()[1], np.ptp(found.stiffness), np.ptp(found.error)])
+
+    exact = figures(solved(ToothFe(preset="fine", size=MeshSize(16, 4, 8, 3, 7, 14)))[1])
+    estimates = []
+    for fe in (ToothFe(preset="default"), ToothFe(preset="fine")):
+        teeth, found = solved(fe)
+        parts = error_parts(request, teeth, found)
+        assert parts is not None
+        error = np.abs(figures(found) / exact - 1.0)
+        estimates.append(np.array([getattr(parts.total, name) for name in names]))
+        assert np.all(error <= 1.5 * estimates[-1])
+        assert estimates[-1].max() <= 4.0 * error.max()
+    assert np.all(estimates[1] <= estimates[0])
 
 
 def test_loads_are_tabled_on_request() -> None:
