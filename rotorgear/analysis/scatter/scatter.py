@@ -29,6 +29,7 @@ from rotorgear.analysis.scatter.modes import modes_of
 from rotorgear.analysis.scatter.samples import SPARE, Study, groups_of, run_samples
 from rotorgear.analysis.static.shares import load_shares
 from rotorgear.analysis.static.static import solved
+from rotorgear.analysis.static.tangent import about_equilibrium, shared_maps
 from rotorgear.analysis.transient.histories import Stream
 from rotorgear.errors import AnalysisError
 from rotorgear.model.model import Model
@@ -164,6 +165,10 @@ def scatter(
         "damping: natural frequencies are those of the undamped rotating system",
         *lines_left,
         *(() if sharing else ("load sharing of meshes: ask for it (--sharing)",)),
+        *(
+            f"face maps of {name} for each sample: all keep those of the model"
+            for name in shared_maps(about_equilibrium(model, [at])[0])
+        ),
     )
     progress(1.0, "done")
     return replace(result, sampling=sampling, left_out=notes, seconds=laps, model=model, checked_samples=checked)

@@ -102,6 +102,11 @@ def _about_equilibrium(
     return model.model_copy(update=changed), tuple(notes)
 
 
+def shared_maps(linear: Model) -> tuple[str, ...]:
+    """Meshes of a model about its equilibrium whose face maps `with_maps_of` gives to others."""
+    return tuple(name for name, mesh in linear.meshes.items() if mesh.stiffness == "tooth_fe" and mesh.face_loads)
+
+
 def with_maps_of(linear: Model, model: Model) -> Model:
     """A model with the face maps of another one next to it, as long as its state lies among their misalignments.
 
@@ -112,7 +117,7 @@ def with_maps_of(linear: Model, model: Model) -> Model:
         linear: the other one, about its equilibrium.
         model: one with the same meshes.
     """
-    mapped = [name for name, mesh in linear.meshes.items() if mesh.stiffness == "tooth_fe" and mesh.face_loads]
+    mapped = shared_maps(linear)
     meshes = dict(model.meshes)
     for name in mapped:
         layout = linear.layout.mesh(name)
