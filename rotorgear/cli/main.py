@@ -59,12 +59,20 @@ def _show_old_names_as_sentences() -> None:
     warnings.showwarning = sentence
 
 
+# Power of two of the cycles for which OpenBLAS's threads wait at full load before they sleep, 4 to 30: a thousandth of a second.
+_IDLE = "20"
+
+
 def one_blas_thread() -> None:
     """Have linear algebra run on one thread where the user has not said on how many.
 
     Matrices of one gearbox are small or sparse: more threads gain nothing on them, and on a busy machine they wait for each
     other. This is read when numpy is loaded, so it comes first. Threads of sweeps and transients are numba's, and stay.
+
+    Where there are more, one that has no work is to sleep soon: by default those of numpy and of scipy wait for work at full
+    load when they are made, for a tenth of a second of processor time.
     """
+    os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", _IDLE)
     names = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
     if not any(name in os.environ for name in (*names, "OMP_NUM_THREADS")):
         for name in names:

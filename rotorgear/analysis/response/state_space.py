@@ -35,7 +35,7 @@ from rotorgear.model.model import Model
 from rotorgear.progress import Progress, silent
 from rotorgear.results.steady.state_space import StateSpace
 from rotorgear.solvers.frequency.harmonic import Dynamics
-from rotorgear.solvers.sparse.factor import factor_general
+from rotorgear.solvers.sparse.factor import factor_general, single_thread
 from rotorgear.system.components import dof_motions, independent_groups
 from rotorgear.system.contacts import contact_lines
 from rotorgear.system.system import System
@@ -134,11 +134,12 @@ def state_space(
         error = 0.0
         kept = 0
     else:
-        kept_modes, w = damped_modes(system, _KEPT * limit, turns, reached)
-        kept = len(w)
-        basis = _basis(dynamics, kept_modes[reached], np.hstack([B, C.T]), _SHIFT * limit)
-        progress(0.6, "error of the reduction")
-        made, error = _reduced(dynamics, B, C, basis, limit, damped, accuracy or ACCURACY)
+        with single_thread(system.n):
+            kept_modes, w = damped_modes(system, _KEPT * limit, turns, reached)
+            kept = len(w)
+            basis = _basis(dynamics, kept_modes[reached], np.hstack([B, C.T]), _SHIFT * limit)
+            progress(0.6, "error of the reduction")
+            made, error = _reduced(dynamics, B, C, basis, limit, damped, accuracy or ACCURACY)
     progress(1.0, "done")
     short = missed(accuracy or ACCURACY, error, "write the full system, or ask for less")
     return StateSpace(
