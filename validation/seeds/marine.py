@@ -13,7 +13,7 @@ from functools import cache
 from typing import Any
 
 import rotorgear as rg
-from rotorgear.analysis.sweep.classify import CHAOTIC
+from rotorgear.analysis.sweep.classify import CHAOTIC, NOT_SETTLED
 from validation.seeds import kept
 from validation.seeds.motions import STARTS, ends, kinds, number, route
 from validation.seeds.rows import changed, loaded
@@ -33,6 +33,8 @@ STABLE = ("1T", "2T", "3T", "4T")
 RATIOS = tuple(round(0.1 + 0.05 * i, 2) for i in range(23))
 PRINTED = {"03": 0.3, "06": 0.6, "10": 1.0}
 TOTALS = tuple(1e3 * total for total in (15, 20, 25, 30, 35, 40, 50, 60))
+# On the map, where it may be another region after a longer time: bursts of weak chaos come and go.
+OPEN = "-"
 NOMINAL = 15e3 / PITCH_RADIUS / STIFFNESS
 # Friction and film damping have no numbers in the account; friction needs teeth, which it does not give either.
 FRICTION = 0.05
@@ -233,15 +235,20 @@ def regions_of(result: rg.SweepResult) -> list[str]:
     """Region of each point.
 
     I: the LP first stage is on its back side for most of the time in contact, and not chaotic. II: chaotic, with an amplitude
-    above 3. III: all others. "-": weak chaos.
+    above 3. III: all others. "-": weak chaos, or not settled.
     """
     i = result.contact.index("first_lp")
     row = []
     for p in range(len(result.values)):
-        chaotic = result.motion_at(p) == CHAOTIC
+        motion = result.motion_at(p)
         large = result.peak_to_peak[p, 0, i] > 3.0 * NOMINAL
         back = result.back[p, 0, i] > result.driving[p, 0, i]
-        row.append(("II" if large else "-") if chaotic else "I" if back else "III")
+        if motion == NOT_SETTLED or (motion == CHAOTIC and not large):
+            row.append(OPEN)
+        elif motion == CHAOTIC:
+            row.append("II")
+        else:
+            row.append("I" if back else "III")
     return row
 
 
@@ -252,7 +259,7 @@ def map_words(rows: Sequence[Sequence[str]], ratios: Sequence[float] = RATIOS) -
     for total, row in zip(TOTALS, rows, strict=True):
         chaos = [gamma for gamma, region in zip(ratios, row, strict=True) if region == "II"]
         spans.append(f"{total / 1e3:.0f}: " + (f"{chaos[0]:.2f} to {chaos[-1]:.2f}" if chaos else "none"))
-        kept = [region for region in row if region != "-"]
+        kept = [region for region in row if region != OPEN]
         first = [kept.index(name) if name in kept else -1 for name in ("I", "II", "III")]
         in_order += -1 < first[0] < first[1] and "III" in kept[first[1] :]
     regions = {f"map_{total / 1e3:.0f}": " ".join(row) for total, row in zip(TOTALS, rows, strict=True)}

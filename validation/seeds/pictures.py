@@ -99,11 +99,11 @@ def draw_marine_regions(figure: Any) -> None:
 def draw_marine_map(figure: Any) -> None:
     """Regions of the LP first stage over total torque and load ratio."""
     axes = figure.subplots()
-    colours = {"I": COLOURS[0], "II": COLOURS[1], "-": COLOURS[4], "III": COLOURS[2]}
+    colours = {"I": COLOURS[0], "II": COLOURS[1], marine.OPEN: COLOURS[4], "III": COLOURS[2]}
     words = {
         "I": "I: back side, not chaotic",
         "II": "II: chaotic, amplitude above 3",
-        "-": "weak chaos",
+        marine.OPEN: "weak chaos, or not settled",
         "III": "III: driving side",
     }
     known = kept.piece("marine", "map", marine.PIECES)["values"]

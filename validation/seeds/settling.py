@@ -4,7 +4,7 @@ Of set 2 of the 24-dof pair it is thirty times. Where the longer run of set 2 ha
 periods may be too few to tell, one that also counts so many times more periods decides. Prints each label that differs between
 both runs, unless the shorter one says itself that it is open (not settled, or chaos beside a motion that repeats), and each
 number of chaos that leaves the root of the sum of squares of both stated errors. Long: most names take one to twenty minutes of
-a core, the map and friction two hours. What has been run is kept (kept.py), so that an interrupted run goes on where it was.
+a core, the map two hours. What has been run is kept (kept.py), so that an interrupted run goes on where it was.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ def _map(times: int) -> Values:
     settle = marine.MAP_SETTLE if times == 1 else (*marine.MAP_SETTLE, times * marine.MAP_SETTLE[-1])
     rows = marine.torque_map(settle=settle)
     return {
-        f"{total / 1e3:.0f} kN m, load ratio {ratio:.2f}": region
+        f"{total / 1e3:.0f} kN m, load ratio {ratio:.2f}": NOT_SETTLED if region == marine.OPEN else region
         for total, row in zip(marine.TOTALS, rows, strict=True)
         for ratio, region in zip(marine.RATIOS, row, strict=True)
     }
