@@ -135,7 +135,7 @@ def _with_multipliers(
     found = list(orbits)
     onward = {i: orbits[i].end for i in chosen}
     for i in chosen:
-        periods, size = to_certify(orbits[i], points[i], plan.steps, judge)
+        periods, sizes = to_certify(orbits[i], points[i], plan.steps, judge)
         if not periods:
             continue
 
@@ -144,7 +144,7 @@ def _with_multipliers(
             cuts = (states[k : k + LANES] for k in range(0, len(states), LANES))
             return [one.end for own in cuts for one in _run([point] * len(own), own, once, go_on)]
 
-        certified = certificate(points[i].system, orbits[i].end, size, periods, advance, judge.tolerance)
+        certified = certificate(points[i].system, orbits[i].end, sizes, periods, advance, judge.tolerance)
         if certified is not None:
             found[i] = replace(orbits[i], multiplier=certified.growth, repeats=certified.repeats)
             onward[i] = certified.onward

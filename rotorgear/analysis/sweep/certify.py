@@ -76,21 +76,23 @@ def judged(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[Motion
     return motion, motion.kind == CHAOTIC and largest - error > judge.chaos
 
 
-def to_certify(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[int, float]:
-    """Common periods after which a run repeats, and its size (m), where multipliers are to tell whether it is stable; else 0.
+def to_certify(orbit: Orbit, point: Point, steps: int, judge: Judge) -> tuple[int, np.ndarray]:
+    """Common periods after which a run repeats, where multipliers are to tell whether it is stable, else 0; and its sizes.
+
+    The sizes are those of its counted displacements (c,) in m, peak to peak.
 
     What comes back fast needs none: growth that an exponent does not see in so many periods is slower than the bound of chaos.
     Cages do not repeat with the common period, and so a system with rolling elements has no such map.
     """
     system = point.system
     if not orbit.growth.shape[1] or system.n > _MOST or point.rolling:
-        return 0, 0.0
+        return 0, np.zeros(0)
     motion, _ = judged(orbit, point, steps, judge)
     means, _ = exponents(orbit.growth, float(system.turns))
     if not 0 < motion.period <= _LONGEST or not -judge.chaos < means[0] <= judge.chaos:
-        return 0, 0.0
+        return 0, np.zeros(0)
     measures = indicators(orbit, system.columns.counted, steps)
-    return motion.period, float(np.maximum(measures["displacement"], measures["peak_to_peak"]).max())
+    return motion.period, np.maximum(measures["displacement"], measures["peak_to_peak"])
 
 
 def _stays(x: np.ndarray) -> bool:

@@ -52,14 +52,15 @@ class Certificate:
 
 
 def certificate(
-    system: SmallSystem, end: Start, size: float, periods: int, advance: Advance, tolerance: float
+    system: SmallSystem, end: Start, sizes: np.ndarray, periods: int, advance: Advance, tolerance: float
 ) -> Certificate | None:
     """The orbit of so many common periods near a state, with its multipliers.
 
     Args:
-        system: the small system. end: a state near the orbit. size: of the motion's local displacements (m), peak to peak.
+        system: the small system. end: a state near the orbit.
+        sizes: of the motion's counted displacements (c,) in m, peak to peak.
         periods: common periods after which the run repeats. advance: runs states.
-        tolerance: share of the size by which displacements may differ that count as the same.
+        tolerance: share of its own size by which a displacement may differ that counts as the same.
 
     Returns:
         The certificate; None where Newton's method finds no orbit near by, as where a contact only just closes.
@@ -67,7 +68,7 @@ def certificate(
     U = _with_strain(system)
     n = system.n
     # z = L^T q: a displacement d = B^T z of that size.
-    scale = size / float(np.linalg.norm(system.B, axis=0).max())
+    scale = float(sizes.max()) / float(np.linalg.norm(system.B, axis=0).max())
     begun = np.concatenate([end.z, end.dz])
 
     def after(states: Sequence[np.ndarray], length: int = periods) -> np.ndarray:
@@ -96,10 +97,7 @@ def certificate(
         length
         for length in range(1, periods + 1)
         if length == periods
-        or (
-            periods % length == 0
-            and np.abs(counted @ (after([x], length)[0] - x)[:n]).max(initial=0.0) <= tolerance * size
-        )
+        or (periods % length == 0 and np.all(np.abs(counted @ (after([x], length)[0] - x)[:n]) <= tolerance * sizes))
     )
     if growth < SURE:
         return Certificate(growth, repeats, end)

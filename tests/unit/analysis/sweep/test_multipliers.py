@@ -17,7 +17,12 @@ ORBIT = 1e-5 * np.array([0.3, -0.2, 0.0, 0.1, 0.4, 0.0])
 
 
 def found(
-    multipliers: tuple[float, ...], begun: np.ndarray, periods: int = 1, curved: float = 1e3, other: float = 0.0
+    multipliers: tuple[float, ...],
+    begun: np.ndarray,
+    periods: int = 1,
+    curved: float = 1e3,
+    other: float = 0.0,
+    sizes: tuple[float, ...] = (SIZE,),
 ) -> Certificate | None:
     """The certificate of a map with known multipliers, curved by a square term; half way it passes as far from its begin."""
     turned = np.linalg.qr(np.random.default_rng(0).standard_normal((4, 4)))[0]
@@ -37,9 +42,9 @@ def found(
             ends.append(Start(end[:3], end[3:]))
         return ends
 
-    columns = SimpleNamespace(counted=np.array([True]))
-    system: Any = SimpleNamespace(n=3, rigid=np.array([[0.0, 0.0, 1.0]]), B=np.eye(3)[:, :1], columns=columns)
-    return certificate(system, Start(begun[:3], begun[3:]), SIZE, periods, advance, 0.02)
+    columns = SimpleNamespace(counted=np.ones(len(sizes), dtype=bool))
+    system: Any = SimpleNamespace(n=3, rigid=np.array([[0.0, 0.0, 1.0]]), B=np.eye(3)[:, : len(sizes)], columns=columns)
+    return certificate(system, Start(begun[:3], begun[3:]), np.array(sizes), periods, advance, 0.02)
 
 
 @pytest.mark.parametrize("largest", [0.99, 1.004, -1.2])
@@ -72,3 +77,9 @@ def test_an_orbit_tells_its_own_period_while_a_run_still_spirals_onto_it(other: 
     own = found((-0.99, 0.5, -0.3, 0.1), spiral, periods=2, other=other)
     assert own is not None
     assert own.repeats == repeats
+
+
+def test_each_displacement_repeats_by_its_own_size() -> None:
+    own = found((-0.99, 0.5, -0.3, 0.1), ORBIT, periods=2, other=0.03 * SIZE, sizes=(SIZE, 10.0 * SIZE))
+    assert own is not None
+    assert own.repeats == 2

@@ -18,6 +18,11 @@ from rotorgear.solvers.sparse.entries import (
 )
 
 
+def scattered(shape: tuple[int, int], density: float, rng: np.random.Generator) -> np.ndarray:
+    """A matrix with about this share of entries that are not zero."""
+    return np.where(rng.random(shape) < density, rng.standard_normal(shape), 0.0)
+
+
 @pytest.mark.parametrize("kind", [sp.csc_array, sp.csr_array])
 def test_the_norm_is_the_largest_sum_of_a_column(kind: type) -> None:
     A = np.array([[1.0, -2.0, 0.0], [0.0, 3.0, 0.0], [-4.5, 0.0, 0.0]])
@@ -40,7 +45,7 @@ def test_scaling_on_both_sides_leaves_the_matrix_itself_alone() -> None:
 @pytest.mark.parametrize("rows", [0, 3, 4096, 4097, 10_000])
 def test_products_by_stretches_of_rows_are_the_product(rows: int) -> None:
     rng = np.random.default_rng(2)
-    A = sp.csr_array(sp.random_array((rows, 50), density=0.1, rng=rng))
+    A = sp.csr_array(scattered((rows, 50), 0.1, rng))
     X = rng.standard_normal((50, 3))
     product = np.full((rows, 3), np.nan)
     for part, values in row_products(A, X):
@@ -52,7 +57,7 @@ def test_products_by_stretches_of_rows_are_the_product(rows: int) -> None:
 def test_halves_scaled_norms_and_stacked_columns_are_what_dense_matrices_give() -> None:
     rng = np.random.default_rng(5)
     for density in (0.1, 1.0):  # with one pattern for A and its mirror image, and with two
-        A = sp.csc_array(sp.random_array((9, 9), density=density, rng=rng))
+        A = sp.csc_array(scattered((9, 9), density, rng))
         dense = A.toarray()
         even, odd = halves(A, sp.csc_array(A.T))
         assert np.array_equal(even.toarray(), 0.5 * (dense + dense.T))
@@ -60,7 +65,7 @@ def test_halves_scaled_norms_and_stacked_columns_are_what_dense_matrices_give() 
         assert odd.data.all(), "no zero is stored"
         scale = np.geomspace(1e-3, 10.0, 9)
         assert scaled_norm_1(A, scale) == pytest.approx(np.linalg.norm(scale[:, None] * dense * scale, 1), rel=1e-14)
-        B = sp.csc_array(sp.random_array((9, 4), density=0.5, rng=rng))
+        B = sp.csc_array(scattered((9, 4), 0.5, rng))
         assert np.array_equal(stacked_columns((A, B, A)).toarray(), np.vstack([dense.T, B.toarray().T, dense.T]))
 
 
