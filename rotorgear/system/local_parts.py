@@ -153,7 +153,7 @@ def friction_part(
     both = system.layout.mesh(force.contact.mesh)
     mesh = both.part
     pair = both.pair
-    if not (mesh.friction_coefficient or mesh.lubricant_viscosity) or pair is None:
+    if not mesh.rubs or pair is None:
         return None
     from rotorgear.forces.mesh_friction import MeshFriction
 

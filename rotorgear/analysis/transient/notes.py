@@ -32,7 +32,7 @@ def transient_left_out(local: LocalModel) -> tuple[str, ...]:
     loose = [name for name in open_ended if name not in never]
     if loose:
         notes.append(f"coast flanks of {', '.join(loose)}: no backlash is given, so nothing stops teeth that part")
-    rubbing = [name for name, mesh in meshes.items() if mesh.friction_coefficient or mesh.lubricant_viscosity]
+    rubbing = [name for name, mesh in meshes.items() if mesh.rubs]
     if rubbing:
         notes.append(f"what friction in {', '.join(rubbing)} takes of the torques: they balance as without it")
     still = [name for name in meshes if _excites_nothing(local, name)]

@@ -96,7 +96,7 @@ def _excitations(address: str, mesh: Mesh, pinion: Gear, gear: Gear) -> Iterator
     if mesh.corner_impact and not 0.0 < mesh.corner_impact.duration < 1.0:
         wanted = "a share of the mesh cycle between 0 and 1"
         yield Problem(f"{address}.corner_impact.duration", f"{mesh.corner_impact.duration:g}", wanted)
-    if mesh.friction_coefficient or mesh.lubricant_viscosity:
+    if mesh.rubs:
         if mesh.friction_coefficient and mesh.lubricant_viscosity:
             yield Problem(address, "friction_coefficient and lubricant_viscosity", "one of the two")
         if not (pinion.normal_module and gear.normal_module and (pinion.width or gear.width)):

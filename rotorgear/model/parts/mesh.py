@@ -139,6 +139,11 @@ class Mesh(Part):
         settled._face_loads = face_loads
         return settled
 
+    @property
+    def rubs(self) -> bool:
+        """Whether its flanks have sliding friction, by a coefficient or by the viscosity of the oil."""
+        return bool(self.friction_coefficient or self.lubricant_viscosity)
+
     # Where each helix is solved for its face map, where models next to each other share one: no file gives it either.
     _map_misalignments: tuple[tuple[float, ...], ...] = PrivateAttr(())
 

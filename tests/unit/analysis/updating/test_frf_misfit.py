@@ -42,32 +42,35 @@ def test_receptances_and_slopes_are_those_of_the_whole_system(pair, speed):
     free = f"{FREE}, shafts.rotor_1.sections[1].outer_diameter, disks.generator.mass, bearings.rotor_1_left.damping"
     damped = pair.with_("bearings.rotor_1_left.damping", {"x": 2e4, "y": 3e4})
     numbers = free_numbers(damped, free)
-    x = 0.1 * np.sin(1.0 + np.arange(len(numbers.addresses)))
     given = RigModel(numbers, Plan(2), 200.0, speed=speed)
     hz = HZ[::10]
     model = ReceptanceModel(given, hz, OUTPUTS, (INPUT,), ZETA)
-    here = model.look(x, given.modes(x))
-    direct = rg.frf(
-        numbers.at(x), hz, inputs=[INPUT], outputs=OUTPUTS, modal_damping=ZETA, elements=2, speed=speed or None
-    )
-    size = np.abs(direct.receptance).max(axis=0)
-    assert np.max(np.abs(here.H - direct.receptance) / size) < 1e-7
-    assert model.error(x, here) < 1e-7
-    slopes = model.slopes(x, here)
     h = 1e-3
+    slope_errors = []
+    for phase in (1.0, 1.2, 1.4):
+        x = 0.1 * np.sin(phase + np.arange(len(numbers.addresses)))
+        here = model.look(x, given.modes(x))
+        direct = rg.frf(
+            numbers.at(x), hz, inputs=[INPUT], outputs=OUTPUTS, modal_damping=ZETA, elements=2, speed=speed or None
+        )
+        size = np.abs(direct.receptance).max(axis=0)
+        assert np.max(np.abs(here.H - direct.receptance) / size) < 1e-7
+        assert model.error(x, here) < 1e-7
+        slopes = model.slopes(x, here)
+        errors = []
+        for j in (0, 5, 7) if speed else range(8):
 
-    def quotient(j: int) -> np.ndarray:
-        def at(side: float) -> np.ndarray:
-            point = x.copy()
-            point[j] += side
-            return model.look(point, given.modes(point)).H
+            def at(side: float, x: np.ndarray = x, j: int = j) -> np.ndarray:
+                point = x.copy()
+                point[j] += side
+                return model.look(point, given.modes(point)).H
 
-        return (8.0 * (at(h) - at(-h)) - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h)
-
-    for j in (0, 5, 7) if speed else range(8):
-        by_quotient = quotient(j)
-        # Rounding of the slope itself, through the modal damping of soft modes, is 0.1 to 1.3e-6 at neighbouring x.
-        assert np.abs(slopes[j] - by_quotient).max() < 3e-6 * np.abs(by_quotient).max()
+            by_quotient = (8.0 * (at(h) - at(-h)) - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h)
+            errors.append(np.abs(slopes[j] - by_quotient).max() / np.abs(by_quotient).max())
+        slope_errors.append(errors)
+    # At a point here and there rounding reaches a slope through the modal damping of soft modes, 1.1e-6 at the first one; a
+    # wrong slope is wrong at all.
+    assert np.median(slope_errors, axis=0).max() < 1e-6
 
 
 def test_responses_alone_give_back_every_number_and_say_what_they_hold_out(pair):
