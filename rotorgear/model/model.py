@@ -82,6 +82,11 @@ class Model(Tables):
         return Layout(self)
 
     @cached_property
+    def known_hash(self) -> list[str]:
+        """The hash of a model that reads no files, once it has been asked for (`model_hash.py`)."""
+        return []
+
+    @cached_property
     def mean_loads(self) -> dict[int, MeanLoad]:
         """The mean loads that were asked for, by direction."""
         return {}

@@ -22,6 +22,16 @@ def model_hash(model: Model) -> str:
     Canonical: keys in alphabetical order and no blanks, so that it does not matter how the file was written or in which order
     its tables stand; Python writes the shortest digits that give a float back.
     """
+    reads_files = model.casings or any(gear.body.mesh is not None for gear in model.gears.values())
+    if reads_files:
+        return _hash(model)
+    if not model.known_hash:
+        model.known_hash.append(_hash(model))
+    return model.known_hash[0]
+
+
+def _hash(model: Model) -> str:
+    """The hash of the fields and files as they are now."""
     fields = model.model_dump(mode="json", exclude_none=True)
     for casing in fields["casings"].values():
         files = {**casing["mesh"], **({"matrices": casing["matrices"]} if "matrices" in casing else {})}

@@ -16,6 +16,8 @@ from rotorgear.solvers.lanes.lanes import Orbit
 
 # Decay exponent over the periods discarded: exp(-3) = 5 % of the initial deviation is left.
 _FORGOTTEN = 3.0
+# What a motion may be in the direction of a law, beside that direction, and still count as none.
+_ROUNDING = 1e-9
 # Sentences that are shown of those that do not hold for all points.
 _SOME = 4
 
@@ -37,10 +39,12 @@ def notes(
         sentences.append(
             "the torques do not balance at some points: the shafts drift off the prescribed rotation there"
         )
-    if any(len(q.system.carried) for q in points if q):
+    takers = sorted(set().union(*(_takers(q) for q in points if q)))
+    if takers:
         sentences.append(
-            "the loads do not give the power that friction takes: the drive makes up for it on all shafts, in proportion to "
-            "their inertia, so that they keep their speed; with a drive at one end mean forces may be another by about that loss"
+            f"the loads do not give the power that {' and '.join(takers)} takes: the drive makes up for it on all shafts, in "
+            "proportion to their inertia, so that they keep their speed; with a drive at one end mean forces may be another by "
+            "about that loss"
         )
     if any(q.rolling for q in points if q):
         sentences.append(
@@ -63,6 +67,18 @@ def notes(
         f"{axis.address} has no effect on this model: all its points are the same" for axis in idle(axes, points)
     ]
     return (*sentences, *_slow(motion, orbits, runs))
+
+
+def _takers(point: Point) -> set[str]:
+    """Titles of the laws that push a motion whose speed the drive keeps."""
+    own = point.system.own
+    B = point.system.B
+    pushed = np.any(np.abs(point.system.carried @ B) > _ROUNDING * np.linalg.norm(B, axis=0), axis=0)
+    return {
+        law.title
+        for law, first, count in zip(own.forces.laws, *own.place, strict=True)
+        if pushed[first : first + count].any()
+    }
 
 
 def _coexisting(kinds: Sequence[set[str]]) -> list[str]:

@@ -21,15 +21,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 
-from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.damped import DampedModes
 from rotorgear.solvers.eigen.gyroscopic import counted_modes
 from rotorgear.solvers.eigen.reduced_pencil import Pencil, clusters, eigen
 from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis, forces
 from rotorgear.solvers.sparse.entries import columns_of, times
-from rotorgear.solvers.sparse.factor import Factor, factor_symmetric, negative_eigenvalues, single_thread
+from rotorgear.solvers.sparse.factor import Factor, negative_eigenvalues, single_thread
 
 _BASIS = "basis of undamped modes and responses to dampers"
 # Dofs on which dampers act: so many at most, and this share of all.
@@ -197,11 +195,4 @@ def _none_is_missing(problem: NearUndamped, small: Pencil, last: float) -> bool:
             break
     else:
         return False
-    G_of_dofs = problem.halves[1]
-    turning = sp.csc_array((1j * w * G_of_dofs.data, G_of_dofs.indices, G_of_dofs.indptr), shape=G_of_dofs.shape)
-    hermitian = sp.csc_array(problem.K - w**2 * problem.M + turning)
-    try:
-        counted = int(np.count_nonzero(factor_symmetric(hermitian).pivots.real < 0.0))
-    except ConvergenceError:  # no factors without row exchanges: nothing to count with
-        return False
-    return counted == expected + problem.rigid.shape[1]
+    return problem.counted_below(w) == expected + problem.rigid.shape[1]

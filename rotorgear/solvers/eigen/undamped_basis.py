@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
+from rotorgear.errors import ConvergenceError
 from rotorgear.solvers.eigen.reduced_pencil import Pencil
 from rotorgear.solvers.sparse.entries import halves, scaled_norm_1, stacked_columns, times
 from rotorgear.solvers.sparse.factor import Factor, factor_symmetric
@@ -113,6 +114,19 @@ class NearUndamped:
         R = self.rigid / np.linalg.norm(self.rigid * weight, axis=0)
         moved = max(float(np.abs((A @ R) / weight).max()) for A in (self.D, self._mirror))
         return moved > _ROUNDING * scaled_norm_1(self.D, 1.0 / self.weight)
+
+    def counted_below(self, w: float) -> int | None:
+        """How many modes of the structure without its dampers lie below w in rad/s, rigid-body motions among them.
+
+        By the signs of the pivots of K + i w G - w^2 M, see `gyroscopic`; None where there are no factors without row exchanges.
+        """
+        G = self.halves[1]
+        turning = sp.csc_array((1j * w * G.data, G.indices, G.indptr), shape=G.shape)
+        try:
+            factor = factor_symmetric(self.K - w**2 * self.M + turning)
+        except ConvergenceError:
+            return None
+        return int(np.count_nonzero(factor.pivots.real < 0.0))
 
     def without_rigid(self, X: np.ndarray) -> np.ndarray:
         """X (n, m) without its part in the rigid-body motions, which have none in elastic modes."""

@@ -70,7 +70,7 @@ def check_pencil(M: sp.csc_array, K: sp.csc_array) -> np.ndarray:
 
 def _is_symmetric(A: sp.csc_array) -> bool:
     """Whether no entry differs from its mirror image by more than a share of sqrt(a_ii a_jj)."""
-    mirror = sp.csc_array(A.T)
+    mirror = A.T.tocsc()
     if np.array_equal(mirror.indices, A.indices) and np.array_equal(mirror.data, A.data):
         return True
     skew = sp.coo_array(abs(A - mirror))

@@ -80,7 +80,7 @@ def _branch(result: OrbitsResult, number: int) -> Any:
 
     own = np.flatnonzero(result.branch == number)
     branch = result.branches[number]
-    text = f"Branch {branch.name}: {len(own)} points, {int(result.stable[own].sum())} stable, to {branch.ended}"
+    text = f"Branch {branch.name}: {_points(len(own))}, {int(result.stable[own].sum())} stable, to {branch.ended}"
     shown = result.shown()
     forces = ("F mean\nN", "F max\nN", "loss\n%") if result.contact else ()
     out = table(_column(result), "stable", "|mu|", f"p-p\nu{shown.unit}", *forces, left=0)
@@ -100,11 +100,15 @@ def _branch(result: OrbitsResult, number: int) -> Any:
     return Group(*lines(text), out)
 
 
+def _points(number: int) -> str:
+    return "1 point" if number == 1 else f"{number} points"
+
+
 def _curve(result: OrbitsResult, curve: SpecialCurve) -> Any:
     from rich.console import Group
 
     name = result.branches[curve.branch].name
-    text = f"Curve of the {curve.kind} of branch {name}: {len(curve.value)} points, to {curve.ended}"
+    text = f"Curve of the {curve.kind} of branch {name}: {_points(len(curve.value))}, to {curve.ended}"
     shown = result.shown()
     out = table(_column(result), _column(result, 1), "period\nms", f"p-p\nu{shown.unit}", left=0)
     sizes = shown.peak_to_peak(curve)
