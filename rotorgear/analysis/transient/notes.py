@@ -92,6 +92,17 @@ def _excites_nothing(local: LocalModel, name: str) -> bool:
     return all(law.steady for law in laws)
 
 
+def _why_adrift(model: Model) -> str:
+    """A clause for a model with tooth friction, whose loss no torque gives."""
+    rubbing = [name for name, mesh in model.meshes.items() if mesh.rubs]
+    if not rubbing:
+        return ""
+    return (
+        f"; friction in {', '.join(rubbing)} takes power that the torques do not give: with speed_power in a load the shafts "
+        "settle where they balance, and sweep keeps their speed"
+    )
+
+
 def transient_warnings(
     result: TransientResult, rest: Equilibrium, local: LocalModel, *, estimated: bool, keeps_energy: bool
 ) -> tuple[str, ...]:
@@ -108,6 +119,7 @@ def transient_warnings(
     if rest.free.shape[1] and np.any(np.abs(rest.drift) > 1e-9 * max(float(np.linalg.norm(local.local.load)), 1e-300)):
         notes.append(
             "the loads do not balance on a free motion: it is carried along and drifts with constant acceleration"
+            + _why_adrift(local.system.model)
         )
     damped = np.any(local.local.forces.reference_damping) or local.system.model.nonlinear_elements
     if any(note.startswith("damping matrix") for note in result.left_out) and not damped:
