@@ -23,9 +23,9 @@ from rotorgear.solvers.sparse.pencil import EPS, rounding_noise
 _BLOCK = 4  # as many copies of an eigenvalue are found at once; more columns cost more than they bring
 _CONVERGED = 1e-9  # residual of T v = theta v relative to theta; its square is the error of the Rayleigh quotient
 # The same for a basis of other modes: of the lower ones, so large a part, that others are made of; the upper ones correct them.
-_CONVERGED_BASIS = 1e-6
+_CONVERGED_BASIS = 1e-4
 _LOWER = 0.7
-_BEGIN = 1.7  # Krylov vectors for each mode of a basis, before its residuals are first looked at; 2 for modes that are counted
+_BEGIN = 1.4  # Krylov vectors for each mode of a basis, before its residuals are first looked at; 2 for modes that are counted
 _USEFUL = (1e-3, 10.0)  # |sigma| / first elastic eigenvalue: inside, the shift costs neither accuracy nor iterations
 _START = 1e-4  # |sigma| at first over the least k_ii / m_ii
 _SPREAD = 1e7  # highest eigenvalue / |sigma| up to which rounding in soft modes leaves the stiff ones alone
