@@ -82,8 +82,8 @@ class Model(Tables):
         return Layout(self)
 
     @cached_property
-    def known_hash(self) -> list[str]:
-        """The hash of a model that reads no files, once it has been asked for (`model_hash.py`)."""
+    def known_hash(self) -> list[tuple[tuple[object, ...], str]]:
+        """The hash of a model that reads no files, once it has been asked for, behind its parts then (`model_hash.py`)."""
         return []
 
     @cached_property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from operator import is_not
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,9 +26,21 @@ def model_hash(model: Model) -> str:
     reads_files = model.casings or any(gear.body.mesh is not None for gear in model.gears.values())
     if reads_files:
         return _hash(model)
-    if not model.known_hash:
-        model.known_hash.append(_hash(model))
-    return model.known_hash[0]
+    # Parts are frozen, but not the tables that hold them: the hash is kept for these parts only.
+    parts = _parts(model)
+    kept = model.known_hash
+    if not kept or len(kept[0][0]) != len(parts) or any(map(is_not, kept[0][0], parts)):
+        kept[:] = [(parts, _hash(model))]
+    return kept[0][1]
+
+
+def _parts(model: Model) -> tuple[object, ...]:
+    """Names and parts of all tables, and what stands beside them."""
+    found: list[object] = []
+    for name in type(model).model_fields:
+        value = getattr(model, name)
+        found += [*value.keys(), *value.values()] if isinstance(value, dict) else [value]
+    return tuple(found)
 
 
 def _hash(model: Model) -> str:

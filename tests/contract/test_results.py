@@ -302,3 +302,7 @@ def test_a_changed_value_changes_the_hash_of_a_model_and_the_order_of_its_tables
     same = rg.Model(**dict(reversed(rotor.model_dump(exclude_none=True).items())))
     assert model_hash(same) == model_hash(rotor)
     assert model_hash(rotor.model_copy(update={"title": "another"})) != model_hash(rotor)
+    # Tables are not frozen as parts are.
+    name = next(iter(same.shafts))
+    same.shafts[name] = same.shafts[name].model_copy(update={"internal_damping": None, "position": (0.5, 0.5)})
+    assert model_hash(same) != model_hash(rotor)

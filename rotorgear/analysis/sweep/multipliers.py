@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg as la
 
+from rotorgear.analysis.sweep.classify import period_of
 from rotorgear.solvers.lanes.lanes import Start
 from rotorgear.solvers.lanes.small_system import SmallSystem
 
@@ -92,13 +93,7 @@ def certificate(
     mu, left, right = la.eig(M, left=True)
     most = int(np.argmax(np.abs(mu)))
     growth = float(np.log(max(abs(mu[most]), 1e-300))) / periods
-    counted = system.B[:, system.columns.counted].T
-    repeats = next(
-        length
-        for length in range(1, periods + 1)
-        if length == periods
-        or (periods % length == 0 and np.all(np.abs(counted @ (after([x], length)[0] - x)[:n]) <= tolerance * sizes))
-    )
+    repeats = _period(x, after, system, sizes, periods, tolerance)
     if growth < SURE:
         return Certificate(growth, repeats, end)
     # Slow motions may still be far from the orbit; only what lies along the direction of growth counts.
@@ -110,6 +105,23 @@ def certificate(
         direction = U @ np.real(along)
         begun = begun + _PUSH * scale * direction / np.linalg.norm(direction)
     return Certificate(growth, repeats, Start(begun[:n], begun[n:]))
+
+
+def _period(
+    x: np.ndarray,
+    after: Callable[[Sequence[np.ndarray], int], np.ndarray],
+    system: SmallSystem,
+    sizes: np.ndarray,
+    periods: int,
+    tolerance: float,
+) -> int:
+    """Common periods after which the orbit through x (2 n,) repeats, told as of a run (classify.py) from its own section."""
+    counted = system.B[:, system.columns.counted].T
+    states = [x]
+    for _ in range(periods - 1):
+        states.append(after([states[-1]], 1)[0])
+    section = np.array([counted @ state[: system.n] for state in states])
+    return period_of(np.tile(section, (3, 1)), sizes, tolerance) or periods
 
 
 def _on_orbit(

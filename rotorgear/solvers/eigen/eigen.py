@@ -206,7 +206,7 @@ def _candidates(
             V = lanczos_modes(operator, sure, spare)
         else:
             sure = target
-            V = basis_vectors(operator, target)
+            V = basis_vectors(operator, max(target, 1))
         finite = n - massless.size
     orthonormalise(operator.mass, V)
     if strain is None:

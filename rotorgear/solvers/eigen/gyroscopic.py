@@ -17,7 +17,7 @@ import scipy.sparse as sp
 
 from rotorgear.solvers.eigen.damped import DampedModes
 from rotorgear.solvers.eigen.reduced_pencil import gyroscopic_pairs
-from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis
+from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis, with_near
 from rotorgear.solvers.sparse.factor import Factor, single_thread
 
 # Error of an eigenvalue by its residual, and of a vector, at which a round is the last.
@@ -45,7 +45,8 @@ def gyroscopic_modes(problem: NearUndamped, count: int | None, below: float | No
     """
     if problem.moves_rigid_bodies():
         return None
-    rows = None if count is None else max(count - problem.rigid.shape[1], 0)
+    rows = len(problem.frequencies) if count is None else max(count - problem.rigid.shape[1], 0)
+    limit = np.inf if below is None else below
     with single_thread(problem.K.shape[0]):
         factor = problem.factor
         space = UndampedBasis(problem)
@@ -55,15 +56,14 @@ def gyroscopic_modes(problem: NearUndamped, count: int | None, below: float | No
             basis = space.basis
             small = space.pencil(basis)
             w, Y = gyroscopic_pairs(small.M, 0.5 * (small.D - small.D.T), small.K, len(problem.frequencies))
-            wanted = len(w) if rows is None else rows
-            if below is not None:
-                wanted = min(wanted, int(np.count_nonzero(w <= below * (1.0 + _EDGE))))
+            wanted = with_near(w, rows, limit)
             if wanted >= len(w):
                 return None
             V = basis @ Y[:, :wanted]
             corrections, settled = _corrections(problem, factor, w[:wanted], V)
             if settled:
-                found = counted_modes(problem, 1j * w[:wanted], V, count, "basis of undamped modes")
+                asked = min(rows, int(np.count_nonzero(w <= limit * (1.0 + _EDGE))))
+                found = counted_modes(problem, 1j * w[:asked], V[:, :asked], count, "basis of undamped modes")
                 sound = found.backward_error.max(initial=0.0) <= _SOUND
                 return found if sound and _count_agrees(problem, w, wanted) else None
             space.add(corrections, space.sizes(V), _COARSE)

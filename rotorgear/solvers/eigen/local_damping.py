@@ -25,7 +25,7 @@ import numpy as np
 from rotorgear.solvers.eigen.damped import DampedModes
 from rotorgear.solvers.eigen.gyroscopic import counted_modes
 from rotorgear.solvers.eigen.reduced_pencil import Pencil, clusters, eigen
-from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis, forces
+from rotorgear.solvers.eigen.undamped_basis import NearUndamped, UndampedBasis, forces, with_near
 from rotorgear.solvers.sparse.entries import columns_of, times
 from rotorgear.solvers.sparse.factor import Factor, negative_eigenvalues, single_thread
 
@@ -49,8 +49,8 @@ _LARGEST_SHARE = 0.6
 # Places above the last mode, relative to it, at which modes may be counted; and how far around it no mode may lie.
 _COUNT_AT = (1.02, 1.035, 1.05)
 _AROUND = 1e-4
-# An eigenvalue of the small problem below this share of the first frequency is that of a rigid-body motion.
-_STILL = 1e-5
+# Share of the first frequency below which a pair is two motions that dampers slow, split by rounding.
+_SLOW = 1e-5
 # A mode this close above the limit `below` counts as on it.
 _EDGE = 1e-9
 
@@ -67,6 +67,7 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
         return None
     most = len(problem.frequencies)
     rows = most if count is None else max(count - problem.rigid.shape[1], 0)
+    limit = np.inf if below is None else below
     with single_thread(problem.K.shape[0]):
         factor = problem.factor
         space = _begun(problem, factor, places, rows)
@@ -76,18 +77,21 @@ def locally_damped_modes(problem: NearUndamped, count: int | None, below: float 
             basis = space.basis
             small = space.pencil(basis)
             shift = float(np.sqrt(problem.frequencies[0] * problem.frequencies[-1]))
-            found = eigen(small, shift, _STILL * float(problem.frequencies[0]), most if below is not None else rows + 1)
+            # No rigid-body motion is in the basis: what hardly moves is a motion that dampers slow.
+            found = eigen(small, shift, 0.0, most)
             size = np.abs(found.s)
-            wanted = min(rows, len(size))
-            if below is not None:
-                wanted = min(wanted, int(np.count_nonzero(size <= below * (1.0 + _EDGE))))
+            wanted = with_near(size, rows, limit)
             # A motion that does not oscillate among the modes, or none above them to end at, is another solver's business.
             if wanted >= len(size) or np.any(np.abs(found.real) <= _COUNT_AT[-1] * size[wanted]):
+                return None
+            if size[0] <= _SLOW * problem.frequencies[0]:
                 return None
             pairs = _Pairs(found.s[:wanted], basis @ found.q[:, :wanted], basis @ found.y[:, :wanted])
             corrected, e, unsure = _corrected(problem, factor, pairs)
             if unsure <= _SETTLED:
-                modes = counted_modes(problem, corrected.s, _polished(problem, factor, corrected), count, _BASIS)
+                asked = min(rows, int(np.count_nonzero(np.abs(corrected.s) <= limit * (1.0 + _EDGE))))
+                chosen = _Pairs(corrected.s[:asked], corrected.v[:, :asked], corrected.y[:, :asked])
+                modes = counted_modes(problem, chosen.s, _polished(problem, factor, chosen), count, _BASIS)
                 if modes.backward_error.max(initial=0.0) <= _SOUND:
                     last = float(size[wanted - 1]) if wanted else float(problem.frequencies[0]) / _COUNT_AT[-1]
                     return modes if _none_is_missing(problem, small, last) else None

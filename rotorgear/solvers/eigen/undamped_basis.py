@@ -20,6 +20,8 @@ Strain = Callable[[np.ndarray], np.ndarray]
 
 # Part of a correction that is not worth a column of the basis, relative to its mode.
 _NEGLIGIBLE = 1e-9
+# By how much corrections may move a pair past another one, or past a limit, relative to it.
+_CORRECTED = 1e-2
 # What D R of a rigid-body motion may be beside |D| |R| and still count as rounding.
 _ROUNDING = 1e-13
 
@@ -137,6 +139,12 @@ def forces(s: np.ndarray, products: np.ndarray | tuple[np.ndarray, np.ndarray, n
     """s_j^2 M v_j + s_j D v_j + K v_j, (n, m), from the three products, (n, m) each."""
     mass, velocity, stiffness = products
     return np.asarray((mass * s + velocity) * s + stiffness)
+
+
+def with_near(size: np.ndarray, rows: int, limit: float) -> int:
+    """How many pairs of a basis, by size (m,), may be among the first `rows` up to a limit once they are corrected."""
+    last = float(size[rows - 1]) if 0 < rows <= len(size) else np.inf if rows else 0.0
+    return int(np.count_nonzero(size <= min(limit, last) * (1.0 + _CORRECTED)))
 
 
 class UndampedBasis:

@@ -19,7 +19,7 @@ from rotorgear.solvers.lanes.kernel_jumps import add_used_along, missing, missin
 from rotorgear.solvers.lanes.kernel_laws import SPACE, force_laws, laws_along, schedule_laws
 from rotorgear.solvers.lanes.kernel_parts import FOUND, IN_D, IN_V, contacts, count, product, read_table, widen
 from rotorgear.solvers.lanes.kernel_switches import DONE, ENTERED, MIDDLE, correct, do, ended, enter
-from rotorgear.solvers.lanes.kernel_tangents import keep_speed, orthonormal
+from rotorgear.solvers.lanes.kernel_tangents import keep_speed, look_along, orthonormal
 from rotorgear.solvers.time.compiled import compiled
 
 
@@ -178,6 +178,8 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
     rows = 2 * n + m + 1
     own = laws.kind.size > 0
     carrying = system.carried.shape[0] > 0
+    at_begin = work(2 * system.carried.shape[0])
+    at_end = work(2 * system.carried.shape[0])
     h = 2.0 * np.pi / steps
     now = work(4 * m).reshape(m, 4, LANES)
     found = work(FOUND * m).reshape(m, FOUND, LANES)
@@ -206,6 +208,8 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
     for k in range(t):
         copy_rows(tangents, 2 * n * k, moved, rows * k, 2 * n)
     for period in range(growth.shape[0]):
+        if carrying:
+            look_along(state, system.carried, at_begin)
         for step in range(turns * steps):
             for number in range(4):
                 if number != 2:
@@ -245,7 +249,7 @@ def lanes_loop(span, system, columns, table, laws, motion, records):
                 for k in range(t):
                     copy_rows(tangents, 2 * n * k, moved, rows * k, 2 * n)
         if carrying:
-            keep_speed(state, system.carried)
+            keep_speed(state, system.carried, at_begin, 2.0 * np.pi * turns, at_end)
             copy_rows(state, 0, stage, 0, 2 * n)
         for j in range(2 * m):
             put(section, 2 * m * period + j, slope_of(j, across.first, across.column, across.value, state, 0))

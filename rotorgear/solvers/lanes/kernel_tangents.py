@@ -22,12 +22,34 @@ def remove(part, part_at, along, along_at, measured, measured_at, unit, unit_at,
 
 
 @compiled(fast=True, inner=True)
-def keep_speed(state, carried):
-    """Bring z and z' (2 n, w) along the motions that the drive carries (c, n, w) back to where and how fast it has them: 0."""
+def look_along(state, carried, along):
+    """Write z and z' (2 n, w) along the motions that the drive carries (c, n, w) to `along` (2 c, w)."""
     n = state.shape[0] // 2
     for r in range(carried.shape[0]):
         for part in range(2):
-            remove(state, part * n, carried, r * n, state, part * n, carried, r * n, n)
+            total = fill(0.0)
+            for i in range(n):
+                total += get(state, part * n + i) * get(carried, r * n + i)
+            put(along, 2 * r + part, total)
+
+
+@compiled(fast=True, inner=True)
+def keep_speed(state, carried, begun, length, along):
+    """Give z and z' (2 n, w) what the drive gives at the end of a period, so that speeds along its motions are 0 on average.
+
+    `begun` is `along` at the beginning of the period, which has so many radians. Where a motion had a mean speed v in it, the
+    next period begins slower by v than this one did, whatever pushes. An oscillation about the mean stays as it is.
+    """
+    look_along(state, carried, along)
+    n = state.shape[0] // 2
+    mean = fill(1.0 / length)
+    for r in range(carried.shape[0]):
+        moved = get(along, 2 * r) - get(begun, 2 * r)
+        faster = get(along, 2 * r + 1) - get(begun, 2 * r + 1) + mean * moved
+        for i in range(n):
+            unit = get(carried, r * n + i)
+            put(state, i, get(state, i) - moved * unit)
+            put(state, n + i, get(state, n + i) - faster * unit)
 
 
 @compiled(fast=True, inner=True)

@@ -7,12 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotorgear.solvers.lanes.arguments import ActingLaws
+from rotorgear.solvers.time.kernel_gather import DISSIPATED, ENERGIES
 from rotorgear.solvers.time.local_forces import LocalForces, gather
 from rotorgear.solvers.time.local_system import LocalSystem, evaluated
 
 # Times in a period of the fastest excitation at which tangents are looked at.
 _SAMPLES = 64
 _FAR = 1e-2  # m or rad, by which a displacement is changed to see whether a law answers
+# Times in a common period over which the power of laws is averaged: a prime number, so that they meet all phases of any cycle.
+_TIMES = 257
+_PRESSED = 1e-6  # m or rad: contacts without a load are looked at as if pressed together, or apart, by this
 
 
 @dataclass(frozen=True)
@@ -64,19 +68,74 @@ def steepest(local: LocalSystem, q: np.ndarray, own: OwnLaws, period: float) -> 
     return [found[i] for i in sorted(most)]
 
 
+@dataclass(frozen=True)
+class Taken:
+    """What laws take of the power of the prescribed motion at rest, on average over a common period.
+
+    Attributes:
+        power: in W. push: (m,) mean forces of the laws that take some. damping: (m, m) mean damping of all laws beyond their
+        reference.
+    """
+
+    power: float
+    push: np.ndarray
+    damping: np.ndarray
+
+
+def taken_at_rest(local: LocalSystem, q: np.ndarray, own: OwnLaws, period: float) -> Taken:
+    """What laws such as friction take about the displacements q (n,); `period` is the common one in s."""
+    d = local.B.T @ q
+    for pressed in (0.0, _PRESSED, -_PRESSED):
+        found = _taken(local, d + pressed, own, period)
+        if found.power > 0.0:
+            break
+    return found
+
+
+def _taken(local: LocalSystem, d: np.ndarray, own: OwnLaws, period: float) -> Taken:
+    laws = local.forces
+    still = np.zeros(local.m)
+    numbers = np.searchsorted(laws.first, own.place[0])
+    power = 0.0
+    push = np.zeros(local.m)
+    in_v = np.zeros(laws.block_first[-1])
+    for i in range(_TIMES):
+        F, _, tangent, energy = evaluated(local, d, still, period * i / _TIMES)
+        in_v += tangent / _TIMES
+        taken = energy.reshape(-1, ENERGIES)[:, DISSIPATED] / _TIMES
+        for number, (a, k) in zip(numbers, own.place.T, strict=True):
+            if taken[number] > 0.0:
+                power += taken[number]
+                push[a : a + k] += F[a : a + k] / _TIMES
+    return Taken(power, push, _blocks(laws, own, in_v) - _of_laws(own, laws.reference_damping))
+
+
 def _tangents(local: LocalSystem, q: np.ndarray, own: OwnLaws, t: float) -> tuple[np.ndarray, np.ndarray]:
     """Tangents (m, m) of the laws at a time, without their reference."""
     laws = local.forces
     d = local.B.T @ q
     _, in_d, in_v, _ = evaluated(local, d, np.zeros(local.m), t)
-    K = np.zeros((local.m, local.m))
-    C = np.zeros((local.m, local.m))
+    return (
+        _blocks(laws, own, in_d) - _of_laws(own, laws.reference_stiffness),
+        _blocks(laws, own, in_v) - _of_laws(own, laws.reference_damping),
+    )
+
+
+def _blocks(laws: LocalForces, own: OwnLaws, flat: np.ndarray) -> np.ndarray:
+    """Tangents (m, m) of the own laws from the flat blocks of all."""
+    found = np.zeros((laws.m, laws.m))
     for a, k in own.place.T:
         at = int(laws.block_first[int(np.searchsorted(laws.first, a))])
-        block = slice(a, a + k), slice(a, a + k)
-        K[block] = in_d[at : at + k * k].reshape(k, k) - laws.reference_stiffness[block]
-        C[block] = in_v[at : at + k * k].reshape(k, k) - laws.reference_damping[block]
-    return K, C
+        found[a : a + k, a : a + k] = flat[at : at + k * k].reshape(k, k)
+    return found
+
+
+def _of_laws(own: OwnLaws, A: np.ndarray) -> np.ndarray:
+    """The part of A (m, m) that belongs to own laws."""
+    found = np.zeros_like(A)
+    for a, k in own.place.T:
+        found[a : a + k, a : a + k] = A[a : a + k, a : a + k]
+    return found
 
 
 def not_held(local: LocalSystem, q: np.ndarray, own: OwnLaws, free: np.ndarray) -> np.ndarray:

@@ -11,8 +11,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from rotorgear.errors import AnalysisError
-from rotorgear.solvers.lanes.columns import OWN_LAW, Columns
-from rotorgear.solvers.lanes.own_laws import OwnLaws, not_held, steepest
+from rotorgear.solvers.lanes.columns import Columns
+from rotorgear.solvers.lanes.own_laws import OwnLaws, Taken, not_held, steepest, taken_at_rest
 from rotorgear.solvers.time.contact_equilibrium import Equilibrium
 from rotorgear.solvers.time.local_system import LocalSystem
 
@@ -24,8 +24,10 @@ STABLE = 2.5
 ACCURATE = 0.35
 # The same above the frequencies that a reduced system follows: its stiffest shapes answer as if static.
 _STATIC = 1.5
-# Of all damping, or of all forces of laws, below which a motion meets none.
-_BRAKED = 1e-9
+# Of all forces of laws, below which a motion meets none.
+_FELT = 1e-9
+# Share of its speed by which a motion may be slowed until drag is in balance with what laws take.
+_SLOWER = 0.01
 # Of the largest stiffness, that every direction gets in the size of a tangent.
 _FLOOR = 1e-12
 
@@ -128,6 +130,9 @@ def small_system(
         D = D + (modes * (2.0 * modal_ratio * np.sqrt(np.maximum(squares, 0.0)))) @ modes.T
     free = not_held(local, rest.q, own, rest.free)
     rigid = np.linalg.qr(L.T @ free)[0].T if free.size else np.zeros((0, local.n))
+    carried = np.zeros((0, local.n))
+    if len(rigid) and own.forces.laws:
+        carried = _carried(rigid, damped, B, taken_at_rest(local, rest.q, own, turns * 2.0 * np.pi / w))
     rates = np.concatenate([_rates(k / w**2, c / w) for k, c in linear])
     followed = rates if shapes is None else rates[rates <= shapes.up_to / w]
     return SmallSystem(
@@ -137,7 +142,7 @@ def small_system(
         _clean(B),
         _clean(inverse @ local.watched_vectors),
         rigid,
-        _carried(rigid, damped / w, B[:, columns.kind == OWN_LAW]),
+        carried,
         L.T @ rest.q,
         L,
         energy,
@@ -151,24 +156,28 @@ def small_system(
     )
 
 
-def _carried(rigid: np.ndarray, D: np.ndarray, own: np.ndarray) -> np.ndarray:
-    """Motions without strain (r, n) that no damper brakes, but laws of their own push; orthonormal, (c, n).
+def _carried(rigid: np.ndarray, D: np.ndarray, B: np.ndarray, taken: Taken) -> np.ndarray:
+    """Motions without strain (r, n) whose speed the drive keeps; orthonormal, (c, n).
 
-    A law that acts against sliding, such as friction, takes power on such a motion. Without the drive that makes up for it the
-    system would run down while all that depends on time keeps to its speed: after some thousand periods it would slide as one
-    at another speed does.
+    A law that acts against sliding, such as friction, takes power P from such a motion, which it pushes by f. A drag c on it
+    comes into balance with that where the motion is slower by f/c, of P/f that it has. Where that is more than a small share,
+    only the drive can hold the speed: without it the system would run down while all that depends on time keeps to its speed,
+    and after some thousand periods it would slide as one at another speed does.
 
     Args:
-        rigid: orthonormal motions without strain, (r, n). D: damping about the mean state, (n, n). own: directions of the
-        laws, (n, l).
+        rigid: orthonormal motions without strain, (r, n). D: damping, (n, n), and B: directions of the laws, (n, m), about the
+        mean state. taken: by laws of their own.
     """
-    if not rigid.size or not own.size:
+    if not taken.power > 0.0:
         return np.zeros((0, len(D)))
-    braked = D @ rigid.T
-    _, sizes, right = np.linalg.svd(braked)
-    free = right[np.count_nonzero(sizes > _BRAKED * np.linalg.norm(D)) :] @ rigid
-    _, sizes, right = np.linalg.svd(own.T @ free.T, full_matrices=False)
-    return np.asarray(right[sizes > _BRAKED * np.linalg.norm(own)] @ free)
+    pushes = B @ taken.push
+    drags, turned = np.linalg.eigh(
+        rigid @ (0.5 * (D + D.T) + B @ (0.5 * (taken.damping + taken.damping.T)) @ B.T) @ rigid.T
+    )
+    along = turned.T @ rigid
+    push = along @ pushes
+    felt = np.abs(push) > _FELT * np.linalg.norm(pushes)
+    return np.asarray(along[felt & (push**2 > _SLOWER * np.maximum(drags, 0.0) * taken.power)])
 
 
 def _rates(K: np.ndarray, D: np.ndarray) -> np.ndarray:

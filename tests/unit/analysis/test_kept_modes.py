@@ -72,3 +72,8 @@ def test_the_modes_go_with_their_system():
     del system
     gc.collect()
     assert len(undamped._kept) < before
+
+
+def test_a_highest_frequency_below_all_modes_finds_none():
+    found = rg.modal(rg.load(MODELS / "jeffcott.toml"), fmax=5.0, speed=100.0, elements=16)
+    assert not np.any(found.frequency_hz[~found.rigid] > 0.0)

@@ -83,3 +83,23 @@ def test_each_displacement_repeats_by_its_own_size() -> None:
     own = found((-0.99, 0.5, -0.3, 0.1), ORBIT, periods=2, other=0.03 * SIZE, sizes=(SIZE, 10.0 * SIZE))
     assert own is not None
     assert own.repeats == 2
+
+
+@pytest.mark.parametrize("phase", range(4))
+def test_an_orbit_has_one_period_wherever_the_run_ended_on_it(phase: int) -> None:
+    # Period doubling has split both points of this orbit of the logistic map, one far less than the other.
+    def advance(states: Any, length: int) -> list[Start]:
+        ends = []
+        for one in states:
+            z = one.z
+            for _ in range(length):
+                z = 3.5 * z * (1.0 - z)
+            ends.append(Start(z, 0.0 * one.dz))
+        return ends
+
+    columns = SimpleNamespace(counted=np.ones(1, dtype=bool))
+    system: Any = SimpleNamespace(n=1, rigid=np.zeros((0, 1)), B=np.eye(1), columns=columns)
+    end = advance([Start(np.array([0.3]), np.zeros(1))], 20000 + phase)[0]
+    own = certificate(system, end, np.array([4.0]), 4, advance, 0.02)
+    assert own is not None
+    assert own.repeats == 4

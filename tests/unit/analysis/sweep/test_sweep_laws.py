@@ -183,10 +183,43 @@ def test_friction_does_not_run_the_shafts_down() -> None:
     assert not any("drift" in warning for warning in late.warnings)
 
 
+def test_a_light_drag_does_not_let_friction_run_the_shafts_down() -> None:
+    # 0.016 N m beside 200 N m: in balance with the loss of friction it would be far below the speed of the shafts.
+    supports = {"drag": {"shaft": "one", "at": "60 mm", "damping": {"torsion": 1e-4}}}
+    model = spur_pair(
+        motions=["torsion"],
+        bearings=None,
+        points=None,
+        meshes__pair__backlash="50 um",
+        meshes__pair__friction_coefficient=0.1,
+        supports=supports,
+    )
+    soon, late = (
+        rg.sweep(model, {"operation.speed": ["1500 rpm"]}, discard=discard, sample=10, exponents=0)
+        for discard in (60, 300)
+    )
+    assert late.largest_force == pytest.approx(soon.largest_force, rel=1e-9)
+    assert any("the drive makes up for it" in text for text in late.warnings)
+
+
+def test_a_propeller_keeps_its_speed_itself_while_the_drive_pulses_once_in_a_turn() -> None:
+    loads = {
+        "drive": {"shaft": "one", "kind": "input", "torque": "200 N m", "ripple": 0.2, "ripple_order": 1.0},
+        "propeller": {"shaft": "two", "kind": "output", "speed_power": 2.0},
+    }
+    operation = {"input_shaft": "one", "speed": "1500 rpm"}
+    model = spur_pair(motions=["torsion"], bearings=None, points=None, operation=operation, loads=loads)
+    swept = rg.sweep(model, {"operation.speed": ["1500 rpm"]}, discard=40, sample=10, elements=1, exponents=0)
+    run = rg.transient(model, discard=1.6, time=0.4, steps=600, method="newmark", error_estimate=False, elements=1)
+    assert swept.mean_force.ravel() == pytest.approx(run.force_mean, rel=1e-6)
+    assert swept.rms_force.ravel() == pytest.approx(run.force_rms, rel=1e-6)
+    assert not any("makes up" in text for text in swept.warnings)
+
+
 @pytest.mark.parametrize(
     ("columns", "brake", "carried"),
-    [([0, 1], 0.0, 1), ([0, 1], 0.05, 0), ([2, 3], 0.0, 0)],
-    ids=["free", "braked", "strained"],
+    [([0, 1], 0.0, 1), ([0, 1], 1e-3, 1), ([0, 1], 5.0, 0), ([2, 3], 0.0, 0)],
+    ids=["free", "hardly braked", "braked", "strained"],
 )
 def test_the_drive_carries_only_what_nothing_else_brakes_and_friction_pushes(
     columns: list[int], brake: float, carried: int

@@ -249,3 +249,16 @@ def test_the_sparse_solver_agrees_with_the_dense_one_on_a_gyroscopic_damped_chai
 def test_senseless_requests_are_refused(asked, match):
     with pytest.raises(AnalysisError, match=match):
         _modes(1.0, 0.0, 1.0, **asked)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_double_real_roots_stand_twice(seed: int) -> None:
+    # Two equal planes with motions that do not oscillate, seen in other coordinates: rounding makes pairs of their roots.
+    rng = np.random.default_rng(seed)
+    k = np.tile(10.0 ** rng.uniform(0.0, 3.0, 8), 2)
+    c = np.tile(np.concatenate([10.0 ** rng.uniform(1.0, 3.0, 3), np.zeros(5)]), 2)
+    Q = np.linalg.qr(rng.standard_normal((16, 16)))[0]
+    K, C = (0.5 * (A + A.T) for A in ((Q * k) @ Q.T, (Q * c) @ Q.T))
+    exact = np.concatenate([np.roots([1.0, ci, ki]) for ci, ki in zip(c, k, strict=True)])
+    found = damped_modes(sp.csc_array(np.eye(16)), sp.csc_array(C), sp.csc_array(K), dense=True).eigenvalues
+    assert np.sort(found[found.imag == 0.0].real) == pytest.approx(np.sort(exact[exact.imag == 0.0].real), rel=1e-9)

@@ -61,6 +61,26 @@ def test_a_limit_and_free_bodies_give_what_the_general_solver_gives() -> None:
     assert found.eigenvalues == pytest.approx(in_general(problem, None, limit).eigenvalues, rel=1e-9)
 
 
+@pytest.mark.parametrize("beyond", [1e-8, 1e-6, 1e-4])
+def test_a_mode_just_below_the_limit_is_among_those_found(beyond: float) -> None:
+    # The small problem has it a little above: only its correction brings it below.
+    problem = string_on_dampers(0.02, {30: 0.3, N + 71: 0.1})
+    size = np.abs(in_general(problem, 14).eigenvalues)
+    for k in range(13):
+        limit = float(size[k]) * (1.0 + beyond)
+        found = locally_damped_modes(problem, None, limit)
+        assert found is not None
+        assert len(found.eigenvalues) == np.count_nonzero(size <= limit)
+
+
+def test_a_motion_that_a_strong_damper_lets_creep_is_left_to_the_general_solver() -> None:
+    problem = string_on_dampers(0.02, {30: 1e7})
+    creep = in_general(problem, 3).eigenvalues[0]
+    assert creep.imag == 0.0
+    assert 0.0 < abs(creep) < 1e-5 * problem.frequencies[0]
+    assert locally_damped_modes(problem, 12, None) is None
+
+
 def test_what_a_basis_does_not_hold_is_left_to_the_general_solver() -> None:
     problem = string_on_dampers(0.02, {30: 0.1})
     # A pair is taken out of the basis, and no response brings it back: the count says so.
