@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotorgear.analysis.transient.request import Grid
-from rotorgear.analysis.transient.statistics import Statistics, compared, statistics
-from rotorgear.analysis.transient.task import Task, run_task, skipping
+from rotorgear.analysis.transient.statistics import Statistics, compared, gain, statistics
+from rotorgear.analysis.transient.task import Task, coarser, run_task
 from rotorgear.errors import ConvergenceError
 from rotorgear.progress import Progress
 from rotorgear.solvers.time.local_system import Integrator
@@ -95,9 +95,9 @@ def _is_enough(
     task: Task, integrator: Integrator, grid: Grid, found: Statistics | None, accuracy: float, progress: Progress
 ) -> bool:
     """Whether the statistics of a run agree with those of twice its step, as its own error will be stated."""
-    double = replace(grid, every=grid.every // 2) if grid.every > 1 else skipping(grid)
-    coarser = _probed(task, integrator, double, progress)
-    return found is not None and coarser is not None and compared(found, coarser)[1] <= accuracy
+    double, ratio = coarser(grid)
+    other = _probed(task, integrator, double, progress)
+    return found is not None and other is not None and compared(found, other, gain(ratio))[1] <= accuracy
 
 
 def _probed(task: Task, integrator: Integrator, grid: Grid, progress: Progress) -> Statistics | None:

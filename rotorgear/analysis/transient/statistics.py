@@ -12,9 +12,17 @@ from rotorgear.solvers.time.gathered import StepStatistics
 
 # Contact forces that move by less than this share of their size do not move: what is left is rounding.
 _STILL = 1e-8
-# By how much half the step is better, less 1, with second order: 3, less Roache's margin of 1.25, for where sides meet and part
-# and impacts begin and end the order holds in the mean only. J. Fluids Eng. 116 (1994) 405.
-HALF_THE_STEP = 3.0 / 1.25
+# Roache's margin, for where sides meet and part and impacts begin and end an order holds in the mean only.
+# J. Fluids Eng. 116 (1994) 405.
+_MARGIN = 1.25
+
+
+def gain(ratio: float) -> float:
+    """By how much a step that is smaller by a ratio is better, less 1, with second order, and with a margin."""
+    return (ratio**2 - 1.0) / _MARGIN
+
+
+_TWICE = gain(2.0)
 
 
 @dataclass(frozen=True)
@@ -65,7 +73,7 @@ def statistics(found: Histories, task: Any) -> Statistics:
     return Statistics(tuple(names), np.array(data), np.array(scale))
 
 
-def compared(fine: Statistics, coarse: Statistics, factor: float = HALF_THE_STEP) -> tuple[np.ndarray, float]:
+def compared(fine: Statistics, coarse: Statistics, factor: float = _TWICE) -> tuple[np.ndarray, float]:
     """Errors (s,) of the better of two runs, and the largest of them relative to its scale.
 
     `factor`: by how much the better one is better, less 1.

@@ -125,6 +125,12 @@ def run_task(
     return found
 
 
-def skipping(grid: Grid) -> Grid:
-    """The grid of twice the step where every step is recorded: every second record is missing."""
-    return replace(grid, spacing=2.0 * grid.spacing, records=grid.records // 2, settled=grid.settled // 2)
+def coarser(grid: Grid) -> tuple[Grid, float]:
+    """The grid of twice the step, or of three times where steps between records are three, and by how much its step is larger.
+
+    Where every step is recorded, every second record is missing.
+    """
+    if grid.every == 1:
+        return replace(grid, spacing=2.0 * grid.spacing, records=grid.records // 2, settled=grid.settled // 2), 2.0
+    every = grid.every // 2
+    return replace(grid, every=every), grid.every / every

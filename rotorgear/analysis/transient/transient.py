@@ -19,14 +19,14 @@ from rotorgear.analysis.transient.histories import Histories, Stream
 from rotorgear.analysis.transient.notes import transient_left_out, transient_warnings
 from rotorgear.analysis.transient.request import Grid, base_frequencies, grid_of, integrator_of, quantity, run_up
 from rotorgear.analysis.transient.statistics import (
-    HALF_THE_STEP,
     Statistics,
     compared,
+    gain,
     of_channels,
     of_forces,
     statistics,
 )
-from rotorgear.analysis.transient.task import Task, damped, prepare, run_task, skipping
+from rotorgear.analysis.transient.task import Task, coarser, damped, prepare, run_task
 from rotorgear.errors import AnalysisError, ConvergenceError
 from rotorgear.model.model import Model
 from rotorgear.old_names import renamed_arguments
@@ -238,12 +238,12 @@ def _comparisons(task: Task, integrator: Integrator, grid: Grid, progress: Progr
     tolerance takes their place, looked at half as often, for means and extremes hang on that. Where modes are cut, a run has half
     as many more.
     """
-    double = replace(grid, every=grid.every // 2) if grid.every > 1 else skipping(grid)
+    double, ratio = coarser(grid)
     if isinstance(integrator, Explicit):
         loose = Explicit(100.0 * integrator.relative)
         return [(run_task(task, loose, double, progress, text="looser tolerance"), 1.0)]
     try:
-        found = [(run_task(task, integrator, double, progress, text="twice the step"), HALF_THE_STEP)]
+        found = [(run_task(task, integrator, double, progress, text="twice the step"), gain(ratio))]
     except ConvergenceError:
         return []
     if isinstance(integrator, Exponential) and integrator.modes is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from rotorgear.solvers.time.gathered import StepStatistics, blank_gathered
 from rotorgear.solvers.time.kernel_gather import gather
 from tests.unit.analysis.spur_pair import spur_pair
 
+MODELS = Path(__file__).resolve().parents[4] / "models"
 IMPACT = {"force": "3000 N", "duration": 0.02}
 
 
@@ -87,3 +90,15 @@ def test_a_run_that_ends_while_it_settles_says_so_and_has_no_statistics() -> Non
     assert np.isnan(result.transmission_error_range).all()
     assert any("no statistics" in note for note in result.warnings)
     assert "nothing counts" in str(result)
+
+
+def test_an_estimate_falls_with_the_square_of_the_step_also_where_three_steps_lie_between_records() -> None:
+    # The run of 120 steps is compared with one of 40, three times its step; the others with twice theirs.
+    model = rg.load(MODELS / "flexible_pair.toml")
+    weighed = [
+        steps**2
+        * rg.transient(model, time=8.0 / 2300.0, discard=0.0, records=40, method="newmark", steps=steps).error_estimate
+        for steps in (80, 120, 160)
+    ]
+    assert weighed[1] == pytest.approx(weighed[0], rel=0.05)
+    assert weighed[2] == pytest.approx(weighed[0], rel=0.05)
