@@ -21,7 +21,13 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, direction_of, missed, speed_in_si
 from rotorgear.analysis.modal.refine import all_finer
 from rotorgear.analysis.response.error import highest_peaks
-from rotorgear.analysis.response.mesh import DAMPED, MARGIN, aims, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.mesh import (
+    MARGIN,
+    aims,
+    at_speed,
+    damped_modes,
+    plan_up_to,
+)
 from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.response.ports import Ports
 from rotorgear.analysis.static.mean_state import mean_state
@@ -34,6 +40,7 @@ from rotorgear.results.steady.frequency_response import FrequencyResponse
 from rotorgear.solvers.sparse.factor import single_thread
 from rotorgear.solvers.sparse.pencil import EPS
 from rotorgear.system.contacts import contact_lines
+from rotorgear.system.damped_range import damped_up_to, undamped_above
 from rotorgear.system.forced_changes import ForcedChanges
 from rotorgear.system.system import System
 
@@ -94,9 +101,8 @@ def frf(
     zeta = modal_damping + model.damping.modal_ratio
     linear, notes = about_equilibrium(model, [turns or None])
     first = mean_state(System(model, load=model.mean_load(direction_of(turns)).of_kind("static")), turns)
-    limit = 2.0 * np.pi * DAMPED * float(hz[-1])
 
-    def solve(system: System, hz: np.ndarray, progress: Progress) -> _Solved:
+    def solve(system: System, hz: np.ndarray, limit: float, progress: Progress) -> _Solved:
         modes = (*damped_modes(system, limit, turns), zeta) if zeta else None
         plant = Plant(system, contact_lines(system), modes)
         rows = {text: ports.row(system, text) for text in (*inputs, *outputs)}
@@ -106,13 +112,14 @@ def frf(
         progress(0.02, "discretisation")
         plan = plan_up_to(at_speed(linear, turns), MARGIN * float(hz[-1]), elements, aim)
         system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
-        found = solve(system, hz, progress)
+        limit = damped_up_to(system, 2.0 * np.pi * float(hz[-1]))
+        found = solve(system, hz, limit, progress)
         receptance = found.receptance
         progress(0.96, "error estimate")
         estimate = 0.0
         if any(system.nodes.elements.values()):
             at = _telling(receptance, found.bubble_change)
-            there = solve(system.with_plan(all_finer(system)), hz[at], silent)
+            there = solve(system.with_plan(all_finer(system)), hz[at], limit, silent)
             estimate = relative_change(there.receptance, receptance[at], np.abs(receptance).max(axis=0))
         if found.rounding > _ROUNDING:
             estimate = max(estimate, found.rounding)
@@ -142,6 +149,7 @@ def frf(
             *rolling_notes(model, rolls=False),
             *load_notes(system, "frf"),
             *mesh_stiffness_left_out(system),
+            *undamped_above(limit, zeta),
         ),
         warnings=(
             *few,

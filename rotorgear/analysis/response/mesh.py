@@ -19,9 +19,8 @@ from rotorgear.system.groups import table_values
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
-# Up to this much above the highest excited frequency the mesh is refined, and modes get their damping ratio.
+# Up to this much above the highest excited frequency the mesh is refined.
 MARGIN = 1.25
-DAMPED = 1.5
 # Each further round for an accuracy of amplitudes refines the frequencies by this much more.
 _TIGHTER = 0.03
 
@@ -103,6 +102,6 @@ def damped_modes(
     if model is not system.model:
         system = System(model, plan=system.plan, load=system.load)
     among = None if dofs is None else frozenset(dofs.tolist())
-    found = solve(system, Wanted(None, None, limit, dofs=among))
+    found = solve(system, Wanted(None, None, limit if np.isfinite(limit) else None, dofs=among))
     keep = np.flatnonzero(found.vectors.any(axis=0))
     return np.real(found.vectors[:, keep]), np.where(found.rigid, 0.0, np.abs(found.eigenvalues))[keep]

@@ -18,7 +18,13 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, direction_of, missed, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.response.error import mesh_error, parting, speed_warnings
-from rotorgear.analysis.response.mesh import DAMPED, MARGIN, aims, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.mesh import (
+    MARGIN,
+    aims,
+    at_speed,
+    damped_modes,
+    plan_up_to,
+)
 from rotorgear.analysis.response.orders import Order, orders_of
 from rotorgear.analysis.response.plant import Plant, Readings
 from rotorgear.analysis.response.run_up import choose_method, direct_sweep, modal_sweep, solve_orders
@@ -32,6 +38,7 @@ from rotorgear.old_names import renamed_arguments
 from rotorgear.progress import Progress, silent
 from rotorgear.results.steady.response import ResponseResult
 from rotorgear.system.contacts import contact_lines
+from rotorgear.system.damped_range import damped_up_to, undamped_above
 from rotorgear.system.plan import Plan
 from rotorgear.system.system import System
 
@@ -105,7 +112,7 @@ def response(
         plan = plan_up_to(at_speed(linear, speed), MARGIN * top / (2.0 * np.pi), elements, aim)
         setup, orders = _discretised(first, linear, plan, orders)
         system = setup.system
-        modes, w = damped_modes(system, DAMPED * highest, speed)
+        modes, w = damped_modes(system, damped_up_to(system, highest), speed)
         plant = Plant(system, setup.lines, (modes, w, zeta))
         how, why = choose_method(method, len(chosen), len(orders), system.n)
         run = (
@@ -114,7 +121,7 @@ def response(
             else modal_sweep(plant, orders, chosen, (modes, w), progress)
         )
         progress(0.96, "error estimate")
-        estimate = mesh_error(plant, orders, chosen, run.readings, (zeta, DAMPED * top), setup)
+        estimate = mesh_error(plant, orders, chosen, run.readings, (zeta, damped_up_to(system, top)), setup)
         if accuracy is None or estimate <= accuracy:
             break
     short = missed(accuracy, estimate, "ask for less, or give more damping to resonances in the range")
@@ -175,6 +182,7 @@ def response(
         seconds={"total": time.perf_counter() - clock},
         left_out=(
             *left,
+            *undamped_above(damped_up_to(system, highest), zeta),
             *weak,
             *setup.notes,
             *_between_nodes(setup),

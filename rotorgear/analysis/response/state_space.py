@@ -25,7 +25,7 @@ from rotorgear.analysis.common.pieces import pieces
 from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, direction_of, missed, speed_in_si
 from rotorgear.analysis.modal.refine import DEFAULT_ACCURACY
-from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.mesh import MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.response.ports import Ports
 from rotorgear.analysis.static.mean_state import mean_state
@@ -38,6 +38,7 @@ from rotorgear.solvers.frequency.harmonic import Dynamics
 from rotorgear.solvers.sparse.factor import factor_general, single_thread
 from rotorgear.system.components import dof_motions, independent_groups
 from rotorgear.system.contacts import contact_lines
+from rotorgear.system.damped_range import damped_up_to, undamped_above
 from rotorgear.system.system import System
 
 # Modes are kept up to so many times the highest frequency; the static shapes stand for the rest.
@@ -122,7 +123,7 @@ def state_space(
         if not _meet(groups, row, B)
     )
     reached = np.arange(system.n) if full else _reached(system, groups, np.hstack([B, C.T]))
-    modes = (*damped_modes(system, DAMPED * limit, turns, reached), zeta) if zeta else None
+    modes = (*damped_modes(system, damped_up_to(system, limit), turns, reached), zeta) if zeta else None
     plant = Plant(system, contact_lines(system), modes)
     dynamics = plant.dynamics(turns).cut(reached)
     B = B[reached]
@@ -168,6 +169,7 @@ def state_space(
             *rolling_notes(model, rolls=False),
             *load_notes(system, "frf"),
             *mesh_stiffness_left_out(system),
+            *undamped_above(damped_up_to(system, limit), zeta),
             *_apart(system, reached),
         ),
         warnings=(*(() if damped else (_UNDAMPED,)), *unmoved, *((short,) if short else ())),

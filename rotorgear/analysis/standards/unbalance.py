@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotorgear.analysis.response.mesh import DAMPED, MARGIN, at_speed, damped_modes, plan_up_to
+from rotorgear.analysis.response.mesh import MARGIN, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.standards.rules import trial_unbalance
 from rotorgear.analysis.static.mean_state import mean_state
@@ -20,6 +20,7 @@ from rotorgear.model.model import Model
 from rotorgear.quantity import RPM_PER_RAD_S
 from rotorgear.results.steady.modal import NodeTable
 from rotorgear.system.contacts import contact_lines
+from rotorgear.system.damped_range import damped_up_to
 from rotorgear.system.loads import weight_loads
 from rotorgear.system.system import System
 
@@ -58,7 +59,7 @@ def plant_up_to(
     plan = plan_up_to(at_speed(linear, speed), MARGIN * frequency / (2.0 * np.pi), None, None)
     system = System(linear, plan=plan, load=first.system.load.of_kind("dynamic"))
     zeta = model.damping.modal_ratio
-    damping = (*damped_modes(system, DAMPED * frequency, speed), zeta) if zeta else None
+    damping = (*damped_modes(system, damped_up_to(system, frequency), speed), zeta) if zeta else None
     return Plant(system, contact_lines(system), damping), (*first.notes, *notes)
 
 

@@ -20,6 +20,7 @@ from rotorgear.solvers.time.gathered import StepStatistics
 # Share of the static force that a mean may be off beside its error: what is left of a start, and incomplete periods.
 _SHARE = 0.01
 _SEEN = 1e-9
+_ROUNDING = 1e-6
 
 
 def unbalanced(found: Histories, task: Task, error: np.ndarray) -> tuple[str, ...]:
@@ -34,11 +35,13 @@ def unbalanced(found: Histories, task: Task, error: np.ndarray) -> tuple[str, ..
     _, size, V = np.linalg.svd(A, full_matrices=False)
     seen = V[size > _SEEN * size.max(initial=0.0)]
     off = seen.T @ (seen @ (force.mean - task.rest_force))
+    # Of flanks that carry nothing, statics leave the rounding of what the others carry.
+    rounding = _ROUNDING * float(np.abs(task.rest_force).max(initial=0.0))
     notes = []
     for k, i in enumerate(meshes):
         j = int(local.forces.first[i])
         scale = float(np.hypot(force.mean[j], force.rms[j]))
-        allowed = max(_SHARE * max(abs(task.rest_force[j]), scale), float(np.nan_to_num(error[k])))
+        allowed = max(_SHARE * max(abs(task.rest_force[j]), scale), float(np.nan_to_num(error[k])), rounding)
         if abs(off[j]) > allowed:
             notes.append(
                 f"{task.local.parts[i].label}: the mean contact force is {force.mean[j]:.4g} N, the loads need "

@@ -21,10 +21,9 @@ from rotorgear.analysis.rig.rig_model import RigModel, RigModes
 from rotorgear.analysis.rig.sensitivity import STEP, beside, springs_of
 from rotorgear.errors import AnalysisError
 from rotorgear.system.assembly import assemble
+from rotorgear.system.damped_range import all_damped, damped_up_to
 from rotorgear.system.system import System
 
-# Modes with a modal damping reach so far above the highest frequency, as in `frf`.
-DAMPED = 1.5
 # So far above it reach the modes that carry the responses.
 CARRIED = 2.0
 # Answers to the places are taken at these multiples of the highest frequency, beside the axis: no resonance drowns the rest.
@@ -112,7 +111,7 @@ class ReceptanceModel:
         system = here.system
         P_i = self._ports(system, self.inputs)
         P_o = self._ports(system, self.outputs)
-        damped = self._modal_damping(*self._stiffness_and_mass(system, here.V), self._zeta(x))
+        damped = self._modal_damping(system, *self._stiffness_and_mass(system, here.V), self._zeta(x))
         # V has modal mass: what damps its modes damps them in the whole system.
         B = system.mass @ here.V
         peaks = np.unique(np.abs(here.H).argmax(axis=0))
@@ -148,6 +147,8 @@ class ReceptanceModel:
         K = system.stiffness(speed)
         M = system.mass
         top = 2.0 * np.pi * float(self.frequency_hz[-1])
+        if all_damped(system) and np.all(M.diagonal() > 0.0):
+            return _orthonormal(M, np.eye(system.n))
         D = _damping(system, speed)
         carriers = modes.carriers
         V = _orthonormal(M, np.hstack([carriers.real, carriers.imag]) if speed else np.real(carriers))
@@ -167,7 +168,7 @@ class ReceptanceModel:
     def _reduced(self, system: System, V: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
         """K, C + W G and M over V, (3, r, r)."""
         K, M = self._stiffness_and_mass(system, V)
-        D = V.T @ (_damping(system, self.model.speed) @ V) + self._modal_damping(K, M, self._zeta(x))
+        D = V.T @ (_damping(system, self.model.speed) @ V) + self._modal_damping(system, K, M, self._zeta(x))
         circulatory = V.T @ (system.circulatory(self.model.speed) @ V)
         return np.array([K + circulatory, D, M])
 
@@ -184,13 +185,15 @@ class ReceptanceModel:
         """Damping ratio of all elastic modes: that of the model may be free."""
         return self.modal_damping + self.model.numbers.at(x).damping.modal_ratio
 
-    def _modal_damping(self, K: NDArray[np.float64], M: NDArray[np.float64], zeta: float) -> NDArray[np.float64]:
-        """Sum of 2 zeta w M phi phi^T M over the undamped modes, (r, r)."""
+    def _modal_damping(
+        self, system: System, K: NDArray[np.float64], M: NDArray[np.float64], zeta: float
+    ) -> NDArray[np.float64]:
+        """Sum of 2 zeta w M phi phi^T M over the undamped modes, (r, r), as in `frf`."""
         if not zeta:
             return np.zeros_like(K)
         values, phi = la.eigh(0.5 * (K + K.T), 0.5 * (M + M.T))
         w = np.sqrt(np.maximum(values, 0.0))
-        limit = 2.0 * np.pi * DAMPED * float(self.frequency_hz[-1])
+        limit = damped_up_to(system, 2.0 * np.pi * float(self.frequency_hz[-1]))
         momentum = M @ phi[:, w < limit]
         return np.asarray(momentum * (2.0 * zeta * w[w < limit]) @ momentum.T)
 
@@ -213,10 +216,10 @@ class ReceptanceModel:
         spring = V.T @ (assemble(groups, here.system.dofs, lambda group: group.matrices.stiffness) @ V)
         K, M = self._stiffness_and_mass(here.system, V)
         zeta = self._zeta(x)
-        moved = self._modal_damping(K + STEP * spring, M, zeta) - self._modal_damping(K - STEP * spring, M, zeta)
+        above, below = (self._modal_damping(here.system, K + step * spring, M, zeta) for step in (STEP, -STEP))
         # Damping in proportion to the stiffness has its part in the spring.
         beta = self.model.numbers.model.damping.rayleigh_beta
-        return np.array([spring, moved / (2.0 * STEP) + beta * spring, np.zeros_like(K)])
+        return np.array([spring, (above - below) / (2.0 * STEP) + beta * spring, np.zeros_like(K)])
 
 
 def _sizes(M: sp.csc_array, X: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -29,20 +29,22 @@ _LEAST = 24
 # Share of a vector left without the motions R that is rounding.
 _ROUNDING = 1e-6
 _MOST = 120
+_FAR = 1e-2  # m or rad, by which a displacement is changed to see whether a law answers
 
 
 @dataclass(frozen=True)
 class ModalBasis:
     """V (n, r), M-orthonormal: elastic modes and static shapes of the local forces; `complete` where it spans all motions.
 
-    `highest`: frequency of its highest mode in rad/s. `loose`: whether velocity terms tie motions without strain to it, which
-    then belong to it.
+    `highest`: frequency of its highest mode in rad/s. `count`: of its elastic modes. `unheld`: of motions without strain that
+    stand first, which velocity terms or laws tie to the others, while no force depends on where they are.
     """
 
     V: np.ndarray
     complete: bool
     highest: float
     count: int
+    unheld: int = 0
 
 
 def basis_of(plant: Plant, up_to: float) -> ModalBasis:
@@ -74,9 +76,10 @@ def basis_of(plant: Plant, up_to: float) -> ModalBasis:
         highest = float(np.sqrt(max(w2[-1], 0.0)))
         V = _free_of(np.hstack([V, plant.still.X]), R, M)
         complete = False
-    if R.shape[1] and _tied(plant, R):
-        V = np.hstack([R, V])
-    return ModalBasis(V, complete, highest, count)
+    if not R.shape[1] or not _tied(plant, R):
+        return ModalBasis(V, complete, highest, count)
+    unheld, held = _by_answers(plant, R)
+    return ModalBasis(np.hstack([unheld, held, V]), complete, highest, count, unheld.shape[1])
 
 
 def _free_of(V: np.ndarray, R: np.ndarray, M: sp.csc_array) -> np.ndarray:
@@ -95,6 +98,17 @@ def _free_of(V: np.ndarray, R: np.ndarray, M: sp.csc_array) -> np.ndarray:
 
 def _sizes(V: np.ndarray, M: sp.csc_array) -> np.ndarray:
     return np.sqrt(np.maximum(np.einsum("ij,ij->j", V, M @ V), 1e-300))
+
+
+def _by_answers(plant: Plant, R: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The motions R (n, r) that no law answers with a force wherever they are, and the others."""
+    m = plant.m
+    moved = np.vstack([np.zeros((1, m)), _FAR * np.eye(m), -_FAR * np.eye(m)])
+    F = answered(np.zeros(len(moved)), moved, np.zeros_like(moved), plant.forces, plant.speed).F
+    acts = np.any(F[0] != F, axis=1)[1:].reshape(2, m).any(axis=0)
+    _, sizes, right = np.linalg.svd(plant.B.T[acts] @ R)
+    held = int(np.count_nonzero(sizes > 1e-9 * np.linalg.norm(R)))
+    return R @ right[held:].T, R @ right[:held].T
 
 
 def _tied(plant: Plant, R: np.ndarray) -> bool:
@@ -122,11 +136,13 @@ def _tied(plant: Plant, R: np.ndarray) -> bool:
 def multipliers(plant: Plant, basis: ModalBasis, fine: Samples, switches: Switches) -> np.ndarray:
     """Floquet multipliers, largest first, from the laws at FINER instants a step of one period.
 
+    Those of 1 that motions have which nothing holds in their place are left out.
+
     Args:
         plant: at the motion's own value. basis: its modes. fine: N FINER instants.
         switches: where laws change sides between these.
     """
-    return sorted_by_size(la.eigvals(monodromy(plant, basis, fine, switches)))
+    return sorted_by_size(la.eigvals(monodromy(plant, basis, fine, switches)[basis.unheld :, basis.unheld :]))
 
 
 def sorted_by_size(values: np.ndarray) -> np.ndarray:

@@ -73,6 +73,9 @@ def _dormand_prince() -> Tableau:
 class ShootingOrbits:
     """Displacements and velocities at the begin of a period, over their scale, as unknowns; the parameter from 0 to 1.
 
+    Motions that nothing holds in their place begin where they are at rest, and are there again after a period: what torques and
+    the losses of laws such as friction lack on them on average is given by the drive.
+
     Args:
         plant_at: the plant at a value of the parameter. order: base periods in a turn of the reference.
         scale: local displacements (m,) that count as 1. harmonics, instants: of the cycles that are handed out.
@@ -92,7 +95,9 @@ class ShootingOrbits:
         self.periods = periods
         self._tableau = _dormand_prince()
         first = plant_at(0.5)
-        self._V = basis_of(first, np.inf).V
+        basis = basis_of(first, np.inf)
+        self._V = basis.V
+        self._unheld = basis.unheld
         moved = np.abs(first.B.T @ self._V)
         used = moved.max(axis=1) > 0.0
         self._size = float(np.median(scale[used] / moved[used].max(axis=1))) if np.any(used) else 1.0
@@ -166,34 +171,56 @@ class ShootingOrbits:
 
     def residual(self, y: np.ndarray, p: float) -> np.ndarray:
         """phi_T(x) - x."""
-        return np.asarray(self._mapped(y, p, self.size)[:, 0] - y)
+        return self._closed(self._mapped(y, p, self.size)[:, 0] - y, y)
 
     def linear(self, y: np.ndarray, p: float) -> Linear:
         """The residual, the monodromy matrix less one, and the derivative by the parameter, by a central difference."""
         here = self._mapped(y, p, self.size)
         ends = [self._run(y, p + by, 0, np.array([0.0, 2.0 * np.pi * self.periods]))[0][:, 0] for by in _BOTH]
         slope = (ends[1] - ends[0]) / (2.0 * _DIFFERENCE)
-        return Linear(here[:, 0] - y, here[:, 1:] - np.eye(self.size), slope)
+        slope[self._turning] = slope[: self._unheld]
+        slope[: self._unheld] = 0.0
+        return Linear(*self._equations(here, y), slope)
+
+    @property
+    def _turning(self) -> slice:
+        """Velocities of the motions that nothing holds in their place."""
+        n = self._V.shape[1]
+        return slice(n, n + self._unheld)
+
+    def _closed(self, change: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """The residual from the change over a period, phi_T(x) - x; of motions that nothing holds, where they begin and end."""
+        closed = change.copy()
+        closed[self._turning] = change[: self._unheld]
+        closed[: self._unheld] = y[: self._unheld]
+        return closed
+
+    def _equations(self, here: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The residual and its derivative from the mapped state with its tangents."""
+        J = here[:, 1:] - np.eye(self.size)
+        J[self._turning] = J[: self._unheld]
+        J[: self._unheld] = np.eye(self.size)[: self._unheld]
+        return self._closed(here[:, 0] - y, y), J
 
     def along(self, plant_at: PlantAt) -> ShootingOrbits:
         """The same for other plants of the same structure."""
         other = ShootingOrbits(plant_at, self.order, self.scale, self.harmonics, self.instants, self.periods)
         other._V = self._V
+        other._unheld = self._unheld
         other._size = self._size
         return other
 
     def values(self, y: np.ndarray, p: float, *, smooth: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """The residual and its derivative by the unknowns; `smooth` changes nothing, for nothing is approximated."""
-        here = self._mapped(y, p, self.size)
-        return here[:, 0] - y, here[:, 1:] - np.eye(self.size)
+        return self._equations(self._mapped(y, p, self.size), y)
 
     def monodromy(self, y: np.ndarray, p: float) -> np.ndarray:
         """Derivative of the map over a period, (2 n, 2 n)."""
         return np.asarray(self._mapped(y, p, self.size)[:, 1:])
 
     def multipliers(self, y: np.ndarray, p: float) -> np.ndarray:
-        """Floquet multipliers of a solution."""
-        return sorted_by_size(np.linalg.eigvals(self.monodromy(y, p)))
+        """Floquet multipliers of a solution, without those of 1 of motions that nothing holds in their place."""
+        return sorted_by_size(np.linalg.eigvals(self.monodromy(y, p)[self._unheld :, self._unheld :]))
 
     def start(self, p: float) -> np.ndarray:
         """Unknowns of the static state at a value."""
