@@ -228,11 +228,13 @@ def ready(known: Still, speed: float, modal_ratio: float = 0.0) -> Point:
     system = small_system(
         local, known.rest, columns, one_at_a_time, float(fastest) * abs(speed), turns, modal_ratio, known.shapes
     )
-    drift = known.rest.drift
+    # On average: a torque that pulses, or friction, pushes at any time.
+    acting = np.abs(local.load) + abs(local.B) @ np.abs(known.static)
+    drift = known.rest.free.T @ (local.load - local.B @ known.static)
     # What the drive carries stays at its speed, whatever pushes on it.
     drifts = bool(
         len(system.carried) < len(system.rigid)
-        and np.abs(drift).max(initial=0.0) > 1e-6 * np.linalg.norm(system.load) * system.w**2
+        and np.abs(drift).max(initial=0.0) > 1e-6 * float(np.linalg.norm(np.abs(known.rest.free.T) @ acting))
     )
     shape = b"".join(law.table_key() for law in laws)
     counted = columns.counted

@@ -92,19 +92,33 @@ def _excites_nothing(local: LocalModel, name: str) -> bool:
     return all(law.steady for law in laws)
 
 
-def _why_adrift(model: Model) -> str:
-    """A clause for a model with tooth friction, whose loss no torque gives."""
-    rubbing = [name for name, mesh in model.meshes.items() if mesh.rubs]
-    if not rubbing:
-        return ""
-    return (
-        f"; friction in {', '.join(rubbing)} takes power that the torques do not give: with speed_power in a load the shafts "
-        "settle where they balance, and sweep keeps their speed"
-    )
+def _adrift(rest: Equilibrium, rest_force: np.ndarray, local: LocalModel) -> list[str]:
+    """Whether the loads do not balance on a free motion, on average over what pulses, and what friction has to do with it."""
+    system = local.local
+    if not rest.free.shape[1]:
+        return []
+    known = bool(np.all(np.isfinite(rest_force)))
+    mean = rest.free.T @ (system.load - system.B @ rest_force) if known else rest.drift
+    acting = np.abs(system.load) + abs(system.B) @ np.abs(rest_force if known else rest.force)
+    bound = 1e-9 * max(float(np.linalg.norm(np.abs(rest.free.T) @ acting)), 1e-300)
+    rubbing = [name for name, mesh in local.system.model.meshes.items() if mesh.rubs]
+    text = "the loads do not balance on a free motion: it is carried along and drifts with constant acceleration"
+    if rubbing and np.abs(rest.drift).max(initial=0.0) > bound:
+        return [
+            f"{text}; friction in {', '.join(rubbing)} takes power that the torques do not give: with speed_power in a load the "
+            "shafts settle where they balance, and sweep keeps their speed"
+        ]
+    return [text] if np.abs(mean).max(initial=0.0) > bound else []
 
 
 def transient_warnings(
-    result: TransientResult, rest: Equilibrium, local: LocalModel, *, estimated: bool, keeps_energy: bool
+    result: TransientResult,
+    rest: Equilibrium,
+    rest_force: np.ndarray,
+    local: LocalModel,
+    *,
+    estimated: bool,
+    keeps_energy: bool,
 ) -> tuple[str, ...]:
     """What the reader should know before using the numbers."""
     notes = list(local.system.nodes.merged)
@@ -116,11 +130,7 @@ def transient_warnings(
             )
     if not rest.converged:
         notes.append("no static equilibrium was found; the run starts from that with linear contacts and has to settle")
-    if rest.free.shape[1] and np.any(np.abs(rest.drift) > 1e-9 * max(float(np.linalg.norm(local.local.load)), 1e-300)):
-        notes.append(
-            "the loads do not balance on a free motion: it is carried along and drifts with constant acceleration"
-            + _why_adrift(local.system.model)
-        )
+    notes += _adrift(rest, rest_force, local)
     damped = np.any(local.local.forces.reference_damping) or local.system.model.nonlinear_elements
     if any(note.startswith("damping matrix") for note in result.left_out) and not damped:
         notes.append(
