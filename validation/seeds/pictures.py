@@ -103,7 +103,7 @@ def draw_marine_map(figure: Any) -> None:
     words = {
         "I": "I: back side, not chaotic",
         "II": "II: chaotic, amplitude above 3",
-        marine.OPEN: "weak chaos, or not settled",
+        marine.OPEN: "open: weak chaos, not settled, or another region later",
         "III": "III: driving side",
     }
     known = kept.piece("marine", "map", marine.PIECES)["values"]

@@ -127,8 +127,8 @@ def _region(total: float, times: int) -> Values:
 
 
 def _map(times: int) -> Values:
-    settle = marine.MAP_SETTLE if times == 1 else (*marine.MAP_SETTLE, times * marine.MAP_SETTLE[-1])
-    rows = marine.torque_map(settle=settle)
+    longer = (*marine.MAP_SETTLE, times * marine.MAP_SETTLE[-1])
+    rows = marine.told_map() if times == 1 else marine.torque_map(settle=longer)
     return {
         f"{total / 1e3:.0f} kN m, load ratio {ratio:.2f}": NOT_SETTLED if region == marine.OPEN else region
         for total, row in zip(marine.TOTALS, rows, strict=True)

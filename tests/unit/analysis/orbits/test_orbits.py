@@ -10,6 +10,7 @@ from rotorgear.analysis.orbits.family import SystemFamily, range_of
 from rotorgear.errors import AnalysisError
 from rotorgear.solvers.periodic.floquet import basis_of
 from tests.paths import MODELS
+from tests.unit.analysis.spur_pair import spur_pair
 from validation.dead_zone import HALF_BACKLASH, DeadZone, jumps
 from validation.F5.whirl import FINITE, SHORT, closed_form, model
 
@@ -65,6 +66,40 @@ def test_the_modes_of_a_free_pair_hold_nothing_of_its_rotation() -> None:
     assert np.abs(V.T @ (plant.M @ plant.free)).max() < 1e-12
     # Both gears are the same: they move towards each other by the same angle.
     assert V[0] == pytest.approx(V[1], rel=1e-12)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.05])
+def test_drag_on_a_shaft_that_turns_freely_leaves_its_place_open(friction: float) -> None:
+    # Where the shafts stand has a multiplier of 1, which no equation of a periodic motion may hang on.
+    spans = {f"shafts__{shaft}__sections": None for shaft in ("one", "two")}
+    places = {f"gears__{gear}__at": "start" for gear in ("pinion", "wheel")}
+    bodies = {
+        f"gears__{gear}__{key}": value
+        for gear, inertia in (("pinion", 2.5e-3), ("wheel", 1e-2))
+        for key, value in (("mass", 2.0), ("polar_inertia", inertia), ("diametral_inertia", 0.6 * inertia))
+    }
+    model = spur_pair(
+        motions=["torsion"],
+        supports={"a": {"shaft": "one", "at": "start", "damping": {"torsion": "0.05 N m s/rad"}}},
+        bearings=None,
+        points=None,
+        meshes__pair__backlash="50 um",
+        meshes__pair__friction_coefficient=friction or None,
+        **spans,
+        **places,
+        **bodies,
+    )
+    over = {"operation.speed": "1500 rpm:1510 rpm"}
+    shot, balanced = (rg.orbits(model, over, method=method, step=0.5) for method in ("shooting", "harmonic balance"))
+    swept = rg.sweep(model, {"operation.speed": ["1500 rpm"]}, discard=60, sample=10, exponents=0)
+    for found in (shot, balanced):
+        first = int(np.argmin(found.value))
+        assert not found.special_points
+        assert found.mean_force[first] == pytest.approx(swept.mean_force.ravel(), rel=1e-4)
+        assert found.rms_force[first] == pytest.approx(swept.rms_force.ravel(), rel=1e-3)
+        assert np.nanmax(np.abs(found.multipliers)) < 1.0 - 1e-4
+    largest = [float(np.nanmax(np.abs(found.multipliers[0]))) for found in (shot, balanced)]
+    assert largest[0] == pytest.approx(largest[1], rel=1e-3)
 
 
 def test_orbits_of_a_linear_model_are_its_forced_response() -> None:

@@ -12,7 +12,7 @@ import pytest
 
 import rotorgear as rg
 from rotorgear.results.steady.response import ResponseResult
-from tests.paths import ROOT
+from tests.paths import MODELS, ROOT
 
 Data = dict[str, Any]
 
@@ -112,6 +112,28 @@ def test_the_peak_of_a_mode_with_a_damping_ratio_is_the_closed_form() -> None:
     result = rg.response(model, speeds=[W_N / 24.0], modal_damping=zeta)
     # M_E (x'' + 2 zeta W_N x' + W_N^2 x) = K e
     assert abs(result.transmission_error[0, 0, 0]) == pytest.approx(1e-6 / (2.0 * zeta), rel=1e-9)
+
+
+@pytest.mark.parametrize("q", [0.1, 0.3, 0.8])
+def test_a_damping_ratio_of_all_modes_acts_far_below_them_too(q: float) -> None:
+    model = torsional_pair(transmission_error=[{"harmonic": 2, "amplitude": 3e-6}], damping=2000.0)
+    model = model.with_("damping.modal_ratio", 0.1)
+    w = q * W_N
+    result = rg.response(model, speeds=[w / 48.0])
+    k = K + 1j * w * 2000.0
+    x = k * 3e-6 / (k - M_E * w**2 + 1j * w * 0.2 * W_N * M_E)
+    assert abs(result.mesh_force[0, 0, 0]) == pytest.approx(abs(k * (x - 3e-6)), rel=1e-9)
+    at = {"frequencies": [q * W_N / (2.0 * math.pi)], "inputs": ["gears.p:torsion"], "outputs": ["gears.p:torsion"]}
+    alone, among = (
+        rg.frf(model, **{**at, "frequencies": [*at["frequencies"], *more]}).receptance[0] for more in ([], [1e6])
+    )
+    assert among == pytest.approx(alone, rel=1e-9)
+
+
+def test_larger_models_say_which_modes_a_damping_ratio_does_not_reach() -> None:
+    model = rg.load(MODELS / "flexible_pair.toml").with_("damping.modal_ratio", 0.01)
+    slow = rg.response(model, speeds=[10.0], elements=4)
+    assert any("the damping ratio of modes above" in text for text in slow.left_out)
 
 
 def test_the_unbalance_of_a_driven_shaft_acts_at_its_own_speed_where_ross_takes_that_of_the_driving_one() -> None:
