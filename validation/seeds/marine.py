@@ -39,8 +39,8 @@ NOMINAL = 15e3 / PITCH_RADIUS / STIFFNESS
 # Friction and film damping have no numbers in the account; friction needs teeth, which it does not give either.
 FRICTION = 0.05
 FILM = 1.5
-# What `python -m validation.seeds.settling map` found after 200,000: chaos that had died out, an amplitude that crosses the bound of
-# region II, and two motions that no longer read as quasi-periodic. Total torques and load ratios.
+# What `python -m validation.seeds.settling map` found after 200,000: chaos that had died out, an amplitude that crosses the bound
+# of region II, and two motions that no longer read as quasi-periodic. Total torques and load ratios.
 OTHER_LATER = {(15e3, 1.15), (20e3, 0.75), (50e3, 0.40), (60e3, 0.15)}
 # Super-periods that settle on the map; those of the second number where a motion is not on a periodic orbit after the first.
 MAP_SETTLE = (SETTLE, 10 * SETTLE)
