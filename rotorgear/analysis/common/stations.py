@@ -46,9 +46,9 @@ def shapes_at_stations(system: System, q: np.ndarray) -> tuple[NodeTable, np.nda
         pedestals += [""] * len(points)
         positions.append(points)
         shapes.append(np.concatenate([displaced, np.zeros_like(displaced)], axis=1))
-    return NodeTable(tuple(shafts), np.vstack(positions), tuple(pedestals), tuple(casings)), shapes[0] if len(
-        shapes
-    ) == 1 else np.vstack(shapes)
+    # Those of a large model fill a good part of the memory: no copy without a reason.
+    displaced_all = shapes[0] if len(shapes) == 1 else np.vstack(shapes)
+    return NodeTable(tuple(shafts), np.vstack(positions), tuple(pedestals), tuple(casings)), displaced_all
 
 
 def _surfaces(system: System, q: np.ndarray) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:

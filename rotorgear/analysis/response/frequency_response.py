@@ -21,13 +21,7 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, direction_of, missed, speed_in_si
 from rotorgear.analysis.modal.refine import all_finer
 from rotorgear.analysis.response.error import highest_peaks
-from rotorgear.analysis.response.mesh import (
-    MARGIN,
-    aims,
-    at_speed,
-    damped_modes,
-    plan_up_to,
-)
+from rotorgear.analysis.response.mesh import MARGIN, aims, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.plant import Plant
 from rotorgear.analysis.response.ports import Ports
 from rotorgear.analysis.static.mean_state import mean_state

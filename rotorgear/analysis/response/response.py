@@ -18,13 +18,7 @@ from rotorgear.analysis.common.recorded import recorded
 from rotorgear.analysis.common.request import check_request, check_whole, direction_of, missed, speed_in_si
 from rotorgear.analysis.common.stations import shapes_at_stations
 from rotorgear.analysis.response.error import mesh_error, parting, speed_warnings
-from rotorgear.analysis.response.mesh import (
-    MARGIN,
-    aims,
-    at_speed,
-    damped_modes,
-    plan_up_to,
-)
+from rotorgear.analysis.response.mesh import MARGIN, aims, at_speed, damped_modes, plan_up_to
 from rotorgear.analysis.response.orders import Order, orders_of
 from rotorgear.analysis.response.plant import Plant, Readings
 from rotorgear.analysis.response.run_up import choose_method, direct_sweep, modal_sweep, solve_orders

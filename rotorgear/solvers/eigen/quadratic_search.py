@@ -36,9 +36,7 @@ _SPARE = 8  # pairs beyond those that matter which are refined too, since refine
 _SHIFT = 0.3  # sigma / w0, w0 being near the lowest |lambda|
 _BLUR = 1e-13  # relative error of 1/mu from rounding above which an eigenpair is refined on the pencil itself
 _TWINS = 1.0  # imaginary part over rounding up to which a pair is two real roots
-_ONE_DIRECTION = (
-    1e-6  # length of the imaginary part of a vector, over the whole, below which it brings no direction of its own
-)
+_ONE_DIRECTION = 1e-6  # length of a vector's imaginary part, over the whole, below which it is no direction of its own
 _BLUR_LARGE = 1e-12  # the same for a large pencil, where a refinement costs more
 
 
@@ -248,7 +246,7 @@ def _with_direct(inverse: InverseState, mu: np.ndarray, X: np.ndarray) -> tuple[
     )
 
 
-def _real_twins(sigma: float, mu: np.ndarray, X: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
+def _real_twins(mu: np.ndarray, X: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
     """Two equal real roots that rounding has made a conjugate pair as two real ones again, whose vectors are its two parts.
 
     `size` as in `_selected`. Where both parts of the vector are one direction, the double root has one vector and stays a pair.
@@ -272,7 +270,7 @@ def _selected(
     """
     quadratic = search.inverse.quadratic
     sigma = search.inverse.sigma
-    mu, X = _real_twins(sigma, mu, X, size)
+    mu, X = _real_twins(mu, X, size)
     one = mu.imag <= 0.0  # Im lambda >= 0, since mu = 1 / (lambda - sigma)
     mu = mu[one].astype(complex)
     V = search.inverse.restored(mu, X[:, one].astype(complex), known)[: quadratic.n]

@@ -174,7 +174,7 @@ class ShootingOrbits:
         return self._closed(self._mapped(y, p, self.size)[:, 0] - y, y)
 
     def linear(self, y: np.ndarray, p: float) -> Linear:
-        """The residual, the monodromy matrix less one, and the derivative by the parameter, by a central difference."""
+        """The residual, its derivative by the unknowns, and the one by the parameter, by a central difference."""
         here = self._mapped(y, p, self.size)
         ends = [self._run(y, p + by, 0, np.array([0.0, 2.0 * np.pi * self.periods]))[0][:, 0] for by in _BOTH]
         slope = (ends[1] - ends[0]) / (2.0 * _DIFFERENCE)

@@ -163,16 +163,22 @@ def test_a_bearing_without_stiffness_at_rest_still_holds_its_shaft() -> None:
     assert not_held(local, rest.q, own, rest.free).shape[1] == 0
 
 
-def test_friction_does_not_run_the_shafts_down() -> None:
-    # Its loss is in no balance of torques: a pair left alone with it would slide otherwise after some thousand periods, and the
-    # largest force of this one falls by 6 % in a thousand.
-    model = spur_pair(
+def free_pair_that_rubs(**changes: Any) -> rg.Model:
+    """In torsion on shafts that nothing holds, with friction between the teeth."""
+    return spur_pair(
         motions=["torsion"],
         bearings=None,
         points=None,
         meshes__pair__backlash="50 um",
         meshes__pair__friction_coefficient=0.1,
+        **changes,
     )
+
+
+def test_friction_does_not_run_the_shafts_down() -> None:
+    # Its loss is in no balance of torques: a pair left alone with it would slide otherwise after some thousand periods, and the
+    # largest force of this one falls by 6 % in a thousand.
+    model = free_pair_that_rubs()
     soon, late = (
         rg.sweep(model, {"operation.speed": ["1500 rpm"]}, discard=discard, sample=10, exponents=0)
         for discard in (60, 500)
@@ -186,14 +192,7 @@ def test_friction_does_not_run_the_shafts_down() -> None:
 def test_a_light_drag_does_not_let_friction_run_the_shafts_down() -> None:
     # 0.016 N m beside 200 N m: in balance with the loss of friction it would be far below the speed of the shafts.
     supports = {"drag": {"shaft": "one", "at": "60 mm", "damping": {"torsion": 1e-4}}}
-    model = spur_pair(
-        motions=["torsion"],
-        bearings=None,
-        points=None,
-        meshes__pair__backlash="50 um",
-        meshes__pair__friction_coefficient=0.1,
-        supports=supports,
-    )
+    model = free_pair_that_rubs(supports=supports)
     soon, late = (
         rg.sweep(model, {"operation.speed": ["1500 rpm"]}, discard=discard, sample=10, exponents=0)
         for discard in (60, 300)
